@@ -1,0 +1,77 @@
+/**
+ * @file Batch.h
+ * @brief Evaluation of one metric on batches of cells of one type. Internal: not installed.
+ */
+#ifndef tautline_Batch_h
+#define tautline_Batch_h
+
+#include "Metrics.h"
+#include "Packet.h"
+
+namespace tautline
+{
+/// Everything a batch evaluator needs that is the same for all batches of a block.
+struct BatchContext
+{
+  const Mesh* mesh = nullptr;
+  const CellBlock* block = nullptr;
+  const CellTopology* topology = nullptr;
+  const EvaluationOptions* options = nullptr;
+  bool largerIsBetter = false;
+};
+
+/// One batch: the cells, their gathered vertices, and what the evaluator makes of them.
+struct Batch
+{
+  Index cells[PacketWidth]; ///< the last one repeated to fill the batch
+  int count = 0;
+  Packet points[MaxNodes][3];
+  Packet value;
+  Packet gradient[MaxNodes][3];
+};
+
+using BatchEvaluator = void (*)(const BatchContext&, Batch&);
+
+/// The evaluators of a metric; null where it is not defined.
+struct MetricCode
+{
+  BatchEvaluator value2D = nullptr;
+  BatchEvaluator gradient2D = nullptr;
+  BatchEvaluator value3D = nullptr;
+  BatchEvaluator gradient3D = nullptr;
+};
+
+MetricCode targetMetricCode(Metric metric);
+MetricCode simplexMetricCode(Metric metric);
+MetricCode cellMetricCode(Metric metric);
+
+/// Packet vectors, used by the chain rules.
+using PacketVec = Packet[3];
+
+inline Packet dot(const Packet* a, const Packet* b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+inline void cross(const Packet* a, const Packet* b, Packet* result)
+{
+  result[0] = a[1] * b[2] - a[2] * b[1];
+  result[1] = a[2] * b[0] - a[0] * b[2];
+  result[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+inline void subtract(const Packet* a, const Packet* b, Packet* result)
+{
+  for (int c = 0; c < 3; ++c)
+  {
+    result[c] = a[c] - b[c];
+  }
+}
+
+/// Finite or zero: the values and gradients of elements beyond arithmetic are 0.
+inline Packet finiteOrZero(Packet x)
+{
+  return select(abs(x) <= 1.7976931348623157e308, x, Packet{});
+}
+}
+#endif

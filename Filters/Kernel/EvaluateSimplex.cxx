@@ -1,0 +1,165 @@
+#include "Batch.h"
+#include "SimplexMetrics.h"
+
+namespace tautline
+{
+namespace
+{
+/// The nodes of the face opposite each vertex of a tetrahedron.
+constexpr int oppositeFace[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 } };
+
+/// Adds scale * (b - a) x (c - a)-type derivatives of a triangle's squared normal or of its normal
+/// along n: both are n . ((b - a) x (c - a)) to first order.
+void addNormalGradient(Packet scale, const Packet* n, int a, int b, int c, Batch& batch)
+{
+  Packet ab[3], ac[3], forB[3], forC[3];
+  subtract(batch.points[b], batch.points[a], ab);
+  subtract(batch.points[c], batch.points[a], ac);
+  cross(ac, n, forB);
+  cross(n, ab, forC);
+  for (int i = 0; i < 3; ++i)
+  {
+    batch.gradient[b][i] += scale * forB[i];
+    batch.gradient[c][i] += scale * forC[i];
+    batch.gradient[a][i] -= scale * (forB[i] + forC[i]);
+  }
+}
+
+template <class M, int N, bool WithGradient>
+void evaluateSimplex(const BatchContext& context, Batch& batch)
+{
+  const CellTopology& topology = *context.topology;
+  SimplexInvariants<N> s, d;
+  for (int e = 0; e < s.edges; ++e)
+  {
+    Packet edge[3];
+    subtract(batch.points[topology.edgeNodes[e][1]], batch.points[topology.edgeNodes[e][0]], edge);
+    s.edge2[e] = dot(edge, edge);
+  }
+  Packet ab[3], ac[3], ad[3], normal[3], faceNormal[4][3];
+  subtract(batch.points[1], batch.points[0], ab);
+  subtract(batch.points[2], batch.points[0], ac);
+  cross(ab, ac, normal);
+  Packet lengths2 = s.edge2[0] * s.edge2[2], jacobian2;
+  if constexpr (N == 2)
+  {
+    // A planar triangle's area is signed along the mesh's normal, a surface triangle's along its own.
+    jacobian2 = dot(normal, normal);
+    const Packet length = sqrt(jacobian2);
+    const Packet over = select(length > 0.0, 1.0 / length, Packet{});
+    const bool planar = context.mesh->dimension() == Dimension::Planar;
+    for (int c = 0; c < 3; ++c)
+    {
+      const double mirror = context.mesh->mirrored() ? -1.0 : 1.0;
+      const Packet unit =
+        planar ? broadcast(mirror * context.mesh->normal()[c]) : Packet(normal[c] * over);
+      s.size += 0.5 * normal[c] * unit;
+      normal[c] = unit;
+    }
+  }
+  else
+  {
+    subtract(batch.points[3], batch.points[0], ad);
+    const Packet jacobian = dot(normal, ad);
+    s.size = jacobian * (1.0 / 6.0);
+    jacobian2 = jacobian * jacobian;
+    lengths2 *= s.edge2[3];
+    for (int f = 0; f < 4; ++f)
+    {
+      Packet u[3], v[3];
+      subtract(batch.points[oppositeFace[f][1]], batch.points[oppositeFace[f][0]], u);
+      subtract(batch.points[oppositeFace[f][2]], batch.points[oppositeFace[f][0]], v);
+      cross(u, v, faceNormal[f]);
+      s.face2[f] = 0.25 * dot(faceNormal[f], faceNormal[f]);
+    }
+  }
+  const double tolerance = Mesh::degenerateTolerance() * Mesh::degenerateTolerance();
+  const Mask degenerate = jacobian2 <= tolerance * lengths2;
+  batch.value = select(degenerate, Packet{}, M::template evaluate<N>(s, d));
+
+  if constexpr (WithGradient)
+  {
+    for (int k = 0; k < topology.nodes; ++k)
+    {
+      batch.gradient[k][0] = batch.gradient[k][1] = batch.gradient[k][2] = Packet{};
+    }
+    for (int e = 0; e < s.edges; ++e)
+    {
+      const int i = topology.edgeNodes[e][0], j = topology.edgeNodes[e][1];
+      const Packet factor = select(degenerate, Packet{}, 2.0 * d.edge2[e]);
+      for (int c = 0; c < 3; ++c)
+      {
+        const Packet g = factor * (batch.points[j][c] - batch.points[i][c]);
+        batch.gradient[j][c] += g;
+        batch.gradient[i][c] -= g;
+      }
+    }
+    const Packet size = select(degenerate, Packet{}, d.size);
+    if constexpr (N == 2)
+    {
+      addNormalGradient(0.5 * size, normal, 0, 1, 2, batch);
+    }
+    else
+    {
+      for (int f = 0; f < 4; ++f)
+      {
+        addNormalGradient(select(degenerate, Packet{}, 0.5 * d.face2[f]), faceNormal[f],
+          oppositeFace[f][0], oppositeFace[f][1], oppositeFace[f][2], batch);
+      }
+      // 6 V = ((b - a) x (c - a)) . (d - a)
+      Packet g[3][3];
+      cross(ac, ad, g[0]);
+      cross(ad, ab, g[1]);
+      cross(ab, ac, g[2]);
+      for (int k = 0; k < 3; ++k)
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          const Packet part = (1.0 / 6.0) * size * g[k][c];
+          batch.gradient[k + 1][c] += part;
+          batch.gradient[0][c] -= part;
+        }
+      }
+    }
+  }
+}
+
+template <class M>
+MetricCode codeOf()
+{
+  MetricCode code;
+  if constexpr (M::in2D)
+  {
+    code.value2D = evaluateSimplex<M, 2, false>;
+    code.gradient2D = evaluateSimplex<M, 2, true>;
+  }
+  if constexpr (M::in3D)
+  {
+    code.value3D = evaluateSimplex<M, 3, false>;
+    code.gradient3D = evaluateSimplex<M, 3, true>;
+  }
+  return code;
+}
+}
+
+MetricCode simplexMetricCode(Metric metric)
+{
+  switch (metric)
+  {
+    case Metric::RadiusRatio:
+      return codeOf<RadiusRatio>();
+    case Metric::NormalizedRadiusRatio:
+      return codeOf<NormalizedRadiusRatio>();
+    case Metric::ConditioningScaleInvariant:
+      return codeOf<ConditioningScaleInvariant>();
+    case Metric::ConditioningSizeShape:
+      return codeOf<ConditioningSizeShape>();
+    case Metric::InterpolationSizeShape:
+      return codeOf<InterpolationSizeShape>();
+    case Metric::InterpolationScaleInvariant:
+      return codeOf<InterpolationScaleInvariant>();
+    default:
+      return {};
+  }
+}
+}

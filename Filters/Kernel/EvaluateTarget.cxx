@@ -1,0 +1,493 @@
+#include "Batch.h"
+#include "TargetMetrics.h"
+
+namespace tautline
+{
+namespace
+{
+/// A corner Jacobian in local coordinates, and what is needed to carry a derivative back.
+template <int N>
+struct Corner
+{
+  Packet t[N][N];       ///< T = A W^-1
+  Packet inverse[N][N]; ///< W^-1
+  Packet axes[2][3];    ///< 2D: the frame A is taken in
+  TargetInvariants<N> invariants;
+  Packet cofactor[N][N];
+  Mask degenerate;
+};
+
+/// Frames of a planar mesh are the mesh's; a mirrored mesh is seen from behind.
+void planarAxes(const Mesh& mesh, Packet (&axes)[2][3])
+{
+  for (int a = 0; a < 2; ++a)
+  {
+    const Vec3& axis = mesh.frame()[mesh.mirrored() ? 1 - a : a];
+    for (int c = 0; c < 3; ++c)
+    {
+      axes[a][c] = broadcast(axis[c]);
+    }
+  }
+}
+
+/// Unit normals of surface cells: of the triangle, or across the diagonals of the quadrilateral.
+void surfaceNormal(const Batch& batch, int nodes, Packet (&normal)[3])
+{
+  Packet a[3], b[3];
+  subtract(batch.points[nodes == 3 ? 1 : 2], batch.points[0], a);
+  subtract(batch.points[nodes == 3 ? 2 : 3], batch.points[nodes == 3 ? 0 : 1], b);
+  cross(a, b, normal);
+}
+
+/// The frame of a surface corner: first edge, and its perpendicular in the corner's plane on the
+/// side that makes the corner positive when it turns as the cell does. Rotation-invariant metrics
+/// see the corner's Gram matrix and this sign only, so the frame's own motion adds no gradient.
+void surfaceAxes(const Packet* a, const Packet* b, const Packet* normal, Packet (&axes)[2][3])
+{
+  Packet own[3];
+  cross(a, b, own);
+  const Packet turn = signOf(dot(own, normal));
+  const Packet lengthA = sqrt(dot(a, a)), lengthOwn = sqrt(dot(own, own));
+  const Packet overA = select(lengthA > 0.0, 1.0 / lengthA, Packet{});
+  const Packet overOwn = select(lengthOwn > 0.0, turn / lengthOwn, Packet{});
+  for (int c = 0; c < 3; ++c)
+  {
+    axes[0][c] = a[c] * overA;
+    own[c] *= overOwn;
+  }
+  cross(own, axes[0], axes[1]);
+}
+
+template <class M, int N>
+void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
+  const Packet* normal, Corner<N>& corner)
+{
+  const CellTopology& topology = *context.topology;
+  const auto& nodes = topology.cornerNodes[sample];
+  Packet edge[N][3];
+  for (int k = 0; k < N; ++k)
+  {
+    subtract(batch.points[nodes[k + 1]], batch.points[nodes[0]], edge[k]);
+  }
+
+  // A, column by column; degenerate is relative to the lengths of the columns.
+  Packet a[N][N];
+  Packet lengths2 = broadcast(1.0);
+  for (int k = 0; k < N; ++k)
+  {
+    lengths2 *= dot(edge[k], edge[k]);
+  }
+  if constexpr (N == 2)
+  {
+    if (normal)
+    {
+      surfaceAxes(edge[0], edge[1], normal, corner.axes);
+    }
+    for (int k = 0; k < 2; ++k)
+    {
+      a[0][k] = dot(corner.axes[0], edge[k]);
+      a[1][k] = dot(corner.axes[1], edge[k]);
+    }
+  }
+  else
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        a[c][k] = edge[k][c];
+      }
+    }
+  }
+
+  // W^-1: a multiple of I where only the size counts, else the target's or the ideal cell's.
+  if constexpr (M::usesSize)
+  {
+    const double scale =
+      N == 2 ? std::sqrt(topology.sizePerDeterminant) : std::cbrt(topology.sizePerDeterminant);
+    for (int r = 0; r < N; ++r)
+    {
+      for (int c = 0; c < N; ++c)
+      {
+        corner.inverse[r][c] = broadcast(r == c ? scale : 0.0);
+      }
+    }
+  }
+  else if (const Targets* targets = context.options->targets)
+  {
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      const double* w = targets->inverse.data() + 9 * (targets->offsets[batch.cells[l]] + sample);
+      for (int r = 0; r < N; ++r)
+      {
+        for (int c = 0; c < N; ++c)
+        {
+          corner.inverse[r][c][l] = w[3 * r + c];
+        }
+      }
+    }
+  }
+  else
+  {
+    for (int r = 0; r < N; ++r)
+    {
+      for (int c = 0; c < N; ++c)
+      {
+        corner.inverse[r][c] = broadcast(topology.idealInverse[sample][3 * r + c]);
+      }
+    }
+  }
+
+  TargetInvariants<N>& t = corner.invariants;
+  t = {};
+  for (int r = 0; r < N; ++r)
+  {
+    for (int c = 0; c < N; ++c)
+    {
+      corner.t[r][c] = a[r][0] * corner.inverse[0][c];
+      for (int k = 1; k < N; ++k)
+      {
+        corner.t[r][c] += a[r][k] * corner.inverse[k][c];
+      }
+      t.norm2 += corner.t[r][c] * corner.t[r][c];
+    }
+    t.trace += corner.t[r][r];
+  }
+  const auto& m = corner.t;
+  Packet det;
+  if constexpr (N == 2)
+  {
+    corner.cofactor[0][0] = m[1][1];
+    corner.cofactor[0][1] = -m[1][0];
+    corner.cofactor[1][0] = -m[0][1];
+    corner.cofactor[1][1] = m[0][0];
+    t.adj2 = t.norm2;
+    t.det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    det = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+  }
+  else
+  {
+    for (int r = 0; r < 3; ++r)
+    {
+      const int r1 = (r + 1) % 3, r2 = (r + 2) % 3;
+      for (int c = 0; c < 3; ++c)
+      {
+        const int c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+        corner.cofactor[r][c] = m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
+        if constexpr (M::usesAdjugate)
+        {
+          t.adj2 += corner.cofactor[r][c] * corner.cofactor[r][c];
+        }
+      }
+    }
+    t.det = m[0][0] * corner.cofactor[0][0] + m[0][1] * corner.cofactor[0][1] +
+      m[0][2] * corner.cofactor[0][2];
+    Packet c01[3];
+    cross(edge[0], edge[1], c01);
+    det = dot(c01, edge[2]);
+  }
+  const double tolerance = Mesh::degenerateTolerance() * Mesh::degenerateTolerance();
+  corner.degenerate = det * det <= tolerance * lengths2;
+}
+
+/// Adds weight * dq/d(points) of one corner.
+template <class M, int N>
+void addGradient(const BatchContext& context, const Corner<N>& corner, int sample,
+  const TargetInvariants<N>& d, Packet weight, Batch& batch)
+{
+  Packet p[N][N]; // dq/dT
+  for (int r = 0; r < N; ++r)
+  {
+    for (int c = 0; c < N; ++c)
+    {
+      p[r][c] = 2.0 * d.norm2 * corner.t[r][c] + d.det * corner.cofactor[r][c];
+    }
+    if constexpr (M::usesTrace)
+    {
+      p[r][r] += d.trace;
+    }
+  }
+  if constexpr (M::usesAdjugate && N == 3)
+  {
+    // d|adj T|^2 / dT = 2 (|T|^2 T - T T^t T)
+    Packet gram[3][3];
+    for (int r = 0; r < 3; ++r)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        gram[r][c] = corner.t[0][r] * corner.t[0][c] + corner.t[1][r] * corner.t[1][c] +
+          corner.t[2][r] * corner.t[2][c];
+      }
+    }
+    for (int r = 0; r < 3; ++r)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        const Packet ttt =
+          corner.t[r][0] * gram[0][c] + corner.t[r][1] * gram[1][c] + corner.t[r][2] * gram[2][c];
+        p[r][c] += 2.0 * d.adj2 * (corner.invariants.norm2 * corner.t[r][c] - ttt);
+      }
+    }
+  }
+
+  // dq/dA = P W^-t, then from the columns of A to the corner's nodes.
+  const auto& nodes = context.topology->cornerNodes[sample];
+  for (int k = 0; k < N; ++k)
+  {
+    Packet column[3] = {};
+    for (int r = 0; r < N; ++r)
+    {
+      Packet entry = p[r][0] * corner.inverse[k][0];
+      for (int c = 1; c < N; ++c)
+      {
+        entry += p[r][c] * corner.inverse[k][c];
+      }
+      entry *= weight;
+      if constexpr (N == 2)
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          column[c] += entry * corner.axes[r][c];
+        }
+      }
+      else
+      {
+        column[r] = entry;
+      }
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      batch.gradient[nodes[k + 1]][c] += column[c];
+      batch.gradient[nodes[0]][c] -= column[c];
+    }
+  }
+}
+
+/// Value (and partial derivatives) of a metric at a corner, 0 where it is singular.
+template <class M, int N>
+Packet evaluateFormula(const BatchContext& context, const Corner<N>& corner, TargetInvariants<N>& d)
+{
+  Packet q = M::template evaluate<N>(corner.invariants, d, context.options->parameters);
+  if constexpr (M::singular)
+  {
+    q = select(corner.degenerate, Packet{}, q);
+    for (Packet* part : { &d.norm2, &d.adj2, &d.det, &d.trace })
+    {
+      *part = select(corner.degenerate, Packet{}, *part);
+    }
+  }
+  return q;
+}
+
+/// Weights dQ/dq_s of the samples and the combined value Q.
+Packet combine(
+  const BatchContext& context, int samples, const Packet* q, const Mask* negative, Packet* weights)
+{
+  Mask anyNegative = {};
+  for (int s = 0; s < samples; ++s)
+  {
+    anyNegative |= negative[s];
+  }
+  // Only inverted corners speak for a cell that has some.
+  Packet active[MaxNodes], count = {};
+  for (int s = 0; s < samples; ++s)
+  {
+    active[s] = select(~anyNegative | negative[s], broadcast(1.0), Packet{});
+    count += active[s];
+  }
+  Packet result = {};
+  switch (context.options->combination)
+  {
+    case Combination::Mean:
+      for (int s = 0; s < samples; ++s)
+      {
+        weights[s] = active[s] / count;
+        result += weights[s] * q[s];
+      }
+      break;
+    case Combination::Worst:
+    {
+      const double sign = context.largerIsBetter ? -1.0 : 1.0;
+      Packet worst = broadcast(-HUGE_VAL);
+      for (int s = 0; s < samples; ++s)
+      {
+        // The first of equals is the active one.
+        const Mask better = (sign * q[s] > worst) & (active[s] > 0.0);
+        worst = select(better, sign * q[s], worst);
+        for (int e = 0; e < s; ++e)
+        {
+          weights[e] = select(better, Packet{}, weights[e]);
+        }
+        weights[s] = select(better, broadcast(1.0), Packet{});
+      }
+      result = sign * worst;
+      break;
+    }
+    case Combination::PowerMean:
+    {
+      const double p = context.largerIsBetter ? -context.options->power : context.options->power;
+      Packet sum = {}, sign = {};
+      for (int s = 0; s < samples; ++s)
+      {
+        sum += active[s] * pow(abs(q[s]), p);
+        sign += active[s] * q[s];
+      }
+      const Packet mean = pow(sum / count, 1.0 / p);
+      result = finiteOrZero(signOf(sign) * mean);
+      for (int s = 0; s < samples; ++s)
+      {
+        weights[s] = finiteOrZero(
+          active[s] / count * pow(abs(q[s]) / mean, p - 1.0) * signOf(sign) * signOf(q[s]));
+      }
+      break;
+    }
+  }
+  return result;
+}
+
+template <class M, int N, bool WithGradient>
+void evaluateTarget(const BatchContext& context, Batch& batch)
+{
+  const CellTopology& topology = *context.topology;
+  const int samples = topology.samples;
+  Corner<N> corner;
+  Packet normal[3];
+  const bool surface = N == 2 && context.mesh->dimension() != Dimension::Planar;
+  if constexpr (N == 2)
+  {
+    surface ? surfaceNormal(batch, topology.nodes, normal) : planarAxes(*context.mesh, corner.axes);
+  }
+  const Packet* own = surface ? normal : nullptr;
+  if constexpr (WithGradient)
+  {
+    for (int k = 0; k < topology.nodes; ++k)
+    {
+      batch.gradient[k][0] = batch.gradient[k][1] = batch.gradient[k][2] = Packet{};
+    }
+  }
+
+  if (samples == 1)
+  {
+    TargetInvariants<N> d;
+    evaluateCorner<M, N>(context, batch, 0, own, corner);
+    batch.value = evaluateFormula<M, N>(context, corner, d);
+    if constexpr (WithGradient)
+    {
+      addGradient<M, N>(context, corner, 0, d, broadcast(1.0), batch);
+    }
+    return;
+  }
+
+  Packet q[MaxNodes] = {}, weights[MaxNodes] = {};
+  Mask negative[MaxNodes] = {}, degenerate = {};
+  for (int s = 0; s < samples; ++s)
+  {
+    TargetInvariants<N> d;
+    evaluateCorner<M, N>(context, batch, s, own, corner);
+    q[s] = evaluateFormula<M, N>(context, corner, d);
+    negative[s] = (corner.invariants.det < 0.0) & ~corner.degenerate;
+    if constexpr (!M::singular)
+    {
+      negative[s] = Mask{}; // an untangling metric needs the pull of every corner
+    }
+    else
+    {
+      degenerate |= corner.degenerate;
+    }
+  }
+  batch.value = combine(context, samples, q, negative, weights);
+  Mask anyNegative = {};
+  for (int s = 0; s < samples; ++s)
+  {
+    anyNegative |= negative[s];
+  }
+  // A cell with a vanishing corner and no negative one is degenerate as a whole.
+  const Mask zero = degenerate & ~anyNegative;
+  batch.value = select(zero, Packet{}, batch.value);
+  if constexpr (WithGradient)
+  {
+    for (int s = 0; s < samples; ++s)
+    {
+      TargetInvariants<N> d;
+      evaluateCorner<M, N>(context, batch, s, own, corner);
+      evaluateFormula<M, N>(context, corner, d);
+      addGradient<M, N>(context, corner, s, d, select(zero, Packet{}, weights[s]), batch);
+    }
+  }
+}
+
+template <class M>
+MetricCode codeOf()
+{
+  MetricCode code;
+  if constexpr (M::in2D)
+  {
+    code.value2D = evaluateTarget<M, 2, false>;
+    code.gradient2D = evaluateTarget<M, 2, true>;
+  }
+  if constexpr (M::in3D)
+  {
+    code.value3D = evaluateTarget<M, 3, false>;
+    code.gradient3D = evaluateTarget<M, 3, true>;
+  }
+  return code;
+}
+}
+
+MetricCode targetMetricCode(Metric metric)
+{
+  switch (metric)
+  {
+    case Metric::InverseMeanRatio:
+      return codeOf<InverseMeanRatio>();
+    case Metric::MeanRatio:
+      return codeOf<MeanRatio>();
+    case Metric::ConditionNumber:
+      return codeOf<ConditionNumber>();
+    case Metric::UntangleBeta:
+      return codeOf<UntangleBeta>();
+    case Metric::ShapeBarrier:
+      return codeOf<ShapeBarrier>();
+    case Metric::ShapeNonBarrier:
+      return codeOf<ShapeNonBarrier>();
+    case Metric::ShapeCondition:
+      return codeOf<ShapeCondition>();
+    case Metric::ShapeConditionSquared:
+      return codeOf<ShapeConditionSquared>();
+    case Metric::ShapeSquared:
+      return codeOf<ShapeSquared>();
+    case Metric::ShapeProduct:
+      return codeOf<ShapeProduct>();
+    case Metric::ShapeCubic:
+      return codeOf<ShapeCubic>();
+    case Metric::ShapeSizeAdjugate:
+      return codeOf<ShapeSizeAdjugate>();
+    case Metric::ShapeSimilarity:
+      return codeOf<ShapeSimilarity>();
+    case Metric::ShapeSizeBarrier:
+      return codeOf<ShapeSizeBarrier>();
+    case Metric::ShapeSizeWeighted:
+      return codeOf<ShapeSizeWeighted>();
+    case Metric::ShapeSizeLogarithm:
+      return codeOf<ShapeSizeLogarithm>();
+    case Metric::SizeNonBarrier:
+      return codeOf<SizeNonBarrier>();
+    case Metric::SizeBarrier:
+      return codeOf<SizeBarrier>();
+    case Metric::SizeBarrierSquared:
+      return codeOf<SizeBarrierSquared>();
+    case Metric::SizeUntangle:
+      return codeOf<SizeUntangle>();
+    case Metric::ShapeOrientation:
+      return codeOf<ShapeOrientation>();
+    case Metric::ShapeOrientationBarrier:
+      return codeOf<ShapeOrientationBarrier>();
+    case Metric::ShapeSizeOrientation:
+      return codeOf<ShapeSizeOrientation>();
+    case Metric::ShapeSizeOrientationBarrier:
+      return codeOf<ShapeSizeOrientationBarrier>();
+    default:
+      return {};
+  }
+}
+}

@@ -1,0 +1,175 @@
+/**
+ * @file Mesh.h
+ * @brief A view of somebody's mesh and what the kernel finds out about it.
+ *
+ * Example: the number of inverted tetrahedra of a mesh kept in plain arrays.
+ *
+ *     tautline::MeshView view;
+ *     view.numberOfPoints = n;   view.points = xyz.data();
+ *     view.numberOfCells = m;    view.cellTypes = types.data();
+ *     view.offsets = offsets.data();   view.connectivity = connectivity.data();
+ *     tautline::Mesh mesh(view);
+ *     std::vector<signed char> validity(m);
+ *     mesh.classifyCells(validity.data());
+ */
+#ifndef tautline_Mesh_h
+#define tautline_Mesh_h
+
+#include "CellTopology.h"
+
+#include <vector>
+
+namespace tautline
+{
+/**
+ * @brief Borrowed arrays that describe a mesh; the caller keeps them alive and unchanged.
+ *
+ * Cell i has the nodes connectivity[offsets[i]] .. connectivity[offsets[i + 1] - 1] and the VTK type
+ * cellTypes[i]. Coordinates are x y z per point; a 2D mesh has a constant third coordinate or lies
+ * in any other plane.
+ */
+struct MeshView
+{
+  Index numberOfPoints = 0;
+  const double* points = nullptr; ///< 3 x numberOfPoints
+  Index numberOfCells = 0;
+  const unsigned char* cellTypes = nullptr; ///< numberOfCells, VTK codes
+  const Index* offsets = nullptr;           ///< numberOfCells + 1
+  const Index* connectivity = nullptr;      ///< offsets[numberOfCells]
+};
+
+/// What kind of space the cells fill.
+enum class Dimension
+{
+  None,    ///< no cell of a supported type
+  Planar,  ///< 2D cells, all in one plane: they have a sign
+  Surface, ///< 2D cells in space (or beside volume cells): measured in their own tangent planes
+  Volume   ///< 3D cells
+};
+
+/// What an element is worth; the values of the cell array `Validity`.
+enum Validity : signed char
+{
+  Valid = 1,        ///< every corner Jacobian is positive
+  Degenerate = 0,   ///< some corner Jacobian vanishes (relative to its edges), none is negative
+  Inverted = -1,    ///< some corner Jacobian is negative
+  NotMeasured = -2, ///< a cell type Tautline does not compute with
+  NonFinite = -3    ///< a vertex has a NaN or infinite coordinate
+};
+
+/// Cells of one type, in increasing order of id.
+struct CellBlock
+{
+  CellType type;
+  std::vector<Index> cells; ///< empty when the block is the range [0, count)
+  Index count = 0;
+  Index cell(Index i) const { return this->cells.empty() ? i : this->cells[i]; }
+};
+
+/// What is known of the mesh's orientation; found by Mesh::orientation().
+struct Orientation
+{
+  enum State
+  {
+    Consistent, ///< neighbours agree and most cells are positive (or the mesh is a surface)
+    Reversed,   ///< neighbours agree and most cells of every part are negative
+    Mixed       ///< some neighbours disagree, or some parts are reversed and others are not
+  };
+  State state = Consistent;
+  Index positiveCells = 0;
+  Index negativeCells = 0;
+  Index disagreeing = 0;   ///< interior edges (2D) or faces (3D) whose two cells disagree
+  Index parts = 0;         ///< connected parts; 0 when they did not have to be looked for
+  Index reversedParts = 0; ///< parts that agree inside and are mostly negative
+};
+
+/// Vertex-to-cell adjacency in compressed rows: the cells of vertex v are
+/// cells[offsets[v]] .. cells[offsets[v + 1] - 1], in increasing order.
+struct VertexCells
+{
+  std::vector<Index> offsets;
+  std::vector<Index> cells;
+};
+
+/// The boundary: edges of 2D cells and faces of 3D cells used by exactly one cell.
+struct Boundary
+{
+  std::vector<char> isBoundaryPoint; ///< one flag per point
+  Index facets = 0;                  ///< boundary edges or faces
+  Index nonManifold = 0;             ///< edges or faces used by three or more cells
+};
+
+/**
+ * @brief A mesh view sorted by cell type, with its dimension and plane.
+ *
+ * Construction checks what every later loop relies on: offsets ascend, each supported cell has the
+ * nodes its type needs, and node ids are in range. Violations throw Error.
+ */
+class TAUTLINE_KERNEL_EXPORT Mesh
+{
+public:
+  explicit Mesh(const MeshView& view, int threads = 0);
+
+  const MeshView& view() const { return this->View; }
+  const std::vector<CellBlock>& blocks() const { return this->Blocks; }
+  Dimension dimension() const { return this->Dim; }
+
+  /// Cells no block holds (vertices, lines, polygons, polyhedra, ...).
+  Index unsupportedCells() const { return this->Unsupported; }
+  /// Cells of a quadratic or higher type, reduced to their corners.
+  Index higherOrderCells() const { return this->HigherOrder; }
+  /// Points with a NaN or infinite coordinate.
+  Index nonFinitePoints() const { return this->NonFinitePoints; }
+
+  /**
+   * @brief Unit normal of a planar mesh, chosen so that its largest component is positive: +z for
+   * a mesh in an xy plane, where counter-clockwise cells are positive. Zero unless Planar.
+   */
+  const Vec3& normal() const { return this->Normal; }
+  /// Orthonormal frame e1, e2 with e1 x e2 = normal(); x and y for a mesh in an xy plane.
+  const std::array<Vec3, 2>& frame() const { return this->Frame; }
+
+  /**
+   * @brief Treats the mesh as its mirror image, for one that is reversed throughout: every sign and
+   * every metric is then that of the cells listed in the opposite order. Gradients stay those with
+   * respect to the actual coordinates. Off by default.
+   */
+  void setMirrored(bool mirrored) { this->Mirrored = mirrored; }
+  bool mirrored() const { return this->Mirrored; }
+
+  /**
+   * @brief Writes a Validity per cell. A corner Jacobian counts as vanishing when its determinant
+   * is at most degenerateTolerance() times the product of its edge lengths.
+   */
+  void classifyCells(signed char* validity, int threads = 0) const;
+  static constexpr double degenerateTolerance() { return 1e-13; }
+
+  /// Checks the signs given by classifyCells() and, where they differ, whether neighbours agree.
+  Orientation orientation(const signed char* validity) const;
+
+  VertexCells vertexCells() const;
+  Boundary boundary() const;
+
+  /// Mean of the vertices of a cell of a block.
+  Vec3 center(Index cell, CellType type) const;
+
+private:
+  void findPlane(int threads);
+
+  MeshView View;
+  std::vector<CellBlock> Blocks;
+  Dimension Dim = Dimension::None;
+  Vec3 Normal = { 0, 0, 0 };
+  std::array<Vec3, 2> Frame = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 } };
+  Index Unsupported = 0;
+  Index HigherOrder = 0;
+  Index NonFinitePoints = 0;
+  bool Mirrored = false;
+};
+
+inline Vec3 pointOf(const MeshView& view, Index id)
+{
+  return { view.points[3 * id], view.points[3 * id + 1], view.points[3 * id + 2] };
+}
+}
+#endif

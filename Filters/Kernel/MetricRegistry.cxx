@@ -1,0 +1,257 @@
+/**
+ * @file MetricRegistry.cxx
+ * @brief The table of facts on every metric.
+ */
+#include "Metrics.h"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double sizeDecides = std::numeric_limits<double>::quiet_NaN();
+
+// Cell types as bits, in the order of topologies().
+constexpr unsigned triangles = 1, quads = 2, tets = 4, hexes = 8, wedges = 16, pyramids = 32;
+constexpr unsigned simplices = triangles | tets;
+constexpr unsigned flat = triangles | quads;
+constexpr unsigned solid = tets | hexes | wedges | pyramids;
+constexpr unsigned all = flat | solid;
+
+constexpr Range atLeast(double low)
+{
+  return { low, infinity };
+}
+
+constexpr auto Target = MetricFamily::Target;
+constexpr auto Simplex = MetricFamily::Simplex;
+constexpr auto Cell = MetricFamily::Cell;
+constexpr auto Smaller = Direction::SmallerIsBetter;
+constexpr auto Larger = Direction::LargerIsBetter;
+constexpr auto Negative = InvertedValue::Negative;
+constexpr auto Growing = InvertedValue::Larger;
+constexpr auto Unsigned = InvertedValue::Unsigned;
+constexpr bool barrier = true, noBarrier = false, smooth = true, kinked = false;
+constexpr bool scaleFree = true, sized = false, rotates = true, oriented = false;
+
+constexpr const char* knupp2001 =
+  "Knupp, Algebraic mesh quality metrics, SIAM J. Sci. Comput. 23 (2001)";
+constexpr const char* knupp2012 = "Knupp, Introducing the target-matrix paradigm for mesh "
+                                  "optimization by node-movement, Eng. Comput. 28 (2012)";
+constexpr const char* tmop = "Dobrev et al., The target-matrix optimization paradigm for "
+                             "high-order meshes, SIAM J. Sci. Comput. 41 (2019)";
+constexpr const char* shewchuk =
+  "Shewchuk, What is a good linear element?, Int. Meshing Roundtable (2002)";
+constexpr const char* verdict = "Knupp et al., The Verdict library reference manual, Sandia (2006)";
+
+std::vector<MetricInfo> makeRegistry()
+{
+  // Largest values of the scale-invariant simplex metrics: those of the regular simplex.
+  const double root3 = std::sqrt(3.0);
+  const double si2 = root3 / 12, si3 = 2 * std::sqrt(2.0) * std::sqrt(root3) / 9;
+  const double ss2 = root3 / 4, ss3 = std::sqrt(2.0) / 12 * std::pow(root3 / 1.125, 0.75);
+  const double dihedral = std::acos(1.0 / 3.0) * 180 / M_PI;
+  const Range any = atLeast(0), one = atLeast(1), shape = { 0, 2 }, ratio = { 1, 3 };
+  const Range unit = { 0, 1 };
+  return {
+    { Metric::InverseMeanRatio, "imr", "Inverse mean ratio", "IMR", "inverse_mean_ratio",
+      "|T|^2 / (n |det T|^(2/n)), with the sign of det T",
+      "dissertation Table 2.2, 3.2.1; Munson (2007)", Target, true, true, all, one, one, ratio,
+      ratio, 1, 1, Smaller, Negative, barrier, smooth, scaleFree, rotates, "" },
+    { Metric::MeanRatio, "mean_ratio", "Mean ratio", "MR", "mr,shape",
+      "n |det T|^(2/n) / |T|^2, with the sign of det T", knupp2001, Target, true, true, all, unit,
+      unit, { 1.0 / 3, 1 }, { 1.0 / 3, 1 }, 1, 1, Larger, Negative, noBarrier, smooth, scaleFree,
+      rotates, "" },
+    { Metric::RadiusRatio, "rr", "Radius ratio", "RR", "radius_ratio",
+      "sqrt(R / r) of the circumscribed and inscribed circles or spheres, with the sign of the "
+      "size",
+      "dissertation Table 2.2 (the printed range does not fit its formula)", Simplex, true, true,
+      simplices, atLeast(std::sqrt(2.0)), atLeast(root3), { std::sqrt(2.0), std::sqrt(6.0) },
+      { root3, 3 }, std::sqrt(2.0), root3, Smaller, Negative, barrier, smooth, scaleFree, rotates,
+      "" },
+    { Metric::NormalizedRadiusRatio, "rr_normalized", "Radius ratio, normalized", "R/(n r)",
+      "normalized_radius_ratio", "R / (n r), with the sign of the size", verdict, Simplex, true,
+      true, simplices, one, one, ratio, ratio, 1, 1, Smaller, Negative, barrier, smooth, scaleFree,
+      rotates, "" },
+    { Metric::ConditioningScaleInvariant, "si", "Conditioning, scale-invariant", "SI",
+      "conditioning_scale_invariant", "2D: A / (s1^2 + s2^2 + s3^2); 3D: V / A_rms^(3/2)",
+      "dissertation Table 2.2, (3.2); Shewchuk (2002)", Simplex, true, true, simplices, { 0, si2 },
+      { 0, si3 }, { si2 / 3, si2 }, { si3 / 3, si3 }, si2, si3, Larger, Negative, noBarrier, smooth,
+      scaleFree, rotates, "" },
+    { Metric::ConditioningSizeShape, "si_size", "Conditioning, size and shape", "SI size",
+      "conditioning_size_shape", "3D: V / A_rms^2", shewchuk, Simplex, false, true, tets, any, any,
+      any, any, sizeDecides, sizeDecides, Larger, Negative, noBarrier, smooth, sized, rotates,
+      "1/length" },
+    { Metric::InterpolationSizeShape, "ss", "Interpolation, size and shape", "SS",
+      "interpolation_size_shape",
+      "2D: A / (s1 s2 s3); 3D: V sum A_k / sum_{m<n} A_m A_n l_mn^2, face m opposite vertex m",
+      "dissertation Table 2.2, 3.2.1; Shewchuk (2002)", Simplex, true, true, simplices, any, any,
+      any, any, sizeDecides, sizeDecides, Larger, Negative, noBarrier, smooth, sized, rotates,
+      "1/length" },
+    { Metric::InterpolationScaleInvariant, "ss_scale_invariant", "Interpolation, scale-invariant",
+      "SS scale-invariant", "interpolation_scale_invariant",
+      "2D: A / (s1 s2 s3)^(2/3); 3D: V (sum A_k / sum_{m<n} A_m A_n l_mn^2)^(3/4)", shewchuk,
+      Simplex, true, true, simplices, { 0, ss2 }, { 0, ss3 }, { ss2 / 3, ss2 }, { ss3 / 3, ss3 },
+      ss2, ss3, Larger, Negative, noBarrier, smooth, scaleFree, rotates, "" },
+    { Metric::Size, "size", "Size (area or volume)", "V", "area,volume",
+      "signed area or volume; faces are bilinear", "dissertation 3.2.1", Cell, true, true, all, any,
+      any, any, any, sizeDecides, sizeDecides, Direction::Neutral, Negative, noBarrier, smooth,
+      sized, rotates, "length^n" },
+    { Metric::UntangleBeta, "untangle_beta", "Untangling beta", "beta", "untangling,untangle",
+      "(|V - beta| - (V - beta)) / 2, V the signed size seen from a corner",
+      "dissertation (3.3); Knupp, Hexahedral and tetrahedral mesh untangling, Eng. Comput. 17 "
+      "(2001)",
+      Target, true, true, all, any, any, { 0, 0 }, { 0, 0 }, 0, 0, Smaller, Growing, noBarrier,
+      kinked, sized, rotates, "length^n" },
+    { Metric::EdgeRatio, "edge_ratio", "Edge length ratio", "l_max/l_min", "edge_length_ratio",
+      "longest edge / shortest edge", verdict, Cell, true, true, all, one, one, ratio, ratio, 1, 1,
+      Smaller, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::AspectRatio, "aspect_ratio", "Aspect ratio", "AR", "",
+      "simplex: longest edge / inradius, 1 if regular; quadrilateral and hexahedron: longest / "
+      "shortest principal axis",
+      verdict, Cell, true, true, flat | tets | hexes, one, one, ratio, ratio, 1, 1, Smaller,
+      Unsigned, barrier, kinked, scaleFree, rotates, "" },
+    { Metric::WidthRatio, "width_ratio", "Aspect ratio W/w", "W/w", "",
+      "longer / shorter side of the least elongated rectangle flush with an edge",
+      "dissertation Figure 4.8", Cell, true, false, triangles, one, one, { 1, 4 }, { 1, 4 },
+      2 / root3, 2 / root3, Smaller, Unsigned, barrier, kinked, scaleFree, rotates, "" },
+    { Metric::MinimumAngle, "min_angle", "Minimum angle", "theta_min", "minimum_angle",
+      "smallest corner angle (2D) or dihedral angle (3D)", "dissertation Table 2.7", Cell, true,
+      true, all, { 0, 90 }, { 0, 90 }, { 20, 90 }, { 15, 90 }, 60, dihedral, Larger, Unsigned,
+      noBarrier, kinked, scaleFree, rotates, "degrees" },
+    { Metric::MaximumAngle, "max_angle", "Maximum angle", "theta_max", "maximum_angle",
+      "largest corner angle (2D, reflex above 180) or dihedral angle (3D)",
+      "dissertation Table 2.7", Cell, true, true, all, { 60, 360 }, { 60, 180 }, { 60, 120 },
+      { 60, 150 }, 60, dihedral, Smaller, Unsigned, noBarrier, kinked, scaleFree, rotates,
+      "degrees" },
+    { Metric::EquiangleSkew, "equiangle_skew", "Equiangle skew", "skew", "skew",
+      "max((largest - e) / (180 - e), (e - smallest) / e) over the angles of the faces, e = 60 or "
+      "90",
+      verdict, Cell, true, true, all, unit, unit, { 0, 0.7 }, { 0, 0.7 }, 0, 0, Smaller, Unsigned,
+      noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::ConditionNumber, "condition_number", "Condition number", "kappa", "condition",
+      "|T| |T^-1| / n, with the sign of det T", knupp2001, Target, true, true, all, one, one, ratio,
+      ratio, 1, 1, Smaller, Negative, barrier, smooth, scaleFree, rotates, "" },
+    { Metric::ScaledJacobian, "scaled_jacobian", "Scaled Jacobian", "J_s", "jacobian",
+      "smallest over the corners of det A / product of its edge lengths, 1 if ideal", verdict, Cell,
+      true, true, all, unit, unit, { 0.3, 1 }, { 0.3, 1 }, 1, 1, Larger, Negative, noBarrier,
+      kinked, scaleFree, rotates, "" },
+    { Metric::ShapeBarrier, "mu_shape", "Shape, barrier", "mu_2 / mu_303", "mu_2,mu_303",
+      "2D: |T|^2 / (2 det T) - 1; 3D: |T|^2 / (3 det T^(2/3)) - 1", knupp2012, Target, true, true,
+      all, any, any, shape, shape, 0, 0, Smaller, Negative, barrier, smooth, scaleFree, rotates,
+      "" },
+    { Metric::ShapeNonBarrier, "mu_shape_nb", "Shape, non-barrier", "mu_4 / mu_360", "mu_4,mu_360",
+      "2D: |T|^2 - 2 det T; 3D: |T|^3 / (3 sqrt 3) - det T", tmop, Target, true, true, all, any,
+      any, any, any, 0, 0, Smaller, Growing, noBarrier, smooth, sized, rotates, "" },
+    { Metric::ShapeCondition, "mu_301", "Shape, condition", "mu_301", "", "|T| |T^-1| / 3 - 1",
+      tmop, Target, false, true, solid, any, any, shape, shape, 0, 0, Smaller, Negative, barrier,
+      smooth, scaleFree, rotates, "" },
+    { Metric::ShapeConditionSquared, "mu_302", "Shape, condition squared", "mu_302", "",
+      "|T|^2 |T^-1|^2 / 9 - 1", tmop, Target, false, true, solid, any, any, { 0, 8 }, { 0, 8 }, 0,
+      0, Smaller, Unsigned, barrier, smooth, scaleFree, rotates, "" },
+    { Metric::ShapeSquared, "mu_50", "Shape, squared", "mu_50", "", "|T^t T|^2 / (2 det T^2) - 1",
+      tmop, Target, true, false, flat, any, any, { 0, 16 }, { 0, 16 }, 0, 0, Smaller, Unsigned,
+      barrier, smooth, scaleFree, rotates, "" },
+    { Metric::ShapeProduct, "mu_58", "Shape, product", "mu_58", "",
+      "|T^t T|^2 / det T^2 - 2 |T|^2 / det T + 2", tmop, Target, true, false, flat, any, any,
+      { 0, 24 }, { 0, 24 }, 0, 0, Smaller, Unsigned, barrier, smooth, scaleFree, rotates, "" },
+    { Metric::ShapeCubic, "mu_304", "Shape, cubic", "mu_304", "", "|T|^3 / (3 sqrt 3 det T) - 1",
+      tmop, Target, false, true, solid, any, any, { 0, 4 }, { 0, 4 }, 0, 0, Smaller, Negative,
+      barrier, smooth, scaleFree, rotates, "" },
+    { Metric::ShapeSizeAdjugate, "mu_322", "Shape and size, adjugate", "mu_322", "",
+      "|T - adj(T)^t|^2 / (6 det T)", tmop, Target, false, true, solid, any, any, any, any, 0, 0,
+      Smaller, Negative, barrier, smooth, sized, rotates, "" },
+    { Metric::ShapeSimilarity, "tmp_shape", "Shape similarity (TMP)", "TMP shape",
+      "shape_similarity", "2D: |T - adj(T)^t|^2; 3D: |(|T| / sqrt 3) T - adj(T)^t|^2",
+      "dissertation (4.22); Knupp (2012)", Target, true, true, all, any, any, any, any, 0, 0,
+      Smaller, Growing, noBarrier, smooth, sized, rotates, "" },
+    { Metric::ShapeSizeBarrier, "mu_shape_size", "Shape and size, barrier", "mu_7 / mu_321",
+      "mu_7,mu_321", "|T - T^-t|^2", tmop, Target, true, true, all, any, any, any, any, 0, 0,
+      Smaller, Unsigned, barrier, smooth, sized, rotates, "" },
+    { Metric::ShapeSizeWeighted, "mu_9", "Shape and size, weighted", "mu_9", "",
+      "det T |T - T^-t|^2", tmop, Target, true, false, flat, any, any, any, any, 0, 0, Smaller,
+      Negative, barrier, smooth, sized, rotates, "" },
+    { Metric::ShapeSizeLogarithm, "mu_323", "Shape and size, logarithmic", "mu_323", "",
+      "|T|^3 - 3 sqrt 3 ln |det T| - 3 sqrt 3", tmop, Target, false, true, solid, any, any, any,
+      any, 0, 0, Smaller, Unsigned, barrier, smooth, sized, rotates, "" },
+    { Metric::SizeNonBarrier, "mu_size_nb", "Size, non-barrier", "mu_55 / mu_315", "mu_55,mu_315",
+      "(det T - 1)^2", tmop, Target, true, true, all, any, any, any, any, 0, 0, Smaller, Growing,
+      noBarrier, smooth, sized, rotates, "" },
+    { Metric::SizeBarrier, "mu_size", "Size, barrier", "mu_56 / mu_316", "mu_56,mu_316",
+      "(det T + 1 / det T) / 2 - 1", tmop, Target, true, true, all, any, any, any, any, 0, 0,
+      Smaller, Negative, barrier, smooth, sized, rotates, "" },
+    { Metric::SizeBarrierSquared, "mu_size_squared", "Size, squared barrier", "mu_77 / mu_318",
+      "mu_77,mu_318", "(det T - 1 / det T)^2 / 2", tmop, Target, true, true, all, any, any, any,
+      any, 0, 0, Smaller, Unsigned, barrier, smooth, sized, rotates, "" },
+    { Metric::SizeUntangle, "mu_untangle", "Size, untangling", "mu_211 / mu_311", "mu_211,mu_311",
+      "(det T - 1)^2 - det T + sqrt(det T^2 + epsilon)", tmop, Target, true, true, all, any, any,
+      any, any, sizeDecides, sizeDecides, Smaller, Growing, noBarrier, smooth, sized, rotates, "" },
+    { Metric::ShapeOrientation, "mu_shape_orientation_nb", "Shape and orientation, non-barrier",
+      "mu_85", "mu_85", "|T - |T| I / sqrt n|^2", tmop, Target, true, true, all, any, any, any, any,
+      0, 0, Smaller, Growing, noBarrier, smooth, sized, oriented, "" },
+    { Metric::ShapeOrientationBarrier, "mu_shape_orientation", "Shape and orientation, barrier",
+      "TShapeOrientB1", "tshapeorientb1", "(|T| - tr T / sqrt n) / (2 det T)", "Mesquite 2.99",
+      Target, true, true, all, any, any, any, any, 0, 0, Smaller, Negative, barrier, smooth, sized,
+      oriented, "" },
+    { Metric::ShapeSizeOrientation, "mu_shape_size_orientation_nb",
+      "Shape, size and orientation, non-barrier", "mu_14", "mu_14", "|T - I|^2", tmop, Target, true,
+      true, all, any, any, any, any, 0, 0, Smaller, Growing, noBarrier, smooth, sized, oriented,
+      "" },
+    { Metric::ShapeSizeOrientationBarrier, "mu_shape_size_orientation",
+      "Shape, size and orientation, barrier", "mu_98", "mu_98", "|T - I|^2 / det T", tmop, Target,
+      true, true, all, any, any, any, any, 0, 0, Smaller, Negative, barrier, smooth, sized,
+      oriented, "" },
+  };
+}
+
+std::string lowerCase(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+}
+
+const std::vector<MetricInfo>& metricRegistry()
+{
+  static const std::vector<MetricInfo> registry = makeRegistry();
+  return registry;
+}
+
+const MetricInfo& metricInfo(Metric metric)
+{
+  const auto& registry = metricRegistry();
+  const int number = static_cast<int>(metric);
+  if (number < 0 || number >= static_cast<int>(registry.size()))
+  {
+    throw Error("There is no metric number " + std::to_string(number) + ".");
+  }
+  return registry[number];
+}
+
+const MetricInfo* findMetric(const std::string& name)
+{
+  const std::string wanted = lowerCase(name);
+  for (const MetricInfo& info : metricRegistry())
+  {
+    for (const char* candidate : { info.name, info.label, info.symbol })
+    {
+      if (lowerCase(candidate) == wanted)
+      {
+        return &info;
+      }
+    }
+    const std::string aliases = std::string(",") + info.aliases + ",";
+    if (!wanted.empty() && wanted.find(',') == std::string::npos &&
+      aliases.find("," + wanted + ",") != std::string::npos)
+    {
+      return &info;
+    }
+  }
+  return nullptr;
+}
+}

@@ -1,0 +1,235 @@
+/**
+ * @file Metrics.h
+ * @brief Element quality metrics: what there is, what each means, and how to evaluate it.
+ *
+ * Example: inverse mean ratio of every cell of a mesh (see Mesh.h for the mesh).
+ *
+ *     std::vector<double> imr(mesh.view().numberOfCells);
+ *     tautline::evaluateMetric(mesh, tautline::Metric::InverseMeanRatio, {}, imr.data());
+ *
+ * Values are always finite. A degenerate element has the value 0 of every metric that is singular
+ * there, and so has a cell the metric is not defined on; Mesh::classifyCells() tells them apart.
+ */
+#ifndef tautline_Metrics_h
+#define tautline_Metrics_h
+
+#include "Mesh.h"
+
+#include <vector>
+
+namespace tautline
+{
+/// The metrics. The numbers are stable: they are stored in ParaView state files. Add at the end.
+enum class Metric : int
+{
+  InverseMeanRatio = 0,
+  MeanRatio = 1,
+  RadiusRatio = 2,
+  NormalizedRadiusRatio = 3,
+  ConditioningScaleInvariant = 4,
+  ConditioningSizeShape = 5,
+  InterpolationSizeShape = 6,
+  InterpolationScaleInvariant = 7,
+  Size = 8,
+  UntangleBeta = 9,
+  EdgeRatio = 10,
+  AspectRatio = 11,
+  WidthRatio = 12,
+  MinimumAngle = 13,
+  MaximumAngle = 14,
+  EquiangleSkew = 15,
+  ConditionNumber = 16,
+  ScaledJacobian = 17,
+  ShapeBarrier = 18,
+  ShapeNonBarrier = 19,
+  ShapeCondition = 20,
+  ShapeConditionSquared = 21,
+  ShapeSquared = 22,
+  ShapeProduct = 23,
+  ShapeCubic = 24,
+  ShapeSizeAdjugate = 25,
+  ShapeSimilarity = 26,
+  ShapeSizeBarrier = 27,
+  ShapeSizeWeighted = 28,
+  ShapeSizeLogarithm = 29,
+  SizeNonBarrier = 30,
+  SizeBarrier = 31,
+  SizeBarrierSquared = 32,
+  SizeUntangle = 33,
+  ShapeOrientation = 34,
+  ShapeOrientationBarrier = 35,
+  ShapeSizeOrientation = 36,
+  ShapeSizeOrientationBarrier = 37
+};
+
+/// Which way a metric points.
+enum class Direction
+{
+  SmallerIsBetter,
+  LargerIsBetter,
+  Neutral ///< neither: a size
+};
+
+/// What the value of an inverted element is.
+enum class InvertedValue
+{
+  Negative, ///< below zero, where every valid element is above
+  Larger,   ///< finite and worse than that of a valid element: the metric can untangle
+  Unsigned  ///< like that of a valid element; only `Validity` tells
+};
+
+/// How a metric is built, which decides what options it takes.
+enum class MetricFamily
+{
+  Target,  ///< a function of T = A W^-1 at each corner; takes targets and a combination
+  Simplex, ///< a function of the edges and faces of a triangle or tetrahedron
+  Cell     ///< a function of the whole cell's angles and lengths
+};
+
+/// Parameters of the few metrics that have any.
+struct Parameters
+{
+  /**
+   * @brief Beta of UntangleBeta: the area or volume every element should at least have. The default
+   * is 0, which asks that no element be inverted; the dissertation uses a positive value.
+   */
+  double beta = 0.0;
+  /// Epsilon of mu_211 and mu_311, above 0; the rounding of their kink at tau = 0.
+  double epsilon = 1e-4;
+};
+
+/// A closed interval of values; infinite ends are infinite.
+struct Range
+{
+  double low;
+  double high;
+};
+
+/// What is known of a metric. Feeds the documentation, ParaView's menus and the tests.
+struct MetricInfo
+{
+  Metric metric;
+  const char* name;    ///< short, lower case, stable: the name of the cell array, e.g. "imr"
+  const char* label;   ///< for menus, e.g. "Inverse mean ratio"
+  const char* symbol;  ///< e.g. "IMR", "mu_2 / mu_303"
+  const char* aliases; ///< other names it is found by, comma separated: "mu_2,mu_303"
+  const char* formula; ///< text; n is the dimension
+  const char* source;  ///< paper and section
+  MetricFamily family;
+  bool in2D, in3D;
+  /// Cell types as bits 1 << topologyIndex(type).
+  unsigned cellTypes;
+  Range full2D, full3D;             ///< of valid elements
+  Range acceptable2D, acceptable3D; ///< of elements most solvers take
+  double ideal2D, ideal3D;          ///< of the ideal element; NaN where size decides
+  Direction direction;
+  InvertedValue inverted;
+  bool barrier;           ///< tends to infinity as the element degenerates from the valid side
+  bool differentiable;    ///< everywhere on valid elements; else almost everywhere
+  bool scaleInvariant;    ///< with the default target
+  bool rotationInvariant; ///< false: depends on the orientation in space; needs Planar or Volume
+  const char* unit;       ///< "", "degrees", "length^n", ...
+  /// The range for one dimension.
+  const Range& full(int dimension) const { return dimension == 2 ? full2D : full3D; }
+  const Range& acceptable(int dimension) const
+  {
+    return dimension == 2 ? acceptable2D : acceptable3D;
+  }
+  double ideal(int dimension) const { return dimension == 2 ? ideal2D : ideal3D; }
+  bool definedOn(CellType type) const { return (cellTypes >> topologyIndex(type)) & 1u; }
+};
+
+/// Every metric, in the order of its number.
+TAUTLINE_KERNEL_EXPORT const std::vector<MetricInfo>& metricRegistry();
+
+/// The facts of one metric.
+TAUTLINE_KERNEL_EXPORT const MetricInfo& metricInfo(Metric metric);
+
+/**
+ * @brief Finds a metric by name, label, symbol or alias, without regard to case.
+ * @return its facts, or nullptr.
+ */
+TAUTLINE_KERNEL_EXPORT const MetricInfo* findMetric(const std::string& name);
+
+/// How a target metric's corner values become one value of a cell with several corners.
+enum class Combination : int
+{
+  Mean = 0,     ///< arithmetic mean
+  Worst = 1,    ///< the largest value, or the smallest where larger is better
+  PowerMean = 2 ///< (mean of |q|^p)^(1/p); p is negated where larger is better
+};
+
+/**
+ * @brief W^-1 at every sample of every cell; made by the functions of Targets.h.
+ * The nine entries of sample s of cell i (row by row, 2D in the leading 2 x 2) start at
+ * 9 * (offsets[i] + s).
+ */
+struct Targets
+{
+  std::vector<Index> offsets;
+  std::vector<double> inverse;
+};
+
+/// How to evaluate a metric.
+struct EvaluationOptions
+{
+  Parameters parameters;
+  /// For cells with several corners. If some corners are inverted, only these are combined.
+  Combination combination = Combination::Mean;
+  double power = 2.0;               ///< p of PowerMean, at least 1
+  const Targets* targets = nullptr; ///< null: the ideal cell of each type
+  int threads = 0;                  ///< 0: all cores. The result does not depend on it.
+};
+
+/**
+ * @brief Writes one value per cell of the mesh. Cells of unsupported types, or on which the metric
+ * is not defined, get 0.
+ */
+TAUTLINE_KERNEL_EXPORT void evaluateMetric(
+  const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values);
+
+/**
+ * @brief Values as above and the gradient of each with respect to the vertices of its cell.
+ * @param gradients entry (offsets[i] + k) * 3 + c is the derivative of the value of cell i by
+ * coordinate c of its k-th node; 3 x the size of the connectivity. Nodes beyond the corners get 0.
+ */
+TAUTLINE_KERNEL_EXPORT void evaluateMetricGradient(const Mesh& mesh, Metric metric,
+  const EvaluationOptions& options, double* values, double* gradients);
+
+/**
+ * @brief Sums a power of a metric over the mesh, with its gradient: the workhorse of optimization.
+ *
+ * The sum runs over |q|^p with the sign of q, so that inverted elements of a signed metric lower
+ * it; callers that care classify first. Elements are added in an order fixed by the mesh, and so
+ * the sum and the gradient are bitwise the same for any number of threads.
+ */
+class TAUTLINE_KERNEL_EXPORT MetricSum
+{
+public:
+  /// Prepares the chunks and their colours: chunks of one colour share no vertex.
+  MetricSum(const Mesh& mesh, Metric metric, const EvaluationOptions& options, double power);
+
+  /// The sum over all cells the metric is defined on.
+  double value() const;
+  /// The sum, and its gradient in 3 x numberOfPoints entries, which are overwritten.
+  double valueAndGradient(double* gradient) const;
+
+private:
+  template <bool WithGradient>
+  double run(double* gradient) const;
+
+  struct Chunk
+  {
+    int block;
+    Index begin, end;
+  };
+  const Mesh& TheMesh;
+  Metric TheMetric;
+  EvaluationOptions Options;
+  double Power;
+  std::vector<std::vector<Index>> Order; ///< per block: positions in cache-friendly order, or empty
+  std::vector<Chunk> Chunks;             ///< sorted by colour
+  std::vector<Index> ColourStarts;
+};
+}
+#endif

@@ -1,0 +1,66 @@
+/**
+ * @file Types.h
+ * @brief Small types every part of the kernel shares: indices, 3-vectors, errors.
+ */
+#ifndef tautline_Types_h
+#define tautline_Types_h
+
+#include "TautlineKernelExport.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace tautline
+{
+/// Point, cell and connectivity indices; the type of VTK's 64-bit cell arrays.
+using Index = std::int64_t;
+
+/// A point or vector, x y z.
+using Vec3 = std::array<double, 3>;
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b)
+{
+  return { a[0] + b[0], a[1] + b[1], a[2] + b[2] };
+}
+inline Vec3 operator-(const Vec3& a, const Vec3& b)
+{
+  return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+}
+inline Vec3 operator*(double s, const Vec3& a)
+{
+  return { s * a[0], s * a[1], s * a[2] };
+}
+inline Vec3& operator+=(Vec3& a, const Vec3& b)
+{
+  a = a + b;
+  return a;
+}
+inline Vec3& operator-=(Vec3& a, const Vec3& b)
+{
+  a = a - b;
+  return a;
+}
+inline double dot(const Vec3& a, const Vec3& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Vec3 cross(const Vec3& a, const Vec3& b)
+{
+  return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
+}
+inline double norm(const Vec3& a)
+{
+  return std::sqrt(dot(a, a));
+}
+
+/// What the kernel throws on input it cannot take. The message names the problem and the remedy.
+class Error : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+}
+#endif

@@ -1,0 +1,11 @@
+#include "Version.h"
+
+namespace tautline
+{
+
+const char* version()
+{
+  return TAUTLINE_VERSION;
+}
+
+} // namespace tautline

@@ -1,0 +1,14 @@
+#ifndef tautline_Version_h
+#define tautline_Version_h
+
+#include "TautlineKernelExport.h"
+
+namespace tautline
+{
+
+/** The version of the kernel library that was loaded, "major.minor.patch". */
+TAUTLINE_KERNEL_EXPORT const char* version();
+
+} // namespace tautline
+
+#endif

@@ -1,0 +1,77 @@
+/**
+ * @class tautline::MeshAdapter
+ * @brief Shows a vtkDataSet to the kernel as a tautline::Mesh, copying only what it must.
+ *
+ * Point coordinates in double precision and 64-bit cell arrays are used where they are. Float
+ * coordinates, 32-bit cell arrays and the implicit cells of image data, rectilinear and structured
+ * grids are copied. Pixels and voxels become quadrilaterals and hexahedra; polygons with three or
+ * four points become triangles and quadrilaterals. Cell and point ids stay those of the data set.
+ *
+ * The data set must outlive the adapter and not change meanwhile.
+ */
+#ifndef tautline_MeshAdapter_h
+#define tautline_MeshAdapter_h
+
+#include "TautlineQualityModule.h" // for export macro
+
+#include "tautline/Mesh.h"
+
+#include "vtkSmartPointer.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkDataSet;
+class vtkPoints;
+
+namespace tautline
+{
+class TAUTLINEQUALITY_EXPORT MeshAdapter
+{
+public:
+  /// Throws tautline::Error if the mesh is malformed. An empty data set gives an empty mesh.
+  explicit MeshAdapter(vtkDataSet* input, int threads = 0);
+
+  Mesh& mesh() { return *this->TheMesh; }
+  const Mesh& mesh() const { return *this->TheMesh; }
+
+  /**
+   * @brief What the user should know of how the mesh is taken, as sentences, or an empty string:
+   * higher-order cells measured on their corners, cells left out (by type and number), points with
+   * NaN coordinates.
+   */
+  std::string notice() const;
+
+  /// Bytes copied because VTK's arrays had other types.
+  std::size_t copiedBytes() const;
+
+  /// One flag per cell, nonzero for ghost (duplicate or hidden) cells; null if there are none.
+  const unsigned char* ghostCells() const { return this->Ghosts; }
+
+private:
+  void takePoints(vtkDataSet* input);
+  void takeCells(vtkDataSet* input);
+
+  std::vector<double> Points;
+  std::vector<unsigned char> Types;
+  std::vector<Index> Offsets;
+  std::vector<Index> Connectivity;
+  const unsigned char* Ghosts = nullptr;
+  MeshView View;
+  std::unique_ptr<Mesh> TheMesh;
+};
+
+/**
+ * @brief Throws Error unless the orientation allows what follows, or describes it.
+ * @return a sentence for the user ("All 120 cells are reversed ..."), empty when all is well
+ */
+TAUTLINEQUALITY_EXPORT std::string describe(const Orientation& orientation, const Mesh& mesh);
+
+/**
+ * @brief New points for an output: in the precision of `like`, with the coordinates given in double.
+ */
+TAUTLINEQUALITY_EXPORT vtkSmartPointer<vtkPoints> makePoints(
+  const std::vector<double>& coordinates, vtkPoints* like);
+}
+#endif

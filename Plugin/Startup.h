@@ -1,0 +1,15 @@
+/**
+ * @file Startup.h
+ * @brief What the plugin does when ParaView loads it, in the GUI, in pvpython and on a server alike.
+ */
+
+#ifndef tautline_Startup_h
+#define tautline_Startup_h
+
+/** Warns when the running ParaView is not the one the plugin was built for. */
+void tautlineCheckVersion();
+
+/** Gives the arrays of our filters their default colour maps; the user's own defaults win. */
+void tautlineInstallColorMaps();
+
+#endif

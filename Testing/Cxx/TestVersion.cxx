@@ -1,0 +1,11 @@
+#include "Check.h"
+
+#include "tautline/Version.h"
+
+#include <string>
+
+int TestVersion(int, char*[])
+{
+  TAUTLINE_CHECK(std::string(tautline::version()).find('.') != std::string::npos);
+  return tautline::exitCode();
+}

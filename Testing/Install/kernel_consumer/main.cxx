@@ -1,0 +1,9 @@
+#include <tautline/Version.h>
+
+#include <iostream>
+
+int main()
+{
+  std::cout << "Tautline kernel " << tautline::version() << "\n";
+  return 0;
+}

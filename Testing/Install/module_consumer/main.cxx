@@ -1,0 +1,22 @@
+#include <vtkCellType.h>
+#include <vtkCellTypeSource.h>
+#include <vtkDataSet.h>
+#include <vtkElementQuality.h>
+#include <vtkNew.h>
+
+#include <cstdlib>
+#include <iostream>
+
+int main()
+{
+  vtkNew<vtkCellTypeSource> source;
+  source->SetCellType(VTK_TETRA);
+  source->SetBlocksDimensions(2, 2, 2);
+  vtkNew<vtkElementQuality> quality;
+  quality->SetInputConnection(source->GetOutputPort());
+  quality->Update();
+  auto* mesh = vtkDataSet::SafeDownCast(quality->GetOutputDataObject(0));
+  const vtkIdType cells = mesh ? mesh->GetNumberOfCells() : 0;
+  std::cout << "measured " << cells << " tetrahedra\n";
+  return cells > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# test_install.sh CMAKE BUILD_TREE WORK_DIRECTORY COMPILER PYTHON
+# The install tree must work wherever it is moved to, so it is moved before it is used.
+set -euo pipefail
+cmake="$1" build="$2" work="$3" compiler="$4" python="$5"
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)"
+
+rm -rf "$work"
+mkdir -p "$work/first"
+"$cmake" --install "$build" --prefix "$work/first" >"$work/install.log"
+tree="$work/moved here" # with a space
+mv "$work/first" "$tree"
+unset LD_LIBRARY_PATH PYTHONPATH PV_PLUGIN_PATH
+
+echo "--- nothing of ours is missing, nothing points into the build tree"
+while IFS= read -r -d '' library; do
+  if ldd "$library" | grep -E 'not found'; then echo "in $library" >&2; exit 1; fi
+  if readelf -d "$library" | grep -E 'R(UN)?PATH' | grep -F "$build"; then echo "in $library" >&2; exit 1; fi
+done < <(find "$tree" -name '*.so' -print0)
+if grep -rlF --include='*.cmake' -e "$build" -e "$work/first" "$tree"; then
+  echo "these package files contain paths of the build" >&2; exit 1
+fi
+
+echo "--- a C++ program finds the package, first without VTK, then with a module"
+for program in kernel_consumer module_consumer; do
+  "$cmake" -S "$here/$program" -B "$work/$program" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$tree" >"$work/$program.log"
+  "$cmake" --build "$work/$program" >>"$work/$program.log"
+  "$work/$program/$program"
+done
+
+echo "--- every public header of the kernel compiles alone"
+for header in "$tree"/include/tautline/*.h; do
+  "$compiler" -std=c++17 -Wall -Wextra -Werror -fsyntax-only -x c++ -I "$tree/include" "$header"
+done
+
+if [[ -d $tree/lib/python3 ]]; then
+  echo "--- the Python package is found in the moved tree"
+  PYTHONPATH="$tree/lib/python3/dist-packages" "$python" - "$tree" <<'PYTHON'
+import sys
+import tautline
+assert tautline.__file__.startswith(sys.argv[1]), tautline.__file__
+print(tautline.vtkElementQuality().GetClassName(), tautline.__file__)
+PYTHON
+fi
+
+plugin="$(find "$tree" -name Tautline.so -path '*plugins*')"
+if [[ -n $plugin ]]; then
+  echo "--- pvpython loads the plugin"
+  pvpython "$here/../../Plugin/list_proxies.py" "$plugin"
+fi

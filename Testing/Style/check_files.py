@@ -1,0 +1,60 @@
+"""check_files.py SOURCE_TREE: line ends, tabs, trailing space, length, clang-format of our sources."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", ".ci")
+CODE = {".h", ".cxx", ".py", ".cmake", ".in", ".sh"}
+TEXT = CODE | {".xml", ".md", ".qrc", ".svg", ".txt", ".module", ".plugin"}
+MAX_LINES = 700
+
+
+def sources(top: Path):
+    yield from (p for p in top.iterdir() if p.is_file() and (p.suffix in TEXT or p.name == "run"))
+    for directory in DIRECTORIES:
+        yield from (p for p in (top / directory).rglob("*") if p.suffix in TEXT or p.name == "run")
+
+
+def complaints(path: Path):
+    content = path.read_bytes()
+    if not content:
+        yield "is empty"
+        return
+    if b"\r" in content:
+        yield "has carriage returns"
+    if b"\t" in content:
+        yield "has tabs"
+    if not content.endswith(b"\n"):
+        yield "does not end with a line end"
+    lines = content.split(b"\n")
+    if any(line.endswith(b" ") for line in lines) and path.suffix != ".md":
+        yield "has spaces at a line's end"
+    if len(lines) - 1 > MAX_LINES and path.suffix in CODE:
+        yield f"has {len(lines) - 1} lines, {MAX_LINES} are allowed"
+
+
+def badly_formatted(paths) -> int:
+    """The number of C++ files clang-format would change; 0 where there is no clang-format."""
+    program = shutil.which("clang-format")
+    wrong = 0
+    for path in paths if program else []:
+        check = [program, "--dry-run", "-Werror", "--ferror-limit=1", str(path)]
+        if subprocess.run(check, capture_output=True).returncode != 0:
+            print(f"{path} is not as clang-format has it: ./run format")
+            wrong += 1
+    return wrong
+
+
+def main(top: Path) -> int:
+    files = sorted(sources(top))
+    found = [f"{path} {complaint}" for path in files for complaint in complaints(path)]
+    print("\n".join(found))
+    wrong = len(found) + badly_formatted([p for p in files if p.suffix in (".h", ".cxx")])
+    print(f"{len(files)} files, {wrong} complaints")
+    return 1 if wrong or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))
