@@ -2,10 +2,11 @@
  * @file ColorMaps.h
  * @brief Default colour maps for the cell arrays that Tautline's filters write.
  *
- * ParaView keeps colour maps per array name and looks for a default in its settings. The function
- * below writes such settings: an ideal element is pale, a bad one dark red, one outside the range
- * darker still, and an inverted one (its value lies below the range) magenta. The range is fixed, so
- * that one colour means one quality in every picture.
+ * ParaView keeps one colour map per array name and looks for its default in the settings. The
+ * functions below write such settings, from the registry of metrics: an ideal element is pale, one
+ * at the end of the acceptable range dark red, a worse one darker still, and an inverted one, where
+ * the metric's sign tells, magenta. The range is fixed, so that a colour means the same quality in
+ * every picture. A size, of which neither small nor large is good, keeps ParaView's own map.
  */
 
 #ifndef tautline_ColorMaps_h
@@ -20,15 +21,19 @@ namespace tautline
 struct ColorMapSpec
 {
   std::string array;    ///< name of the cell array
-  bool smallerIsBetter; ///< where on the range the ideal element is
-  double low;           ///< lower end of the range; what lies below it is inverted
-  double high;          ///< upper end of the range
+  double good;          ///< value of the ideal element
+  double bad;           ///< the end of the acceptable range; below `good` where larger is better
+  double worst;         ///< of a valid element; may be infinite
+  bool negativeInverts; ///< inverted elements have values below the range
 };
 
-/** The colour maps of all arrays Tautline writes. */
-std::vector<ColorMapSpec> defaultColorMaps();
+/** The colour maps of all metrics that have a direction and a finite acceptable range. */
+std::vector<ColorMapSpec> metricColorMaps();
 
-/** ParaView settings, as JSON text, that make these colour maps the default of their arrays. */
+/**
+ * @brief ParaView settings, as JSON text, that make these colour maps the default of their arrays,
+ * and that colour the array `Validity` by category.
+ */
 std::string colorMapSettings(const std::vector<ColorMapSpec>& specs);
 
 } // namespace tautline

@@ -29,5 +29,5 @@ void tautlineInstallColorMaps()
 {
   constexpr double belowSiteAndUser = -1.0;
   vtkSMSettings::GetInstance()->AddCollectionFromString(
-    tautline::colorMapSettings(tautline::defaultColorMaps()), belowSiteAndUser);
+    tautline::colorMapSettings(tautline::metricColorMaps()), belowSiteAndUser);
 }

@@ -41,15 +41,19 @@ void checkOptions(const Mesh& mesh, const MetricInfo& info, const EvaluationOpti
 }
 
 /// The evaluator of a metric on a block, or null where the metric is not defined.
-BatchEvaluator evaluatorFor(
-  Metric metric, const MetricCode& code, const CellBlock& block, bool withGradient)
+BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
+  const CellBlock& block, bool withGradient)
 {
-  if (!metricInfo(metric).definedOn(block.type))
+  const MetricInfo& info = metricInfo(metric);
+  const bool flat = topology(block.type).dimension == 2;
+  // 2D cells beside volume cells have no orientation in space.
+  const bool oriented = info.rotationInvariant || !flat || mesh.dimension() == Dimension::Planar;
+  if (!info.definedOn(block.type) || !oriented)
   {
     return nullptr;
   }
-  return topology(block.type).dimension == 2 ? (withGradient ? code.gradient2D : code.value2D)
-                                             : (withGradient ? code.gradient3D : code.value3D);
+  return flat ? (withGradient ? code.gradient2D : code.value2D)
+              : (withGradient ? code.gradient3D : code.value3D);
 }
 
 BatchContext contextFor(
@@ -123,7 +127,7 @@ void evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& optio
   Index covered = 0;
   for (const CellBlock& block : mesh.blocks())
   {
-    covered += evaluatorFor(metric, code, block, false) ? block.count : 0;
+    covered += evaluatorFor(mesh, metric, code, block, false) ? block.count : 0;
   }
   if (covered < view.numberOfCells)
   {
@@ -135,7 +139,7 @@ void evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& optio
   }
   for (const CellBlock& block : mesh.blocks())
   {
-    const BatchEvaluator evaluate = evaluatorFor(metric, code, block, gradients != nullptr);
+    const BatchEvaluator evaluate = evaluatorFor(mesh, metric, code, block, gradients != nullptr);
     if (!evaluate)
     {
       continue;
@@ -276,7 +280,7 @@ MetricSum::MetricSum(
     for (std::size_t b = 0; b < blocks.size() && !failed; ++b)
     {
       const CellBlock& block = blocks[b];
-      if (!evaluatorFor(metric, code, block, false))
+      if (!evaluatorFor(mesh, metric, code, block, false))
       {
         continue;
       }
@@ -394,7 +398,8 @@ double MetricSum::run(double* gradient) const
     {
       const Chunk& chunk = this->Chunks[i];
       const CellBlock& block = blocks[chunk.block];
-      const BatchEvaluator evaluate = evaluatorFor(this->TheMetric, code, block, WithGradient);
+      const BatchEvaluator evaluate =
+        evaluatorFor(this->TheMesh, this->TheMetric, code, block, WithGradient);
       const BatchContext context = contextFor(this->TheMesh, block, this->TheMetric, this->Options);
       const Index* order =
         this->Order[chunk.block].empty() ? nullptr : this->Order[chunk.block].data();

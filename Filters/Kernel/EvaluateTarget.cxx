@@ -326,13 +326,20 @@ Packet combine(
     case Combination::PowerMean:
     {
       const double p = context.largerIsBetter ? -context.options->power : context.options->power;
-      Packet sum = {}, sign = {};
+      // In units of the worst value, so that high powers do not overflow.
+      Packet unit = broadcast(context.largerIsBetter ? HUGE_VAL : 0.0), sum = {}, sign = {};
       for (int s = 0; s < samples; ++s)
       {
-        sum += active[s] * pow(abs(q[s]), p);
+        const Packet size = context.largerIsBetter ? min(unit, abs(q[s])) : max(unit, abs(q[s]));
+        unit = select(active[s] > 0.0, size, unit);
+      }
+      for (int s = 0; s < samples; ++s)
+      {
+        const Packet ratio = select(unit > 0.0, abs(q[s]) / unit, Packet{});
+        sum += select(active[s] > 0.0, pow(ratio, p), Packet{});
         sign += active[s] * q[s];
       }
-      const Packet mean = pow(sum / count, 1.0 / p);
+      const Packet mean = unit * pow(sum / count, 1.0 / p);
       result = finiteOrZero(signOf(sign) * mean);
       for (int s = 0; s < samples; ++s)
       {

@@ -38,6 +38,10 @@ Mesh::Mesh(const MeshView& view, int threads)
   std::array<Index, 256> histogram{};
   for (Index i = 0; i < view.numberOfCells; ++i)
   {
+    if (view.offsets[i] < 0 || view.offsets[i + 1] < view.offsets[i])
+    {
+      throw Error(cellMessage(i, "has no proper place in the connectivity: its offsets descend."));
+    }
     ++histogram[view.cellTypes[i]];
   }
   std::array<Index, NumberOfCellTypes> counts{};
@@ -95,9 +99,10 @@ Mesh::Mesh(const MeshView& view, int threads)
             const Index node = view.connectivity[first + k];
             good = node >= 0 && node < view.numberOfPoints;
           }
-          if (!good)
+          Index least = wrong; // of several the one with the smallest id is reported
+          while (!good && (least < 0 || cell < least))
           {
-            wrong = cell;
+            good = wrong.compare_exchange_weak(least, cell);
           }
         }
       });
@@ -251,6 +256,53 @@ Vec3 Mesh::center(Index cell, CellType type) const
 }
 
 //------------------------------------------------------------------------------
+Validity Mesh::classifyCell(const CellTopology& t, const Vec3* p, const Vec3* against) const
+{
+  const bool surface = t.dimension == 2 && this->Dim != Dimension::Planar;
+  const double sign = this->Mirrored && !surface ? -1.0 : 1.0;
+  Vec3 normal = against ? *against : this->Normal;
+  if (surface && !against)
+  {
+    // A surface quadrilateral is judged against its own mean normal.
+    normal = vectorArea(t, p);
+    const double length = norm(normal);
+    normal = length > 0 ? (1.0 / length) * normal : normal;
+  }
+  Validity verdict = Valid;
+  for (int c = 0; c < t.samples; ++c)
+  {
+    const auto& corner = t.cornerNodes[c];
+    const Vec3 a = p[corner[1]] - p[corner[0]];
+    const Vec3 b = p[corner[2]] - p[corner[0]];
+    double det = 0, scale = norm(a) * norm(b);
+    if (t.dimension == 2)
+    {
+      det = dot(cross(a, b), normal);
+    }
+    else
+    {
+      const Vec3 d = p[corner[3]] - p[corner[0]];
+      det = dot(a, cross(b, d));
+      scale *= norm(d);
+    }
+    det *= sign;
+    if (!std::isfinite(scale))
+    {
+      return NonFinite;
+    }
+    if (std::abs(det) <= degenerateTolerance() * scale)
+    {
+      verdict = std::min(verdict, Degenerate);
+    }
+    else if (det < 0)
+    {
+      verdict = Inverted;
+    }
+  }
+  return verdict;
+}
+
+//------------------------------------------------------------------------------
 void Mesh::classifyCells(signed char* validity, int threads) const
 {
   if (this->Unsupported > 0)
@@ -260,7 +312,6 @@ void Mesh::classifyCells(signed char* validity, int threads) const
   for (const CellBlock& block : this->Blocks)
   {
     const CellTopology& t = topology(block.type);
-    const double sign = this->Mirrored ? -1.0 : 1.0;
     forEachChunk(block.count, threads,
       [&](Index, Index begin, Index end)
       {
@@ -273,49 +324,7 @@ void Mesh::classifyCells(signed char* validity, int threads) const
           {
             p[k] = pointOf(this->View, node[k]);
           }
-          // A surface quadrilateral is judged against its own mean normal.
-          Vec3 normal = this->Normal;
-          if (t.dimension == 2 && this->Dim != Dimension::Planar)
-          {
-            normal =
-              t.nodes == 3 ? cross(p[1] - p[0], p[2] - p[0]) : cross(p[2] - p[0], p[3] - p[1]);
-            const double length = norm(normal);
-            normal = length > 0 ? (1.0 / length) * normal : normal;
-          }
-          const bool surface = t.dimension == 2 && this->Dim != Dimension::Planar;
-          signed char verdict = Valid;
-          for (int c = 0; c < t.samples; ++c)
-          {
-            const auto& corner = t.cornerNodes[c];
-            const Vec3 a = p[corner[1]] - p[corner[0]];
-            const Vec3 b = p[corner[2]] - p[corner[0]];
-            double det = 0, scale = norm(a) * norm(b);
-            if (t.dimension == 2)
-            {
-              det = dot(cross(a, b), normal);
-            }
-            else
-            {
-              const Vec3 d = p[corner[3]] - p[corner[0]];
-              det = dot(a, cross(b, d));
-              scale *= norm(d);
-            }
-            det *= surface ? 1.0 : sign;
-            if (!std::isfinite(scale))
-            {
-              verdict = NonFinite;
-              break;
-            }
-            if (std::abs(det) <= degenerateTolerance() * scale)
-            {
-              verdict = std::min<signed char>(verdict, Degenerate);
-            }
-            else if (det < 0)
-            {
-              verdict = Inverted;
-            }
-          }
-          validity[cell] = verdict;
+          validity[cell] = this->classifyCell(t, p);
         }
       });
   }

@@ -142,6 +142,13 @@ public:
    * is at most degenerateTolerance() times the product of its edge lengths.
    */
   void classifyCells(signed char* validity, int threads = 0) const;
+  /**
+   * @brief The same for one cell with the given vertices, which need not be those of the view.
+   * @param against a unit normal that decides the sign of a cell of a surface, instead of its own
+   * (and of a planar mesh, instead of normal()); may be null
+   */
+  Validity classifyCell(
+    const CellTopology& t, const Vec3* vertices, const Vec3* against = nullptr) const;
   static constexpr double degenerateTolerance() { return 1e-13; }
 
   /// Checks the signs given by classifyCells() and, where they differ, whether neighbours agree.
@@ -166,6 +173,12 @@ private:
   Index NonFinitePoints = 0;
   bool Mirrored = false;
 };
+
+/// Normal of a 2D cell, twice as long as its area: of a quadrilateral, of its diagonals.
+inline Vec3 vectorArea(const CellTopology& t, const Vec3* p)
+{
+  return t.nodes == 3 ? cross(p[1] - p[0], p[2] - p[0]) : cross(p[2] - p[0], p[3] - p[1]);
+}
 
 inline Vec3 pointOf(const MeshView& view, Index id)
 {

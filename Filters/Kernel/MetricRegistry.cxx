@@ -114,7 +114,7 @@ std::vector<MetricInfo> makeRegistry()
       "simplex: longest edge / inradius, 1 if regular; quadrilateral and hexahedron: longest / "
       "shortest principal axis",
       verdict, Cell, true, true, flat | tets | hexes, one, one, ratio, ratio, 1, 1, Smaller,
-      Unsigned, barrier, kinked, scaleFree, rotates, "" },
+      Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
     { Metric::WidthRatio, "width_ratio", "Aspect ratio W/w", "W/w", "",
       "longer / shorter side of the least elongated rectangle flush with an edge",
       "dissertation Figure 4.8", Cell, true, false, triangles, one, one, { 1, 4 }, { 1, 4 },
@@ -124,8 +124,9 @@ std::vector<MetricInfo> makeRegistry()
       true, all, { 0, 90 }, { 0, 90 }, { 20, 90 }, { 15, 90 }, 60, dihedral, Larger, Unsigned,
       noBarrier, kinked, scaleFree, rotates, "degrees" },
     { Metric::MaximumAngle, "max_angle", "Maximum angle", "theta_max", "maximum_angle",
-      "largest corner angle (2D, reflex above 180) or dihedral angle (3D)",
-      "dissertation Table 2.7", Cell, true, true, all, { 60, 360 }, { 60, 180 }, { 60, 120 },
+      "largest corner angle (2D, reflex above 180; below 60 in folded quadrilaterals) or dihedral "
+      "angle (3D)",
+      "dissertation Table 2.7", Cell, true, true, all, { 0, 360 }, { 60, 180 }, { 60, 120 },
       { 60, 150 }, 60, dihedral, Smaller, Unsigned, noBarrier, kinked, scaleFree, rotates,
       "degrees" },
     { Metric::EquiangleSkew, "equiangle_skew", "Equiangle skew", "skew", "skew",

@@ -8,169 +8,166 @@ namespace tautline
 {
 namespace
 {
-bool isMeasured(const MetricInfo& info, signed char validity, unsigned char type)
-{
-  const bool counts =
-    validity == Valid || (validity == Inverted && info.inverted == InvertedValue::Larger);
-  return counts && info.definedOn(cornerType(type));
-}
-
-/// Tables of the 256 types, so that the loops below look up instead of searching.
+/// For each of the 256 cell types whether the metric is defined on it.
 std::array<bool, 256> definedTypes(const MetricInfo& info)
 {
   std::array<bool, 256> table;
   for (int type = 0; type < 256; ++type)
   {
-    table[type] = cornerType(type) != CellType::Unsupported &&
-      isMeasured(info, Valid, static_cast<unsigned char>(type));
+    const CellType corners = cornerType(type);
+    table[type] = corners != CellType::Unsupported && info.definedOn(corners);
   }
   return table;
-}
-
-std::vector<double> measuredValues(const MetricInfo& info, const double* values,
-  const signed char* validity, const unsigned char* cellTypes, const unsigned char* skip,
-  Index cells)
-{
-  const auto defined = definedTypes(info);
-  const bool withInverted = info.inverted == InvertedValue::Larger;
-  std::vector<double> kept;
-  kept.reserve(cells);
-  for (Index i = 0; i < cells; ++i)
-  {
-    const bool counts = validity[i] == Valid || (withInverted && validity[i] == Inverted);
-    if (counts && defined[cellTypes[i]] && !(skip && skip[i]))
-    {
-      kept.push_back(values[i]);
-    }
-  }
-  return kept;
 }
 }
 
 //------------------------------------------------------------------------------
-ValidityCounts countValidity(const signed char* validity, Index cells)
+ValidityCounts countValidity(const signed char* validity, const unsigned char* skip, Index cells)
 {
   ValidityCounts counts;
   for (Index i = 0; i < cells; ++i)
   {
-    counts.valid += validity[i] == Valid;
-    counts.inverted += validity[i] == Inverted;
-    counts.degenerate += validity[i] == Degenerate;
-    counts.notMeasured += validity[i] == NotMeasured;
-    counts.nonFinite += validity[i] == NonFinite;
+    if (!(skip && skip[i]))
+    {
+      counts.valid += validity[i] == Valid;
+      counts.inverted += validity[i] == Inverted;
+      counts.degenerate += validity[i] == Degenerate;
+      counts.notMeasured += validity[i] == NotMeasured;
+      counts.nonFinite += validity[i] == NonFinite;
+    }
   }
   return counts;
 }
 
 //------------------------------------------------------------------------------
-MetricStatistics summarize(const MetricInfo& info, int dimension, const double* values,
-  const signed char* validity, const unsigned char* cellTypes, const unsigned char* skip,
-  Index cells)
+std::vector<double> measuredValues(const MetricInfo& info, const CellValues& data)
 {
-  MetricStatistics result;
-  result.worst.fill(-1);
-  std::vector<double> kept = measuredValues(info, values, validity, cellTypes, skip, cells);
-  result.measured = static_cast<Index>(kept.size());
-
-  // The worst of all: unusable elements before the valid ones, equals by id.
   const auto defined = definedTypes(info);
-  const double sign = info.direction == Direction::SmallerIsBetter ? -1.0 : 1.0;
-  auto worse = [&](Index a, Index b)
+  const bool withInverted = info.inverted == InvertedValue::Larger;
+  std::vector<double> kept;
+  kept.reserve(data.cells);
+  for (Index i = 0; i < data.cells; ++i)
   {
-    auto rank = [&](Index i) {
-      return validity[i] == Inverted ? 0 : validity[i] == Degenerate ? 1 : 2;
-    };
-    if (rank(a) != rank(b))
+    const signed char v = data.validity[i];
+    if ((v == Valid || (withInverted && v == Inverted)) && defined[data.cellTypes[i]] &&
+      !(data.skip && data.skip[i]))
     {
-      return rank(a) < rank(b);
+      kept.push_back(data.values[i]);
     }
-    return values[a] != values[b] ? sign * values[a] < sign * values[b] : a < b;
-  };
-  std::vector<Index> heap; // its front is the least bad of those kept
-  for (Index i = 0; i < cells; ++i)
+  }
+  return kept;
+}
+
+//------------------------------------------------------------------------------
+bool isWorse(const MetricInfo& info, const WorstElement& a, const WorstElement& b)
+{
+  // Inverted is -1, degenerate 0, valid 1.
+  if (a.validity != b.validity)
   {
-    if (!defined[cellTypes[i]] || validity[i] < Inverted || (skip && skip[i]))
+    return a.validity < b.validity;
+  }
+  if (a.value != b.value)
+  {
+    return (info.direction == Direction::SmallerIsBetter) == (a.value > b.value);
+  }
+  return a.cell < b.cell;
+}
+
+//------------------------------------------------------------------------------
+std::vector<WorstElement> worstElements(const MetricInfo& info, const CellValues& data)
+{
+  const auto defined = definedTypes(info);
+  auto worse = [&](const WorstElement& a, const WorstElement& b) { return isWorse(info, a, b); };
+  std::vector<WorstElement> heap; // its front is the least bad of those kept
+  for (Index i = 0; i < data.cells; ++i)
+  {
+    const signed char v = data.validity[i];
+    if (v < Inverted || !defined[data.cellTypes[i]] || (data.skip && data.skip[i]))
     {
       continue;
     }
+    const WorstElement candidate = { i, data.values[i], v };
     if (heap.size() < WorstCount)
     {
-      heap.push_back(i);
+      heap.push_back(candidate);
       std::push_heap(heap.begin(), heap.end(), worse);
     }
-    else if (worse(i, heap.front()))
+    else if (worse(candidate, heap.front()))
     {
       std::pop_heap(heap.begin(), heap.end(), worse);
-      heap.back() = i;
+      heap.back() = candidate;
       std::push_heap(heap.begin(), heap.end(), worse);
     }
   }
   std::sort_heap(heap.begin(), heap.end(), worse);
-  std::copy(heap.begin(), heap.end(), result.worst.begin());
-  if (kept.empty())
+  return heap;
+}
+
+//------------------------------------------------------------------------------
+MetricStatistics summarize(const MetricInfo& info, int dimension, std::vector<double>& measured)
+{
+  MetricStatistics result;
+  result.measured = static_cast<Index>(measured.size());
+  if (measured.empty())
   {
     return result;
   }
-
-  // Two passes, so that the deviation of nearly equal values is right.
-  const double n = static_cast<double>(kept.size());
+  const double n = static_cast<double>(measured.size());
   const Range acceptable = info.acceptable(dimension);
-  double largest = 0;
-  result.minimum = result.maximum = kept.front();
-  for (double q : kept)
+  result.minimum = result.maximum = measured.front();
+  for (double q : measured)
   {
     result.minimum = std::min(result.minimum, q);
     result.maximum = std::max(result.maximum, q);
-    largest = std::max(largest, std::abs(q));
     result.outsideAcceptable += q < acceptable.low || q > acceptable.high;
   }
-  // Scaled by the largest, so that squares neither overflow nor vanish.
+  // In units of the largest, so that squares neither overflow nor vanish; the deviation in a second
+  // pass, so that it is right for nearly equal values.
+  const double largest = std::max(std::abs(result.minimum), std::abs(result.maximum));
   const double unit = largest > 0 ? largest : 1.0;
-  double sum = 0, squares = 0;
-  for (double q : kept)
+  double sum = 0, squares = 0, deviations = 0;
+  for (double q : measured)
   {
     sum += q / unit;
     squares += (q / unit) * (q / unit);
   }
-  result.mean = sum / n * unit;
-  result.rms = std::sqrt(squares / n) * unit;
-  double deviations = 0;
-  for (double q : kept)
+  const double mean = sum / n;
+  for (double q : measured)
   {
-    const double d = (q - result.mean) / unit;
-    deviations += d * d;
+    deviations += (q / unit - mean) * (q / unit - mean);
   }
+  result.mean = mean * unit;
+  result.rms = std::sqrt(squares / n) * unit;
   result.standardDeviation = std::sqrt(deviations / n) * unit;
 
   // Quantiles in increasing order; each search goes on where the last one ended.
-  auto from = kept.begin();
+  auto from = measured.begin();
   for (std::size_t i = 0; i < quantileFractions.size(); ++i)
   {
     const double position = quantileFractions[i] * (n - 1);
-    const auto at = kept.begin() + static_cast<Index>(position);
-    std::nth_element(from, at, kept.end());
-    const double low = *at;
-    const double high = at + 1 < kept.end() ? *std::min_element(at + 1, kept.end()) : low;
+    const auto at = measured.begin() + static_cast<Index>(position);
+    std::nth_element(from, at, measured.end());
     const double part = position - std::floor(position);
-    result.quantiles[i] = part > 0 ? low + part * (high - low) : low;
+    const double low = *at;
+    const double high =
+      part > 0 && at + 1 < measured.end() ? *std::min_element(at + 1, measured.end()) : low;
+    result.quantiles[i] = low < high ? (1 - part) * low + part * high : low;
     from = at;
   }
   return result;
 }
 
 //------------------------------------------------------------------------------
-Histogram histogram(const MetricInfo& info, const double* values, const signed char* validity,
-  const unsigned char* cellTypes, const unsigned char* skip, Index cells, int bins)
+Histogram histogram(const std::vector<double>& measured, int bins)
 {
   if (bins < 1)
   {
     throw Error("A histogram needs at least one bin.");
   }
-  const std::vector<double> kept = measuredValues(info, values, validity, cellTypes, skip, cells);
   double low = 0, high = 1;
-  if (!kept.empty())
+  if (!measured.empty())
   {
-    const auto ends = std::minmax_element(kept.begin(), kept.end());
+    const auto ends = std::minmax_element(measured.begin(), measured.end());
     low = *ends.first;
     high = *ends.second;
   }
@@ -179,13 +176,14 @@ Histogram histogram(const MetricInfo& info, const double* values, const signed c
   result.edges.resize(bins + 1);
   for (int i = 0; i <= bins; ++i)
   {
-    result.edges[i] = low + (high - low) * (static_cast<double>(i) / bins);
+    const double part = static_cast<double>(i) / bins;
+    result.edges[i] = (1 - part) * low + part * high;
   }
-  const double perUnit = high > low ? bins / (high - low) : 0.0;
-  for (double q : kept)
+  const double width = high / bins - low / bins;
+  for (double q : measured)
   {
-    const Index bin = static_cast<Index>((q - low) * perUnit);
-    ++result.counts[std::max<Index>(0, std::min<Index>(bins - 1, bin))];
+    const double position = width > 0 ? (q - low) / width : 0.0;
+    ++result.counts[static_cast<Index>(std::min<double>(bins - 1, position))];
   }
   return result;
 }
@@ -242,11 +240,19 @@ std::array<Index, angleBins.size() - 1> angleDistribution(
           }
           if (dimension == 2)
           {
+            const Vec3 area = vectorArea(t, p);
             for (int c = 0; c < t.corners; ++c)
             {
               const auto& n = t.cornerNodes[c];
               const Vec3 a = p[n[1]] - p[n[0]], b = p[n[2]] - p[n[0]];
-              add(dot(a, b), dot(a, a) * dot(b, b));
+              if (dot(cross(a, b), area) < 0)
+              {
+                ++counts.back(); // a reflex corner
+              }
+              else
+              {
+                add(dot(a, b), dot(a, a) * dot(b, b));
+              }
             }
             continue;
           }

@@ -16,57 +16,81 @@ constexpr std::array<double, 7> quantileFractions = { 0.01, 0.05, 0.25, 0.5, 0.7
 constexpr int WorstCount = 10;
 
 /**
- * @brief Summary of one metric. Moments, quantiles and the histogram are over the valid elements on
- * which the metric is defined (for metrics that order inverted elements, InvertedValue::Larger, over
- * the inverted ones too); without any, they are 0.
+ * @brief Summary of one metric over the elements measuredValues() keeps; without any, zeros.
  */
 struct MetricStatistics
 {
   Index measured = 0; ///< elements summed up
-  double minimum = 0, maximum = 0, mean = 0, rms = 0, standardDeviation = 0;
+  double minimum = 0, maximum = 0, mean = 0, rms = 0;
+  double standardDeviation = 0; ///< of the whole population (divided by n)
   std::array<double, quantileFractions.size()> quantiles{}; ///< linearly interpolated
   Index outsideAcceptable = 0; ///< measured elements outside the acceptable range
-  /**
-   * @brief Cells with the worst values, worst first; ids are -1 beyond their number. Inverted and
-   * degenerate elements come first, then the worst of the valid ones in the metric's direction
-   * (for neutral metrics the smallest).
-   */
-  std::array<Index, WorstCount> worst;
 };
 
-/**
- * @brief Counts that are the same for every metric of a mesh.
- */
+/// One of the worst elements of a metric.
+struct WorstElement
+{
+  Index cell;
+  double value;
+  signed char validity;
+};
+
+/// How many cells have each Validity.
 struct ValidityCounts
 {
   Index valid = 0, inverted = 0, degenerate = 0, notMeasured = 0, nonFinite = 0;
 };
 
-/// Counts the values of a validity array.
-TAUTLINE_KERNEL_EXPORT ValidityCounts countValidity(const signed char* validity, Index cells);
+/// One value of each cell, and what is known of the cells.
+struct CellValues
+{
+  Index cells = 0;
+  const double* values = nullptr;
+  const signed char* validity = nullptr;    ///< see Validity
+  const unsigned char* cellTypes = nullptr; ///< VTK codes
+  const unsigned char* skip = nullptr;      ///< nonzero: leave out (ghosts); may be null
+};
+
+/// Counts the values of a validity array; `skip` may be null.
+TAUTLINE_KERNEL_EXPORT ValidityCounts countValidity(
+  const signed char* validity, const unsigned char* skip, Index cells);
 
 /**
- * @brief Summarizes values of a metric.
- * @param values, validity, cellTypes (VTK codes) one entry per cell
- * @param skip cells to leave out (ghosts) are nonzero here; may be null
+ * @brief The values that statistics are made of: of valid elements on which the metric is defined
+ * and, for metrics that order inverted elements (InvertedValue::Larger), of inverted ones too.
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<double> measuredValues(
+  const MetricInfo& info, const CellValues& data);
+
+/**
+ * @brief Summarizes measured values, which it reorders.
  * @param dimension 2 or 3: which acceptable range counts
  */
-TAUTLINE_KERNEL_EXPORT MetricStatistics summarize(const MetricInfo& info, int dimension,
-  const double* values, const signed char* validity, const unsigned char* cellTypes,
-  const unsigned char* skip, Index cells);
+TAUTLINE_KERNEL_EXPORT MetricStatistics summarize(
+  const MetricInfo& info, int dimension, std::vector<double>& measured);
 
 /**
- * @brief Histogram of the elements summarize() measures, between the smallest and largest of them.
- * The last bin includes its upper end. Bin i covers [edges[i], edges[i + 1]].
+ * @brief Up to WorstCount elements, worst first. Inverted elements come first, then degenerate ones,
+ * then the worst of the valid ones in the metric's direction (for neutral metrics the smallest);
+ * equals by cell.
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<WorstElement> worstElements(
+  const MetricInfo& info, const CellValues& data);
+
+/// The order of worstElements(): whether a is worse than b.
+TAUTLINE_KERNEL_EXPORT bool isWorse(
+  const MetricInfo& info, const WorstElement& a, const WorstElement& b);
+
+/**
+ * @brief Histogram between the smallest and largest value. Bin i covers [edges[i], edges[i + 1]); the
+ * last one includes its upper end. Without values the bins span [0, 1].
  */
 struct Histogram
 {
   std::vector<double> edges;
   std::vector<Index> counts;
 };
-TAUTLINE_KERNEL_EXPORT Histogram histogram(const MetricInfo& info, const double* values,
-  const signed char* validity, const unsigned char* cellTypes, const unsigned char* skip,
-  Index cells, int bins);
+TAUTLINE_KERNEL_EXPORT Histogram histogram(const std::vector<double>& measured, int bins);
 
 /// Ends of the angle bins of dissertation Table 2.7, degrees.
 constexpr std::array<double, 6> angleBins = { 0, 20, 40, 80, 100, 180 };

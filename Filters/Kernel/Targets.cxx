@@ -111,11 +111,18 @@ Targets referenceTargets(const Mesh& mesh, const Mesh& reference)
       }
       else
       {
-        // On a surface: the first edge along the first axis, as in the evaluation.
-        const double length = norm(edge[0]);
+        // On a surface: the first edge along the first axis, as in the evaluation; a reflex corner is
+        // negative.
+        Vec3 p[MaxNodes];
+        for (int k = 0; k < t.nodes; ++k)
+        {
+          p[k] = pointOf(other, node[k]);
+        }
+        const Vec3 own = cross(edge[0], edge[1]);
+        const double length = norm(edge[0]), turn = dot(own, vectorArea(t, p)) < 0 ? -1 : 1;
         w(0, 0) = length;
         w(0, 1) = length > 0 ? dot(edge[0], edge[1]) / length : 0;
-        w(1, 1) = length > 0 ? norm(cross(edge[0], edge[1])) / length : 0;
+        w(1, 1) = length > 0 ? turn * norm(own) / length : 0;
       }
       const double det = w.determinant();
       if (!(det > Mesh::degenerateTolerance() * scale))

@@ -6,8 +6,13 @@
 #ifndef tautline_Check_h
 #define tautline_Check_h
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <exception>
+#include <iomanip>
 #include <iostream>
+#include <string>
 
 namespace tautline
 {
@@ -24,17 +29,100 @@ inline int exitCode()
   return failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-inline void check(bool holds, const char* expression, const char* file, int line)
+/** What the checks in a scope are about; printed with each that fails. */
+class Context
+{
+public:
+  explicit Context(const std::string& text)
+    : Length(all().size())
+  {
+    all() += "  [" + text + "]";
+  }
+  ~Context() { all().resize(this->Length); }
+  Context(const Context&) = delete;
+  void operator=(const Context&) = delete;
+  static std::string& all()
+  {
+    static std::string text;
+    return text;
+  }
+
+private:
+  std::size_t Length;
+};
+
+/** Counts a failure and begins its line; further ones than the first hundred are only counted. */
+inline std::ostream& fail(const char* file, int line)
+{
+  constexpr int printed = 100;
+  static std::ostream silent(nullptr);
+  std::ostream& out = ++failures() <= printed ? std::cerr : silent;
+  return out << std::setprecision(17) << file << ":" << line << Context::all() << ": ";
+}
+
+inline bool check(bool holds, const char* expression, const char* file, int line)
 {
   if (!holds)
   {
-    ++failures();
-    std::cerr << file << ":" << line << ": not true: " << expression << "\n";
+    fail(file, line) << "not true: " << expression << "\n";
+  }
+  return holds;
+}
+
+template <class A, class B>
+bool checkEqual(const A& actual, const B& expected, const char* what, const char* file, int line)
+{
+  const bool holds = actual == expected;
+  if (!holds)
+  {
+    fail(file, line) << what << " is " << actual << ", expected " << expected << "\n";
+  }
+  return holds;
+}
+
+inline bool checkNear(
+  double actual, double expected, double tolerance, const char* what, const char* file, int line)
+{
+  const bool holds = actual == expected || std::abs(actual - expected) <= tolerance;
+  if (!holds)
+  {
+    fail(file, line) << what << " is " << actual << ", expected " << expected << ", difference "
+                     << actual - expected << " > " << tolerance << "\n";
+  }
+  return holds;
+}
+
+template <class Statement>
+void checkThrows(const Statement& statement, const std::string& part, const char* file, int line)
+{
+  try
+  {
+    statement();
+    fail(file, line) << "nothing thrown, expected an error with \"" << part << "\"\n";
+  }
+  catch (const std::exception& error)
+  {
+    if (std::string(error.what()).find(part) == std::string::npos)
+    {
+      fail(file, line) << "thrown \"" << error.what() << "\", expected \"" << part << "\"\n";
+    }
   }
 }
 
 } // namespace tautline
 
 #define TAUTLINE_CHECK(expression) tautline::check((expression), #expression, __FILE__, __LINE__)
+#define TAUTLINE_CHECK_EQUAL(actual, expected) \
+  tautline::checkEqual((actual), (expected), #actual, __FILE__, __LINE__)
+/** Within an absolute tolerance; a NaN is near to nothing. */
+#define TAUTLINE_CHECK_NEAR(actual, expected, tolerance) \
+  tautline::checkNear((actual), (expected), (tolerance), #actual, __FILE__, __LINE__)
+/** Within a tolerance relative to the expected value. */
+#define TAUTLINE_CHECK_RELATIVE(actual, expected, tolerance) \
+  tautline::checkNear(                                       \
+    (actual), (expected), (tolerance)*std::abs(expected), #actual, __FILE__, __LINE__)
+/** The statement throws an exception whose message contains a text. */
+#define TAUTLINE_CHECK_THROWS(statement, text) \
+  tautline::checkThrows([&]() { statement; }, (text), __FILE__, __LINE__)
 
 #endif

@@ -4,6 +4,9 @@
 #include "ColorMaps.h"
 #include "VersionCheck.h"
 
+#include <cmath>
+#include <limits>
+
 namespace
 {
 
@@ -21,15 +24,30 @@ void testVersionCheck()
   }
 }
 
-void testColorMaps()
+void testColorMapSettings()
 {
-  const std::string json =
-    tautline::colorMapSettings({ { "mean ratio", false, 0.0, 1.0 }, { "imr", true, 1.0, 4.0 } });
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::string json = tautline::colorMapSettings(
+    { { "mean ratio", 1.0, 0.2, 0.0, false }, { "imr", 1.0, 4.0, infinity, true } });
   const auto has = [&json](const char* text) { return json.find(text) != std::string::npos; };
   TAUTLINE_CHECK(has("\"meanratio\""));
+  TAUTLINE_CHECK(has("[0, 0.30, 0.00, 0.05, "));  // worse than acceptable
+  TAUTLINE_CHECK(has("0.2, 0.72, 0.06, 0.11, ")); // red at the low end
   TAUTLINE_CHECK(has("\"imr\""));
-  TAUTLINE_CHECK(has("[0, 0.72, 0.06, 0.11, 0.35,")); // larger is better: red at the low end
-  TAUTLINE_CHECK(has("[1, 0.84, 0.9, 0.93, 1.9,"));   // smaller is better: pale at the low end
+  TAUTLINE_CHECK(has("[1, 0.84, 0.90, 0.93, 1.9, ")); // pale at the low end
+  TAUTLINE_CHECK(has("\"UseBelowRangeColor\": 1, \"BelowRangeColor\": [1.0, 0.0, 1.0]"));
+  TAUTLINE_CHECK(has("\"Validity\""));
+  TAUTLINE_CHECK(!has("inf") && !has("nan"));
+}
+
+void testMetricColorMaps()
+{
+  const auto specs = tautline::metricColorMaps();
+  TAUTLINE_CHECK(!specs.empty());
+  for (const auto& spec : specs)
+  {
+    TAUTLINE_CHECK(std::isfinite(spec.good) && std::isfinite(spec.bad) && spec.good != spec.bad);
+  }
 }
 
 } // anonymous namespace
@@ -37,6 +55,7 @@ void testColorMaps()
 int TestPluginStartup(int, char*[])
 {
   testVersionCheck();
-  testColorMaps();
+  testColorMapSettings();
+  testMetricColorMaps();
   return tautline::exitCode();
 }

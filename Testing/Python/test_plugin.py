@@ -8,7 +8,7 @@ simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 assert "ElementQuality" in globals()
 
 CELLS = 1  # vtkDataObject::CELL
-LOW, HIGH = 1.0, 4.0  # range of the default map of imr
+LOW, HIGH = 1.0, 3.0  # the acceptable range of imr
 
 # An array of that name that no filter has to compute: 0 is inverted, 9 worse than the range.
 mesh = simple.Tetrahedralize(simple.Wavelet(WholeExtent=[0, 3, 0, 3, 0, 3]))

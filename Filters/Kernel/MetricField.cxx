@@ -1,0 +1,101 @@
+#include "MetricField.h"
+
+namespace tautline
+{
+//------------------------------------------------------------------------------
+MetricField::MetricField(CellType type, const std::array<Vec3, 3>& fixed)
+  : Type(type)
+  , Fixed(fixed)
+{
+  if (type != CellType::Triangle && type != CellType::Tetrahedron)
+  {
+    throw Error("A metric field is that of a triangle or a tetrahedron.");
+  }
+  const bool flat = type == CellType::Triangle;
+  for (Vec3& p : this->Fixed)
+  {
+    p[2] = flat ? 0.0 : p[2];
+  }
+  const Vec3 a = this->Fixed[1] - this->Fixed[0], b = this->Fixed[2] - this->Fixed[0];
+  const double size = flat ? norm(a) : norm(cross(a, b)) - 1e-12 * norm(a) * norm(b);
+  if (!(size > 0) || !std::isfinite(size))
+  {
+    throw Error(flat ? "The two fixed vertices coincide or are not finite: move one of them."
+                     : "The three fixed vertices are on a line or not finite: move one of them.");
+  }
+}
+
+//------------------------------------------------------------------------------
+template <class Visit>
+void MetricField::forEachSlice(const FieldGrid& grid, int threads, const Visit& visit) const
+{
+  // One mesh of cells that share their fixed vertices; from slice to slice only the free ones move.
+  const Index cells = grid.size[0] * grid.size[1];
+  if (cells == 0)
+  {
+    return;
+  }
+  const int fixed = topology(this->Type).nodes - 1;
+  std::vector<double> points(3 * (cells + fixed));
+  std::vector<unsigned char> types(cells, static_cast<unsigned char>(this->Type));
+  std::vector<Index> offsets(cells + 1), connectivity(cells * (fixed + 1));
+  for (int k = 0; k < fixed; ++k)
+  {
+    std::copy(this->Fixed[k].begin(), this->Fixed[k].end(), points.begin() + 3 * (cells + k));
+  }
+  for (Index i = 0; i < cells; ++i)
+  {
+    offsets[i + 1] = (i + 1) * (fixed + 1);
+    for (int k = 0; k < fixed; ++k)
+    {
+      connectivity[offsets[i] + k] = cells + k;
+    }
+    connectivity[offsets[i] + fixed] = i;
+  }
+  MeshView view;
+  view.numberOfPoints = cells + fixed;
+  view.points = points.data();
+  view.numberOfCells = cells;
+  view.cellTypes = types.data();
+  view.offsets = offsets.data();
+  view.connectivity = connectivity.data();
+  for (Index k = 0; k < grid.size[2]; ++k)
+  {
+    for (Index i = 0; i < cells; ++i)
+    {
+      const std::array<Index, 3> at = { i % grid.size[0], i / grid.size[0], k };
+      for (int c = 0; c < 3; ++c)
+      {
+        points[3 * i + c] =
+          grid.origin[c] + static_cast<double>(grid.first[c] + at[c]) * grid.spacing[c];
+      }
+      if (this->Type == CellType::Triangle)
+      {
+        points[3 * i + 2] = 0.0;
+      }
+    }
+    visit(Mesh(view, threads), k * cells);
+  }
+}
+
+//------------------------------------------------------------------------------
+void MetricField::evaluate(
+  const FieldGrid& grid, Metric metric, const EvaluationOptions& options, double* values) const
+{
+  const MetricInfo& info = metricInfo(metric);
+  if (!info.definedOn(this->Type))
+  {
+    throw Error(std::string(info.label) + " is not defined on " + topology(this->Type).plural +
+      ": deselect it or choose the other cell.");
+  }
+  this->forEachSlice(grid, options.threads,
+    [&](const Mesh& mesh, Index first) { evaluateMetric(mesh, metric, options, values + first); });
+}
+
+//------------------------------------------------------------------------------
+void MetricField::classify(const FieldGrid& grid, signed char* validity, int threads) const
+{
+  this->forEachSlice(grid, threads,
+    [&](const Mesh& mesh, Index first) { mesh.classifyCells(validity + first, threads); });
+}
+}

@@ -1,0 +1,79 @@
+/**
+ * @file Perturb.h
+ * @brief Moves vertices at random, short of inverting an element or past it.
+ *
+ * Example: test meshes like those of dissertation section 2.7.2, half of the interior vertices moved
+ * by less than half the distance to inversion.
+ *
+ *     tautline::PerturbOptions options;
+ *     options.percentage = 50;
+ *     const tautline::Perturbation result = tautline::perturb(mesh, nullptr, options);
+ *     // result.points, result.moved
+ */
+#ifndef tautline_Perturb_h
+#define tautline_Perturb_h
+
+#include "Mesh.h"
+
+#include <functional>
+#include <vector>
+
+namespace tautline
+{
+/// What to do to the mesh.
+struct PerturbOptions
+{
+  double percentage = 50.0; ///< of the movable vertices to move, 0 to 100
+  /// A vertex moves by a random part, evenly from 0 to this (0 to 1), of its distance to inversion.
+  double fraction = 0.5;
+  double tangledFraction = 0.0; ///< of the elements to be inverted in the end, 0 to 1
+  std::uint64_t seed = 0;
+  bool singlePrecision = false; ///< new coordinates are rounded to float, and still do not invert
+  int threads = 0;              ///< 0: all cores. The result does not depend on it.
+  /// Called now and then with the part done, 0 to 1; returns whether to go on. May be empty.
+  std::function<bool(double)> progress;
+};
+
+/// What became of it.
+struct Perturbation
+{
+  std::vector<double> points; ///< 3 per point of the mesh
+  Index movable = 0;          ///< vertices that could move
+  Index moved = 0;            ///< vertices whose coordinates changed
+  Index elements = 0;         ///< elements with finite vertices, of which a fraction is tangled
+  Index invertedBefore = 0;
+  Index invertedAfter = 0;
+  double largestDisplacement = 0;
+  bool stopped = false; ///< progress() said so; the points are those reached
+};
+
+/**
+ * @brief Moves a percentage of the movable vertices, one after the other in order of their ids.
+ *
+ * Movable are the vertices inside the mesh: those of the cells of its dimension, except vertices on
+ * the boundary, on a cell of another kind (a 2D cell in a volume mesh is an interface; lines, polygons
+ * and polyhedra are not guarded), on a cell with NaN coordinates, and those with a nonzero `fixed`.
+ *
+ * Each goes in a random direction: in space; in the plane of a planar mesh; in the tangent plane of the
+ * cells around it on a surface. The distance to inversion is the least at which a corner Jacobian of
+ * a cell around it changes its sign, given where the others are by then. It is exact: each determinant
+ * is linear in one vertex. On a surface, a cell inverts where it turns by 90 degrees from what it was.
+ * Where no sign changes (possible around inverted elements only), it is the distance of the farthest
+ * vertex of those cells. No cell changes from valid to degenerate or inverted.
+ *
+ * Then, while fewer elements than tangledFraction are inverted, movable vertices in random order go
+ * past the distance to inversion, choosing among the intervals between sign changes within the size of
+ * the cells around; never by more elements than are still wanted, and without degenerate ones. The
+ * fraction is met to the nearest element unless that many cannot be inverted with the other
+ * vertices where they are (as a rule, above 0.8).
+ *
+ * Vertices and directions are drawn per vertex and seed. For one seed, the vertices moved at a lower
+ * percentage are among those moved at a higher one.
+ *
+ * @param fixed one flag per point, nonzero: stays; may be null
+ * Throws Error on options out of range and on cells of higher order.
+ */
+TAUTLINE_KERNEL_EXPORT Perturbation perturb(
+  const Mesh& mesh, const unsigned char* fixed, const PerturbOptions& options);
+}
+#endif

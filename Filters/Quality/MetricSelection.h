@@ -1,0 +1,34 @@
+/**
+ * @class tautline::MetricSelection
+ * @brief The metrics a filter was asked for, in order and without repeats.
+ */
+#ifndef tautline_MetricSelection_h
+#define tautline_MetricSelection_h
+
+#include "TautlineQualityModule.h" // for export macro
+
+#include "tautline/Metrics.h"
+
+#include <vector>
+
+namespace tautline
+{
+class TAUTLINEQUALITY_EXPORT MetricSelection
+{
+public:
+  /// The metrics chosen; the inverse mean ratio if none is.
+  std::vector<Metric> metrics() const;
+
+  /// @return whether the selection changed. Throws Error for a number that is no metric's.
+  bool add(int metric);
+  /// By name, label, symbol or alias; throws Error that lists the names if there is none such.
+  bool addByName(const char* name);
+  bool clear();
+
+  int count() const { return static_cast<int>(this->Chosen.size()); }
+
+private:
+  std::vector<Metric> Chosen;
+};
+}
+#endif

@@ -1,0 +1,384 @@
+#include "vtkMeshComparison.h"
+
+#include "MeshAdapter.h"
+#include "MetricSelection.h"
+#include "tautline/Compare.h"
+
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSignedCharArray.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+vtkStandardNewMacro(vtkMeshComparison);
+
+/// What is added up over the blocks.
+struct vtkMeshComparison::Totals
+{
+  std::vector<tautline::Metric> metrics;
+  std::vector<tautline::MetricChange> changes; ///< one per metric
+  tautline::Index invertedBefore = 0, invertedAfter = 0;
+  double largestDisplacement = 0;
+};
+
+namespace
+{
+/// A new array of one double per cell, added to the cell data.
+double* addCellArray(vtkDataSet* output, const std::string& name)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name.c_str());
+  array->SetNumberOfTuples(output->GetNumberOfCells());
+  output->GetCellData()->AddArray(array);
+  return array->GetPointer(0);
+}
+
+/// The same of signed characters.
+signed char* addFlags(vtkDataSet* output, const char* name)
+{
+  vtkNew<vtkSignedCharArray> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(output->GetNumberOfCells());
+  output->GetCellData()->AddArray(array);
+  return array->GetPointer(0);
+}
+
+/// Adds the array Displacement and returns the largest one.
+double addDisplacement(
+  vtkDataSet* output, const tautline::MeshView& before, const tautline::MeshView& after)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName("Displacement");
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(before.numberOfPoints);
+  double largest = 0;
+  using tautline::operator-;
+  for (tautline::Index i = 0; i < before.numberOfPoints; ++i)
+  {
+    tautline::Vec3 d = tautline::pointOf(after, i) - tautline::pointOf(before, i);
+    const double length = tautline::norm(d);
+    d = std::isfinite(length) ? d : tautline::Vec3{ 0, 0, 0 };
+    largest = std::max(largest, tautline::norm(d));
+    array->SetTypedTuple(i, d.data());
+  }
+  output->GetPointData()->AddArray(array);
+  return largest;
+}
+
+/// Mirrors both meshes if both are reversed throughout.
+void settleOrientation(tautline::Mesh& before, tautline::Mesh& after,
+  const signed char* validBefore, const signed char* validAfter)
+{
+  const bool reversed = before.orientation(validBefore).state == tautline::Orientation::Reversed &&
+    after.orientation(validAfter).state == tautline::Orientation::Reversed;
+  before.setMirrored(reversed);
+  after.setMirrored(reversed);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkMeshComparison::vtkMeshComparison()
+  : Selection(std::make_unique<tautline::MetricSelection>())
+{
+  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkMeshComparison::~vtkMeshComparison() = default;
+
+//------------------------------------------------------------------------------
+void vtkMeshComparison::AddMetric(int metric)
+{
+  try
+  {
+    if (this->Selection->add(metric))
+    {
+      this->Modified();
+    }
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshComparison::AddMetricByName(const char* name)
+{
+  try
+  {
+    if (this->Selection->addByName(name))
+    {
+      this->Modified();
+    }
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshComparison::ClearMetrics()
+{
+  if (this->Selection->clear())
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshComparison::GetNumberOfMetrics() const
+{
+  return this->Selection->count();
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshComparison::FillInputPortInformation(int, vtkInformation* info)
+{
+  // The composite type first: VTK then leaves the pairing of the blocks to this filter.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshComparison::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshComparison::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* after = vtkDataObject::GetData(inputVector[1]);
+  if (!after)
+  {
+    return 0;
+  }
+  vtkInformation* info = outputVector->GetInformationObject(0);
+  vtkDataObject* output = vtkDataObject::GetData(info);
+  if (!output || std::string(output->GetClassName()) != after->GetClassName())
+  {
+    info->Set(
+      vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkDataObject>::Take(after->NewInstance()));
+  }
+  if (!vtkTable::GetData(outputVector, 1))
+  {
+    outputVector->GetInformationObject(1)->Set(vtkDataObject::DATA_OBJECT(), vtkNew<vtkTable>());
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshComparison::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* output = vtkDataObject::GetData(outputVector, 0);
+  vtkDataObject* table = vtkDataObject::GetData(outputVector, 1);
+  this->Summary.clear();
+  Totals totals;
+  totals.metrics = this->Selection->metrics();
+  totals.changes.resize(totals.metrics.size());
+  try
+  {
+    this->CompareBlocks(vtkDataObject::GetData(inputVector[0]),
+      vtkDataObject::GetData(inputVector[1]), output, totals);
+    this->Tabulate(totals, table);
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    output->Initialize();
+    table->Initialize();
+    return 0;
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshComparison::CompareBlocks(
+  vtkDataObject* before, vtkDataObject* after, vtkDataObject* output, Totals& totals)
+{
+  auto* first = vtkDataSet::SafeDownCast(before);
+  auto* second = vtkDataSet::SafeDownCast(after);
+  if (first && second)
+  {
+    this->Compare(first, second, vtkDataSet::SafeDownCast(output), totals);
+    return;
+  }
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(before);
+  auto* others = vtkCompositeDataSet::SafeDownCast(after);
+  if (!blocks || !others)
+  {
+    throw tautline::Error(
+      "One input is a single mesh, the other has blocks: extract the block first "
+      "(Extract Block), or merge them (Merge Blocks).");
+  }
+  auto* results = vtkCompositeDataSet::SafeDownCast(output);
+  results->CopyStructure(others);
+  auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+  auto walkOther = vtkSmartPointer<vtkCompositeDataIterator>::Take(others->NewIterator());
+  walk->InitTraversal();
+  walkOther->InitTraversal();
+  for (; !walk->IsDoneWithTraversal() && !walkOther->IsDoneWithTraversal();
+       walk->GoToNextItem(), walkOther->GoToNextItem())
+  {
+    first = vtkDataSet::SafeDownCast(walk->GetCurrentDataObject());
+    second = vtkDataSet::SafeDownCast(walkOther->GetCurrentDataObject());
+    if (walk->GetCurrentFlatIndex() != walkOther->GetCurrentFlatIndex() || !first || !second)
+    {
+      break;
+    }
+    auto result = vtkSmartPointer<vtkDataSet>::Take(second->NewInstance());
+    results->SetDataSet(walkOther, result);
+    this->Compare(first, second, result, totals);
+  }
+  if (!walk->IsDoneWithTraversal() || !walkOther->IsDoneWithTraversal())
+  {
+    const auto& at = walk->IsDoneWithTraversal() ? walkOther : walk;
+    throw tautline::Error("The inputs differ in their blocks, first at block " +
+      std::to_string(at->GetCurrentFlatIndex()) +
+      ": give two data sets of the same structure, with a mesh in each block.");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshComparison::Compare(
+  vtkDataSet* before, vtkDataSet* after, vtkDataSet* output, Totals& totals)
+{
+  using namespace tautline;
+  MeshAdapter was(before, this->Threads), is(after, this->Threads);
+  const std::string difference = connectivityDifference(was.mesh(), is.mesh());
+  if (!difference.empty())
+  {
+    throw Error("The meshes have different connectivity: " + difference +
+      ". Compare meshes that differ in their coordinates only.");
+  }
+  output->ShallowCopy(after);
+  totals.largestDisplacement = std::max(
+    totals.largestDisplacement, addDisplacement(output, was.mesh().view(), is.mesh().view()));
+
+  signed char* validBefore = addFlags(output, "Validity_before");
+  signed char* validAfter = addFlags(output, "Validity_after");
+  was.mesh().classifyCells(validBefore, this->Threads);
+  is.mesh().classifyCells(validAfter, this->Threads);
+  settleOrientation(was.mesh(), is.mesh(), validBefore, validAfter);
+  was.mesh().classifyCells(validBefore, this->Threads);
+  is.mesh().classifyCells(validAfter, this->Threads);
+  const Index cells = output->GetNumberOfCells();
+  totals.invertedBefore += countValidity(validBefore, is.ghostCells(), cells).inverted;
+  totals.invertedAfter += countValidity(validAfter, is.ghostCells(), cells).inverted;
+
+  EvaluationOptions options;
+  options.threads = this->Threads;
+  const int dimension = is.mesh().dimension() == Dimension::Volume ? 3 : 2;
+  const unsigned char* types = is.mesh().view().cellTypes;
+  std::vector<signed char> change(cells);
+  std::vector<char> better(cells, 0), worse(cells, 0);
+  for (std::size_t m = 0; m < totals.metrics.size() && !this->GetAbortExecute(); ++m)
+  {
+    const MetricInfo& info = metricInfo(totals.metrics[m]);
+    double* low = addCellArray(output, std::string(info.name) + "_before");
+    double* high = addCellArray(output, std::string(info.name) + "_after");
+    double* delta = addCellArray(output, std::string(info.name) + "_difference");
+    evaluateMetric(was.mesh(), info.metric, options, low);
+    evaluateMetric(is.mesh(), info.metric, options, high);
+    compareMetric(info, dimension, { cells, low, validBefore, types, is.ghostCells() },
+      { cells, high, validAfter, types, is.ghostCells() }, this->Tolerance, change.data(),
+      totals.changes[m]);
+    for (Index i = 0; i < cells; ++i)
+    {
+      delta[i] = high[i] - low[i];
+      better[i] |= change[i] > 0;
+      worse[i] |= change[i] < 0;
+    }
+    this->UpdateProgress(static_cast<double>(m + 1) / static_cast<double>(totals.metrics.size()));
+  }
+  signed char* verdict = addFlags(output, "Change");
+  std::transform(better.begin(), better.end(), worse.begin(), verdict,
+    [](char up, char down) { return static_cast<signed char>(up - down); });
+  output->GetCellData()->SetActiveScalars("Change");
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshComparison::Tabulate(const Totals& totals, vtkDataObject* output)
+{
+  auto* table = vtkTable::SafeDownCast(output);
+  table->Initialize();
+  const vtkIdType rows = static_cast<vtkIdType>(totals.metrics.size());
+  vtkNew<vtkStringArray> names;
+  names->SetName("Metric");
+  names->SetNumberOfValues(rows);
+  table->AddColumn(names);
+  auto column = [&](auto array, const char* name, auto value)
+  {
+    array->SetName(name);
+    array->SetNumberOfTuples(rows);
+    for (vtkIdType i = 0; i < rows; ++i)
+    {
+      array->SetValue(i, value(totals.changes[i]));
+    }
+    table->AddColumn(array);
+  };
+  using Change = tautline::MetricChange;
+  auto counts = [&](const char* name, auto value)
+  { column(vtkNew<vtkIdTypeArray>(), name, value); };
+  auto values = [&](const char* name, auto value)
+  { column(vtkNew<vtkDoubleArray>(), name, value); };
+  counts("Better", [](const Change& c) { return c.better; });
+  counts("Worse", [](const Change& c) { return c.worse; });
+  counts("Equal", [](const Change& c) { return c.equal; });
+  counts("InvertedBefore", [&](const Change&) { return totals.invertedBefore; });
+  counts("InvertedAfter", [&](const Change&) { return totals.invertedAfter; });
+  values("MinimumBefore", [](const Change& c) { return c.before.count ? c.before.minimum : 0; });
+  values("MinimumAfter", [](const Change& c) { return c.after.count ? c.after.minimum : 0; });
+  values("MeanBefore", [](const Change& c) { return c.before.mean(); });
+  values("MeanAfter", [](const Change& c) { return c.after.mean(); });
+  values("MaximumBefore", [](const Change& c) { return c.before.count ? c.before.maximum : 0; });
+  values("MaximumAfter", [](const Change& c) { return c.after.count ? c.after.maximum : 0; });
+  values("LargestDisplacement", [&](const Change&) { return totals.largestDisplacement; });
+
+  std::ostringstream text;
+  for (vtkIdType i = 0; i < rows; ++i)
+  {
+    const tautline::MetricInfo& info = tautline::metricInfo(totals.metrics[i]);
+    const Change& change = totals.changes[i];
+    names->SetValue(i, info.name);
+    text << info.label << ": " << change.better << " better, " << change.worse << " worse, "
+         << change.equal << " equal.\n";
+  }
+  text << "Inverted elements: " << totals.invertedBefore << " before, " << totals.invertedAfter
+       << " after.";
+  this->Summary = text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshComparison::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Metrics:";
+  for (tautline::Metric metric : this->Selection->metrics())
+  {
+    os << " " << tautline::metricInfo(metric).name;
+  }
+  os << "\n" << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "Threads: " << this->Threads << "\n";
+  os << indent << "Summary: " << this->Summary << "\n";
+}

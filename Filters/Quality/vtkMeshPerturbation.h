@@ -1,0 +1,168 @@
+/**
+ * @class vtkMeshPerturbation
+ * @brief Moves interior vertices at random, short of inverting an element or past it.
+ *
+ * Makes test meshes: worse than the input by a known amount, but valid; or tangled, with a known
+ * fraction of inverted elements.
+ *
+ * A percentage of the vertices inside the mesh is chosen. One after the other, each moves in a random
+ * direction by a random part (evenly from 0 to Fraction) of the distance at which, in that direction,
+ * the first element around it would invert, given where the others are by then. This distance is
+ * exact: the determinant of every corner is linear in one vertex. The dissertation asks for "less
+ * than half the distance at which element inversion would occur" (section 2.7.2): the default. No
+ * element becomes inverted or degenerate, in the precision the output is stored in.
+ *
+ * With a TangledFraction above 0, interior vertices then go past inversion until that fraction of the
+ * elements is inverted. It is reached to the nearest element up to about 0.8 (a mesh with a fixed
+ * boundary cannot always be inverted throughout); GetTangledFractionReached() tells.
+ *
+ * Vertices of a planar mesh stay in its plane. Those of a surface in space move in the tangent plane
+ * of the elements around them, and so leave the surface by a second-order amount; an element inverts
+ * where it turns by 90 degrees from what it was. (Element Quality, which knows no "before", cannot
+ * see that: a surface triangle always agrees with its own normal. Mind sharp edges: fix their points.)
+ *
+ * The result depends on the input, the options and Seed only: not on the number of threads, nor on the
+ * random numbers of the system. With one seed, the vertices moved at a lower percentage are among
+ * those moved at a higher one.
+ *
+ * @par Input:
+ * Any vtkPointSet: vtkUnstructuredGrid, vtkPolyData, vtkStructuredGrid, ... with triangles,
+ * quadrilaterals, tetrahedra, hexahedra, wedges, pyramids. Multiblock data are treated block by block.
+ * A mesh whose elements are all reversed is treated as its mirror image. The points of other cells
+ * (lines, polygons, polyhedra, 2D cells in a volume mesh), of ghost cells and of cells with NaN
+ * coordinates stay. Elements that are inverted already may stay so, but get no worse neighbours.
+ *
+ * @par Input array 0 (optional, SetInputArrayToProcess):
+ * A point array with one component. Points where it is not 0 stay.
+ *
+ * @par Output:
+ * The input with other points, in the same precision (integer coordinates become double). Point and
+ * cell data pass. The point array `Displacement` (3 components, double) is added: new minus old
+ * position.
+ *
+ * @par Limitations:
+ * Validity is that of the corners; a hexahedron with positive corners may still be folded inside.
+ * Quadratic cells are refused. In parallel, points shared by two pieces are on the boundary of each and
+ * stay.
+ *
+ * @par Example:
+ * @code
+ * vtkNew<vtkMeshPerturbation> perturbation;
+ * perturbation->SetInputConnection(reader->GetOutputPort());
+ * perturbation->SetPercentage(25);
+ * perturbation->SetTangledFraction(0.01);
+ * perturbation->SetSeed(7);
+ * perturbation->Update();
+ * std::cout << perturbation->GetSummary() << "\n";
+ * @endcode
+ *
+ * @sa tautline::perturb (Filters/Kernel/Perturb.h), vtkElementQuality, vtkMeshComparison
+ */
+
+#ifndef vtkMeshPerturbation_h
+#define vtkMeshPerturbation_h
+
+#include "TautlineQualityModule.h" // for export macro
+#include "vtkDataSetAlgorithm.h"
+
+#include <string> // for Summary
+
+namespace tautline
+{
+struct Perturbation;
+}
+
+class TAUTLINEQUALITY_EXPORT vtkMeshPerturbation : public vtkDataSetAlgorithm
+{
+public:
+  static vtkMeshPerturbation* New();
+  vtkTypeMacro(vtkMeshPerturbation, vtkDataSetAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Percentage of the movable vertices to move, between 0 and 100. The default is 50.
+   */
+  vtkSetClampMacro(Percentage, double, 0.0, 100.0);
+  vtkGetMacro(Percentage, double);
+  ///@}
+
+  ///@{
+  /**
+   * The largest part of its distance to inversion by which a vertex moves, between 0 and 1; the part
+   * is drawn evenly from 0 to this. The default is 0.5.
+   */
+  vtkSetClampMacro(Fraction, double, 0.0, 1.0);
+  vtkGetMacro(Fraction, double);
+  ///@}
+
+  ///@{
+  /**
+   * Fraction of the elements to be inverted in the output, between 0 and 1; inverted elements of the
+   * input count. The default is 0: none is inverted.
+   */
+  vtkSetClampMacro(TangledFraction, double, 0.0, 1.0);
+  vtkGetMacro(TangledFraction, double);
+  ///@}
+
+  ///@{
+  /**
+   * Any number; another seed gives another mesh. The default is 0.
+   */
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /**
+   * Number of threads; 0, the default, is all cores. The vertices move one after the other: threads
+   * speed up the look at the input only, and do not change the result.
+   */
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  ///@{
+  /**
+   * Results of the last execution (for multiblock data, of its last block): vertices inside the mesh
+   * that were free to move; those that did; the elements inverted before and after, and the fraction
+   * of the elements that the latter are; the largest displacement; all of it in words.
+   */
+  vtkGetMacro(NumberOfMovablePoints, vtkIdType);
+  vtkGetMacro(NumberOfMovedPoints, vtkIdType);
+  vtkGetMacro(InvertedBefore, vtkIdType);
+  vtkGetMacro(InvertedAfter, vtkIdType);
+  vtkGetMacro(TangledFractionReached, double);
+  vtkGetMacro(LargestDisplacement, double);
+  const char* GetSummary() const { return this->Summary.c_str(); }
+  ///@}
+
+protected:
+  vtkMeshPerturbation() = default;
+  ~vtkMeshPerturbation() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkMeshPerturbation(const vtkMeshPerturbation&) = delete;
+  void operator=(const vtkMeshPerturbation&) = delete;
+
+  void Report(const tautline::Perturbation& result);
+
+  double Percentage = 50.0;
+  double Fraction = 0.5;
+  double TangledFraction = 0.0;
+  int Seed = 0;
+  int Threads = 0;
+
+  vtkIdType NumberOfMovablePoints = 0;
+  vtkIdType NumberOfMovedPoints = 0;
+  vtkIdType InvertedBefore = 0;
+  vtkIdType InvertedAfter = 0;
+  double TangledFractionReached = 0.0;
+  double LargestDisplacement = 0.0;
+  std::string Summary;
+};
+
+#endif

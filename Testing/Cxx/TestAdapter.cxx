@@ -1,0 +1,333 @@
+// Data sets of VTK seen through MeshAdapter: what is copied, what becomes of the cells, what is said.
+#include "Check.h"
+#include "Blocks.h"
+
+#include "MeshAdapter.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdList.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <numeric>
+
+using namespace tautline;
+
+namespace
+{
+vtkNew<vtkPoints> makeVTKPoints(const MeshData& data, int precision)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataType(precision);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    points->InsertNextPoint(data.point(i).data());
+  }
+  return points;
+}
+
+vtkNew<vtkUnstructuredGrid> makeGrid(const MeshData& data, int precision = VTK_DOUBLE)
+{
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(makeVTKPoints(data, precision));
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    grid->InsertNextCell(data.types[i], data.offsets[i + 1] - data.offsets[i],
+      reinterpret_cast<const vtkIdType*>(data.connectivity.data()) + data.offsets[i]);
+  }
+  return grid;
+}
+
+std::vector<double> sizes(const MeshAdapter& adapter)
+{
+  return valuesOf(adapter.mesh(), Metric::Size);
+}
+
+bool contains(const std::string& text, const char* part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+//------------------------------------------------------------------------------
+void testUnstructuredGrid()
+{
+  const MeshData data = blockMesh(CellType::Tetrahedron, 3, 2, 2);
+  const Mesh expected(data.view());
+  const std::vector<double> values = valuesOf(expected, Metric::InverseMeanRatio);
+
+  const auto grid = makeGrid(data);
+  const MeshAdapter adapter(grid);
+  TAUTLINE_CHECK_EQUAL(adapter.copiedBytes(), 0u);
+  TAUTLINE_CHECK_EQUAL(adapter.notice(), "");
+  TAUTLINE_CHECK(adapter.ghostCells() == nullptr);
+  TAUTLINE_CHECK(adapter.mesh().view().points ==
+    vtkDoubleArray::SafeDownCast(grid->GetPoints()->GetData())->GetPointer(0));
+  TAUTLINE_CHECK(valuesOf(adapter.mesh(), Metric::InverseMeanRatio) == values);
+
+  const auto floats = makeGrid(data, VTK_FLOAT);
+  const MeshAdapter fromFloats(floats);
+  TAUTLINE_CHECK_EQUAL(fromFloats.copiedBytes(), data.points.size() * sizeof(double));
+  TAUTLINE_CHECK(valuesOf(fromFloats.mesh(), Metric::InverseMeanRatio) == values);
+
+  const auto narrow = makeGrid(data);
+  narrow->GetCells()->ConvertTo32BitStorage();
+  const MeshAdapter fromNarrow(narrow);
+  TAUTLINE_CHECK(fromNarrow.copiedBytes() >= data.connectivity.size() * sizeof(Index));
+  TAUTLINE_CHECK(valuesOf(fromNarrow.mesh(), Metric::InverseMeanRatio) == values);
+
+  // A cell that names a point the grid has not.
+  MeshData bad = data;
+  bad.connectivity[4 * 6] = 10000;
+  const auto broken = makeGrid(bad);
+  TAUTLINE_CHECK_THROWS(MeshAdapter refused(broken), "Cell 6");
+}
+
+/// Pixels and voxels count rows of points; polygons of three and four points are what they look like.
+void testRelatedTypes()
+{
+  MeshData data = blockMesh(CellType::Hexahedron, 1, 1, 1); // its points are those of a voxel
+  data.connectivity = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  data.types[0] = VTK_VOXEL;
+  data.addCell(VTK_TRIANGLE_STRIP, std::vector<Index>{ 0, 1, 2, 3 });
+  data.addCell(VTK_PIXEL, std::vector<Index>{ 0, 1, 2, 3 });
+  data.addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 3 });
+  data.addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 3, 2 });
+  data.addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 5, 7, 2 });
+  data.addCell(VTK_VERTEX, std::vector<Index>{ 0 });
+  data.addCell(VTK_TRIANGLE, std::vector<Index>{ 0, 1, 2 });
+  const auto grid = makeGrid(data);
+  const MeshAdapter adapter(grid);
+  const std::vector<double> expected = { 1, 0, 1, 0.5, 1, 0, 0, 0.5 };
+  TAUTLINE_CHECK(sizes(adapter) == expected);
+  const std::vector<signed char> validity = validityOf(adapter.mesh());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(int(validity[i]), int(expected[i] > 0 ? Valid : NotMeasured));
+  }
+  TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkVertex"));
+  TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkPolygon"));
+  TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkTriangleStrip"));
+  TAUTLINE_CHECK(contains(adapter.notice(), "Triangulate"));
+}
+
+//------------------------------------------------------------------------------
+void testPolyData()
+{
+  const MeshData data = blockMesh(CellType::Triangle, 3, 2, 0);
+  vtkNew<vtkPolyData> poly;
+  poly->SetPoints(makeVTKPoints(data, VTK_DOUBLE));
+  vtkNew<vtkCellArray> polys;
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    polys->InsertNextCell(3, reinterpret_cast<const vtkIdType*>(data.connectivity.data()) + 3 * i);
+  }
+  poly->SetPolys(polys);
+  const MeshAdapter onlyPolys(poly);
+  TAUTLINE_CHECK_EQUAL(
+    onlyPolys.copiedBytes(), static_cast<std::size_t>(data.numberOfCells())); // the types
+  TAUTLINE_CHECK(sizes(onlyPolys) == valuesOf(data, Metric::Size));
+
+  // Cells of a vtkPolyData are numbered vertices, lines, polygons, strips.
+  vtkNew<vtkCellArray> verts, lines, strips;
+  verts->InsertNextCell({ 0 });
+  lines->InsertNextCell({ 0, 1 });
+  lines->InsertNextCell({ 1, 2, 3 });
+  strips->InsertNextCell({ 0, 4, 1, 5 });
+  poly->SetVerts(verts);
+  poly->SetLines(lines);
+  poly->SetStrips(strips);
+  const MeshAdapter all(poly);
+  const std::vector<double> values = sizes(all);
+  TAUTLINE_CHECK_EQUAL(values.size(), static_cast<std::size_t>(data.numberOfCells() + 4));
+  for (Index i = 0; i < static_cast<Index>(values.size()); ++i)
+  {
+    const bool triangle = i >= 3 && i < 3 + data.numberOfCells();
+    TAUTLINE_CHECK_EQUAL(values[i], triangle ? 0.5 : 0.0);
+  }
+  TAUTLINE_CHECK(all.mesh().dimension() == Dimension::Planar);
+  TAUTLINE_CHECK(contains(
+    all.notice(), "Not measured: 1 vtkVertex, 1 vtkLine, 1 vtkPolyLine, 1 vtkTriangleStrip."));
+}
+
+//------------------------------------------------------------------------------
+/// All cells valid, of the size given, and in VTK's order.
+void checkBlock(vtkDataSet* input, Dimension dimension, const std::vector<double>& expected)
+{
+  const MeshAdapter adapter(input);
+  const Mesh& mesh = adapter.mesh();
+  TAUTLINE_CHECK(mesh.dimension() == dimension);
+  TAUTLINE_CHECK_EQUAL(adapter.notice(), "");
+  const std::vector<signed char> validity = validityOf(mesh);
+  TAUTLINE_CHECK_EQUAL(mesh.orientation(validity.data()).state, Orientation::Consistent);
+  const std::vector<double> values = sizes(adapter);
+  TAUTLINE_CHECK_EQUAL(values.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(int(validity[i]), int(Valid));
+    TAUTLINE_CHECK_NEAR(values[i], expected[i], 1e-12);
+    // The adapter's cell has the points of VTK's.
+    vtkNew<vtkIdList> ids;
+    input->GetCellPoints(static_cast<vtkIdType>(i), ids);
+    std::vector<Index> theirs(ids->begin(), ids->end());
+    std::vector<Index> ours(mesh.view().connectivity + mesh.view().offsets[i],
+      mesh.view().connectivity + mesh.view().offsets[i + 1]);
+    std::sort(theirs.begin(), theirs.end());
+    std::sort(ours.begin(), ours.end());
+    TAUTLINE_CHECK(ours == theirs);
+  }
+}
+
+void testStructured()
+{
+  vtkNew<vtkImageData> image;
+  image->SetSpacing(0.5, 2, 3);
+  image->SetOrigin(1, 2, 3);
+  image->SetDimensions(3, 4, 5);
+  checkBlock(image, Dimension::Volume, std::vector<double>(2 * 3 * 4, 3.0));
+  image->SetDimensions(3, 4, 1);
+  checkBlock(image, Dimension::Planar, std::vector<double>(2 * 3, 1.0));
+  image->SetDimensions(1, 4, 5);
+  checkBlock(image, Dimension::Planar, std::vector<double>(3 * 4, 6.0));
+  {
+    const Context context("image in the plane y = 2");
+    image->SetDimensions(3, 1, 5);
+    checkBlock(image, Dimension::Planar, std::vector<double>(2 * 4, 1.5));
+  }
+
+  vtkNew<vtkRectilinearGrid> rectilinear;
+  vtkNew<vtkDoubleArray> x, y, z;
+  for (double value : { 0.0, 1.0, 3.0 })
+  {
+    x->InsertNextValue(value);
+    y->InsertNextValue(2 * value);
+    z->InsertNextValue(3 * value);
+  }
+  rectilinear->SetDimensions(3, 3, 3);
+  rectilinear->SetXCoordinates(x);
+  rectilinear->SetYCoordinates(y);
+  rectilinear->SetZCoordinates(z);
+  checkBlock(rectilinear, Dimension::Volume, { 6, 12, 12, 24, 12, 24, 24, 48 });
+
+  for (int layers : { 1, 2 })
+  {
+    vtkNew<vtkStructuredGrid> structured;
+    vtkNew<vtkPoints> points;
+    for (int k = 0; k < layers; ++k)
+    {
+      for (int j = 0; j < 3; ++j)
+      {
+        for (int i = 0; i < 4; ++i)
+        {
+          points->InsertNextPoint(i + 0.25 * j, j, k); // sheared
+        }
+      }
+    }
+    structured->SetDimensions(4, 3, layers);
+    structured->SetPoints(points);
+    checkBlock(
+      structured, layers == 1 ? Dimension::Planar : Dimension::Volume, std::vector<double>(6, 1.0));
+  }
+}
+
+//------------------------------------------------------------------------------
+void testEmpty()
+{
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPolyData> poly;
+  vtkNew<vtkImageData> image;
+  vtkNew<vtkStructuredGrid> structured;
+  for (vtkDataSet* input : std::initializer_list<vtkDataSet*>{ grid, poly, image, structured })
+  {
+    const MeshAdapter adapter(input);
+    TAUTLINE_CHECK(adapter.mesh().dimension() == Dimension::None);
+    TAUTLINE_CHECK_EQUAL(adapter.mesh().view().numberOfCells, 0);
+    TAUTLINE_CHECK(sizes(adapter).empty());
+    TAUTLINE_CHECK(gradientsOf(adapter.mesh(), Metric::Size).gradients.empty());
+    TAUTLINE_CHECK_EQUAL(MetricSum(adapter.mesh(), Metric::Size, {}, 1).value(), 0.0);
+    TAUTLINE_CHECK_EQUAL(adapter.notice(), "");
+  }
+  // Points without cells.
+  grid->SetPoints(makeVTKPoints(blockMesh(CellType::Triangle, 1, 1, 0), VTK_DOUBLE));
+  TAUTLINE_CHECK_EQUAL(MeshAdapter(grid).mesh().boundary().isBoundaryPoint.size(), 4u);
+}
+
+void testNotices()
+{
+  MeshData data = blockMesh(CellType::Quadrilateral, 2, 2, 0);
+  data.setPoint(4, { std::nan(""), 0, 0 });
+  const auto broken = makeGrid(data);
+  TAUTLINE_CHECK(contains(MeshAdapter(broken).notice(), "1 points have a NaN"));
+
+  const auto grid = makeGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0));
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (unsigned char flag : { 0, 1, 0, 0 })
+  {
+    ghosts->InsertNextValue(flag);
+  }
+  grid->GetCellData()->AddArray(ghosts);
+  const MeshAdapter adapter(grid);
+  TAUTLINE_CHECK(
+    adapter.ghostCells() && adapter.ghostCells()[1] == 1 && adapter.ghostCells()[2] == 0);
+}
+
+void testDescription()
+{
+  MeshData data = blockMesh(CellType::Quadrilateral, 3, 3, 0);
+  auto description = [](const MeshData& mesh)
+  {
+    const auto grid = makeGrid(mesh);
+    const MeshAdapter adapter(grid);
+    const std::vector<signed char> validity = validityOf(adapter.mesh());
+    return describe(adapter.mesh().orientation(validity.data()), adapter.mesh());
+  };
+  TAUTLINE_CHECK_EQUAL(description(data), "");
+  std::swap(data.connectivity[1], data.connectivity[3]);
+  TAUTLINE_CHECK(contains(description(data), "mixed"));
+  TAUTLINE_CHECK(contains(description(data), "2 edges"));
+  for (Index i = 1; i < data.numberOfCells(); ++i)
+  {
+    std::swap(data.connectivity[4 * i + 1], data.connectivity[4 * i + 3]);
+  }
+  TAUTLINE_CHECK(contains(description(data), "reversed"));
+  TAUTLINE_CHECK(contains(description(data), "9 of 9"));
+}
+
+void testMakePoints()
+{
+  const std::vector<double> coordinates = { 0.1, 0.2, 0.3, 4, 5, 6 };
+  for (int precision : { VTK_FLOAT, VTK_DOUBLE })
+  {
+    vtkNew<vtkPoints> like;
+    like->SetDataType(precision);
+    const auto points = makePoints(coordinates, like);
+    TAUTLINE_CHECK_EQUAL(points->GetDataType(), precision);
+    TAUTLINE_CHECK_EQUAL(points->GetNumberOfPoints(), 2);
+    TAUTLINE_CHECK_NEAR(points->GetPoint(0)[1], 0.2, precision == VTK_FLOAT ? 1e-8 : 0);
+  }
+  TAUTLINE_CHECK_EQUAL(makePoints(coordinates, nullptr)->GetDataType(), VTK_DOUBLE);
+}
+}
+
+int TestAdapter(int, char*[])
+{
+  testUnstructuredGrid();
+  testRelatedTypes();
+  testPolyData();
+  testStructured();
+  testEmpty();
+  testNotices();
+  testDescription();
+  testMakePoints();
+  return exitCode();
+}

@@ -1,0 +1,421 @@
+// What a mesh finds out about itself: dimension and plane, boundary, adjacency, orientation, refusals.
+#include "Check.h"
+#include "Blocks.h"
+
+#include <algorithm>
+#include <set>
+
+using namespace tautline;
+
+namespace
+{
+constexpr int boxSize[3] = { 4, 3, 2 };
+
+MeshData box(CellType type)
+{
+  return blockMesh(type, boxSize[0], boxSize[1], topology(type).dimension == 2 ? 0 : boxSize[2]);
+}
+
+Dimension dimensionOf(const MeshData& data)
+{
+  return Mesh(data.view()).dimension();
+}
+
+/// Lists the nodes of a cell in the opposite order.
+void flip(MeshData& data, Index cell)
+{
+  const std::vector<std::pair<int, int>> swaps[] = { { { 1, 2 } }, { { 1, 3 } }, { { 1, 2 } },
+    { { 1, 3 }, { 5, 7 } }, { { 1, 2 }, { 4, 5 } }, { { 1, 3 } } };
+  for (const auto& pair : swaps[topologyIndex(cornerType(data.types[cell]))])
+  {
+    const Index first = data.offsets[cell];
+    std::swap(data.connectivity[first + pair.first], data.connectivity[first + pair.second]);
+  }
+}
+
+Orientation orientationOf(const Mesh& mesh)
+{
+  return mesh.orientation(validityOf(mesh).data());
+}
+
+//------------------------------------------------------------------------------
+void checkPlane(const MeshData& data, const Vec3& expected)
+{
+  const Mesh mesh(data.view());
+  TAUTLINE_CHECK(mesh.dimension() == Dimension::Planar);
+  const Vec3 n = mesh.normal(), e1 = mesh.frame()[0], e2 = mesh.frame()[1];
+  TAUTLINE_CHECK_NEAR(norm(n), 1, 1e-14);
+  TAUTLINE_CHECK_NEAR(norm(cross(n, expected)), 0, 1e-9);
+  TAUTLINE_CHECK_NEAR(norm(cross(e1, e2) - n), 0, 1e-14);
+  TAUTLINE_CHECK_NEAR(norm(e1), 1, 1e-14);
+  TAUTLINE_CHECK_NEAR(dot(e1, e2), 0, 1e-14);
+  const auto largest = std::max_element(
+    n.begin(), n.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  TAUTLINE_CHECK(*largest > 0);
+}
+
+void testDimension()
+{
+  for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
+  {
+    const MeshData flat = box(type);
+    checkPlane(flat, { 0, 0, 1 });
+    TAUTLINE_CHECK(Mesh(flat.view()).normal() == (Vec3{ 0, 0, 1 }));
+    TAUTLINE_CHECK(
+      Mesh(flat.view()).frame() == (std::array<Vec3, 2>{ Vec3{ 1, 0, 0 }, { 0, 1, 0 } }));
+    MeshData other = flat;
+    other.transform([](const Vec3& p) { return Vec3{ p[2], p[0], p[1] }; });
+    checkPlane(other, { 1, 0, 0 });
+    other.transform([](const Vec3& p) { return Vec3{ p[2], p[0], p[1] }; });
+    checkPlane(other, { 0, 1, 0 });
+    Random random(15);
+    for (double scale : { 1e-8, 1.0, 1e8 })
+    {
+      const Columns r = randomRotation(random);
+      const Vec3 offset = random.vector(-3, 3);
+      other = flat;
+      other.transform([&](const Vec3& p) { return scale * (r * p + offset); });
+      checkPlane(other, r[2]);
+    }
+    // Out of the plane by less and by more than a millionth of the diagonal, which is 5.
+    other = flat;
+    for (double height : { 4e-6, 6e-6 })
+    {
+      other.setPoint(7, flat.point(7) + Vec3{ 0, 0, height });
+      TAUTLINE_CHECK(
+        dimensionOf(other) == (height < 5e-6 ? Dimension::Planar : Dimension::Surface));
+    }
+    // Points no cell uses, and points that are not finite, do not count.
+    other = flat;
+    other.addPoint({ 0, 0, 9 });
+    TAUTLINE_CHECK(dimensionOf(other) == Dimension::Planar);
+    other.setPoint(0, { 0, std::nan(""), 9 });
+    TAUTLINE_CHECK(dimensionOf(other) == Dimension::Planar);
+    TAUTLINE_CHECK_EQUAL(Mesh(other.view()).nonFinitePoints(), 1);
+  }
+  MeshData mixed = box(CellType::Quadrilateral);
+  mixed.addCell(CellType::Triangle, { 0, 1, 5 });
+  TAUTLINE_CHECK(dimensionOf(mixed) == Dimension::Planar);
+  TAUTLINE_CHECK_EQUAL(Mesh(mixed.view()).blocks().size(), 2u);
+  const Index apex = mixed.addPoint({ 0, 0, 1 });
+  mixed.addCell(CellType::Triangle, { 0, 1, apex });
+  TAUTLINE_CHECK(dimensionOf(mixed) == Dimension::Surface);
+  mixed.addCell(CellType::Tetrahedron, { 0, 1, 5, apex });
+  TAUTLINE_CHECK(dimensionOf(mixed) == Dimension::Volume);
+  TAUTLINE_CHECK(Mesh(mixed.view()).normal() == (Vec3{ 0, 0, 0 }));
+
+  MeshData none;
+  TAUTLINE_CHECK(dimensionOf(none) == Dimension::None);
+  none.addPoint({ 0, 0, 0 });
+  none.addPoint({ 1, 0, 0 });
+  constexpr int vtkLine = 3;
+  none.addCell(vtkLine, { 0, 1 });
+  TAUTLINE_CHECK(dimensionOf(none) == Dimension::None);
+  TAUTLINE_CHECK_EQUAL(Mesh(none.view()).unsupportedCells(), 1);
+  TAUTLINE_CHECK_EQUAL(static_cast<int>(validityOf(none)[0]), static_cast<int>(NotMeasured));
+  TAUTLINE_CHECK_EQUAL(Mesh(none.view()).boundary().facets, 0);
+}
+
+//------------------------------------------------------------------------------
+void testBoundary(CellType type)
+{
+  const MeshData data = box(type);
+  const Mesh mesh(data.view());
+  const Index x = boxSize[0], y = boxSize[1], z = boxSize[2];
+  Index squares = 2 * (x * y + y * z + z * x), facets = squares;
+  switch (type)
+  {
+    case CellType::Tetrahedron:
+      facets = 2 * squares;
+      break;
+    case CellType::Wedge:
+      facets = squares + 2 * x * y; // triangles above and below
+      break;
+    case CellType::Triangle:
+    case CellType::Quadrilateral:
+      facets = 2 * (x + y);
+      break;
+    default:
+      break;
+  }
+  const Boundary boundary = mesh.boundary();
+  TAUTLINE_CHECK_EQUAL(boundary.facets, facets);
+  TAUTLINE_CHECK_EQUAL(boundary.nonManifold, 0);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Vec3 p = data.point(i);
+    bool outside = false;
+    for (int c = 0; c < topology(type).dimension; ++c)
+    {
+      outside |= p[c] == 0 || p[c] == boxSize[c];
+    }
+    TAUTLINE_CHECK_EQUAL(boundary.isBoundaryPoint[i] != 0, outside);
+  }
+  // Without one cell that has all its facets inside, as many more facets as it has.
+  const std::vector<signed char> validity = validityOf(mesh);
+  TAUTLINE_CHECK(
+    std::all_of(validity.begin(), validity.end(), [](signed char v) { return v == Valid; }));
+  double sum = 0;
+  for (double size : valuesOf(mesh, Metric::Size))
+  {
+    sum += size;
+  }
+  TAUTLINE_CHECK_NEAR(sum, topology(type).dimension == 2 ? x * y : x * y * z, 1e-12);
+}
+
+void testAdjacency(const MeshData& data)
+{
+  const Mesh mesh(data.view());
+  std::vector<std::set<Index>> expected(data.numberOfPoints());
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    const CellType type = cornerType(data.types[cell]);
+    for (int k = 0; type != CellType::Unsupported && k < topology(type).nodes; ++k)
+    {
+      expected[data.connectivity[data.offsets[cell] + k]].insert(cell);
+    }
+  }
+  const VertexCells adjacency = mesh.vertexCells();
+  TAUTLINE_CHECK_EQUAL(adjacency.offsets.size(), expected.size() + 1);
+  for (Index v = 0; v < data.numberOfPoints(); ++v)
+  {
+    const std::vector<Index> cells(adjacency.cells.begin() + adjacency.offsets[v],
+      adjacency.cells.begin() + adjacency.offsets[v + 1]);
+    TAUTLINE_CHECK(cells == std::vector<Index>(expected[v].begin(), expected[v].end()));
+  }
+}
+
+/// Hexahedra, wedges, pyramids and tetrahedra that fit each other, and lines and points beside.
+MeshData mixedMesh()
+{
+  MeshData data = blockMesh(CellType::Hexahedron, 2, 1, 1);
+  const Index top = data.addPoint({ 0.5, 0.5, 2 });
+  data.addCell(CellType::Pyramid, { 6, 7, 10, 9, top });
+  const Index side = data.addPoint({ 2.5, 0.5, 0.5 });
+  data.addCell(CellType::Pyramid, { 2, 8, 11, 5, side });
+  data.addCell(CellType::Tetrahedron, { 8, 2, side, data.addPoint({ 3, -1, 0.5 }) });
+  constexpr int vtkVertex = 1;
+  data.addCell(vtkVertex, { 3 });
+  data.addCell(
+    CellType::Wedge, { 6, 7, data.addPoint({ 0, 0, 2 }), 9, 10, data.addPoint({ 0, 1, 2 }) });
+  data.addCell(CellType::Triangle, { 0, 1, 3 });
+  return data;
+}
+
+void testMixed()
+{
+  const MeshData data = mixedMesh();
+  const Mesh mesh(data.view());
+  TAUTLINE_CHECK(mesh.dimension() == Dimension::Volume);
+  TAUTLINE_CHECK_EQUAL(mesh.blocks().size(), 5u);
+  TAUTLINE_CHECK_EQUAL(mesh.unsupportedCells(), 1);
+  testAdjacency(data);
+  // The face 6 7 10 9 has a hexahedron, a pyramid and a wedge: not manifold, and so boundary.
+  const Boundary boundary = mesh.boundary();
+  TAUTLINE_CHECK_EQUAL(boundary.nonManifold, 1);
+  const Index faces = 2 * 6 + 2 * 5 + 4 + 5, shared = 2 /* hexahedra */ + 3 + 2 /* pyramid */ + 2;
+  TAUTLINE_CHECK_EQUAL(boundary.facets, faces - shared);
+}
+
+void testNonManifold()
+{
+  MeshData fans; // three triangles at an edge, as the pages of a book
+  for (const Vec3& p : { Vec3{ 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { -1, 1, 0 }, { -1, -1, 0 } })
+  {
+    fans.addPoint(p);
+  }
+  fans.addCell(CellType::Triangle, { 0, 1, 2 });
+  fans.addCell(CellType::Triangle, { 0, 1, 3 });
+  fans.addCell(CellType::Triangle, { 0, 1, 4 });
+  const Boundary boundary = Mesh(fans.view()).boundary();
+  TAUTLINE_CHECK_EQUAL(boundary.nonManifold, 1);
+  TAUTLINE_CHECK_EQUAL(boundary.facets, 6);
+  TAUTLINE_CHECK_EQUAL(
+    std::count(boundary.isBoundaryPoint.begin(), boundary.isBoundaryPoint.end(), 1), 5);
+}
+
+//------------------------------------------------------------------------------
+void testOrientation(CellType type)
+{
+  const MeshData data = box(type);
+  const Index cells = data.numberOfCells();
+  Orientation o = orientationOf(Mesh(data.view()));
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Consistent);
+  TAUTLINE_CHECK_EQUAL(o.positiveCells, cells);
+
+  MeshData reversed = data;
+  for (Index i = 0; i < cells; ++i)
+  {
+    flip(reversed, i);
+  }
+  Mesh reversedMesh(reversed.view());
+  o = orientationOf(reversedMesh);
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Reversed);
+  TAUTLINE_CHECK_EQUAL(o.negativeCells, cells);
+  reversedMesh.setMirrored(true);
+  o = orientationOf(reversedMesh);
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Consistent);
+  TAUTLINE_CHECK_EQUAL(o.positiveCells, cells);
+
+  // One cell the other way round: each facet it shares disagrees.
+  MeshData mixed = data;
+  const Index odd = cells / 2;
+  flip(mixed, odd);
+  o = orientationOf(Mesh(mixed.view()));
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Mixed);
+  MeshData alone = singleCell(type, idealCell(type));
+  MeshData without = data;
+  without.types[odd] = 0;
+  const Index own = Mesh(alone.view()).boundary().facets,
+              opened = Mesh(without.view()).boundary().facets - Mesh(data.view()).boundary().facets;
+  TAUTLINE_CHECK_EQUAL(o.disagreeing, (own + opened) / 2);
+  TAUTLINE_CHECK_EQUAL(o.negativeCells, 1);
+
+  // Two parts, one reversed.
+  MeshData parts = data;
+  const Index shift = data.numberOfPoints();
+  for (Index i = 0; i < shift; ++i)
+  {
+    parts.addPoint(data.point(i) + Vec3{ 10, 0, 0 });
+  }
+  for (Index i = 0; i < cells; ++i)
+  {
+    std::vector<Index> nodes(
+      data.connectivity.begin() + data.offsets[i], data.connectivity.begin() + data.offsets[i + 1]);
+    std::for_each(nodes.begin(), nodes.end(), [&](Index& n) { n += shift; });
+    parts.addCell(type, nodes);
+    flip(parts, cells + i);
+  }
+  o = orientationOf(Mesh(parts.view()));
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Mixed);
+  TAUTLINE_CHECK_EQUAL(o.parts, 2);
+  TAUTLINE_CHECK_EQUAL(o.reversedParts, 1);
+  TAUTLINE_CHECK_EQUAL(o.disagreeing, 0);
+
+  // A vertex pulled through its neighbours tangles the mesh; its orientation stays what it was.
+  for (const MeshData* start : std::initializer_list<const MeshData*>{ &data, &reversed })
+  {
+    MeshData tangled = *start;
+    const Boundary boundary = Mesh(data.view()).boundary();
+    const auto inside =
+      std::find(boundary.isBoundaryPoint.begin(), boundary.isBoundaryPoint.end(), 0) -
+      boundary.isBoundaryPoint.begin();
+    TAUTLINE_CHECK(inside < tangled.numberOfPoints());
+    tangled.setPoint(inside, tangled.point(inside) + Vec3{ 1.6, 0.2, 0 });
+    o = orientationOf(Mesh(tangled.view()));
+    TAUTLINE_CHECK(o.negativeCells > 0);
+    TAUTLINE_CHECK_EQUAL(o.disagreeing, 0);
+    if (start == &data)
+    {
+      TAUTLINE_CHECK(o.positiveCells > 0);
+      TAUTLINE_CHECK_EQUAL(o.parts, 1);
+    }
+    TAUTLINE_CHECK_EQUAL(o.state, start == &data ? Orientation::Consistent : Orientation::Reversed);
+  }
+}
+
+void testSurfaceOrientation()
+{
+  MeshData curved = box(CellType::Triangle);
+  curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[0] }; });
+  TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(curved.view())).state, Orientation::Consistent);
+  flip(curved, 11); // the upper left triangle of an inner square
+  const Orientation o = orientationOf(Mesh(curved.view()));
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Mixed);
+  TAUTLINE_CHECK_EQUAL(o.disagreeing, 3);
+  TAUTLINE_CHECK_EQUAL(o.negativeCells, 0); // a surface has no signs
+
+  MeshData moebius; // five quadrilaterals with half a turn
+  constexpr int count = 5;
+  for (int i = 0; i < count; ++i)
+  {
+    const double a = 2 * M_PI * i / count, half = 0.3;
+    const Vec3 out = { std::cos(a), std::sin(a), 0 };
+    const Vec3 across = half * (std::cos(a / 2) * out + Vec3{ 0, 0, std::sin(a / 2) });
+    moebius.addPoint(out - across);
+    moebius.addPoint(out + across);
+  }
+  for (Index i = 0; i + 1 < count; ++i)
+  {
+    moebius.addCell(CellType::Quadrilateral, { 2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2 });
+  }
+  moebius.addCell(CellType::Quadrilateral, { 2 * count - 2, 2 * count - 1, 0, 1 });
+  TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(moebius.view())).state, Orientation::Mixed);
+  TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(moebius.view())).disagreeing, 1);
+}
+
+//------------------------------------------------------------------------------
+/// Quadratic cells count as their corners, among linear ones.
+void testHigherOrder()
+{
+  constexpr int vtkQuadraticTriangle = 22;
+  MeshData data = box(CellType::Triangle);
+  const Index linear = data.numberOfCells();
+  data.addCell(vtkQuadraticTriangle, { 0, 1, 6, 8, 8, 8 }); // the middles do not matter here
+  const Mesh mesh(data.view());
+  TAUTLINE_CHECK_EQUAL(mesh.higherOrderCells(), 1);
+  TAUTLINE_CHECK_EQUAL(mesh.unsupportedCells(), 0);
+  TAUTLINE_CHECK_EQUAL(mesh.blocks().size(), 1u);
+  TAUTLINE_CHECK_EQUAL(mesh.blocks()[0].count, linear + 1);
+  const Gradients g = gradientsOf(mesh, Metric::MeanRatio);
+  TAUTLINE_CHECK_NEAR(g.values[linear], g.values[0], 1e-15);
+  for (int entry = 0; entry < 18; ++entry)
+  {
+    const double expected = entry < 9 ? g.gradients[entry] : 0;
+    TAUTLINE_CHECK_NEAR(g.gradients[9 * linear + entry], expected, 1e-15);
+  }
+}
+
+void testRefusals()
+{
+  const MeshData good = box(CellType::Tetrahedron);
+  MeshData bad = good;
+  for (Index wrong : { Index(-1), good.numberOfPoints(), Index(1) << 40 })
+  {
+    bad.connectivity[4 * 17 + 2] = wrong;
+    TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 17 is not a proper tetrahedron");
+  }
+  bad.connectivity[4 * 5] = -1; // the first of several is named
+  TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 5 ");
+  bad = good;
+  bad.types[3] = static_cast<unsigned char>(CellType::Hexahedron);
+  TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 3 is not a proper hexahedron");
+  bad = good;
+  bad.offsets[8] = bad.offsets[7];
+  TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 7 ");
+  bad = good;
+  bad.types[9] = 0; // not even cells that are not measured may have descending offsets
+  bad.offsets[10] = bad.offsets[9] - 4;
+  TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 9");
+  for (int missing = 0; missing < 4; ++missing)
+  {
+    MeshView view = good.view();
+    view.points = missing == 0 ? nullptr : view.points;
+    view.cellTypes = missing == 1 ? nullptr : view.cellTypes;
+    view.offsets = missing == 2 ? nullptr : view.offsets;
+    view.connectivity = missing == 3 ? nullptr : view.connectivity;
+    TAUTLINE_CHECK_THROWS(Mesh mesh(view), "incomplete");
+  }
+  MeshView view = good.view();
+  view.numberOfCells = -1;
+  TAUTLINE_CHECK_THROWS(Mesh mesh(view), "incomplete");
+}
+}
+
+int TestMesh(int, char*[])
+{
+  testDimension();
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    testBoundary(type);
+    testAdjacency(box(type));
+    testOrientation(type);
+  }
+  testMixed();
+  testNonManifold();
+  testSurfaceOrientation();
+  testHigherOrder();
+  testRefusals();
+  return exitCode();
+}

@@ -1,0 +1,311 @@
+// The comparison of two meshes: what is better, worse and equal, in numbers known beforehand.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "vtkMeshComparison.h"
+#include "vtkMeshPerturbation.h"
+
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
+
+using namespace tautline;
+
+namespace
+{
+/// Four separate triangles with the base from (0, 0) to (1, 0), given their apexes.
+MeshData triangles(const std::vector<Vec3>& apexes)
+{
+  MeshData data;
+  for (const Vec3& apex : apexes)
+  {
+    data.addCell(CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, apex });
+  }
+  return data;
+}
+
+const double height = std::sqrt(3.0) / 2;
+const Vec3 ideal = { 0.5, height, 0 }, flat = { 0.5, 0.3, 0 }, inverted = { 0.5, -0.3, 0 },
+           tall = { 0.5, 2, 0 };
+
+vtkTable* tableOf(vtkMeshComparison* filter)
+{
+  return vtkTable::SafeDownCast(filter->GetOutputDataObject(1));
+}
+
+double cellOf(vtkMeshComparison* filter, const char* column, vtkIdType row = 0)
+{
+  return tableOf(filter)->GetValueByName(row, column).ToDouble();
+}
+
+vtkCellData* cellsOf(vtkMeshComparison* filter)
+{
+  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetCellData();
+}
+
+void testKnownChanges()
+{
+  const MeshData before = triangles({ flat, ideal, inverted, ideal, flat, inverted });
+  const MeshData after = triangles({ ideal, flat, flat, ideal, inverted, inverted });
+  vtkNew<vtkMeshComparison> filter;
+  filter->SetInputData(0, toGrid(before));
+  filter->SetInputData(1, toGrid(after));
+  for (const char* name : { "imr", "mean_ratio", "size", "untangle_beta" })
+  {
+    filter->AddMetricByName(name);
+  }
+  filter->Update();
+  const double expected[] = { 1, -1, 1, 0, -1, 0 };
+  vtkCellData* cells = cellsOf(filter);
+  const auto was = valuesOf(before, Metric::InverseMeanRatio);
+  const auto is = valuesOf(after, Metric::InverseMeanRatio);
+  for (Index i = 0; i < before.numberOfCells(); ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(component(cells, "Change", i), expected[i]);
+    TAUTLINE_CHECK_EQUAL(component(cells, "imr_before", i), was[i]);
+    TAUTLINE_CHECK_EQUAL(component(cells, "imr_after", i), is[i]);
+    TAUTLINE_CHECK_EQUAL(component(cells, "imr_difference", i), is[i] - was[i]);
+    TAUTLINE_CHECK_EQUAL(component(cells, "Validity_before", i), i == 2 || i == 5 ? -1 : 1);
+    TAUTLINE_CHECK_EQUAL(component(cells, "Validity_after", i), i >= 4 ? -1 : 1);
+  }
+  // Neutral: only validity makes the size better or worse. Untangling: all valid ones are equal.
+  const double counts[4][3] = { { 2, 2, 2 }, { 2, 2, 2 }, { 1, 1, 4 }, { 1, 1, 4 } };
+  for (int row = 0; row < 4; ++row)
+  {
+    const Context context(tableOf(filter)->GetValueByName(row, "Metric").ToString());
+    TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better", row), counts[row][0]);
+    TAUTLINE_CHECK_EQUAL(cellOf(filter, "Worse", row), counts[row][1]);
+    TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal", row), counts[row][2]);
+    TAUTLINE_CHECK_EQUAL(cellOf(filter, "InvertedBefore", row), 2);
+    TAUTLINE_CHECK_EQUAL(cellOf(filter, "InvertedAfter", row), 2);
+    TAUTLINE_CHECK_NEAR(cellOf(filter, "LargestDisplacement", row), 0.6, 1e-15);
+  }
+  TAUTLINE_CHECK_EQUAL(tableOf(filter)->GetValueByName(0, "Metric").ToString(), "imr");
+  TAUTLINE_CHECK_NEAR(cellOf(filter, "MinimumBefore"), 1, 1e-15);
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "MaximumBefore"), was[0]);
+  TAUTLINE_CHECK_NEAR(cellOf(filter, "MeanBefore"), (1 + was[0]) / 2, 1e-15);
+  TAUTLINE_CHECK_NEAR(cellOf(filter, "MaximumAfter"), was[0], 1e-15);
+  TAUTLINE_CHECK_NEAR(cellOf(filter, "MeanAfter"), (1 + was[0]) / 2, 1e-15);
+  TAUTLINE_CHECK_NEAR(cellOf(filter, "MaximumBefore", 3), 0.15, 1e-15); // inverted ones count
+  vtkPointData* points = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPointData();
+  TAUTLINE_CHECK_EQUAL(component(points, "Displacement", 8, 1), 0.6);
+  TAUTLINE_CHECK(
+    std::string(filter->GetSummary()).find("2 better, 2 worse, 2 equal") != std::string::npos);
+}
+
+void testSeveralMetrics()
+{
+  // Larger by size-dependent metrics but a worse shape: neither better nor worse on the whole.
+  vtkNew<vtkMeshComparison> filter;
+  filter->SetInputData(0, toGrid(triangles({ flat, flat })));
+  filter->SetInputData(1, toGrid(triangles({ { 0.9, 0.3, 0 }, ideal })));
+  filter->AddMetricByName("imr");
+  filter->AddMetricByName("edge_ratio");
+  filter->Update();
+  TAUTLINE_CHECK(component(cellsOf(filter), "edge_ratio_difference", 0) > 0);
+  TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Change", 0), -1);
+  TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Change", 1), 1);
+  // A longer base angle but shorter edges: one metric up, the other down.
+  filter->SetInputData(0, toGrid(triangles({ tall, flat })));
+  filter->SetInputData(1, toGrid(triangles({ { 0.9, 1.2, 0 }, ideal })));
+  filter->ClearMetrics();
+  filter->AddMetricByName("edge_ratio");
+  filter->AddMetricByName("max_angle");
+  filter->Update();
+  TAUTLINE_CHECK(component(cellsOf(filter), "edge_ratio_difference", 0) < 0);
+  TAUTLINE_CHECK(component(cellsOf(filter), "max_angle_difference", 0) > 0);
+  TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Change", 0), 0);
+}
+
+void testTolerance()
+{
+  vtkNew<vtkMeshComparison> filter;
+  filter->SetInputData(0, toGrid(triangles({ flat })));
+  filter->SetInputData(1, toGrid(triangles({ { 0.5, 0.3 * (1 + 1e-5), 0 } })));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
+  filter->SetTolerance(1e-4);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 0);
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 1);
+  // Rounding about an ideal of 0 is no change.
+  filter->SetTolerance(1e-6);
+  filter->ClearMetrics();
+  filter->AddMetricByName("mu_shape");
+  filter->SetInputData(0, toGrid(triangles({ { 0.5, height, 0 } })));
+  filter->SetInputData(1, toGrid(triangles({ { 0.5, height + 1e-6, 0 } })));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 1);
+}
+
+void testReversed()
+{
+  // Both clockwise throughout: compared as mirror images.
+  auto reversed = [](std::vector<Vec3> apexes)
+  {
+    MeshData data = triangles(apexes);
+    data.transform([](const Vec3& p) { return Vec3{ p[0], -p[1], p[2] }; });
+    return data;
+  };
+  vtkNew<vtkMeshComparison> filter;
+  filter->SetInputData(0, toGrid(reversed({ flat, ideal })));
+  filter->SetInputData(1, toGrid(reversed({ ideal, tall })));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Worse"), 1);
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "InvertedAfter"), 0);
+  // One of them only: it is inverted.
+  filter->SetInputData(1, toGrid(triangles({ ideal, ideal })));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "InvertedBefore"), 2);
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 2);
+}
+
+void testEveryCellAndMetric()
+{
+  // Nothing moved: everything is equal, for every cell and metric; and in a chain with a perturbation.
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    const bool planar = topology(type).dimension == 2;
+    auto grid = toGrid(blockMesh(type, 5, 5, planar ? 0 : 5), VTK_FLOAT);
+    vtkNew<vtkMeshComparison> filter;
+    for (const MetricInfo& info : metricRegistry())
+    {
+      filter->AddMetric(static_cast<int>(info.metric));
+    }
+    filter->SetInputData(0, grid);
+    filter->SetInputData(1, grid);
+    filter->Update();
+    for (vtkIdType row = 0; row < tableOf(filter)->GetNumberOfRows(); ++row)
+    {
+      const bool defined = metricRegistry()[row].definedOn(type);
+      TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal", row), defined ? grid->GetNumberOfCells() : 0);
+    }
+    vtkNew<vtkMeshPerturbation> perturbation;
+    perturbation->SetInputData(grid);
+    perturbation->SetTangledFraction(0.1);
+    filter->SetInputConnection(1, perturbation->GetOutputPort());
+    filter->Update();
+    TAUTLINE_CHECK_EQUAL(cellOf(filter, "InvertedAfter"), double(perturbation->GetInvertedAfter()));
+    TAUTLINE_CHECK_EQUAL(
+      cellOf(filter, "LargestDisplacement"), perturbation->GetLargestDisplacement());
+    TAUTLINE_CHECK(cellOf(filter, "Worse") > cellOf(filter, "Better"));
+    for (const char* column : { "MinimumAfter", "MeanAfter", "MaximumAfter" })
+    {
+      for (vtkIdType row = 0; row < tableOf(filter)->GetNumberOfRows(); ++row)
+      {
+        TAUTLINE_CHECK(std::isfinite(cellOf(filter, column, row)));
+      }
+    }
+  }
+}
+
+void testKindsOfInput()
+{
+  vtkNew<vtkMeshComparison> filter;
+  Messages messages(filter);
+
+  vtkNew<vtkUnstructuredGrid> nothing;
+  filter->SetInputData(0, nothing);
+  filter->SetInputData(1, nothing);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 0);
+
+  auto pair = [&](const MeshData& a, const MeshData& b)
+  {
+    auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+    blocks->SetBlock(0, toGrid(a));
+    blocks->SetBlock(2, toPolyData(b));
+    return blocks;
+  };
+  const auto before = pair(triangles({ flat, ideal }), triangles({ ideal }));
+  filter->SetInputData(0, before);
+  filter->SetInputData(1, pair(triangles({ ideal, ideal }), triangles({ tall })));
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Worse"), 1);
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 1);
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK(vtkPolyData::SafeDownCast(output->GetBlock(2)));
+  TAUTLINE_CHECK_EQUAL(
+    component(vtkDataSet::SafeDownCast(output->GetBlock(2))->GetCellData(), "Change", 0), -1);
+
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(3, 3, 3);
+  filter->SetInputData(0, image);
+  filter->SetInputData(1, image);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 8);
+  TAUTLINE_CHECK(vtkImageData::SafeDownCast(filter->GetOutputDataObject(0)));
+
+  // Ghost cells are not counted.
+  auto grid = toGrid(triangles({ flat, ideal }));
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName("vtkGhostType");
+  ghosts->InsertNextValue(1);
+  ghosts->InsertNextValue(0);
+  grid->GetCellData()->AddArray(ghosts);
+  filter->SetInputData(0, toGrid(triangles({ flat, flat })));
+  filter->SetInputData(1, grid);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
+  TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 0);
+}
+
+void testRefusals()
+{
+  vtkNew<vtkMeshComparison> filter;
+  Messages messages(filter);
+  auto refuses = [&](vtkDataObject* before, vtkDataObject* after, const std::string& part)
+  {
+    const Context context(part);
+    messages.clear();
+    filter->SetInputData(0, before);
+    filter->SetInputData(1, after);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has(part));
+    TAUTLINE_CHECK_EQUAL(
+      filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL), 0);
+    TAUTLINE_CHECK_EQUAL(tableOf(filter)->GetNumberOfRows(), 0);
+  };
+  const MeshData mesh = blockMesh(CellType::Triangle, 2, 2, 0);
+  auto grid = toGrid(mesh);
+  refuses(grid, toGrid(blockMesh(CellType::Triangle, 3, 2, 0)),
+    "the first mesh has 9 points, the second 12");
+  refuses(grid, toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0)),
+    "the first mesh has 8 cells, the second 4");
+  MeshData other = mesh;
+  std::swap(other.connectivity[3 * 5], other.connectivity[3 * 5 + 1]);
+  refuses(grid, toGrid(other), "cell 5 has the points");
+  other = mesh;
+  other.types[6] = VTK_POLYGON;
+  refuses(grid, toGrid(MeshData(blockMesh(CellType::Tetrahedron, 1, 1, 1))), "points");
+  vtkNew<vtkMultiBlockDataSet> one, two;
+  one->SetBlock(0, grid);
+  two->SetBlock(0, grid);
+  two->SetBlock(1, grid);
+  refuses(one, two, "first at block 2");
+  refuses(grid, two, "Extract Block");
+  filter->AddMetricByName("mu_98");
+  MeshData surface = mesh;
+  surface.setPoint(4, { 1, 1, 1 });
+  refuses(toGrid(surface), toGrid(surface), "without orientation");
+}
+
+} // anonymous namespace
+
+int TestMeshComparison(int, char*[])
+{
+  testKnownChanges();
+  testSeveralMetrics();
+  testTolerance();
+  testReversed();
+  testEveryCellAndMetric();
+  testKindsOfInput();
+  testRefusals();
+  return exitCode();
+}

@@ -1,0 +1,568 @@
+// Perturbation: nothing inverts, steps are within the fraction, tangling meets its fraction, and the
+// same seed gives the same mesh.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "tautline/Perturb.h"
+#include "vtkMeshPerturbation.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSphereSource.h"
+#include "vtkStructuredGrid.h"
+#include "vtkTriangleFilter.h"
+#include "vtkUnsignedCharArray.h"
+
+using namespace tautline;
+
+namespace
+{
+/// Squares or cubes of which every other one is cut into triangles or pyramids.
+MeshData mixedMesh(bool flat, Index n)
+{
+  const MeshData whole =
+    blockMesh(flat ? CellType::Quadrilateral : CellType::Hexahedron, n, n, flat ? 0 : n);
+  const MeshData cut = blockMesh(flat ? CellType::Triangle : CellType::Pyramid, n, n, flat ? 0 : n);
+  const Index parts = flat ? 2 : 6;
+  MeshData mixed;
+  mixed.points = whole.points;
+  for (Index i = 0; i < whole.numberOfCells(); ++i)
+  {
+    if (i % 2 == 0)
+    {
+      mixed.addCell(int(whole.types[i]),
+        { whole.connectivity.begin() + whole.offsets[i],
+          whole.connectivity.begin() + whole.offsets[i + 1] });
+      continue;
+    }
+    const Index apex = flat ? -1 : mixed.addPoint(cut.point(whole.numberOfPoints() + i));
+    for (Index c = parts * i; c < parts * (i + 1); ++c)
+    {
+      std::vector<Index> nodes(
+        cut.connectivity.begin() + cut.offsets[c], cut.connectivity.begin() + cut.offsets[c + 1]);
+      if (!flat)
+      {
+        nodes[4] = apex;
+      }
+      mixed.addCell(int(cut.types[c]), nodes);
+    }
+  }
+  return mixed;
+}
+
+/// A mesh to perturb, and the number of its interior vertices.
+struct Sample
+{
+  std::string name;
+  MeshData mesh;
+  Index interior;
+};
+
+std::vector<Sample> samples()
+{
+  std::vector<Sample> all;
+  for (CellType type : allTypes)
+  {
+    const bool flat = topology(type).dimension == 2;
+    const Index extra = type == CellType::Pyramid ? 216 : 0;
+    all.push_back({ topology(type).name,
+      blockMesh(type, flat ? 20 : 6, flat ? 20 : 6, flat ? 0 : 6), flat ? 361 : 125 + extra });
+  }
+  all.push_back({ "mixed flat", mixedMesh(true, 21), 400 });
+  all.push_back({ "mixed solid", mixedMesh(false, 5), 64 + 62 });
+  return all;
+}
+
+MeshData moved(const MeshData& mesh, const Perturbation& result)
+{
+  MeshData after = mesh;
+  after.points = result.points;
+  return after;
+}
+
+Index count(const std::vector<signed char>& validity, signed char value)
+{
+  return std::count(validity.begin(), validity.end(), value);
+}
+
+void testNothingInverts()
+{
+  for (const Sample& sample : samples())
+  {
+    const Context context(sample.name);
+    const Mesh mesh(sample.mesh.view());
+    for (double fraction : { 0.5, 1.0 })
+    {
+      PerturbOptions options;
+      options.percentage = 100;
+      options.fraction = fraction;
+      options.seed = 11;
+      const Perturbation result = perturb(mesh, nullptr, options);
+      TAUTLINE_CHECK_EQUAL(result.movable, sample.interior);
+      TAUTLINE_CHECK_EQUAL(result.moved, sample.interior);
+      TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
+      TAUTLINE_CHECK(result.largestDisplacement > 0.3 * fraction);
+      const auto validity = validityOf(moved(sample.mesh, result));
+      TAUTLINE_CHECK_EQUAL(count(validity, Valid), sample.mesh.numberOfCells());
+    }
+  }
+}
+
+/// How far a vertex can go before a corner of a cell around it vanishes, by bisection.
+double reach(const MeshData& mesh, const std::vector<Index>& cells, Index vertex, const Vec3& along)
+{
+  auto valid = [&](double distance)
+  {
+    const Vec3 p = mesh.point(vertex) + distance * along;
+    for (Index cell : cells)
+    {
+      std::vector<Vec3> corners;
+      for (Index n = mesh.offsets[cell]; n < mesh.offsets[cell + 1]; ++n)
+      {
+        const Index node = mesh.connectivity[n];
+        corners.push_back(node == vertex ? p : mesh.point(node));
+      }
+      const auto sines = cornerSines(CellType(mesh.types[cell]), corners);
+      if (*std::min_element(sines.begin(), sines.end()) <= 0)
+      {
+        return false;
+      }
+    }
+    return true;
+  };
+  double low = 0, high = 100;
+  for (int i = 0; i < 60; ++i)
+  {
+    const double middle = 0.5 * (low + high);
+    (valid(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+void testStepsAreWithinTheFraction()
+{
+  for (const Sample& sample : samples())
+  {
+    const Context context(sample.name);
+    const Mesh mesh(sample.mesh.view());
+    const VertexCells adjacency = mesh.vertexCells();
+    PerturbOptions options;
+    options.percentage = 80;
+    const MeshData after = moved(sample.mesh, perturb(mesh, nullptr, options));
+    // The vertices moved one after the other: follow them.
+    MeshData now = sample.mesh;
+    double sum = 0, largest = 0;
+    Index steps = 0;
+    for (Index v = 0; v < now.numberOfPoints(); ++v)
+    {
+      const Vec3 step = after.point(v) - now.point(v);
+      if (norm(step) > 0)
+      {
+        const std::vector<Index> cells(adjacency.cells.begin() + adjacency.offsets[v],
+          adjacency.cells.begin() + adjacency.offsets[v + 1]);
+        const double part = norm(step) / reach(now, cells, v, (1 / norm(step)) * step);
+        sum += part;
+        largest = std::max(largest, part);
+        ++steps;
+        now.setPoint(v, after.point(v));
+      }
+    }
+    TAUTLINE_CHECK_EQUAL(steps, Index(0.8 * double(sample.interior) + 0.5));
+    TAUTLINE_CHECK(largest < 0.5 + 1e-9);
+    TAUTLINE_CHECK(largest > 0.45);
+    // The mean of evenly drawn parts, within four standard errors.
+    TAUTLINE_CHECK_NEAR(sum / double(steps), 0.25, 4 * 0.5 / std::sqrt(12.0 * double(steps)));
+  }
+}
+
+void testPercentageAndSeed()
+{
+  const MeshData data = blockMesh(CellType::Tetrahedron, 8, 8, 8);
+  const Mesh mesh(data.view());
+  PerturbOptions options;
+  std::vector<char> before(data.numberOfPoints(), 0);
+  for (double percentage : { 0.0, 5.0, 10.0, 25.0, 50.0, 100.0 })
+  {
+    options.percentage = percentage;
+    const Perturbation result = perturb(mesh, nullptr, options);
+    TAUTLINE_CHECK_EQUAL(result.moved, Index(percentage / 100 * 343 + 0.5));
+    const MeshData after = moved(data, result);
+    for (Index v = 0; v < data.numberOfPoints(); ++v)
+    {
+      const bool moves = after.point(v) != data.point(v);
+      TAUTLINE_CHECK(moves || !before[v]); // the sets grow
+      before[v] = moves;
+    }
+  }
+  options.percentage = 50;
+  options.tangledFraction = 0.05;
+  options.threads = 1;
+  const std::vector<double> first = perturb(mesh, nullptr, options).points;
+  options.threads = 2;
+  TAUTLINE_CHECK(first == perturb(mesh, nullptr, options).points);
+  options.seed = 1;
+  TAUTLINE_CHECK(first != perturb(mesh, nullptr, options).points);
+}
+
+void testSameOnEveryMachine()
+{
+  const MeshData data = blockMesh(CellType::Quadrilateral, 2, 2, 0);
+  PerturbOptions options;
+  options.percentage = 100;
+  options.seed = 42;
+  const MeshData after = moved(data, perturb(Mesh(data.view()), nullptr, options));
+  TAUTLINE_CHECK_NEAR(after.point(4)[0], 1.0481343153848104, 1e-15);
+  TAUTLINE_CHECK_NEAR(after.point(4)[1], 0.9279608648967268, 1e-15);
+}
+
+void testTangling()
+{
+  for (const Sample& sample : samples())
+  {
+    const Mesh mesh(sample.mesh.view());
+    for (double fraction : { 0.01, 0.1, 0.5, 0.8 })
+    {
+      const Context context(sample.name + " " + std::to_string(fraction));
+      PerturbOptions options;
+      options.tangledFraction = fraction;
+      const Perturbation result = perturb(mesh, nullptr, options);
+      const auto validity = validityOf(moved(sample.mesh, result));
+      TAUTLINE_CHECK_EQUAL(result.elements, sample.mesh.numberOfCells());
+      TAUTLINE_CHECK_EQUAL(count(validity, Inverted), result.invertedAfter);
+      TAUTLINE_CHECK_EQUAL(count(validity, Degenerate), 0);
+      TAUTLINE_CHECK_NEAR(
+        double(result.invertedAfter), fraction * double(result.elements), 0.5 + 1e-9);
+    }
+  }
+}
+
+void testTanglingOneElement()
+{
+  // A single vertex can move; as little as one element is never overdone.
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    const bool flat = topology(type).dimension == 2;
+    const MeshData data = blockMesh(type, 2, 2, flat ? 0 : 2);
+    const Mesh mesh(data.view());
+    Index reached = 0;
+    for (std::uint64_t seed = 0; seed < 50; ++seed)
+    {
+      PerturbOptions options;
+      options.seed = seed;
+      options.tangledFraction = 1.0 / double(data.numberOfCells());
+      const Perturbation result = perturb(mesh, nullptr, options);
+      TAUTLINE_CHECK(result.invertedAfter <= 1);
+      reached += result.invertedAfter;
+    }
+    TAUTLINE_CHECK_EQUAL(reached, 50);
+  }
+}
+
+void testTangledInput()
+{
+  // Perturbing a tangled mesh tangles no further element.
+  const MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
+  PerturbOptions options;
+  options.tangledFraction = 0.1;
+  const MeshData tangled = moved(data, perturb(Mesh(data.view()), nullptr, options));
+  options.tangledFraction = 0.0;
+  options.percentage = 100;
+  options.seed = 5;
+  const Perturbation again = perturb(Mesh(tangled.view()), nullptr, options);
+  TAUTLINE_CHECK_EQUAL(again.invertedBefore, 108);
+  TAUTLINE_CHECK_EQUAL(again.invertedAfter, 108);
+  const auto before = validityOf(tangled), after = validityOf(moved(tangled, again));
+  for (std::size_t i = 0; i < before.size(); ++i)
+  {
+    TAUTLINE_CHECK(after[i] >= before[i]);
+  }
+}
+
+void testSurface()
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(24);
+  sphere->SetPhiResolution(24);
+  vtkNew<vtkMeshPerturbation> filter;
+  filter->SetInputConnection(sphere->GetOutputPort());
+  filter->SetPercentage(100);
+  filter->Update();
+  vtkDataSet *before = filter->GetInput() ? vtkDataSet::SafeDownCast(filter->GetInput()) : nullptr,
+             *after = filter->GetOutput();
+  TAUTLINE_CHECK(vtkPolyData::SafeDownCast(after));
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovedPoints(), before->GetNumberOfPoints());
+  auto turned = [&]()
+  {
+    vtkIdType number = 0;
+    for (vtkIdType cell = 0; cell < before->GetNumberOfCells(); ++cell)
+    {
+      Vec3 normal[2];
+      vtkDataSet* sets[2] = { before, vtkDataSet::SafeDownCast(filter->GetOutput()) };
+      for (int s = 0; s < 2; ++s)
+      {
+        Vec3 p[3];
+        for (int k = 0; k < 3; ++k)
+        {
+          sets[s]->GetPoint(sets[s]->GetCell(cell)->GetPointId(k), p[k].data());
+        }
+        normal[s] = cross(p[1] - p[0], p[2] - p[0]);
+      }
+      number += dot(normal[0], normal[1]) <= 0;
+    }
+    return number;
+  };
+  TAUTLINE_CHECK_EQUAL(turned(), 0);
+  for (vtkIdType v = 0; v < after->GetNumberOfPoints(); ++v)
+  {
+    Vec3 p;
+    after->GetPoint(v, p.data());
+    TAUTLINE_CHECK_NEAR(norm(p), 0.5, 0.05); // near the sphere: tangential
+  }
+  filter->SetTangledFraction(0.1);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), turned());
+  TAUTLINE_CHECK_NEAR(double(turned()), 0.1 * double(before->GetNumberOfCells()), 0.5);
+}
+
+void testTiltedPlane()
+{
+  MeshData data = blockMesh(CellType::Triangle, 10, 10, 0);
+  const Columns turn = rotation({ 1, 2, 3 }, 0.7);
+  data.transform([&](const Vec3& p) { return turn * p; });
+  const Mesh mesh(data.view());
+  PerturbOptions options;
+  options.tangledFraction = 0.1;
+  const Perturbation result = perturb(mesh, nullptr, options);
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, 20);
+  const MeshData after = moved(data, result);
+  for (Index v = 0; v < data.numberOfPoints(); ++v)
+  {
+    TAUTLINE_CHECK_NEAR(dot(after.point(v), turn[2]), 0, 1e-13);
+  }
+}
+
+void testFloatPoints()
+{
+  // Cells of eight units in the last place: rounding alone can invert them.
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    const bool flat = topology(type).dimension == 2;
+    MeshData data = blockMesh(type, flat ? 20 : 6, flat ? 20 : 6, flat ? 0 : 6);
+    data.transform(
+      [](const Vec3& p) {
+        return Vec3{ 1024 + p[0] / 1024, 1024 + p[1] / 1024, 1024 + p[2] / 1024 };
+      });
+    vtkNew<vtkMeshPerturbation> filter;
+    filter->SetInputData(toGrid(data, VTK_FLOAT));
+    filter->SetPercentage(100);
+    filter->SetFraction(1.0);
+    filter->Update();
+    auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutput());
+    TAUTLINE_CHECK_EQUAL(output->GetPoints()->GetDataType(), VTK_FLOAT);
+    TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() > filter->GetNumberOfMovablePoints() / 2);
+    const auto validity = validityOf(withPointsOf(data, output));
+    TAUTLINE_CHECK_EQUAL(count(validity, Valid), data.numberOfCells());
+    filter->SetTangledFraction(0.1);
+    filter->Update();
+    TAUTLINE_CHECK_EQUAL(count(validityOf(withPointsOf(data, output)), Inverted),
+      Index(0.1 * double(data.numberOfCells()) + 0.5));
+  }
+}
+
+void testWhatStays()
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
+  auto grid = toGrid(data);
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("fixed");
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("ids");
+  for (Index v = 0; v < data.numberOfPoints(); ++v)
+  {
+    fixed->InsertNextValue(data.point(v)[0] <= 3);
+    ids->InsertNextValue(v);
+  }
+  grid->GetPointData()->AddArray(fixed);
+  grid->GetPointData()->AddArray(ids);
+  vtkNew<vtkDoubleArray> cellData;
+  cellData->SetName("c");
+  cellData->SetNumberOfTuples(data.numberOfCells());
+  cellData->FillValue(2);
+  grid->GetCellData()->AddArray(cellData);
+
+  vtkNew<vtkMeshPerturbation> filter;
+  filter->SetInputData(grid);
+  filter->SetPercentage(100);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fixed");
+  filter->Update();
+  vtkDataSet* output = vtkDataSet::SafeDownCast(filter->GetOutput());
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovedPoints(), 50);
+  const MeshData after = withPointsOf(data, output);
+  for (Index v = 0; v < data.numberOfPoints(); ++v)
+  {
+    const Vec3 p = data.point(v);
+    const bool inside =
+      *std::min_element(p.begin(), p.end()) > 0 && *std::max_element(p.begin(), p.end()) < 6;
+    TAUTLINE_CHECK_EQUAL(after.point(v) != p, inside && p[0] > 3);
+    for (int c = 0; c < 3; ++c)
+    {
+      TAUTLINE_CHECK_EQUAL(
+        component(output->GetPointData(), "Displacement", v, c), after.point(v)[c] - p[c]);
+    }
+  }
+  TAUTLINE_CHECK(output->GetPointData()->GetArray("ids") == ids);
+  TAUTLINE_CHECK(output->GetCellData()->GetArray("c") == cellData);
+  TAUTLINE_CHECK_EQUAL(grid->GetPointData()->GetNumberOfArrays(), 2);
+
+  Messages messages(filter);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "other");
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("no point array 'other'"));
+  TAUTLINE_CHECK_EQUAL(filter->GetOutput()->GetNumberOfElements(vtkDataObject::POINT), 0);
+
+  // A line, and an interface of 2D cells, keep their points.
+  data.addCell(VTK_LINE, { 7 * 7 * 3 + 7 * 3 + 3, 7 * 7 * 3 + 7 * 3 + 4 });
+  data.addCell(
+    CellType::Triangle, { 7 * 7 * 2 + 7 * 2 + 2, 7 * 7 * 2 + 7 * 2 + 3, 7 * 7 * 2 + 7 * 3 + 2 });
+  TAUTLINE_CHECK_EQUAL(perturb(Mesh(data.view()), nullptr, {}).movable, 120);
+  // A point with NaN coordinates keeps its neighbours.
+  data.setPoint(7 * 7 * 5 + 7 * 5 + 5, { NAN, 0, 0 });
+  const Perturbation result = perturb(Mesh(data.view()), nullptr, {});
+  TAUTLINE_CHECK(result.movable < 120 && result.moved > 0 && result.invertedAfter == 0);
+}
+
+void testReversed()
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
+  data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], -p[2] }; });
+  vtkNew<vtkMeshPerturbation> filter;
+  filter->SetInputData(toGrid(data));
+  filter->SetPercentage(100);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovedPoints(), 125);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  vtkDataSet* output = vtkDataSet::SafeDownCast(filter->GetOutput());
+  TAUTLINE_CHECK_EQUAL(
+    count(validityOf(withPointsOf(data, output)), Inverted), data.numberOfCells());
+}
+
+void testKindsOfInput()
+{
+  vtkNew<vtkMeshPerturbation> filter;
+  Messages messages(filter);
+
+  vtkNew<vtkUnstructuredGrid> nothing;
+  filter->SetInputData(nothing);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+
+  auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  blocks->SetBlock(0, toGrid(blockMesh(CellType::Hexahedron, 4, 4, 4)));
+  blocks->SetBlock(1, toPolyData(blockMesh(CellType::Triangle, 4, 4, 0), VTK_FLOAT));
+  filter->SetInputData(blocks);
+  filter->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK(messages.empty());
+  for (unsigned block = 0; output && block < 2; ++block)
+  {
+    TAUTLINE_CHECK_EQUAL(std::string(output->GetBlock(block)->GetClassName()),
+      std::string(blocks->GetBlock(block)->GetClassName()));
+    auto* mesh = vtkDataSet::SafeDownCast(output->GetBlock(block));
+    TAUTLINE_CHECK(mesh->GetPointData()->GetArray("Displacement")->GetMaxNorm() > 0);
+  }
+  TAUTLINE_CHECK(output != nullptr);
+
+  vtkNew<vtkStructuredGrid> structured;
+  structured->SetDimensions(4, 4, 4);
+  structured->SetPoints(toPoints(blockMesh(CellType::Hexahedron, 3, 3, 3)));
+  filter->SetInputData(structured);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 8);
+  TAUTLINE_CHECK(vtkStructuredGrid::SafeDownCast(filter->GetOutputDataObject(0)));
+  TAUTLINE_CHECK(messages.empty());
+
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(3, 3, 3);
+  filter->SetInputData(image);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("run Image Data to Point Set"));
+
+  messages.clear();
+  MeshData quadratic;
+  for (const Vec3& p : { Vec3{ 0, 0, 0 }, Vec3{ 2, 0, 0 }, Vec3{ 0, 2, 0 }, Vec3{ 1, 0, 0 },
+         Vec3{ 1, 1, 0 }, Vec3{ 0, 1, 0 } })
+  {
+    quadratic.addPoint(p);
+  }
+  quadratic.addCell(VTK_QUADRATIC_TRIANGLE, { 0, 1, 2, 3, 4, 5 });
+  filter->SetInputData(toGrid(quadratic));
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("run Tessellate"));
+
+  messages.clear();
+  MeshData pentagon = quadratic;
+  pentagon.types = {};
+  pentagon.offsets = { 0 };
+  pentagon.connectivity = {};
+  pentagon.addCell(VTK_POLYGON, { 0, 3, 1, 4, 2 });
+  filter->SetInputData(toPolyData(pentagon));
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("Triangulate"));
+}
+
+void testAbortAndProgress()
+{
+  const MeshData data = blockMesh(CellType::Triangle, 100, 100, 0);
+  vtkNew<vtkMeshPerturbation> filter;
+  filter->SetInputData(toGrid(data));
+  filter->SetPercentage(100);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback(
+    [](vtkObject* caller, unsigned long, void*, void* progress)
+    {
+      if (*static_cast<double*>(progress) > 0.4)
+      {
+        static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+      }
+    });
+  filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  filter->Update();
+  TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() > 3000);
+  TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() < 6000);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("Stopped early") != std::string::npos);
+}
+
+void testRefusedOptions()
+{
+  const MeshData data = blockMesh(CellType::Triangle, 3, 3, 0);
+  PerturbOptions options;
+  options.percentage = 101;
+  TAUTLINE_CHECK_THROWS(perturb(Mesh(data.view()), nullptr, options), "between 0 and 100");
+}
+
+} // anonymous namespace
+
+int TestMeshPerturbation(int, char*[])
+{
+  testNothingInverts();
+  testStepsAreWithinTheFraction();
+  testPercentageAndSeed();
+  testSameOnEveryMachine();
+  testTangling();
+  testTanglingOneElement();
+  testTangledInput();
+  testSurface();
+  testTiltedPlane();
+  testFloatPoints();
+  testWhatStays();
+  testReversed();
+  testKindsOfInput();
+  testAbortAndProgress();
+  testRefusedOptions();
+  return exitCode();
+}

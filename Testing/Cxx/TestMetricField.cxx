@@ -1,0 +1,225 @@
+// The field of a metric: ideal at the apex of the ideal cell, symmetric, negative below the base, the
+// same in pieces, and good enough to contour.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "tautline/MetricField.h"
+#include "vtkMetricField.h"
+
+#include "vtkContourFilter.h"
+#include "vtkImageData.h"
+
+using namespace tautline;
+
+namespace
+{
+const double height = std::sqrt(3.0) / 2;
+
+/// Sets the grid to a single point.
+void setPoint(vtkMetricField* field, double x, double y, double z)
+{
+  field->SetBounds(x, x, y, y, z, z);
+  field->SetDimensions(1, 1, 1);
+}
+
+void testDefaults()
+{
+  vtkNew<vtkMetricField> field;
+  field->Update();
+  vtkImageData* image = field->GetOutput();
+  const int* size = image->GetDimensions();
+  TAUTLINE_CHECK(size[0] == 301 && size[1] == 201 && size[2] == 1);
+  const double* bounds = image->GetBounds();
+  const double expected[] = { -1, 2, 0, 2, 0, 0 };
+  for (int i = 0; i < 6; ++i)
+  {
+    TAUTLINE_CHECK_NEAR(bounds[i], expected[i], 1e-14);
+  }
+  TAUTLINE_CHECK_EQUAL(image->GetPointData()->GetNumberOfArrays(), 2);
+  TAUTLINE_CHECK_EQUAL(std::string(image->GetPointData()->GetScalars()->GetName()), "imr");
+
+  // Every value against the formula, and its mirror image about x = 0.5.
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    const Vec3 p = { image->GetPoint(i)[0], image->GetPoint(i)[1], 0 };
+    const double q = component(image->GetPointData(), "imr", i);
+    const double edges = 1 + dot(p, p) + dot(p - Vec3{ 1, 0, 0 }, p - Vec3{ 1, 0, 0 });
+    const bool flat = i < 301;
+    const double formula = flat ? 0 : edges / (2 * std::sqrt(3.0) * p[1]);
+    TAUTLINE_CHECK_NEAR(q, formula, 1e-12 * std::max(1.0, formula));
+    TAUTLINE_CHECK_EQUAL(component(image->GetPointData(), "Validity", i), flat ? 0 : 1);
+    const vtkIdType mirror = i - i % 301 + 300 - i % 301;
+    TAUTLINE_CHECK_NEAR(component(image->GetPointData(), "imr", mirror), q, 1e-9 * q);
+  }
+}
+
+void testIdealApex()
+{
+  vtkNew<vtkMetricField> field;
+  for (int cell : { vtkMetricField::TRIANGLE, vtkMetricField::TETRAHEDRON })
+  {
+    const bool flat = cell == vtkMetricField::TRIANGLE;
+    field->SetCell(cell);
+    field->ClearMetrics();
+    for (const MetricInfo& info : metricRegistry())
+    {
+      if (info.definedOn(flat ? CellType::Triangle : CellType::Tetrahedron))
+      {
+        field->AddMetric(static_cast<int>(info.metric));
+      }
+    }
+    auto values = [&](double y, double z)
+    {
+      setPoint(field, 0.5, y, z);
+      field->Update();
+      return field->GetOutput()->GetPointData();
+    };
+    vtkPointData* apex = values(flat ? height : height / 3, flat ? 0 : std::sqrt(2.0 / 3));
+    TAUTLINE_CHECK(field->GetNumberOfMetrics() > 25);
+    TAUTLINE_CHECK_EQUAL(apex->GetNumberOfArrays(), field->GetNumberOfMetrics() + 1);
+    for (const MetricInfo& info : metricRegistry())
+    {
+      const Context context(info.name);
+      const double ideal = info.ideal(flat ? 2 : 3);
+      if (apex->GetArray(info.name) && std::isfinite(ideal))
+      {
+        // mu_98 and mu_14 and their like also want the ideal cell's orientation, which this has.
+        TAUTLINE_CHECK_NEAR(component(apex, info.name, 0), ideal, 1e-6);
+      }
+    }
+    vtkPointData* below = values(flat ? -height : height / 3, -std::sqrt(2.0 / 3));
+    TAUTLINE_CHECK_EQUAL(component(below, "Validity", 0), -1);
+    TAUTLINE_CHECK_NEAR(component(below, "imr", 0), -1, 1e-12);
+    TAUTLINE_CHECK(component(below, "size", 0) < 0);
+  }
+}
+
+void testTetrahedronAgainstCells()
+{
+  vtkNew<vtkMetricField> field;
+  field->SetCellToTetrahedron();
+  field->SetVertex1(0.1, 0.2, -0.3);
+  field->SetVertex2(1.2, -0.1, 0.1);
+  field->SetVertex3(0.3, 0.9, 0.2);
+  field->SetBounds(-1, 1, -2, 2, -1, 3);
+  field->SetDimensions(5, 4, 3);
+  field->AddMetricByName("radius ratio");
+  field->AddMetricByName("rr"); // the same
+  field->AddMetricByName("mu_303");
+  field->Update();
+  vtkImageData* image = field->GetOutput();
+  TAUTLINE_CHECK_EQUAL(field->GetNumberOfMetrics(), 2);
+  TAUTLINE_CHECK_EQUAL(image->GetNumberOfPoints(), 60);
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    Vec3 p;
+    image->GetPoint(i, p.data());
+    const std::vector<Vec3> corners = { { 0.1, 0.2, -0.3 }, { 1.2, -0.1, 0.1 }, { 0.3, 0.9, 0.2 },
+      p };
+    TAUTLINE_CHECK_RELATIVE(component(image->GetPointData(), "rr", i),
+      valueOf(CellType::Tetrahedron, corners, Metric::RadiusRatio), 1e-12);
+    TAUTLINE_CHECK_RELATIVE(component(image->GetPointData(), "mu_shape", i),
+      valueOf(CellType::Tetrahedron, corners, Metric::ShapeBarrier), 1e-12);
+  }
+}
+
+void testPieces()
+{
+  vtkNew<vtkMetricField> whole, part;
+  for (vtkMetricField* field : { whole.Get(), part.Get() })
+  {
+    field->SetCellToTetrahedron();
+    field->SetDimensions(31, 21, 11);
+  }
+  whole->SetThreads(1);
+  whole->Update();
+  part->SetThreads(2);
+  const int extent[] = { 3, 17, 5, 20, 4, 9 };
+  part->UpdateExtent(extent);
+  vtkImageData* image = part->GetOutput();
+  for (int i = 0; i < 6; ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(image->GetExtent()[i], extent[i]);
+  }
+  for (int k = extent[4]; k <= extent[5]; ++k)
+  {
+    for (int j = extent[2]; j <= extent[3]; ++j)
+    {
+      for (int i = extent[0]; i <= extent[1]; ++i)
+      {
+        int at[3] = { i, j, k };
+        TAUTLINE_CHECK_EQUAL(component(image->GetPointData(), "imr", image->ComputePointId(at)),
+          component(
+            whole->GetOutput()->GetPointData(), "imr", whole->GetOutput()->ComputePointId(at)));
+      }
+    }
+  }
+}
+
+void testContour()
+{
+  // Where the inverse mean ratio of a triangle is q, its apex is on a circle.
+  vtkNew<vtkMetricField> field;
+  vtkNew<vtkContourFilter> contour;
+  contour->SetInputConnection(field->GetOutputPort());
+  contour->SetValue(0, 1.5);
+  contour->Update();
+  vtkPolyData* lines = contour->GetOutput();
+  TAUTLINE_CHECK(lines->GetNumberOfPoints() > 100);
+  const double centre = 1.5 * height, radius = std::sqrt(centre * centre - 0.75);
+  Index onCircle = 0;
+  for (vtkIdType i = 0; i < lines->GetNumberOfPoints(); ++i)
+  {
+    const double *p = lines->GetPoint(i), r = std::hypot(p[0] - 0.5, p[1] - centre);
+    // Below the first row the values fall to 0, where the cell is degenerate: a line of its own.
+    TAUTLINE_CHECK(std::abs(r - radius) < 2e-4 || p[1] < 0.01);
+    onCircle += std::abs(r - radius) < 2e-4;
+  }
+  TAUTLINE_CHECK(onCircle > 100);
+}
+
+void testRefusals()
+{
+  vtkNew<vtkMetricField> field;
+  Messages messages(field);
+  auto refuses = [&](const std::string& part)
+  {
+    messages.clear();
+    field->Update();
+    TAUTLINE_CHECK(messages.has(part));
+    TAUTLINE_CHECK_EQUAL(field->GetOutput()->GetNumberOfPoints(), 0);
+  };
+  field->AddMetricByName("width_ratio");
+  field->SetCellToTetrahedron();
+  refuses("Aspect ratio W/w is not defined on tetrahedra");
+  field->ClearMetrics();
+  field->SetVertex2(0.3, 0.1, 0.7);
+  field->SetVertex3(0.99, 0.33, 2.31);
+  refuses("are on a line");
+  field->SetCellToTriangle();
+  field->SetVertex2(0, 0, 5);
+  refuses("coincide");
+  field->SetVertex2(1, 0, 0);
+  field->SetBounds(1, 1, 0, 2, 0, 0);
+  refuses("Along x");
+  messages.clear();
+  field->AddMetric(99);
+  TAUTLINE_CHECK(messages.has("no metric number 99"));
+  messages.clear();
+  field->AddMetricByName("nonsense");
+  TAUTLINE_CHECK(messages.has("no metric 'nonsense'"));
+  TAUTLINE_CHECK_EQUAL(field->GetNumberOfMetrics(), 0);
+}
+
+} // anonymous namespace
+
+int TestMetricField(int, char*[])
+{
+  testDefaults();
+  testIdealApex();
+  testTetrahedronAgainstCells();
+  testPieces();
+  testContour();
+  testRefusals();
+  return exitCode();
+}

@@ -1,0 +1,108 @@
+// The cells VTK itself makes are valid for us: local numbering, orientation and corners of every type,
+// linear and of higher order. The wedge is the one to watch: in VTK's linear and quadratic wedges the
+// corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and Bezier wedges from inside.
+#include "Check.h"
+#include "Meshes.h"
+
+#include "MeshAdapter.h"
+
+#include "vtkCellData.h"
+#include "vtkCellSizeFilter.h"
+#include "vtkCellTypeSource.h"
+#include "vtkCellTypes.h"
+#include "vtkCellValidator.h"
+#include "vtkDataArray.h"
+#include "vtkNew.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <numeric>
+
+using namespace tautline;
+
+namespace
+{
+constexpr int linearTypes[] = { VTK_TRIANGLE, VTK_QUAD, VTK_TETRA, VTK_HEXAHEDRON, VTK_WEDGE,
+  VTK_PYRAMID };
+
+/// Higher types of which VTK's cell source makes cells.
+constexpr int higherTypes[] = { VTK_QUADRATIC_TRIANGLE, VTK_QUADRATIC_QUAD, VTK_QUADRATIC_TETRA,
+  VTK_QUADRATIC_HEXAHEDRON, VTK_QUADRATIC_WEDGE, VTK_QUADRATIC_PYRAMID, VTK_TRIQUADRATIC_PYRAMID,
+  VTK_LAGRANGE_TRIANGLE, VTK_LAGRANGE_QUADRILATERAL, VTK_LAGRANGE_TETRAHEDRON,
+  VTK_LAGRANGE_HEXAHEDRON, VTK_LAGRANGE_WEDGE, VTK_BEZIER_TRIANGLE, VTK_BEZIER_QUADRILATERAL,
+  VTK_BEZIER_TETRAHEDRON, VTK_BEZIER_HEXAHEDRON, VTK_BEZIER_WEDGE };
+
+constexpr int blockSize = 2; ///< unit cubes (squares) in each direction
+
+void testSource(int vtkType, bool higher)
+{
+  const Context context(vtkCellTypes::GetClassNameFromTypeId(vtkType));
+  vtkNew<vtkCellTypeSource> source;
+  source->SetCellType(vtkType);
+  source->SetBlocksDimensions(blockSize, blockSize, blockSize);
+  source->SetCellOrder(2);
+  source->Update();
+  vtkUnstructuredGrid* grid = source->GetOutput();
+  const MeshAdapter adapter(grid);
+  const Mesh& mesh = adapter.mesh();
+  TAUTLINE_CHECK_EQUAL(grid->GetCellType(0), vtkType);
+  TAUTLINE_CHECK_EQUAL(mesh.higherOrderCells(), higher ? grid->GetNumberOfCells() : 0);
+  TAUTLINE_CHECK_EQUAL(
+    adapter.notice().find("measured on their corners") != std::string::npos, higher);
+  const std::vector<signed char> validity = validityOf(mesh);
+  const auto valid = std::count(validity.begin(), validity.end(), Valid);
+  TAUTLINE_CHECK_EQUAL(valid, grid->GetNumberOfCells());
+  TAUTLINE_CHECK_EQUAL(mesh.orientation(validity.data()).state, Orientation::Consistent);
+  const std::vector<double> sizes = valuesOf(mesh, Metric::Size);
+  const bool flat = mesh.dimension() == Dimension::Planar;
+  TAUTLINE_CHECK_NEAR(std::accumulate(sizes.begin(), sizes.end(), 0.0),
+    std::pow(blockSize, flat ? 2 : 3), 1e-6); // the source works in single precision
+  // The surface closes, corner to corner.
+  TAUTLINE_CHECK_EQUAL(mesh.boundary().nonManifold, 0);
+}
+
+/// VTK's own opinion of our ideal cells.
+void testIdealCells(CellType type)
+{
+  const Context context(topology(type).name);
+  const std::vector<Vec3> corners = idealCell(type);
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  std::vector<vtkIdType> ids;
+  for (const Vec3& p : corners)
+  {
+    ids.push_back(points->InsertNextPoint(p.data()));
+  }
+  grid->SetPoints(points);
+  grid->InsertNextCell(static_cast<int>(type), static_cast<vtkIdType>(ids.size()), ids.data());
+  vtkNew<vtkCellSizeFilter> size;
+  size->SetInputData(grid);
+  size->Update();
+  const char* name = topology(type).dimension == 2 ? "Area" : "Volume";
+  TAUTLINE_CHECK_NEAR(
+    vtkDataSet::SafeDownCast(size->GetOutput())->GetCellData()->GetArray(name)->GetTuple1(0),
+    valueOf(type, corners, Metric::Size), 1e-15);
+  vtkNew<vtkCellValidator> validator;
+  validator->SetInputData(grid);
+  validator->Update();
+  TAUTLINE_CHECK_EQUAL(
+    validator->GetOutput()->GetCellData()->GetArray("ValidityState")->GetTuple1(0), 0.0);
+}
+}
+
+int TestVTKCells(int, char*[])
+{
+  for (CellType type : allTypes)
+  {
+    testIdealCells(type);
+  }
+  for (int type : linearTypes)
+  {
+    testSource(type, false);
+  }
+  for (int type : higherTypes)
+  {
+    testSource(type, true);
+  }
+  return exitCode();
+}

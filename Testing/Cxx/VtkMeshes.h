@@ -1,0 +1,112 @@
+/**
+ * @file VtkMeshes.h
+ * @brief What the tests of the filters share: meshes as VTK data sets, and the errors of an algorithm.
+ */
+
+#ifndef tautline_VtkMeshes_h
+#define tautline_VtkMeshes_h
+
+#include "Meshes.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkExecutive.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <string>
+
+namespace tautline
+{
+
+inline vtkSmartPointer<vtkPoints> toPoints(const MeshData& data, int type = VTK_DOUBLE)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(type);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    points->InsertNextPoint(data.point(i).data());
+  }
+  return points;
+}
+
+inline vtkSmartPointer<vtkUnstructuredGrid> toGrid(const MeshData& data, int type = VTK_DOUBLE)
+{
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(toPoints(data, type));
+  grid->Allocate(data.numberOfCells());
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    const std::vector<vtkIdType> ids(data.connectivity.begin() + data.offsets[cell],
+      data.connectivity.begin() + data.offsets[cell + 1]);
+    grid->InsertNextCell(data.types[cell], static_cast<vtkIdType>(ids.size()), ids.data());
+  }
+  return grid;
+}
+
+/** Every cell becomes a polygon. */
+inline vtkSmartPointer<vtkPolyData> toPolyData(const MeshData& data, int type = VTK_DOUBLE)
+{
+  auto poly = vtkSmartPointer<vtkPolyData>::New();
+  poly->SetPoints(toPoints(data, type));
+  vtkNew<vtkCellArray> polygons;
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    const std::vector<vtkIdType> ids(data.connectivity.begin() + data.offsets[cell],
+      data.connectivity.begin() + data.offsets[cell + 1]);
+    polygons->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
+  }
+  poly->SetPolys(polygons);
+  return poly;
+}
+
+/** The same cells with the points of a VTK data set. */
+inline MeshData withPointsOf(MeshData data, vtkDataSet* points)
+{
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    data.setPoint(i, { points->GetPoint(i)[0], points->GetPoint(i)[1], points->GetPoint(i)[2] });
+  }
+  return data;
+}
+
+inline double component(vtkDataSetAttributes* data, const char* array, Index tuple, int which = 0)
+{
+  return data->GetArray(array)->GetComponent(tuple, which);
+}
+
+/** Collects the errors and warnings of an algorithm instead of printing them. */
+class Messages
+{
+public:
+  explicit Messages(vtkAlgorithm* algorithm)
+  {
+    this->Command->SetClientData(this);
+    this->Command->SetCallback([](vtkObject*, unsigned long, void* self, void* text)
+      { static_cast<Messages*>(self)->Text += static_cast<const char*>(text); });
+    for (vtkObject* source :
+      { static_cast<vtkObject*>(algorithm), static_cast<vtkObject*>(algorithm->GetExecutive()) })
+    {
+      source->AddObserver(vtkCommand::ErrorEvent, this->Command);
+      source->AddObserver(vtkCommand::WarningEvent, this->Command);
+    }
+  }
+  bool has(const std::string& part) const { return this->Text.find(part) != std::string::npos; }
+  bool empty() const { return this->Text.empty(); }
+  void clear() { this->Text.clear(); }
+
+private:
+  vtkNew<vtkCallbackCommand> Command;
+  std::string Text;
+};
+
+} // namespace tautline
+
+#endif
