@@ -1,6 +1,8 @@
 #include "Batch.h"
 #include "TargetMetrics.h"
 
+#include <algorithm>
+
 namespace tautline
 {
 namespace
@@ -11,6 +13,7 @@ struct Corner
 {
   Packet t[N][N];       ///< T = A W^-1
   Packet inverse[N][N]; ///< W^-1
+  Packet root[N][N];    ///< M^(1/2), if the targets have a metric tensor
   Packet axes[2][3];    ///< 2D: the frame A is taken in
   TargetInvariants<N> invariants;
   Packet cofactor[N][N];
@@ -58,6 +61,29 @@ void surfaceAxes(const Packet* a, const Packet* b, const Packet* normal, Packet 
   cross(own, axes[0], axes[1]);
 }
 
+/// Whether the targets have a metric tensor that the metric takes notice of.
+template <class M>
+bool seenByTensor(const BatchContext& context)
+{
+  return !M::usesSize && context.options->targets && !context.options->targets->metricRoots.empty();
+}
+
+template <int N>
+void multiply(const Packet (&left)[N][N], const Packet (&right)[N][N], Packet (&product)[N][N])
+{
+  for (int r = 0; r < N; ++r)
+  {
+    for (int c = 0; c < N; ++c)
+    {
+      product[r][c] = left[r][0] * right[0][c];
+      for (int k = 1; k < N; ++k)
+      {
+        product[r][c] += left[r][k] * right[k][c];
+      }
+    }
+  }
+}
+
 template <class M, int N>
 void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
   const Packet* normal, Corner<N>& corner)
@@ -98,6 +124,35 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
         a[c][k] = edge[k][c];
       }
     }
+  }
+
+  Packet det; // of A itself: whether the corner is degenerate does not depend on the target
+  if constexpr (N == 2)
+  {
+    det = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+  }
+  else
+  {
+    Packet c01[3];
+    cross(edge[0], edge[1], c01);
+    det = dot(c01, edge[2]);
+  }
+  if (seenByTensor<M>(context))
+  {
+    Packet seen[N][N];
+    for (int r = 0; r < N; ++r)
+    {
+      for (int c = 0; c < N; ++c)
+      {
+        for (int l = 0; l < PacketWidth; ++l)
+        {
+          corner.root[r][c][l] =
+            context.options->targets->metricRoots[9 * batch.cells[l] + 3 * r + c];
+        }
+      }
+    }
+    multiply<N>(corner.root, a, seen);
+    std::copy(&seen[0][0], &seen[0][0] + N * N, &a[0][0]);
   }
 
   // W^-1: a multiple of I where only the size counts, else the target's or the ideal cell's.
@@ -154,7 +209,6 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
     t.trace += corner.t[r][r];
   }
   const auto& m = corner.t;
-  Packet det;
   if constexpr (N == 2)
   {
     corner.cofactor[0][0] = m[1][1];
@@ -163,7 +217,6 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
     corner.cofactor[1][1] = m[0][0];
     t.adj2 = t.norm2;
     t.det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    det = a[0][0] * a[1][1] - a[0][1] * a[1][0];
   }
   else
   {
@@ -182,9 +235,6 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
     }
     t.det = m[0][0] * corner.cofactor[0][0] + m[0][1] * corner.cofactor[0][1] +
       m[0][2] * corner.cofactor[0][2];
-    Packet c01[3];
-    cross(edge[0], edge[1], c01);
-    det = dot(c01, edge[2]);
   }
   const double tolerance = Mesh::degenerateTolerance() * Mesh::degenerateTolerance();
   corner.degenerate = det * det <= tolerance * lengths2;
@@ -228,6 +278,14 @@ void addGradient(const BatchContext& context, const Corner<N>& corner, int sampl
         p[r][c] += 2.0 * d.adj2 * (corner.invariants.norm2 * corner.t[r][c] - ttt);
       }
     }
+  }
+
+  if (seenByTensor<M>(context))
+  {
+    // The root is symmetric: d(root A) carries P back to root P.
+    Packet seen[N][N];
+    multiply<N>(corner.root, p, seen);
+    std::copy(&seen[0][0], &seen[0][0] + N * N, &p[0][0]);
   }
 
   // dq/dA = P W^-t, then from the columns of A to the corner's nodes.

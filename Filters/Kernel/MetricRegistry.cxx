@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <sstream>
 
 namespace tautline
 {
@@ -138,9 +139,11 @@ std::vector<MetricInfo> makeRegistry()
       "|T| |T^-1| / n, with the sign of det T", knupp2001, Target, true, true, all, one, one, ratio,
       ratio, 1, 1, Smaller, Negative, barrier, smooth, scaleFree, rotates, "" },
     { Metric::ScaledJacobian, "scaled_jacobian", "Scaled Jacobian", "J_s", "jacobian",
-      "smallest over the corners of det A / product of its edge lengths, 1 if ideal", verdict, Cell,
-      true, true, all, unit, unit, { 0.3, 1 }, { 0.3, 1 }, 1, 1, Larger, Negative, noBarrier,
-      kinked, scaleFree, rotates, "" },
+      "smallest over the corners of det A / product of its edge lengths, 1 if ideal (not pyramids: "
+      "their "
+      "apex has no Jacobian)",
+      verdict, Cell, true, true, flat | tets | hexes | wedges, unit, unit, { 0.3, 1 }, { 0.3, 1 },
+      1, 1, Larger, Negative, noBarrier, kinked, scaleFree, rotates, "" },
     { Metric::ShapeBarrier, "mu_shape", "Shape, barrier", "mu_2 / mu_303", "mu_2,mu_303",
       "2D: |T|^2 / (2 det T) - 1; 3D: |T|^2 / (3 det T^(2/3)) - 1", knupp2012, Target, true, true,
       all, any, any, shape, shape, 0, 0, Smaller, Negative, barrier, smooth, scaleFree, rotates,
@@ -254,5 +257,57 @@ const MetricInfo* findMetric(const std::string& name)
     }
   }
   return nullptr;
+}
+
+namespace
+{
+std::string number(double x)
+{
+  std::ostringstream text;
+  text.precision(6);
+  text << x;
+  return text.str();
+}
+
+std::string range(const Range& r)
+{
+  return number(r.low) + " to " + number(r.high);
+}
+}
+
+std::string metricFields()
+{
+  return "number\tname\tlabel\tsymbol\taliases\tformula\tsource\tdimensions\tcell types\tfull 2D\t"
+         "full 3D\tacceptable 2D\tacceptable 3D\tideal 2D\tideal 3D\tdirection\tinverted\tbarrier\t"
+         "differentiable\tscale invariant\trotation invariant\tunit";
+}
+
+std::string describeMetric(const MetricInfo& info)
+{
+  std::string types;
+  for (const CellTopology& t : topologies())
+  {
+    types += info.definedOn(t.type) ? (types.empty() ? "" : ", ") + std::string(t.name) : "";
+  }
+  const char* yes[] = { "no", "yes" };
+  const std::string none = "-";
+  const std::string fields[] = { std::to_string(static_cast<int>(info.metric)), info.name,
+    info.label, info.symbol, info.aliases, info.formula, info.source,
+    info.in2D && info.in3D ? "2, 3" : (info.in2D ? "2" : "3"), types,
+    info.in2D ? range(info.full2D) : none, info.in3D ? range(info.full3D) : none,
+    info.in2D ? range(info.acceptable2D) : none, info.in3D ? range(info.acceptable3D) : none,
+    info.in2D && !std::isnan(info.ideal2D) ? number(info.ideal2D) : none,
+    info.in3D && !std::isnan(info.ideal3D) ? number(info.ideal3D) : none,
+    info.direction == Smaller ? "smaller is better"
+                              : (info.direction == Larger ? "larger is better" : "neutral"),
+    info.inverted == Negative ? "negative" : (info.inverted == Growing ? "larger" : "unsigned"),
+    yes[info.barrier], yes[info.differentiable], yes[info.scaleInvariant],
+    yes[info.rotationInvariant], info.unit };
+  std::string line;
+  for (const std::string& field : fields)
+  {
+    line += (&field == fields ? "" : "\t") + field;
+  }
+  return line;
 }
 }

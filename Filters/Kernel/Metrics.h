@@ -151,6 +151,15 @@ TAUTLINE_KERNEL_EXPORT const MetricInfo& metricInfo(Metric metric);
  */
 TAUTLINE_KERNEL_EXPORT const MetricInfo* findMetric(const std::string& name);
 
+/**
+ * @brief The facts of a metric as one line of text, tab-separated fields in the order of
+ * metricFields(): for scripts and documentation.
+ */
+TAUTLINE_KERNEL_EXPORT std::string describeMetric(const MetricInfo& info);
+
+/// The names of the fields of describeMetric(), tab-separated.
+TAUTLINE_KERNEL_EXPORT std::string metricFields();
+
 /// How a target metric's corner values become one value of a cell with several corners.
 enum class Combination : int
 {
@@ -168,13 +177,21 @@ struct Targets
 {
   std::vector<Index> offsets;
   std::vector<double> inverse;
+  /**
+   * @brief M^(1/2) of each cell, 9 entries as above, or empty: then T = M^(1/2) A W^-1, the element as
+   * the metric tensor M sees it.
+   */
+  std::vector<double> metricRoots;
 };
 
 /// How to evaluate a metric.
 struct EvaluationOptions
 {
   Parameters parameters;
-  /// For cells with several corners. If some corners are inverted, only these are combined.
+  /**
+   * @brief For cells with several corners. If some corners are inverted, only these are combined (not
+   * for metrics that order inverted elements, InvertedValue::Larger).
+   */
   Combination combination = Combination::Mean;
   double power = 2.0;               ///< p of PowerMean, at least 1
   const Targets* targets = nullptr; ///< null: the ideal cell of each type

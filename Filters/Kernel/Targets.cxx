@@ -8,6 +8,9 @@ namespace
 {
 using Matrix = Eigen::Matrix3d;
 
+/// Relative deviation up to which a tensor on a surface counts as isotropic.
+constexpr double isotropyTolerance = 1e-6;
+
 /// Calls make(cell, sample, topology) for each sample of each cell and stores the matrix it returns.
 template <class Make>
 Targets makeTargets(const Mesh& mesh, const Make& make)
@@ -160,16 +163,23 @@ Targets sizeTargets(const Mesh& mesh, const double* sizes)
 //------------------------------------------------------------------------------
 Targets tensorTargets(const Mesh& mesh, const double* tensors)
 {
-  return makeTargets(mesh,
-    [&](Index cell, int s, const CellTopology& t) -> Matrix
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  Targets targets =
+    makeTargets(mesh, [](Index, int s, const CellTopology& t) { return idealInverse(t, s); });
+  targets.metricRoots.assign(9 * mesh.view().numberOfCells, 0.0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const int dimension = topology(block.type).dimension;
+    for (Index i = 0; i < block.count; ++i)
     {
-      Matrix m = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(tensors + 9 * cell);
+      const Index cell = block.cell(i);
+      Matrix m = Eigen::Map<const RowMajor>(tensors + 9 * cell);
       if (!m.allFinite())
       {
         refuse(cell, "its metric tensor is not finite.");
       }
       m = 0.5 * (m + m.transpose()).eval();
-      if (t.dimension == 2 && mesh.dimension() == Dimension::Planar)
+      if (dimension == 2 && mesh.dimension() == Dimension::Planar)
       {
         // The tensor in the frame of the plane.
         Eigen::Matrix<double, 3, 2> frame;
@@ -182,17 +192,16 @@ Targets tensorTargets(const Mesh& mesh, const double* tensors)
         flat.topLeftCorner<2, 2>() = frame.transpose() * m * frame;
         m = flat;
       }
-      else if (t.dimension == 2)
+      else if (dimension == 2)
       {
         const double third = m.trace() / 3;
-        if ((m - third * Matrix::Identity()).norm() > 1e-6 * m.norm())
+        if ((m - third * Matrix::Identity()).norm() > isotropyTolerance * m.norm())
         {
           refuse(cell,
             "anisotropic tensors need a planar or a volume mesh; on a surface give a "
             "size array instead.");
         }
         m = third * Matrix::Identity();
-        m(2, 2) = 1;
       }
       const Eigen::SelfAdjointEigenSolver<Matrix> solver(m);
       if (!(solver.eigenvalues()[0] > 0))
@@ -200,14 +209,15 @@ Targets tensorTargets(const Mesh& mesh, const double* tensors)
         refuse(cell, "its metric tensor is not positive definite.");
       }
       Matrix root = solver.operatorSqrt();
-      if (mesh.mirrored() && t.dimension == 3)
+      if (mesh.mirrored() && dimension == 3)
       {
         // The mesh is evaluated with x reversed, so its tensor is too.
         root.row(0) *= -1;
         root.col(0) *= -1;
       }
-      // W^-1 = W_ideal^-1 M^(1/2)
-      return idealInverse(t, s) * root;
-    });
+      Eigen::Map<RowMajor>(targets.metricRoots.data() + 9 * cell) = root;
+    }
+  }
+  return targets;
 }
 }

@@ -31,8 +31,8 @@ TAUTLINE_KERNEL_EXPORT Targets referenceTargets(const Mesh& mesh, const Mesh& re
 TAUTLINE_KERNEL_EXPORT Targets sizeTargets(const Mesh& mesh, const double* sizes);
 
 /**
- * @brief The ideal shape seen in a metric tensor M per cell: W = M^(-1/2) W_ideal, so that the wanted
- * edges have length 1 in M.
+ * @brief The ideal shape seen in a metric tensor M per cell: T = M^(1/2) A W_ideal^-1, so that the
+ * wanted edges have length 1 in M.
  * @param tensors symmetric positive definite 3 x 3 matrices, row by row, 9 per cell of the view. For
  * planar meshes M acts in the plane; for surfaces it must be isotropic in the tangent plane.
  */

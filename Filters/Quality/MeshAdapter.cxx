@@ -94,6 +94,14 @@ unsigned char kernelType(int vtkType, vtkIdType size)
 }
 
 //------------------------------------------------------------------------------
+bool MeshAdapter::acrossY(Index first) const
+{
+  const Index* node = this->Connectivity.data() + first;
+  const Vec3 a = pointOf(this->View, node[0]);
+  return cross(pointOf(this->View, node[1]) - a, pointOf(this->View, node[2]) - a)[1] < 0;
+}
+
+//------------------------------------------------------------------------------
 void MeshAdapter::takeCells(vtkDataSet* input)
 {
   const Index count = input->GetNumberOfCells();
@@ -106,7 +114,11 @@ void MeshAdapter::takeCells(vtkDataSet* input)
     const unsigned char* type = types ? types->GetPointer(0) : nullptr;
     const bool plain = type &&
       std::none_of(type, type + count,
-        [](unsigned char t) { return t == VTK_PIXEL || t == VTK_VOXEL || t == VTK_POLYGON; });
+        [](unsigned char t)
+        {
+          return t == VTK_PIXEL || t == VTK_VOXEL || t == VTK_POLYGON || t == VTK_LAGRANGE_WEDGE ||
+            t == VTK_BEZIER_WEDGE;
+        });
     if (plain && plainArrays(grid->GetCells(), this->View.offsets, this->View.connectivity))
     {
       this->View.cellTypes = type;
@@ -140,6 +152,17 @@ void MeshAdapter::takeCells(vtkDataSet* input)
     const Index first = static_cast<Index>(this->Connectivity.size());
     this->Connectivity.insert(
       this->Connectivity.end(), ids->GetPointer(0), ids->GetPointer(0) + size);
+    // A pixel across y walks x, then z, about -y; a plane's normal is +y.
+    if (type == VTK_PIXEL && this->acrossY(first))
+    {
+      std::swap(this->Connectivity[first + 1], this->Connectivity[first + 2]);
+    }
+    // Lagrange and Bezier wedges list their triangles from inside, unlike all others.
+    if (type == VTK_LAGRANGE_WEDGE || type == VTK_BEZIER_WEDGE)
+    {
+      std::swap(this->Connectivity[first + 1], this->Connectivity[first + 2]);
+      std::swap(this->Connectivity[first + 4], this->Connectivity[first + 5]);
+    }
     // Pixels and voxels count rows of points; quadrilaterals and hexahedra walk round.
     if (type == VTK_PIXEL || type == VTK_VOXEL)
     {
@@ -156,6 +179,29 @@ void MeshAdapter::takeCells(vtkDataSet* input)
   this->View.connectivity = this->Connectivity.data();
 }
 
+namespace
+{
+/// Vertices, lines and empty cells have no quality to speak of.
+bool hasQuality(int vtkType)
+{
+  switch (vtkType)
+  {
+    case VTK_EMPTY_CELL:
+    case VTK_VERTEX:
+    case VTK_POLY_VERTEX:
+    case VTK_LINE:
+    case VTK_POLY_LINE:
+    case VTK_QUADRATIC_EDGE:
+    case VTK_CUBIC_LINE:
+    case VTK_LAGRANGE_CURVE:
+    case VTK_BEZIER_CURVE:
+      return false;
+    default:
+      return true;
+  }
+}
+}
+
 //------------------------------------------------------------------------------
 std::string MeshAdapter::notice() const
 {
@@ -166,16 +212,20 @@ std::string MeshAdapter::notice() const
     text += std::to_string(mesh.higherOrderCells()) +
       " cells of quadratic or higher order are measured on their corners only. ";
   }
+  std::map<int, Index> counts;
   if (mesh.unsupportedCells() > 0)
   {
-    std::map<int, Index> counts;
     for (Index i = 0; i < this->View.numberOfCells; ++i)
     {
-      if (cornerType(this->View.cellTypes[i]) == CellType::Unsupported)
+      if (hasQuality(this->View.cellTypes[i]) &&
+        cornerType(this->View.cellTypes[i]) == CellType::Unsupported)
       {
         ++counts[this->View.cellTypes[i]];
       }
     }
+  }
+  if (!counts.empty())
+  {
     text += "Not measured:";
     for (const auto& entry : counts)
     {
@@ -236,6 +286,81 @@ std::string describe(const Orientation& o, const Mesh& mesh)
       "(for surfaces: Surface Normals with Consistency).";
   }
   return "";
+}
+
+namespace
+{
+/// For each cell type the order of its points that mirrors it.
+std::vector<int> mirroredOrder(int vtkType, vtkIdType size)
+{
+  switch (vtkType)
+  {
+    case VTK_TRIANGLE:
+      return { 0, 2, 1 };
+    case VTK_QUAD:
+      return { 0, 3, 2, 1 };
+    case VTK_TETRA:
+      return { 0, 2, 1, 3 };
+    case VTK_HEXAHEDRON:
+      return { 4, 5, 6, 7, 0, 1, 2, 3 };
+    case VTK_WEDGE:
+      return { 3, 4, 5, 0, 1, 2 };
+    case VTK_PYRAMID:
+      return { 0, 3, 2, 1, 4 };
+    default:
+      break;
+  }
+  if (isHigherOrder(vtkType) || vtkType == VTK_PIXEL || vtkType == VTK_VOXEL ||
+    vtkType == VTK_POLYHEDRON)
+  {
+    throw Error(
+      "Only linear cells can be flipped in the output; choose to measure the mesh as if it "
+      "were flipped.");
+  }
+  std::vector<int> order(size);
+  for (vtkIdType k = 0; k < size; ++k)
+  {
+    order[k] = static_cast<int>(vtkType == VTK_POLYGON ? size - 1 - k : k);
+  }
+  return order;
+}
+}
+
+//------------------------------------------------------------------------------
+void flipCells(vtkDataSet* data)
+{
+  auto* grid = vtkUnstructuredGrid::SafeDownCast(data);
+  auto* poly = vtkPolyData::SafeDownCast(data);
+  if (!grid && !poly)
+  {
+    throw Error(
+      "The cells of a structured grid cannot be flipped in the output; choose to measure the "
+      "mesh as if it were flipped.");
+  }
+  vtkCellArray* old = grid ? grid->GetCells() : poly->GetPolys();
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->AllocateExact(old->GetNumberOfCells(), old->GetNumberOfConnectivityIds());
+  vtkIdType size = 0;
+  const vtkIdType* ids = nullptr;
+  for (vtkIdType i = 0; i < old->GetNumberOfCells(); ++i)
+  {
+    old->GetCellAtId(i, size, ids);
+    cells->InsertNextCell(static_cast<int>(size));
+    for (int k : mirroredOrder(grid ? grid->GetCellType(i) : VTK_POLYGON, size))
+    {
+      cells->InsertCellPoint(ids[k]);
+    }
+  }
+  if (grid)
+  {
+    auto types = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    types->DeepCopy(grid->GetCellTypesArray());
+    grid->SetCells(types, cells);
+  }
+  else
+  {
+    poly->SetPolys(cells);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -52,6 +52,7 @@ public:
 private:
   void takePoints(vtkDataSet* input);
   void takeCells(vtkDataSet* input);
+  bool acrossY(Index first) const;
 
   std::vector<double> Points;
   std::vector<unsigned char> Types;
@@ -67,6 +68,13 @@ private:
  * @return a sentence for the user ("All 120 cells are reversed ..."), empty when all is well
  */
 TAUTLINEQUALITY_EXPORT std::string describe(const Orientation& orientation, const Mesh& mesh);
+
+/**
+ * @brief Reverses the order of the points of every cell, which an output shares with nobody after.
+ * Throws Error for data sets other than unstructured grids and poly data, and for cells of higher
+ * order.
+ */
+TAUTLINEQUALITY_EXPORT void flipCells(vtkDataSet* data);
 
 /**
  * @brief New points for an output: in the precision of `like`, with the coordinates given in double.

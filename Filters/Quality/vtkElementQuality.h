@@ -1,28 +1,260 @@
 /**
  * @class vtkElementQuality
- * @brief placeholder: passes its input through with a cell array "imr" of ones
+ * @brief Measures every element of a mesh by any number of quality metrics.
+ *
+ * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from any
+ * vtkDataSet or composite data set; cells of higher order are measured on their corners. Whether the
+ * mesh is planar, a surface or a volume is found, not asked, and so is its orientation: a mesh that is
+ * reversed throughout is reported and, by default, measured as if it were not; one of mixed
+ * orientation is reported.
+ *
+ * @par Output port 0 `Mesh`:
+ * The input with cell arrays: one per metric (double, named by the metric: "imr", "mean_ratio", ...)
+ * and `Validity` (signed char): 1 valid, 0 degenerate, -1 inverted, -2 not measured (cell type), -3
+ * not finite (coordinates NaN, infinite or beyond 1e100). Values are always finite. A metric that is
+ * singular at a degenerate element is 0 there; one that is not defined on a cell is 0. Inverted
+ * elements have negative values of signed metrics (see MetricInfo::inverted). The first metric is the
+ * active scalar array.
+ *
+ * @par Output port 1 `Statistics`:
+ * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (elements summed up), `Minimum`,
+ * `Maximum`, `Mean`, `RMS`, `StandardDeviation`, `Quantile01`, `05`, `25`, `50`, `75`, `95`, `99`,
+ * `OutsideAcceptable`, `AcceptableLow`, `AcceptableHigh`, then the same in each row: `Inverted`,
+ * `Degenerate`, `NotMeasured`, `NonFinite`; `WorstCells` (10 components: ids, worst first, -1 where
+ * there are fewer) and `WorstPositions` (30 components: their centres). Statistics are over the valid
+ * elements of the highest dimension in the data; ghost cells do not count.
+ *
+ * @par Output port 2 `Distribution`:
+ * A vtkTable with HistogramBins rows; for each metric the columns `<metric> value` (middle of the bin)
+ * and `<metric> count`.
+ *
+ * @par Output port 3 `Angles`:
+ * A vtkTable with the five bins of dissertation Table 2.7: `From`, `To` (degrees), `Count`, `Percent`
+ * of the corner angles, in volume meshes of the dihedral angles.
+ *
+ * @par Output port 4 `Worst`:
+ * A vtkPolyData with a vertex at the centre of each of the ten worst elements of each metric; point
+ * arrays `Metric` (number), `Rank` (1 is the worst), `CellId`, `Value`, `Validity`. Zoom to it.
+ *
+ * For composite data sets and on several MPI ranks the tables are those of the whole; on ranks above
+ * 0 they are empty. Cell ids are then the global ids of the cells if the data have any, else they
+ * count through blocks and ranks in order.
+ *
+ * @par Targets:
+ * Metrics that are functions of T = A W^-1 take the wanted element W from TargetType: the ideal one,
+ * the same element of a reference mesh (input port 1), the ideal shape in a size given per cell or
+ * point, or in a metric tensor.
+ *
+ * @par Example:
+ * @code
+ * vtkNew<vtkElementQuality> quality;
+ * quality->SetInputConnection(reader->GetOutputPort());
+ * quality->AddMetricByName("imr");
+ * quality->AddMetricByName("mu_2");
+ * quality->Update();
+ * quality->GetStatistics()->Dump();
+ * @endcode
+ *
+ * Dissertation sections 2.3, 3.2.1, 4.9.2 and Table 2.7.
+ *
+ * @sa vtkMeshComparison, vtkMetricField, vtkMeshPerturbation, tautline/Metrics.h
  */
 
 #ifndef vtkElementQuality_h
 #define vtkElementQuality_h
 
 #include "TautlineQualityModule.h" // for export macro
-#include "vtkDataSetAlgorithm.h"
+#include "vtkDataObjectAlgorithm.h"
 
-class TAUTLINEQUALITY_EXPORT vtkElementQuality : public vtkDataSetAlgorithm
+#include <memory> // for Selection
+#include <string> // for Notice, Summary
+#include <vector> // for size and tensor targets
+
+class vtkDataSet;
+class vtkMultiProcessController;
+class vtkPolyData;
+class vtkTable;
+
+namespace tautline
+{
+class MeshAdapter;
+class MetricSelection;
+class QualityTotals;
+struct EvaluationOptions;
+struct Targets;
+}
+
+class TAUTLINEQUALITY_EXPORT vtkElementQuality : public vtkDataObjectAlgorithm
 {
 public:
   static vtkElementQuality* New();
-  vtkTypeMacro(vtkElementQuality, vtkDataSetAlgorithm);
+  vtkTypeMacro(vtkElementQuality, vtkDataObjectAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The metrics, by number (enum Metric of tautline/Metrics.h), or by name, label, symbol or alias.
+   * An unknown one is an error and changes nothing. If none is added, it is the inverse mean ratio.
+   */
+  void AddMetric(int metric);
+  void AddMetricByName(const char* name);
+  void ClearMetrics();
+  int GetNumberOfMetrics() const;
+  ///@}
+
+  enum Combinations
+  {
+    MEAN = 0,
+    WORST = 1,
+    POWER_MEAN = 2
+  };
+  ///@{
+  /**
+   * How target metrics combine the corners of cells other than simplices: their mean, the worst, or
+   * the mean of the power Power (negated where larger is better). If some corners are inverted, only
+   * these are combined, but for metrics that untangle. The default is MEAN.
+   */
+  vtkSetClampMacro(Combination, int, MEAN, POWER_MEAN);
+  vtkGetMacro(Combination, int);
+  ///@}
+
+  ///@{
+  /// Exponent of POWER_MEAN, at least 1. The default is 2.
+  vtkSetClampMacro(Power, double, 1.0, 100.0);
+  vtkGetMacro(Power, double);
+  ///@}
+
+  enum TargetTypes
+  {
+    IDEAL = 0,
+    REFERENCE = 1,
+    SIZE = 2,
+    TENSOR = 3
+  };
+  ///@{
+  /**
+   * What the wanted element is, for target metrics. IDEAL: the ideal cell of each type with unit
+   * edges. REFERENCE: the same cell of the mesh at input port 1. SIZE: the ideal shape with the area or
+   * volume in the array at index 0 (SetInputArrayToProcess; points or cells). TENSOR: the ideal shape
+   * in the metric tensor in the array at index 1 (6 components xx yy zz xy yz xz, or 9; points or
+   * cells), whose wanted edges have length 1. Values of point arrays are averaged over each cell. The
+   * default is IDEAL.
+   */
+  vtkSetClampMacro(TargetType, int, IDEAL, TENSOR);
+  vtkGetMacro(TargetType, int);
+  ///@}
+
+  ///@{
+  /**
+   * Beta of the untangling metric: the area or volume every element should have at least, in
+   * length^n. The default is 0: not inverted.
+   */
+  vtkSetMacro(Beta, double);
+  vtkGetMacro(Beta, double);
+  ///@}
+
+  ///@{
+  /// Epsilon of mu_211 and mu_311, above 0. The default is 1e-4.
+  vtkSetMacro(Epsilon, double);
+  vtkGetMacro(Epsilon, double);
+  ///@}
+
+  enum ReversedMeshes
+  {
+    MEASURE_AS_GIVEN = 0,
+    MEASURE_FLIPPED = 1,
+    FLIP_OUTPUT = 2
+  };
+  ///@{
+  /**
+   * What to do with a mesh whose cells all list their points in the opposite order. MEASURE_AS_GIVEN:
+   * its elements count as inverted. MEASURE_FLIPPED: measured as if flipped, the output keeps the
+   * input's cells. FLIP_OUTPUT: the output's cells are flipped too (unstructured grids and poly data of
+   * linear cells). It is reported in each case. The default is MEASURE_FLIPPED.
+   */
+  vtkSetClampMacro(ReversedMesh, int, MEASURE_AS_GIVEN, FLIP_OUTPUT);
+  vtkGetMacro(ReversedMesh, int);
+  ///@}
+
+  ///@{
+  /// Rows of the Distribution table. The default is 32.
+  vtkSetClampMacro(HistogramBins, int, 1, 100000);
+  vtkGetMacro(HistogramBins, int);
+  ///@}
+
+  ///@{
+  /// Number of threads; 0 is all cores. Results do not depend on it. The default is 0.
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  ///@{
+  /// The processes that share the mesh. The default is the global controller.
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkMultiProcessController* GetController();
+  ///@}
+
+  ///@{
+  /// The outputs other than the mesh.
+  vtkTable* GetStatistics();
+  vtkTable* GetDistribution();
+  vtkTable* GetAngles();
+  vtkPolyData* GetWorst();
+  ///@}
+
+  ///@{
+  /**
+   * The registry of metrics as text, for scripts and documentation: metric i as one line of
+   * tab-separated fields (empty if there is no such metric), and the names of the fields.
+   */
+  static int GetNumberOfKnownMetrics();
+  static std::string GetKnownMetric(int i);
+  static std::string GetKnownMetricFields();
+  ///@}
+
+  /// What the user should know of how the last mesh was taken (orientation, cells left out), or "".
+  const char* GetNotice() const { return this->Notice.c_str(); }
+  /// The result of the last execution in a few lines.
+  const char* GetSummary() const { return this->Summary.c_str(); }
+  /// Bytes allocated beyond input and output arrays at the peak of the last execution.
+  double GetWorkingBytes() const { return this->WorkingBytes; }
 
 protected:
-  vtkElementQuality() = default;
-  ~vtkElementQuality() override = default;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  vtkElementQuality();
+  ~vtkElementQuality() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
 
 private:
   vtkElementQuality(const vtkElementQuality&) = delete;
   void operator=(const vtkElementQuality&) = delete;
+
+  void MeasureBlocks(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* output,
+    tautline::QualityTotals& totals);
+  void Measure(
+    vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output, tautline::QualityTotals& totals);
+  void SettleOrientation(tautline::MeshAdapter& adapter, signed char* validity, vtkDataSet* output);
+  tautline::Targets MakeTargets(
+    vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter);
+
+  std::unique_ptr<tautline::MetricSelection> Selection;
+  int Combination = MEAN;
+  double Power = 2.0;
+  int TargetType = IDEAL;
+  double Beta = 0.0;
+  double Epsilon = 1e-4;
+  int ReversedMesh = MEASURE_FLIPPED;
+  int HistogramBins = 32;
+  int Threads = 0;
+  vtkMultiProcessController* Controller = nullptr;
+  std::string Notice;
+  std::string Summary;
+  double WorkingBytes = 0;
 };
 
 #endif

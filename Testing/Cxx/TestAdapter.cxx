@@ -1,22 +1,16 @@
 // Data sets of VTK seen through MeshAdapter: what is copied, what becomes of the cells, what is said.
 #include "Check.h"
-#include "Blocks.h"
+#include "VtkMeshes.h"
 
 #include "MeshAdapter.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
-#include "vtkNew.h"
-#include "vtkPoints.h"
-#include "vtkPolyData.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <numeric>
@@ -25,29 +19,6 @@ using namespace tautline;
 
 namespace
 {
-vtkNew<vtkPoints> makeVTKPoints(const MeshData& data, int precision)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataType(precision);
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    points->InsertNextPoint(data.point(i).data());
-  }
-  return points;
-}
-
-vtkNew<vtkUnstructuredGrid> makeGrid(const MeshData& data, int precision = VTK_DOUBLE)
-{
-  vtkNew<vtkUnstructuredGrid> grid;
-  grid->SetPoints(makeVTKPoints(data, precision));
-  for (Index i = 0; i < data.numberOfCells(); ++i)
-  {
-    grid->InsertNextCell(data.types[i], data.offsets[i + 1] - data.offsets[i],
-      reinterpret_cast<const vtkIdType*>(data.connectivity.data()) + data.offsets[i]);
-  }
-  return grid;
-}
-
 std::vector<double> sizes(const MeshAdapter& adapter)
 {
   return valuesOf(adapter.mesh(), Metric::Size);
@@ -65,7 +36,7 @@ void testUnstructuredGrid()
   const Mesh expected(data.view());
   const std::vector<double> values = valuesOf(expected, Metric::InverseMeanRatio);
 
-  const auto grid = makeGrid(data);
+  const auto grid = toGrid(data);
   const MeshAdapter adapter(grid);
   TAUTLINE_CHECK_EQUAL(adapter.copiedBytes(), 0u);
   TAUTLINE_CHECK_EQUAL(adapter.notice(), "");
@@ -74,12 +45,12 @@ void testUnstructuredGrid()
     vtkDoubleArray::SafeDownCast(grid->GetPoints()->GetData())->GetPointer(0));
   TAUTLINE_CHECK(valuesOf(adapter.mesh(), Metric::InverseMeanRatio) == values);
 
-  const auto floats = makeGrid(data, VTK_FLOAT);
+  const auto floats = toGrid(data, VTK_FLOAT);
   const MeshAdapter fromFloats(floats);
   TAUTLINE_CHECK_EQUAL(fromFloats.copiedBytes(), data.points.size() * sizeof(double));
   TAUTLINE_CHECK(valuesOf(fromFloats.mesh(), Metric::InverseMeanRatio) == values);
 
-  const auto narrow = makeGrid(data);
+  const auto narrow = toGrid(data);
   narrow->GetCells()->ConvertTo32BitStorage();
   const MeshAdapter fromNarrow(narrow);
   TAUTLINE_CHECK(fromNarrow.copiedBytes() >= data.connectivity.size() * sizeof(Index));
@@ -88,8 +59,20 @@ void testUnstructuredGrid()
   // A cell that names a point the grid has not.
   MeshData bad = data;
   bad.connectivity[4 * 6] = 10000;
-  const auto broken = makeGrid(bad);
+  const auto broken = toGrid(bad);
   TAUTLINE_CHECK_THROWS(MeshAdapter refused(broken), "Cell 6");
+  for (int vtkType : { VTK_PIXEL, VTK_VOXEL, VTK_LAGRANGE_WEDGE })
+  {
+    // Too few points at the very end of the connectivity, and points the grid has not.
+    for (Index node : { Index(1), Index(10000) })
+    {
+      bad = data;
+      bad.addCell(vtkType, std::vector<Index>{ 0, node, 2 });
+      const auto last = toGrid(bad);
+      TAUTLINE_CHECK_THROWS(
+        MeshAdapter refused(last), "Cell " + std::to_string(data.numberOfCells()));
+    }
+  }
 }
 
 /// Pixels and voxels count rows of points; polygons of three and four points are what they look like.
@@ -105,7 +88,7 @@ void testRelatedTypes()
   data.addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 5, 7, 2 });
   data.addCell(VTK_VERTEX, std::vector<Index>{ 0 });
   data.addCell(VTK_TRIANGLE, std::vector<Index>{ 0, 1, 2 });
-  const auto grid = makeGrid(data);
+  const auto grid = toGrid(data);
   const MeshAdapter adapter(grid);
   const std::vector<double> expected = { 1, 0, 1, 0.5, 1, 0, 0, 0.5 };
   TAUTLINE_CHECK(sizes(adapter) == expected);
@@ -124,14 +107,7 @@ void testRelatedTypes()
 void testPolyData()
 {
   const MeshData data = blockMesh(CellType::Triangle, 3, 2, 0);
-  vtkNew<vtkPolyData> poly;
-  poly->SetPoints(makeVTKPoints(data, VTK_DOUBLE));
-  vtkNew<vtkCellArray> polys;
-  for (Index i = 0; i < data.numberOfCells(); ++i)
-  {
-    polys->InsertNextCell(3, reinterpret_cast<const vtkIdType*>(data.connectivity.data()) + 3 * i);
-  }
-  poly->SetPolys(polys);
+  const auto poly = toPolyData(data);
   const MeshAdapter onlyPolys(poly);
   TAUTLINE_CHECK_EQUAL(
     onlyPolys.copiedBytes(), static_cast<std::size_t>(data.numberOfCells())); // the types
@@ -257,7 +233,7 @@ void testEmpty()
     TAUTLINE_CHECK_EQUAL(adapter.notice(), "");
   }
   // Points without cells.
-  grid->SetPoints(makeVTKPoints(blockMesh(CellType::Triangle, 1, 1, 0), VTK_DOUBLE));
+  grid->SetPoints(toPoints(blockMesh(CellType::Triangle, 1, 1, 0), VTK_DOUBLE));
   TAUTLINE_CHECK_EQUAL(MeshAdapter(grid).mesh().boundary().isBoundaryPoint.size(), 4u);
 }
 
@@ -265,10 +241,10 @@ void testNotices()
 {
   MeshData data = blockMesh(CellType::Quadrilateral, 2, 2, 0);
   data.setPoint(4, { std::nan(""), 0, 0 });
-  const auto broken = makeGrid(data);
+  const auto broken = toGrid(data);
   TAUTLINE_CHECK(contains(MeshAdapter(broken).notice(), "1 points have a NaN"));
 
-  const auto grid = makeGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0));
+  const auto grid = toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0));
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   for (unsigned char flag : { 0, 1, 0, 0 })
@@ -286,7 +262,7 @@ void testDescription()
   MeshData data = blockMesh(CellType::Quadrilateral, 3, 3, 0);
   auto description = [](const MeshData& mesh)
   {
-    const auto grid = makeGrid(mesh);
+    const auto grid = toGrid(mesh);
     const MeshAdapter adapter(grid);
     const std::vector<signed char> validity = validityOf(adapter.mesh());
     return describe(adapter.mesh().orientation(validity.data()), adapter.mesh());

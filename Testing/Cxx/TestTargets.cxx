@@ -214,8 +214,22 @@ void testTensor(CellType type, bool surface)
     }
   }
   const Mesh mesh(data.view());
-  checkIdeal(mesh, type, tensorTargets(mesh, tensors.data()),
-    [](const MetricInfo& info) { return info.rotationInvariant; });
+  const auto blindToTurning = [](const MetricInfo& info) { return info.rotationInvariant; };
+  checkIdeal(mesh, type, tensorTargets(mesh, tensors.data()), blindToTurning);
+
+  // The same, mirrored: x reversed, and the tensors with it.
+  MeshData reversed = data;
+  reversed.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+  for (int i = 0; i < cellsPerMesh; ++i)
+  {
+    for (int entry : { 1, 2, 3, 6 })
+    {
+      tensors[9 * i + entry] *= -1;
+    }
+  }
+  Mesh reversedMesh(reversed.view());
+  reversedMesh.setMirrored(true);
+  checkIdeal(reversedMesh, type, tensorTargets(reversedMesh, tensors.data()), blindToTurning);
 }
 
 //------------------------------------------------------------------------------

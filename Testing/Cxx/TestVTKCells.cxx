@@ -2,18 +2,14 @@
 // linear and of higher order. The wedge is the one to watch: in VTK's linear and quadratic wedges the
 // corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and Bezier wedges from inside.
 #include "Check.h"
-#include "Meshes.h"
+#include "VtkMeshes.h"
 
 #include "MeshAdapter.h"
 
-#include "vtkCellData.h"
 #include "vtkCellSizeFilter.h"
 #include "vtkCellTypeSource.h"
 #include "vtkCellTypes.h"
 #include "vtkCellValidator.h"
-#include "vtkDataArray.h"
-#include "vtkNew.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <numeric>
 
@@ -65,28 +61,17 @@ void testIdealCells(CellType type)
 {
   const Context context(topology(type).name);
   const std::vector<Vec3> corners = idealCell(type);
-  vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  std::vector<vtkIdType> ids;
-  for (const Vec3& p : corners)
-  {
-    ids.push_back(points->InsertNextPoint(p.data()));
-  }
-  grid->SetPoints(points);
-  grid->InsertNextCell(static_cast<int>(type), static_cast<vtkIdType>(ids.size()), ids.data());
+  const auto grid = toGrid(singleCell(type, corners));
   vtkNew<vtkCellSizeFilter> size;
   size->SetInputData(grid);
   size->Update();
-  const char* name = topology(type).dimension == 2 ? "Area" : "Volume";
-  TAUTLINE_CHECK_NEAR(
-    vtkDataSet::SafeDownCast(size->GetOutput())->GetCellData()->GetArray(name)->GetTuple1(0),
+  vtkDataSetAttributes* sizes = vtkDataSet::SafeDownCast(size->GetOutput())->GetCellData();
+  TAUTLINE_CHECK_NEAR(component(sizes, topology(type).dimension == 2 ? "Area" : "Volume", 0),
     valueOf(type, corners, Metric::Size), 1e-15);
   vtkNew<vtkCellValidator> validator;
   validator->SetInputData(grid);
   validator->Update();
-  TAUTLINE_CHECK_EQUAL(
-    validator->GetOutput()->GetCellData()->GetArray("ValidityState")->GetTuple1(0), 0.0);
+  TAUTLINE_CHECK_EQUAL(component(validator->GetOutput()->GetCellData(), "ValidityState", 0), 0.0);
 }
 }
 

@@ -8,13 +8,9 @@
 // tetrahedra and of heights); normalized inradius of tetrahedra; all that is relative to an average
 // size.
 #include "Check.h"
-#include "Meshes.h"
+#include "VtkMeshes.h"
 
-#include "vtkIdTypeArray.h"
 #include "vtkMeshQuality.h"
-#include "vtkNew.h"
-#include "vtkPoints.h"
-#include "vtkUnstructuredGrid.h"
 
 using namespace tautline;
 
@@ -133,28 +129,18 @@ const Comparison comparisons[] = {
 };
 
 /// The same cells for VTK; wedges in Verdict's order.
-vtkNew<vtkUnstructuredGrid> toVTK(const MeshData& data)
+vtkSmartPointer<vtkUnstructuredGrid> toVerdict(MeshData data)
 {
-  vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    points->InsertNextPoint(data.point(i).data());
-  }
-  grid->SetPoints(points);
   for (Index i = 0; i < data.numberOfCells(); ++i)
   {
-    std::vector<vtkIdType> ids(
-      data.connectivity.begin() + data.offsets[i], data.connectivity.begin() + data.offsets[i + 1]);
     if (data.types[i] == static_cast<int>(wedge))
     {
-      std::swap(ids[1], ids[2]);
-      std::swap(ids[4], ids[5]);
+      Index* node = &data.connectivity[data.offsets[i]];
+      std::swap(node[1], node[2]);
+      std::swap(node[4], node[5]);
     }
-    grid->InsertNextCell(data.types[i], static_cast<vtkIdType>(ids.size()), ids.data());
   }
-  return grid;
+  return toGrid(data);
 }
 
 void compare(const Comparison& c)
@@ -166,7 +152,7 @@ void compare(const Comparison& c)
   {
     data.addCell(c.type, validCell(c.type, 0.35, 0.05, random));
   }
-  const vtkNew<vtkUnstructuredGrid> grid = toVTK(data);
+  const auto grid = toVerdict(data);
   EvaluationOptions options;
   options.combination = c.combination;
   const std::vector<double> values = valuesOf(data, c.metric, options);
@@ -197,7 +183,7 @@ void testAffineHexahedra()
     {
       continue;
     }
-    const vtkNew<vtkUnstructuredGrid> grid = toVTK(singleCell(hex, corners));
+    const auto grid = toVerdict(singleCell(hex, corners));
     vtkCell* cell = grid->GetCell(0);
     TAUTLINE_CHECK_NEAR(
       Q::HexScaledJacobian(cell), valueOf(hex, corners, Metric::ScaledJacobian), tolerance);

@@ -6,7 +6,7 @@
 #ifndef tautline_VtkMeshes_h
 #define tautline_VtkMeshes_h
 
-#include "Meshes.h"
+#include "Blocks.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCallbackCommand.h"

@@ -1,0 +1,327 @@
+#include "QualityTotals.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <sstream>
+
+namespace tautline
+{
+//------------------------------------------------------------------------------
+QualityTotals::QualityTotals(const std::vector<Metric>& metrics)
+  : Metrics(metrics)
+  , Results(metrics.size())
+{
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::addBlock(
+  const Mesh& mesh, const signed char* validity, const unsigned char* skip, int threads)
+{
+  this->CellsBefore += this->CellsOfLast;
+  this->CellsOfLast = mesh.view().numberOfCells;
+  const ValidityCounts counts = countValidity(validity, skip, mesh.view().numberOfCells);
+  this->Counts.valid += counts.valid;
+  this->Counts.inverted += counts.inverted;
+  this->Counts.degenerate += counts.degenerate;
+  this->Counts.notMeasured += counts.notMeasured;
+  this->Counts.nonFinite += counts.nonFinite;
+  this->Dimension = mesh.dimension() == Dimension::Volume ? 3 : this->Dimension;
+  const auto angles = angleDistribution(mesh, validity, skip, threads);
+  std::transform(
+    angles.begin(), angles.end(), this->Angles.begin(), this->Angles.begin(), std::plus<Index>());
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::addValues(
+  std::size_t m, const Mesh& mesh, const CellValues& data, vtkDataArray* globalIds)
+{
+  const MetricInfo& info = metricInfo(this->Metrics[m]);
+  std::vector<double> measured = measuredValues(info, data);
+  auto& all = this->Results[m].measured;
+  if (all.empty())
+  {
+    all = std::move(measured);
+  }
+  else
+  {
+    all.insert(all.end(), measured.begin(), measured.end());
+  }
+  this->HasGlobalIds = globalIds != nullptr;
+  std::vector<Worst> worst;
+  for (const WorstElement& element : worstElements(info, data))
+  {
+    const CellType type = cornerType(data.cellTypes[element.cell]);
+    Worst entry = { element, mesh.center(element.cell, type) };
+    entry.element.cell = globalIds ? static_cast<Index>(globalIds->GetComponent(element.cell, 0))
+                                   : this->CellsBefore + element.cell;
+    worst.push_back(entry);
+  }
+  this->mergeWorst(m, std::move(worst));
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::mergeWorst(std::size_t m, std::vector<Worst> more)
+{
+  const MetricInfo& info = metricInfo(this->Metrics[m]);
+  auto& worst = this->Results[m].worst;
+  worst.insert(worst.end(), more.begin(), more.end());
+  std::sort(worst.begin(), worst.end(),
+    [&](const Worst& a, const Worst& b) { return isWorse(info, a.element, b.element); });
+  if (worst.size() > static_cast<std::size_t>(WorstCount))
+  {
+    worst.resize(WorstCount);
+  }
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::gather(vtkMultiProcessController* controller)
+{
+  if (!controller || controller->GetNumberOfProcesses() < 2)
+  {
+    return;
+  }
+  const bool root = controller->GetLocalProcessId() == 0;
+
+  // Sums of counts; the dimension is the largest.
+  std::vector<vtkIdType> mine = { this->Counts.valid, this->Counts.inverted,
+    this->Counts.degenerate, this->Counts.notMeasured, this->Counts.nonFinite };
+  mine.insert(mine.end(), this->Angles.begin(), this->Angles.end());
+  std::vector<vtkIdType> sums(mine.size());
+  controller->AllReduce(
+    mine.data(), sums.data(), static_cast<vtkIdType>(mine.size()), vtkCommunicator::SUM_OP);
+  this->Counts = { sums[0], sums[1], sums[2], sums[3], sums[4] };
+  std::copy(sums.begin() + 5, sums.end(), this->Angles.begin());
+  int dimension = this->Dimension;
+  controller->AllReduce(&dimension, &this->Dimension, 1, vtkCommunicator::MAX_OP);
+
+  // Ids without global ones count on from rank to rank.
+  const vtkIdType cells = this->CellsBefore + this->CellsOfLast;
+  std::vector<vtkIdType> perRank(controller->GetNumberOfProcesses());
+  controller->AllGather(&cells, perRank.data(), 1);
+  vtkIdType before = 0;
+  for (int rank = 0; !this->HasGlobalIds && rank < controller->GetLocalProcessId(); ++rank)
+  {
+    before += perRank[rank];
+  }
+
+  constexpr int fields = 6; // id, validity, value, centre
+  for (std::size_t m = 0; m < this->Metrics.size(); ++m)
+  {
+    vtkNew<vtkDoubleArray> values, allValues, worst, allWorst;
+    auto& result = this->Results[m];
+    values->SetArray(result.measured.data(), static_cast<vtkIdType>(result.measured.size()), 1);
+    for (const Worst& w : result.worst)
+    {
+      for (double x :
+        { static_cast<double>(w.element.cell + before), static_cast<double>(w.element.validity),
+          w.element.value, w.center[0], w.center[1], w.center[2] })
+      {
+        worst->InsertNextValue(x);
+      }
+    }
+    controller->GatherV(values, allValues, 0);
+    controller->GatherV(worst, allWorst, 0);
+    result.worst.clear();
+    if (!root)
+    {
+      result.measured.clear();
+      continue;
+    }
+    result.measured.assign(
+      allValues->GetPointer(0), allValues->GetPointer(0) + allValues->GetNumberOfValues());
+    std::vector<Worst> merged;
+    for (vtkIdType i = 0; i + fields <= allWorst->GetNumberOfValues(); i += fields)
+    {
+      const double* x = allWorst->GetPointer(i);
+      merged.push_back({ { static_cast<Index>(x[0]), x[2], static_cast<signed char>(x[1]) },
+        { x[3], x[4], x[5] } });
+    }
+    this->mergeWorst(m, std::move(merged));
+  }
+}
+
+namespace
+{
+/// Adds a column to a table and returns its array.
+template <class Array>
+Array* addColumn(vtkTable* table, const std::string& name, vtkIdType rows, int components = 1)
+{
+  vtkNew<Array> column;
+  column->SetName(name.c_str());
+  column->SetNumberOfComponents(components);
+  column->SetNumberOfTuples(rows);
+  table->AddColumn(column);
+  return column;
+}
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::tabulate(
+  vtkTable* statistics, int bins, vtkTable* distribution, vtkTable* angles, vtkPolyData* worst)
+{
+  const vtkIdType rows = static_cast<vtkIdType>(this->Metrics.size());
+  auto* names = addColumn<vtkStringArray>(statistics, "Metric", rows);
+  auto* labels = addColumn<vtkStringArray>(statistics, "Label", rows);
+  for (vtkIdType m = 0; m < rows; ++m)
+  {
+    const MetricInfo& info = metricInfo(this->Metrics[m]);
+    PerMetric& result = this->Results[m];
+    names->SetValue(m, info.name);
+    labels->SetValue(m, info.label);
+    const Histogram h = histogram(result.measured, bins);
+    auto* at = addColumn<vtkDoubleArray>(distribution, std::string(info.name) + " value", bins);
+    auto* count = addColumn<vtkIdTypeArray>(distribution, std::string(info.name) + " count", bins);
+    for (int b = 0; b < bins; ++b)
+    {
+      at->SetValue(b, 0.5 * h.edges[b] + 0.5 * h.edges[b + 1]);
+      count->SetValue(b, h.counts[b]);
+    }
+    result.statistics = summarize(info, this->Dimension, result.measured);
+  }
+  const auto fill = [&](auto* column, auto value)
+  {
+    for (vtkIdType m = 0; m < rows; ++m)
+    {
+      column->SetValue(m, value(this->Results[m].statistics, metricInfo(this->Metrics[m])));
+    }
+  };
+  const auto counts = [&](const char* name, auto value)
+  { fill(addColumn<vtkIdTypeArray>(statistics, name, rows), value); };
+  const auto reals = [&](const char* name, auto value)
+  { fill(addColumn<vtkDoubleArray>(statistics, name, rows), value); };
+  using S = const MetricStatistics&;
+  using I = const MetricInfo&;
+  counts("Measured", [](S s, I) { return s.measured; });
+  reals("Minimum", [](S s, I) { return s.minimum; });
+  reals("Maximum", [](S s, I) { return s.maximum; });
+  reals("Mean", [](S s, I) { return s.mean; });
+  reals("RMS", [](S s, I) { return s.rms; });
+  reals("StandardDeviation", [](S s, I) { return s.standardDeviation; });
+  for (std::size_t q = 0; q < quantileFractions.size(); ++q)
+  {
+    char name[16];
+    std::snprintf(name, sizeof(name), "Quantile%02d",
+      static_cast<int>(std::lround(100 * quantileFractions[q])));
+    reals(name, [q](S s, I) { return s.quantiles[q]; });
+  }
+  const int dimension = this->Dimension;
+  counts("OutsideAcceptable", [](S s, I) { return s.outsideAcceptable; });
+  reals("AcceptableLow", [=](S, I i) { return i.acceptable(dimension).low; });
+  reals("AcceptableHigh", [=](S, I i) { return i.acceptable(dimension).high; });
+  counts("Inverted", [this](S, I) { return this->Counts.inverted; });
+  counts("Degenerate", [this](S, I) { return this->Counts.degenerate; });
+  counts("NotMeasured", [this](S, I) { return this->Counts.notMeasured; });
+  counts("NonFinite", [this](S, I) { return this->Counts.nonFinite; });
+
+  // The ten worst, in the table and as points.
+  auto* cells = addColumn<vtkIdTypeArray>(statistics, "WorstCells", rows, WorstCount);
+  auto* positions = addColumn<vtkDoubleArray>(statistics, "WorstPositions", rows, 3 * WorstCount);
+  cells->Fill(-1);
+  positions->Fill(0);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> vertices;
+  vtkNew<vtkIntArray> metric, rank, validity;
+  vtkNew<vtkIdTypeArray> id;
+  vtkNew<vtkDoubleArray> value;
+  for (vtkIdType m = 0; m < rows; ++m)
+  {
+    const auto& list = this->Results[m].worst;
+    for (std::size_t i = 0; i < list.size(); ++i)
+    {
+      const Worst& w = list[i];
+      cells->SetTypedComponent(m, static_cast<int>(i), w.element.cell);
+      for (int c = 0; c < 3; ++c)
+      {
+        positions->SetTypedComponent(m, static_cast<int>(3 * i) + c, w.center[c]);
+      }
+      const vtkIdType point = points->InsertNextPoint(w.center.data());
+      vertices->InsertNextCell(1, &point);
+      metric->InsertNextValue(static_cast<int>(this->Metrics[m]));
+      rank->InsertNextValue(static_cast<int>(i) + 1);
+      id->InsertNextValue(w.element.cell);
+      value->InsertNextValue(w.element.value);
+      validity->InsertNextValue(w.element.validity);
+    }
+  }
+  worst->SetPoints(points);
+  worst->SetVerts(vertices);
+  auto addArray = [&](vtkDataArray* array, const char* name)
+  {
+    array->SetName(name);
+    worst->GetPointData()->AddArray(array);
+  };
+  addArray(metric, "Metric");
+  addArray(rank, "Rank");
+  addArray(id, "CellId");
+  addArray(value, "Value");
+  addArray(validity, "Validity");
+
+  const vtkIdType angleRows = static_cast<vtkIdType>(this->Angles.size());
+  auto* from = addColumn<vtkDoubleArray>(angles, "From", angleRows);
+  auto* to = addColumn<vtkDoubleArray>(angles, "To", angleRows);
+  auto* count = addColumn<vtkIdTypeArray>(angles, "Count", angleRows);
+  auto* percent = addColumn<vtkDoubleArray>(angles, "Percent", angleRows);
+  Index total = 0;
+  for (Index n : this->Angles)
+  {
+    total += n;
+  }
+  for (vtkIdType b = 0; b < angleRows; ++b)
+  {
+    from->SetValue(b, angleBins[b]);
+    to->SetValue(b, angleBins[b + 1]);
+    count->SetValue(b, this->Angles[b]);
+    percent->SetValue(b, total > 0 ? 100.0 * this->Angles[b] / total : 0.0);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string QualityTotals::summary() const
+{
+  std::ostringstream text;
+  const ValidityCounts& n = this->Counts;
+  text << n.valid << " valid elements, " << n.inverted << " inverted, " << n.degenerate
+       << " degenerate.";
+  if (n.notMeasured + n.nonFinite > 0)
+  {
+    text << " " << n.notMeasured << " not measured, " << n.nonFinite << " not finite.";
+  }
+  for (std::size_t m = 0; m < this->Metrics.size(); ++m)
+  {
+    const MetricInfo& info = metricInfo(this->Metrics[m]);
+    const MetricStatistics& s = this->Results[m].statistics;
+    if (s.measured > 0)
+    {
+      text << "\n"
+           << info.label << ": " << s.minimum << " to " << s.maximum << ", mean " << s.mean << "; "
+           << s.outsideAcceptable << " outside the acceptable range.";
+    }
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::size_t QualityTotals::bytes() const
+{
+  std::size_t sum = 0;
+  for (const PerMetric& result : this->Results)
+  {
+    sum += result.measured.capacity() * sizeof(double);
+  }
+  return sum;
+}
+}

@@ -1,0 +1,74 @@
+/**
+ * @class tautline::QualityTotals
+ * @brief Gathers what vtkElementQuality measures on blocks and processes, and makes its tables.
+ */
+#ifndef tautline_QualityTotals_h
+#define tautline_QualityTotals_h
+
+#include "tautline/Statistics.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkMultiProcessController;
+class vtkPolyData;
+class vtkTable;
+
+namespace tautline
+{
+class QualityTotals
+{
+public:
+  explicit QualityTotals(const std::vector<Metric>& metrics);
+
+  const std::vector<Metric>& metrics() const { return this->Metrics; }
+
+  /// Before the metrics of a block: its dimension, validity and angles. `skip` as in CellValues.
+  void addBlock(
+    const Mesh& mesh, const signed char* validity, const unsigned char* skip, int threads);
+
+  /**
+   * @brief Adds the values of metric number m of the block added last.
+   * @param globalIds of its cells, or null
+   */
+  void addValues(std::size_t m, const Mesh& mesh, const CellValues& data, vtkDataArray* globalIds);
+
+  /// Brings everything to process 0. Collective; without a controller, nothing.
+  void gather(vtkMultiProcessController* controller);
+
+  /// Fills the tables; may reorder what was gathered.
+  void tabulate(
+    vtkTable* statistics, int bins, vtkTable* distribution, vtkTable* angles, vtkPolyData* worst);
+
+  /// A few lines for the user.
+  std::string summary() const;
+
+  /// Bytes held.
+  std::size_t bytes() const;
+
+private:
+  struct Worst
+  {
+    WorstElement element; ///< its cell is a global id
+    Vec3 center;
+  };
+  struct PerMetric
+  {
+    std::vector<double> measured;
+    std::vector<Worst> worst;
+    MetricStatistics statistics;
+  };
+  void mergeWorst(std::size_t m, std::vector<Worst> more);
+
+  std::vector<Metric> Metrics;
+  std::vector<PerMetric> Results;
+  std::array<Index, angleBins.size() - 1> Angles{};
+  ValidityCounts Counts;
+  Index CellsBefore = 0; ///< cells of the blocks before the last one
+  Index CellsOfLast = 0;
+  int Dimension = 2;
+  bool HasGlobalIds = false;
+};
+}
+#endif

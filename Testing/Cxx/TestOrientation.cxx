@@ -1,0 +1,154 @@
+// Which way round the cells are listed: consistently, all reversed, or mixed; and tangled is not mixed.
+#include "Check.h"
+#include "Blocks.h"
+
+#include <algorithm>
+
+using namespace tautline;
+
+namespace
+{
+MeshData box(CellType type)
+{
+  return blockMesh(type, 4, 3, topology(type).dimension == 2 ? 0 : 2);
+}
+
+/// Lists the nodes of a cell in the opposite order.
+void flip(MeshData& data, Index cell)
+{
+  const std::vector<std::pair<int, int>> swaps[] = { { { 1, 2 } }, { { 1, 3 } }, { { 1, 2 } },
+    { { 1, 3 }, { 5, 7 } }, { { 1, 2 }, { 4, 5 } }, { { 1, 3 } } };
+  for (const auto& pair : swaps[topologyIndex(cornerType(data.types[cell]))])
+  {
+    const Index first = data.offsets[cell];
+    std::swap(data.connectivity[first + pair.first], data.connectivity[first + pair.second]);
+  }
+}
+
+Orientation orientationOf(const Mesh& mesh)
+{
+  return mesh.orientation(validityOf(mesh).data());
+}
+
+//------------------------------------------------------------------------------
+void testOrientation(CellType type)
+{
+  const MeshData data = box(type);
+  const Index cells = data.numberOfCells();
+  Orientation o = orientationOf(Mesh(data.view()));
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Consistent);
+  TAUTLINE_CHECK_EQUAL(o.positiveCells, cells);
+
+  MeshData reversed = data;
+  for (Index i = 0; i < cells; ++i)
+  {
+    flip(reversed, i);
+  }
+  Mesh reversedMesh(reversed.view());
+  o = orientationOf(reversedMesh);
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Reversed);
+  TAUTLINE_CHECK_EQUAL(o.negativeCells, cells);
+  reversedMesh.setMirrored(true);
+  o = orientationOf(reversedMesh);
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Consistent);
+  TAUTLINE_CHECK_EQUAL(o.positiveCells, cells);
+
+  // One cell the other way round: each facet it shares disagrees.
+  MeshData mixed = data;
+  const Index odd = cells / 2;
+  flip(mixed, odd);
+  o = orientationOf(Mesh(mixed.view()));
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Mixed);
+  MeshData alone = singleCell(type, idealCell(type));
+  MeshData without = data;
+  without.types[odd] = 0;
+  const Index own = Mesh(alone.view()).boundary().facets,
+              opened = Mesh(without.view()).boundary().facets - Mesh(data.view()).boundary().facets;
+  TAUTLINE_CHECK_EQUAL(o.disagreeing, (own + opened) / 2);
+  TAUTLINE_CHECK_EQUAL(o.negativeCells, 1);
+
+  // Two parts, one reversed.
+  MeshData parts = data;
+  const Index shift = data.numberOfPoints();
+  for (Index i = 0; i < shift; ++i)
+  {
+    parts.addPoint(data.point(i) + Vec3{ 10, 0, 0 });
+  }
+  for (Index i = 0; i < cells; ++i)
+  {
+    std::vector<Index> nodes(
+      data.connectivity.begin() + data.offsets[i], data.connectivity.begin() + data.offsets[i + 1]);
+    std::for_each(nodes.begin(), nodes.end(), [&](Index& n) { n += shift; });
+    parts.addCell(type, nodes);
+    flip(parts, cells + i);
+  }
+  o = orientationOf(Mesh(parts.view()));
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Mixed);
+  TAUTLINE_CHECK_EQUAL(o.parts, 2);
+  TAUTLINE_CHECK_EQUAL(o.reversedParts, 1);
+  TAUTLINE_CHECK_EQUAL(o.disagreeing, 0);
+
+  // A vertex pulled through its neighbours tangles the mesh; its orientation stays what it was.
+  for (const MeshData* start : std::initializer_list<const MeshData*>{ &data, &reversed })
+  {
+    MeshData tangled = *start;
+    const Boundary boundary = Mesh(data.view()).boundary();
+    const auto inside =
+      std::find(boundary.isBoundaryPoint.begin(), boundary.isBoundaryPoint.end(), 0) -
+      boundary.isBoundaryPoint.begin();
+    TAUTLINE_CHECK(inside < tangled.numberOfPoints());
+    tangled.setPoint(inside, tangled.point(inside) + Vec3{ 1.6, 0.2, 0 });
+    o = orientationOf(Mesh(tangled.view()));
+    TAUTLINE_CHECK(o.negativeCells > 0);
+    TAUTLINE_CHECK_EQUAL(o.disagreeing, 0);
+    if (start == &data)
+    {
+      TAUTLINE_CHECK(o.positiveCells > 0);
+      TAUTLINE_CHECK_EQUAL(o.parts, 1);
+    }
+    TAUTLINE_CHECK_EQUAL(o.state, start == &data ? Orientation::Consistent : Orientation::Reversed);
+  }
+}
+
+void testSurfaceOrientation()
+{
+  MeshData curved = box(CellType::Triangle);
+  curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[0] }; });
+  TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(curved.view())).state, Orientation::Consistent);
+  flip(curved, 11); // the upper left triangle of an inner square
+  const Orientation o = orientationOf(Mesh(curved.view()));
+  TAUTLINE_CHECK_EQUAL(o.state, Orientation::Mixed);
+  TAUTLINE_CHECK_EQUAL(o.disagreeing, 3);
+  TAUTLINE_CHECK_EQUAL(o.negativeCells, 0); // a surface has no signs
+
+  MeshData moebius; // five quadrilaterals with half a turn
+  constexpr int count = 5;
+  for (int i = 0; i < count; ++i)
+  {
+    const double a = 2 * M_PI * i / count, half = 0.3;
+    const Vec3 out = { std::cos(a), std::sin(a), 0 };
+    const Vec3 across = half * (std::cos(a / 2) * out + Vec3{ 0, 0, std::sin(a / 2) });
+    moebius.addPoint(out - across);
+    moebius.addPoint(out + across);
+  }
+  for (Index i = 0; i + 1 < count; ++i)
+  {
+    moebius.addCell(CellType::Quadrilateral, { 2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2 });
+  }
+  moebius.addCell(CellType::Quadrilateral, { 2 * count - 2, 2 * count - 1, 0, 1 });
+  TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(moebius.view())).state, Orientation::Mixed);
+  TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(moebius.view())).disagreeing, 1);
+}
+
+}
+
+int TestOrientation(int, char*[])
+{
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    testOrientation(type);
+  }
+  testSurfaceOrientation();
+  return exitCode();
+}
