@@ -97,6 +97,11 @@ unsigned char kernelType(int vtkType, vtkIdType size)
 bool MeshAdapter::acrossY(Index first) const
 {
   const Index* node = this->Connectivity.data() + first;
+  if (std::any_of(
+        node, node + 3, [this](Index id) { return id < 0 || id >= this->View.numberOfPoints; }))
+  {
+    return false; // the mesh will complain
+  }
   const Vec3 a = pointOf(this->View, node[0]);
   return cross(pointOf(this->View, node[1]) - a, pointOf(this->View, node[2]) - a)[1] < 0;
 }
@@ -153,22 +158,22 @@ void MeshAdapter::takeCells(vtkDataSet* input)
     this->Connectivity.insert(
       this->Connectivity.end(), ids->GetPointer(0), ids->GetPointer(0) + size);
     // A pixel across y walks x, then z, about -y; a plane's normal is +y.
-    if (type == VTK_PIXEL && this->acrossY(first))
+    if (type == VTK_PIXEL && size == 4 && this->acrossY(first))
     {
       std::swap(this->Connectivity[first + 1], this->Connectivity[first + 2]);
     }
     // Lagrange and Bezier wedges list their triangles from inside, unlike all others.
-    if (type == VTK_LAGRANGE_WEDGE || type == VTK_BEZIER_WEDGE)
+    if ((type == VTK_LAGRANGE_WEDGE || type == VTK_BEZIER_WEDGE) && size >= 6)
     {
       std::swap(this->Connectivity[first + 1], this->Connectivity[first + 2]);
       std::swap(this->Connectivity[first + 4], this->Connectivity[first + 5]);
     }
     // Pixels and voxels count rows of points; quadrilaterals and hexahedra walk round.
-    if (type == VTK_PIXEL || type == VTK_VOXEL)
+    if ((type == VTK_PIXEL && size == 4) || (type == VTK_VOXEL && size == 8))
     {
       std::swap(this->Connectivity[first + 2], this->Connectivity[first + 3]);
     }
-    if (type == VTK_VOXEL)
+    if (type == VTK_VOXEL && size == 8)
     {
       std::swap(this->Connectivity[first + 6], this->Connectivity[first + 7]);
     }

@@ -15,6 +15,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSignedCharArray.h"
 #include "vtkTable.h"
@@ -412,6 +413,8 @@ void vtkElementQuality::Measure(
     this->UpdateProgress(static_cast<double>(m + 1) / static_cast<double>(metrics.size()));
   }
   output->GetCellData()->AddArray(validity);
+  // Without active point scalars, views colour by the metric.
+  output->GetPointData()->SetActiveScalars(nullptr);
   output->GetCellData()->SetActiveScalars(metricInfo(metrics.front()).name);
   this->WorkingBytes = std::max(this->WorkingBytes,
     static_cast<double>(adapter.copiedBytes() + skip.size() + totals.bytes() +

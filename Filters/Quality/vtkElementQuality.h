@@ -14,7 +14,7 @@
  * not finite (coordinates NaN, infinite or beyond 1e100). Values are always finite. A metric that is
  * singular at a degenerate element is 0 there; one that is not defined on a cell is 0. Inverted
  * elements have negative values of signed metrics (see MetricInfo::inverted). The first metric is the
- * active scalar array.
+ * active cell scalar array; point arrays pass, none of them active.
  *
  * @par Output port 1 `Statistics`:
  * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (elements summed up), `Minimum`,

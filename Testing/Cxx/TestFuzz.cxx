@@ -13,7 +13,7 @@ using namespace tautline;
 namespace
 {
 constexpr int cellsPerMesh = 500;
-constexpr int meshesPerKind = 30; ///< of each cell type: 6 x 6 x 30 x 500 = 540,000 cells
+constexpr int meshesPerKind = 20; ///< of each cell type: 6 x 6 x 20 x 500 = 360,000 cells
 constexpr int malformedViews = 3000;
 
 enum Kind

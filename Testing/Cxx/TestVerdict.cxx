@@ -4,9 +4,8 @@
 // VTK is negative. Its wedges below are therefore renumbered. Not compared, because they differ:
 // aspect ratio of quadrilaterals (there by perimeter and area; ours is Verdict's "max edge ratio");
 // equiangle skew of hexahedra (there above 1 at times: its faces are not walked round); condition
-// and shape of wedges (there against another corner); scaled Jacobian and shape of pyramids (there of
-// tetrahedra and of heights); normalized inradius of tetrahedra; all that is relative to an average
-// size.
+// and shape of wedges (there against another corner); shape of pyramids (there of heights);
+// normalized inradius of tetrahedra; all that is relative to an average size.
 #include "Check.h"
 #include "VtkMeshes.h"
 

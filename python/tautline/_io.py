@@ -44,8 +44,6 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
         if _inputs:
             return _inputs.read(name, **options)
         raise Error(f"{name}: no reader for '{ending}'; there are {' '.join(sorted(_FORMATS))}")
-    if _FORMATS[ending][0] != "vtkIOXML" or not options:
-        options.pop("lower_cells", None)  # VTK's readers keep them always
     if options:
         raise Error(f"{name}: '{ending}' has no options, not {', '.join(options)}")
     if not Path(name).is_file():

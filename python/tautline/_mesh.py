@@ -174,31 +174,36 @@ def columns(table: Any) -> dict[str, Any]:
     return result
 
 
-def with_array(data: vtkDataObject, values: str | Sequence, name: str) -> tuple[vtkDataObject, int, str]:
-    """The mesh with an array to process, where it is (vtkDataObject.POINT or CELL) and its name.
+def with_array(
+    data: vtkDataObject, values: str | Sequence, name: str, points_only: bool = False
+) -> tuple[vtkDataObject, int, str]:
+    """The mesh with an array to process, where it is (vtkDataObject.FIELD_ASSOCIATION_...) and its name.
 
-    values: the name of an array of the mesh (if points and cells both have it, that of the cells), or
+    values: the name of an array of the mesh (if cells and points both have it, that of the cells), or
     numbers, a row per cell or per point: these go to a shallow copy of the mesh. Raises Error if
     there is no such array or if the number of rows fits neither.
     """
-    first = next(leaves(data), None)
+    places = [] if points_only else [(data.FIELD_ASSOCIATION_CELLS, "GetCellData", "GetNumberOfCells")]
+    places.append((data.FIELD_ASSOCIATION_POINTS, "GetPointData", "GetNumberOfPoints"))
     if isinstance(values, str):
-        for where, fields in ((data.CELL, "GetCellData"), (data.POINT, "GetPointData")):
-            if first is not None and getattr(first, fields)().GetArray(values):
+        for where, fields, _ in places:
+            if any(getattr(leaf, fields)().GetArray(values) for leaf in leaves(data)):
                 return data, where, values
-        raise Error(f"the mesh has no array '{values}'")
+        raise Error(f"the mesh has no {'point ' if points_only else ''}array '{values}'")
     if not isinstance(data, vtkDataSet):
         raise Error("numbers per cell or point are for a single data set: name an array of the blocks")
-    numbers = np.ascontiguousarray(values, np.float64)
-    numbers = numbers.reshape(len(numbers), -1) if numbers.ndim else numbers.reshape(1, 1)
+    try:
+        numbers = np.ascontiguousarray(values, np.float64)
+        numbers = numbers.reshape(len(numbers), -1)
+    except (TypeError, ValueError) as error:
+        raise Error(f"{name}: not an array of numbers: {error}") from None
     copy = data.NewInstance()
     copy.ShallowCopy(data)
-    places = {"cells": (data.CELL, copy.GetCellData()), "points": (data.POINT, copy.GetPointData())}
-    counts = {"cells": data.GetNumberOfCells(), "points": data.GetNumberOfPoints()}
-    for place, (where, fields) in places.items():
-        if len(numbers) == counts[place]:
+    for where, fields, count in places:
+        if len(numbers) == getattr(data, count)():
             array = numpy_to_vtk(numbers, deep=True)
             array.SetName(name)
-            fields.AddArray(array)
+            getattr(copy, fields)().AddArray(array)
             return copy, where, name
-    raise Error(f"'{name}' has {len(numbers)} rows; there are {counts['cells']} cells and {counts['points']} points")
+    cells, points = data.GetNumberOfCells(), data.GetNumberOfPoints()
+    raise Error(f"{name}: {len(numbers)} rows; there are {cells} cells and {points} points")

@@ -1,0 +1,194 @@
+"""make_metrics.py [--write] [--pictures]: what is generated from the registry of metrics.
+
+The table of the help page metrics.html (from metrics.html.in) and the lists of metrics in
+ServerManager/*.xml (between <!-- metrics --> and the end of the domain). Without an option, compares and
+exits with 1 if they differ; --write writes them; --pictures draws metric_<name>.png with vtkMetricField.
+Needs the package tautline: eval "$(./run env)" first.
+"""
+
+import html
+import re
+import sys
+from pathlib import Path
+
+from tautline import vtkElementQuality, vtkMetricField
+
+HERE = Path(__file__).resolve().parent
+PROXIES = HERE.parents[1] / "ServerManager"
+MOST_BYTES = 6000  # of a picture
+
+# The window of the pictures, and their colours: those of the plugin's colour maps.
+X, Y, PIXELS = (-1.0, 2.0), (-0.5, 1.75), 60  # pixels per unit length
+RAMP = [(0.84, 0.90, 0.93), (0.99, 0.90, 0.55), (0.96, 0.55, 0.20), (0.72, 0.06, 0.11)]
+INVERTED, BASE, IDEAL = (1.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.1, 0.3, 0.7)
+BANDS = 10
+
+
+def registry() -> list:
+    """Every metric as a dict of the registry's fields."""
+    fields = vtkElementQuality.GetKnownMetricFields().split("\t")
+    count = vtkElementQuality.GetNumberOfKnownMetrics()
+    return [dict(zip(fields, vtkElementQuality.GetKnownMetric(i).split("\t"))) for i in range(count)]
+
+
+# --- the help page ---------------------------------------------------------------------------------
+
+
+def text(value: str) -> str:
+    return html.escape(value, quote=False).replace("-inf", "&minus;&infin;").replace(" inf", " &infin;")
+
+
+def by_dimension(metric: dict, name: str) -> str:
+    """ "1 to 3" if the same in 2D and 3D, else each with its dimension."""
+    values = {d: metric[f"{name} {d}"] for d in ("2D", "3D") if d[0] in metric["dimensions"]}
+    if len(set(values.values())) == 1:
+        return text(values.popitem()[1])
+    return "<br>".join(f"{d}: {text(value)}" for d, value in values.items())
+
+
+def row(metric: dict) -> str:
+    name = metric["name"]
+    also = f"<br>also {text(metric['aliases'].replace(',', ', '))}" if metric["aliases"] else ""
+    unit = f", in {text(metric['unit'])}" if metric["unit"] else ""
+    facts = "<br>".join(
+        [
+            metric["direction"],
+            f"inverted: {metric['inverted']}",
+            f"barrier: {metric['barrier']}",
+            f"differentiable: {metric['differentiable']}",
+            f"scale-invariant: {metric['scale invariant']}",
+            f"rotation-invariant: {metric['rotation invariant']}",
+        ]
+    )
+    return f"""<tr>
+<td><a name="{name}"></a><img src="metric_{name}.png" alt="field of {name}"></td>
+<td><b>{text(metric["label"])}</b><br><code>{name}</code><br>{text(metric["symbol"])}{also}</td>
+<td>{text(metric["formula"])}<br><i>{text(metric["source"])}</i></td>
+<td>{metric["dimensions"]}<br>{metric["cell types"]}</td>
+<td>{by_dimension(metric, "full")}{unit}</td>
+<td>{by_dimension(metric, "acceptable")}</td>
+<td>{by_dimension(metric, "ideal")}</td>
+<td>{facts}</td>
+</tr>
+"""
+
+
+def page(metrics: list) -> str:
+    template = (HERE / "metrics.html.in").read_text(encoding="utf-8")
+    return template.replace("@COUNT@", str(len(metrics))).replace("@ROWS@", "".join(map(row, metrics)))
+
+
+# --- the lists in the XML files ----------------------------------------------------------------------
+
+
+def with_entries(xml: str, metrics: list) -> str:
+    def entries(found) -> str:
+        indent = found[1]
+        lines = [f'<Entry value="{m["number"]}" text="{html.escape(m["label"])}"/>\n' for m in metrics]
+        return indent + "<!-- metrics -->\n" + "".join(indent + line for line in lines) + found[2]
+
+    pattern = r"^( *)<!-- metrics -->\n(?:.*<Entry .*\n)*(.*</EnumerationDomain>)"
+    return re.sub(pattern, entries, xml, flags=re.MULTILINE)
+
+
+# --- the pictures ------------------------------------------------------------------------------------
+
+
+def field(metric: dict):
+    """Values and validity over the window, first row at the bottom; of tetrahedra, over their plane of symmetry."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    columns, rows = (round((end - start) * PIXELS) for start, end in (X, Y))
+    source = vtkMetricField()
+    source.AddMetricByName(metric["name"])
+    if "2" in metric["dimensions"]:
+        source.SetBounds(*X, *Y, 0, 0)
+        source.SetDimensions(columns, rows, 1)
+    else:
+        middle = 3**0.5 / 6  # y of the centre of the base
+        source.SetCellToTetrahedron()
+        source.SetBounds(*X, middle, middle, *Y)
+        source.SetDimensions(columns, 1, rows)
+    source.Update()
+    data = source.GetOutput().GetPointData()
+    return [vtk_to_numpy(data.GetArray(name)).reshape(rows, columns) for name in (metric["name"], "Validity")]
+
+
+def picture(metric: dict):
+    """RGB of one metric: bands of equal area, pale is good; magenta is inverted, where the metric says so by its sign."""
+    import numpy as np
+
+    values, validity = field(metric)
+    signed = metric["inverted"] == "negative"
+    shown = validity == 1 if signed else validity != 0
+    badness = -values if metric["direction"].startswith("larger") else values
+    levels = np.unique(np.quantile(badness[shown], np.linspace(0, 1, BANDS + 1)[1:-1]))
+    band = np.searchsorted(levels, badness) / max(len(levels), 1)
+    ramp = np.array(RAMP)
+    stops = np.linspace(0, 1, len(ramp))
+    rgb = np.stack([np.interp(band, stops, ramp[:, c]) for c in range(3)], axis=-1)
+    rgb[validity == 0] = RAMP[-1]
+    if signed:
+        rgb[validity == -1] = INVERTED
+
+    def pixel(x, y):
+        return round((y - Y[0]) * PIXELS), round((x - X[0]) * PIXELS)
+
+    row_number, left = pixel(0, 0)
+    rgb[row_number - 1 : row_number + 1, left : pixel(1, 0)[1] + 1] = BASE
+    height = 3**0.5 / 2 if "2" in metric["dimensions"] else (2 / 3) ** 0.5
+    up, across = pixel(0.5, height)
+    rgb[up - 2 : up + 3, across - 2 : across + 3] = IDEAL
+    return (rgb * 255).astype(np.uint8)
+
+
+def draw(metric: dict, path: Path) -> None:
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkIOImage import vtkPNGWriter
+
+    rgb = picture(metric)
+    image = vtkImageData()
+    image.SetDimensions(rgb.shape[1], rgb.shape[0], 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(rgb.reshape(-1, 3), deep=True))
+    writer = vtkPNGWriter()
+    writer.SetCompressionLevel(9)
+    writer.SetFileName(str(path))
+    writer.SetInputData(image)
+    writer.Write()
+
+
+def wrong_pictures(metrics: list):
+    wanted = {f"metric_{m['name']}.png" for m in metrics}
+    found = {path.name: path.stat().st_size for path in HERE.glob("metric_*.png")}
+    yield from (f"{name}: there is no such picture" for name in sorted(wanted - set(found)))
+    yield from (f"{name}: of no metric" for name in sorted(set(found) - wanted))
+    yield from (f"{name}: {size} bytes, at most {MOST_BYTES}" for name, size in found.items() if size > MOST_BYTES)
+
+
+def main(options: set) -> int:
+    if options - {"--write", "--pictures"}:
+        sys.exit(__doc__)
+    metrics = registry()
+    if "--pictures" in options:
+        for metric in metrics:
+            draw(metric, HERE / f"metric_{metric['name']}.png")
+    wanted = {HERE / "metrics.html": page(metrics)}
+    for path in sorted(PROXIES.glob("*.xml")):
+        wanted[path] = with_entries(path.read_text(encoding="utf-8"), metrics)
+    complaints = list(wrong_pictures(metrics))
+    for path, content in wanted.items():
+        if "--write" in options:
+            path.write_text(content, encoding="utf-8")
+        elif not path.is_file() or path.read_text(encoding="utf-8") != content:
+            complaints.append(f"{path} is not what the registry says")
+    lists = sum(content.count("<!-- metrics -->") for content in wanted.values())
+    complaints += [] if lists else ["no XML file has a list of metrics"]
+    print("\n".join(complaints + [f"{len(metrics)} metrics, {lists} lists of them, {len(complaints)} complaints"]))
+    if complaints:
+        print("remedy: python3 Plugin/Documentation/make_metrics.py --write --pictures")
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(set(sys.argv[1:])))

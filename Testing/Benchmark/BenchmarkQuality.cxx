@@ -1,0 +1,372 @@
+// BenchmarkQuality PART N REPEATS: times element quality on an N x N x N grid of perturbed cells and
+// prints lines "key<tab>nanoseconds per element" (other units as said below). Run by run.py. PARTs:
+//   kernel   plain loops, then the kernel's evaluations, in turns, best of REPEATS
+//   filter   vtkElementQuality and its parts against vtkMeshQuality, in turns, best of REPEATS
+//   memory-tautline, memory-verdict   one filter, once; peak memory in bytes per element
+
+#include "../../Filters/Quality/MeshAdapter.h"
+#include "../Cxx/Blocks.h"
+#include "../Cxx/VtkMeshes.h"
+
+#include "vtkElementQuality.h"
+#include "vtkMeshQuality.h"
+
+#include <malloc.h>
+#include <omp.h>
+
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+#include <limits>
+
+using namespace tautline;
+
+namespace
+{
+/// Cubes cut into six tetrahedra round a diagonal (Kuhn), or left whole, in natural order; every
+/// point moved by up to a tenth of an edge.
+MeshData makeMesh(CellType type, Index n)
+{
+  const Index m = n + 1;
+  MeshData data = blockMesh(CellType::Hexahedron, n, n, n);
+  std::mt19937 random(1);
+  data.transform(
+    [&](Vec3 p)
+    {
+      for (double& x : p)
+      {
+        x += 0.2 * (random() / 4294967296.0 - 0.5);
+      }
+      return p;
+    });
+  if (type == CellType::Hexahedron)
+  {
+    return data;
+  }
+  const std::vector<Index> cubes = std::move(data.connectivity);
+  data.types.clear();
+  data.offsets = { 0 };
+  data.connectivity.clear();
+  const Index step[3] = { 1, m, m * m };
+  for (std::size_t cube = 0; cube < cubes.size(); cube += 8)
+  {
+    const Index a = cubes[cube], d = a + step[0] + step[1] + step[2];
+    for (int i = 0; i < 3; ++i)
+    {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      data.addCell(CellType::Tetrahedron, { a, a + step[i], a + step[i] + step[j], d });
+      data.addCell(CellType::Tetrahedron, { a, a + step[i] + step[k], a + step[i], d });
+    }
+  }
+  return data;
+}
+
+/// The memory floor: read every element's coordinates, add something to its vertices' gradient.
+void gatherAndScatter(const MeshData& mesh, int nodes, double* gradient)
+{
+  const Index* cell = mesh.connectivity.data();
+  for (Index i = 0; i < mesh.numberOfCells(); ++i, cell += nodes)
+  {
+    for (int k = 0; k < nodes; ++k)
+    {
+      const double* p = &mesh.points[3 * cell[(k + 1) % nodes]];
+      for (int c = 0; c < 3; ++c)
+      {
+        gradient[3 * cell[k] + c] += p[c];
+      }
+    }
+  }
+}
+
+/// The yardstick: sum of IMR^2 over tetrahedra with its gradient, as one would write it at first.
+double plainInverseMeanRatio(const MeshData& mesh, double* gradient)
+{
+  const auto& inverse = topology(CellType::Tetrahedron).idealInverse[0];
+  double sum = 0;
+  for (Index i = 0; i < mesh.numberOfCells(); ++i)
+  {
+    const Index* node = &mesh.connectivity[4 * i];
+    const Vec3 p = mesh.point(node[0]);
+    const Vec3 a[3] = { mesh.point(node[1]) - p, mesh.point(node[2]) - p, mesh.point(node[3]) - p };
+    Vec3 t[3]; // columns of T = A W^-1
+    for (int c = 0; c < 3; ++c)
+    {
+      t[c] = inverse[c] * a[0] + inverse[3 + c] * a[1] + inverse[6 + c] * a[2];
+    }
+    const Vec3 cofactor[3] = { cross(t[1], t[2]), cross(t[2], t[0]), cross(t[0], t[1]) };
+    const double det = dot(t[0], cofactor[0]);
+    const double size = 3 * std::cbrt(det * det);
+    const double q = (dot(t[0], t[0]) + dot(t[1], t[1]) + dot(t[2], t[2])) / size;
+    sum += q * q;
+    Vec3 dt[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      dt[c] = (4 * q / size) * t[c] + (-4 * q * q / (3 * det)) * cofactor[c];
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vec3 g =
+        inverse[3 * k] * dt[0] + inverse[3 * k + 1] * dt[1] + inverse[3 * k + 2] * dt[2];
+      for (int c = 0; c < 3; ++c)
+      {
+        gradient[3 * node[k + 1] + c] += g[c];
+        gradient[3 * node[0] + c] -= g[c];
+      }
+    }
+  }
+  return sum;
+}
+
+double wallTime()
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// What this thread has computed for; on a busy machine less than the time that passed.
+double threadTime()
+{
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Tasks that take turns, so that all of them see the same machine; the best time of each counts.
+class Contest
+{
+public:
+  void add(const std::string& name, double elements, double (*clock)(), std::function<void()> work)
+  {
+    this->Tasks.push_back({ name, elements, clock, std::move(work) });
+  }
+  void run(int repeats)
+  {
+    for (int i = 0; i < repeats; ++i)
+    {
+      for (Task& task : this->Tasks)
+      {
+        const double start = task.clock();
+        task.work();
+        task.best = std::min(task.best, task.clock() - start);
+      }
+    }
+    for (const Task& task : this->Tasks)
+    {
+      std::cout << task.name << '\t' << 1e9 * task.best / task.elements << '\n';
+    }
+  }
+
+private:
+  struct Task
+  {
+    std::string name;
+    double elements;
+    double (*clock)();
+    std::function<void()> work;
+    double best = std::numeric_limits<double>::infinity();
+  };
+  std::vector<Task> Tasks;
+};
+
+void kernelPart(Index n, int repeats)
+{
+  Contest contest;
+  const MeshData tetrahedra = makeMesh(CellType::Tetrahedron, n);
+  const MeshData hexahedra = makeMesh(CellType::Hexahedron, n);
+  const Mesh tets(tetrahedra.view()), hexes(hexahedra.view());
+  std::vector<double> values(tetrahedra.numberOfCells());
+  std::vector<double> gradient(tetrahedra.points.size(), 0.0), check = gradient;
+  std::cout << "elements tetrahedra\t" << tetrahedra.numberOfCells() << '\n';
+  std::cout << "elements hexahedra\t" << hexahedra.numberOfCells() << '\n';
+  double expected = 0;
+  std::vector<std::unique_ptr<MetricSum>> sums;
+
+  for (const Mesh* mesh : { &tets, &hexes })
+  {
+    const bool isTets = mesh == &tets;
+    const MeshData& data = isTets ? tetrahedra : hexahedra;
+    const std::string kind = isTets ? "tetrahedra " : "hexahedra ";
+    const double count = static_cast<double>(data.numberOfCells());
+    contest.add(kind + "floor", count, threadTime,
+      [&, isTets] { gatherAndScatter(data, isTets ? 4 : 8, gradient.data()); });
+    if (isTets)
+    {
+      contest.add(kind + "plain imr", count, threadTime,
+        [&] { expected = plainInverseMeanRatio(data, gradient.data()); });
+    }
+    for (Metric metric : { Metric::InverseMeanRatio, Metric::ConditioningScaleInvariant,
+           Metric::ConditioningSizeShape, Metric::RadiusRatio, Metric::ConditionNumber,
+           Metric::ShapeConditionSquared, Metric::MinimumAngle })
+    {
+      if (!metricInfo(metric).definedOn(mesh->blocks()[0].type))
+      {
+        continue;
+      }
+      for (int threads : { 1, 2 })
+      {
+        if (threads == 2 && metric != Metric::InverseMeanRatio)
+        {
+          continue;
+        }
+        EvaluationOptions options;
+        options.threads = threads;
+        sums.push_back(std::make_unique<MetricSum>(*mesh, metric, options, 2.0));
+        const MetricSum* sum = sums.back().get();
+        const std::string name = kind + metricInfo(metric).name;
+        auto values1 = [=, &values] { evaluateMetric(*mesh, metric, options, values.data()); };
+        auto gradient1 = [=, &gradient] { sum->valueAndGradient(gradient.data()); };
+        if (threads == 1)
+        {
+          contest.add(name + " value", count, threadTime, values1);
+          contest.add(name + " gradient", count, threadTime, gradient1);
+        }
+        if (metric == Metric::InverseMeanRatio)
+        {
+          const std::string wall = " wall " + std::to_string(threads);
+          contest.add(name + " value" + wall, count, wallTime, values1);
+          contest.add(name + " gradient" + wall, count, wallTime, gradient1);
+        }
+      }
+    }
+  }
+  contest.run(repeats);
+
+  // The yardstick and the kernel compute the same thing.
+  std::fill(check.begin(), check.end(), 0.0);
+  expected = plainInverseMeanRatio(tetrahedra, check.data());
+  const double sum = sums[0]->valueAndGradient(gradient.data());
+  double difference = std::abs(sum / expected - 1), largest = 0;
+  for (std::size_t i = 0; i < check.size(); ++i)
+  {
+    difference = std::max(difference, std::abs(check[i] - gradient[i]));
+    largest = std::max(largest, std::abs(check[i]));
+  }
+  std::cout << "difference from the plain loop\t" << difference / largest << '\n';
+}
+
+vtkSmartPointer<vtkElementQuality> tautlineFilter(vtkDataSet* grid)
+{
+  auto filter = vtkSmartPointer<vtkElementQuality>::New();
+  filter->SetInputData(grid);
+  filter->AddMetric(static_cast<int>(Metric::InverseMeanRatio));
+  filter->SetThreads(1);
+  return filter;
+}
+
+/// Mean ratio: the same formula, turned over.
+vtkSmartPointer<vtkMeshQuality> verdictFilter(vtkDataSet* grid)
+{
+  auto filter = vtkSmartPointer<vtkMeshQuality>::New();
+  filter->SetInputData(grid);
+  filter->SetTetQualityMeasureToMeanRatio();
+  return filter;
+}
+
+void filterPart(Index n, int repeats)
+{
+  const MeshData data = makeMesh(CellType::Tetrahedron, n);
+  const auto grid = toGrid(data);
+  const auto tautline = tautlineFilter(grid);
+  const auto verdict = verdictFilter(grid);
+  const double count = static_cast<double>(data.numberOfCells());
+  std::vector<double> values(data.numberOfCells());
+  std::vector<signed char> validity(data.numberOfCells());
+  const MeshAdapter kept(grid, 1);
+  EvaluationOptions options;
+  options.threads = 1;
+  Contest contest;
+  contest.add("filter tautline", count, threadTime,
+    [&]
+    {
+      tautline->Modified();
+      tautline->Update();
+    });
+  contest.add("filter verdict", count, threadTime,
+    [&]
+    {
+      verdict->Modified();
+      verdict->Update();
+    });
+  contest.add("filter adapter", count, threadTime, [&] { MeshAdapter adapter(grid, 1); });
+  contest.add(
+    "filter validity", count, threadTime, [&] { kept.mesh().classifyCells(validity.data(), 1); });
+  contest.add("filter values", count, threadTime,
+    [&] { evaluateMetric(kept.mesh(), Metric::InverseMeanRatio, options, values.data()); });
+  contest.run(repeats);
+
+  auto* ours = vtkDataSet::SafeDownCast(tautline->GetOutputDataObject(0))->GetCellData();
+  auto* theirs = verdict->GetOutput()->GetCellData();
+  double difference = 0;
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    difference = std::max(
+      difference, std::abs(component(ours, "imr", i) * component(theirs, "Quality", i) - 1));
+  }
+  std::cout << "difference from vtkMeshQuality\t" << difference << '\n';
+}
+
+/// A line of /proc/self/status in bytes.
+double statusBytes(const std::string& key)
+{
+  std::ifstream status("/proc/self/status");
+  std::string line;
+  while (std::getline(status, line))
+  {
+    if (line.compare(0, key.size() + 1, key + ":") == 0)
+    {
+      return 1024.0 * std::stod(line.substr(key.size() + 1));
+    }
+  }
+  return 0;
+}
+
+void memoryPart(Index n, bool verdict)
+{
+  const auto grid = toGrid(makeMesh(CellType::Tetrahedron, n));
+  const double count = static_cast<double>(grid->GetNumberOfCells());
+  // A small mesh first: libraries load, thread pools start.
+  const auto warm = toGrid(makeMesh(CellType::Tetrahedron, 2));
+  verdict ? verdictFilter(warm)->Update() : tautlineFilter(warm)->Update();
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5\n"; // the peak starts again from here
+  const double before = statusBytes("VmRSS");
+  if (verdict)
+  {
+    const auto filter = verdictFilter(grid);
+    filter->Update();
+    std::cout << "memory verdict peak\t" << (statusBytes("VmHWM") - before) / count << '\n';
+  }
+  else
+  {
+    const auto filter = tautlineFilter(grid);
+    filter->Update();
+    std::cout << "memory tautline peak\t" << (statusBytes("VmHWM") - before) / count << '\n';
+    std::cout << "memory tautline working\t" << filter->GetWorkingBytes() / count << '\n';
+  }
+}
+}
+
+int main(int argc, char* argv[])
+{
+  const std::string part = argc == 4 ? argv[1] : "";
+  const Index n = argc == 4 ? std::atoi(argv[2]) : 0;
+  const int repeats = argc == 4 ? std::atoi(argv[3]) : 0;
+  if (n < 1 || repeats < 1)
+  {
+    std::cerr << "usage: BenchmarkQuality kernel|filter|memory-tautline|memory-verdict N REPEATS\n";
+    return EXIT_FAILURE;
+  }
+  if (part == "kernel")
+  {
+    kernelPart(n, repeats);
+  }
+  else if (part == "filter")
+  {
+    filterPart(n, repeats);
+  }
+  else
+  {
+    memoryPart(n, part == "memory-verdict");
+  }
+  return EXIT_SUCCESS;
+}

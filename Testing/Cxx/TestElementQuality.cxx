@@ -1,0 +1,447 @@
+// The filter: its arrays, tables and notices, on every kind of data set, in numbers known beforehand.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "vtkElementQuality.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStructuredGrid.h"
+#include "vtkTable.h"
+
+#include <cstring>
+#include <limits>
+
+using namespace tautline;
+
+namespace
+{
+const double height = std::sqrt(3.0) / 2;
+
+/// Separate triangles with the base from (0, 0) to (1, 0), given the heights of their apexes at x = 1/2.
+MeshData triangles(const std::vector<double>& heights)
+{
+  MeshData data;
+  for (double h : heights)
+  {
+    data.addCell(CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, h, 0 } });
+  }
+  return data;
+}
+
+/// Inverse mean ratio of such a triangle: (l1^2 + l2^2 + l3^2) / (4 sqrt(3) A).
+double imrOf(double h)
+{
+  return (1 + 2 * (0.25 + h * h)) / (2 * std::sqrt(3.0) * h);
+}
+
+vtkCellData* cellsOf(vtkElementQuality* filter)
+{
+  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetCellData();
+}
+
+double statistic(vtkElementQuality* filter, const char* column, vtkIdType row = 0)
+{
+  return filter->GetStatistics()->GetValueByName(row, column).ToDouble();
+}
+
+void testTables()
+{
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(toGrid(triangles({ height, 0.2, -0.3, 0.0, 0.1, 2.0 })));
+  filter->AddMetricByName("imr");
+  filter->AddMetricByName("MU_2");
+  filter->AddMetric(static_cast<int>(Metric::Size));
+  filter->SetHistogramBins(4);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMetrics(), 3);
+  const double expected[] = { 1, imrOf(0.2), imrOf(-0.3), 0, imrOf(0.1), imrOf(2.0) };
+  const double validity[] = { 1, 1, -1, 0, 1, 1 };
+  for (Index i = 0; i < 6; ++i)
+  {
+    TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", i), expected[i], 1e-14);
+    TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Validity", i), validity[i]);
+  }
+  TAUTLINE_CHECK_EQUAL(std::string(cellsOf(filter)->GetScalars()->GetName()), "imr");
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 4);
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 1);
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Degenerate"), 1);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Minimum"), 1, 1e-14);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Maximum"), imrOf(0.1), 1e-14);
+  const double sum = 1 + imrOf(0.2) + imrOf(0.1) + imrOf(2.0);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Mean"), sum / 4, 1e-14);
+  TAUTLINE_CHECK_NEAR(
+    statistic(filter, "Quantile50"), 0.5 * (imrOf(0.2) + std::min(imrOf(2.0), imrOf(0.1))), 1e-14);
+  // Only the triangle of height 0.1 has an inverse mean ratio above 3.
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "OutsideAcceptable"), 1);
+  // mu_2 = IMR - 1; the mean area of the four valid triangles.
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Mean", 1), sum / 4 - 1, 1e-14);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Mean", 2), 0.125 * (height + 0.2 + 0.1 + 2.0), 1e-14);
+
+  // Inverted first, then degenerate, then by value; none beyond the six.
+  auto* worst =
+    vtkIdTypeArray::SafeDownCast(filter->GetStatistics()->GetColumnByName("WorstCells"));
+  const vtkIdType order[] = { 2, 3, 4, 1, 5, 0, -1, -1, -1, -1 };
+  for (int k = 0; k < 10; ++k)
+  {
+    TAUTLINE_CHECK_EQUAL(worst->GetTypedComponent(0, k), order[k]);
+  }
+  auto* at =
+    vtkDoubleArray::SafeDownCast(filter->GetStatistics()->GetColumnByName("WorstPositions"));
+  TAUTLINE_CHECK_NEAR(at->GetTypedComponent(0, 0), 0.5, 1e-15);
+  TAUTLINE_CHECK_NEAR(at->GetTypedComponent(0, 1), -0.1, 1e-15);
+  TAUTLINE_CHECK_EQUAL(filter->GetWorst()->GetNumberOfPoints(), 18);
+  TAUTLINE_CHECK_EQUAL(filter->GetWorst()->GetNumberOfVerts(), 18);
+
+  TAUTLINE_CHECK_EQUAL(filter->GetDistribution()->GetNumberOfRows(), 4);
+  const double width = (imrOf(0.1) - 1) / 4;
+  TAUTLINE_CHECK_NEAR(
+    filter->GetDistribution()->GetValueByName(0, "imr value").ToDouble(), 1 + width / 2, 1e-14);
+  TAUTLINE_CHECK_EQUAL(filter->GetDistribution()->GetValueByName(3, "imr count").ToInt(), 1);
+  TAUTLINE_CHECK(
+    std::string(filter->GetSummary()).find("4 valid elements, 1 inverted, 1 degenerate") == 0);
+}
+
+void testAngles()
+{
+  vtkNew<vtkElementQuality> filter;
+  // Angles 60 60 60, and 90 45 45.
+  filter->SetInputData(toGrid(triangles({ height, 0.5 })));
+  filter->Update();
+  const double percent[] = { 0, 0, 500.0 / 6, 0, 0 };
+  double sum = 0;
+  for (vtkIdType row = 0; row < 5; ++row)
+  {
+    const double share = filter->GetAngles()->GetValueByName(row, "Percent").ToDouble();
+    sum += share;
+    if (row < 2 || row == 4)
+    {
+      TAUTLINE_CHECK_NEAR(share, percent[row], 1e-12);
+    }
+  }
+  TAUTLINE_CHECK_NEAR(sum, 100, 1e-12);
+  TAUTLINE_CHECK_NEAR(
+    filter->GetAngles()->GetValueByName(3, "Percent").ToDouble(), 100.0 / 6, 1e-12);
+  TAUTLINE_CHECK_EQUAL(filter->GetAngles()->GetValueByName(2, "To").ToDouble(), 80);
+}
+
+/// Every kind of data set of unit squares or cubes: mean ratio 1 everywhere, sizes 1.
+void testDataSets()
+{
+  vtkNew<vtkImageData> image, layer;
+  image->SetDimensions(3, 4, 5);
+  layer->SetDimensions(3, 1, 4);
+  vtkNew<vtkStructuredGrid> structured;
+  structured->SetDimensions(3, 4, 1);
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkRectilinearGrid> rectilinear;
+  vtkNew<vtkDoubleArray> axis;
+  for (int i = 0; i < 4; ++i)
+  {
+    axis->InsertNextValue(i);
+    for (int j = 0; j < 3; ++j)
+    {
+      points->InsertNextPoint(j, i, 7);
+    }
+  }
+  structured->SetPoints(points);
+  rectilinear->SetDimensions(4, 4, 4);
+  rectilinear->SetXCoordinates(axis);
+  rectilinear->SetYCoordinates(axis);
+  rectilinear->SetZCoordinates(axis);
+  const MeshData quads = blockMesh(CellType::Quadrilateral, 3, 3, 1);
+  struct
+  {
+    vtkSmartPointer<vtkDataSet> data;
+    Index cells;
+  } cases[] = { { image.Get(), 24 }, { layer.Get(), 6 }, { structured.Get(), 6 },
+    { rectilinear.Get(), 27 }, { toGrid(quads), 9 }, { toGrid(quads, VTK_FLOAT), 9 },
+    { toPolyData(quads), 9 }, { toPolyData(quads, VTK_FLOAT), 9 } };
+  for (const auto& c : cases)
+  {
+    const Context context(c.data->GetClassName());
+    vtkNew<vtkElementQuality> filter;
+    filter->SetInputData(c.data);
+    for (const char* name : { "mean_ratio", "size", "scaled_jacobian" })
+    {
+      filter->AddMetricByName(name);
+    }
+    filter->Update();
+    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    TAUTLINE_CHECK(output->IsA(c.data->GetClassName()));
+    TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), c.cells);
+    TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), c.cells);
+    TAUTLINE_CHECK_EQUAL(std::string(filter->GetNotice()), "");
+    for (vtkIdType row = 0; row < 3; ++row)
+    {
+      const double side = c.cells == 9 ? quads.point(1)[0] - quads.point(0)[0] : 1;
+      TAUTLINE_CHECK_NEAR(statistic(filter, "Minimum", row), row == 1 ? side * side : 1, 1e-6);
+      TAUTLINE_CHECK_NEAR(statistic(filter, "Maximum", row), row == 1 ? side * side : 1, 1e-6);
+    }
+  }
+}
+
+/// Two blocks count as one data set, in the order of the blocks.
+void testBlocks()
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, toGrid(triangles({ height, 0.2 })));
+  blocks->SetBlock(2, toPolyData(triangles({ 0.1, height })));
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(blocks);
+  filter->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 4);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Maximum"), imrOf(0.1), 1e-14);
+  auto* worst =
+    vtkIdTypeArray::SafeDownCast(filter->GetStatistics()->GetColumnByName("WorstCells"));
+  TAUTLINE_CHECK_EQUAL(worst->GetTypedComponent(0, 0), 2);
+  auto* last = vtkDataSet::SafeDownCast(output->GetBlock(2));
+  TAUTLINE_CHECK_NEAR(component(last->GetCellData(), "imr", 0), imrOf(0.1), 1e-14);
+}
+
+void testSpecialCells()
+{
+  // Nothing, one unused point, a NaN, and ghosts.
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(vtkNew<vtkUnstructuredGrid>());
+  Messages messages(filter);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 0);
+
+  MeshData data = triangles({ height, 0.2, 0.5 });
+  data.addPoint({ 1e6, -1e6, 0 });
+  data.points[3 * 5] = std::numeric_limits<double>::quiet_NaN();
+  filter->SetInputData(toGrid(data));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 2);
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "NonFinite"), 1);
+  TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Validity", 1), -3);
+  TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "imr", 1), 0);
+  TAUTLINE_CHECK(messages.has("1 points have a NaN"));
+
+  auto grid = toGrid(triangles({ height, 0.1 }));
+  grid->AllocateCellGhostArray();
+  grid->GetCellGhostArray()->SetValue(1, vtkDataSetAttributes::DUPLICATECELL);
+  filter->SetInputData(grid);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 1);
+  TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 1), imrOf(0.1), 1e-14);
+
+  // The triangles of a volume mesh are measured, but not counted.
+  MeshData mixed;
+  mixed.addCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
+  mixed.addCell(CellType::Triangle, std::vector<Index>{ 0, 1, 2 });
+  mixed.addCell(VTK_LINE, { 0, 1 });
+  messages.clear();
+  filter->SetInputData(toGrid(mixed));
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 1);
+  TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 1), 1, 1e-14);
+  TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Validity", 2), -2);
+}
+
+void testReversed()
+{
+  MeshData mesh = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+  const std::vector<double> values = valuesOf(Mesh(mesh.view()), Metric::InverseMeanRatio);
+  for (Index cell = 0; cell < mesh.numberOfCells(); ++cell)
+  {
+    std::swap(mesh.connectivity[4 * cell + 1], mesh.connectivity[4 * cell + 2]);
+  }
+  const Index cells = mesh.numberOfCells();
+  for (int mode : { vtkElementQuality::MEASURE_AS_GIVEN, vtkElementQuality::MEASURE_FLIPPED,
+         vtkElementQuality::FLIP_OUTPUT })
+  {
+    const Context context("mode " + std::to_string(mode));
+    vtkNew<vtkElementQuality> filter;
+    filter->SetReversedMesh(mode);
+    const auto input = toGrid(mesh);
+    filter->SetInputData(input);
+    Messages messages(filter);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has("The mesh is reversed"));
+    TAUTLINE_CHECK_EQUAL(
+      statistic(filter, "Inverted"), mode == vtkElementQuality::MEASURE_AS_GIVEN ? cells : 0);
+    const double sign = mode == vtkElementQuality::MEASURE_AS_GIVEN ? -1 : 1;
+    TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 3), sign * values[3], 1e-13);
+
+    // A second measurement of a flipped output finds nothing to complain of; the input stays.
+    vtkNew<vtkElementQuality> again;
+    again->SetInputData(filter->GetOutputDataObject(0));
+    Messages second(again);
+    again->Update();
+    TAUTLINE_CHECK_EQUAL(second.empty(), mode == vtkElementQuality::FLIP_OUTPUT);
+    TAUTLINE_CHECK_EQUAL(input->GetCell(0)->GetPointId(1), mesh.connectivity[1]);
+  }
+  // One flipped cell in a consistent mesh.
+  for (Index cell = 1; cell < cells; ++cell)
+  {
+    std::swap(mesh.connectivity[4 * cell + 1], mesh.connectivity[4 * cell + 2]);
+  }
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(toGrid(mesh));
+  Messages messages(filter);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("orientation of the mesh is mixed"));
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 1);
+}
+
+void testTargets()
+{
+  const MeshData data = triangles({ 0.3, 2.0 });
+  vtkNew<vtkElementQuality> filter;
+  filter->AddMetricByName("mu_7");
+  filter->AddMetricByName("mu_size_nb");
+  const auto grid = toGrid(data);
+  filter->SetInputData(grid);
+
+  // Against itself every element is as wanted.
+  filter->SetTargetType(vtkElementQuality::REFERENCE);
+  filter->SetInputData(1, grid);
+  filter->Update();
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Maximum"), 0, 1e-12);
+
+  // A size from a cell array, and from a point array that is its constant.
+  filter->SetTargetType(vtkElementQuality::SIZE);
+  vtkNew<vtkDoubleArray> sizes, pointSizes;
+  sizes->SetName("sizes");
+  sizes->InsertNextValue(0.15);
+  sizes->InsertNextValue(0.5);
+  grid->GetCellData()->AddArray(sizes);
+  pointSizes->SetName("sizes");
+  pointSizes->SetNumberOfValues(6);
+  pointSizes->Fill(0.5);
+  grid->GetPointData()->AddArray(pointSizes);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes");
+  filter->Update();
+  TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "mu_size_nb", 0), 0, 1e-13);
+  TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "mu_size_nb", 1), 1, 1e-13);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "sizes");
+  filter->Update();
+  TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "mu_size_nb", 0), 0.7 * 0.7, 1e-13);
+
+  // The tensor in which the second triangle is equilateral with unit edges.
+  vtkNew<vtkDoubleArray> tensors;
+  tensors->SetName("tensors");
+  tensors->SetNumberOfComponents(6);
+  for (int i = 0; i < 2; ++i)
+  {
+    tensors->InsertNextTuple6(1, height * height / 4, 1, 0, 0, 0);
+  }
+  grid->GetCellData()->AddArray(tensors);
+  filter->SetTargetType(vtkElementQuality::TENSOR);
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "tensors");
+  filter->Update();
+  TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "mu_shape_size", 1), 0, 1e-12);
+  TAUTLINE_CHECK(component(cellsOf(filter), "mu_shape_size", 0) > 1);
+}
+
+void testErrors()
+{
+  vtkNew<vtkElementQuality> filter;
+  Messages messages(filter);
+  filter->AddMetricByName("beauty");
+  TAUTLINE_CHECK(messages.has("There is no metric 'beauty'"));
+  filter->AddMetric(1000);
+  TAUTLINE_CHECK(messages.has("no metric number 1000"));
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMetrics(), 0);
+
+  const auto grid = toGrid(triangles({ height }));
+  filter->SetInputData(grid);
+  const auto refused = [&](const char* part)
+  {
+    messages.clear();
+    filter->Modified();
+    filter->Update();
+    TAUTLINE_CHECK(messages.has(part));
+    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), 0);
+  };
+  filter->SetTargetType(vtkElementQuality::REFERENCE);
+  refused("there is none");
+  filter->SetInputData(1, toGrid(triangles({ height, height })));
+  refused("The reference mesh has 6 points");
+  filter->SetInputData(1, toGrid(triangles({ 0.0 })));
+  refused("inverted or degenerate in the reference mesh");
+  filter->SetTargetType(vtkElementQuality::SIZE);
+  refused("needs a size");
+  vtkNew<vtkDoubleArray> sizes;
+  sizes->SetName("sizes");
+  sizes->InsertNextValue(-1);
+  grid->GetCellData()->AddArray(sizes);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes");
+  refused("sizes must be positive");
+  filter->SetTargetType(vtkElementQuality::IDEAL);
+  filter->SetEpsilon(0);
+  refused("epsilon positive");
+}
+
+void testThreads()
+{
+  MeshData mesh = shuffled(blockMesh(CellType::Tetrahedron, 12, 12, 12), 3);
+  Random random(5);
+  mesh.transform([&](const Vec3& p) { return p + random.vector(-0.02, 0.02); });
+  std::vector<double> first;
+  for (int threads : { 1, 2, 4 })
+  {
+    vtkNew<vtkElementQuality> filter;
+    filter->SetThreads(threads);
+    filter->SetInputData(toGrid(mesh));
+    filter->Update();
+    auto* values = vtkDoubleArray::SafeDownCast(cellsOf(filter)->GetArray("imr"));
+    std::vector<double> all(
+      values->GetPointer(0), values->GetPointer(0) + values->GetNumberOfValues());
+    all.push_back(statistic(filter, "Mean"));
+    if (first.empty())
+    {
+      first = all;
+    }
+    TAUTLINE_CHECK(first.size() == all.size() &&
+      std::memcmp(first.data(), all.data(), all.size() * sizeof(double)) == 0);
+  }
+}
+
+/// An abort between metrics leaves the mesh with the metrics measured so far.
+void testAbort()
+{
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(toGrid(triangles({ height, 0.2 })));
+  filter->AddMetricByName("imr");
+  filter->AddMetricByName("si");
+  filter->AddMetricByName("rr");
+  vtkNew<vtkCallbackCommand> command;
+  command->SetCallback(
+    [](vtkObject* caller, unsigned long, void*, void* progress)
+    {
+      if (*static_cast<double*>(progress) > 0.3)
+      {
+        static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+      }
+    });
+  filter->AddObserver(vtkCommand::ProgressEvent, command);
+  filter->Update();
+  TAUTLINE_CHECK(cellsOf(filter)->GetArray("imr") != nullptr);
+  TAUTLINE_CHECK(cellsOf(filter)->GetArray("rr") == nullptr);
+}
+}
+
+int TestElementQuality(int, char*[])
+{
+  testTables();
+  testAngles();
+  testDataSets();
+  testBlocks();
+  testSpecialCells();
+  testReversed();
+  testTargets();
+  testErrors();
+  testThreads();
+  testAbort();
+  return exitCode();
+}
