@@ -54,7 +54,7 @@ enum Validity : signed char
   Degenerate = 0,   ///< some corner Jacobian vanishes (relative to its edges), none is negative
   Inverted = -1,    ///< some corner Jacobian is negative
   NotMeasured = -2, ///< a cell type Tautline does not compute with
-  NonFinite = -3    ///< a vertex has a NaN or infinite coordinate
+  NonFinite = -3    ///< a coordinate is NaN or infinite, or products of edges overflow (beyond 1e100)
 };
 
 /// Cells of one type, in increasing order of id.
@@ -132,7 +132,8 @@ public:
   /**
    * @brief Treats the mesh as its mirror image, for one that is reversed throughout: every sign and
    * every metric is then that of the cells listed in the opposite order. Gradients stay those with
-   * respect to the actual coordinates. Off by default.
+   * respect to the actual coordinates. Metrics that depend on orientation in space see a volume mirrored
+   * in x. Off by default.
    */
   void setMirrored(bool mirrored) { this->Mirrored = mirrored; }
   bool mirrored() const { return this->Mirrored; }

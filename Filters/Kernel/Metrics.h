@@ -7,7 +7,8 @@
  *     std::vector<double> imr(mesh.view().numberOfCells);
  *     tautline::evaluateMetric(mesh, tautline::Metric::InverseMeanRatio, {}, imr.data());
  *
- * Values are always finite. A degenerate element has the value 0 of every metric that is singular
+ * Values are always finite, and right for edges between 1e-35 and 1e35; beyond, an element may count as
+ * degenerate and be 0. A degenerate element has the value 0 of every metric that is singular
  * there, and so has a cell the metric is not defined on; Mesh::classifyCells() tells them apart.
  */
 #ifndef tautline_Metrics_h
@@ -75,7 +76,7 @@ enum class InvertedValue
 {
   Negative, ///< below zero, where every valid element is above
   Larger,   ///< finite and worse than that of a valid element: the metric can untangle
-  Unsigned  ///< like that of a valid element; only `Validity` tells
+  Unsigned  ///< in the range of valid elements; only `Validity` tells
 };
 
 /// How a metric is built, which decides what options it takes.
