@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 namespace tautline
 {
@@ -63,57 +64,83 @@ BatchContext contextFor(
     metricInfo(metric).direction == Direction::LargerIsBetter };
 }
 
+/// Calls work(N) with the number of nodes as a compile-time constant, so that loops over it unroll.
+template <class Work>
+void withNodes(const CellTopology& topology, const Work& work)
+{
+  switch (topology.nodes)
+  {
+    case 3:
+      return work(std::integral_constant<int, 3>());
+    case 4:
+      return work(std::integral_constant<int, 4>());
+    case 5:
+      return work(std::integral_constant<int, 5>());
+    case 6:
+      return work(std::integral_constant<int, 6>());
+    default:
+      static_assert(MaxNodes == 8, "a case for each number of nodes");
+      return work(std::integral_constant<int, 8>());
+  }
+}
+
+/// The nodes of each cell of a batch, in the connectivity.
+using BatchNodes = const Index* [PacketWidth];
+
 /// Loads the vertices of cells [begin, begin + count) of a block; order maps positions if not null.
-void gather(const BatchContext& context, const Index* order, Index begin, int count, Batch& batch)
+template <int Nodes>
+void gather(const BatchContext& context, const Index* order, Index begin, int count, Batch& batch,
+  BatchNodes& nodes)
 {
   const MeshView& view = context.mesh->view();
-  const int nodes = context.topology->nodes;
-  const Index* base[PacketWidth];
   for (int l = 0; l < PacketWidth; ++l)
   {
     const Index position = begin + (l < count ? l : count - 1);
     const Index cell = context.block->cell(order ? order[position] : position);
     batch.cells[l] = cell;
-    base[l] = view.connectivity + view.offsets[cell];
+    nodes[l] = view.connectivity + view.offsets[cell];
   }
   batch.count = count;
-  for (int k = 0; k < nodes; ++k)
+  for (int k = 0; k < Nodes; ++k)
   {
-    alignas(sizeof(Packet)) double lanes[3][PacketWidth];
+    const double* p[PacketWidth];
     for (int l = 0; l < PacketWidth; ++l)
     {
-      const double* p = view.points + 3 * base[l][k];
-      lanes[0][l] = p[0];
-      lanes[1][l] = p[1];
-      lanes[2][l] = p[2];
+      p[l] = view.points + 3 * nodes[l][k];
     }
-    for (int c = 0; c < 3; ++c)
-    {
-      batch.points[k][c] = *reinterpret_cast<const Packet*>(lanes[c]);
-    }
+    loadPoints(p, batch.points[k]);
   }
   if (context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume)
   {
-    for (int k = 0; k < nodes; ++k)
+    for (int k = 0; k < Nodes; ++k)
     {
       batch.points[k][0] = -batch.points[k][0];
     }
   }
 }
 
-/// Undoes the mirroring of gather() and removes what is not finite.
-void finishGradient(const BatchContext& context, Batch& batch)
+/// Undoes the mirroring of gather(), removes what is not finite, multiplies by a factor and hands
+/// the gradient at node k of cell l of the batch to put(lanes, l, k), cell by cell.
+template <int Nodes, class Put>
+void scatter(const BatchContext& context, const Batch& batch, Packet factor, const Put& put)
 {
   const bool mirrored = context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
-  for (int k = 0; k < context.topology->nodes; ++k)
+  VectorLanes lanes[Nodes];
+  for (int k = 0; k < Nodes; ++k)
   {
-    if (mirrored)
-    {
-      batch.gradient[k][0] = -batch.gradient[k][0];
-    }
+    Packet g[3];
     for (int c = 0; c < 3; ++c)
     {
-      batch.gradient[k][c] = finiteOrZero(batch.gradient[k][c]);
+      g[c] = factor * finiteOrZero(batch.gradient[k][c]);
+    }
+    g[0] = mirrored ? -g[0] : g[0];
+    lanes[k].set(g);
+  }
+  for (int l = 0; l < batch.count; ++l)
+  {
+    for (int k = 0; k < Nodes; ++k)
+    {
+      put(lanes[k], l, k);
     }
   }
 }
@@ -145,36 +172,33 @@ void evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& optio
       continue;
     }
     const BatchContext context = contextFor(mesh, block, metric, options);
-    forEachChunk(block.count, options.threads,
-      [&](Index, Index begin, Index end)
+    withNodes(*context.topology,
+      [&](auto nodesOfCell)
       {
-        Batch batch;
-        for (Index i = begin; i < end; i += PacketWidth)
-        {
-          const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
-          gather(context, nullptr, i, count, batch);
-          evaluate(context, batch);
-          batch.value = finiteOrZero(batch.value);
-          for (int l = 0; l < count; ++l)
+        constexpr int Nodes = decltype(nodesOfCell)::value;
+        forEachChunk(block.count, options.threads,
+          [&](Index, Index begin, Index end)
           {
-            values[batch.cells[l]] = batch.value[l];
-          }
-          if (gradients)
-          {
-            finishGradient(context, batch);
-            for (int l = 0; l < count; ++l)
+            Batch batch;
+            BatchNodes nodes;
+            for (Index i = begin; i < end; i += PacketWidth)
             {
-              double* g = gradients + 3 * view.offsets[batch.cells[l]];
-              for (int k = 0; k < context.topology->nodes; ++k)
+              const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
+              gather<Nodes>(context, nullptr, i, count, batch, nodes);
+              evaluate(context, batch);
+              batch.value = finiteOrZero(batch.value);
+              for (int l = 0; l < count; ++l)
               {
-                for (int c = 0; c < 3; ++c)
-                {
-                  g[3 * k + c] = batch.gradient[k][c][l];
-                }
+                values[batch.cells[l]] = batch.value[l];
+              }
+              if (gradients)
+              {
+                scatter<Nodes>(context, batch, broadcast(1.0),
+                  [&](const VectorLanes& lanes, int l, int k)
+                  { lanes.storeTo(gradients + 3 * (nodes[l] - view.connectivity + k), l); });
               }
             }
-          }
-        }
+          });
       });
   }
 }
@@ -403,45 +427,33 @@ double MetricSum::run(double* gradient) const
       const BatchContext context = contextFor(this->TheMesh, block, this->TheMetric, this->Options);
       const Index* order =
         this->Order[chunk.block].empty() ? nullptr : this->Order[chunk.block].data();
-      const int nodes = context.topology->nodes;
       Packet total = {};
-      Batch batch;
-      for (Index begin = chunk.begin; begin < chunk.end; begin += PacketWidth)
-      {
-        const int count = static_cast<int>(std::min<Index>(PacketWidth, chunk.end - begin));
-        gather(context, order, begin, count, batch);
-        evaluate(context, batch);
-        Packet value, slope;
-        raise(finiteOrZero(batch.value), this->Power, value, slope);
-        for (int l = count; l < PacketWidth; ++l)
+      withNodes(*context.topology,
+        [&](auto nodesOfCell)
         {
-          value[l] = 0;
-        }
-        total += value;
-        if constexpr (WithGradient)
-        {
-          finishGradient(context, batch);
-          alignas(sizeof(Packet)) double lanes[MaxNodes][3][PacketWidth];
-          for (int k = 0; k < nodes; ++k)
+          constexpr int Nodes = decltype(nodesOfCell)::value;
+          Batch batch;
+          BatchNodes nodes;
+          for (Index begin = chunk.begin; begin < chunk.end; begin += PacketWidth)
           {
-            for (int c = 0; c < 3; ++c)
+            const int count = static_cast<int>(std::min<Index>(PacketWidth, chunk.end - begin));
+            gather<Nodes>(context, order, begin, count, batch, nodes);
+            evaluate(context, batch);
+            Packet value, slope;
+            raise(finiteOrZero(batch.value), this->Power, value, slope);
+            for (int l = count; l < PacketWidth; ++l)
             {
-              *reinterpret_cast<Packet*>(lanes[k][c]) = slope * batch.gradient[k][c];
+              value[l] = 0;
+            }
+            total += value;
+            if constexpr (WithGradient)
+            {
+              scatter<Nodes>(context, batch, slope,
+                [&](const VectorLanes& lanes, int l, int k)
+                { lanes.addTo(gradient + 3 * nodes[l][k], l); });
             }
           }
-          for (int l = 0; l < count; ++l)
-          {
-            const Index* node = view.connectivity + view.offsets[batch.cells[l]];
-            for (int k = 0; k < nodes; ++k)
-            {
-              double* g = gradient + 3 * node[k];
-              g[0] += lanes[k][0][l];
-              g[1] += lanes[k][1][l];
-              g[2] += lanes[k][2][l];
-            }
-          }
-        }
-      }
+        });
       double sum = 0;
       for (int l = 0; l < PacketWidth; ++l)
       {

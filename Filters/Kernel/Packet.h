@@ -106,11 +106,110 @@ inline Packet inverseCbrt(Packet x)
   Packet y = reinterpret_cast<Packet>(__builtin_convertvector(scaled, Mask));
   for (int step = 0; step < 3; ++step)
   {
-    const Packet r = 1.0 - x * y * y * y;
+    const Packet r = 1.0 - (x * y) * (y * y); // short chains
     y += y * r * (third + (2.0 / 9.0) * r);
   }
   return y;
 }
+
+/// The halves of packets of pairs: (a0 b0 a2 b2 ...) and (a1 b1 a3 b3 ...).
+inline Packet evenPairs(Packet a, Packet b)
+{
+#if defined(__AVX512F__)
+  return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+#elif defined(__AVX__)
+  return __builtin_shufflevector(a, b, 0, 4, 2, 6);
+#else
+  return __builtin_shufflevector(a, b, 0, 2);
+#endif
+}
+
+inline Packet oddPairs(Packet a, Packet b)
+{
+#if defined(__AVX512F__)
+  return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+#elif defined(__AVX__)
+  return __builtin_shufflevector(a, b, 1, 5, 3, 7);
+#else
+  return __builtin_shufflevector(a, b, 1, 3);
+#endif
+}
+
+/// Two doubles, neighbours in memory.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
+inline Pair loadPair(const double* p)
+{
+  Pair pair;
+  std::memcpy(&pair, p, sizeof(pair));
+  return pair;
+}
+
+inline void storePair(double* p, Pair pair)
+{
+  std::memcpy(p, &pair, sizeof(pair));
+}
+
+/// The pairs at p[0], p[2], p[4], ..., each `offset` further on.
+inline Packet loadPairs(const double* const* p, int offset)
+{
+#if defined(__AVX__)
+  const auto two = [=](int i)
+  {
+    return __builtin_shufflevector(
+      loadPair(p[i] + offset), loadPair(p[i + 2] + offset), 0, 1, 2, 3);
+  };
+#if defined(__AVX512F__)
+  return __builtin_shufflevector(two(0), two(4), 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  return two(0);
+#endif
+#else
+  return loadPair(p[0] + offset);
+#endif
+}
+
+/// Loads x y z of a point per lane.
+inline void loadPoints(const double* const* p, Packet* xyz)
+{
+  // As pairs x y and y z: nothing beyond a point is read.
+  const Packet even = loadPairs(p, 0), odd = loadPairs(p + 1, 0);
+  xyz[0] = evenPairs(even, odd);
+  xyz[1] = oddPairs(even, odd);
+  xyz[2] = oddPairs(loadPairs(p, 1), loadPairs(p + 1, 1));
+}
+
+/// A vector x y z per lane, laid out so that each can be added to or stored in memory by itself.
+class VectorLanes
+{
+public:
+  void set(const Packet* xyz)
+  {
+    this->XY[0] = evenPairs(xyz[0], xyz[1]);
+    this->XY[1] = oddPairs(xyz[0], xyz[1]);
+    this->Z = xyz[2];
+  }
+  void addTo(double* p, int lane) const
+  {
+    storePair(p, loadPair(p) + this->xy(lane));
+    p[2] += this->z(lane);
+  }
+  void storeTo(double* p, int lane) const
+  {
+    storePair(p, this->xy(lane));
+    p[2] = this->z(lane);
+  }
+
+private:
+  Pair xy(int lane) const
+  {
+    return loadPair(reinterpret_cast<const double*>(this->XY + lane % 2) + (lane & ~1));
+  }
+  double z(int lane) const { return reinterpret_cast<const double*>(&this->Z)[lane]; }
+
+  Packet XY[2];
+  Packet Z;
+};
 
 inline bool any(Mask mask)
 {

@@ -238,9 +238,7 @@ std::string MeshAdapter::notice() const
         vtkCellTypes::GetClassNameFromTypeId(entry.first) + ",";
     }
     text.back() = '.';
-    text +=
-      " Vertices and lines have no quality; run Triangulate or Tetrahedralize first to measure "
-      "polygons, strips and polyhedra. ";
+    text += " Run Triangulate or Tetrahedralize first to measure them. ";
   }
   if (mesh.nonFinitePoints() > 0)
   {

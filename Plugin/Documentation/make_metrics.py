@@ -2,7 +2,8 @@
 
 The table of the help page metrics.html (from metrics.html.in) and the lists of metrics in
 ServerManager/*.xml (between <!-- metrics --> and the end of the domain). Without an option, compares and
-exits with 1 if they differ; --write writes them; --pictures draws metric_<name>.png with vtkMetricField.
+exits with 1 if they differ or if README.md tells another number of metrics; --write writes them;
+--pictures draws metric_<name>.png with vtkMetricField.
 Needs the package tautline: eval "$(./run env)" first.
 """
 
@@ -183,6 +184,8 @@ def main(options: set) -> int:
         elif not path.is_file() or path.read_text(encoding="utf-8") != content:
             complaints.append(f"{path} is not what the registry says")
     lists = sum(content.count("<!-- metrics -->") for content in wanted.values())
+    if f"{len(metrics)} quality metrics" not in (HERE.parents[1] / "README.md").read_text(encoding="utf-8"):
+        complaints.append(f"README.md does not say that there are {len(metrics)} quality metrics")
     complaints += [] if lists else ["no XML file has a list of metrics"]
     print("\n".join(complaints + [f"{len(metrics)} metrics, {lists} lists of them, {len(complaints)} complaints"]))
     if complaints:

@@ -12,7 +12,6 @@
 #include "vtkMeshQuality.h"
 
 #include <malloc.h>
-#include <omp.h>
 
 #include <chrono>
 #include <ctime>

@@ -298,8 +298,8 @@ void testAngles()
   data.addCell(
     CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, std::nan(""), 0 } });
   TAUTLINE_CHECK((distributionOf(data) == Counts{ 1, 2, 3, 2, 1 }));
-  // A dart: 90, 11.3 twice, and a reflex corner of 247, listed either way round.
-  const std::vector<Vec3> dart = { { 0, 0, 0 }, { 3, 0, 0 }, { 0.5, 0.5, 0 }, { 0, 3, 0 } };
+  // A dart: 90, 2 twice, and a reflex corner of 266, listed either way round.
+  const std::vector<Vec3> dart = { { 0, 0, 0 }, { 3, 0, 0 }, { 0.1, 0.1, 0 }, { 0, 3, 0 } };
   const MeshData darts[] = { singleCell(CellType::Quadrilateral, dart),
     singleCell(CellType::Quadrilateral, { dart[0], dart[3], dart[2], dart[1] }) };
   TAUTLINE_CHECK((distributionOf(darts[0]) == Counts{ 2, 0, 0, 1, 1 }));

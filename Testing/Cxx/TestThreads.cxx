@@ -14,7 +14,7 @@ constexpr int mostThreads = 4;
 // Cubes along an edge of a block of tetrahedra of more than 16 chunks of 4096: renumbered at random, its
 // cells are summed along a space-filling curve.
 constexpr Index manyCubes = 25;
-constexpr double powers[] = { 1, 2, 3, -2, 0.5 };
+constexpr double powers[] = { 1, 2, -2, 0.5 };
 
 /// A block whose inner points are moved by up to `amplitude`.
 MeshData perturbedBlock(CellType type, Index n, double amplitude)
@@ -39,7 +39,7 @@ MeshData mixedBlocks()
   for (CellType type : { CellType::Hexahedron, CellType::Tetrahedron, CellType::Wedge,
          CellType::Pyramid, CellType::Triangle })
   {
-    const MeshData part = perturbedBlock(type, topology(type).dimension == 2 ? 60 : 14, 0.15);
+    const MeshData part = perturbedBlock(type, topology(type).dimension == 2 ? 60 : 12, 0.15);
     for (Index i = 0; i < part.numberOfPoints(); ++i)
     {
       all.addPoint(part.point(i));
@@ -147,9 +147,8 @@ double largest(const std::vector<double>& values)
   return result;
 }
 
-const std::vector<Metric> summedMetrics = { Metric::InverseMeanRatio, Metric::MeanRatio,
-  Metric::ConditioningScaleInvariant, Metric::Size, Metric::UntangleBeta, Metric::ScaledJacobian,
-  Metric::ShapeNonBarrier, Metric::ShapeSizeBarrier };
+const std::vector<Metric> summedMetrics = { Metric::InverseMeanRatio, Metric::Size,
+  Metric::UntangleBeta, Metric::ScaledJacobian, Metric::ShapeNonBarrier };
 
 void testSums(const MeshData& data, const std::vector<Metric>& metrics)
 {

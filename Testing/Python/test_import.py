@@ -1,5 +1,5 @@
-"""The compiled classes are in the package tautline."""
+"""The compiled classes and the verbs are in the package tautline."""
 
 import tautline
 
-assert tautline.vtkElementQuality().IsA("vtkDataSetAlgorithm")
+assert tautline.vtkElementQuality().IsA("vtkDataObjectAlgorithm")

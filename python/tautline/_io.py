@@ -7,7 +7,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
 
 from ._errors import Error, plain, run, watch
@@ -32,6 +32,12 @@ _FORMATS = {
     ".obj": ("vtkIOGeometry", "vtkOBJReader", None, "vtkPolyData"),
 }
 
+# VTK 9.1 and 9.2 with the expat of today's Debian 12 (VTK issue 19258).
+_APPENDED = (
+    "The file has appended data, which VTK before 9.3 cannot read with a recent libexpat: "
+    "save it with the data mode Binary or Ascii."
+)
+
 
 def read(file: str | PathLike, **options: Any) -> vtkDataObject:
     """Read a mesh, in the format of the ending of its name.
@@ -55,6 +61,7 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
             run(reader)
         except Error as error:
             details = [text for text in said() if text not in str(error)]
+            details += [_APPENDED] if b"<AppendedData" in Path(name).read_bytes() else []
             raise Error("\n".join([f"{name}: {error}", *details])) from None
         mesh = reader.GetOutputDataObject(0)
     if not isinstance(mesh, (vtkDataSet, vtkCompositeDataSet)):
@@ -83,8 +90,8 @@ def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
         ours = [e for e, f in _FORMATS.items() if f[2] and (f[3] is None or data.IsA(f[3]))]
         raise Error(f"{name}: '{ending}' cannot hold a {data.GetClassName()}; {' '.join(ours)} can")
     writer = _make(ending, 2)
-    if hasattr(writer, "SetFileTypeToBinary"):
-        writer.SetFileTypeToBinary()
+    for binary in ("SetFileTypeToBinary", "SetDataModeToBinary"):  # appended data: see _APPENDED
+        getattr(writer, binary, int)()
     writer.SetInputData(data)
     writer.SetFileName(name)
     messages = watch(writer)
@@ -107,7 +114,10 @@ class _Quiet:
         self.window = vtkStringOutputWindow()
         self.before = vtkOutputWindow.GetInstance()
         vtkOutputWindow.SetInstance(self.window)
+        self.verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
         return lambda: [plain(text) for text in self.window.GetOutput().split("\n\n") if text.strip()]
 
     def __exit__(self, *_):
         vtkOutputWindow.SetInstance(self.before)
+        vtkLogger.SetStderrVerbosity(self.verbosity)

@@ -36,7 +36,7 @@ _CELLS = {  # name: VTK's number, points
     "wedge": (VTK_WEDGE, 6),
     "pyramid": (VTK_PYRAMID, 5),
 }
-_ALIASES = {"tri": "triangle", "quad": "quadrilateral", "tet": "tetrahedron", "tetra": "tetrahedron", "hex": "hexahedron"}
+_ALIASES = {"tri": "triangle", "quad": "quadrilateral", "tet": "tetrahedron", "hex": "hexahedron"}
 # What an array of so many points per cell is of, with points in the plane or in space.
 _FLAT = {3: "triangle", 4: "quadrilateral"}
 _SOLID = {3: "triangle", 4: "tetrahedron", 5: "pyramid", 6: "wedge", 8: "hexahedron"}

@@ -12,13 +12,15 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 import tautline
 
 from ._errors import Error, run, watch
-from ._mesh import Mesh, as_mesh, cell_array, columns, point_array, with_array
+from ._mesh import Mesh, as_mesh, cell_array, columns, leaves, point_array, with_array
 from ._metrics import Metrics, choose, metrics as known_metrics, pick, within
 
 COMBINATIONS = ("mean", "worst", "power mean")
 TARGETS = ("ideal", "reference", "size", "tensor")
 REVERSED = ("measure as given", "measure flipped", "flip output")
 _MOST_THREADS = 1024
+_NOT_NUMBERS = ("Metric", "WorstCells", "WorstPositions")  # columns of the statistics
+_OWN = "given target"  # the name of the array a target given in numbers goes to the filter in
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,9 @@ def quality(
     data = _set_target(measure, data, target, {"reference": reference, "size": size, "tensor": tensor})
     measure.SetInputDataObject(0, data)
     run(measure, messages)
+    for fields in ("GetCellData", "GetPointData"):
+        for leaf in leaves(measure.GetOutputDataObject(0)):
+            getattr(leaf, fields)().RemoveArray(_OWN)
     return _result(measure)
 
 
@@ -128,7 +133,7 @@ def _set_target(measure: Any, data: vtkDataObject, target: str, given: dict[str,
         return data
     if kind == "size" and not isinstance(value, str) and np.ndim(value) == 0:
         value = np.full(data.GetNumberOfCells(), value)
-    data, where, name = with_array(data, value, f"target {kind}")
+    data, where, name = with_array(data, value, _OWN)
     measure.SetInputArrayToProcess(0 if kind == "size" else 1, 0, 0, where, name)
     return data
 
@@ -159,7 +164,7 @@ def _statistics(table: dict[str, Any], worst: vtkPolyData) -> dict[str, dict[str
     of, ids, values = (point_array(worst, name) for name in ("Metric", "CellId", "Value"))
     result = {}
     for row, name in enumerate(table["Metric"]):
-        facts = {snake(key): _plain(table[key][row]) for key in table if key not in ("Metric", "WorstCells", "WorstPositions")}
+        facts = {snake(key): _plain(table[key][row]) for key in table if key not in _NOT_NUMBERS}
         mine = np.flatnonzero(of == numbers[name])
         positions = np.asarray(table["WorstPositions"][row]).reshape(-1, 3)
         facts["worst"] = float(values[mine[0]]) if len(mine) else float("nan")

@@ -6,42 +6,104 @@ usage: pvpython demo.py OUTPUT_DIRECTORY [MESH]
 import sys
 from pathlib import Path
 
+import tautline
 from paraview import simple
+from tautline import _tables
 
-from tautline import vtkElementQuality
-
-METRIC = "imr"
+METRICS = ["imr", "rr", "scaled_jacobian"]
+SHOWN, TITLE = METRICS[0], "Inverse mean ratio"
 CELLS = 1  # vtkDataObject::CELL
+WORST = 3  # elements listed
+SIZE = [1200, 800]
+FROM, ABOVE, UP, ZOOM = [0.75, -1.0, 0.55], [0, 0, 1], [0, 0, 1], 1.1  # where the camera looks from
+BLACK, WHITE, SHADOW = [0, 0, 0], [1, 1, 1], [0.2, 0.3, 0.4]
+EDGED = {"Representation": "Surface With Edges", "EdgeColor": [0.3, 0.3, 0.3], "LineWidth": 1.0}
 
 
-def main(output: Path, mesh: Path) -> None:
-    output.mkdir(parents=True, exist_ok=True)
-    source = simple.OpenDataFile(str(mesh))
-    quality = simple.ElementQuality(Input=source)
+def measure(mesh: Path, output: Path) -> list[Path]:
+    """Measure with the Python verb; print the table, write mesh and table."""
+    result = tautline.quality(mesh, METRICS)
+    print(f"{mesh}\n{_tables.quality_text(result, WORST)}\n")
+    written = [output / "quality.vtu", output / "quality.csv"]
+    tautline.write(result, written[0])
+    written[1].write_text(_tables.csv_text(_tables.quality_rows(result)))
+    return written
+
+
+def show(proxy, view, **options):
+    """Show a mesh in the colours of its quality, which ParaView's ColorBy would stretch."""
+    display = simple.Show(proxy, view)
+    display.SetScalarColoring(SHOWN, CELLS)
+    display.Ambient, display.Diffuse = 0.35, 0.75
+    for name, value in options.items():
+        setattr(display, name, value)
+    return display
+
+
+def cut_open(quality, view, middle: list[float]) -> None:
+    """Half of the elements, the other half as a shadow, and in it the inverted elements."""
+    for half, options in ((0, EDGED), (1, {"Opacity": 0.08})):
+        clip = simple.Clip(Input=quality, ClipType="Plane", Crinkleclip=1, Invert=half)
+        clip.ClipType.Origin, clip.ClipType.Normal = middle, [0, 1, 0]
+        display = show(clip, view, **options)
+        if half:
+            simple.ColorBy(display, None)
+            display.AmbientColor = display.DiffuseColor = SHADOW
+    inverted = simple.Threshold(Input=quality, Scalars=["CELLS", "Validity"])
+    inverted.ThresholdMethod, inverted.LowerThreshold, inverted.UpperThreshold = "Between", -1, -1
+    show(inverted, view, **EDGED)
+
+
+def picture(mesh: Path, file: Path) -> None:
+    """Measure with the ParaView filter, look inside, save a picture."""
+    quality = simple.ElementQuality(Input=simple.OpenDataFile(str(mesh)))
     quality.UpdatePipeline()
+    xmin, xmax, ymin, ymax, zmin, zmax = quality.GetDataInformation().GetBounds()
+    middle = [(xmin + xmax) / 2, (ymin + ymax) / 2, (zmin + zmax) / 2]
+    solid = zmax > zmin
 
     view = simple.CreateView("RenderView")
-    view.ViewSize = [800, 600]
-    display = simple.Show(quality, view)
-    display.Representation = "Surface With Edges"
-    display.SetScalarColoring(METRIC, CELLS)
-    display.SetScalarBarVisibility(view, True)
+    view.ViewSize = SIZE
+    view.UseColorPaletteForBackground = 0
+    view.Background = WHITE
+    view.OrientationAxesVisibility = 0
+    view.CameraParallelProjection = 1
+    if solid:
+        cut_open(quality, view, middle)
+    else:
+        show(quality, view, **EDGED)
+
+    bar = simple.GetScalarBar(simple.GetColorTransferFunction(SHOWN), view)
+    bar.Title, bar.ComponentTitle, bar.HorizontalTitle = TITLE, "", 1
+    bar.TitleColor = bar.LabelColor = BLACK
+    bar.TitleFontSize, bar.LabelFontSize = 20, 18
+    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.1f", "%.1f"
+    bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.82, 0.27], 0.5
+    bar.Visibility = 1
+    note = simple.Show(simple.Text(Text="magenta: inverted"), view)
+    note.Color, note.FontSize = BLACK, 18
+    note.WindowLocation, note.Position = "Any Location", [0.755, 0.2]
+
+    camera = view.GetActiveCamera()
+    camera.SetFocalPoint(middle)
+    camera.SetPosition([m + f for m, f in zip(middle, FROM if solid else ABOVE)])
+    camera.SetViewUp(UP if solid else [0, 1, 0])
     simple.ResetCamera(view)
+    camera.Zoom(ZOOM)
+    camera.SetWindowCenter(0.2, 0)
+    simple.SaveScreenshot(str(file), view, ImageResolution=SIZE)
 
-    written = [output / name for name in ("quality.vtu", "quality.csv", "quality.png")]
-    simple.SaveData(str(written[0]), proxy=quality)
-    simple.SaveData(str(written[1]), proxy=quality, FieldAssociation="Cell Data")
-    simple.SaveScreenshot(str(written[2]), view)
 
-    low, high = quality.CellData[METRIC].GetRange()
-    print(f"{mesh.name}: {METRIC} from {low:.4g} to {high:.4g}, measured by {vtkElementQuality.__name__}")
-    for path in written:
-        print(path)
+def main(mesh: Path, output: Path) -> None:
+    """Write quality.vtu, quality.csv and quality.png of a mesh to a directory."""
+    output.mkdir(parents=True, exist_ok=True)
+    written = [*measure(mesh, output), output / "quality.png"]
+    picture(mesh, written[-1])
+    print("\n".join(map(str, written)))
 
 
 if __name__ == "__main__":
-    data = Path(__file__).resolve().parents[2] / "Data"
-    meshes = [Path(sys.argv[2])] if len(sys.argv) > 2 else sorted(data.glob("*.vt[ku]"))
-    if len(sys.argv) < 2 or not meshes:
+    if len(sys.argv) < 2:
         sys.exit(__doc__)
-    main(Path(sys.argv[1]), meshes[0])
+    data = Path(__file__).resolve().parents[2] / "Data"
+    main(Path(sys.argv[2]) if len(sys.argv) > 2 else data / "bracket-tangled.vtu", Path(sys.argv[1]))

@@ -1,0 +1,64 @@
+"""test_readme.py SOURCE BUILD WORK PVPYTHON...: runs every example of README.md as a reader would.
+
+A comment before each block of code says how: <!-- test: sh -->, python3, pvpython (PVPYTHON and its arguments run
+it), file NAME (saves it), install (runs it with this build tree), prefix (runs it and then looks whether what it sets
+exists), skip. Blocks run one after the other in one directory, which has the sample meshes in Data.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+BLOCK = re.compile(r"^(?:<!-- test: (?P<how>[^>]+?) -->\n)?```(?P<language>\w*)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL)
+WRONG = re.compile(r"Traceback|ERR\||ERROR")  # pvpython does not fail when a filter does
+LOOK = 'for path in "$PYTHONPATH/tautline" "$PV_PLUGIN_PATH"/Tautline "$CMAKE_PREFIX_PATH"/include; do ls -d "$path"; done'
+
+
+def run(command: list, work: Path, environment: dict) -> None:
+    done = subprocess.run(command, cwd=work, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    print(done.stdout, flush=True)
+    if done.returncode != 0 or WRONG.search(done.stdout):
+        sys.exit(f"this example does not work (exit code {done.returncode})")
+
+
+def environment_of(build: Path, home: Path) -> dict:
+    """What ./run env sets; python3 is the interpreter of this script."""
+    environment = dict(os.environ, CMAKE_PREFIX_PATH=str(build), HOME=str(home))
+    environment["PATH"] = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    environment["PYTHONPATH"] = str(build / "lib/python3/dist-packages")
+    environment["PV_PLUGIN_PATH"] = str(next(build.glob("lib*/**/plugins"), ""))
+    return environment
+
+
+def main(source: Path, build: Path, work: Path, pvpython: list) -> None:
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    (work / "Data").symlink_to(source / "Data")
+    environment = environment_of(build, work)
+    ran = 0
+    for block in BLOCK.finditer((source / "README.md").read_text(encoding="utf-8")):
+        how, code = block["how"], block["code"]
+        print(f"--- {how}\n{code}", flush=True)
+        if how is None:
+            sys.exit('this block has no comment "test: ..." before it')
+        kind, _, name = how.partition(" ")
+        if kind == "skip" or (kind == "pvpython" and not pvpython):
+            continue
+        if kind == "file":
+            (work / name).write_text(code, encoding="utf-8")
+            continue
+        script = work / f"example.{kind}"
+        script.write_text({"install": code.replace("install build", f"install '{build}'"), "prefix": code + LOOK}.get(kind, code))
+        interpreters = {"python3": [sys.executable], "pvpython": pvpython}
+        run([*interpreters.get(kind, ["bash", "-eu"]), str(script)], work, environment)
+        ran += 1
+    print(f"{ran} examples work")
+    if not ran:
+        sys.exit("README.md has no example")
+
+
+if __name__ == "__main__":
+    main(*(Path(argument).resolve() for argument in sys.argv[1:4]), sys.argv[4:])

@@ -1,0 +1,73 @@
+"""python3 -m tautline: exit codes, tables and files against the results of the verbs."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import tautline as tl
+
+DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
+MESH, PLATE = DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
+
+
+def run(*arguments, code: int = 0) -> str:
+    """What the command prints, on stderr if it fails; its exit code is checked."""
+    command = [sys.executable, "-m", "tautline", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == code, (arguments, done.returncode, done.stdout, done.stderr)
+    assert code or not done.stderr, done.stderr
+    return done.stderr if code else done.stdout
+
+
+# help and usage
+text = run("--help")
+assert all(f"    {verb} " in text for verb in ("quality", "perturb", "compare", "field", "metrics")), text
+assert "VERB" in run(code=2) and "invalid choice: 'paint'" in run("paint", code=2)
+assert "required: FILE" in run("quality", code=2)
+assert "invalid float value: 'x'" in run("perturb", PLATE, "-o", OUT / "cli.vtu", "--fraction", "x", code=2)
+
+# quality
+mesh, table = OUT / "cli-quality.vtu", OUT / "cli-quality.csv"
+text = run("quality", MESH, "--metrics", "imr,rr", "--worst", 2, "-o", mesh, "--csv", table)
+result = tl.quality(MESH, ["imr", "rr"])
+assert "8140 cells: 8099 valid, 41 inverted, 0 degenerate" in text, text
+assert text.count("worst cell") == 2 and text.splitlines()[-2:] == [str(mesh), str(table)], text
+assert f"{result.statistics['imr']['mean']:.5g}" in text
+assert (tl.quality(mesh).values["imr"] == result.values["imr"]).all()
+with open(table, newline="") as lines:
+    rows = list(csv.DictReader(lines))
+assert [row.pop("metric") for row in rows] == ["imr", "rr"]
+for row, facts in zip(rows, result.statistics.values()):
+    assert int(row.pop("worst_cell")) == facts["worst_cells"][0]
+    assert row.pop("label") == facts["label"]
+    for key, value in row.items():
+        assert float(value) == facts[key], key
+assert "no metric 'nope'" in run("quality", MESH, "--metrics", "nope", code=1)
+assert run("quality", "absent.vtu", code=1) == "tautline: absent.vtu: there is no such file\n"
+assert "cannot be written" in run("quality", PLATE, "--csv", OUT / "absent" / "x.csv", code=1)
+run("quality", PLATE, "--metrics", "mu_size", "--size", "0.03")
+assert "no array 'h'" in run("quality", PLATE, "--size", "h", code=1)
+
+# perturb, compare, field
+moved = OUT / "cli-perturbed.vtu"
+assert "0 before, 19 after" in run("perturb", PLATE, "-o", moved, "--tangle", 0.01, "--seed", 3)
+assert (tl.quality(moved).values["imr"] == tl.quality(tl.perturb(PLATE, tangle=0.01, seed=3)).values["imr"]).all()
+table = OUT / "cli-compare.csv"
+text = run("compare", PLATE, moved, "--csv", table)
+facts = tl.compare(PLATE, moved).statistics["imr"]
+assert "inverted: 0 before, 19 after" in text, text
+with open(table, newline="") as lines:
+    assert [int(row["worse"]) for row in csv.DictReader(lines)] == [facts["worse"]]
+run("compare", PLATE, MESH, code=1)
+image = OUT / "cli-field.vti"
+run("field", "-o", image, "--metrics", "imr,si", "--dimensions", 7, 5, 1)
+assert tl.read(image).GetPointData().HasArray("si")
+
+# metrics
+facts = tl.metrics()
+assert len(run("metrics").splitlines()) == len(facts) + 2
+assert len(run("metrics", "--markdown").splitlines()) == len(facts) + 2
+assert [f["name"] for f in json.loads(run("metrics", "--json"))] == [f["name"] for f in facts]

@@ -1,0 +1,28 @@
+"""The demo writes mesh, table and a picture that shows something."""
+
+import os
+import runpy
+import sys
+from pathlib import Path
+
+import tautline as tl
+from paraview import simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+OUT = Path(os.environ["TAUTLINE_TEST_DIR"], "demo")
+
+simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=vars(simple))  # as if loaded at the start
+sys.argv = ["demo.py", str(OUT)]
+runpy.run_module("tautline.demo", run_name="__main__")
+result = tl.quality(OUT / "quality.vtu")
+assert result.inverted == 41 and (OUT / "quality.csv").read_text().startswith("metric,label,")
+
+reader = vtkPNGReader()
+reader.SetFileName(str(OUT / "quality.png"))
+reader.Update()
+pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)[:, :3]
+white = (pixels == 255).all(axis=1).mean()
+magenta = ((pixels[:, 0] > 150) & (pixels[:, 1] < 20) & (pixels[:, 2] > 150)).mean()
+assert 0.4 < white < 0.85, white
+assert 0.002 < magenta < 0.1, magenta

@@ -1,0 +1,205 @@
+"""The verbs quality, perturb, compare, metric_field, metrics, read and write, with numbers."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import tautline as tl
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
+
+DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
+BRACKET, TANGLED, PLATE = (DATA / f"{name}.vtu" for name in ("bracket", "bracket-tangled", "plate"))
+ROOT3 = 3**0.5
+TET = np.array([[0, 0, 0], [1, 0, 0], [0.5, ROOT3 / 2, 0], [0.5, ROOT3 / 6, (2 / 3) ** 0.5]])
+ONE = (TET, [[0, 1, 2, 3]])
+SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
+
+
+def refused(text: str, verb, *arguments, **options) -> None:
+    """Check that the call raises tautline.Error with the text in its message."""
+    try:
+        verb(*arguments, **options)
+    except tl.Error as error:
+        assert text in str(error), f"'{error}' does not say '{text}'"
+    else:
+        raise AssertionError(f"{verb.__name__} took {arguments} {options}")
+
+
+def snapshot(mesh):
+    fields = [mesh.GetPointData(), mesh.GetCellData()]
+    names = [[f.GetArrayName(i) for i in range(f.GetNumberOfArrays())] for f in fields]
+    cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).tobytes()
+    return vtk_to_numpy(mesh.GetPoints().GetData()).tobytes(), cells, names, mesh.GetMTime()
+
+
+def test_quality():
+    result = tl.quality(ONE, ["imr", "mean_ratio", "scaled_jacobian"])
+    assert abs(result.values["imr"][0] - 1) < 1e-14 and abs(result.values["mean_ratio"][0] - 1) < 1e-14
+    assert list(result.values) == list(result.statistics) == ["imr", "mean_ratio", "scaled_jacobian"]
+    assert result.validity.tolist() == [1] and result.inverted == 0 and result.notice == ""
+    assert result.angles["count"].tolist() == [0, 0, 6, 0, 0], "all dihedral angles are 70.5 degrees"
+    facts = result.statistics["imr"]
+    assert facts["worst_cells"].tolist() == [0] and np.allclose(facts["worst_positions"], [TET.mean(axis=0)])
+    assert result.mesh.GetCellData().GetArray("imr") is not None
+
+    result = tl.quality(TANGLED, ["imr", "rr"], histogram_bins=7)
+    validity, values = result.validity, result.values["imr"]
+    assert result.inverted == np.count_nonzero(validity == -1) == np.count_nonzero(values < 0) == 41
+    facts = result.statistics["imr"]
+    assert facts["measured"] == np.count_nonzero(validity == 1) == result.distribution["imr"]["count"].sum()
+    assert len(result.distribution["rr"]["value"]) == 7
+    assert np.isclose(facts["mean"], values[validity == 1].mean(), rtol=1e-13)
+    assert facts["maximum"] == values[validity == 1].max() and facts["minimum"] == values[validity == 1].min()
+    assert facts["worst"] == facts["worst_values"][0] == values[facts["worst_cells"][0]] < 0
+    assert len(facts["worst_cells"]) == 10 and facts["worst_positions"].shape == (10, 3)
+    assert result.worst.GetNumberOfPoints() == 20
+    one = tl.quality(TANGLED, ["imr", "rr"], threads=1)
+    assert all((one.values[name] == result.values[name]).all() for name in one.values)
+
+
+def test_targets():
+    assert abs(tl.quality(ONE, "mu_size", size=2**0.5 / 12).values["mu_size"][0]) < 1e-12, "its own volume"
+    twice = tl.quality(ONE, "mu_size", size=[2**0.5 / 6])
+    assert twice.values["mu_size"][0] > 0.1
+    assert twice.mesh.GetCellData().GetNumberOfArrays() == 2, "the target is not left behind"
+    flat = (TET * [1, 1, 0.25], ONE[1])
+    assert tl.quality(flat, "mu_shape").values["mu_shape"][0] > 0.5
+    assert abs(tl.quality(flat, "mu_shape", reference=flat).values["mu_shape"][0]) < 1e-12
+    assert abs(tl.quality(flat, "mu_shape", tensor=[[1, 1, 16, 0, 0, 0]]).values["mu_shape"][0]) < 1e-12
+    refused("only one target", tl.quality, ONE, size=1, reference=ONE)
+    refused("'size' is not given", tl.quality, ONE, target="size")
+    refused("target is 'tensor' but 'size'", tl.quality, ONE, target="tensor", size=1)
+    refused("no array 'h'", tl.quality, ONE, "mu_size", size="h")
+    refused("3 rows; there are 1 cells and 4 points", tl.quality, ONE, "mu_size", size=[1, 2, 3])
+
+
+def test_inputs():
+    mesh = tl.read(BRACKET)
+    points = vtk_to_numpy(mesh.GetPoints().GetData())
+    cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 4)
+    expected = tl.quality(str(BRACKET)).values["imr"]
+    for given in (mesh, BRACKET, (points, cells), (points, {"tet": cells}), tl.perturb(mesh, 0)):
+        assert (tl.quality(given).values["imr"] == expected).all()
+    half = len(cells) // 2
+    blocks = vtkMultiBlockDataSet()
+    for i, part in enumerate((cells[:half], cells[half:])):
+        blocks.SetBlock(i, tl.from_arrays(points, part))
+    assert (tl.quality(blocks).values["imr"] == expected).all()
+
+    quad = tl.from_arrays(SQUARE, [[0, 1, 2, 3]])
+    assert quad.GetCellType(0) == 9 and tl.quality(quad, "size").values["size"][0] == 1
+    mixed = {"quad": [[0, 1, 2, 3]], "triangle": [[1, 4, 2]]}
+    assert tl.quality(([*SQUARE, [2, 0.5]], mixed), "size").values["size"].tolist() == [1, 0.5]
+    cube = [[x, y, z] for z in (0, 1) for x, y in SQUARE]
+    assert abs(tl.quality((cube, [list(range(8))])).values["imr"][0] - 1) < 1e-14
+    assert tl.from_arrays(np.float32(TET), ONE[1]).GetPoints().GetDataType() == 10  # VTK_FLOAT
+    assert tl.quality((np.zeros((0, 3)), {})).values["imr"].size == 0
+    assert len(tl.read(PLATE).GetCellTypesArray() and tl.quality(PLATE).validity) == 1913
+
+
+def test_input_untouched():
+    mesh = tl.read(BRACKET)
+    before = snapshot(mesh)
+    tl.quality(mesh, ["imr", "mu_size"], size=1.0)
+    tl.quality(mesh, reversed_mesh="flip output")
+    moved = tl.perturb(mesh, fixed=np.zeros(mesh.GetNumberOfPoints()), tangle=0.01)
+    tl.compare(mesh, moved)
+    assert snapshot(mesh) == before
+    mirrored = tl.from_arrays(TET * [-1, 1, 1], ONE[1])
+    before = snapshot(mirrored)
+    assert "reversed" in tl.quality(mirrored, reversed_mesh="flip output").notice
+    assert snapshot(mirrored) == before
+    assert tl.quality(mirrored).inverted == 0 and tl.quality(mirrored, reversed_mesh="measure as given").inverted == 1
+
+
+def test_perturb_and_compare():
+    mesh = tl.read(BRACKET)
+    first, again, other = (tl.perturb(mesh, seed=seed) for seed in (1, 1, 2))
+    assert first.inverted == 0 and first.moved > 0.4 * first.movable > 0
+    assert (first.displacement == again.displacement).all() and (first.displacement != other.displacement).any()
+    assert np.isclose(np.linalg.norm(first.displacement, axis=1).max(), first.largest_displacement)
+    tangled = tl.perturb(mesh, tangle=0.02)
+    assert tangled.inverted == tl.quality(tangled).inverted == round(0.02 * 8140) and abs(tangled.tangled - 0.02) < 1e-4
+    still = tl.perturb(mesh, fixed=np.ones(mesh.GetNumberOfPoints(), bool))
+    assert still.moved == 0 and still.mesh.GetPointData().GetNumberOfArrays() == 1
+    refused("each of the 2343 points", tl.perturb, mesh, fixed=[1, 2])
+    refused("no point array 'x'", tl.perturb, mesh, fixed="x")
+    refused("implicit", tl.perturb, vtkImageData())
+    refused("fraction is 1.5", tl.perturb, mesh, 1.5)
+    refused("tangle is nan", tl.perturb, mesh, tangle=float("nan"))
+
+    result = tl.compare(mesh, first, ["imr", "size"])
+    facts, change = result.statistics["imr"], result.difference["imr"]
+    assert facts["better"] + facts["worse"] + facts["equal"] == 8140
+    assert np.isclose(change.mean(), facts["mean_after"] - facts["mean_before"])
+    assert (result.displacement == first.displacement).all()
+    assert set(np.unique(result.change)) == {-1, 0, 1}
+    assert (tl.compare(mesh, mesh).change == 0).all()
+    refused("", tl.compare, mesh, PLATE)
+    refused("there is no such file", tl.compare, mesh, "absent.vtu")
+
+
+def test_metric_field():
+    field = tl.metric_field(["imr", "size"], bounds=(0, 1, 0, ROOT3), dimensions=(3, 3))
+    assert field.values["imr"].shape == (3, 3) and field.mesh.GetDimensions() == (3, 3, 1)
+    assert abs(field.values["imr"][1, 1] - 1) < 1e-12, "the apex of the equilateral triangle"
+    assert np.allclose(field.values["size"][2], ROOT3 / 2) and (field.validity[0] == 0).all()
+    solid = tl.metric_field("size", "tetrahedron", vertices=np.eye(3), bounds=(0, 1, 0, 1, 0, 1), dimensions=(2, 3, 4))
+    assert solid.values["size"].shape == (4, 3, 2)
+    assert abs(solid.values["size"][-1, -1, -1] - 1 / 3) < 1e-14, "(1, 1, 1) above the face of the unit simplex"
+    refused("there are 'triangle', 'tetrahedron'", tl.metric_field, cell="prism")
+    refused("vertices have the shape (1, 3)", tl.metric_field, vertices=[[0, 0, 0]])
+    refused("whole numbers from 1", tl.metric_field, dimensions=(0, 1, 1))
+    refused("no metric 'nope'", tl.metric_field, "nope")
+
+
+def test_metrics():
+    facts = tl.metrics()
+    assert [f["number"] for f in facts] == list(range(len(facts))) and len(facts) >= 38
+    imr = facts[0]
+    assert imr["name"] == "imr" and imr["dimensions"] == [2, 3] and imr["acceptable_3d"] == (1, 3)
+    assert imr["ideal_2d"] == 1 and imr["barrier"] is True and imr["unit"] == "" and len(imr["cell_types"]) == 6
+    for f in facts:  # every name and alias can be asked for
+        for name in (f["name"], f["label"], *f["aliases"]):
+            assert list(tl.quality(ONE, name).values) == [f["name"]], name
+
+
+def test_errors():
+    refused("no metric 'nope'", tl.quality, ONE, "nope")
+    refused("no metric is chosen", tl.quality, ONE, [])
+    refused("by its name, not 3", tl.quality, ONE, [3])
+    refused("combination is 'sum'; there are 'mean', 'worst', 'power mean'", tl.quality, ONE, combination="sum")
+    refused("power is 0", tl.quality, ONE, power=0)
+    refused("not int", tl.quality, 3)
+    refused("m x 3 or 4", tl.quality, (SQUARE, [[0, 1, 2, 3, 0]]))
+    refused("use the points 0 to 9; there are 0 to 3", tl.quality, (TET, [[0, 1, 2, 9]]))
+    refused("whole numbers are expected", tl.quality, (TET, [[0.0, 1, 2, 3]]))
+    refused("there are no cells 'line'", tl.quality, (TET, {"line": [[0, 1]]}))
+    refused("n x 2 or n x 3", tl.quality, (np.zeros((4, 4)), [[0, 1, 2]]))
+    refused("points are not an array of numbers", tl.quality, (["a", "b"], [[0, 1, 2]]))
+
+
+def test_files():
+    mesh = tl.perturb(PLATE).mesh
+    for name in ("plate.vtu", "plate.vtk"):
+        file = OUT / f"verbs-{name}"
+        assert tl.write(mesh, file) == [str(file)]
+        assert (tl.quality(file).values["imr"] == tl.quality(mesh).values["imr"]).all()
+    image = tl.metric_field(dimensions=(4, 5, 1)).mesh
+    tl.write(image, OUT / "verbs-field.vti")
+    assert tl.read(OUT / "verbs-field.vti").GetDimensions() == (4, 5, 1)
+    refused("'.vtp' cannot hold a vtkUnstructuredGrid; .vtk .vtu can", tl.write, mesh, OUT / "verbs.vtp")
+    refused("no writer for '.obj'", tl.write, mesh, OUT / "verbs.obj")
+    refused("cannot be written", tl.write, mesh, OUT / "no-such-directory" / "verbs.vtu")
+    refused("there is no such file", tl.read, OUT / "absent.vtu")
+    refused(".xyz", tl.read, "mesh.xyz")
+    broken = OUT / "verbs-broken.vtu"
+    broken.write_text("<VTKFile type='UnstructuredGrid'><oops>")
+    refused("Error parsing", tl.read, broken)
+
+
+for name, test in sorted(globals().items()):
+    if name.startswith("test_"):
+        test()
+        print(f"{name} passed")

@@ -1,0 +1,123 @@
+"""Results as tables: aligned text, CSV, Markdown."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from typing import Any, Sequence
+
+import numpy as np
+
+from ._quality import Quality
+from ._verbs import Comparison
+
+_STATISTICS = ("minimum", "mean", "maximum", "standard_deviation", "outside_acceptable", "worst")
+_HEADINGS = {"standard_deviation": "std dev", "outside_acceptable": "unacceptable"}
+
+
+def align(rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> str:
+    """Columns of equal width: text to the left, numbers to the right."""
+    cells = [list(headings), *([_text(value) for value in row] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*cells)]
+    numeric = [any(isinstance(row[i], (int, float)) for row in rows) for i in range(len(headings))]
+    lines = []
+    for row in cells:
+        padded = (text.rjust(w) if right else text.ljust(w) for text, w, right in zip(row, widths, numeric))
+        lines.append("  ".join(padded).rstrip())
+    return "\n".join([lines[0], "-" * (sum(widths) + 2 * len(widths) - 2), *lines[1:]])
+
+
+def quality_text(result: Quality, worst: int = 0) -> str:
+    """Counts, a row per metric, the angles and, if asked for, the worst elements."""
+    total = next(iter(result.statistics.values()))
+    counts = f"{len(result.validity)} cells: {np.count_nonzero(result.validity == 1)} valid, "
+    counts += f"{result.inverted} inverted, {result.degenerate} degenerate"
+    for key, text in (("not_measured", "not measured"), ("non_finite", "not finite")):
+        counts += f", {total[key]} {text}" if total[key] else ""
+    rows = [[name, *(facts[key] for key in _STATISTICS)] for name, facts in result.statistics.items()]
+    parts = [counts, result.notice, align(rows, ["metric", *(_HEADINGS.get(key, key) for key in _STATISTICS)])]
+    angles = result.angles
+    rows = [
+        [f"{low:g} to {high:g}", count.item(), f"{percent:.1f} %"]
+        for low, high, count, percent in zip(angles["from"], angles["to"], angles["count"], angles["percent"])
+    ]
+    parts.append(align(rows, ["angle (degrees)", "count", "share"]))
+    for name, facts in result.statistics.items() if worst else ():
+        listed = zip(facts["worst_cells"][:worst], facts["worst_values"], facts["worst_positions"])
+        rows = [[cell.item(), value.item(), *xyz.tolist()] for cell, value, xyz in listed]
+        parts.append(align(rows, ["worst cell", name, "x", "y", "z"]))
+    return "\n\n".join(part for part in parts if part)
+
+
+def comparison_text(result: Comparison) -> str:
+    """A row per metric."""
+    shown = ("better", "worse", "equal", "mean_before", "mean_after")
+    rows = [[name, *(facts[key] for key in shown)] for name, facts in result.statistics.items()]
+    first = next(iter(result.statistics.values()))
+    table = align(rows, ["metric", *(key.replace("_", " ") for key in shown)])
+    inverted = f"inverted: {first['inverted_before']} before, {first['inverted_after']} after"
+    return f"{table}\n\n{inverted}\nlargest displacement: {first['largest_displacement']:.6g}"
+
+
+def quality_rows(result: Quality) -> list[dict[str, Any]]:
+    """A dict per metric of all statistics that are numbers or text, and the worst cell."""
+    rows = []
+    for name, facts in result.statistics.items():
+        row = {"metric": name, **{key: value for key, value in facts.items() if not isinstance(value, np.ndarray)}}
+        row["worst_cell"] = int(facts["worst_cells"][0]) if len(facts["worst_cells"]) else ""
+        rows.append(row)
+    return rows
+
+
+def comparison_rows(result: Comparison) -> list[dict[str, Any]]:
+    """A dict per metric."""
+    return [{"metric": name, **facts} for name, facts in result.statistics.items()]
+
+
+def csv_text(rows: list[dict[str, Any]]) -> str:
+    """A line of names and a line per row; numbers in full precision."""
+    out = io.StringIO()
+    writer = csv.DictWriter(out, rows[0].keys(), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return out.getvalue()
+
+
+def metrics_text(facts: list[dict[str, Any]]) -> str:
+    """Name, label, dimensions, acceptable range, direction, of every metric."""
+    rows = []
+    for f in facts:
+        ranges = [_range(f[key]) for key in ("acceptable_2d", "acceptable_3d")]
+        dimensions = ", ".join(map(str, f["dimensions"]))
+        rows.append([f["name"], f["label"], dimensions, *ranges, f["direction"]])
+    return align(rows, ["name", "label", "dim", "acceptable 2D", "acceptable 3D", "direction"])
+
+
+def metrics_markdown(facts: list[dict[str, Any]]) -> str:
+    """A Markdown table of every metric with its formula and source."""
+    headings = ["name", "label", "also", "formula", "cells", "acceptable 2D", "acceptable 3D", "direction"]
+    headings += ["inverted", "source"]
+    lines = ["| " + " | ".join(headings) + " |", "|" + "---|" * len(headings)]
+    for f in facts:
+        row = [f"`{f['name']}`", f["label"], ", ".join(f["aliases"]), f"`{f['formula']}`", ", ".join(f["cell_types"])]
+        row += [_range(f["acceptable_2d"]), _range(f["acceptable_3d"]), f["direction"], f["inverted"], f["source"]]
+        lines.append("| " + " | ".join(text.replace("|", "\\|") for text in row) + " |")
+    return "\n".join(lines)
+
+
+def finite(value: Any) -> Any:
+    """The same with infinite numbers as text: JSON has none."""
+    if isinstance(value, dict):
+        return {key: finite(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(inner) for inner in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _range(pair: tuple[float, float] | None) -> str:
+    return "-" if pair is None else f"{pair[0]:.4g} to {pair[1]:.4g}"
+
+
+def _text(value: Any) -> str:
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
