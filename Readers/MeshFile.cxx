@@ -1,0 +1,220 @@
+#include "MeshFile.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tautline
+{
+namespace
+{
+struct CellFacts
+{
+  unsigned char type;
+  int dimension;
+  int nodes;
+  const char* plural;
+};
+
+constexpr std::array<CellFacts, 19> Facts = { {
+  { FileVertex, 0, 1, "vertices" },
+  { FileLine, 1, 2, "lines" },
+  { FileTriangle, 2, 3, "triangles" },
+  { FilePolygon, 2, 0, "polygons" },
+  { FileQuadrilateral, 2, 4, "quadrilaterals" },
+  { FileTetrahedron, 3, 4, "tetrahedra" },
+  { FileHexahedron, 3, 8, "hexahedra" },
+  { FileWedge, 3, 6, "wedges" },
+  { FilePyramid, 3, 5, "pyramids" },
+  { FileLine3, 1, 3, "quadratic lines" },
+  { FileTriangle6, 2, 6, "quadratic triangles" },
+  { FileQuadrilateral8, 2, 8, "quadratic quadrilaterals" },
+  { FileTetrahedron10, 3, 10, "quadratic tetrahedra" },
+  { FileHexahedron20, 3, 20, "quadratic hexahedra" },
+  { FileWedge15, 3, 15, "quadratic wedges" },
+  { FilePyramid13, 3, 13, "quadratic pyramids" },
+  { FileQuadrilateral9, 2, 9, "biquadratic quadrilaterals" },
+  { FileHexahedron27, 3, 27, "triquadratic hexahedra" },
+  { FileWedge18, 3, 18, "biquadratic wedges" },
+} };
+
+constexpr CellFacts Unknown = { 0, -1, 0, "cells of another type" };
+
+const CellFacts& facts(unsigned char type)
+{
+  const auto found =
+    std::find_if(Facts.begin(), Facts.end(), [type](const CellFacts& f) { return f.type == type; });
+  return found == Facts.end() ? Unknown : *found;
+}
+
+/// Keeps the tuples whose flag is set.
+template <class Values>
+void filterTuples(Values& values, int components, const std::vector<char>& keep)
+{
+  std::size_t to = 0;
+  for (std::size_t tuple = 0; tuple < keep.size(); ++tuple)
+  {
+    for (int c = 0; c < components && keep[tuple]; ++c)
+    {
+      values[to++] = values[tuple * components + c];
+    }
+  }
+  values.resize(to);
+}
+}
+
+//------------------------------------------------------------------------------
+int cellDimension(unsigned char type)
+{
+  return facts(type).dimension;
+}
+
+//------------------------------------------------------------------------------
+int cellNodes(unsigned char type)
+{
+  return facts(type).nodes;
+}
+
+//------------------------------------------------------------------------------
+const char* cellPlural(unsigned char type)
+{
+  return facts(type).plural;
+}
+
+//------------------------------------------------------------------------------
+std::size_t MeshArray::size() const
+{
+  return std::visit([](const auto& v) { return v.size(); }, this->values);
+}
+
+//------------------------------------------------------------------------------
+double MeshArray::at(std::size_t i) const
+{
+  return std::visit([i](const auto& v) { return static_cast<double>(v[i]); }, this->values);
+}
+
+//------------------------------------------------------------------------------
+void MeshArray::resize(std::size_t count)
+{
+  std::visit([count](auto& v) { v.resize(count); }, this->values);
+}
+
+//------------------------------------------------------------------------------
+char MeshArray::code() const
+{
+  return "fiu"[this->values.index()];
+}
+
+//------------------------------------------------------------------------------
+MeshArray MeshArray::make(std::string name, int components, char code, std::size_t size)
+{
+  MeshArray array{ std::move(name), components, {} };
+  if (code == 'i')
+  {
+    array.values = Integers(size);
+  }
+  else if (code == 'u')
+  {
+    array.values = Bytes(size);
+  }
+  else
+  {
+    array.values = Doubles(size);
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+int MeshFile::dimension() const
+{
+  std::array<bool, 256> present{};
+  for (const unsigned char type : this->cellTypes)
+  {
+    present[type] = true;
+  }
+  int largest = -1;
+  for (int type = 0; type < 256; ++type)
+  {
+    largest = present[type] ? std::max(largest, cellDimension(type)) : largest;
+  }
+  return largest;
+}
+
+//------------------------------------------------------------------------------
+bool MeshFile::planar() const
+{
+  for (std::size_t z = 2; z < this->points.size(); z += 3)
+  {
+    if (this->points[z] != 0.0)
+    {
+      return false;
+    }
+  }
+  return this->dimension() < 3;
+}
+
+//------------------------------------------------------------------------------
+void MeshFile::keepHighestDimension()
+{
+  const int largest = this->dimension();
+  std::vector<char> keep(this->cellTypes.size());
+  for (std::size_t cell = 0; cell < keep.size(); ++cell)
+  {
+    keep[cell] = cellDimension(this->cellTypes[cell]) == largest;
+  }
+  if (std::find(keep.begin(), keep.end(), 0) == keep.end())
+  {
+    return;
+  }
+  std::vector<Index> ends = { 0 };
+  std::size_t to = 0;
+  for (std::size_t cell = 0; cell < keep.size(); ++cell)
+  {
+    for (Index i = this->offsets[cell]; keep[cell] && i < this->offsets[cell + 1]; ++i)
+    {
+      this->connectivity[to++] = this->connectivity[i];
+    }
+    if (keep[cell])
+    {
+      ends.push_back(static_cast<Index>(to));
+    }
+  }
+  this->offsets = std::move(ends);
+  this->connectivity.resize(to);
+  filterTuples(this->cellTypes, 1, keep);
+  for (MeshArray& array : this->cellArrays)
+  {
+    std::visit([&](auto& v) { filterTuples(v, array.components, keep); }, array.values);
+  }
+}
+
+//------------------------------------------------------------------------------
+void MeshFile::addCells(unsigned char type, const std::vector<Index>& nodes)
+{
+  const std::size_t size = static_cast<std::size_t>(cellNodes(type));
+  const std::size_t count = nodes.size() / size;
+  const Index start = this->offsets.back();
+  this->cellTypes.resize(this->cellTypes.size() + count, type);
+  this->offsets.reserve(this->offsets.size() + count);
+  for (std::size_t i = 1; i <= count; ++i)
+  {
+    this->offsets.push_back(start + static_cast<Index>(i * size));
+  }
+  this->connectivity.insert(this->connectivity.end(), nodes.begin(), nodes.end());
+}
+
+//------------------------------------------------------------------------------
+void MeshFile::addCell(unsigned char type, const Index* nodes, Index count)
+{
+  this->cellTypes.push_back(type);
+  this->connectivity.insert(this->connectivity.end(), nodes, nodes + count);
+  this->offsets.push_back(static_cast<Index>(this->connectivity.size()));
+}
+
+//------------------------------------------------------------------------------
+const MeshArray* findArray(const std::vector<MeshArray>& arrays, const std::string& name)
+{
+  const auto found = std::find_if(
+    arrays.begin(), arrays.end(), [&](const MeshArray& array) { return array.name == name; });
+  return found == arrays.end() ? nullptr : &*found;
+}
+}
