@@ -21,7 +21,7 @@ void readCells(
     labels.push_back(cursor.integer("label"));
     cursor.expectLineEnd();
   }
-  mesh.addCells(type, nodes);
+  mesh.addCells(type, std::move(nodes));
 }
 }
 

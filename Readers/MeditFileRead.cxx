@@ -216,7 +216,7 @@ MeshFile assemble(const TextCursor& cursor, Contents contents)
   for (const MeditSection& section : MeditSections)
   {
     begins[section.type] = mesh.cellTypes.size();
-    mesh.addCells(section.type, contents.nodes[section.type]);
+    mesh.addCells(section.type, std::move(contents.nodes[section.type]));
     const std::vector<Index>& more = contents.references[section.type];
     references.insert(references.end(), more.begin(), more.end());
   }

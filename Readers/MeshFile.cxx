@@ -39,11 +39,26 @@ constexpr std::array<CellFacts, 19> Facts = { {
 
 constexpr CellFacts Unknown = { 0, -1, 0, "cells of another type" };
 
+/// The facts by type.
+constexpr std::array<CellFacts, 256> makeTable()
+{
+  std::array<CellFacts, 256> table{};
+  for (CellFacts& entry : table)
+  {
+    entry = Unknown;
+  }
+  for (const CellFacts& known : Facts)
+  {
+    table[known.type] = known;
+  }
+  return table;
+}
+
+constexpr std::array<CellFacts, 256> Table = makeTable();
+
 const CellFacts& facts(unsigned char type)
 {
-  const auto found =
-    std::find_if(Facts.begin(), Facts.end(), [type](const CellFacts& f) { return f.type == type; });
-  return found == Facts.end() ? Unknown : *found;
+  return Table[type];
 }
 
 /// Keeps the tuples whose flag is set.
@@ -188,16 +203,22 @@ void MeshFile::keepHighestDimension()
 }
 
 //------------------------------------------------------------------------------
-void MeshFile::addCells(unsigned char type, const std::vector<Index>& nodes)
+void MeshFile::addCells(unsigned char type, std::vector<Index> nodes)
 {
   const std::size_t size = static_cast<std::size_t>(cellNodes(type));
   const std::size_t count = nodes.size() / size;
   const Index start = this->offsets.back();
   this->cellTypes.resize(this->cellTypes.size() + count, type);
-  this->offsets.reserve(this->offsets.size() + count);
-  for (std::size_t i = 1; i <= count; ++i)
+  const std::size_t old = this->offsets.size();
+  this->offsets.resize(old + count);
+  for (std::size_t i = 0; i < count; ++i)
   {
-    this->offsets.push_back(start + static_cast<Index>(i * size));
+    this->offsets[old + i] = start + static_cast<Index>((i + 1) * size);
+  }
+  if (this->connectivity.empty())
+  {
+    this->connectivity = std::move(nodes);
+    return;
   }
   this->connectivity.insert(this->connectivity.end(), nodes.begin(), nodes.end());
 }

@@ -122,7 +122,7 @@ struct TAUTLINEREADERS_EXPORT MeshFile
   /// Removes the cells of a dimension below the largest.
   void keepHighestDimension();
   /// Appends cells of one type, nodes one cell after the other.
-  void addCells(unsigned char type, const std::vector<Index>& nodes);
+  void addCells(unsigned char type, std::vector<Index> nodes);
   /// Appends one cell.
   void addCell(unsigned char type, const Index* nodes, Index count);
 };

@@ -47,6 +47,27 @@ vtkSmartPointer<vtkDataArray> copyValues(
   return array;
 }
 
+/// A VTK array that takes over the memory of a vector.
+template <class ArrayT, class Value>
+vtkSmartPointer<ArrayT> takeValues(std::vector<Value> values, int components)
+{
+  static_assert(sizeof(Value) == sizeof(typename ArrayT::ValueType));
+  using Vector = std::vector<Value>;
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetNumberOfComponents(components);
+  const auto size = static_cast<vtkIdType>(values.size());
+  if (size > 0)
+  {
+    // a vector whose destructor never runs: VTK gives the memory back
+    alignas(Vector) unsigned char kept[sizeof(Vector)];
+    Value* memory = (new (kept) Vector(std::move(values)))->data();
+    array->SetArray(reinterpret_cast<typename ArrayT::ValueType*>(memory), size, 0,
+      ArrayT::VTK_DATA_ARRAY_USER_DEFINED);
+    array->SetArrayFreeFunction([](void* p) { ::operator delete(p); });
+  }
+  return array;
+}
+
 vtkSmartPointer<vtkDataArray> toArray(const MeshArray& array, const std::vector<Index>& order = {})
 {
   vtkSmartPointer<vtkDataArray> result;
@@ -68,11 +89,11 @@ vtkSmartPointer<vtkDataArray> toArray(const MeshArray& array, const std::vector<
 }
 
 /// Points, point arrays and field arrays.
-void setPoints(const MeshFile& mesh, vtkPointSet* output)
+void setPoints(MeshFile& mesh, vtkPointSet* output)
 {
   vtkNew<vtkPoints> points;
   points->SetDataType(VTK_DOUBLE);
-  points->SetData(copyValues<vtkDoubleArray>(mesh.points, 3));
+  points->SetData(takeValues<vtkDoubleArray>(std::move(mesh.points), 3));
   output->SetPoints(points);
   for (const MeshArray& array : mesh.pointArrays)
   {
@@ -251,14 +272,13 @@ void addCells(vtkDataSet* input, MeshFile& mesh)
 }
 
 //------------------------------------------------------------------------------
-void toGrid(const MeshFile& mesh, vtkUnstructuredGrid* grid)
+void toGrid(MeshFile mesh, vtkUnstructuredGrid* grid)
 {
   setPoints(mesh, grid);
   vtkNew<vtkCellArray> cells;
-  cells->SetData(vtkTypeInt64Array::SafeDownCast(copyValues<vtkTypeInt64Array>(mesh.offsets, 1)),
-    vtkTypeInt64Array::SafeDownCast(copyValues<vtkTypeInt64Array>(mesh.connectivity, 1)));
-  grid->SetCells(
-    vtkUnsignedCharArray::SafeDownCast(copyValues<vtkUnsignedCharArray>(mesh.cellTypes, 1)), cells);
+  cells->SetData(takeValues<vtkTypeInt64Array>(std::move(mesh.offsets), 1),
+    takeValues<vtkTypeInt64Array>(std::move(mesh.connectivity), 1));
+  grid->SetCells(takeValues<vtkUnsignedCharArray>(std::move(mesh.cellTypes), 1), cells);
   for (const MeshArray& array : mesh.cellArrays)
   {
     grid->GetCellData()->AddArray(toArray(array));
@@ -266,7 +286,7 @@ void toGrid(const MeshFile& mesh, vtkUnstructuredGrid* grid)
 }
 
 //------------------------------------------------------------------------------
-void toSurface(const MeshFile& mesh, vtkPolyData* surface)
+void toSurface(MeshFile mesh, vtkPolyData* surface)
 {
   setPoints(mesh, surface);
   std::vector<Index> order(mesh.cellTypes.size());

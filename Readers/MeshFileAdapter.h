@@ -14,11 +14,12 @@ class vtkUnstructuredGrid;
 
 namespace tautline
 {
-/// Fills an empty grid: points in double precision, 64-bit cells, all arrays.
-TAUTLINEREADERS_EXPORT void toGrid(const MeshFile& mesh, vtkUnstructuredGrid* grid);
+/// Fills an empty grid: points in double precision, 64-bit cells, all arrays. The large vectors become
+/// the grid's without being copied.
+TAUTLINEREADERS_EXPORT void toGrid(MeshFile mesh, vtkUnstructuredGrid* grid);
 
 /// Fills an empty surface; cells are sorted as VTK wants them: vertices, lines, polygons.
-TAUTLINEREADERS_EXPORT void toSurface(const MeshFile& mesh, vtkPolyData* surface);
+TAUTLINEREADERS_EXPORT void toSurface(MeshFile mesh, vtkPolyData* surface);
 
 /**
  * @brief Copies a data set. Pixels and voxels become quadrilaterals and hexahedra, ghost cells are

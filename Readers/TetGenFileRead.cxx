@@ -248,7 +248,7 @@ void readElements(const FileContent& file, const NodeList& nodes, MeshFile& mesh
     cursor.expectLineEnd();
   }
   cursor.expectFileEnd("element");
-  mesh.addCells(type, connectivity);
+  mesh.addCells(type, std::move(connectivity));
   std::for_each(arrays.begin(), arrays.end(), makeIntegral);
   mesh.cellArrays = std::move(arrays);
 }
@@ -317,7 +317,7 @@ void readBoundary(const FileContent& file, const NodeList& nodes, bool faces, Me
     cursor.skipRestOfLine();
   }
   cursor.expectFileEnd(faces ? "face" : "edge");
-  mesh.addCells(type, connectivity);
+  mesh.addCells(type, std::move(connectivity));
   addMarkers(mesh, std::move(values), markers);
 }
 }

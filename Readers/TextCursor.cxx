@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <new>
 
+#include <sys/mman.h>
 #include <sys/stat.h>
 
 namespace tautline
@@ -55,9 +57,9 @@ FileContent::FileContent(const std::string& name, const std::string& why)
     throw FileError(name + ": is not a file" + reason);
   }
   this->Size = static_cast<std::size_t>(status.st_size);
-  this->Bytes.reset(new char[this->Size + 1]);
+  this->allocate();
   this->Size = std::fread(this->Bytes.get(), 1, this->Size, file.get());
-  this->Bytes[this->Size] = '\0';
+  std::memset(this->Bytes.get() + this->Size, 0, Padding);
   if (std::ferror(file.get()))
   {
     throw FileError(name + ": cannot be read: " + std::strerror(errno));
@@ -65,13 +67,32 @@ FileContent::FileContent(const std::string& name, const std::string& why)
 }
 
 //------------------------------------------------------------------------------
+void FileContent::allocate()
+{
+  // large pages where there are some: filling ordinary ones takes as long as reading the file
+  constexpr std::size_t LargePage = std::size_t{ 1 } << 21;
+  const std::size_t size = (this->Size + Padding + LargePage - 1) / LargePage * LargePage;
+  const bool large = this->Size >= LargePage;
+  this->Bytes.reset(static_cast<char*>(
+    large ? std::aligned_alloc(LargePage, size) : std::malloc(this->Size + Padding)));
+  if (!this->Bytes)
+  {
+    throw std::bad_alloc();
+  }
+  if (large)
+  {
+    madvise(this->Bytes.get(), size, MADV_HUGEPAGE);
+  }
+}
+
+//------------------------------------------------------------------------------
 FileContent::FileContent(std::string name, std::string_view bytes)
   : Name(std::move(name))
-  , Bytes(new char[bytes.size() + 1])
   , Size(bytes.size())
 {
+  this->allocate();
   std::copy(bytes.begin(), bytes.end(), this->Bytes.get());
-  this->Bytes[this->Size] = '\0';
+  std::memset(this->Bytes.get() + this->Size, 0, Padding);
 }
 
 //------------------------------------------------------------------------------
@@ -138,6 +159,20 @@ double TextCursor::unusualReal(const char* start, const char* what)
   {
     // too small becomes 0 or subnormal, too large infinite
     value = std::strtod(std::string(digits, end).c_str(), nullptr);
+  }
+  this->At = end;
+  return value;
+}
+
+//------------------------------------------------------------------------------
+Index TextCursor::unusualInteger(const char* what)
+{
+  const char* start = this->At + (this->At < this->End && *this->At == '+');
+  Index value = 0;
+  const auto [end, error] = std::from_chars(start, this->End, value);
+  if (error != std::errc() || !this->endsToken(end) || (start != this->At && value < 0))
+  {
+    this->failNumber("a whole number", what);
   }
   this->At = end;
   return value;

@@ -13,6 +13,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string_view>
@@ -31,10 +32,18 @@ public:
   const std::string& name() const { return this->Name; }
   const char* begin() const { return this->Bytes.get(); }
   const char* end() const { return this->Bytes.get() + this->Size; }
+  static constexpr std::size_t Padding =
+    8; ///< bytes of 0 behind the end, so that eight can be loaded
 
 private:
   std::string Name;
-  std::unique_ptr<char[]> Bytes; ///< one '\0' more than Size
+  struct Release
+  {
+    void operator()(char* bytes) const { std::free(bytes); }
+  };
+  void allocate();
+
+  std::unique_ptr<char[], Release> Bytes; ///< Size and Padding
   std::size_t Size = 0;
 };
 
@@ -162,6 +171,8 @@ private:
       *place == '\t' || (this->Comment && *place == this->Comment);
   }
   double unusualReal(const char* start, const char* what);
+  Index unusualInteger(const char* what);
+  static constexpr bool LittleEndian = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
 
   const FileContent& File;
   const char* At;
@@ -188,15 +199,27 @@ inline double TextCursor::real(const char* what)
 inline Index TextCursor::integer(const char* what)
 {
   this->skipBlanks();
-  const char* start = this->At + (this->At < this->End && *this->At == '+');
-  Index value;
-  const auto [end, error] = std::from_chars(start, this->End, value);
-  if (error != std::errc() || !this->endsToken(end))
+  // Up to seven digits at once: eight bytes in a register, the digits moved to its upper end, then
+  // pairs, fours and eights of digits combined. (The content ends with eight bytes of padding.)
+  std::uint64_t bytes;
+  std::memcpy(&bytes, this->At, sizeof(bytes));
+  bytes ^= 0x3030303030303030u;
+  const std::uint64_t others = ((bytes + 0x7676767676767676u) | bytes) & 0x8080808080808080u;
+  const int digits = others ? __builtin_ctzll(others) / 8 : 8;
+  if (digits == 0 || digits == 8 || !LittleEndian)
+  {
+    return this->unusualInteger(what);
+  }
+  bytes <<= 64 - 8 * digits;
+  bytes = (bytes * 2561) >> 8;
+  bytes = ((bytes & 0x00ff00ff00ff00ffu) * 6553601) >> 16;
+  bytes = ((bytes & 0x0000ffff0000ffffu) * 42949672960001u) >> 32;
+  if (!this->endsToken(this->At + digits))
   {
     this->failNumber("a whole number", what);
   }
-  this->At = end;
-  return value;
+  this->At += digits;
+  return static_cast<Index>(bytes);
 }
 
 /// The first word of a file, of at most 40 bytes; empty if it cannot be read.

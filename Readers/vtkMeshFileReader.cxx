@@ -63,15 +63,15 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
     {
       throw tautline::Error("no file name");
     }
-    const tautline::MeshFile mesh = this->ReadMesh();
+    tautline::MeshFile mesh = this->ReadMesh();
     this->UpdateProgress(0.8);
     if (auto* surface = vtkPolyData::SafeDownCast(output))
     {
-      tautline::toSurface(mesh, surface);
+      tautline::toSurface(std::move(mesh), surface);
     }
     else
     {
-      tautline::toGrid(mesh, vtkUnstructuredGrid::SafeDownCast(output));
+      tautline::toGrid(std::move(mesh), vtkUnstructuredGrid::SafeDownCast(output));
     }
   }
   catch (const tautline::Error& error)
