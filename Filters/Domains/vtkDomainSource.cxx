@@ -67,6 +67,7 @@ Made makeWithSpacing(
   }
   tautline::SolidOptions options;
   options.volume = 0.2 * spacing * spacing * spacing;
+  options.progress = [&progress] { return progress(0); };
   tautline::SolidMesh mesh =
     tautline::meshSolid(tautline::solidBoundary(info.name, spacing), options);
   made.dimension = 3;

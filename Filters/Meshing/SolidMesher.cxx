@@ -1,10 +1,19 @@
 #include "SolidMesher.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 #include <set>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #ifndef TETLIBRARY
 #define TETLIBRARY // errors are thrown
@@ -113,55 +122,202 @@ void setInput(
   }
   if (!options.pointSizes.empty())
   {
-    if (options.pointSizes.size() != boundary.points.size() / 3)
-    {
-      throw Error("there must be one size for each point");
-    }
     in.numberofpointmtrs = 1;
     in.pointmtrlist = copy(options.pointSizes);
   }
 }
 
-/// Runs TetGen; 0, or the number it throws.
-int run(const std::string& switches, tetgenio& in, tetgenio& out)
+/// Writes a vector, or an array of TetGen's, behind its length.
+template <class To, class From>
+void send(int pipe, const From* values, std::size_t count)
 {
-  std::vector<char> text(switches.begin(), switches.end());
-  text.push_back('\0');
-  tetgenbehavior behavior;
-  if (!behavior.parse_commandline(text.data()))
+  const std::vector<To> copied(values, values + (values ? count : 0));
+  const auto write = [pipe](const void* from, std::size_t size)
   {
-    return 10;
+    const char* bytes = static_cast<const char*>(from);
+    while (size > 0)
+    {
+      const ssize_t written = ::write(pipe, bytes, size);
+      if (written < 0 && errno != EINTR)
+      {
+        _exit(1);
+      }
+      bytes += std::max<ssize_t>(0, written);
+      size -= static_cast<std::size_t>(std::max<ssize_t>(0, written));
+    }
+  };
+  const std::uint64_t length = copied.size();
+  write(&length, sizeof(length));
+  write(copied.data(), length * sizeof(To));
+}
+
+/// Takes a vector from the start of the bytes that were sent; false if there are too few.
+template <class Value>
+bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>& values)
+{
+  std::uint64_t length = 0;
+  if (bytes.size() - at < sizeof(length))
+  {
+    return false;
   }
+  std::memcpy(&length, bytes.data() + at, sizeof(length));
+  at += sizeof(length);
+  if (length > (bytes.size() - at) / sizeof(Value))
+  {
+    return false;
+  }
+  values.resize(length);
+  if (length > 0)
+  {
+    std::memcpy(values.data(), bytes.data() + at, length * sizeof(Value));
+  }
+  at += length * sizeof(Value);
+  return true;
+}
+
+/// In a process of its own: TetGen, then its result into the pipe. Does not return.
+[[noreturn]] void work(const std::string& switches, const SolidBoundary& boundary,
+  const SolidOptions& options, bool numbers, int pipe)
+{
+  for (const int signal : { SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT })
+  {
+    ::signal(signal, SIG_DFL); // no backtraces of the program that asked
+  }
+  const rlimit noCore = { 0, 0 };
+  setrlimit(RLIMIT_CORE, &noCore);
+  const int nowhere = ::open("/dev/null", O_WRONLY);
+  ::dup2(nowhere, STDOUT_FILENO); // TetGen talks even when it is told not to
+  ::dup2(nowhere, STDERR_FILENO);
+  int code = 0;
   try
   {
+    // never deleted: the process ends here
+    auto& in = *new tetgenio;
+    auto& out = *new tetgenio;
+    setInput(boundary, options, numbers, in);
+    std::vector<char> text(switches.begin(), switches.end());
+    text.push_back('\0');
+    tetgenbehavior behavior;
+    if (!behavior.parse_commandline(text.data()))
+    {
+      _exit(10);
+    }
     tetrahedralize(&behavior, &in, &out);
+    const auto points = static_cast<std::size_t>(out.numberofpoints);
+    const auto cells = static_cast<std::size_t>(out.numberoftetrahedra);
+    const auto faces = static_cast<std::size_t>(out.numberoftrifaces);
+    std::vector<int> references(cells, 0);
+    for (std::size_t t = 0; t < cells && out.numberoftetrahedronattributes > 0; ++t)
+    {
+      const std::size_t at = t * static_cast<std::size_t>(out.numberoftetrahedronattributes);
+      references[t] = static_cast<int>(std::lround(out.tetrahedronattributelist[at]));
+    }
+    send<double>(pipe, out.pointlist, 3 * points);
+    send<Index>(pipe, out.tetrahedronlist, 4 * cells);
+    send<int>(pipe, references.data(), cells);
+    send<Index>(pipe, out.trifacelist, 3 * faces);
+    send<int>(pipe, out.trifacemarkerlist, faces);
   }
-  catch (const int code)
+  catch (const int thrown)
   {
-    return code;
+    code = thrown;
   }
   catch (const std::bad_alloc&)
   {
-    return 1;
+    code = 1;
   }
   catch (...)
   {
-    return 2;
+    code = 2;
   }
-  return 0;
+  _exit(code);
+}
+
+/// Everything from the pipe until it closes, asking now and then whether to go on.
+bool readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
+{
+  constexpr int Milliseconds = 200;
+  std::vector<char> buffer(1 << 16);
+  while (true)
+  {
+    pollfd poll = { pipe, POLLIN, 0 };
+    const int ready = ::poll(&poll, 1, Milliseconds);
+    if (ready == 0 && options.progress && !options.progress())
+    {
+      return false;
+    }
+    const ssize_t count = ready > 0 ? ::read(pipe, buffer.data(), buffer.size()) : -1;
+    if (count == 0 || (count < 0 && ready > 0 && errno != EINTR))
+    {
+      return true;
+    }
+    bytes.insert(bytes.end(), buffer.data(), buffer.data() + std::max<ssize_t>(0, count));
+  }
+}
+
+constexpr int Crashed = -1;
+constexpr int Stopped = -2;
+
+/**
+ * Runs TetGen; 0, the number it throws, Crashed or Stopped. It runs in a process of its own: TetGen
+ * 1.5 frees its memory twice when it throws, which would take this program with it, and some
+ * inputs make it loop or crash.
+ */
+int run(const std::string& switches, const SolidBoundary& boundary, const SolidOptions& options,
+  bool numbers, SolidMesh& mesh)
+{
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+  {
+    throw Error(std::string("no pipe for TetGen: ") + std::strerror(errno));
+  }
+  const pid_t child = ::fork();
+  if (child == 0)
+  {
+    ::close(ends[0]);
+    work(switches, boundary, options, numbers, ends[1]);
+  }
+  ::close(ends[1]);
+  std::vector<char> bytes;
+  const bool finished = child > 0 && readAll(ends[0], options, bytes);
+  ::close(ends[0]);
+  if (child < 0)
+  {
+    throw Error(std::string("no process for TetGen: ") + std::strerror(errno));
+  }
+  if (!finished)
+  {
+    ::kill(child, SIGKILL);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
+  {
+  }
+  if (!finished)
+  {
+    return Stopped;
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+  {
+    return WIFEXITED(status) ? WEXITSTATUS(status) : Crashed;
+  }
+  std::size_t at = 0;
+  const bool complete = receive(bytes, at, mesh.points) && receive(bytes, at, mesh.tetrahedra) &&
+    receive(bytes, at, mesh.references) && receive(bytes, at, mesh.faces) &&
+    receive(bytes, at, mesh.faceMarkers);
+  return complete ? 0 : Crashed;
 }
 
 /// "facets 3, 17", those TetGen's search for intersections marks; empty if it finds none.
-std::string intersectingFacets(const SolidBoundary& boundary, const SolidOptions& options)
+std::string intersectingFacets(const SolidBoundary& boundary, SolidOptions options)
 {
-  tetgenio in, out;
-  setInput(boundary, options, true, in);
-  in.numberofpointmtrs = 0;
-  if (run("pdQz", in, out) != 0 || !out.trifacemarkerlist)
+  options.pointSizes.clear();
+  SolidMesh mesh;
+  if (run("pdQz", boundary, options, true, mesh) != 0)
   {
     return {};
   }
-  const std::set<int> numbers(out.trifacemarkerlist, out.trifacemarkerlist + out.numberoftrifaces);
+  const std::set<int> numbers(mesh.faceMarkers.begin(), mesh.faceMarkers.end());
   std::string list;
   int listed = 0;
   for (const int number : numbers)
@@ -176,34 +332,22 @@ std::string intersectingFacets(const SolidBoundary& boundary, const SolidOptions
 
 [[noreturn]] void fail(int code, const SolidBoundary& boundary, const SolidOptions& options)
 {
+  if (code == Stopped)
+  {
+    throw Error("stopped");
+  }
   if (code == 1)
   {
     throw Error("TetGen: not enough memory; allow larger tetrahedra");
   }
-  if (code == 3 || code == 4 || code == 5 || code == 2)
+  const std::string facets = intersectingFacets(boundary, options);
+  if (!facets.empty())
   {
-    const std::string facets = intersectingFacets(boundary, options);
-    if (!facets.empty())
-    {
-      throw Error("the surface intersects itself: " + facets + "; repair it, then mesh it");
-    }
+    throw Error("the surface intersects itself: " + facets + "; repair it, then mesh it");
   }
-  switch (code)
-  {
-    case 3:
-      throw Error("TetGen: the surface intersects itself; repair it, then mesh it");
-    case 4:
-      throw Error(
-        "TetGen: the surface has a very small feature; merge close points (Clean to Grid), "
-        "then mesh it");
-    case 5:
-      throw Error("TetGen: two facets are very close; preserve the surface, or part them");
-    case 10:
-      throw Error("TetGen: the surface is no valid input");
-    default:
-      throw Error("TetGen failed (code " + std::to_string(code) +
-        "): is the surface closed, without duplicate or degenerate facets?");
-  }
+  throw Error(
+    "TetGen failed: is the surface closed, without duplicate, degenerate or nearly touching "
+    "facets? Merge doubled points first (Clean to Grid), or preserve the surface");
 }
 
 std::string switchesFor(const SolidOptions& options)
@@ -232,45 +376,30 @@ std::string switchesFor(const SolidOptions& options)
 SolidMesh meshSolid(const SolidBoundary& boundary, const SolidOptions& options)
 {
   checkBoundary(boundary);
+  if (!options.pointSizes.empty() && options.pointSizes.size() != boundary.points.size() / 3)
+  {
+    throw Error("there must be one size for each point");
+  }
   if (options.radiusEdgeRatio != 0.0 && !(options.radiusEdgeRatio > 1.0))
   {
     throw Error("the ratio of radius and edge must be larger than 1, or 0 for none");
   }
-  tetgenio in, out;
-  setInput(boundary, options, false, in);
-  const int code = run(switchesFor(options), in, out);
+  SolidMesh mesh;
+  const int code = run(switchesFor(options), boundary, options, false, mesh);
   if (code != 0)
   {
     fail(code, boundary, options);
   }
-  if (out.numberoftetrahedra == 0)
+  if (mesh.tetrahedra.empty())
   {
     throw Error(
       "there is nothing inside of the surface: is it closed, do the holes leave anything?");
   }
-  SolidMesh mesh;
-  mesh.points.assign(
-    out.pointlist, out.pointlist + 3 * static_cast<std::ptrdiff_t>(out.numberofpoints));
-  mesh.references.assign(static_cast<std::size_t>(out.numberoftetrahedra), 0);
-  mesh.tetrahedra.reserve(4 * mesh.references.size());
-  for (std::size_t t = 0; t < mesh.references.size(); ++t)
-  {
-    const int* corner = out.tetrahedronlist + t * static_cast<std::size_t>(out.numberofcorners);
-    mesh.tetrahedra.insert(mesh.tetrahedra.end(), corner, corner + 4);
-    if (out.numberoftetrahedronattributes > 0)
-    {
-      const std::size_t at = t * static_cast<std::size_t>(out.numberoftetrahedronattributes);
-      mesh.references[t] = static_cast<int>(std::lround(out.tetrahedronattributelist[at]));
-    }
-  }
-  const auto faces = static_cast<std::size_t>(out.numberoftrifaces);
-  mesh.faces.assign(out.trifacelist, out.trifacelist + 3 * faces);
-  mesh.faceMarkers.assign(faces, 1);
+  mesh.faceMarkers.resize(mesh.faces.size() / 3, 1);
   mesh.pointMarkers.assign(mesh.points.size() / 3, 0);
-  for (std::size_t i = 0; i < 3 * faces; ++i)
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
   {
-    const int value = out.trifacemarkerlist ? out.trifacemarkerlist[i / 3] : 1;
-    mesh.faceMarkers[i / 3] = value;
+    const int value = mesh.faceMarkers[i / 3];
     int& marker = mesh.pointMarkers[static_cast<std::size_t>(mesh.faces[i])];
     marker = marker == 0 || (value != 0 && value < marker) ? value : marker;
   }

@@ -2,9 +2,9 @@
  * @file SolidMesher.h
  * @brief Quality tetrahedralization of a region with TetGen (AGPL); no VTK, and no TetGen in this header.
  *
- * TetGen is called as a library. What it reports by exception, or would end a program with, comes
- * out as an Error; for surfaces that intersect themselves it names the facets. The result depends on
- * nothing but the input. TetGen writes to nothing and cannot be interrupted.
+ * TetGen is called as a library, in a forked process: whatever it does there (throw, crash, exit, loop)
+ * comes out as an Error here, or can be stopped. For surfaces that intersect themselves the Error
+ * names the facets. The result depends on nothing but the input.
  */
 #ifndef tautline_SolidMesher_h
 #define tautline_SolidMesher_h
@@ -12,6 +12,8 @@
 #include "TautlineMeshingModule.h" // for export macro
 
 #include "tautline/Domains.h"
+
+#include <functional>
 
 namespace tautline
 {
@@ -30,6 +32,8 @@ struct SolidOptions
   bool preserveSurface = false;
   /// Regions: x y z, reference, largest volume (negative for none) each.
   std::vector<double> regions;
+  /// Called some times a second; returning false stops with an Error.
+  std::function<bool()> progress;
 };
 
 struct SolidMesh

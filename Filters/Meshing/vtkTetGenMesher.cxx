@@ -161,6 +161,12 @@ int vtkTetGenMesher::RequestData(
     options.volume = this->Volume;
     options.preserveSurface = this->PreserveSurface;
     options.regions = fieldValues(input, "Regions", 5);
+    options.progress = [this, calls = 0.0]() mutable
+    {
+      calls += 1.0;
+      this->UpdateProgress(0.05 + 0.9 * calls / (calls + 50.0));
+      return this->GetAbortExecute() == 0;
+    };
     if (this->UseSizeArray)
     {
       options.pointSizes = takeSizes(input, this->GetInputArrayToProcess(0, input));

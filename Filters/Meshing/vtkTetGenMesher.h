@@ -13,10 +13,10 @@
  * input, else 1), 0 inside. Cell array `Reference` with the region, if there are regions. Output 1,
  * vtkPolyData `Boundary`: the facets in pieces on the same points, with `BoundaryMarker`.
  *
- * A surface that intersects itself is an error that names the facets. Whatever TetGen throws is an
- * error with an empty output; it never ends the program. Deterministic.
+ * A surface that intersects itself is an error that names the facets. TetGen runs in a process of its
+ * own: whatever happens to it is an error with an empty output, and abort is obeyed. Deterministic.
  *
- * Limits: TetGen runs to its end, without progress between; it cannot be aborted.
+ * Limits: TetGen does not say how far it is, so progress only shows that it runs.
  *
  * Method: H. Si, TetGen, a Delaunay-based quality tetrahedral mesh generator, ACM Transactions on
  * Mathematical Software 41 (2015).
