@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -233,10 +234,16 @@ bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>
   _exit(code);
 }
 
-/// Everything from the pipe until it closes, asking now and then whether to go on.
-bool readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
+constexpr int Crashed = -1;
+constexpr int Stopped = -2;
+constexpr int TooLong = -3;
+
+/// Everything from the pipe until it closes, asking now and then whether to go on; 0, Stopped or TooLong.
+int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
 {
+  using Clock = std::chrono::steady_clock;
   constexpr int Milliseconds = 200;
+  const auto start = Clock::now();
   std::vector<char> buffer(1 << 16);
   while (true)
   {
@@ -244,22 +251,24 @@ bool readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
     const int ready = ::poll(&poll, 1, Milliseconds);
     if (ready == 0 && options.progress && !options.progress())
     {
-      return false;
+      return Stopped;
+    }
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (ready == 0 && options.timeLimit > 0.0 && seconds > options.timeLimit)
+    {
+      return TooLong;
     }
     const ssize_t count = ready > 0 ? ::read(pipe, buffer.data(), buffer.size()) : -1;
     if (count == 0 || (count < 0 && ready > 0 && errno != EINTR))
     {
-      return true;
+      return 0;
     }
     bytes.insert(bytes.end(), buffer.data(), buffer.data() + std::max<ssize_t>(0, count));
   }
 }
 
-constexpr int Crashed = -1;
-constexpr int Stopped = -2;
-
 /**
- * Runs TetGen; 0, the number it throws, Crashed or Stopped. It runs in a process of its own: TetGen
+ * Runs TetGen; 0, the number it throws, Crashed, Stopped or TooLong. It runs in a process of its own: TetGen
  * 1.5 frees its memory twice when it throws, which would take this program with it, and some
  * inputs make it loop or crash.
  */
@@ -279,13 +288,13 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   }
   ::close(ends[1]);
   std::vector<char> bytes;
-  const bool finished = child > 0 && readAll(ends[0], options, bytes);
+  const int ended = child > 0 ? readAll(ends[0], options, bytes) : 0;
   ::close(ends[0]);
   if (child < 0)
   {
     throw Error(std::string("no process for TetGen: ") + std::strerror(errno));
   }
-  if (!finished)
+  if (ended != 0)
   {
     ::kill(child, SIGKILL);
   }
@@ -293,9 +302,9 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
   {
   }
-  if (!finished)
+  if (ended != 0)
   {
-    return Stopped;
+    return ended;
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
   {
@@ -311,7 +320,9 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
 /// "facets 3, 17", those TetGen's search for intersections marks; empty if it finds none.
 std::string intersectingFacets(const SolidBoundary& boundary, SolidOptions options)
 {
+  constexpr double Seconds = 60.0;
   options.pointSizes.clear();
+  options.timeLimit = Seconds;
   SolidMesh mesh;
   if (run("pdQz", boundary, options, true, mesh) != 0)
   {
@@ -335,6 +346,12 @@ std::string intersectingFacets(const SolidBoundary& boundary, SolidOptions optio
   if (code == Stopped)
   {
     throw Error("stopped");
+  }
+  if (code == TooLong)
+  {
+    throw Error(
+      "TetGen did not end within the time limit; allow more time or larger tetrahedra, or check "
+      "the surface for very small angles");
   }
   if (code == 1)
   {

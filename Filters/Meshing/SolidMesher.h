@@ -32,6 +32,8 @@ struct SolidOptions
   bool preserveSurface = false;
   /// Regions: x y z, reference, largest volume (negative for none) each.
   std::vector<double> regions;
+  /// Seconds TetGen may take; 0 for as long as it likes (some inputs make it loop).
+  double timeLimit = 0.0;
   /// Called some times a second; returning false stops with an Error.
   std::function<bool()> progress;
 };

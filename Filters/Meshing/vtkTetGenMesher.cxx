@@ -160,6 +160,7 @@ int vtkTetGenMesher::RequestData(
     options.minimumDihedralAngle = this->MinimumDihedralAngle;
     options.volume = this->Volume;
     options.preserveSurface = this->PreserveSurface;
+    options.timeLimit = this->TimeLimit;
     options.regions = fieldValues(input, "Regions", 5);
     options.progress = [this, calls = 0.0]() mutable
     {
@@ -205,4 +206,5 @@ void vtkTetGenMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Volume: " << this->Volume << "\n";
   os << indent << "UseSizeArray: " << this->UseSizeArray << "\n";
   os << indent << "PreserveSurface: " << this->PreserveSurface << "\n";
+  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
 }

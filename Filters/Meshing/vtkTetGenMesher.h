@@ -80,6 +80,14 @@ public:
   vtkBooleanMacro(PreserveSurface, bool);
   ///@}
 
+  ///@{
+  /**
+   * Seconds TetGen may take; 0 is no limit. On some surfaces it never ends. The default is 3600.
+   */
+  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
 protected:
   vtkTetGenMesher();
   ~vtkTetGenMesher() override = default;
@@ -92,6 +100,7 @@ protected:
   double Volume = 0.0;
   bool UseSizeArray = false;
   bool PreserveSurface = false;
+  double TimeLimit = 3600.0;
 
 private:
   vtkTetGenMesher(const vtkTetGenMesher&) = delete;

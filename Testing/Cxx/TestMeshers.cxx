@@ -362,6 +362,11 @@ void testTetrahedraFailures()
   aborted->AddObserver(vtkCommand::ProgressEvent, stop);
   TAUTLINE_CHECK(contains(failure(aborted, read("cube.smesh")), "stopped"));
 
+  vtkNew<vtkTetGenMesher> slow;
+  slow->SetVolume(1e-7);
+  slow->SetTimeLimit(0.5);
+  TAUTLINE_CHECK(contains(failure(slow, read("cube.smesh")), "did not end within the time limit"));
+
   // and after all these failures it works
   vtkNew<vtkTetGenMesher> works;
   works->SetInputData(read("cube.smesh"));
