@@ -56,8 +56,9 @@ public:
   class Is_bad
   {
   public:
-    explicit Is_bad(const PlanarOptions& options)
+    Is_bad(const PlanarOptions& options, double smallest)
       : Options(options)
+      , Smallest(smallest)
     {
       const double sine = std::sin(options.minimumAngle * 3.14159265358979323846 / 180.0);
       this->Bound = sine * sine;
@@ -85,24 +86,43 @@ public:
       }
       q.excess = size > 0.0 ? lengths[2] / (size * size) : 0.0;
       const double area = 2.0 * CGAL::area(a, b, c);
-      q.sine = area * area / (lengths[1] * lengths[2]);
+      // Near sharp corners of the input small angles cannot be refined away: trying ends in edges
+      // shorter than coordinates can tell apart.
+      q.sine = lengths[0] > this->Smallest ? area * area / (lengths[1] * lengths[2]) : 1.0;
       return (*this)(q);
     }
 
   private:
     const PlanarOptions& Options;
+    double Smallest; ///< squared edge below which angles do not count
     double Bound;
   };
 
-  explicit Criteria(const PlanarOptions& options)
+  Criteria(const PlanarOptions& options, double smallest)
     : Options(&options)
+    , Smallest(smallest)
   {
   }
-  Is_bad is_bad_object() const { return Is_bad(*this->Options); }
+  Is_bad is_bad_object() const { return Is_bad(*this->Options, this->Smallest); }
 
 private:
   const PlanarOptions* Options;
+  double Smallest;
 };
+
+/// The square of an edge that is tiny compared to the whole.
+double tinyEdge(const PlanarBoundary& boundary)
+{
+  constexpr double Tiny = 1e-6;
+  double low[] = { INFINITY, INFINITY }, high[] = { -INFINITY, -INFINITY };
+  for (std::size_t i = 0; i < boundary.points.size(); ++i)
+  {
+    low[i % 2] = std::min(low[i % 2], boundary.points[i]);
+    high[i % 2] = std::max(high[i % 2], boundary.points[i]);
+  }
+  const double extent = Tiny * std::max(high[0] - low[0], high[1] - low[1]);
+  return extent * extent;
+}
 
 std::vector<Vertex> insertPoints(Triangulation& triangulation, const PlanarBoundary& boundary)
 {
@@ -212,9 +232,10 @@ void markDomain(Triangulation& triangulation, const PlanarBoundary& boundary, bo
   }
 }
 
-void refine(Triangulation& triangulation, const PlanarOptions& options)
+void refine(Triangulation& triangulation, const PlanarOptions& options, double smallest)
 {
-  CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(options));
+  CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(
+    triangulation, Criteria(options, smallest));
   mesher.init(true);
   constexpr int Steps = 1000;
   while (!mesher.is_refinement_done())
@@ -302,7 +323,7 @@ PlanarMesh meshPlane(const PlanarBoundary& boundary, const PlanarOptions& option
     throw Error("the segments do not surround anything");
   }
   markDomain(triangulation, boundary, options.holesGiven);
-  refine(triangulation, options);
+  refine(triangulation, options, tinyEdge(boundary));
 
   PlanarMesh mesh;
   mesh.points = boundary.points;
