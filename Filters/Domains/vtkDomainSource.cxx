@@ -85,7 +85,7 @@ Made makeUnstructured(
 {
   const double power = info.kind == DomainKind::Planar ? 2.0 : 3.0;
   constexpr Index Trial = 20000;
-  constexpr double Enough = 0.02;
+  const double enough = info.kind == DomainKind::Planar ? 0.005 : 0.02; // tetrahedra take longer
   const auto spacingFor = [&](double perCell)
   { return std::pow(info.size / (static_cast<double>(cells) * perCell), 1.0 / power); };
   double perCell = info.kind == DomainKind::Planar ? 0.5 : 0.1; // size of a cell, spacing 1
@@ -106,7 +106,7 @@ Made makeUnstructured(
     {
       best = std::move(made);
     }
-    if (std::abs(static_cast<double>(best.count() - cells)) <= Enough * static_cast<double>(cells))
+    if (std::abs(static_cast<double>(best.count() - cells)) <= enough * static_cast<double>(cells))
     {
       break;
     }

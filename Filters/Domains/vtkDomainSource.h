@@ -16,8 +16,8 @@
  * Output 1, vtkPolyData `Deformed Boundary`: the boundary with its points moved by Displacement (not
  * moved for domains at rest), with the cell array `BoundaryMarker` (structured domains: no cells).
  *
- * The number of cells is met within 5 % (usually 2 %) by repeating the meshing with a corrected size, as
- * long as it is at least 3,000 (2D) or 20,000 (3D); fewer may be impossible with the details of a shape.
+ * The number of cells is met within 5 % (usually 0.5 % in 2D, 2 % in 3D) by repeating the meshing with a
+ * corrected size, as long as it is at least 3,000 (2D) or 20,000 (3D); fewer may be impossible with the details of a shape.
  * Structured domains take the nearest number their grid allows.
  * Deterministic: the same properties give the same mesh.
  *

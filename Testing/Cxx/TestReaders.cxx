@@ -2,6 +2,8 @@
 
 #include "MeshFileChecks.h"
 
+#include "tautline/Mesh.h"
+
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -157,6 +159,25 @@ void testGmsh()
   }
 }
 
+/// The kernel finds every cell valid: orders of nodes are those VTK and Tautline compute with.
+void testValidity()
+{
+  for (const char* name :
+    { "/zoo.mesh", "/wedges.msh", "/part.msh", "/cube.1.ele", "/quadratic.1.ele" })
+  {
+    const MeshFile file = readByName(data + name, false);
+    const Mesh mesh({ file.numberOfPoints(), file.points.data(), file.numberOfCells(),
+      file.cellTypes.data(), file.offsets.data(), file.connectivity.data() });
+    std::vector<signed char> validity(file.cellTypes.size());
+    mesh.classifyCells(validity.data());
+    TAUTLINE_CHECK(mesh.unsupportedCells() == 0);
+    for (const signed char each : validity)
+    {
+      TAUTLINE_CHECK(each == Valid);
+    }
+  }
+}
+
 void testFreeFemAndOff()
 {
   const MeshFile tent = readGmsh(data + "/tent.msh", true);
@@ -249,6 +270,7 @@ int TestReaders(int, char* argv[])
   testComplexes();
   testMedit();
   testGmsh();
+  testValidity();
   testFreeFemAndOff();
   vtkNew<vtkGmshReader> gmsh;
   testOrderOfMiddleNodes(gmsh, "/wedges.msh", 27);
