@@ -1,4 +1,4 @@
-"""Meshes in and out: the verbs read, write and domain."""
+"""Formats of mesh generators for the verbs read and write, and the verb domain."""
 
 from __future__ import annotations
 
@@ -7,122 +7,70 @@ from pathlib import Path
 from typing import Any
 
 import tautline
-from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
-try:
-    from tautline import Error
-except ImportError:  # the package has none of its own yet
+from ._errors import Error, run, watch
 
-    class Error(RuntimeError):
-        """What a verb raises: the message of the filter that failed."""
-
-
+_TETGEN = (".node", ".ele", ".face", ".edge", ".poly", ".smesh")
 _READERS = {
-    **dict.fromkeys((".node", ".ele", ".face", ".edge", ".poly", ".smesh"), "vtkTetGenReader"),
+    **dict.fromkeys(_TETGEN, "vtkTetGenReader"),
     **dict.fromkeys((".mesh", ".sol"), "vtkMeditReader"),
     ".msh": "vtkGmshReader",
     **dict.fromkeys((".off", ".coff", ".noff", ".cnoff"), "vtkOffReader"),
 }
 _WRITERS = {
-    **dict.fromkeys((".node", ".ele", ".face", ".edge", ".poly", ".smesh"), "vtkTetGenWriter"),
+    **dict.fromkeys(_TETGEN, "vtkTetGenWriter"),
     ".mesh": "vtkMeditWriter",
     ".msh": "vtkGmshWriter",
     ".off": "vtkOffWriter",
 }
-# VTK's own formats: ending, module, reader, writer
-_VTK = {
-    ".vtk": ("vtkIOLegacy", "vtkDataSetReader", "vtkDataSetWriter"),
-    ".vtu": ("vtkIOXML", "vtkXMLUnstructuredGridReader", "vtkXMLUnstructuredGridWriter"),
-    ".vtp": ("vtkIOXML", "vtkXMLPolyDataReader", "vtkXMLPolyDataWriter"),
-    ".vti": ("vtkIOXML", "vtkXMLImageDataReader", "vtkXMLImageDataWriter"),
-    ".vts": ("vtkIOXML", "vtkXMLStructuredGridReader", "vtkXMLStructuredGridWriter"),
-    ".stl": ("vtkIOGeometry", "vtkSTLReader", "vtkSTLWriter"),
-    ".obj": ("vtkIOGeometry", "vtkOBJReader", None),
-    ".ply": ("vtkIOPLY", "vtkPLYReader", "vtkPLYWriter"),
-}
 
 
-class _Messages:
-    """Collects the error messages of an algorithm and of its executive instead of printing them."""
-
-    def __init__(self, algorithm) -> None:
-        self.texts: list[str] = []
-
-        def remember(_caller, _event, text):
-            self.texts.append(text)
-
-        remember.CallDataType = "string0"
-        for source in (algorithm, algorithm.GetExecutive()):
-            source.AddObserver(vtkCommand.ErrorEvent, remember)
-
-    def raise_any(self) -> None:
-        if self.texts:
-            # "ERROR: In file.cxx, line 12\nvtkClass (0x...): what happened\n\n" -> "what happened"
-            first = self.texts[0].strip()
-            raise Error(first.split("): ", 1)[-1].strip())
-
-
-def _vtk_class(module: str, name: str):
-    return getattr(__import__(f"vtkmodules.{module}", fromlist=[name]), name)()
-
-
-def _known(table: dict) -> str:
-    return " ".join(sorted({*table, *_VTK}))
+def _unknown(name: str, kind: str, ours: dict) -> Error:
+    return Error(f"{name}: no {kind} for '{Path(name).suffix}'; there are {' '.join(sorted({*ours, *_io()._FORMATS}))}")
 
 
 def read(file: str | PathLike, *, lower_cells: bool = False) -> vtkDataSet:
-    """Read a mesh of any format Tautline or VTK knows, by the ending of its name.
+    """Read a file of TetGen, Triangle, Medit, Gmsh, FreeFem++ or OFF, by the ending of its name.
 
-    With lower_cells, boundary triangles beside tetrahedra and edges beside triangles are kept (formats
-    of Tautline's own readers; VTK's keep them always). Raises Error, with file and line where known.
+    With lower_cells, boundary triangles beside tetrahedra and edges beside triangles are kept. Raises
+    Error with file and line.
     """
     name = fspath(file)
     ending = Path(name).suffix.lower()
-    if ending in _READERS:
-        reader = getattr(tautline, _READERS[ending])()
-        reader.SetLowerCells(lower_cells)
-    elif ending in _VTK:
-        reader = _vtk_class(*_VTK[ending][:2])
-    else:
-        raise Error(f"{name}: no reader for '{ending}'; there are {_known(_READERS)}")
-    if not Path(name).is_file() and ending in _VTK:
-        raise Error(f"{name}: cannot be opened")
-    messages = _Messages(reader)
+    if ending not in _READERS:
+        raise _unknown(name, "reader", _READERS)
+    reader = getattr(tautline, _READERS[ending])()
+    reader.SetLowerCells(lower_cells)
     reader.SetFileName(name)
-    reader.Update()
-    messages.raise_any()
+    run(reader)
     return reader.GetOutput()
 
 
-def write(mesh: Any, file: str | PathLike, *, binary: bool = False) -> list[str]:
-    """Write a vtkDataSet, or a result with a .mesh, by the ending of the name; returns the files written.
+def write(mesh: vtkDataSet, file: str | PathLike, *, binary: bool = False) -> list[str]:
+    """Write a mesh by the ending of the name; returns the files written.
 
-    `binary` matters to .msh. Raises Error when the format has no place for the mesh's cells.
+    `binary` is for .msh. Raises Error when the format has no place for the mesh's cells.
     """
     name = fspath(file)
     ending = Path(name).suffix.lower()
-    data = mesh if isinstance(mesh, vtkDataSet) else getattr(mesh, "mesh", None)
-    if not isinstance(data, vtkDataSet):
-        raise Error(f"a vtkDataSet is expected, not {type(mesh).__name__}")
-    if ending in _WRITERS:
-        writer = getattr(tautline, _WRITERS[ending])()
-        if hasattr(writer, "SetBinary"):
-            writer.SetBinary(binary)
-    elif ending in _VTK and _VTK[ending][2]:
-        writer = _vtk_class(_VTK[ending][0], _VTK[ending][2])
-    else:
-        raise Error(f"{name}: no writer for '{ending}'; there are {_known(_WRITERS)}")
-    messages = _Messages(writer)
-    writer.SetInputData(data)
+    if ending not in _WRITERS:
+        raise _unknown(name, "writer", _WRITERS)
+    if not isinstance(mesh, vtkDataSet):
+        raise Error(f"{name}: a vtkDataSet can be written, not a {type(mesh).__name__}")
+    writer = getattr(tautline, _WRITERS[ending])()
+    if binary and not hasattr(writer, "SetBinary"):
+        raise Error(f"{name}: '{ending}' is always text")
+    if hasattr(writer, "SetBinary"):
+        writer.SetBinary(binary)
+    writer.SetInputData(mesh)
     writer.SetFileName(name)
+    messages = watch(writer)
     written = writer.Write()
-    messages.raise_any()
+    messages.raise_errors()
     if not written:
         raise Error(f"{name}: cannot be written")
-    if hasattr(writer, "GetNumberOfFilesWritten"):
-        return [writer.GetFileWritten(i) for i in range(writer.GetNumberOfFilesWritten())]
-    return [name]
+    return [writer.GetFileWritten(i) for i in range(writer.GetNumberOfFilesWritten())]
 
 
 def domains() -> list[str]:
@@ -148,9 +96,9 @@ def domain(
     instead of the mesh. Raises Error for an unknown name, with the list of names.
     """
     source = tautline.vtkDomainSource()
-    messages = _Messages(source)
+    messages = watch(source)
     source.SetDomainByName(name)
-    messages.raise_any()
+    messages.raise_errors()
     if cells < 0:
         raise Error(f"the number of cells is {cells}; it cannot be negative")
     source.SetNumberOfCells(cells)
@@ -158,8 +106,7 @@ def domain(
     source.SetElementSize(element_size)
     source.SetAspectRatio(aspect_ratio)
     source.SetCollarWidth(collar_width)
-    source.Update()
-    messages.raise_any()
+    run(source, messages)
     return source.GetOutputDataObject(1 if deformed_boundary else 0)
 
 
@@ -183,6 +130,16 @@ def add_commands(commands) -> None:
     parser.set_defaults(run=_run_convert)
 
 
+def _io():
+    from . import _io as module  # knows VTK's formats too, and imports this one
+
+    return module
+
+
+def _write_any(mesh: vtkDataSet, file: str, **options: Any) -> list[str]:
+    return _io().write(mesh, file, **options)
+
+
 def _report(mesh: vtkDataSet, files: list[str]) -> int:
     print(f"{mesh.GetNumberOfPoints()} points, {mesh.GetNumberOfCells()} cells: {' '.join(files)}")
     return 0
@@ -197,9 +154,10 @@ def _run_domain(arguments) -> int:
         aspect_ratio=arguments.aspect_ratio,
         collar_width=arguments.collar_width,
     )
-    return _report(mesh, write(mesh, arguments.output))
+    return _report(mesh, _write_any(mesh, arguments.output))
 
 
 def _run_convert(arguments) -> int:
-    mesh = read(arguments.input, lower_cells=arguments.lower_cells)
-    return _report(mesh, write(mesh, arguments.output, binary=arguments.binary))
+    options = {"lower_cells": True} if arguments.lower_cells else {}
+    mesh = _io().read(arguments.input, **options)
+    return _report(mesh, _write_any(mesh, arguments.output, **({"binary": True} if arguments.binary else {})))
