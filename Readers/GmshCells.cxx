@@ -124,6 +124,17 @@ void GmshInput::addElement(const GmshCell& cell, const Index* tags, const char* 
 }
 
 //------------------------------------------------------------------------------
+void GmshInput::reserveElements(std::size_t count)
+{
+  reserveLarge(this->mesh.connectivity, 4 * count);
+  reserveLarge(this->mesh.offsets, count + 1);
+  reserveLarge(this->mesh.cellTypes, count);
+  reserveLarge(this->elementTags, count);
+  reserveLarge(this->references, count);
+  reserveLarge(this->entities, count);
+}
+
+//------------------------------------------------------------------------------
 void GmshInput::setNodes(std::vector<Index> tags)
 {
   this->nodes.assign(tags);

@@ -76,6 +76,8 @@ struct GmshInput
   /// Adds an element; `tags` are those of its nodes in Gmsh's order.
   void addElement(const GmshCell& cell, const Index* tags, const char* place);
   void setNodes(std::vector<Index> tags);
+  /// Room for elements of about four nodes.
+  void reserveElements(std::size_t count);
 };
 
 void readGmshNodes2(GmshInput& input);

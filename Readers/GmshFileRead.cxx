@@ -298,6 +298,7 @@ void readGmshElements2(GmshInput& input)
   cursor.expectRoom(count, input.binary ? 8 : 6, "number of elements");
   const auto next = [&](const char* what) -> Index
   { return input.binary ? cursor.binary<std::int32_t>(what) : cursor.integer(what); };
+  input.reserveElements(static_cast<std::size_t>(count));
   Index inBlock = 0, code = 0, tags = 0;
   for (Index i = 0; i < count; ++i)
   {

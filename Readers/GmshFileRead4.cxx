@@ -96,8 +96,8 @@ void readGmshNodes4(GmshInput& input)
   readSize(input, "largest node number");
   input.cursor.expectRoom(count, input.binary ? 32 : 8, "number of nodes");
   std::vector<Index> tags;
-  tags.reserve(static_cast<std::size_t>(count));
-  input.mesh.points.reserve(static_cast<std::size_t>(3 * count));
+  reserveLarge(tags, static_cast<std::size_t>(count));
+  reserveLarge(input.mesh.points, static_cast<std::size_t>(3 * count));
   for (Index block = 0; block < blocks; ++block)
   {
     const Index dimension = readInt(input, "dimension of an entity", 0, 3);
@@ -142,6 +142,7 @@ void readGmshElements4(
   readSize(input, "smallest element number");
   readSize(input, "largest element number");
   input.cursor.expectRoom(count, input.binary ? 16 : 4, "number of elements");
+  input.reserveElements(static_cast<std::size_t>(count));
   for (Index block = 0; block < blocks; ++block)
   {
     const Index dimension = readInt(input, "dimension of an entity", 0, 3);

@@ -67,7 +67,7 @@ void readVertices(TextCursor& cursor, Contents& contents)
   }
   contents.points =
     sectionSize(cursor, "Vertices", static_cast<std::size_t>(contents.dimension + 1));
-  contents.coordinates.assign(static_cast<std::size_t>(3 * contents.points), 0.0);
+  resizeLarge(contents.coordinates, static_cast<std::size_t>(3 * contents.points));
   contents.pointReferences.resize(static_cast<std::size_t>(contents.points));
   for (std::size_t i = 0; i < contents.pointReferences.size(); ++i)
   {
@@ -92,8 +92,8 @@ void readCells(TextCursor& cursor, const MeditSection& section, Contents& conten
   std::vector<Index>& nodes = contents.nodes[section.type];
   std::vector<Index>& references = contents.references[section.type];
   std::size_t node = nodes.size(), reference = references.size();
-  nodes.resize(node + count * size);
-  references.resize(reference + count);
+  resizeLarge(nodes, node + count * size);
+  resizeLarge(references, reference + count);
   for (std::size_t i = 0; i < count; ++i)
   {
     for (std::size_t c = 0; c < size; ++c)

@@ -1,5 +1,7 @@
 #include "MeshFile.h"
 
+#include "TextCursor.h"
+
 #include <algorithm>
 #include <array>
 
@@ -59,6 +61,23 @@ constexpr std::array<CellFacts, 256> Table = makeTable();
 const CellFacts& facts(unsigned char type)
 {
   return Table[type];
+}
+
+/// Smallest and largest dimension of cells; -1 for both without any.
+std::pair<int, int> dimensionRange(const std::vector<unsigned char>& types)
+{
+  std::array<bool, 256> present{};
+  for (const unsigned char type : types)
+  {
+    present[type] = true;
+  }
+  int low = 3, high = -1;
+  for (std::size_t type = 0; type < present.size(); ++type)
+  {
+    low = present[type] ? std::min(low, Table[type].dimension) : low;
+    high = present[type] ? std::max(high, Table[type].dimension) : high;
+  }
+  return { std::min(low, high), high };
 }
 
 /// Keeps the tuples whose flag is set.
@@ -141,17 +160,7 @@ MeshArray MeshArray::make(std::string name, int components, char code, std::size
 //------------------------------------------------------------------------------
 int MeshFile::dimension() const
 {
-  std::array<bool, 256> present{};
-  for (const unsigned char type : this->cellTypes)
-  {
-    present[type] = true;
-  }
-  int largest = -1;
-  for (int type = 0; type < 256; ++type)
-  {
-    largest = present[type] ? std::max(largest, cellDimension(type)) : largest;
-  }
-  return largest;
+  return dimensionRange(this->cellTypes).second;
 }
 
 //------------------------------------------------------------------------------
@@ -170,15 +179,15 @@ bool MeshFile::planar() const
 //------------------------------------------------------------------------------
 void MeshFile::keepHighestDimension()
 {
-  const int largest = this->dimension();
+  const auto [smallest, largest] = dimensionRange(this->cellTypes);
+  if (smallest == largest)
+  {
+    return;
+  }
   std::vector<char> keep(this->cellTypes.size());
   for (std::size_t cell = 0; cell < keep.size(); ++cell)
   {
     keep[cell] = cellDimension(this->cellTypes[cell]) == largest;
-  }
-  if (std::find(keep.begin(), keep.end(), 0) == keep.end())
-  {
-    return;
   }
   std::vector<Index> ends = { 0 };
   std::size_t to = 0;
@@ -210,7 +219,7 @@ void MeshFile::addCells(unsigned char type, std::vector<Index> nodes)
   const Index start = this->offsets.back();
   this->cellTypes.resize(this->cellTypes.size() + count, type);
   const std::size_t old = this->offsets.size();
-  this->offsets.resize(old + count);
+  resizeLarge(this->offsets, old + count);
   for (std::size_t i = 0; i < count; ++i)
   {
     this->offsets[old + i] = start + static_cast<Index>((i + 1) * size);

@@ -142,7 +142,7 @@ NodeList readNodes(TextCursor& cursor, const FileContent& file, MeshFile& mesh)
   const Index columns = 1 + header.dimension + header.attributes + header.markers;
   cursor.expectRoom(header.count, static_cast<std::size_t>(2 * columns), "number of vertices");
   nodes.base = peekBase(cursor, "vertex number");
-  mesh.points.assign(static_cast<std::size_t>(3 * header.count), 0.0);
+  resizeLarge(mesh.points, static_cast<std::size_t>(3 * header.count));
   mesh.pointArrays = attributeArrays(file, header.attributes, header.count, false);
   MeshArray markers = MeshArray::make(
     "BoundaryMarker", 1, 'i', header.markers ? static_cast<std::size_t>(header.count) : 0);
@@ -237,7 +237,8 @@ void readElements(const FileContent& file, const NodeList& nodes, MeshFile& mesh
   cursor.expectRoom(
     count, static_cast<std::size_t>(2 * (1 + size + attributes)), "number of elements");
   std::vector<MeshArray> arrays = attributeArrays(file, attributes, count, true);
-  std::vector<Index> connectivity(static_cast<std::size_t>(count * size));
+  std::vector<Index> connectivity;
+  resizeLarge(connectivity, static_cast<std::size_t>(count * size));
   const std::vector<int> places = vtkPlaces(type);
   const Index base = count > 0 ? peekBase(cursor, "element number") : 0;
   for (Index i = 0; i < count; ++i)

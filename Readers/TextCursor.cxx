@@ -69,7 +69,6 @@ FileContent::FileContent(const std::string& name, const std::string& why)
 //------------------------------------------------------------------------------
 void FileContent::allocate()
 {
-  // large pages where there are some: filling ordinary ones takes as long as reading the file
   constexpr std::size_t LargePage = std::size_t{ 1 } << 21;
   const std::size_t size = (this->Size + Padding + LargePage - 1) / LargePage * LargePage;
   const bool large = this->Size >= LargePage;
@@ -79,10 +78,7 @@ void FileContent::allocate()
   {
     throw std::bad_alloc();
   }
-  if (large)
-  {
-    madvise(this->Bytes.get(), size, MADV_HUGEPAGE);
-  }
+  adviseLargePages(this->Bytes.get(), size);
 }
 
 //------------------------------------------------------------------------------
@@ -274,6 +270,20 @@ std::string TextCursor::quoted(const char* what)
   }
   this->At = stop + 1;
   return std::string(start, stop);
+}
+
+//------------------------------------------------------------------------------
+void adviseLargePages(void* memory, std::size_t bytes)
+{
+  constexpr std::uintptr_t LargePage = std::uintptr_t{ 1 } << 21;
+  const std::uintptr_t first = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t begin = (first + LargePage - 1) / LargePage * LargePage;
+  const std::uintptr_t end = (first + bytes) / LargePage * LargePage;
+  if (begin < end)
+  {
+    madvise(
+      reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // a wish: failing is no error
+  }
 }
 
 //------------------------------------------------------------------------------

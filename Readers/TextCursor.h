@@ -222,6 +222,29 @@ inline Index TextCursor::integer(const char* what)
   return static_cast<Index>(bytes);
 }
 
+/// Asks the system for large pages: touching a large new array for the first time in ordinary ones takes
+/// as long as filling it.
+void adviseLargePages(void* memory, std::size_t bytes);
+
+/// Room for `size` values in all, in large pages where there are some.
+template <class Vector>
+void reserveLarge(Vector& values, std::size_t size)
+{
+  if (values.capacity() < size)
+  {
+    values.reserve(size);
+    adviseLargePages(values.data(), size * sizeof(typename Vector::value_type));
+  }
+}
+
+/// resize(), in large pages.
+template <class Vector>
+void resizeLarge(Vector& values, std::size_t size)
+{
+  reserveLarge(values, size);
+  values.resize(size);
+}
+
 /// The first word of a file, of at most 40 bytes; empty if it cannot be read.
 std::string firstWord(const std::string& name);
 
