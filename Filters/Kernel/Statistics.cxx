@@ -8,6 +8,9 @@ namespace tautline
 {
 namespace
 {
+/// Beyond the ends of a range by this, relative to their size or to 1, a value still counts as inside.
+constexpr double roundingTolerance = 1e-12;
+
 /// For each of the 256 cell types whether the metric is defined on it.
 std::array<bool, 256> definedTypes(const MetricInfo& info)
 {
@@ -114,12 +117,16 @@ MetricStatistics summarize(const MetricInfo& info, int dimension, std::vector<do
   }
   const double n = static_cast<double>(measured.size());
   const Range acceptable = info.acceptable(dimension);
+  const double lowest =
+    acceptable.low - roundingTolerance * std::max(1.0, std::abs(acceptable.low));
+  const double highest =
+    acceptable.high + roundingTolerance * std::max(1.0, std::abs(acceptable.high));
   result.minimum = result.maximum = measured.front();
   for (double q : measured)
   {
     result.minimum = std::min(result.minimum, q);
     result.maximum = std::max(result.maximum, q);
-    result.outsideAcceptable += q < acceptable.low || q > acceptable.high;
+    result.outsideAcceptable += q < lowest || q > highest;
   }
   // In units of the largest, so that squares neither overflow nor vanish; the deviation in a second
   // pass, so that it is right for nearly equal values.

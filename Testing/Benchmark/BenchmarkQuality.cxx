@@ -62,14 +62,15 @@ MeshData makeMesh(CellType type, Index n)
 }
 
 /// The memory floor: read every element's coordinates, add something to its vertices' gradient.
-void gatherAndScatter(const MeshData& mesh, int nodes, double* gradient)
+template <int Nodes>
+void gatherAndScatter(const MeshData& mesh, double* gradient)
 {
   const Index* cell = mesh.connectivity.data();
-  for (Index i = 0; i < mesh.numberOfCells(); ++i, cell += nodes)
+  for (Index i = 0; i < mesh.numberOfCells(); ++i, cell += Nodes)
   {
-    for (int k = 0; k < nodes; ++k)
+    for (int k = 0; k < Nodes; ++k)
     {
-      const double* p = &mesh.points[3 * cell[(k + 1) % nodes]];
+      const double* p = &mesh.points[3 * cell[(k + 1) % Nodes]];
       for (int c = 0; c < 3; ++c)
       {
         gradient[3 * cell[k] + c] += p[c];
@@ -187,7 +188,11 @@ void kernelPart(Index n, int repeats)
     const std::string kind = isTets ? "tetrahedra " : "hexahedra ";
     const double count = static_cast<double>(data.numberOfCells());
     contest.add(kind + "floor", count, threadTime,
-      [&, isTets] { gatherAndScatter(data, isTets ? 4 : 8, gradient.data()); });
+      [&, isTets]
+      {
+        isTets ? gatherAndScatter<4>(data, gradient.data())
+               : gatherAndScatter<8>(data, gradient.data());
+      });
     if (isTets)
     {
       contest.add(kind + "plain imr", count, threadTime,

@@ -7,7 +7,7 @@ from pathlib import Path
 LINK = re.compile(r'\]\(([^)\s]+)\)|(?:href|src)="([^"]+)"')
 ANCHOR = re.compile(r'name="([^"]+)"')
 OUTSIDE = re.compile(r"[a-z]+:")
-PROXY = re.compile(r"(?:filters|sources)\.(\w+)\.html$")  # a page ParaView makes from the XML
+PROXY = re.compile(r"(?:filters|sources|readers|writers)\.(\w+)\.html$")  # a page ParaView makes from the XML
 MOST_BYTES = 150_000  # of a picture
 
 

@@ -16,7 +16,7 @@ simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=vars(simple))  # as if loade
 sys.argv = ["demo.py", str(OUT)]
 runpy.run_module("tautline.demo", run_name="__main__")
 result = tl.quality(OUT / "quality.vtu")
-assert result.inverted == 41 and (OUT / "quality.csv").read_text().startswith("metric,label,")
+assert 10 < result.inverted < 100 and (OUT / "quality.csv").read_text().startswith("metric,label,")
 
 reader = vtkPNGReader()
 reader.SetFileName(str(OUT / "quality.png"))

@@ -11,10 +11,12 @@ from pathlib import Path
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 PARAVIEW = r"(vtkSM(?!P(Tools|Thread|Range))|vtkSI[A-Z]|vtkPV|vtkClientServer|vtkProcessModule|vtkRemoting|pq|Q[A-Z])"
 FORBIDDEN = {"kernel": re.compile(r"(vtk|pq|Q[A-Z])"), "filter": re.compile(PARAVIEW)}
+# Parsers and calls of mesh generators are plain C++, too, in the directories of their filters.
+PLAIN = re.compile(r"Readers/(?!vtk|MeshFileAdapter)|Filters/Meshing/(Planar|Solid)Mesher")
 
 
 def layer(path: Path) -> str:
-    return "kernel" if "Kernel" in path.parts else "filter"
+    return "kernel" if "Kernel" in path.parts or PLAIN.match(path.as_posix()) else "filter"
 
 
 def main(top: Path) -> int:

@@ -1,0 +1,126 @@
+/**
+ * @class vtkDomainSource
+ * @brief The geometric domains of the dissertation, meshed with as many cells as asked for.
+ *
+ * The shapes follow the figures (tautline/Domains.h lists them with their numbers); the dissertation
+ * gives no dimensions and its meshes are not published, so these are shapes of the same kind, not the
+ * same meshes. Structured domains (rectangle, square) are exact and need nothing; the others need the
+ * module Meshing, and say so when it was not built.
+ *
+ * Output 0, vtkUnstructuredGrid of triangles or tetrahedra. Point arrays:
+ * - `BoundaryMarker`: 0 inside, 1 on the outer boundary, 2, 3, ... on holes and other parts;
+ * - `Fixed`: 1 on the boundary, 0 inside, the usual choice of points an optimizer leaves alone;
+ * - `Displacement`: 3 components, moving domains only: where boundary points go; 0 inside.
+ * Cell array `Reference`, square only: 1 in the unit square, 2 in the collar around it.
+ *
+ * Output 1, vtkPolyData `Deformed Boundary`: the boundary with its points moved by Displacement (not
+ * moved for domains at rest), with the cell array `BoundaryMarker` (structured domains: no cells).
+ *
+ * The number of cells is met within 5 % (usually 0.5 % in 2D, 2 % in 3D) by repeating the meshing with a
+ * corrected size, as long as it is at least 3,000 (2D) or 20,000 (3D); fewer may be impossible with the details of a shape.
+ * Structured domains take the nearest number their grid allows.
+ * Deterministic: the same properties give the same mesh.
+ *
+ * @sa vtkTriangleMesher vtkTetGenMesher tautline::domains
+ */
+#ifndef vtkDomainSource_h
+#define vtkDomainSource_h
+
+#include "TautlineDomainsModule.h" // for export macro
+#include "vtkUnstructuredGridAlgorithm.h"
+
+#include <string> // for the name
+
+class TAUTLINEDOMAINS_EXPORT vtkDomainSource : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static vtkDomainSource* New();
+  vtkTypeMacro(vtkDomainSource, vtkUnstructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Which domain, as an index into GetDomainName(). The default is 0, the wrench.
+   */
+  void SetDomain(int domain);
+  vtkGetMacro(Domain, int);
+  ///@}
+
+  /**
+   * Which domain, by name. An unknown one is an error that lists the names.
+   */
+  void SetDomainByName(const char* name);
+
+  ///@{
+  /**
+   * The domains there are.
+   */
+  static int GetNumberOfDomains();
+  static const char* GetDomainName(int domain);
+  ///@}
+
+  /**
+   * Whether the domains that are not structured can be made.
+   */
+  static bool HasMeshing();
+
+  ///@{
+  /**
+   * Number of cells; 0 is that of the dissertation's example. The default is 0. The square is
+   * determined by ElementSize instead.
+   */
+  vtkSetClampMacro(NumberOfCells, vtkIdType, 0, 100000000);
+  vtkGetMacro(NumberOfCells, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
+   * How much of its motion a moving boundary makes; negative is the other way. The default is 1.
+   */
+  vtkSetClampMacro(Amount, double, -10.0, 10.0);
+  vtkGetMacro(Amount, double);
+  ///@}
+
+  ///@{
+  /**
+   * Square only: leg of the isotropic right triangle. The default is 0.1.
+   */
+  vtkSetClampMacro(ElementSize, double, 1e-4, 1.0);
+  vtkGetMacro(ElementSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * Square only: ratio of the legs, at the same number of triangles. The default is 1.
+   */
+  vtkSetClampMacro(AspectRatio, double, 1.0, 1e4);
+  vtkGetMacro(AspectRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * Square only: least width of the collar. The default is 0.2.
+   */
+  vtkSetClampMacro(CollarWidth, double, 0.0, 10.0);
+  vtkGetMacro(CollarWidth, double);
+  ///@}
+
+protected:
+  vtkDomainSource();
+  ~vtkDomainSource() override = default;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  int Domain = 0;
+  vtkIdType NumberOfCells = 0;
+  double Amount = 1.0;
+  double ElementSize = 0.1;
+  double AspectRatio = 1.0;
+  double CollarWidth = 0.2;
+
+private:
+  vtkDomainSource(const vtkDomainSource&) = delete;
+  void operator=(const vtkDomainSource&) = delete;
+};
+
+#endif

@@ -1,0 +1,61 @@
+/**
+ * @file MeshOutput.h
+ * @brief Plain vectors of points, simplices and markers as VTK data sets.
+ */
+#ifndef tautline_MeshOutput_h
+#define tautline_MeshOutput_h
+
+#include "tautline/Types.h"
+
+#include "vtkCellArray.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkSmartPointer.h"
+#include "vtkTypeInt64Array.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace tautline
+{
+/// Points with `dimension` coordinates each; the third of planar ones is z.
+inline vtkSmartPointer<vtkPoints> makePoints(
+  const std::vector<double>& coordinates, int dimension, double z = 0.0)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(VTK_DOUBLE);
+  const auto width = static_cast<std::size_t>(dimension);
+  points->SetNumberOfPoints(static_cast<vtkIdType>(coordinates.size() / width));
+  for (std::size_t i = 0; i < coordinates.size() / width; ++i)
+  {
+    const double* x = coordinates.data() + width * i;
+    points->SetPoint(static_cast<vtkIdType>(i), x[0], x[1], dimension == 3 ? x[2] : z);
+  }
+  return points;
+}
+
+/// Cells with `size` points each.
+inline vtkSmartPointer<vtkCellArray> makeCells(const std::vector<Index>& nodes, int size)
+{
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->Use64BitStorage();
+  vtkNew<vtkTypeInt64Array> connectivity;
+  connectivity->SetNumberOfTuples(static_cast<vtkIdType>(nodes.size()));
+  std::copy(nodes.begin(), nodes.end(), connectivity->GetPointer(0));
+  cells->SetData(size, connectivity);
+  return cells;
+}
+
+/// A 64-bit array, as the readers make them.
+inline vtkSmartPointer<vtkTypeInt64Array> makeMarkers(
+  const char* name, const std::vector<int>& values)
+{
+  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+  array->SetName(name);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+}
+#endif

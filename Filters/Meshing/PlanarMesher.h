@@ -1,0 +1,53 @@
+/**
+ * @file PlanarMesher.h
+ * @brief Quality triangulation of a planar region with CGAL (GPL); no VTK, and no CGAL in this header.
+ *
+ * The constrained Delaunay triangulation of the segments is refined until no triangle has an angle
+ * below a bound or an edge above a size (J. Shewchuk's and J. Ruppert's algorithms as CGAL has them).
+ * The result depends on nothing but the input.
+ */
+#ifndef tautline_PlanarMesher_h
+#define tautline_PlanarMesher_h
+
+#include "TautlineMeshingModule.h" // for export macro
+
+#include "tautline/Domains.h"
+
+#include <functional>
+
+namespace tautline
+{
+/// What the triangles have to be like.
+struct PlanarOptions
+{
+  /// Degrees; up to 20.7 the refinement ends for certain (inputs with sharp corners apart), beyond 33
+  /// it seldom does.
+  double minimumAngle = 20.7;
+  /// Longest edge allowed; 0 for no bound.
+  double size = 0.0;
+  /// Longest edge allowed near a place; empty for none. Both bounds hold.
+  std::function<double(double, double)> sizeField;
+  /// Whether `holes` of the boundary say where no triangles go. Otherwise it is every part that an
+  /// odd number of outlines does not surround.
+  bool holesGiven = false;
+  /// Error beyond this number of points, which ends a refinement that would go on for ever.
+  Index pointLimit = 20000000;
+  /// Called from time to time with the number of points; returning false stops with an Error.
+  std::function<bool(Index)> progress;
+};
+
+/// Triangles, counter-clockwise; the points of the boundary come first, in their order.
+struct PlanarMesh
+{
+  std::vector<double> points; ///< x y each
+  std::vector<Index> triangles;
+  std::vector<int> pointMarkers; ///< lowest marker of a point's segments, 0 off the segments
+  std::vector<Index> edges;      ///< two points each: the segments, in pieces
+  std::vector<int> edgeMarkers;
+};
+
+/// Throws Error: crossing segments are named, as are points that are not finite.
+TAUTLINEMESHING_EXPORT PlanarMesh meshPlane(
+  const PlanarBoundary& boundary, const PlanarOptions& options);
+}
+#endif

@@ -1,0 +1,110 @@
+/**
+ * @class vtkTetGenMesher
+ * @brief Quality tetrahedra in a closed surface with TetGen (AGPL).
+ *
+ * Input: triangles, quadrilaterals and polygons that share their points and close one or more volumes
+ * (merge doubled points with Clean to Grid first). Inner surfaces part the volume. Field arrays,
+ * as vtkTetGenReader gives them: `Holes` (a point x y z in each cavity), `Regions` (x y z, reference,
+ * largest volume; negative for none), `FacetHoles`. Polygons with the same value of the cell array
+ * `Facet` are one facet with holes.
+ *
+ * Output 0, vtkUnstructuredGrid: tetrahedra; the input's points come first. Point array
+ * `BoundaryMarker`: the lowest marker of the facets a point is on (cell array `BoundaryMarker` of the
+ * input, else 1), 0 inside. Cell array `Reference` with the region, if there are regions. Output 1,
+ * vtkPolyData `Boundary`: the facets in pieces on the same points, with `BoundaryMarker`.
+ *
+ * A surface that intersects itself is an error that names the facets. TetGen runs in a process of its
+ * own: whatever happens to it is an error with an empty output, and abort is obeyed. Deterministic.
+ *
+ * Limits: TetGen does not say how far it is, so progress only shows that it runs.
+ *
+ * Method: H. Si, TetGen, a Delaunay-based quality tetrahedral mesh generator, ACM Transactions on
+ * Mathematical Software 41 (2015).
+ *
+ * @sa vtkTriangleMesher vtkTetGenReader vtkDomainSource tautline::meshSolid
+ */
+#ifndef vtkTetGenMesher_h
+#define vtkTetGenMesher_h
+
+#include "TautlineMeshingModule.h" // for export macro
+#include "vtkUnstructuredGridAlgorithm.h"
+
+class TAUTLINEMESHING_EXPORT vtkTetGenMesher : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static vtkTetGenMesher* New();
+  vtkTypeMacro(vtkTetGenMesher, vtkUnstructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Largest ratio of circumradius and shortest edge of a tetrahedron; smaller is better, 1.1 and less
+   * seldom ends, 0 is no bound. The default is 1.4.
+   */
+  vtkSetClampMacro(RadiusEdgeRatio, double, 0.0, 100.0);
+  vtkGetMacro(RadiusEdgeRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * Smallest dihedral angle aimed at, degrees. The default is 10.
+   */
+  vtkSetClampMacro(MinimumDihedralAngle, double, 0.0, 60.0);
+  vtkGetMacro(MinimumDihedralAngle, double);
+  ///@}
+
+  ///@{
+  /**
+   * Largest volume of a tetrahedron; 0 is no bound. The default is 0.
+   */
+  vtkSetClampMacro(Volume, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(Volume, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the point array to process (index 0) gives the wanted edge length at each input point. The
+   * default is off.
+   */
+  vtkSetMacro(UseSizeArray, bool);
+  vtkGetMacro(UseSizeArray, bool);
+  vtkBooleanMacro(UseSizeArray, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the input's facets stay as they are, without new points on them. The default is off.
+   */
+  vtkSetMacro(PreserveSurface, bool);
+  vtkGetMacro(PreserveSurface, bool);
+  vtkBooleanMacro(PreserveSurface, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Seconds TetGen may take; 0 is no limit. On some surfaces it never ends. The default is 3600.
+   */
+  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+protected:
+  vtkTetGenMesher();
+  ~vtkTetGenMesher() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  double RadiusEdgeRatio = 1.4;
+  double MinimumDihedralAngle = 10.0;
+  double Volume = 0.0;
+  bool UseSizeArray = false;
+  bool PreserveSurface = false;
+  double TimeLimit = 3600.0;
+
+private:
+  vtkTetGenMesher(const vtkTetGenMesher&) = delete;
+  void operator=(const vtkTetGenMesher&) = delete;
+};
+
+#endif

@@ -1,0 +1,188 @@
+#include "vtkTriangleMesher.h"
+
+#include "MeshOutput.h"
+#include "PlanarMesher.h"
+
+#include "vtkCell.h"
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkStaticPointLocator.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cmath>
+
+vtkStandardNewMacro(vtkTriangleMesher);
+
+namespace
+{
+using tautline::Error;
+
+/// The edges of lines and polygons, with the marker of their cell.
+tautline::PlanarBoundary takeBoundary(vtkPointSet* input)
+{
+  tautline::PlanarBoundary boundary;
+  double bounds[6];
+  input->GetBounds(bounds);
+  const double extent = std::max(bounds[1] - bounds[0], bounds[3] - bounds[2]);
+  if (bounds[5] - bounds[4] > 1e-9 * extent)
+  {
+    throw Error("the outlines are not in a plane z = constant (z is from " +
+      std::to_string(bounds[4]) + " to " + std::to_string(bounds[5]) +
+      "); use Transform to lay them there");
+  }
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    const double* x = input->GetPoint(i);
+    boundary.points.insert(boundary.points.end(), { x[0], x[1] });
+  }
+  vtkDataArray* markers = input->GetCellData()->GetArray("BoundaryMarker");
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
+  {
+    const int type = input->GetCellType(cell);
+    const bool closed = type == VTK_TRIANGLE || type == VTK_QUAD || type == VTK_POLYGON;
+    if (!closed && type != VTK_LINE && type != VTK_POLY_LINE && type != VTK_VERTEX &&
+      type != VTK_POLY_VERTEX)
+    {
+      throw Error("cell " + std::to_string(cell) + " is neither a line nor a polygon");
+    }
+    input->GetCellPoints(cell, ids);
+    const vtkIdType size = ids->GetNumberOfIds();
+    const bool points = type == VTK_VERTEX || type == VTK_POLY_VERTEX;
+    for (vtkIdType i = 0; !points && i < size - (closed ? 0 : 1); ++i)
+    {
+      boundary.segments.insert(
+        boundary.segments.end(), { ids->GetId(i), ids->GetId((i + 1) % size) });
+      boundary.markers.push_back(markers ? static_cast<int>(markers->GetTuple1(cell)) : 1);
+    }
+  }
+  return boundary;
+}
+
+/// The allowed edge at a place: that of the nearest input point, growing with the distance.
+std::function<double(double, double)> makeSizeField(
+  vtkPointSet* input, vtkDataArray* sizes, double gradation)
+{
+  if (!sizes || sizes->GetNumberOfComponents() != 1)
+  {
+    throw Error("choose a point array with one component for the sizes");
+  }
+  double range[2];
+  sizes->GetRange(range);
+  if (!(range[0] > 0.0) || !std::isfinite(range[1]))
+  {
+    throw Error("sizes must be positive and finite; they are from " + std::to_string(range[0]) +
+      " to " + std::to_string(range[1]));
+  }
+  auto locator = vtkSmartPointer<vtkStaticPointLocator>::New();
+  locator->SetDataSet(input);
+  locator->BuildLocator();
+  const double z = input->GetBounds()[4];
+  return [=](double x, double y)
+  {
+    const double place[] = { x, y, z };
+    const vtkIdType nearest = locator->FindClosestPoint(place);
+    double p[3];
+    input->GetPoint(nearest, p);
+    return sizes->GetTuple1(nearest) + gradation * std::hypot(p[0] - x, p[1] - y);
+  };
+}
+}
+
+//------------------------------------------------------------------------------
+vtkTriangleMesher::vtkTriangleMesher()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+int vtkTriangleMesher::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkTriangleMesher::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkUnstructuredGrid" : "vtkPolyData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkTriangleMesher::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
+  vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputVector, 1);
+  if (!input || input->GetNumberOfPoints() == 0)
+  {
+    return 1;
+  }
+  try
+  {
+    tautline::PlanarBoundary boundary = takeBoundary(input);
+    tautline::PlanarOptions options;
+    options.minimumAngle = this->MinimumAngle;
+    options.size = this->Size;
+    if (vtkDataArray* holes = input->GetFieldData()->GetArray("Holes"))
+    {
+      options.holesGiven = true;
+      for (vtkIdType i = 0; i < holes->GetNumberOfTuples() && holes->GetNumberOfComponents() == 3;
+           ++i)
+      {
+        boundary.holes.insert(
+          boundary.holes.end(), { holes->GetComponent(i, 0), holes->GetComponent(i, 1) });
+      }
+    }
+    if (this->UseSizeArray)
+    {
+      options.sizeField =
+        makeSizeField(input, this->GetInputArrayToProcess(0, input), this->Gradation);
+    }
+    options.progress = [this](tautline::Index points)
+    {
+      const auto done = static_cast<double>(points);
+      this->UpdateProgress(done / (done + 1e5)); // the number of points is not known beforehand
+      return this->GetAbortExecute() == 0;
+    };
+    const tautline::PlanarMesh mesh = tautline::meshPlane(boundary, options);
+    const auto points = tautline::makePoints(mesh.points, 2, input->GetBounds()[4]);
+    output->SetPoints(points);
+    output->SetCells(VTK_TRIANGLE, tautline::makeCells(mesh.triangles, 3));
+    output->GetPointData()->AddArray(tautline::makeMarkers("BoundaryMarker", mesh.pointMarkers));
+    boundaryOutput->SetPoints(points);
+    boundaryOutput->SetLines(tautline::makeCells(mesh.edges, 2));
+    boundaryOutput->GetCellData()->AddArray(
+      tautline::makeMarkers("BoundaryMarker", mesh.edgeMarkers));
+  }
+  catch (const Error& error)
+  {
+    output->Initialize();
+    boundaryOutput->Initialize();
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkTriangleMesher::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";
+  os << indent << "Size: " << this->Size << "\n";
+  os << indent << "UseSizeArray: " << this->UseSizeArray << "\n";
+  os << indent << "Gradation: " << this->Gradation << "\n";
+}

@@ -1,0 +1,90 @@
+/**
+ * @file GmshFile.h
+ * @brief Gmsh's .msh 2.2 and 4.1, text and binary, and FreeFem++'s .msh, which has the same ending.
+ *
+ * Points keep the order of the file, numbers with gaps are closed. Elements up to second order are
+ * read; of a 14-node pyramid the node in its base is left out. `Reference` is the physical tag (the
+ * first, where an entity has several), `Entity` the elementary one. $NodeData and $ElementData
+ * become arrays (NaN where a node or element has no value), of several steps the last one. Names of
+ * physical groups become the field arrays `PhysicalNames` and `PhysicalGroups` (dimension, tag).
+ */
+#ifndef tautline_GmshFile_h
+#define tautline_GmshFile_h
+
+#include "MeshFile.h"
+#include "TextCursor.h"
+
+#include <unordered_map>
+
+namespace tautline
+{
+TAUTLINEREADERS_EXPORT MeshFile readGmsh(const std::string& name, bool lowerCells);
+
+/// Writes version 4.1, text or binary.
+TAUTLINEREADERS_EXPORT std::vector<std::string> writeGmsh(
+  const MeshFile& mesh, const std::string& name, bool binary);
+
+/// FreeFem++'s "points triangles edges" files in 2D and "points tetrahedra triangles" files in 3D.
+MeshFile readFreeFem(const FileContent& file);
+
+/// One of Gmsh's element types.
+struct GmshCell
+{
+  int code;
+  unsigned char type; ///< VTK's
+  int nodes;          ///< in Gmsh; more than VTK's where one is left out
+  /// Node i of VTK's cell is node order[i] of Gmsh's; null where they are the same.
+  const int* order;
+};
+
+/// Null for an unknown code or type.
+const GmshCell* gmshCellByCode(Index code);
+const GmshCell* gmshCellByType(unsigned char type);
+
+/// Numbers of nodes or elements to positions.
+class GmshTags
+{
+public:
+  /// Takes the number of a position one after the other; false if it was there before.
+  void assign(std::vector<Index> tags);
+  /// -1 for an unknown one.
+  Index find(Index tag) const;
+  /// Position of a number used twice, or -1.
+  Index duplicate() const { return this->Duplicate; }
+
+private:
+  Index Low = 0;
+  Index Duplicate = -1;
+  std::vector<Index> Dense;
+  std::unordered_map<Index, Index> Sparse;
+};
+
+/// What both versions of a file are read with.
+struct GmshInput
+{
+  TextCursor cursor;
+  bool binary = false;
+  MeshFile mesh;
+  GmshTags nodes;
+  std::vector<Index> elementTags;
+  std::vector<Index> references, entities;
+  std::size_t dataBudget = 0; ///< bytes that $NodeData and $ElementData may still take
+
+  Index integer(const char* what, Index low, Index high); ///< text: in any line
+  double coordinate(const char* what);
+  std::size_t bytesPerInteger(std::size_t inBinary) const { return this->binary ? inBinary : 2; }
+  /// Adds an element; `tags` are those of its nodes in Gmsh's order.
+  void addElement(const GmshCell& cell, const Index* tags, const char* place);
+  void setNodes(std::vector<Index> tags);
+  /// Room for elements of about four nodes.
+  void reserveElements(std::size_t count);
+};
+
+void readGmshNodes2(GmshInput& input);
+void readGmshElements2(GmshInput& input);
+void readGmshEntities4(GmshInput& input, std::vector<std::unordered_map<Index, Index>>& physical);
+void readGmshNodes4(GmshInput& input);
+void readGmshElements4(
+  GmshInput& input, const std::vector<std::unordered_map<Index, Index>>& physical);
+}
+#endif

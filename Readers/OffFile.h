@@ -1,0 +1,22 @@
+/**
+ * @file OffFile.h
+ * @brief Geomview's text OFF, COFF, NOFF and CNOFF files of polygons.
+ *
+ * Colours of vertices and of faces become `Color`: bytes (3 or 4) where the file has whole numbers,
+ * doubles between 0 and 1 otherwise. Where only some faces have a colour, the others get Geomview's
+ * grey (170 170 170). Faces with one or two corners are vertices and lines.
+ */
+#ifndef tautline_OffFile_h
+#define tautline_OffFile_h
+
+#include "MeshFile.h"
+
+namespace tautline
+{
+TAUTLINEREADERS_EXPORT MeshFile readOff(const std::string& name, bool lowerCells);
+
+/// Writes OFF, with C for the point array `Color` and N for `Normals`.
+TAUTLINEREADERS_EXPORT std::vector<std::string> writeOff(
+  const MeshFile& mesh, const std::string& name);
+}
+#endif

@@ -1,0 +1,68 @@
+/**
+ * @file TextOutput.h
+ * @brief Text written through one large buffer, numbers in the fewest digits that read back the same.
+ */
+#ifndef tautline_TextOutput_h
+#define tautline_TextOutput_h
+
+#include "MeshFile.h"
+
+#include <charconv>
+#include <cstdio>
+#include <string_view>
+
+namespace tautline
+{
+/// Writes NAME.part and renames it in close(), so that a failure leaves an older file as it was.
+class TextOutput
+{
+public:
+  /// Throws FileError when the file cannot be created.
+  explicit TextOutput(const std::string& name);
+  TextOutput(const TextOutput&) = delete;
+  TextOutput& operator=(const TextOutput&) = delete;
+  ~TextOutput();
+
+  TextOutput& operator<<(std::string_view text)
+  {
+    this->Buffer.append(text);
+    return *this;
+  }
+  TextOutput& operator<<(char c)
+  {
+    this->Buffer.push_back(c);
+    return *this;
+  }
+  TextOutput& operator<<(double value) { return this->number(value); }
+  TextOutput& operator<<(Index value) { return this->number(value); }
+  TextOutput& operator<<(int value) { return this->number(value); }
+  /// The value i of an array, in the form of its type.
+  void value(const MeshArray& array, std::size_t i);
+  /// Bytes as they are in memory.
+  template <class T>
+  void binary(const T& value)
+  {
+    this->Buffer.append(reinterpret_cast<const char*>(&value), sizeof(T));
+  }
+  /// Ends a line and hands full buffers to the system.
+  void endLine();
+  /// Throws FileError when anything could not be written.
+  void close();
+
+private:
+  template <class T>
+  TextOutput& number(T value)
+  {
+    char text[40];
+    const auto result = std::to_chars(text, text + sizeof(text), value);
+    this->Buffer.append(text, static_cast<std::size_t>(result.ptr - text));
+    return *this;
+  }
+  void flush();
+
+  std::string Name;
+  std::string Buffer;
+  std::FILE* File = nullptr;
+};
+}
+#endif

@@ -1,0 +1,45 @@
+/**
+ * @class vtkGmshWriter
+ * @brief Writes Gmsh's .msh 4.1, text or binary.
+ *
+ * `Reference` (else `BoundaryMarker`) becomes the physical tag, `Entity` the elementary one; all other
+ * numeric arrays become $NodeData and $ElementData, as doubles. Cells up to second order, mixed.
+ *
+ * Limits: Gmsh itself shows data of 1, 3 or 9 components; others are written all the same.
+ *
+ * @sa vtkMeshFileWriter vtkGmshReader tautline::writeGmsh
+ */
+#ifndef vtkGmshWriter_h
+#define vtkGmshWriter_h
+
+#include "vtkMeshFileWriter.h"
+
+class TAUTLINEREADERS_EXPORT vtkGmshWriter : public vtkMeshFileWriter
+{
+public:
+  static vtkGmshWriter* New();
+  vtkTypeMacro(vtkGmshWriter, vtkMeshFileWriter);
+
+  ///@{
+  /**
+   * Whether numbers are written as bytes, which is smaller and faster. The default is off.
+   */
+  vtkSetMacro(Binary, bool);
+  vtkGetMacro(Binary, bool);
+  vtkBooleanMacro(Binary, bool);
+  ///@}
+
+protected:
+  vtkGmshWriter() = default;
+  ~vtkGmshWriter() override = default;
+  std::vector<std::string> WriteMesh(
+    const tautline::MeshFile& mesh, const std::string& name) override;
+
+  bool Binary = false;
+
+private:
+  vtkGmshWriter(const vtkGmshWriter&) = delete;
+  void operator=(const vtkGmshWriter&) = delete;
+};
+
+#endif

@@ -1,0 +1,36 @@
+/**
+ * @class vtkMeditReader
+ * @brief Reads Medit's ASCII .mesh (versions 1 and 2) and .sol files.
+ *
+ * A .mesh brings its .sol companion, a .sol its .mesh. Point arrays: `Reference`, `Fixed` (required
+ * vertices and corners), `Corner`, fields of the .sol. Cell arrays: `Reference`, `Ridge`, `Required`.
+ * Tensors of a .sol become 3 x 3 matrices, row by row, as the metric-tensor targets want them.
+ *
+ * Limits: .meshb (binary) and curved (P2) cells are not read; normals and tangents are skipped.
+ *
+ * @sa vtkMeshFileReader vtkMeditWriter tautline::readMedit
+ */
+#ifndef vtkMeditReader_h
+#define vtkMeditReader_h
+
+#include "vtkMeshFileReader.h"
+
+class TAUTLINEREADERS_EXPORT vtkMeditReader : public vtkMeshFileReader
+{
+public:
+  static vtkMeditReader* New();
+  vtkTypeMacro(vtkMeditReader, vtkMeshFileReader);
+
+  int CanReadFile(const char* name) override;
+
+protected:
+  vtkMeditReader() = default;
+  ~vtkMeditReader() override = default;
+  tautline::MeshFile ReadMesh() override;
+
+private:
+  vtkMeditReader(const vtkMeditReader&) = delete;
+  void operator=(const vtkMeditReader&) = delete;
+};
+
+#endif

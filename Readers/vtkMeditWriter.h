@@ -1,0 +1,35 @@
+/**
+ * @class vtkMeditWriter
+ * @brief Writes Medit's ASCII .mesh (version 2), and a .sol for the arrays a .mesh cannot hold.
+ *
+ * `Reference` (else `BoundaryMarker`) is the reference of points and cells, of boundary cells
+ * `BoundaryMarker` comes first. `Fixed`, `Corner`, `Ridge`, `Required` become RequiredVertices, Corners,
+ * Ridges, RequiredEdges and RequiredTriangles. Planar meshes are written in 2D.
+ *
+ * Limits: linear cells without polygons; cells are sorted by type; field data are not written.
+ *
+ * @sa vtkMeshFileWriter vtkMeditReader tautline::writeMedit
+ */
+#ifndef vtkMeditWriter_h
+#define vtkMeditWriter_h
+
+#include "vtkMeshFileWriter.h"
+
+class TAUTLINEREADERS_EXPORT vtkMeditWriter : public vtkMeshFileWriter
+{
+public:
+  static vtkMeditWriter* New();
+  vtkTypeMacro(vtkMeditWriter, vtkMeshFileWriter);
+
+protected:
+  vtkMeditWriter() = default;
+  ~vtkMeditWriter() override = default;
+  std::vector<std::string> WriteMesh(
+    const tautline::MeshFile& mesh, const std::string& name) override;
+
+private:
+  vtkMeditWriter(const vtkMeditWriter&) = delete;
+  void operator=(const vtkMeditWriter&) = delete;
+};
+
+#endif

@@ -1,0 +1,101 @@
+#include "vtkMeshFileReader.h"
+
+#include "MeshFileAdapter.h"
+
+#include "vtkDataObject.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <new>
+
+//------------------------------------------------------------------------------
+vtkMeshFileReader::vtkMeshFileReader()
+{
+  this->SetNumberOfInputPorts(0);
+  this->SetNumberOfOutputPorts(1);
+}
+
+//------------------------------------------------------------------------------
+vtkMeshFileReader::~vtkMeshFileReader()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshFileReader::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkUnstructuredGrid");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkPointSet* vtkMeshFileReader::GetOutput()
+{
+  return vtkPointSet::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkMeshFileReader::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    return this->RequestData(outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
+{
+  this->ErrorText.clear();
+  this->SetErrorCode(vtkErrorCode::NoError);
+  vtkDataObject* output = vtkDataObject::GetData(outputs);
+  output->Initialize();
+  try
+  {
+    if (!this->FileName || !this->FileName[0])
+    {
+      throw tautline::Error("no file name");
+    }
+    tautline::MeshFile mesh = this->ReadMesh();
+    this->UpdateProgress(0.8);
+    if (auto* surface = vtkPolyData::SafeDownCast(output))
+    {
+      tautline::toSurface(std::move(mesh), surface);
+    }
+    else
+    {
+      tautline::toGrid(std::move(mesh), vtkUnstructuredGrid::SafeDownCast(output));
+    }
+  }
+  catch (const tautline::Error& error)
+  {
+    this->ErrorText = error.what();
+  }
+  catch (const std::bad_alloc&)
+  {
+    this->ErrorText = std::string(this->FileName) + ": not enough memory";
+  }
+  if (!this->ErrorText.empty())
+  {
+    output->Initialize();
+    this->SetErrorCode(vtkErrorCode::FileFormatError);
+    vtkErrorMacro(<< this->ErrorText);
+    return 0;
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshFileReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "LowerCells: " << this->LowerCells << "\n";
+}

@@ -1,0 +1,89 @@
+/**
+ * @class vtkMeshFileReader
+ * @brief What Tautline's mesh readers share: a file name, lower-dimensional cells, errors.
+ *
+ * A subclass names a format. The whole file is read at once and checked; what is wrong with it is
+ * reported as "file:line: problem" and leaves an empty output. Coordinates are double precision.
+ * Array names are the same for all formats (see MeshFile.h): `Fixed`, `BoundaryMarker`, `Reference`.
+ *
+ * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkOffReader vtkMeshFileWriter
+ */
+#ifndef vtkMeshFileReader_h
+#define vtkMeshFileReader_h
+
+#include "TautlineReadersModule.h" // for export macro
+#include "vtkAlgorithm.h"
+
+#include <string> // for the error text
+
+class vtkPointSet;
+
+namespace tautline
+{
+struct MeshFile;
+}
+
+class TAUTLINEREADERS_EXPORT vtkMeshFileReader : public vtkAlgorithm
+{
+public:
+  vtkTypeMacro(vtkMeshFileReader, vtkAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The file to read. No default.
+   */
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  ///@{
+  /**
+   * Whether cells of lower dimension than the mesh are kept: boundary triangles beside tetrahedra,
+   * edges beside triangles, with their markers. Off, the output is a mesh every filter can take as it
+   * is. The default is off.
+   */
+  vtkSetMacro(LowerCells, bool);
+  vtkGetMacro(LowerCells, bool);
+  vtkBooleanMacro(LowerCells, bool);
+  ///@}
+
+  /**
+   * What was wrong with the file that was read last; empty if nothing was.
+   */
+  const char* GetErrorText() const { return this->ErrorText.c_str(); }
+
+  /**
+   * Whether the name's ending and the first bytes look like a file of this format.
+   */
+  virtual int CanReadFile(const char* name) = 0;
+
+  /**
+   * The mesh: a vtkUnstructuredGrid, of vtkOffReader a vtkPolyData.
+   */
+  vtkPointSet* GetOutput();
+
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+protected:
+  vtkMeshFileReader();
+  ~vtkMeshFileReader() override;
+
+  /// Reads this->FileName; throws tautline::Error.
+  virtual tautline::MeshFile ReadMesh() = 0;
+
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  virtual int RequestData(vtkInformationVector* outputs);
+
+  char* FileName = nullptr;
+  bool LowerCells = false;
+
+private:
+  std::string ErrorText;
+
+  vtkMeshFileReader(const vtkMeshFileReader&) = delete;
+  void operator=(const vtkMeshFileReader&) = delete;
+};
+
+#endif

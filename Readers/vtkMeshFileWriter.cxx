@@ -1,0 +1,60 @@
+#include "vtkMeshFileWriter.h"
+
+#include "MeshFileAdapter.h"
+
+#include "vtkDataSet.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+
+//------------------------------------------------------------------------------
+vtkMeshFileWriter::~vtkMeshFileWriter()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshFileWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshFileWriter::Write()
+{
+  this->SetErrorCode(vtkErrorCode::NoError);
+  this->ErrorText.clear();
+  return this->Superclass::Write() && this->GetErrorCode() == vtkErrorCode::NoError;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshFileWriter::WriteData()
+{
+  this->FilesWritten.clear();
+  try
+  {
+    if (!this->FileName || !this->FileName[0])
+    {
+      throw tautline::Error("no file name");
+    }
+    auto* input = vtkDataSet::SafeDownCast(this->GetInput());
+    if (!input)
+    {
+      throw tautline::Error(std::string(this->FileName) + ": the input is no data set");
+    }
+    this->FilesWritten = this->WriteMesh(tautline::fromDataSet(input), this->FileName);
+  }
+  catch (const tautline::Error& error)
+  {
+    this->ErrorText = error.what();
+    this->SetErrorCode(vtkErrorCode::CannotOpenFileError);
+    vtkErrorMacro(<< this->ErrorText);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshFileWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+}

@@ -1,0 +1,14 @@
+#include "vtkOffWriter.h"
+
+#include "OffFile.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkOffWriter);
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkOffWriter::WriteMesh(
+  const tautline::MeshFile& mesh, const std::string& name)
+{
+  return tautline::writeOff(mesh, name);
+}

@@ -1,0 +1,33 @@
+/**
+ * @class vtkOffWriter
+ * @brief Writes OFF, with `Color` (bytes, or doubles up to 1) and `Normals` COFF, NOFF and CNOFF.
+ *
+ * Polygons, lines and vertices of any data set; the cell array `Color` gives the faces colours.
+ *
+ * Limits: arrays of other names cannot be in an OFF file.
+ *
+ * @sa vtkMeshFileWriter vtkOffReader tautline::writeOff
+ */
+#ifndef vtkOffWriter_h
+#define vtkOffWriter_h
+
+#include "vtkMeshFileWriter.h"
+
+class TAUTLINEREADERS_EXPORT vtkOffWriter : public vtkMeshFileWriter
+{
+public:
+  static vtkOffWriter* New();
+  vtkTypeMacro(vtkOffWriter, vtkMeshFileWriter);
+
+protected:
+  vtkOffWriter() = default;
+  ~vtkOffWriter() override = default;
+  std::vector<std::string> WriteMesh(
+    const tautline::MeshFile& mesh, const std::string& name) override;
+
+private:
+  vtkOffWriter(const vtkOffWriter&) = delete;
+  void operator=(const vtkOffWriter&) = delete;
+};
+
+#endif

@@ -1,0 +1,285 @@
+// Every domain: number of cells, valid cells, exact size, markers, motion; structured ones exactly.
+
+#include "Check.h"
+
+#include "tautline/Domains.h"
+#include "tautline/Mesh.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDomainSource.h"
+#include "vtkExecutive.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace
+{
+/// Sum of the sizes; each must be positive.
+double totalSize(vtkUnstructuredGrid* mesh)
+{
+  double sum = 0.0;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
+  {
+    tautline::Vec3 p[4];
+    vtkIdType size;
+    const vtkIdType* ids;
+    mesh->GetCellPoints(i, size, ids);
+    for (vtkIdType c = 0; c < size; ++c)
+    {
+      mesh->GetPoint(ids[c], p[c].data());
+    }
+    const tautline::Vec3 a = tautline::operator-(p[1], p[0]), b = tautline::operator-(p[2], p[0]);
+    const tautline::Vec3 normal = tautline::cross(a, b);
+    const double cell =
+      size == 3 ? 0.5 * normal[2] : tautline::dot(normal, tautline::operator-(p[3], p[0])) / 6.0;
+    TAUTLINE_CHECK(cell > 0.0);
+    sum += cell;
+  }
+  return sum;
+}
+
+/// Sizes that follow from the shapes; curved ones are approached from inside.
+const std::map<std::string, double> ExactSize = { { "barrier2d", 7.72 }, { "barrier3d", 7.72 },
+  { "rectangle", 2.0 }, { "bar", 0.984 }, { "gate", 1.964 }, { "bending-bar", 0.972 } };
+
+void checkDomain(int index)
+{
+  const tautline::DomainInfo& info = tautline::domains()[static_cast<std::size_t>(index)];
+  vtkNew<vtkDomainSource> source;
+  source->SetDomain(index);
+  source->Update();
+  vtkUnstructuredGrid* mesh = source->GetOutput();
+  const auto cells = static_cast<double>(mesh->GetNumberOfCells());
+  const bool exact = !std::strcmp(info.name, "square") || !std::strcmp(info.name, "rectangle");
+  std::cout << info.name << ": " << mesh->GetNumberOfPoints() << " points, " << cells << " cells\n";
+  TAUTLINE_CHECK(exact || std::abs(cells / static_cast<double>(info.cells) - 1.0) < 0.05);
+
+  const double size = totalSize(mesh);
+  const auto known = ExactSize.find(info.name);
+  TAUTLINE_CHECK(known == ExactSize.end() || std::abs(size / known->second - 1.0) < 1e-9);
+
+  // the marked points are exactly those of the boundary of the mesh
+  std::vector<double> points(static_cast<std::size_t>(3 * mesh->GetNumberOfPoints()));
+  std::vector<tautline::Index> offsets = { 0 }, nodes;
+  std::vector<unsigned char> types;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    mesh->GetPoint(i, points.data() + 3 * i);
+  }
+  for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
+  {
+    vtkIdType count;
+    const vtkIdType* ids;
+    mesh->GetCellPoints(i, count, ids);
+    nodes.insert(nodes.end(), ids, ids + count);
+    offsets.push_back(static_cast<tautline::Index>(nodes.size()));
+    types.push_back(static_cast<unsigned char>(mesh->GetCellType(i)));
+  }
+  const tautline::Mesh view({ mesh->GetNumberOfPoints(), points.data(), mesh->GetNumberOfCells(),
+    types.data(), offsets.data(), nodes.data() });
+  const tautline::Boundary boundary = view.boundary();
+  TAUTLINE_CHECK(boundary.nonManifold == 0);
+  vtkDataArray* markers = mesh->GetPointData()->GetArray("BoundaryMarker");
+  vtkDataArray* fixed = mesh->GetPointData()->GetArray("Fixed");
+  vtkDataArray* displacement = mesh->GetPointData()->GetArray("Displacement");
+  TAUTLINE_CHECK(markers && fixed && (displacement != nullptr) == info.moving);
+  double farthest = 0.0;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    const bool onBoundary = boundary.isBoundaryPoint[static_cast<std::size_t>(i)] != 0;
+    TAUTLINE_CHECK(
+      (markers->GetTuple1(i) != 0) == onBoundary && (fixed->GetTuple1(i) != 0) == onBoundary);
+    for (int c = 0; displacement && c < 3; ++c)
+    {
+      farthest = std::max(farthest, std::abs(displacement->GetComponent(i, c)));
+      TAUTLINE_CHECK(onBoundary || displacement->GetComponent(i, c) == 0.0);
+    }
+  }
+  TAUTLINE_CHECK(!info.moving || (farthest > 0.1 && farthest < 1.0));
+
+  auto* deformed = vtkPolyData::SafeDownCast(source->GetOutputDataObject(1));
+  const bool structured = info.kind == tautline::DomainKind::Structured;
+  TAUTLINE_CHECK(structured || deformed->GetNumberOfCells() == boundary.facets);
+}
+
+void checkMotion()
+{
+  // the centre of the moved cylinder and bar; the ends of the bent bar; the bore's mouths stay
+  const tautline::Vec3 d =
+    tautline::domainDisplacement("cylinder-diagonal", { 0.8, 0.65, 0 }, 2, 0.5);
+  TAUTLINE_CHECK(d == (tautline::Vec3{ 0.3, 0.05, 0 }));
+  TAUTLINE_CHECK(tautline::domainDisplacement("cylinder", { 0, 0, 0 }, 1, 1.0)[0] == 0.0);
+  const tautline::Vec3 clamped =
+    tautline::domainDisplacement("bending-bar", { 0.15, 0.5, 0 }, 2, 1.0);
+  TAUTLINE_CHECK(std::abs(clamped[0]) < 1e-15 && std::abs(clamped[1]) < 1e-15);
+  const tautline::Vec3 tip = tautline::domainDisplacement("bending-bar", { 0.85, 0.5, 0 }, 2, 1.0);
+  const double phi = std::acos(-1.0) / 3.0, radius = 0.7 / phi;
+  TAUTLINE_CHECK(std::abs(tip[0] + 0.7 - radius * std::sin(phi)) < 1e-14);
+  TAUTLINE_CHECK(std::abs(tip[1] - radius * (1.0 - std::cos(phi))) < 1e-14);
+  TAUTLINE_CHECK(tautline::domainDisplacement("gate", { 0.94, 1.0, 0 }, 2, 1.0)[1] == 0.0);
+  TAUTLINE_CHECK(
+    std::abs(tautline::domainDisplacement("gate", { 1, 0.6, 0 }, 2, 1.0)[1] + 0.4) < 1e-15);
+}
+
+/// h = 0.1, collar 0.2: 14 x 14 squares; aspect ratio 4: 5 x 20 rectangles with 1 and 4 layers around.
+void checkSquare()
+{
+  const tautline::StructuredMesh isotropic = tautline::structuredSquare(0.1, 1.0, 0.2);
+  TAUTLINE_CHECK(
+    isotropic.cellReferences.size() == 2 * 14 * 14 && isotropic.points.size() == 3 * 15 * 15);
+  const tautline::StructuredMesh stretched = tautline::structuredSquare(0.1, 4.0, 0.2);
+  TAUTLINE_CHECK(stretched.cellReferences.size() == 2 * 7 * 28);
+  for (const tautline::StructuredMesh* mesh : { &isotropic, &stretched })
+  {
+    const auto inside = std::count(mesh->cellReferences.begin(), mesh->cellReferences.end(), 1);
+    TAUTLINE_CHECK(inside == 200); // the same for every aspect ratio
+    const double ratio = mesh == &isotropic ? 1.0 : 4.0;
+    for (std::size_t t = 0; t < mesh->triangles.size(); t += 3)
+    {
+      double lengths[3];
+      for (std::size_t e = 0; e < 3; ++e)
+      {
+        const double* p = mesh->points.data() + 3 * mesh->triangles[t + e];
+        const double* q = mesh->points.data() + 3 * mesh->triangles[t + (e + 1) % 3];
+        lengths[e] = std::hypot(p[0] - q[0], p[1] - q[1]);
+      }
+      std::sort(lengths, lengths + 3);
+      TAUTLINE_CHECK(std::abs(lengths[1] / lengths[0] - ratio) < 1e-12);
+      TAUTLINE_CHECK(std::abs(lengths[0] * lengths[1] - 0.01) < 1e-14);
+    }
+  }
+  bool thrown = false;
+  try
+  {
+    tautline::structuredSquare(0.1, 3.0, 0.2);
+  }
+  catch (const tautline::Error& error)
+  {
+    thrown = std::string(error.what()).find("whole numbers") != std::string::npos;
+  }
+  TAUTLINE_CHECK(thrown);
+  const tautline::StructuredMesh rectangle = tautline::structuredRectangle(800);
+  TAUTLINE_CHECK(rectangle.cellReferences.size() == 784 || rectangle.cellReferences.size() == 900);
+}
+
+void checkNames()
+{
+  vtkNew<vtkDomainSource> source;
+  vtkNew<vtkTest::ErrorObserver> errors;
+  source->AddObserver(vtkCommand::ErrorEvent, errors);
+  source->SetDomainByName("gate");
+  TAUTLINE_CHECK(!std::strcmp(vtkDomainSource::GetDomainName(source->GetDomain()), "gate"));
+  source->SetDomainByName("nonsense");
+  TAUTLINE_CHECK(errors->GetErrorMessage().find(
+                   "there is no domain 'nonsense'; there are wrench") != std::string::npos);
+  TAUTLINE_CHECK(vtkDomainSource::GetDomainName(-1) == nullptr);
+}
+
+/// The menu of ParaView lists the registry.
+void checkXml(const std::string& data)
+{
+  std::ifstream file(data + "/../ServerManager/Domains.xml");
+  std::ostringstream text;
+  text << file.rdbuf();
+  int value = 0;
+  for (const tautline::DomainInfo& info : tautline::domains())
+  {
+    const std::string entry =
+      std::string("<Entry text=\"") + info.label + "\" value=\"" + std::to_string(value++) + "\"/>";
+    TAUTLINE_CHECK(text.str().find(entry) != std::string::npos);
+    TAUTLINE_CHECK(
+      text.str().find(std::string("**") + info.label + "**: " + info.source) != std::string::npos);
+  }
+  TAUTLINE_CHECK(text.str().find("value=\"" + std::to_string(value) + "\"/>") == std::string::npos);
+}
+
+/// Table 2.4: vertices of wrench and hinge for the numbers of elements given there.
+void checkTable()
+{
+  const struct
+  {
+    const char* name;
+    vtkIdType cells;
+    double vertices;
+  } rows[] = { { "wrench", 19796, 10142 }, { "wrench", 99197, 50161 }, { "wrench", 199055, 100267 },
+    { "hinge", 18359, 9989 }, { "hinge", 96483, 49986 }, { "hinge", 195131, 99949 } };
+  for (const auto& row : rows)
+  {
+    vtkNew<vtkDomainSource> source;
+    source->SetDomainByName(row.name);
+    source->SetNumberOfCells(row.cells);
+    source->Update();
+    const auto vertices = static_cast<double>(source->GetOutput()->GetNumberOfPoints());
+    std::cout << row.name << " " << source->GetOutput()->GetNumberOfCells() << " of " << row.cells
+              << " cells, " << vertices << " of " << row.vertices << " vertices\n";
+    TAUTLINE_CHECK(std::abs(vertices / row.vertices - 1.0) < 0.05);
+  }
+}
+
+/// The same properties give the same mesh, bit by bit.
+void checkDeterminism(const char* name)
+{
+  std::vector<double> points[2];
+  for (std::vector<double>& copy : points)
+  {
+    vtkNew<vtkDomainSource> source;
+    source->SetDomainByName(name);
+    source->SetNumberOfCells(5000);
+    source->Update();
+    for (vtkIdType i = 0; i < source->GetOutput()->GetNumberOfPoints(); ++i)
+    {
+      const double* x = source->GetOutput()->GetPoint(i);
+      copy.insert(copy.end(), x, x + 3);
+    }
+  }
+  TAUTLINE_CHECK(!points[0].empty() && points[0] == points[1]);
+}
+
+/// Without the meshers the others are errors that say why.
+void checkMissingMeshers()
+{
+  vtkNew<vtkDomainSource> source;
+  vtkNew<vtkTest::ErrorObserver> errors;
+  source->AddObserver(vtkCommand::ErrorEvent, errors);
+  source->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors);
+  source->SetDomainByName("disk2d");
+  source->Update();
+  TAUTLINE_CHECK(source->GetOutput()->GetNumberOfCells() == 0);
+  TAUTLINE_CHECK(errors->GetErrorMessage().find("without the module Meshing") != std::string::npos);
+}
+}
+
+int TestDomains(int, char* argv[])
+{
+  checkMotion();
+  checkSquare();
+  checkNames();
+  checkXml(argv[1]);
+  for (int i = 0; i < vtkDomainSource::GetNumberOfDomains(); ++i)
+  {
+    const bool structured =
+      tautline::domains()[static_cast<std::size_t>(i)].kind == tautline::DomainKind::Structured;
+    if (structured || vtkDomainSource::HasMeshing())
+    {
+      checkDomain(i);
+    }
+  }
+  if (!vtkDomainSource::HasMeshing())
+  {
+    checkMissingMeshers();
+    return tautline::exitCode();
+  }
+  checkTable();
+  checkDeterminism("hinge");
+  checkDeterminism("bore");
+  return tautline::exitCode();
+}

@@ -1,0 +1,391 @@
+// The meshers: bounds kept, sizes exact, markers and regions, failures that are errors and not exits.
+
+#include "Check.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSphereSource.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkTetGenMesher.h"
+#include "vtkTetGenReader.h"
+#include "vtkTriangleMesher.h"
+#include "vtkUnstructuredGrid.h"
+
+#include "tautline/Types.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace
+{
+using tautline::Vec3;
+using tautline::operator-;
+
+std::string data;
+
+struct Facts
+{
+  double size = 0.0, smallestAngle = 180.0, longestEdge = 0.0, largestCell = 0.0;
+};
+
+Facts measure(vtkUnstructuredGrid* mesh)
+{
+  Facts facts;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
+  {
+    vtkIdType size;
+    const vtkIdType* ids;
+    mesh->GetCellPoints(i, size, ids);
+    Vec3 p[4];
+    for (vtkIdType c = 0; c < size; ++c)
+    {
+      mesh->GetPoint(ids[c], p[c].data());
+    }
+    const Vec3 normal = tautline::cross(p[1] - p[0], p[2] - p[0]);
+    const double cell = size == 3 ? 0.5 * normal[2] : tautline::dot(normal, p[3] - p[0]) / 6.0;
+    TAUTLINE_CHECK(cell > 0.0);
+    facts.size += cell;
+    facts.largestCell = std::max(facts.largestCell, cell);
+    for (int c = 0; size == 3 && c < 3; ++c)
+    {
+      const Vec3 a = p[(c + 1) % 3] - p[c], b = p[(c + 2) % 3] - p[c];
+      const double angle = std::acos(tautline::dot(a, b) / (tautline::norm(a) * tautline::norm(b)));
+      facts.smallestAngle = std::min(facts.smallestAngle, angle * 180.0 / std::acos(-1.0));
+      facts.longestEdge = std::max(facts.longestEdge, tautline::norm(a));
+    }
+  }
+  return facts;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> read(const char* name)
+{
+  vtkNew<vtkTetGenReader> reader;
+  reader->SetFileName((data + "/" + name).c_str());
+  reader->Update();
+  return vtkUnstructuredGrid::SafeDownCast(reader->GetOutputDataObject(0));
+}
+
+/// A closed polygon as lines.
+vtkSmartPointer<vtkPolyData> outline(const std::vector<std::array<double, 2>>& corners)
+{
+  auto lines = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> cells;
+  for (const auto& [x, y] : corners)
+  {
+    points->InsertNextPoint(x, y, 2.5);
+  }
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    cells->InsertNextCell({ i, (i + 1) % points->GetNumberOfPoints() });
+  }
+  lines->SetPoints(points);
+  lines->SetLines(cells);
+  return lines;
+}
+
+std::string failure(vtkAlgorithm* mesher, vtkDataObject* input)
+{
+  vtkNew<vtkTest::ErrorObserver> errors, quiet;
+  mesher->SetInputDataObject(input);
+  mesher->AddObserver(vtkCommand::ErrorEvent, errors);
+  mesher->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, quiet);
+  mesher->Update();
+  TAUTLINE_CHECK(vtkDataSet::SafeDownCast(mesher->GetOutputDataObject(0))->GetNumberOfCells() == 0);
+  return errors->GetErrorMessage();
+}
+
+bool contains(const std::string& text, const char* part)
+{
+  const bool found = text.find(part) != std::string::npos;
+  if (!found)
+  {
+    std::cerr << "'" << text << "' has no '" << part << "'\n";
+  }
+  return found;
+}
+
+void testTriangles()
+{
+  // a plate of 9 with a hole of 1
+  vtkNew<vtkTriangleMesher> mesher;
+  mesher->SetInputData(read("plate.poly"));
+  mesher->SetSize(0.2);
+  mesher->SetMinimumAngle(25.0);
+  mesher->Update();
+  Facts facts = measure(mesher->GetOutput());
+  TAUTLINE_CHECK(std::abs(facts.size - 8.0) < 1e-12);
+  TAUTLINE_CHECK(facts.longestEdge <= 0.2 && facts.smallestAngle >= 25.0);
+  vtkDataArray* markers = mesher->GetOutput()->GetPointData()->GetArray("BoundaryMarker");
+  for (vtkIdType i = 0; i < mesher->GetOutput()->GetNumberOfPoints(); ++i)
+  {
+    const double* x = mesher->GetOutput()->GetPoint(i);
+    const bool outer = x[0] == 0.0 || x[0] == 3.0 || x[1] == 0.0 || x[1] == 3.0;
+    const bool onHole = std::max(std::abs(x[0] - 1.5), std::abs(x[1] - 1.5)) == 0.5;
+    TAUTLINE_CHECK(markers->GetTuple1(i) == (outer ? 1 : onHole ? 2 : 0));
+  }
+  auto* boundary = vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1));
+  TAUTLINE_CHECK(
+    boundary->GetNumberOfLines() > 16 / 0.2 && boundary->GetCellData()->GetArray("BoundaryMarker"));
+
+  // without the field Holes the inner square is a hole by parity; the line to it (marker 0) does not matter
+  vtkSmartPointer<vtkUnstructuredGrid> plate = read("plate.poly");
+  plate->GetFieldData()->Initialize();
+  mesher->SetInputData(plate);
+  mesher->Update();
+  TAUTLINE_CHECK(std::abs(measure(mesher->GetOutput()).size - 8.0) < 1e-12);
+
+  // sizes from an array: small at one corner; z is kept
+  vtkSmartPointer<vtkPolyData> square = outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } });
+  vtkNew<vtkDoubleArray> sizes;
+  sizes->SetName("size");
+  for (const double size : { 0.01, 0.5, 0.5, 0.5 })
+  {
+    sizes->InsertNextValue(size);
+  }
+  square->GetPointData()->AddArray(sizes);
+  mesher->SetInputData(square);
+  mesher->SetSize(0.0);
+  mesher->UseSizeArrayOn();
+  mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "size");
+  mesher->Update();
+  vtkUnstructuredGrid* graded = mesher->GetOutput();
+  vtkIdType near = 0;
+  for (vtkIdType i = 0; i < graded->GetNumberOfPoints(); ++i)
+  {
+    const double* x = graded->GetPoint(i);
+    TAUTLINE_CHECK(x[2] == 2.5);
+    near += std::hypot(x[0], x[1]) < 0.1;
+  }
+  TAUTLINE_CHECK(near > 20 && near < graded->GetNumberOfPoints() / 2);
+  TAUTLINE_CHECK(std::abs(measure(graded).size - 1.0) < 1e-12);
+}
+
+void testTriangleFailures()
+{
+  vtkNew<vtkTriangleMesher> crossing;
+  const std::string said = failure(crossing, outline({ { 0, 0 }, { 1, 1 }, { 1, 0 }, { 0, 1 } }));
+  TAUTLINE_CHECK(contains(said, "segment 2 (points 2 and 3) crosses another one"));
+  vtkNew<vtkTriangleMesher> open;
+  vtkSmartPointer<vtkPolyData> line = outline({ { 0, 0 }, { 1, 0 }, { 1, 1 } });
+  vtkNew<vtkCellArray> two;
+  two->InsertNextCell({ 0, 1 });
+  two->InsertNextCell({ 1, 2 });
+  line->SetLines(two);
+  TAUTLINE_CHECK(contains(failure(open, line), "is an outline closed?"));
+  vtkNew<vtkSphereSource> sphere;
+  sphere->Update();
+  vtkNew<vtkTriangleMesher> solid;
+  TAUTLINE_CHECK(contains(failure(solid, sphere->GetOutput()), "not in a plane z = constant"));
+  vtkNew<vtkTriangleMesher> infinite;
+  TAUTLINE_CHECK(contains(
+    failure(infinite, outline({ { 0, 0 }, { 1, 0 }, { NAN, 1 } })), "not a finite number"));
+
+  // abort, as a user interface would ask for it
+  vtkNew<vtkTriangleMesher> aborted;
+  aborted->SetSize(0.002);
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
+  aborted->AddObserver(vtkCommand::ProgressEvent, stop);
+  TAUTLINE_CHECK(
+    contains(failure(aborted, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })), "stopped"));
+}
+
+void testTetrahedra()
+{
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputData(read("cube.smesh"));
+  mesher->SetVolume(0.005);
+  mesher->Update();
+  Facts facts = measure(mesher->GetOutput());
+  TAUTLINE_CHECK(std::abs(facts.size - 1.0) < 1e-12 && facts.largestCell <= 0.005 * (1 + 1e-9));
+  TAUTLINE_CHECK(mesher->GetOutput()->GetNumberOfCells() > 200);
+  // cube.smesh: bottom 1, top 2, then the sides y = 0, x = 1, y = 1, x = 0
+  auto* boundary = vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1));
+  vtkDataArray* markers = boundary->GetCellData()->GetArray("BoundaryMarker");
+  double areas[7] = {};
+  for (vtkIdType i = 0; i < boundary->GetNumberOfCells(); ++i)
+  {
+    vtkIdType size;
+    const vtkIdType* ids;
+    boundary->GetCellPoints(i, size, ids);
+    Vec3 p[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      boundary->GetPoint(ids[c], p[c].data());
+    }
+    areas[static_cast<int>(markers->GetTuple1(i))] +=
+      0.5 * tautline::norm(tautline::cross(p[1] - p[0], p[2] - p[0]));
+    TAUTLINE_CHECK(markers->GetTuple1(i) != 1 || p[0][2] == 0.0);
+  }
+  for (int m = 1; m <= 6; ++m)
+  {
+    TAUTLINE_CHECK(std::abs(areas[m] - 1.0) < 1e-12);
+  }
+  TAUTLINE_CHECK(areas[0] == 0.0);
+
+  mesher->PreserveSurfaceOn();
+  mesher->Update();
+  TAUTLINE_CHECK(
+    vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1))->GetNumberOfCells() == 12);
+  TAUTLINE_CHECK(std::abs(measure(mesher->GetOutput()).size - 1.0) < 1e-12);
+}
+
+/// Two nested cubes: the inner one a region of its own, or a hole.
+void testRegionsAndHoles()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> cube = read("cube.smesh");
+  vtkNew<vtkPolyData> nested;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> polygons;
+  for (const double scale : { 1.0, 0.5 })
+  {
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (vtkIdType i = 0; i < 8; ++i)
+    {
+      const double* x = cube->GetPoint(i);
+      points->InsertNextPoint(
+        0.5 + scale * (x[0] - 0.5), 0.5 + scale * (x[1] - 0.5), 0.5 + scale * (x[2] - 0.5));
+    }
+    for (vtkIdType i = 0; i < 6; ++i)
+    {
+      vtkIdType size;
+      const vtkIdType* ids;
+      cube->GetCellPoints(i, size, ids);
+      polygons->InsertNextCell({ first + ids[0], first + ids[1], first + ids[2], first + ids[3] });
+    }
+  }
+  nested->SetPoints(points);
+  nested->SetPolys(polygons);
+  vtkNew<vtkDoubleArray> regions;
+  regions->SetName("Regions");
+  regions->SetNumberOfComponents(5);
+  const double outside[] = { 0.1, 0.1, 0.1, 3, -1 }, inside[] = { 0.5, 0.5, 0.5, 8, 0.001 };
+  regions->InsertNextTuple(outside);
+  regions->InsertNextTuple(inside);
+  nested->GetFieldData()->AddArray(regions);
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputData(nested);
+  mesher->Update();
+  vtkUnstructuredGrid* mesh = mesher->GetOutput();
+  TAUTLINE_CHECK(std::abs(measure(mesh).size - 1.0) < 1e-12);
+  vtkDataArray* references = mesh->GetCellData()->GetArray("Reference");
+  vtkIdType inner = 0, outer = 0;
+  for (vtkIdType i = 0; references && i < mesh->GetNumberOfCells(); ++i)
+  {
+    inner += references->GetTuple1(i) == 8;
+    outer += references->GetTuple1(i) == 3;
+  }
+  TAUTLINE_CHECK(inner >= 125 && outer > 0 && inner + outer == mesh->GetNumberOfCells());
+
+  nested->GetFieldData()->Initialize();
+  vtkNew<vtkDoubleArray> holes;
+  holes->SetName("Holes");
+  holes->SetNumberOfComponents(3);
+  holes->InsertNextTuple3(0.5, 0.5, 0.5);
+  nested->GetFieldData()->AddArray(holes);
+  mesher->Update();
+  TAUTLINE_CHECK(std::abs(measure(mesher->GetOutput()).size - 0.875) < 1e-12);
+
+  vtkNew<vtkTetGenMesher>
+    box; // a facet of several polygons with a hole is no closed surface, but a good input
+  box->SetInputData(read("box.poly"));
+  box->GetInputDataObject(0, 0)->GetFieldData()->RemoveArray("Holes");
+  vtkNew<vtkTest::ErrorObserver> errors, quiet;
+  box->AddObserver(vtkCommand::ErrorEvent, errors);
+  box->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, quiet);
+  box->Update();
+  TAUTLINE_CHECK(errors->GetError() || box->GetOutput()->GetNumberOfCells() > 0);
+}
+
+void testTetrahedraFailures()
+{
+  // two spheres through each other
+  vtkNew<vtkPolyData> both;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> polygons;
+  for (const double x : { 0.0, 0.31 })
+  {
+    vtkNew<vtkSphereSource> sphere;
+    sphere->SetCenter(x, 0.013, 0.007);
+    sphere->Update();
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (vtkIdType i = 0; i < sphere->GetOutput()->GetNumberOfPoints(); ++i)
+    {
+      points->InsertNextPoint(sphere->GetOutput()->GetPoint(i));
+    }
+    for (vtkIdType i = 0; i < sphere->GetOutput()->GetNumberOfCells(); ++i)
+    {
+      vtkIdType size;
+      const vtkIdType* ids;
+      sphere->GetOutput()->GetCellPoints(i, size, ids);
+      polygons->InsertNextCell({ first + ids[0], first + ids[1], first + ids[2] });
+    }
+  }
+  both->SetPoints(points);
+  both->SetPolys(polygons);
+  vtkNew<vtkTetGenMesher> crossing;
+  TAUTLINE_CHECK(contains(failure(crossing, both), "the surface intersects itself: facets "));
+
+  vtkNew<vtkTetGenMesher> open;
+  vtkNew<vtkSphereSource> half;
+  half->SetEndTheta(180.0);
+  half->Update();
+  TAUTLINE_CHECK(contains(failure(open, half->GetOutput()), "is it closed"));
+
+  vtkNew<vtkTetGenMesher> flat;
+  TAUTLINE_CHECK(
+    contains(failure(flat, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 } })), "3 cells are no triangles"));
+  vtkNew<vtkTetGenMesher> nan;
+  vtkNew<vtkSphereSource> broken;
+  broken->Update();
+  broken->GetOutput()->GetPoints()->SetPoint(3, 0, NAN, 0);
+  TAUTLINE_CHECK(contains(
+    failure(nan, broken->GetOutput()), "point 3 has a coordinate that is not a finite number"));
+
+  // abort ends TetGen in the midst of a million tetrahedra
+  vtkNew<vtkTetGenMesher> aborted;
+  aborted->SetVolume(1e-6);
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
+  aborted->AddObserver(vtkCommand::ProgressEvent, stop);
+  TAUTLINE_CHECK(contains(failure(aborted, read("cube.smesh")), "stopped"));
+
+  vtkNew<vtkTetGenMesher> slow;
+  slow->SetVolume(1e-7);
+  slow->SetTimeLimit(0.5);
+  TAUTLINE_CHECK(contains(failure(slow, read("cube.smesh")), "did not end within the time limit"));
+
+  // and after all these failures it works
+  vtkNew<vtkTetGenMesher> works;
+  works->SetInputData(read("cube.smesh"));
+  works->Update();
+  TAUTLINE_CHECK(works->GetOutput()->GetNumberOfCells() > 0);
+  vtkNew<vtkPolyData> nothing;
+  works->SetInputData(nothing);
+  works->Update();
+  TAUTLINE_CHECK(works->GetOutput()->GetNumberOfCells() == 0);
+}
+}
+
+int TestMeshers(int, char* argv[])
+{
+  data = argv[1];
+  testTriangles();
+  testTriangleFailures();
+  testTetrahedra();
+  testRegionsAndHoles();
+  testTetrahedraFailures();
+  return tautline::exitCode();
+}

@@ -1,0 +1,209 @@
+// Read-write-read is the identity, arrays and their types included, directly and through VTK.
+
+#include "MeshFileAdapter.h"
+#include "MeshFileChecks.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFloatArray.h"
+#include "vtkGmshWriter.h"
+#include "vtkImageData.h"
+#include "vtkMeditWriter.h"
+#include "vtkNew.h"
+#include "vtkOffWriter.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkTetGenWriter.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cmath>
+
+using namespace tautline;
+
+namespace
+{
+std::string data;
+std::string output;
+
+std::vector<std::string> writeByName(
+  const MeshFile& mesh, const std::string& name, bool binary = false)
+{
+  const std::string extension = splitExtension(name).second;
+  return extension == "mesh" ? writeMedit(mesh, name)
+    : extension == "msh"     ? writeGmsh(mesh, name, binary)
+    : extension == "off"     ? writeOff(mesh, name)
+                             : writeTetGen(mesh, name);
+}
+
+MeshFile throughVtk(const MeshFile& mesh, bool surface)
+{
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPolyData> polygons;
+  toGrid(mesh, grid);
+  toSurface(surface ? mesh : MeshFile(), polygons);
+  return fromDataSet(surface ? static_cast<vtkDataSet*>(polygons) : grid);
+}
+
+/// The file, what is written of it, and what is read of that are the same mesh.
+void checkIdentity(const std::string& name, const std::string& copy, bool binary = false)
+{
+  for (const bool lowerCells : { false, true })
+  {
+    const MeshFile first = readByName(data + "/" + name, lowerCells);
+    const std::string target = output + "/copy-" + copy;
+    writeByName(throughVtk(first, splitExtension(name).second == "off"), target, binary);
+    const MeshFile second = readByName(target, lowerCells);
+    if (!same(first, second))
+    {
+      std::cerr << name << " is not " << target << "\n";
+      TAUTLINE_CHECK(!"identity");
+    }
+  }
+}
+
+/// A mesh of another format keeps points, cells and the arrays both formats can hold.
+void checkConversion()
+{
+  const MeshFile cube = readByName(data + "/cube.1.ele", true);
+  writeByName(cube, output + "/cube.mesh");
+  const MeshFile medit = readByName(output + "/cube.mesh", true);
+  TAUTLINE_CHECK(same(cube.points, medit.points) && cube.connectivity == medit.connectivity);
+  const MeshArray* reference = findArray(medit.cellArrays, "Reference");
+  TAUTLINE_CHECK(reference && reference->at(0) == 1.0 && reference->at(171) == 4.0);
+  writeByName(medit, output + "/cube.msh");
+  const MeshFile gmsh = readByName(output + "/cube.msh", true);
+  TAUTLINE_CHECK(same(cube.points, gmsh.points) && cube.connectivity == gmsh.connectivity);
+  TAUTLINE_CHECK(findArray(gmsh.cellArrays, "Reference")->values == reference->values);
+}
+
+/// Arrays of every kind, with hard names and values, survive where a format has room for them.
+void checkArrays()
+{
+  MeshFile mesh = readByName(data + "/cube.1.ele", false);
+  const auto points = static_cast<std::size_t>(mesh.numberOfPoints());
+  const auto cells = static_cast<std::size_t>(mesh.numberOfCells());
+  mesh.points[0] = 0.1 + 0.2;
+  mesh.points[1] = 4.9406564584124654e-324;
+  mesh.points[2] = -1.7976931348623157e308;
+  mesh.pointArrays.push_back(MeshArray::make("heat flux, %", 3, 'f', 3 * points));
+  std::get<MeshArray::Doubles>(mesh.pointArrays.back().values)[4] = 1.0 / 3.0;
+  std::get<MeshArray::Doubles>(mesh.pointArrays.back().values)[5] = std::nan("");
+  std::get<MeshArray::Doubles>(mesh.pointArrays.back().values)[6] = -INFINITY;
+  mesh.pointArrays.push_back(MeshArray::make("pair", 2, 'f', 2 * points));
+  mesh.cellArrays.push_back(MeshArray::make("tensor", 9, 'f', 9 * cells));
+  std::get<MeshArray::Doubles>(mesh.cellArrays.back().values)[1] = 7.25; // not symmetric
+  for (const char* name : { "/arrays.node", "/arrays.mesh", "/arrays.msh" })
+  {
+    writeByName(mesh, output + name);
+    const MeshFile again = readByName(output + name, false);
+    TAUTLINE_CHECK(contains(again.pointArrays, mesh.pointArrays));
+    TAUTLINE_CHECK(same(mesh.points, again.points));
+    const MeshArray* tensor = findArray(again.cellArrays, "tensor");
+    TAUTLINE_CHECK(tensor && tensor->components == 9 && tensor->at(1) == 7.25);
+  }
+  // whole numbers and bytes keep their types in the formats that can say so
+  mesh.pointArrays.push_back(MeshArray::make("count", 1, 'i', points));
+  mesh.cellArrays.push_back(MeshArray::make("flag", 1, 'u', cells));
+  std::get<MeshArray::Bytes>(mesh.cellArrays.back().values)[3] = 255;
+  for (const char* name : { "/arrays.node", "/arrays.mesh" })
+  {
+    writeByName(mesh, output + name);
+    const MeshFile again = readByName(output + name, false);
+    TAUTLINE_CHECK(findArray(again.pointArrays, "count")->code() == 'i');
+    TAUTLINE_CHECK(findArray(again.cellArrays, "flag")->code() == 'u');
+    TAUTLINE_CHECK(findArray(again.cellArrays, "flag")->at(3) == 255.0);
+  }
+}
+
+/// Rewriting a smaller mesh leaves no companion of the larger one behind.
+void checkStaleCompanions()
+{
+  const std::string stem = output + "/stale";
+  writeByName(readByName(data + "/cube.1.ele", true), stem + ".node");
+  TAUTLINE_CHECK(fileExists(stem + ".face") && fileExists(stem + ".edge"));
+  writeByName(readByName(data + "/cube.1.ele", false), stem + ".node");
+  TAUTLINE_CHECK(!fileExists(stem + ".face") && !fileExists(stem + ".edge"));
+  TAUTLINE_CHECK(readByName(stem + ".ele", true).numberOfCells() == 171);
+  writeByName(readByName(data + "/zoo.mesh", true), stem + ".mesh");
+  TAUTLINE_CHECK(fileExists(stem + ".sol"));
+  writeByName(readByName(data + "/cube.1.ele", true), stem + ".mesh");
+  TAUTLINE_CHECK(!fileExists(stem + ".sol"));
+}
+
+/// Writers take any data set, refuse by name, and say when a file cannot be written.
+void checkWriterClasses()
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(3, 3, 2);
+  vtkNew<vtkFloatArray> heat;
+  heat->SetName("heat");
+  heat->SetNumberOfTuples(18);
+  heat->Fill(0.1f);
+  image->GetPointData()->AddArray(heat);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(4);
+  ghosts->Fill(0);
+  ghosts->SetValue(2, vtkDataSetAttributes::DUPLICATECELL);
+  image->GetCellData()->AddArray(ghosts);
+
+  vtkNew<vtkGmshWriter> gmsh;
+  gmsh->SetInputData(image);
+  gmsh->SetFileName((output + "/image.msh").c_str());
+  gmsh->BinaryOn();
+  TAUTLINE_CHECK(gmsh->Write() == 1 && gmsh->GetNumberOfFilesWritten() == 1);
+  const MeshFile read = readByName(output + "/image.msh", false);
+  TAUTLINE_CHECK(countCells(read, FileHexahedron) == 3); // one of four is a ghost
+  TAUTLINE_CHECK(findArray(read.pointArrays, "heat")->at(5) == static_cast<double>(0.1f));
+  const Index first[] = { 0, 1, 4, 3, 9, 10, 13, 12 };
+  for (std::size_t i = 0; i < 8; ++i)
+  {
+    TAUTLINE_CHECK(read.connectivity[i] == first[i]);
+  }
+
+  const auto refusal = [&](vtkMeshFileWriter* writer, const std::string& name)
+  {
+    vtkNew<vtkTest::ErrorObserver> errors;
+    writer->AddObserver(vtkCommand::ErrorEvent, errors);
+    writer->SetInputData(image);
+    writer->SetFileName(name.c_str());
+    TAUTLINE_CHECK(writer->Write() == 0 && errors->GetError());
+    return std::string(writer->GetErrorText());
+  };
+  vtkNew<vtkTetGenWriter> tetgen;
+  TAUTLINE_CHECK(refusal(tetgen, output + "/image.node").find("3 hexahedra") != std::string::npos);
+  TAUTLINE_CHECK(!fileExists(output + "/image.node"));
+  vtkNew<vtkOffWriter> off;
+  TAUTLINE_CHECK(refusal(off, output + "/image.off").find("hexahedra") != std::string::npos);
+  vtkNew<vtkMeditWriter> medit;
+  TAUTLINE_CHECK(
+    refusal(medit, output + "/none/image.mesh").find("cannot be written") != std::string::npos);
+  TAUTLINE_CHECK(
+    refusal(medit, output + "/image.txt").find(".mesh is expected") != std::string::npos);
+}
+}
+
+int TestReadWriteRead(int, char* argv[])
+{
+  data = argv[1];
+  output = argv[2];
+  checkIdentity("cube.1.node", "cube.node");
+  checkIdentity("quadratic.1.ele", "quadratic.ele");
+  checkIdentity("cube.smesh", "cube.smesh");
+  checkIdentity("box.poly", "box.poly");
+  checkIdentity("plate.poly", "plate.poly");
+  checkIdentity("zoo.mesh", "zoo.mesh");
+  checkIdentity("part.msh", "part.msh");
+  checkIdentity("part22-binary.msh", "part-binary.msh", true);
+  checkIdentity("wedges.msh", "wedges.msh");
+  checkIdentity("tent.msh", "tent.mesh");
+  checkIdentity("house.off", "house.off");
+  checkConversion();
+  checkArrays();
+  checkStaleCompanions();
+  checkWriterClasses();
+  return exitCode();
+}

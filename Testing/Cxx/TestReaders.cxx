@@ -1,0 +1,281 @@
+// What is in the sample files arrives, with the documented array names.
+
+#include "MeshFileChecks.h"
+
+#include "tautline/Mesh.h"
+
+#include "vtkCell.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkGmshReader.h"
+#include "vtkMeditReader.h"
+#include "vtkNew.h"
+#include "vtkOffReader.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkTetGenReader.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cmath>
+
+using namespace tautline;
+
+namespace
+{
+std::string data;
+std::string output;
+
+double value(const std::vector<MeshArray>& arrays, const char* name, std::size_t i)
+{
+  const MeshArray* array = findArray(arrays, name);
+  TAUTLINE_CHECK(array && i < array->size());
+  return array && i < array->size() ? array->at(i) : std::nan("");
+}
+
+/// Sum of the volumes of tetrahedra, corners only; each must be positive in VTK's order.
+double volume(const MeshFile& mesh)
+{
+  double sum = 0.0;
+  for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
+  {
+    if (mesh.cellTypes[cell] != FileTetrahedron && mesh.cellTypes[cell] != FileTetrahedron10)
+    {
+      continue;
+    }
+    Vec3 p[4];
+    for (std::size_t c = 0; c < 4; ++c)
+    {
+      const Index id = mesh.connectivity[static_cast<std::size_t>(mesh.offsets[cell]) + c];
+      p[c] = { mesh.points[3 * id], mesh.points[3 * id + 1], mesh.points[3 * id + 2] };
+    }
+    const double v = dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) / 6.0;
+    TAUTLINE_CHECK(v > 0.0);
+    sum += v;
+  }
+  return sum;
+}
+
+void testTetGen()
+{
+  const MeshFile tets = readTetGen(data + "/cube.1.node", false);
+  TAUTLINE_CHECK(tets.numberOfPoints() == 73 && tets.numberOfCells() == 171);
+  TAUTLINE_CHECK(countCells(tets, FileTetrahedron) == 171);
+  TAUTLINE_CHECK(std::abs(volume(tets) - 1.0) < 1e-12);
+  const MeshFile all = readTetGen(data + "/cube.1.edge", true);
+  TAUTLINE_CHECK(countCells(all, FileTetrahedron) == 171 && countCells(all, FileTriangle) == 132);
+  TAUTLINE_CHECK(countCells(all, FileLine) > 0);
+  // the first face of cube.1.face has marker 4, tetrahedra have none
+  TAUTLINE_CHECK(value(all.cellArrays, "BoundaryMarker", 0) == 0.0);
+  TAUTLINE_CHECK(value(all.cellArrays, "BoundaryMarker", 171) == 4.0);
+  TAUTLINE_CHECK(value(all.cellArrays, "Reference", 0) == 1.0);
+  TAUTLINE_CHECK(same(all, readTetGen(data + "/cube.1.ele", true)));
+
+  const MeshFile quadratic = readTetGen(data + "/quadratic.1.ele", true);
+  TAUTLINE_CHECK(countCells(quadratic, FileTetrahedron10) == 6);
+  TAUTLINE_CHECK(countCells(quadratic, FileTriangle6) == 18);
+  TAUTLINE_CHECK(std::abs(volume(quadratic) - 1.0) < 1e-12);
+}
+
+void testComplexes()
+{
+  const MeshFile plate = readTetGen(data + "/plate.poly", false);
+  TAUTLINE_CHECK(plate.numberOfPoints() == 8 && countCells(plate, FileLine) == 9);
+  TAUTLINE_CHECK(value(plate.pointArrays, "Attribute1", 7) == 17.5);
+  TAUTLINE_CHECK(value(plate.pointArrays, "BoundaryMarker", 4) == 2.0);
+  TAUTLINE_CHECK(value(plate.cellArrays, "BoundaryMarker", 8) == 0.0);
+  TAUTLINE_CHECK(value(plate.fieldArrays, "Holes", 1) == 1.5);
+  TAUTLINE_CHECK(value(plate.fieldArrays, "Regions", 5 + 3) == 2.0);
+  TAUTLINE_CHECK(value(plate.fieldArrays, "Regions", 4) == 0.1);
+
+  const MeshFile box = readTetGen(data + "/box.poly", false);
+  TAUTLINE_CHECK(box.numberOfPoints() == 12 && box.numberOfCells() == 7);
+  TAUTLINE_CHECK(
+    value(box.cellArrays, "Facet", 2) == 1.0 && value(box.cellArrays, "Facet", 3) == 2.0);
+  TAUTLINE_CHECK(value(box.cellArrays, "BoundaryMarker", 2) == 2.0);
+  TAUTLINE_CHECK(value(box.fieldArrays, "FacetHoles", 0) == 1.0);
+  TAUTLINE_CHECK(value(box.fieldArrays, "FacetHoles", 3) == 2.0);
+  TAUTLINE_CHECK(value(box.fieldArrays, "Regions", 3) == 7.0);
+
+  const MeshFile cube = readTetGen(data + "/cube.smesh", false);
+  TAUTLINE_CHECK(countCells(cube, FileQuadrilateral) == 6);
+  TAUTLINE_CHECK(value(cube.cellArrays, "BoundaryMarker", 5) == 6.0);
+}
+
+void testMedit()
+{
+  const MeshFile zoo = readMedit(data + "/zoo.sol", true);
+  TAUTLINE_CHECK(zoo.numberOfPoints() == 14 && zoo.numberOfCells() == 9);
+  const std::vector<unsigned char> types = { FileTetrahedron, FileHexahedron, FileWedge,
+    FilePyramid, FilePyramid, FileTriangle, FileQuadrilateral, FileLine, FileLine };
+  TAUTLINE_CHECK(zoo.cellTypes == types);
+  const double references[] = { 14, 11, 13, 12, 12, 21, 22, 31, 32 };
+  for (std::size_t i = 0; i < 9; ++i)
+  {
+    TAUTLINE_CHECK(value(zoo.cellArrays, "Reference", i) == references[i]);
+  }
+  TAUTLINE_CHECK(value(zoo.pointArrays, "Reference", 13) == 6.0);
+  TAUTLINE_CHECK(
+    value(zoo.pointArrays, "Corner", 8) == 1.0 && value(zoo.pointArrays, "Corner", 12) == 0.0);
+  TAUTLINE_CHECK(
+    value(zoo.pointArrays, "Fixed", 8) == 1.0 && value(zoo.pointArrays, "Fixed", 12) == 1.0);
+  TAUTLINE_CHECK(value(zoo.pointArrays, "Fixed", 1) == 0.0);
+  TAUTLINE_CHECK(
+    value(zoo.cellArrays, "Ridge", 7) == 0.0 && value(zoo.cellArrays, "Ridge", 8) == 1.0);
+  TAUTLINE_CHECK(
+    value(zoo.cellArrays, "Required", 7) == 1.0 && value(zoo.cellArrays, "Required", 5) == 1.0);
+  TAUTLINE_CHECK(value(zoo.pointArrays, "Solution1", 3) == 1.5);
+  TAUTLINE_CHECK(value(zoo.pointArrays, "Solution2", 3 * 2 + 1) == -2.0);
+  // m11 m21 m22 m31 m32 m33 = 1 0.5 2 0.25 0.125 3 of vertex 0, as a matrix
+  const double tensor[] = { 1, 0.5, 0.25, 0.5, 2, 0.125, 0.25, 0.125, 3 };
+  for (std::size_t i = 0; i < 9; ++i)
+  {
+    TAUTLINE_CHECK(value(zoo.pointArrays, "Solution3", i) == tensor[i]);
+  }
+  // VTK's wedge has its first triangle counter-clockwise from outside
+  const Index wedge[] = { 1, 2, 9, 5, 6, 10 };
+  for (std::size_t i = 0; i < 6; ++i)
+  {
+    TAUTLINE_CHECK(zoo.connectivity[static_cast<std::size_t>(zoo.offsets[2]) + i] == wedge[i]);
+  }
+  TAUTLINE_CHECK(readMedit(data + "/zoo.mesh", false).numberOfCells() == 5);
+}
+
+void testGmsh()
+{
+  for (const char* name : { "/part.msh", "/part22-binary.msh" })
+  {
+    const MeshFile part = readGmsh(data + name, true);
+    TAUTLINE_CHECK(part.numberOfPoints() == 99 && countCells(part, FileTetrahedron) == 243);
+    TAUTLINE_CHECK(countCells(part, FileTriangle) == 52);
+    TAUTLINE_CHECK(std::abs(volume(part) - 1.0) < 1e-12);
+    TAUTLINE_CHECK(value(part.cellArrays, "Reference", 0) == 5.0);
+    TAUTLINE_CHECK(value(part.cellArrays, "Reference", 294) == 20.0);
+    TAUTLINE_CHECK(value(part.cellArrays, "Entity", 294) == 2.0);
+    TAUTLINE_CHECK(part.fieldStrings.size() == 1 && part.fieldStrings[0].values.size() == 3);
+    TAUTLINE_CHECK(value(part.fieldArrays, "PhysicalGroups", 1) == 5.0);
+    TAUTLINE_CHECK(part.fieldStrings[0].values[0] == "bottom");
+    TAUTLINE_CHECK(readGmsh(data + name, false).numberOfCells() == 243);
+  }
+}
+
+/// The kernel finds every cell valid: orders of nodes are those VTK and Tautline compute with.
+void testValidity()
+{
+  for (const char* name :
+    { "/zoo.mesh", "/wedges.msh", "/part.msh", "/cube.1.ele", "/quadratic.1.ele" })
+  {
+    const MeshFile file = readByName(data + name, false);
+    const Mesh mesh({ file.numberOfPoints(), file.points.data(), file.numberOfCells(),
+      file.cellTypes.data(), file.offsets.data(), file.connectivity.data() });
+    std::vector<signed char> validity(file.cellTypes.size());
+    mesh.classifyCells(validity.data());
+    TAUTLINE_CHECK(mesh.unsupportedCells() == 0);
+    for (const signed char each : validity)
+    {
+      TAUTLINE_CHECK(each == Valid);
+    }
+  }
+}
+
+void testFreeFemAndOff()
+{
+  const MeshFile tent = readGmsh(data + "/tent.msh", true);
+  TAUTLINE_CHECK(tent.numberOfPoints() == 5 && countCells(tent, FileTriangle) == 4);
+  TAUTLINE_CHECK(countCells(tent, FileLine) == 4 && value(tent.cellArrays, "Reference", 7) == 4.0);
+  TAUTLINE_CHECK(value(tent.pointArrays, "Reference", 2) == 2.0);
+
+  const MeshFile house = readOff(data + "/house.off", false);
+  TAUTLINE_CHECK(house.numberOfPoints() == 10 && house.numberOfCells() == 7);
+  TAUTLINE_CHECK(countCells(house, FilePolygon) == 2 && countCells(house, FileQuadrilateral) == 5);
+  TAUTLINE_CHECK(value(house.pointArrays, "Color", 4 * 5 + 3) == 128.0);
+  TAUTLINE_CHECK(value(house.cellArrays, "Color", 1) == 20.0);
+  TAUTLINE_CHECK(value(house.cellArrays, "Color", 3) == 170.0); // a face without colour
+  writeText(output + "/normals.off",
+    "\xef\xbb\xbfNOFF\r\n3 1\r\n0 0 0 0 0 1\r\n1 0 0 0 0 1\r\n0 1 0 0 0 1\r\n3 0 1 2 0.5 1.0 "
+    "0\r\n");
+  const MeshFile normals = readOff(output + "/normals.off", false);
+  TAUTLINE_CHECK(value(normals.pointArrays, "Normals", 8) == 1.0);
+  TAUTLINE_CHECK(value(normals.cellArrays, "Color", 0) == 0.5);
+}
+
+/// In VTK's own view, middle nodes are in the middle of edges: the node orders are right.
+void testOrderOfMiddleNodes(vtkMeshFileReader* reader, const char* name, int points)
+{
+  reader->SetFileName((data + name).c_str());
+  reader->SetLowerCells(true);
+  reader->Update();
+  auto* grid = vtkUnstructuredGrid::SafeDownCast(reader->GetOutputDataObject(0));
+  TAUTLINE_CHECK(grid && grid->GetNumberOfPoints() == points);
+  int middles = 0;
+  for (vtkIdType i = 0; grid && i < grid->GetNumberOfCells(); ++i)
+  {
+    vtkCell* cell = grid->GetCell(i);
+    for (int e = 0; e < cell->GetNumberOfEdges() && !cell->IsLinear(); ++e)
+    {
+      double p[3][3];
+      for (int k = 0; k < 3; ++k)
+      {
+        cell->GetEdge(e)->GetPoints()->GetPoint(k, p[k]);
+      }
+      for (int c = 0; c < 3; ++c)
+      {
+        TAUTLINE_CHECK(std::abs(0.5 * (p[0][c] + p[1][c]) - p[2][c]) < 1e-9);
+      }
+      ++middles;
+    }
+  }
+  TAUTLINE_CHECK(middles > 12);
+}
+
+/// The classes of VTK: outputs, errors with empty outputs, recovery, CanReadFile.
+void testReaderClasses()
+{
+  vtkNew<vtkTetGenReader> reader;
+  vtkNew<vtkTest::ErrorObserver> errors;
+  reader->AddObserver(vtkCommand::ErrorEvent, errors);
+  reader->SetFileName((data + "/cube.1.ele").c_str());
+  reader->Update();
+  TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 171 && !errors->GetError());
+  TAUTLINE_CHECK(reader->GetOutput()->GetCellData()->GetArray("Reference") != nullptr);
+  reader->SetFileName((data + "/none.ele").c_str());
+  reader->Update();
+  TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfPoints() == 0);
+  TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 0);
+  TAUTLINE_CHECK(
+    errors->GetErrorMessage().find("none.node: cannot be opened") != std::string::npos);
+  reader->SetFileName((data + "/cube.1.ele").c_str());
+  reader->Update();
+  TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 171);
+
+  vtkNew<vtkOffReader> off;
+  off->SetFileName((data + "/house.off").c_str());
+  off->Update();
+  TAUTLINE_CHECK(off->GetOutput()->IsA("vtkPolyData") && off->GetOutput()->GetNumberOfCells() == 7);
+  vtkNew<vtkGmshReader> gmsh;
+  vtkNew<vtkMeditReader> medit;
+  TAUTLINE_CHECK(gmsh->CanReadFile((data + "/part.msh").c_str()) == 1);
+  TAUTLINE_CHECK(gmsh->CanReadFile((data + "/tent.msh").c_str()) == 1);
+  TAUTLINE_CHECK(gmsh->CanReadFile((data + "/zoo.mesh").c_str()) == 0);
+  TAUTLINE_CHECK(medit->CanReadFile((data + "/zoo.mesh").c_str()) == 1);
+  TAUTLINE_CHECK(medit->CanReadFile((data + "/none.mesh").c_str()) == 0);
+}
+}
+
+int TestReaders(int, char* argv[])
+{
+  data = argv[1];
+  output = argv[2];
+  testTetGen();
+  testComplexes();
+  testMedit();
+  testGmsh();
+  testValidity();
+  testFreeFemAndOff();
+  vtkNew<vtkGmshReader> gmsh;
+  testOrderOfMiddleNodes(gmsh, "/wedges.msh", 27);
+  vtkNew<vtkTetGenReader> tetgen;
+  testOrderOfMiddleNodes(tetgen, "/quadratic.1.ele", 27);
+  testReaderClasses();
+  return exitCode();
+}
