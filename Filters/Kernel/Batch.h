@@ -8,6 +8,8 @@
 #include "Metrics.h"
 #include "Packet.h"
 
+#include <type_traits>
+
 namespace tautline
 {
 /// Everything a batch evaluator needs that is the same for all batches of a block.
@@ -72,6 +74,61 @@ inline void subtract(const Packet* a, const Packet* b, Packet* result)
 inline Packet finiteOrZero(Packet x)
 {
   return select(abs(x) <= 1.7976931348623157e308, x, Packet{});
+}
+
+/// Calls work(N) with the number of nodes as a compile-time constant, so that loops over it unroll.
+template <class Work>
+void withNodes(const CellTopology& topology, const Work& work)
+{
+  switch (topology.nodes)
+  {
+    case 3:
+      return work(std::integral_constant<int, 3>());
+    case 4:
+      return work(std::integral_constant<int, 4>());
+    case 5:
+      return work(std::integral_constant<int, 5>());
+    case 6:
+      return work(std::integral_constant<int, 6>());
+    default:
+      static_assert(MaxNodes == 8, "a case for each number of nodes");
+      return work(std::integral_constant<int, 8>());
+  }
+}
+
+/// The nodes of each cell of a batch, in the connectivity.
+using BatchNodes = const Index* [PacketWidth];
+
+/// Loads the vertices of cells [begin, begin + count) of a block; order maps positions if not null.
+template <int Nodes>
+void gather(const BatchContext& context, const Index* order, Index begin, int count, Batch& batch,
+  BatchNodes& nodes)
+{
+  const MeshView& view = context.mesh->view();
+  for (int l = 0; l < PacketWidth; ++l)
+  {
+    const Index position = begin + (l < count ? l : count - 1);
+    const Index cell = context.block->cell(order ? order[position] : position);
+    batch.cells[l] = cell;
+    nodes[l] = view.connectivity + view.offsets[cell];
+  }
+  batch.count = count;
+  for (int k = 0; k < Nodes; ++k)
+  {
+    const double* p[PacketWidth];
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      p[l] = view.points + 3 * nodes[l][k];
+    }
+    loadPoints(p, batch.points[k]);
+  }
+  if (context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume)
+  {
+    for (int k = 0; k < Nodes; ++k)
+    {
+      batch.points[k][0] = -batch.points[k][0];
+    }
+  }
 }
 }
 #endif

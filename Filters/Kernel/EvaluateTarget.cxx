@@ -11,10 +11,10 @@ namespace
 template <int N>
 struct Corner
 {
-  Packet t[N][N];       ///< T = A W^-1
-  Packet inverse[N][N]; ///< W^-1
-  Packet root[N][N];    ///< M^(1/2), if the targets have a metric tensor
-  Packet axes[2][3];    ///< 2D: the frame A is taken in
+  Packet t[N][N];         ///< T = A W^-1
+  Packet inverse[N][N];   ///< W^-1
+  Packet root[N][N];      ///< M^(1/2), if the targets have a metric tensor
+  Packet axes[2][3] = {}; ///< 2D: the frame A is taken in
   TargetInvariants<N> invariants;
   Packet cofactor[N][N];
   Mask degenerate;
@@ -410,8 +410,9 @@ Packet combine(
   return result;
 }
 
+/// All of it in one piece: calls between the steps would cost more than the steps.
 template <class M, int N, bool WithGradient>
-void evaluateTarget(const BatchContext& context, Batch& batch)
+__attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch& batch)
 {
   const CellTopology& topology = *context.topology;
   const int samples = topology.samples;

@@ -2,6 +2,7 @@
 
 #include "Parallel.h"
 
+#include <cstring>
 #include <numeric>
 
 namespace tautline
@@ -22,6 +23,79 @@ std::array<bool, 256> definedTypes(const MetricInfo& info)
   }
   return table;
 }
+}
+
+namespace
+{
+/**
+ * Finds the values at given places of the sorted order without sorting: counts values by the leading
+ * bits of their representation, then sorts only the few buckets that hold a wanted place.
+ */
+class OrderStatistics
+{
+public:
+  OrderStatistics(const std::vector<double>& values, const std::vector<double>& positions)
+    : Starts(Buckets + 1, 0)
+    , Sorted(Buckets)
+  {
+    for (double v : values)
+    {
+      ++this->Starts[bucketOf(v) + 1];
+    }
+    std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
+    std::vector<char> wanted(Buckets, 0);
+    for (double p : positions)
+    {
+      const Index last = static_cast<Index>(values.size()) - 1;
+      for (Index place : { static_cast<Index>(p), std::min(static_cast<Index>(p) + 1, last) })
+      {
+        wanted[this->bucketAt(place)] = 1;
+      }
+    }
+    for (double v : values)
+    {
+      const std::size_t bucket = bucketOf(v);
+      if (wanted[bucket])
+      {
+        this->Sorted[bucket].push_back(v);
+      }
+    }
+    for (auto& bucket : this->Sorted)
+    {
+      std::sort(bucket.begin(), bucket.end());
+    }
+  }
+
+  double at(Index place) const
+  {
+    const std::size_t bucket = this->bucketAt(place);
+    return this->Sorted[bucket][place - this->Starts[bucket]];
+  }
+
+private:
+  static constexpr int Bits = 18; ///< sign, exponent and six bits of the mantissa
+  static constexpr std::size_t Buckets = std::size_t(1) << Bits;
+
+  /// Leading bits of a key that is ordered as the values are.
+  static std::size_t bucketOf(double v)
+  {
+    constexpr std::uint64_t signBit = std::uint64_t(1) << 63;
+    std::uint64_t key;
+    v += 0.0; // no negative zero
+    std::memcpy(&key, &v, sizeof(key));
+    key = key & signBit ? ~key : key | signBit;
+    return key >> (64 - Bits);
+  }
+
+  std::size_t bucketAt(Index place) const
+  {
+    return std::upper_bound(this->Starts.begin(), this->Starts.end(), place) -
+      this->Starts.begin() - 1;
+  }
+
+  std::vector<Index> Starts; ///< number of values in the buckets before each
+  std::vector<std::vector<double>> Sorted;
+};
 }
 
 //------------------------------------------------------------------------------
@@ -107,7 +181,8 @@ std::vector<WorstElement> worstElements(const MetricInfo& info, const CellValues
 }
 
 //------------------------------------------------------------------------------
-MetricStatistics summarize(const MetricInfo& info, int dimension, std::vector<double>& measured)
+MetricStatistics summarize(
+  const MetricInfo& info, int dimension, const std::vector<double>& measured)
 {
   MetricStatistics result;
   result.measured = static_cast<Index>(measured.size());
@@ -147,19 +222,18 @@ MetricStatistics summarize(const MetricInfo& info, int dimension, std::vector<do
   result.rms = std::sqrt(squares / n) * unit;
   result.standardDeviation = std::sqrt(deviations / n) * unit;
 
-  // Quantiles in increasing order; each search goes on where the last one ended.
-  auto from = measured.begin();
-  for (std::size_t i = 0; i < quantileFractions.size(); ++i)
+  std::vector<double> position(quantileFractions.size());
+  for (std::size_t i = 0; i < position.size(); ++i)
   {
-    const double position = quantileFractions[i] * (n - 1);
-    const auto at = measured.begin() + static_cast<Index>(position);
-    std::nth_element(from, at, measured.end());
-    const double part = position - std::floor(position);
-    const double low = *at;
-    const double high =
-      part > 0 && at + 1 < measured.end() ? *std::min_element(at + 1, measured.end()) : low;
-    result.quantiles[i] = low < high ? (1 - part) * low + part * high : low;
-    from = at;
+    position[i] = quantileFractions[i] * (n - 1);
+  }
+  const OrderStatistics sorted(measured, position);
+  for (std::size_t i = 0; i < position.size(); ++i)
+  {
+    const double part = position[i] - std::floor(position[i]);
+    const double below = sorted.at(static_cast<Index>(position[i]));
+    const double above = part > 0 ? sorted.at(static_cast<Index>(position[i]) + 1) : below;
+    result.quantiles[i] = (1 - part) * below + part * above;
   }
   return result;
 }
@@ -193,98 +267,5 @@ Histogram histogram(const std::vector<double>& measured, int bins)
     ++result.counts[static_cast<Index>(std::min<double>(bins - 1, position))];
   }
   return result;
-}
-
-//------------------------------------------------------------------------------
-std::array<Index, angleBins.size() - 1> angleDistribution(
-  const Mesh& mesh, const signed char* validity, const unsigned char* skip, int threads)
-{
-  using Counts = std::array<Index, angleBins.size() - 1>;
-  // Cosines of the inner bin ends: an angle above 20 degrees has a cosine below cos 20, and so on.
-  std::array<double, angleBins.size() - 2> cosines;
-  for (std::size_t i = 0; i < cosines.size(); ++i)
-  {
-    cosines[i] = std::cos(angleBins[i + 1] * M_PI / 180);
-  }
-  const MeshView& view = mesh.view();
-  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
-  Counts total{};
-  for (const CellBlock& block : mesh.blocks())
-  {
-    const CellTopology& t = topology(block.type);
-    if (t.dimension != dimension)
-    {
-      continue;
-    }
-    std::vector<Counts> perChunk(numberOfChunks(block.count), Counts{});
-    forEachChunk(block.count, threads,
-      [&](Index chunk, Index begin, Index end)
-      {
-        Counts& counts = perChunk[chunk];
-        auto add = [&](double cosineTimesLengths, double lengths2)
-        {
-          // The bin is the number of inner ends the angle has passed.
-          const double cosine = cosineTimesLengths / std::sqrt(lengths2);
-          int bin = 0;
-          for (double c : cosines)
-          {
-            bin += cosine <= c;
-          }
-          ++counts[bin];
-        };
-        for (Index i = begin; i < end; ++i)
-        {
-          const Index cell = block.cell(i);
-          if ((validity[cell] != Valid && validity[cell] != Inverted) || (skip && skip[cell]))
-          {
-            continue;
-          }
-          const Index* node = view.connectivity + view.offsets[cell];
-          Vec3 p[MaxNodes];
-          for (int k = 0; k < t.nodes; ++k)
-          {
-            p[k] = pointOf(view, node[k]);
-          }
-          if (dimension == 2)
-          {
-            const Vec3 area = vectorArea(t, p);
-            for (int c = 0; c < t.corners; ++c)
-            {
-              const auto& n = t.cornerNodes[c];
-              const Vec3 a = p[n[1]] - p[n[0]], b = p[n[2]] - p[n[0]];
-              if (dot(cross(a, b), area) < 0)
-              {
-                ++counts.back(); // a reflex corner
-              }
-              else
-              {
-                add(dot(a, b), dot(a, a) * dot(b, b));
-              }
-            }
-            continue;
-          }
-          Vec3 normals[MaxFaces];
-          for (int f = 0; f < t.faces; ++f)
-          {
-            const auto& n = t.faceNodes[f];
-            normals[f] = t.faceSizes[f] == 3 ? cross(p[n[1]] - p[n[0]], p[n[2]] - p[n[0]])
-                                             : cross(p[n[2]] - p[n[0]], p[n[3]] - p[n[1]]);
-          }
-          for (int e = 0; e < t.edges; ++e)
-          {
-            const Vec3 &a = normals[t.edgeFaces[e][0]], &b = normals[t.edgeFaces[e][1]];
-            add(-dot(a, b), dot(a, a) * dot(b, b));
-          }
-        }
-      });
-    for (const Counts& counts : perChunk)
-    {
-      for (std::size_t i = 0; i < total.size(); ++i)
-      {
-        total[i] += counts[i];
-      }
-    }
-  }
-  return total;
 }
 }

@@ -63,11 +63,11 @@ TAUTLINE_KERNEL_EXPORT std::vector<double> measuredValues(
   const MetricInfo& info, const CellValues& data);
 
 /**
- * @brief Summarizes measured values, which it reorders.
+ * @brief Summarizes measured values.
  * @param dimension 2 or 3: which acceptable range counts
  */
 TAUTLINE_KERNEL_EXPORT MetricStatistics summarize(
-  const MetricInfo& info, int dimension, std::vector<double>& measured);
+  const MetricInfo& info, int dimension, const std::vector<double>& measured);
 
 /**
  * @brief Up to WorstCount elements, worst first. Inverted elements come first, then degenerate ones,
