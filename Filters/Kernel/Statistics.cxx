@@ -36,28 +36,32 @@ class OrderStatistics
 public:
   OrderStatistics(const std::vector<double>& values, const std::vector<double>& positions)
     : Starts(Buckets + 1, 0)
-    , Sorted(Buckets)
+    , SlotOf(Buckets, NoSlot)
   {
     for (double v : values)
     {
       ++this->Starts[bucketOf(v) + 1];
     }
     std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
-    std::vector<char> wanted(Buckets, 0);
+    const Index last = static_cast<Index>(values.size()) - 1;
     for (double p : positions)
     {
-      const Index last = static_cast<Index>(values.size()) - 1;
       for (Index place : { static_cast<Index>(p), std::min(static_cast<Index>(p) + 1, last) })
       {
-        wanted[this->bucketAt(place)] = 1;
+        signed char& slot = this->SlotOf[this->bucketAt(place)];
+        if (slot == NoSlot)
+        {
+          slot = static_cast<signed char>(this->Sorted.size());
+          this->Sorted.emplace_back();
+        }
       }
     }
     for (double v : values)
     {
-      const std::size_t bucket = bucketOf(v);
-      if (wanted[bucket])
+      const signed char slot = this->SlotOf[bucketOf(v)];
+      if (slot != NoSlot)
       {
-        this->Sorted[bucket].push_back(v);
+        this->Sorted[slot].push_back(v);
       }
     }
     for (auto& bucket : this->Sorted)
@@ -69,11 +73,12 @@ public:
   double at(Index place) const
   {
     const std::size_t bucket = this->bucketAt(place);
-    return this->Sorted[bucket][place - this->Starts[bucket]];
+    return this->Sorted[this->SlotOf[bucket]][place - this->Starts[bucket]];
   }
 
 private:
   static constexpr int Bits = 18; ///< sign, exponent and six bits of the mantissa
+  static constexpr signed char NoSlot = -1;
   static constexpr std::size_t Buckets = std::size_t(1) << Bits;
 
   /// Leading bits of a key that is ordered as the values are.
@@ -93,7 +98,8 @@ private:
       this->Starts.begin() - 1;
   }
 
-  std::vector<Index> Starts; ///< number of values in the buckets before each
+  std::vector<Index> Starts;       ///< number of values in the buckets before each
+  std::vector<signed char> SlotOf; ///< position in Sorted of each bucket that holds a wanted place
   std::vector<std::vector<double>> Sorted;
 };
 }
@@ -203,20 +209,26 @@ MetricStatistics summarize(
     result.maximum = std::max(result.maximum, q);
     result.outsideAcceptable += q < lowest || q > highest;
   }
-  // In units of the largest, so that squares neither overflow nor vanish; the deviation in a second
-  // pass, so that it is right for nearly equal values.
+  // Scaled by a power of two that brings the largest near 1, so that squares neither overflow nor vanish;
+  // the deviation in a second pass, so that it is right for nearly equal values.
   const double largest = std::max(std::abs(result.minimum), std::abs(result.maximum));
-  const double unit = largest > 0 ? largest : 1.0;
+  constexpr int farthestExponent = 1000;
+  const int exponent =
+    largest > 0 ? std::max(-farthestExponent, std::min(farthestExponent, std::ilogb(largest))) : 0;
+  const double scale = std::ldexp(1.0, -exponent), unit = std::ldexp(1.0, exponent);
+  const double first = measured.front() * scale;
   double sum = 0, squares = 0, deviations = 0;
   for (double q : measured)
   {
-    sum += q / unit;
-    squares += (q / unit) * (q / unit);
+    const double scaled = q * scale;
+    sum += scaled - first;
+    squares += scaled * scaled;
   }
-  const double mean = sum / n;
+  const double mean = first + sum / n;
   for (double q : measured)
   {
-    deviations += (q / unit - mean) * (q / unit - mean);
+    const double deviation = q * scale - mean;
+    deviations += deviation * deviation;
   }
   result.mean = mean * unit;
   result.rms = std::sqrt(squares / n) * unit;
