@@ -1,5 +1,6 @@
 #include "Mesh.h"
 
+#include "Batch.h"
 #include "Parallel.h"
 
 #include <Eigen/Eigenvalues>
@@ -302,6 +303,40 @@ Validity Mesh::classifyCell(const CellTopology& t, const Vec3* p, const Vec3* ag
   return verdict;
 }
 
+namespace
+{
+/// Whether all cells of a batch are valid beyond doubt; what is near a limit is left to classifyCell().
+bool clearlyValid(const Mesh& mesh, const CellTopology& t, const Batch& batch)
+{
+  constexpr double margin = 2, smallest = 1e-200, largest = 1e200;
+  constexpr double tolerance = margin * Mesh::degenerateTolerance();
+  Packet normal[3];
+  for (int c = 0; c < 3; ++c)
+  {
+    normal[c] = broadcast((mesh.mirrored() ? -1.0 : 1.0) * mesh.normal()[c]);
+  }
+  Mask valid = ~Mask{};
+  for (int s = 0; s < t.samples; ++s)
+  {
+    const auto& corner = t.cornerNodes[s];
+    Packet a[3], b[3], d[3], ab[3];
+    subtract(batch.points[corner[1]], batch.points[corner[0]], a);
+    subtract(batch.points[corner[2]], batch.points[corner[0]], b);
+    cross(a, b, ab);
+    Packet det = dot(ab, normal), lengths2 = dot(a, a) * dot(b, b);
+    if (t.dimension == 3)
+    {
+      subtract(batch.points[corner[3]], batch.points[corner[0]], d);
+      det = dot(ab, d);
+      lengths2 *= dot(d, d);
+    }
+    valid &= (det > 0.0) & (det * det > tolerance * tolerance * lengths2) & (lengths2 > smallest) &
+      (lengths2 < largest);
+  }
+  return !any(~valid);
+}
+}
+
 //------------------------------------------------------------------------------
 void Mesh::classifyCells(signed char* validity, int threads) const
 {
@@ -312,20 +347,33 @@ void Mesh::classifyCells(signed char* validity, int threads) const
   for (const CellBlock& block : this->Blocks)
   {
     const CellTopology& t = topology(block.type);
-    forEachChunk(block.count, threads,
-      [&](Index, Index begin, Index end)
+    const BatchContext context = { this, &block, &t, nullptr, false };
+    const bool surface = t.dimension == 2 && this->Dim != Dimension::Planar;
+    withNodes(t,
+      [&](auto nodesOfCell)
       {
-        for (Index i = begin; i < end; ++i)
-        {
-          const Index cell = block.cell(i);
-          const Index* node = this->View.connectivity + this->View.offsets[cell];
-          Vec3 p[MaxNodes];
-          for (int k = 0; k < t.nodes; ++k)
+        constexpr int Nodes = decltype(nodesOfCell)::value;
+        forEachChunk(block.count, threads,
+          [&](Index, Index begin, Index end)
           {
-            p[k] = pointOf(this->View, node[k]);
-          }
-          validity[cell] = this->classifyCell(t, p);
-        }
+            Batch batch;
+            BatchNodes nodes;
+            for (Index i = begin; i < end; i += PacketWidth)
+            {
+              const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
+              gather<Nodes>(context, nullptr, i, count, batch, nodes);
+              const bool allValid = !surface && clearlyValid(*this, t, batch);
+              for (int l = 0; l < count; ++l)
+              {
+                Vec3 p[MaxNodes];
+                for (int k = 0; !allValid && k < Nodes; ++k)
+                {
+                  p[k] = pointOf(this->View, nodes[l][k]);
+                }
+                validity[batch.cells[l]] = allValid ? Valid : this->classifyCell(t, p);
+              }
+            }
+          });
       });
   }
 }

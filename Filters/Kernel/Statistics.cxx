@@ -202,13 +202,21 @@ MetricStatistics summarize(
     acceptable.low - roundingTolerance * std::max(1.0, std::abs(acceptable.low));
   const double highest =
     acceptable.high + roundingTolerance * std::max(1.0, std::abs(acceptable.high));
-  result.minimum = result.maximum = measured.front();
-  for (double q : measured)
+  // Reductions in lanes: their order is fixed by the vector width, not by the threads.
+  double minimum = measured.front(), maximum = measured.front();
+  Index outside = 0;
+  const double* values = measured.data();
+  const Index count = result.measured;
+#pragma omp simd reduction(min : minimum) reduction(max : maximum) reduction(+ : outside)
+  for (Index i = 0; i < count; ++i)
   {
-    result.minimum = std::min(result.minimum, q);
-    result.maximum = std::max(result.maximum, q);
-    result.outsideAcceptable += q < lowest || q > highest;
+    minimum = std::min(minimum, values[i]);
+    maximum = std::max(maximum, values[i]);
+    outside += values[i] < lowest || values[i] > highest;
   }
+  result.minimum = minimum;
+  result.maximum = maximum;
+  result.outsideAcceptable = outside;
   // Scaled by a power of two that brings the largest near 1, so that squares neither overflow nor vanish;
   // the deviation in a second pass, so that it is right for nearly equal values.
   const double largest = std::max(std::abs(result.minimum), std::abs(result.maximum));
@@ -218,16 +226,18 @@ MetricStatistics summarize(
   const double scale = std::ldexp(1.0, -exponent), unit = std::ldexp(1.0, exponent);
   const double first = measured.front() * scale;
   double sum = 0, squares = 0, deviations = 0;
-  for (double q : measured)
+#pragma omp simd reduction(+ : sum, squares)
+  for (Index i = 0; i < count; ++i)
   {
-    const double scaled = q * scale;
+    const double scaled = values[i] * scale;
     sum += scaled - first;
     squares += scaled * scaled;
   }
   const double mean = first + sum / n;
-  for (double q : measured)
+#pragma omp simd reduction(+ : deviations)
+  for (Index i = 0; i < count; ++i)
   {
-    const double deviation = q * scale - mean;
+    const double deviation = values[i] * scale - mean;
     deviations += deviation * deviation;
   }
   result.mean = mean * unit;
