@@ -77,7 +77,7 @@ public:
   }
 
 private:
-  static constexpr int Bits = 18; ///< sign, exponent and six bits of the mantissa
+  static constexpr int Bits = 19; ///< sign, exponent and seven bits of the mantissa
   static constexpr signed char NoSlot = -1;
   static constexpr std::size_t Buckets = std::size_t(1) << Bits;
 
