@@ -1,0 +1,405 @@
+/**
+ * @file Patch.h
+ * @brief The simplices around one free vertex, in packets, as functions of its displacement d:
+ *
+ *     N(d) = N0 - 2 d . S + C |d|^2        D(d) = D0 - d . n
+ *
+ * (see SimplexMesh.h), and a damped Newton method for the sum of an energy f(N, D) over them.
+ * Internal: not installed.
+ */
+#ifndef tautline_Patch_h
+#define tautline_Patch_h
+
+#include "Packet.h"
+#include "SimplexMesh.h"
+
+#include <limits>
+
+namespace tautline
+{
+/// An energy f(N, D) of one simplex with its first and second derivatives.
+struct EnergyTerms
+{
+  Packet f, fN, fD, fNN, fND, fDD;
+};
+
+/// The four coordinates of a vertex per lane, as x y z.
+inline void loadVertices(const double* x, const std::int32_t* ids, int stride, Packet* xyz)
+{
+#if defined(__AVX512F__)
+  using Quad = double __attribute__((vector_size(32)));
+  const auto load = [=](int lane)
+  {
+    Quad q;
+    std::memcpy(&q, x + VertexStride * static_cast<std::size_t>(ids[lane * stride]), sizeof(q));
+    return q;
+  };
+  const auto two = [&](int lane)
+  { return __builtin_shufflevector(load(lane), load(lane + 4), 0, 1, 2, 3, 4, 5, 6, 7); };
+  const Packet a = two(0), b = two(1), c = two(2), d = two(3);
+  const Packet xzLow = __builtin_shufflevector(a, b, 0, 8, 4, 12, 2, 10, 6, 14);
+  const Packet xzHigh = __builtin_shufflevector(c, d, 0, 8, 4, 12, 2, 10, 6, 14);
+  const Packet yLow = __builtin_shufflevector(a, b, 1, 9, 5, 13, 1, 9, 5, 13);
+  const Packet yHigh = __builtin_shufflevector(c, d, 1, 9, 5, 13, 1, 9, 5, 13);
+  // Lanes 0 1 4 5 2 3 6 7 of the first halves become 0 1 2 3 4 5 6 7.
+  xyz[0] = __builtin_shufflevector(xzLow, xzHigh, 0, 1, 8, 9, 2, 3, 10, 11);
+  xyz[1] = __builtin_shufflevector(yLow, yHigh, 0, 1, 8, 9, 2, 3, 10, 11);
+  xyz[2] = __builtin_shufflevector(xzLow, xzHigh, 4, 5, 12, 13, 6, 7, 14, 15);
+#else
+  for (int l = 0; l < PacketWidth; ++l)
+  {
+    const double* p = x + VertexStride * static_cast<std::size_t>(ids[l * stride]);
+    for (int c = 0; c < 3; ++c)
+    {
+      xyz[c][l] = p[c];
+    }
+  }
+#endif
+}
+
+template <int Dim>
+struct PatchPacket
+{
+  Packet N0, D0, C;
+  Packet S[Dim], n[Dim];
+  Packet weight; ///< of the simplex in the sum; 0 in the lanes that only fill up
+};
+
+/// A patch: what a thread works in.
+template <int Dim>
+struct Patch
+{
+  std::vector<PatchPacket<Dim>> packets;
+  int count = 0;
+};
+
+/// The sum of an energy over a patch with its gradient and Hessian by the displacement.
+template <int Dim>
+struct PatchSum
+{
+  double f;
+  double g[Dim];
+  double H[Dim][Dim];
+};
+
+/// By halves: the same order on every run, and few instructions.
+inline double sumOf(Packet x)
+{
+#if defined(__AVX512F__)
+  const auto four =
+    __builtin_shufflevector(x, x, 0, 1, 2, 3) + __builtin_shufflevector(x, x, 4, 5, 6, 7);
+  const Pair two =
+    __builtin_shufflevector(four, four, 0, 1) + __builtin_shufflevector(four, four, 2, 3);
+#elif defined(__AVX__)
+  const Pair two = __builtin_shufflevector(x, x, 0, 1) + __builtin_shufflevector(x, x, 2, 3);
+#else
+  const Pair two = x;
+#endif
+  return two[0] + two[1];
+}
+
+inline double leastOf(Packet x)
+{
+  double least = x[0];
+  for (int l = 1; l < PacketWidth; ++l)
+  {
+    least = x[l] < least ? x[l] : least;
+  }
+  return least;
+}
+
+/// N and D of a packet's simplices at the displacement d.
+template <int Dim>
+void invariants(const PatchPacket<Dim>& p, const double* d, Packet& N, Packet& D)
+{
+  Packet dS = {}, dn = {};
+  double d2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    dS += d[c] * p.S[c];
+    dn += d[c] * p.n[c];
+    d2 += d[c] * d[c];
+  }
+  N = p.N0 - 2.0 * dS + p.C * d2;
+  D = p.D0 - dn;
+}
+
+/// The edge coefficients at the first vertex of each patch simplex, of its other edges, and the determinants.
+template <int Dim>
+void loadTargets(
+  const SimplexMesh& mesh, std::int32_t first, int lanes, Packet* at, Packet* across, Packet& det)
+{
+  // Places in TargetSimplex::edge for each vertex in front: at a b c, across ab bc ca.
+  static constexpr int places3[4][6] = { { 0, 1, 2, 3, 5, 4 }, { 0, 4, 3, 2, 5, 1 },
+    { 5, 1, 3, 2, 0, 4 }, { 5, 4, 2, 3, 0, 1 } };
+  static constexpr int places2[3][3] = { { 0, 1, 2 }, { 2, 0, 1 }, { 1, 2, 0 } };
+  for (int l = 0; l < PacketWidth; ++l)
+  {
+    const std::int32_t corner = mesh.patchCorners()[first + std::min(l, lanes - 1)];
+    const TargetSimplex& t = mesh.target(corner / (Dim + 1));
+    const int* place = Dim == 3 ? places3[corner % (Dim + 1)] : places2[corner % (Dim + 1)];
+    for (int k = 0; k < Dim; ++k)
+    {
+      at[k][l] = t.edge[place[k]];
+    }
+    for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k)
+    {
+      across[k][l] = t.edge[place[Dim + k]];
+    }
+    det[l] = t.det;
+  }
+}
+
+/// Builds the patch of v from the coordinates x; simplexWeights may be null.
+template <int Dim>
+void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
+  const double* simplexWeights, Patch<Dim>& patch)
+{
+  const std::int32_t begin = mesh.patchStart(v), end = mesh.patchStart(v + 1);
+  patch.count = (end - begin + PacketWidth - 1) / PacketWidth;
+  if (patch.packets.size() < static_cast<std::size_t>(patch.count))
+  {
+    patch.packets.resize(patch.count);
+  }
+  const double* center = x + VertexStride * static_cast<std::size_t>(v);
+  const bool uniform = mesh.uniform();
+  for (int i = 0; i < patch.count; ++i)
+  {
+    PatchPacket<Dim>& p = patch.packets[i];
+    const std::int32_t first = begin + i * PacketWidth;
+    const int lanes = std::min(PacketWidth, end - first);
+    const std::int32_t* ids = mesh.patchVertices() + static_cast<std::size_t>(Dim) * first;
+    std::int32_t filled[Dim * PacketWidth];
+    p.weight = broadcast(1.0);
+    if (lanes < PacketWidth)
+    {
+      // The last lanes repeat a simplex with no weight.
+      for (int l = 0; l < PacketWidth; ++l)
+      {
+        for (int k = 0; k < Dim; ++k)
+        {
+          filled[Dim * l + k] = ids[Dim * std::min(l, lanes - 1) + k];
+        }
+        p.weight[l] = l < lanes ? 1.0 : 0.0;
+      }
+      ids = filled;
+    }
+    Packet e[Dim][3];
+    for (int k = 0; k < Dim; ++k)
+    {
+      loadVertices(x, ids + k, Dim, e[k]);
+      for (int c = 0; c < Dim; ++c)
+      {
+        e[k][c] -= center[c];
+      }
+    }
+    // Coefficients of the edges at v, of the others, and of the determinant.
+    Packet at[Dim], across[3], det;
+    if (uniform)
+    {
+      const TargetSimplex& t = mesh.target(0);
+      for (int k = 0; k < Dim; ++k)
+      {
+        at[k] = broadcast(t.edge[0]);
+      }
+      across[0] = across[1] = across[2] = broadcast(t.edge[0]);
+      det = broadcast(t.det);
+    }
+    else
+    {
+      loadTargets<Dim>(mesh, first, lanes, at, across, det);
+    }
+    if (simplexWeights)
+    {
+      for (int l = 0; l < lanes; ++l)
+      {
+        p.weight[l] = simplexWeights[mesh.patchCorners()[first + l] / (Dim + 1)];
+      }
+    }
+    if constexpr (Dim == 3)
+    {
+      Packet ab[3], bc[3], ca[3];
+      const auto cross3 = [](const Packet* a, const Packet* b, Packet* r)
+      {
+        r[0] = a[1] * b[2] - a[2] * b[1];
+        r[1] = a[2] * b[0] - a[0] * b[2];
+        r[2] = a[0] * b[1] - a[1] * b[0];
+      };
+      cross3(e[0], e[1], ab);
+      cross3(e[1], e[2], bc);
+      cross3(e[2], e[0], ca);
+      p.D0 = det * (e[0][0] * bc[0] + e[0][1] * bc[1] + e[0][2] * bc[2]);
+      p.N0 = Packet{};
+      p.C = at[0] + at[1] + at[2];
+      for (int c = 0; c < 3; ++c)
+      {
+        p.n[c] = det * (ab[c] + bc[c] + ca[c]);
+        p.S[c] = at[0] * e[0][c] + at[1] * e[1][c] + at[2] * e[2][c];
+        const Packet d01 = e[0][c] - e[1][c], d12 = e[1][c] - e[2][c], d20 = e[2][c] - e[0][c];
+        p.N0 += at[0] * e[0][c] * e[0][c] + at[1] * e[1][c] * e[1][c] + at[2] * e[2][c] * e[2][c] +
+          across[0] * d01 * d01 + across[1] * d12 * d12 + across[2] * d20 * d20;
+      }
+    }
+    else
+    {
+      const Packet dx = e[0][0] - e[1][0], dy = e[0][1] - e[1][1];
+      p.D0 = det * (e[0][0] * e[1][1] - e[0][1] * e[1][0]);
+      p.n[0] = -det * dy;
+      p.n[1] = det * dx;
+      p.C = at[0] + at[1];
+      p.N0 = across[0] * (dx * dx + dy * dy);
+      for (int c = 0; c < 2; ++c)
+      {
+        p.S[c] = at[0] * e[0][c] + at[1] * e[1][c];
+        p.N0 += at[0] * e[0][c] * e[0][c] + at[1] * e[1][c] * e[1][c];
+      }
+    }
+  }
+}
+
+/// The sum over a patch at the displacement d, which the energy must allow.
+template <int Dim, class Energy>
+PatchSum<Dim> sumOver(const Patch<Dim>& patch, const double* d, const Energy& energy)
+{
+  Packet f = {}, diagonal = {}, g[Dim] = {}, H[Dim][Dim] = {};
+  for (int i = 0; i < patch.count; ++i)
+  {
+    const PatchPacket<Dim>& p = patch.packets[i];
+    Packet N, D;
+    invariants(p, d, N, D);
+    EnergyTerms e;
+    energy.terms(N, D, e);
+    const Packet fN = p.weight * e.fN, fD = p.weight * e.fD, fNN = p.weight * e.fNN,
+                 fND = p.weight * e.fND, fDD = p.weight * e.fDD;
+    f += p.weight * e.f;
+    diagonal += 2.0 * fN * p.C;
+    Packet a[Dim], u[Dim], w[Dim]; // a is the gradient of N, -n that of D
+    for (int c = 0; c < Dim; ++c)
+    {
+      a[c] = 2.0 * (p.C * d[c] - p.S[c]);
+      g[c] += fN * a[c] - fD * p.n[c];
+      u[c] = fNN * a[c] - fND * p.n[c];
+      w[c] = fDD * p.n[c] - fND * a[c];
+    }
+    for (int r = 0; r < Dim; ++r)
+    {
+      for (int c = 0; c <= r; ++c)
+      {
+        H[r][c] += a[r] * u[c] + p.n[r] * w[c];
+      }
+    }
+  }
+  PatchSum<Dim> sum;
+  sum.f = sumOf(f);
+  const double onDiagonal = sumOf(diagonal);
+  for (int r = 0; r < Dim; ++r)
+  {
+    sum.g[r] = sumOf(g[r]);
+    for (int c = 0; c <= r; ++c)
+    {
+      sum.H[r][c] = sum.H[c][r] = sumOf(H[r][c]) + (r == c ? onDiagonal : 0.0);
+    }
+  }
+  return sum;
+}
+
+/// The sum alone; +infinity where the energy does not allow d.
+template <int Dim, class Energy>
+double valueOver(const Patch<Dim>& patch, const double* d, const Energy& energy)
+{
+  Packet f = {};
+  for (int i = 0; i < patch.count; ++i)
+  {
+    Packet N, D;
+    invariants(patch.packets[i], d, N, D);
+    f += patch.packets[i].weight * energy.value(N, D);
+  }
+  return sumOf(f);
+}
+
+/// The step along s at which the first D of the patch vanishes; infinity if none does.
+template <int Dim>
+double stepToInversion(const Patch<Dim>& patch, const double* d, const double* s)
+{
+  Packet least = broadcast(std::numeric_limits<double>::infinity());
+  for (int i = 0; i < patch.count; ++i)
+  {
+    const PatchPacket<Dim>& p = patch.packets[i];
+    Packet rate = {}, D = p.D0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      rate += s[c] * p.n[c];
+      D -= d[c] * p.n[c];
+    }
+    least = select((rate > 0.0) & (D < least * rate), D / rate, least);
+  }
+  return leastOf(least);
+}
+
+/// The Newton direction -H^-1 g, with H made positive definite where it is not.
+template <int Dim>
+void newtonDirection(const PatchSum<Dim>& sum, double* s)
+{
+  double trace = 0, square = 0;
+  for (int r = 0; r < Dim; ++r)
+  {
+    trace += sum.H[r][r];
+    for (int c = 0; c < Dim; ++c)
+    {
+      square += sum.H[r][c] * sum.H[r][c];
+    }
+  }
+  constexpr double smallPivot = 1e-8;
+  const double norm = std::sqrt(square);
+  for (double shift = 0.0;;
+       shift = shift > 0.0 ? 10.0 * shift : norm + std::numeric_limits<double>::min())
+  {
+    // Cholesky factors; the shift of the second try exceeds every negative eigenvalue.
+    double L[Dim][Dim];
+    bool definite = true;
+    for (int r = 0; r < Dim && definite; ++r)
+    {
+      for (int c = 0; c <= r; ++c)
+      {
+        double x = sum.H[r][c] + (r == c ? shift : 0.0);
+        for (int k = 0; k < c; ++k)
+        {
+          x -= L[r][k] * L[c][k];
+        }
+        if (r == c)
+        {
+          definite = x > smallPivot * norm;
+          L[r][r] = std::sqrt(x);
+        }
+        else
+        {
+          L[r][c] = x / L[c][c];
+        }
+      }
+    }
+    if (!definite && std::isfinite(shift))
+    {
+      continue;
+    }
+    for (int r = 0; r < Dim; ++r)
+    {
+      s[r] = -sum.g[r];
+      for (int k = 0; k < r; ++k)
+      {
+        s[r] -= L[r][k] * s[k];
+      }
+      s[r] /= L[r][r];
+    }
+    for (int r = Dim - 1; r >= 0; --r)
+    {
+      for (int k = r + 1; k < Dim; ++k)
+      {
+        s[r] -= L[k][r] * s[k];
+      }
+      s[r] /= L[r][r];
+    }
+    return;
+  }
+}
+}
+#endif

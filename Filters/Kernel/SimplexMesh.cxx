@@ -1,0 +1,622 @@
+#include "SimplexMesh.h"
+
+#include "Parallel.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+/// A well-mixed number for each id (the finaliser of SplitMix64).
+inline std::uint64_t mix(std::uint64_t z)
+{
+  z += 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+/// What the facets of a cell leave at its nodes.
+template <class Marks>
+void addMarks(const CellTopology& t, const Index* node, Marks&& marks)
+{
+  std::uint64_t number[MaxNodes];
+  for (int k = 0; k < t.nodes; ++k)
+  {
+    number[k] = mix(static_cast<std::uint64_t>(node[k]));
+  }
+  const int facets = t.dimension == 3 ? t.faces : t.edges;
+  std::uint64_t sum[MaxNodes] = {};
+  for (int f = 0; f < facets; ++f)
+  {
+    const int size = t.dimension == 3 ? t.faceSizes[f] : 2;
+    const int* member = t.dimension == 3 ? t.faceNodes[f].data() : t.edgeNodes[f].data();
+    std::uint64_t facet = 0; // the same for each order of the nodes
+    for (int k = 0; k < size; ++k)
+    {
+      facet += number[member[k]];
+    }
+    facet = mix(facet);
+    for (int k = 0; k < size; ++k)
+    {
+      sum[member[k]] ^= facet;
+    }
+  }
+  for (int k = 0; k < t.nodes; ++k)
+  {
+    marks[node[k]] ^= sum[k];
+  }
+}
+
+/// Spreads the lower 16 bits so that two zeros follow each.
+std::uint64_t spread(std::uint64_t x)
+{
+  x = (x | (x << 32)) & 0x001f00000000ffffu;
+  x = (x | (x << 16)) & 0x001f0000ff0000ffu;
+  x = (x | (x << 8)) & 0x100f00f00f00f00fu;
+  x = (x | (x << 4)) & 0x10c30c30c30c30c3u;
+  return (x | (x << 2)) & 0x1249249249249249u;
+}
+
+/// Sorts by the lower 48 bits of the keys; equal keys keep their order.
+void radixSort(std::vector<std::pair<std::uint64_t, std::int32_t>>& items)
+{
+  constexpr int bits = 12, passes = 4;
+  std::vector<std::pair<std::uint64_t, std::int32_t>> other(items.size());
+  for (int pass = 0; pass < passes; ++pass)
+  {
+    std::vector<std::size_t> starts((1u << bits) + 1, 0);
+    const auto digit = [=](std::uint64_t key)
+    { return (key >> (pass * bits)) & ((1u << bits) - 1); };
+    for (const auto& item : items)
+    {
+      ++starts[digit(item.first) + 1];
+    }
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    for (const auto& item : items)
+    {
+      other[starts[digit(item.first)]++] = item;
+    }
+    items.swap(other);
+  }
+}
+
+int dimensionOf(const Mesh& mesh)
+{
+  return mesh.dimension() == Dimension::Volume ? 3 : 2;
+}
+
+bool isFinite(const MeshView& view, Index point)
+{
+  return std::isfinite(view.points[3 * point]) && std::isfinite(view.points[3 * point + 1]) &&
+    std::isfinite(view.points[3 * point + 2]);
+}
+
+TargetSimplex targetFrom(const double* inverse, int dimension, double scale)
+{
+  double rows[4][3] = {};
+  for (int k = 0; k < dimension; ++k)
+  {
+    for (int c = 0; c < dimension; ++c)
+    {
+      rows[k + 1][c] = scale * inverse[3 * k + c];
+      rows[0][c] -= rows[k + 1][c];
+    }
+  }
+  TargetSimplex target;
+  int e = 0;
+  for (int k = 0; k <= dimension; ++k)
+  {
+    for (int l = k + 1; l <= dimension; ++l)
+    {
+      target.edge[e++] =
+        -(rows[k][0] * rows[l][0] + rows[k][1] * rows[l][1] + rows[k][2] * rows[l][2]);
+    }
+  }
+  const double(*m)[3] = rows + 1;
+  target.det = dimension == 2 ? m[0][0] * m[1][1] - m[0][1] * m[1][0]
+                              : m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+      m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+      m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  return target;
+}
+
+/// The target of the simplex whose first two vertices are exchanged, as in a mirror.
+void swapFirstTwo(TargetSimplex& shape, int dimension)
+{
+  std::swap(shape.edge[1], shape.edge[dimension == 3 ? 3 : 2]);
+  if (dimension == 3)
+  {
+    std::swap(shape.edge[2], shape.edge[4]);
+  }
+}
+
+/// Even permutations of a simplex that bring each vertex to the front.
+constexpr int toFront3[4][4] = { { 0, 1, 2, 3 }, { 1, 0, 3, 2 }, { 2, 3, 0, 1 }, { 3, 2, 1, 0 } };
+constexpr int toFront2[3][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 } };
+}
+
+//------------------------------------------------------------------------------
+std::vector<char> boundaryPoints(const Mesh& mesh, int)
+{
+  const MeshView& view = mesh.view();
+  std::vector<std::uint64_t> marks(view.numberOfPoints, 0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    if (t.dimension != dimensionOf(mesh))
+    {
+      continue;
+    }
+    if (block.type == CellType::Tetrahedron)
+    {
+      // The same, unrolled: a face's number is that of the sum of its nodes.
+      for (Index i = 0; i < block.count; ++i)
+      {
+        const Index* node = view.connectivity + view.offsets[block.cell(i)];
+        std::uint64_t a[4], face[4];
+        for (int k = 0; k < 4; ++k)
+        {
+          a[k] = mix(static_cast<std::uint64_t>(node[k]));
+        }
+        for (int k = 0; k < 4; ++k)
+        {
+          face[k] = mix(a[(k + 1) & 3] + a[(k + 2) & 3] + a[(k + 3) & 3]);
+        }
+        const std::uint64_t all = face[0] ^ face[1] ^ face[2] ^ face[3];
+        for (int k = 0; k < 4; ++k)
+        {
+          marks[node[k]] ^= all ^ face[k];
+        }
+      }
+      continue;
+    }
+    for (Index i = 0; i < block.count; ++i)
+    {
+      addMarks(t, view.connectivity + view.offsets[block.cell(i)], marks);
+    }
+  }
+  std::vector<char> boundary(view.numberOfPoints);
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    boundary[p] = marks[p] != 0;
+  }
+  return boundary;
+}
+
+//------------------------------------------------------------------------------
+std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed, int threads)
+{
+  const MeshView& view = mesh.view();
+  std::vector<char> free(view.numberOfPoints, 0);
+  Index elements = 0;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    if (t.dimension != dimensionOf(mesh))
+    {
+      continue;
+    }
+    elements += block.count;
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        free[node[k]] = 1;
+      }
+    }
+  }
+  if (fixed)
+  {
+    for (Index p = 0; p < view.numberOfPoints; ++p)
+    {
+      free[p] &= !fixed[p];
+    }
+  }
+  else
+  {
+    const std::vector<char> boundary = boundaryPoints(mesh, threads);
+    for (Index p = 0; p < view.numberOfPoints; ++p)
+    {
+      free[p] &= !boundary[p];
+    }
+  }
+  if (elements < view.numberOfCells || mesh.higherOrderCells() > 0)
+  {
+    // Points of other cells, and the nodes of quadratic cells beyond the corners, stay.
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    {
+      const CellType type = cornerType(view.cellTypes[cell]);
+      const bool element =
+        type != CellType::Unsupported && topology(type).dimension == dimensionOf(mesh);
+      for (Index n = view.offsets[cell] + (element ? topology(type).nodes : 0);
+           n < view.offsets[cell + 1]; ++n)
+      {
+        const Index node = view.connectivity[n];
+        if (node >= 0 && node < view.numberOfPoints)
+        {
+          free[node] = 0;
+        }
+      }
+    }
+  }
+  if (mesh.nonFinitePoints() > 0)
+  {
+    for (Index p = 0; p < view.numberOfPoints; ++p)
+    {
+      free[p] &= isFinite(view, p);
+    }
+  }
+  return free;
+}
+
+//------------------------------------------------------------------------------
+SimplexMesh::SimplexMesh(
+  const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads)
+  : Dim(dimensionOf(mesh))
+  , Surface(mesh.dimension() == Dimension::Surface)
+  , Mirrored(mesh.mirrored() && mesh.dimension() != Dimension::Surface)
+  , Frame{ Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } }
+{
+  if (mesh.view().numberOfPoints > std::numeric_limits<std::int32_t>::max())
+  {
+    throw Error(
+      "The mesh has more than 2,147,483,647 points, the most the optimizers take: split it.");
+  }
+  if (mesh.dimension() == Dimension::Planar)
+  {
+    this->Frame = { mesh.frame()[0], mesh.frame()[1], mesh.normal() };
+  }
+  const std::vector<char> free = freePoints(mesh, fixed, threads);
+  this->number(mesh, free, threads);
+  std::vector<std::int32_t> vertexOf(mesh.view().numberOfPoints, -1);
+  for (std::int32_t v = 0; v < this->vertices(); ++v)
+  {
+    vertexOf[this->Point[v]] = v;
+  }
+  this->cut(mesh, vertexOf, targets);
+  this->load(mesh.view().points, threads);
+  this->findPatches();
+  this->findBlocks();
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free, int)
+{
+  const MeshView& view = mesh.view();
+  std::vector<char> used(view.numberOfPoints, 0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; t.dimension == this->Dim && i < block.count; ++i)
+    {
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        used[node[k]] = 1;
+      }
+    }
+  }
+  Vec3 low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  Index count = 0, numberOfFree = 0;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (used[p] && isFinite(view, p))
+    {
+      ++count;
+      numberOfFree += free[p];
+      for (int c = 0; c < 3; ++c)
+      {
+        low[c] = std::min(low[c], view.points[3 * p + c]);
+        high[c] = std::max(high[c], view.points[3 * p + c]);
+      }
+    }
+  }
+  if (count == 0)
+  {
+    return;
+  }
+  constexpr double cells = 65535.0;
+  double extent = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    extent = std::max(extent, high[c] - low[c]);
+    this->Shift[c] = 0.5 * low[c] + 0.5 * high[c];
+  }
+  const double perLength = extent > 0 && std::isfinite(extent) ? cells / extent : 0.0;
+
+  // Free vertices before the others, each along a Morton curve.
+  std::vector<std::pair<std::uint64_t, std::int32_t>> order(numberOfFree),
+    rest(count - numberOfFree);
+  Index nextFree = 0, nextFixed = 0;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (used[p] && isFinite(view, p))
+    {
+      std::uint64_t key = 0;
+      for (int c = 0; c < 3; ++c)
+      {
+        key |= spread(static_cast<std::uint64_t>(perLength * (view.points[3 * p + c] - low[c])))
+          << c;
+      }
+      (free[p] ? order[nextFree++] : rest[nextFixed++]) = { key, static_cast<std::int32_t>(p) };
+    }
+  }
+  radixSort(order);
+  radixSort(rest);
+  this->Free = static_cast<std::int32_t>(numberOfFree);
+  this->Point.reserve(count);
+  for (const auto& item : order)
+  {
+    this->Point.push_back(item.second);
+  }
+  for (const auto& item : rest)
+  {
+    this->Point.push_back(item.second);
+  }
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::cut(
+  const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets)
+{
+  const MeshView& view = mesh.view();
+  const int corners = this->Dim + 1;
+
+  // Calls visit(block, cell, corner, vertices) for each simplex of finite points.
+  const auto forEachSimplex = [&](auto visit)
+  {
+    for (const CellBlock& block : mesh.blocks())
+    {
+      const CellTopology& t = topology(block.type);
+      if (t.dimension != this->Dim)
+      {
+        continue;
+      }
+      for (Index i = 0; i < block.count; ++i)
+      {
+        const Index cell = block.cell(i);
+        const Index* node = view.connectivity + view.offsets[cell];
+        for (int s = 0; s < t.samples; ++s)
+        {
+          std::int32_t v[4];
+          bool finite = true;
+          for (int k = 0; k < corners; ++k)
+          {
+            v[k] = vertexOf[node[t.cornerNodes[s][k]]];
+            finite = finite && v[k] >= 0;
+          }
+          if (finite)
+          {
+            visit(t, cell, s, v);
+          }
+        }
+      }
+    }
+  };
+
+  // Sorted by their first vertex in the new numbering.
+  std::vector<std::int32_t> starts(this->vertices() + 1, 0);
+  Index total = 0;
+  double lengths = 0;
+  forEachSimplex(
+    [&](const CellTopology&, Index, int, const std::int32_t* v)
+    {
+      ++starts[*std::min_element(v, v + corners) + 1];
+      ++total;
+      constexpr Index every = 16; // edges make a scale well before all are seen
+      if (total % every == 1)
+      {
+        const double length =
+          norm(pointOf(view, this->Point[v[1]]) - pointOf(view, this->Point[v[0]]));
+        lengths += std::isfinite(length) ? length : 0.0;
+      }
+    });
+  if (total > std::numeric_limits<std::int32_t>::max() / corners)
+  {
+    throw Error(
+      "The mesh has more elements than the optimizers take (about 500 million): split it.");
+  }
+  this->Simplices = static_cast<std::int32_t>(total);
+  const double mean = total > 0 ? lengths / static_cast<double>((total + 15) / 16) : 1.0;
+  // A power of two, so that scaling does not round.
+  this->Scale = mean > 0 && std::isfinite(mean) ? std::exp2(std::round(std::log2(mean))) : 1.0;
+
+  // Shapes of the ideal corners; one for all simplices needs no index.
+  bool several = targets != nullptr;
+  std::vector<int> firstShape(NumberOfCellTypes, 0);
+  if (!targets)
+  {
+    for (const CellBlock& block : mesh.blocks())
+    {
+      const CellTopology& t = topology(block.type);
+      if (t.dimension == this->Dim)
+      {
+        firstShape[topologyIndex(block.type)] = static_cast<int>(this->Shapes.size());
+        for (int s = 0; s < t.samples; ++s)
+        {
+          this->Shapes.push_back(targetFrom(t.idealInverse[s].data(), this->Dim, 1.0));
+        }
+      }
+    }
+    several = this->Shapes.size() > 1;
+  }
+  else
+  {
+    this->Shapes.resize(this->Simplices);
+  }
+
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  this->Corners.resize(static_cast<std::size_t>(corners) * this->Simplices);
+  this->Cell.resize(this->Simplices);
+  this->Shape.resize(several ? this->Simplices : 0);
+  forEachSimplex(
+    [&](const CellTopology& t, Index cell, int s, const std::int32_t* v)
+    {
+      const std::int32_t place = starts[*std::min_element(v, v + corners)]++;
+      std::int32_t* corner = this->Corners.data() + static_cast<std::size_t>(corners) * place;
+      std::copy_n(v, corners, corner);
+      if (this->Mirrored)
+      {
+        std::swap(corner[0], corner[1]);
+      }
+      this->Cell[place] = static_cast<std::int32_t>(cell);
+      if (targets)
+      {
+        this->Shape[place] = place;
+        this->Shapes[place] = targetFrom(
+          targets->inverse.data() + 9 * (targets->offsets[cell] + s), this->Dim, this->Scale);
+      }
+      else if (several)
+      {
+        this->Shape[place] = firstShape[topologyIndex(t.type)] + s;
+      }
+    });
+  if (this->Mirrored && several)
+  {
+    for (TargetSimplex& shape : this->Shapes)
+    {
+      swapFirstTwo(shape, this->Dim);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::findPatches()
+{
+  const int corners = this->Dim + 1;
+  this->PatchStarts.assign(this->Free + 1, 0);
+  const std::size_t uses = this->Corners.size();
+  for (std::size_t i = 0; i < uses; ++i)
+  {
+    const std::int32_t v = this->Corners[i];
+    if (v < this->Free)
+    {
+      ++this->PatchStarts[v + 1];
+    }
+  }
+  std::partial_sum(this->PatchStarts.begin(), this->PatchStarts.end(), this->PatchStarts.begin());
+  const std::size_t entries = this->PatchStarts[this->Free];
+  this->PatchVertices.resize(entries * this->Dim);
+  this->PatchCorners.resize(this->uniform() ? 0 : entries);
+  std::vector<std::int32_t> next(this->PatchStarts.begin(), this->PatchStarts.end() - 1);
+  for (std::int32_t i = 0; i < this->Simplices; ++i)
+  {
+    const std::int32_t* corner = this->Corners.data() + static_cast<std::size_t>(corners) * i;
+    for (int k = 0; k < corners; ++k)
+    {
+      const std::int32_t v = corner[k];
+      if (v >= this->Free)
+      {
+        continue;
+      }
+      const std::size_t entry = next[v]++;
+      const int* front = this->Dim == 3 ? toFront3[k] : toFront2[k];
+      for (int l = 0; l < this->Dim; ++l)
+      {
+        this->PatchVertices[entry * this->Dim + l] = corner[front[l + 1]];
+      }
+      if (!this->uniform())
+      {
+        this->PatchCorners[entry] = i * corners + k;
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::findBlocks()
+{
+  const std::int32_t size = this->Blocks.size;
+  const std::int32_t blocks = (this->Free + size - 1) / size;
+  std::vector<std::int32_t> colour(blocks, -1), seen(blocks, -1);
+  std::vector<char> taken;
+  std::int32_t colours = 0;
+  for (std::int32_t b = 0; b < blocks; ++b)
+  {
+    taken.assign(colours + 1, 0);
+    const std::size_t begin = static_cast<std::size_t>(this->PatchStarts[b * size]) * this->Dim;
+    const std::size_t end =
+      static_cast<std::size_t>(this->PatchStarts[std::min(this->Free, (b + 1) * size)]) * this->Dim;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const std::int32_t v = this->PatchVertices[i];
+      if (v < this->Free && seen[v / size] != b)
+      {
+        const std::int32_t other = v / size;
+        seen[other] = b;
+        if (colour[other] >= 0)
+        {
+          taken[colour[other]] = 1;
+        }
+      }
+    }
+    colour[b] = static_cast<std::int32_t>(std::find(taken.begin(), taken.end(), 0) - taken.begin());
+    colours = std::max(colours, colour[b] + 1);
+  }
+  this->Blocks.colourStarts.assign(colours + 1, 0);
+  for (std::int32_t c : colour)
+  {
+    ++this->Blocks.colourStarts[c + 1];
+  }
+  std::partial_sum(this->Blocks.colourStarts.begin(), this->Blocks.colourStarts.end(),
+    this->Blocks.colourStarts.begin());
+  std::vector<std::int32_t> next = this->Blocks.colourStarts;
+  this->Blocks.byColour.resize(blocks);
+  for (std::int32_t b = 0; b < blocks; ++b)
+  {
+    this->Blocks.byColour[next[colour[b]]++] = b;
+  }
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::load(const double* points, int threads)
+{
+  this->X.assign(static_cast<std::size_t>(VertexStride) * this->vertices(), 0.0);
+  const double perLength = 1.0 / this->Scale;
+  forEachChunk(this->vertices(), threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index v = begin; v < end; ++v)
+      {
+        const double* p = points + 3 * static_cast<Index>(this->Point[v]);
+        const Vec3 d = Vec3{ p[0], p[1], p[2] } - this->Shift;
+        for (int c = 0; c < this->Dim + this->Surface; ++c)
+        {
+          this->X[VertexStride * v + c] = perLength * dot(d, this->Frame[c]);
+        }
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::store(const double* coordinates, double* points, int threads) const
+{
+  const bool planar = this->Dim == 2 && !this->Surface;
+  forEachChunk(this->Free, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index v = begin; v < end; ++v)
+      {
+        const double* x = coordinates + VertexStride * v;
+        double* p = points + 3 * static_cast<Index>(this->Point[v]);
+        Vec3 d = this->Scale * (x[0] * this->Frame[0] + x[1] * this->Frame[1]);
+        // What a planar mesh's point has beside the plane (rounding) is kept.
+        const double height =
+          planar ? dot(Vec3{ p[0], p[1], p[2] } - this->Shift, this->Frame[2]) : this->Scale * x[2];
+        d += height * this->Frame[2];
+        for (int c = 0; c < 3; ++c)
+        {
+          p[c] = this->Shift[c] + d[c];
+        }
+      }
+    });
+}
+}

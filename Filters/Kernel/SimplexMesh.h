@@ -1,0 +1,130 @@
+/**
+ * @file SimplexMesh.h
+ * @brief A mesh made ready for optimization: the simplices at the corners of its cells, renumbered for
+ * the cache, with the patch of simplices around each free vertex. Internal: not installed.
+ *
+ * With T = A W^-1 of a simplex, N = |T|^2 is the sum of c_kl |x_k - x_l|^2 over its edges, and D = det T
+ * a multiple of its volume. In one of its vertices N is quadratic (with a multiple of the unit
+ * matrix as Hessian) and D is linear. All fast objectives are functions of N and D.
+ */
+#ifndef tautline_SimplexMesh_h
+#define tautline_SimplexMesh_h
+
+#include "Mesh.h"
+#include "Metrics.h"
+
+#include <vector>
+
+namespace tautline
+{
+/// Coordinates are kept in fours, the last unused, so that a vertex is one aligned load.
+constexpr int VertexStride = 4;
+
+/// The target of a simplex: N = sum edge[e] |edge e|^2, D = det * (d! volume).
+struct TargetSimplex
+{
+  /// 01 02 12 in 2D, 01 02 03 12 13 23 in 3D; -w_k . w_l with w_k the rows of W^-1, w_0 = -sum.
+  double edge[6] = { 0, 0, 0, 0, 0, 0 };
+  double det = 1; ///< of W^-1
+};
+
+/// Blocks of consecutive free vertices; no two of one colour share a simplex.
+struct VertexBlocks
+{
+  std::int32_t size = 256;                ///< block b has the vertices from b * size on
+  std::vector<std::int32_t> byColour;     ///< the blocks, colour by colour
+  std::vector<std::int32_t> colourStarts; ///< into byColour, and its end
+};
+
+class SimplexMesh
+{
+public:
+  /**
+   * @param fixed one flag per point, or null for the boundary
+   * @param targets or null for the ideal cells with edges as long as scale(); metric roots are left out
+   * Vertices of cells that are no elements (lines, polygons, cells of another dimension) and non-finite points
+   * are fixed, too; simplices with non-finite points are left out.
+   */
+  SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads);
+
+  int dimension() const { return this->Dim; }
+  /// 2D cells in space: see SurfacePatches.
+  bool surface() const { return this->Surface; }
+  std::int32_t vertices() const { return static_cast<std::int32_t>(this->Point.size()); }
+  std::int32_t freeVertices() const { return this->Free; }
+  std::int32_t simplices() const { return this->Simplices; }
+
+  /// Free vertices come first: v < freeVertices(). In the order of a space-filling curve.
+  std::int32_t point(std::int32_t v) const { return this->Point[v]; }
+  /// VertexStride coordinates per vertex, shifted and scaled; a planar mesh lies in z = 0.
+  double* coordinates() { return this->X.data(); }
+  const double* coordinates() const { return this->X.data(); }
+  /// The length that is 1 in these coordinates.
+  double scale() const { return this->Scale; }
+
+  /// dimension() + 1 vertices per simplex, positively oriented where the element is valid.
+  const std::int32_t* corners() const { return this->Corners.data(); }
+  /// The cell a simplex is a corner of.
+  Index cell(std::int32_t simplex) const
+  {
+    return this->Cell.empty() ? simplex : this->Cell[simplex];
+  }
+
+  /// One target for all simplices, in the coordinates of the mesh's scale; else see target().
+  bool uniform() const { return this->Shape.empty(); }
+  const TargetSimplex& target(std::int32_t simplex) const
+  {
+    return this->Shapes[this->Shape.empty() ? 0 : this->Shape[simplex]];
+  }
+
+  /// Patches of free vertices: entries patchStart(v) .. patchStart(v + 1) - 1.
+  std::int32_t patchStart(std::int32_t v) const { return this->PatchStarts[v]; }
+  /// dimension() vertices per entry, so that (v, these) is an even permutation of the simplex.
+  const std::int32_t* patchVertices() const { return this->PatchVertices.data(); }
+  /// simplex * (dimension() + 1) + position of v in it, per entry; empty if uniform().
+  const std::int32_t* patchCorners() const { return this->PatchCorners.data(); }
+
+  const VertexBlocks& blocks() const { return this->Blocks; }
+
+  /// Sets the coordinates from 3 per point.
+  void load(const double* points, int threads);
+  /// Writes the free vertices; the other of the 3 per point stay as they are.
+  void store(double* points, int threads) const { this->store(this->X.data(), points, threads); }
+  void store(const double* coordinates, double* points, int threads) const;
+
+private:
+  void number(const Mesh& mesh, const std::vector<char>& free, int threads);
+  void cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets);
+  void findPatches();
+  void findBlocks();
+
+  int Dim = 3;
+  bool Surface = false;
+  bool Mirrored = false;
+  std::array<Vec3, 3> Frame;
+  Vec3 Shift = { 0, 0, 0 };
+  double Scale = 1;
+  std::int32_t Free = 0;
+  std::int32_t Simplices = 0;
+  std::vector<std::int32_t> Point;
+  std::vector<double> X;
+  std::vector<std::int32_t> Corners;
+  std::vector<std::int32_t> Cell;
+  std::vector<std::int32_t> Shape;
+  std::vector<TargetSimplex> Shapes;
+  std::vector<std::int32_t> PatchStarts, PatchVertices, PatchCorners;
+  VertexBlocks Blocks;
+};
+
+/**
+ * @brief One flag per point: on an edge (2D) or face (3D) that not exactly two cells share.
+ *
+ * Each facet has a random 64-bit number, and each point the exclusive or of those of its facets, which
+ * vanishes where each occurs twice: no sorting. A boundary point is overlooked with probability 2^-64.
+ */
+std::vector<char> boundaryPoints(const Mesh& mesh, int threads);
+
+/// The points optimization may move: see the constructor of SimplexMesh.
+std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed, int threads);
+}
+#endif
