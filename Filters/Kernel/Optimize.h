@@ -101,6 +101,20 @@ struct SurfaceConstraint
   bool project = true; ///< project moved vertices back to the input surface
 };
 
+/// Ready-made options. The numbers are stable: ParaView state files hold them.
+enum class Preset : int
+{
+  Custom = 0,      ///< the options as they are
+  FastCleanUp = 1, ///< sum of squared IMR, a few sweeps: 95 % of the possible reduction
+  BestShape = 2,   ///< sum of squared IMR to convergence
+  UniformSize = 3, ///< shape (IMR) and size at once, by the objective product
+  LowInterpolationError =
+    4, ///< shape (IMR) and SS of section 3.2.1 at once, by the objective product
+  UntangleThenImprove = 5, ///< untangle(), then BestShape
+  PreserveShape = 6,       ///< mu_302-like shape against the elements of a reference mesh (targets)
+  WorstElement = 7         ///< BestShape, then the worst IMR without giving up the mean
+};
+
 struct OptimizeOptions
 {
   /// At least one.
@@ -136,6 +150,16 @@ struct OptimizeOptions
   double culling = 1e-3;
   /// Steps in each patch of the local algorithms.
   int patchIterations = 1;
+  /**
+   * @brief Over-relaxation of LocalNewton: a step is this times Newton's, 1 to 2 (exclusive). Around 1.4
+   * halves the number of sweeps.
+   */
+  double relaxation = 1.4;
+  /**
+   * @brief WorstElement: after the objective has converged, lowers the largest value of the first
+   * objective's metric as long as its mean does not rise by more than this part of it; 0: off.
+   */
+  double improveWorst = 0.0;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
   /// Called after each iteration; return false to stop. Called from the calling thread.
   std::function<bool(const IterationState&)> observer;
@@ -153,6 +177,12 @@ struct Optimization
   double surfaceError = 0;
   bool untangled = false; ///< untangle() was run first
 };
+
+/**
+ * @brief Sets objectives, scalarization, optimizer and stopping criteria to those of a preset; the rest
+ * stays. For PreserveShape, set objectives[0].evaluation.targets afterwards (referenceTargets()).
+ */
+TAUTLINE_KERNEL_EXPORT void applyPreset(Preset preset, OptimizeOptions& options);
 
 /**
  * @brief Optimises. The result is never worse than the input in the scalarized objective, and unless
