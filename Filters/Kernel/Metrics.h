@@ -16,6 +16,7 @@
 
 #include "Mesh.h"
 
+#include <memory>
 #include <vector>
 
 namespace tautline
@@ -214,6 +215,8 @@ TAUTLINE_KERNEL_EXPORT void evaluateMetric(
 TAUTLINE_KERNEL_EXPORT void evaluateMetricGradient(const Mesh& mesh, Metric metric,
   const EvaluationOptions& options, double* values, double* gradients);
 
+class ElementSum;
+
 /**
  * @brief Sums a power of a metric over the mesh, with its gradient: the workhorse of optimization.
  *
@@ -236,18 +239,8 @@ private:
   template <bool WithGradient>
   double run(double* gradient) const;
 
-  struct Chunk
-  {
-    int block;
-    Index begin, end;
-  };
-  const Mesh& TheMesh;
-  Metric TheMetric;
-  EvaluationOptions Options;
+  std::shared_ptr<const ElementSum> Elements;
   double Power;
-  std::vector<std::vector<Index>> Order; ///< per block: positions in cache-friendly order, or empty
-  std::vector<Chunk> Chunks;             ///< sorted by colour
-  std::vector<Index> ColourStarts;
 };
 }
 #endif

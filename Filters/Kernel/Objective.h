@@ -13,6 +13,23 @@
  *     Maximum                 (1/k) ln(sum w_i exp(k s q_i)), a smooth maximum that exceeds the
  *                             true one by at most ln(sum w_i) / k
  *
+ * SumOfSquares takes metrics where smaller is better and sizes, the two with reciprocals those where
+ * larger is better and sizes, the others any. PowerMean and Maximum are scaled within, so that no power and no
+ * exponential overflows; their gradient costs a value and a gradient.
+ *
+ * Inverted and degenerate elements. An element is at fault, and the objective +infinity, if
+ * - the metric is a barrier (MetricInfo::barrier) and a corner Jacobian is not positive, whatever the
+ *   template;
+ * - the template is SumOfSquaredReciprocals, or PowerMean where larger is better, and q <= 0;
+ * - the template is SumOfReciprocals and q = 0. Negative q give the finite negative terms of the
+ *   dissertation: lowering them drives an inverted element *towards* degeneration, and it takes an
+ *   untangling objective beside it to turn the element round.
+ * All else is finite on any element: UntangleBeta and the other metrics that grow as elements invert
+ * (InvertedValue::Larger), and Sum and Maximum of signed metrics where larger is better. Elements at
+ * fault add nothing to the gradient, which never has a NaN; elements of weight 0 add nothing at all. A
+ * cell with a coordinate that is not finite has q = 0: at fault for barriers and reciprocals, no
+ * contribution to other templates but that of q = 0.
+ *
  * Cells the metric is not defined on are left out.
  */
 #ifndef tautline_Objective_h
@@ -43,7 +60,7 @@ struct Objective
   ObjectiveTemplate form = ObjectiveTemplate::Default;
   /// Weight of the objective in the scalarizations that take weights; above 0.
   double weight = 1.0;
-  /// p of PowerMean (at least 1), k of Maximum (above 0).
+  /// p of PowerMean (at least 1), k of Maximum (above 0, in the inverse unit of the metric).
   double power = 8.0;
   /// Parameters, combination over the corners, targets. The targets must outlive the objective.
   EvaluationOptions evaluation;
@@ -52,13 +69,17 @@ struct Objective
 };
 
 /**
- * @brief SumOfReciprocals for the conditioning metrics SI and SS of section 3.2.1 that are signed,
- * SumOfSquaredReciprocals for other metrics where larger is better, SumOfSquares for those where
- * smaller is better.
+ * @brief The template of section 3.2.2: SumOfReciprocals for the conditioning metrics (SI), SumOfSquaredReciprocals
+ * for the interpolation metrics (SS) and all others where larger is better, SumOfSquares for metrics where
+ * smaller is better and for sizes.
  */
 TAUTLINE_KERNEL_EXPORT ObjectiveTemplate defaultTemplate(Metric metric);
 
-/// Whether the objective orders inverted elements, so that lowering it can repair them.
+/**
+ * @brief Whether the objective is finite on inverted elements and larger the more they are inverted, so
+ * that lowering it can repair them: sums, means and maxima of metrics that grow as elements invert, and Sum
+ * and Maximum of signed metrics where larger is better.
+ */
 TAUTLINE_KERNEL_EXPORT bool canUntangle(const Objective& objective);
 
 /**
@@ -73,24 +94,33 @@ public:
   /**
    * @brief Throws Error if the objective cannot be evaluated on the mesh: a metric not defined on any of its
    * cells, a template that does not fit the metric's direction, weights or powers out of range.
-   * @param mesh must outlive the sum; its view's points may change between calls.
+   * @param mesh must outlive the sum. The coordinates in its view's array may change between calls;
+   * the dimension and the plane remain those found when the mesh was made.
+   * @param threads 0: as objective.evaluation says
    */
   ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads = 0);
   ~ObjectiveSum();
   ObjectiveSum(ObjectiveSum&&) noexcept;
+  ObjectiveSum& operator=(ObjectiveSum&&) noexcept;
 
-  /// The objective at the points of the mesh's view.
+  /// The objective at the points of the mesh's view; +infinity if an element is at fault, never NaN.
   double value() const;
   /**
    * @brief The objective and its gradient: 3 entries per point, *added* to what is there after
-   * multiplication by `scale`.
+   * multiplication by `scale`. The value may differ from value() in the last digits. Where the objective is infinite, what is added is finite but no gradient.
    */
   double addGradient(double scale, double* gradient) const;
+  /// The metric's value of every cell of the view, 0 where it is not defined; see evaluateMetric().
+  void elementValues(double* values) const;
 
+  /// As given, with the template Default replaced by the one it stands for.
   const Objective& objective() const;
 
-private:
   struct Implementation;
+  /// For other parts of the kernel.
+  const Implementation& implementation() const { return *this->Impl; }
+
+private:
   std::unique_ptr<Implementation> Impl;
 };
 }

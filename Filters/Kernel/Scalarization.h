@@ -15,29 +15,44 @@
 
 namespace tautline
 {
-/// The numbers are stable: ParaView state files hold them.
+/**
+ * @brief The methods. z_i = (F_i - U_i) / S_i with the utopia values U_i and the scales S_i of Scalarizer.
+ *
+ * Three of them are minimised in a form that has the same minima as the textbook's, but cannot overflow and
+ * whose slopes do not vanish: the logarithm of ExponentialWeighted, the negative logarithm of Rao's product, a
+ * smooth maximum in WeightedMinMax. The numbers are stable: ParaView state files hold them.
+ */
 enum class Scalarization : int
 {
-  ExponentialSum = 0,      ///< c ln(sum exp(F_i / c))                               (3.8)
-  ObjectiveProduct = 1,    ///< prod F_i                                             (3.9)
-  EqualSum = 2,            ///< sum F_i                                              (3.10)
-  WeightedSum = 3,         ///< sum w_i F_i                                          (3.6)
-  WeightedMinMax = 4,      ///< smooth max of w_i (F_i - U_i) / S_i
-  ExponentialWeighted = 5, ///< sum (exp(p w_i) - 1) exp(p (F_i - U_i) / S_i)
-  Lexicographic = 6,       ///< F_1 first; F_2 among what is as good, and so on
-  Rao = 7                  ///< prod (1 - (F_i - U_i) / S_i), maximised (normalised Nash product)
+  ExponentialSum = 0,   ///< c ln(sum exp(F_i / c))                               (3.8)
+  ObjectiveProduct = 1, ///< prod F_i                                             (3.9)
+  EqualSum = 2,         ///< sum F_i                                              (3.10)
+  WeightedSum = 3,      ///< sum w_i F_i                                          (3.6)
+  /// c ln(sum exp(w_i z_i / c)): exceeds max w_i z_i by c ln(n) at most; c = max w_i / 10.
+  WeightedMinMax = 4,
+  ExponentialWeighted = 5, ///< (1/p) ln(sum (exp(p w_i) - 1) exp(p z_i))
+  /**
+   * F_1 first; then F_2 while F_1 stays below (1 + tolerance) times what was reached, and so on. A smooth barrier,
+   * zero up to the value reached and infinite at the bound, keeps it there.
+   */
+  Lexicographic = 6,
+  /**
+   * -sum ln(1 - z_i / 2): the product of the distances from twice the initial values (Nash, Rao) is as large
+   * as can be. (With the initial values themselves as the worst allowed, every factor and slope would start at 0.)
+   */
+  Rao = 7
 };
 
 struct ScalarizationOptions
 {
   Scalarization method = Scalarization::ExponentialSum;
-  /// c of ExponentialSum; 0 chooses it from the initial values, see Scalarizer.
+  /// c of ExponentialSum, in the unit of the objectives; 0 chooses it, see Scalarizer.
   double c = 0.0;
-  /// p of ExponentialWeighted; above 0.
+  /// p of ExponentialWeighted; above 0. The larger, the more the worst objective counts.
   double exponent = 1.0;
   /**
    * @brief By how much an objective of higher rank may rise, relative to its value, while those after it are
-   * lowered (Lexicographic); at least 0.
+   * lowered (Lexicographic); at least 0. With 0 it may not rise at all.
    */
   double tolerance = 0.01;
   /// Utopia values U_i, one per objective, or empty for 0.
@@ -48,19 +63,26 @@ struct ScalarizationOptions
  * @brief A scalarization made ready for given objectives and their initial values.
  *
  * Scales S_i = |F_i(initial) - U_i|, or 1 where that vanishes. With c = 0 the exponential sum takes
- * c = max |F_i(initial)| / 10: the terms then differ by factors exp(10) at most, and the largest
- * still leads. All functions are stable for F_i / c in the thousands.
+ * c = max |F_i(initial)| / 10 (1 if all vanish): the terms then differ by factors exp(20) at most, and
+ * the largest still leads. All functions are stable for F_i / c in the thousands and never NaN.
  */
 class TAUTLINE_KERNEL_EXPORT Scalarizer
 {
 public:
-  /// Throws Error if options or weights are out of range, or the numbers do not match.
+  /**
+   * @brief Throws Error if options or weights are out of range, the numbers do not match, or an initial value
+   * is not finite.
+   * @param weights w_i > 0, one per objective
+   */
   Scalarizer(const ScalarizationOptions& options, const std::vector<double>& weights,
     const std::vector<double>& initial);
 
-  /// F; +infinity where it is not defined (a product with a negative factor).
+  /**
+   * @brief F; +infinity where an objective is infinite or NaN, where F is not defined (a product with a
+   * negative factor, Rao's beyond the worst allowed, Lexicographic beyond a bound) or not representable.
+   */
   double value(const std::vector<double>& objectives) const;
-  /// F and dF/dF_i in `slopes`.
+  /// F and dF/dF_i >= 0 in `slopes`, which are all 0 where F is not finite.
   double value(const std::vector<double>& objectives, std::vector<double>& slopes) const;
 
   /// Lexicographic: the objective that is being lowered; 0 before the first call of next().
@@ -71,11 +93,14 @@ public:
    */
   bool next(const std::vector<double>& objectives);
 
+  /// c of ExponentialSum and WeightedMinMax, given or chosen; 1 for the others.
   double c() const { return this->C; }
 
 private:
   ScalarizationOptions Options;
-  std::vector<double> Weights, Scales, Bounds;
+  std::vector<double> Weights, Scales, Utopia;
+  std::vector<double> Reached; ///< Lexicographic: F_i at the end of stage i
+  double BarrierScale = 1.0;   ///< Lexicographic: in units of the current objective
   double C = 1.0;
   int Stage = 0;
 };

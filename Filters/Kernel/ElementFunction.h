@@ -1,0 +1,313 @@
+/**
+ * @file ElementFunction.h
+ * @brief What an objective makes of one element's metric, with its derivative. Internal: not installed.
+ */
+#ifndef tautline_ElementFunction_h
+#define tautline_ElementFunction_h
+
+#include "ElementSum.h"
+#include "Objective.h"
+
+#include <limits>
+
+namespace tautline
+{
+/// Which elements an objective is infinite on.
+enum class Fault
+{
+  None,
+  Zero,        ///< q = 0
+  NotPositive, ///< q <= 0
+  Jacobian     ///< a corner Jacobian that is not positive, which q does not tell
+};
+
+/// The lanes with a corner Jacobian that is not positive, by the measure of Mesh::classifyCells().
+inline Mask jacobianFaults(const BatchContext& context, const Batch& batch)
+{
+  const CellTopology& topology = *context.topology;
+  const Mesh& mesh = *context.mesh;
+  Packet normal[3] = {};
+  if (topology.dimension == 2 && mesh.dimension() == Dimension::Planar)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      normal[c] = broadcast((mesh.mirrored() ? -1.0 : 1.0) * mesh.normal()[c]);
+    }
+  }
+  else if (topology.dimension == 2)
+  {
+    Packet u[3], v[3];
+    const bool triangle = topology.nodes == 3;
+    subtract(batch.points[triangle ? 1 : 2], batch.points[0], u);
+    subtract(batch.points[triangle ? 2 : 3], batch.points[triangle ? 0 : 1], v);
+    cross(u, v, normal);
+  }
+  Mask good = broadcast(1.0) > 0.0;
+  for (int s = 0; s < topology.corners; ++s)
+  {
+    const auto& nodes = topology.cornerNodes[s];
+    Packet edge[3][3], own[3], det, lengths2 = broadcast(1.0);
+    for (int k = 0; k < topology.dimension; ++k)
+    {
+      subtract(batch.points[nodes[k + 1]], batch.points[nodes[0]], edge[k]);
+      lengths2 *= dot(edge[k], edge[k]);
+    }
+    cross(edge[0], edge[1], own);
+    det =
+      topology.dimension == 3 ? dot(own, edge[2]) : signOf(dot(own, normal)) * sqrt(dot(own, own));
+    good &= det > Mesh::degenerateTolerance() * sqrt(lengths2);
+  }
+  return ~good;
+}
+
+/// x^p for x >= 0; whole powers by multiplication.
+inline Packet raised(Packet x, double power)
+{
+  constexpr double largestWhole = 64;
+  if (power > largestWhole || power < 0 || power != std::floor(power))
+  {
+    return pow(x, power);
+  }
+  Packet result = broadcast(1.0);
+  for (int n = static_cast<int>(power); n > 0; n >>= 1)
+  {
+    result = n & 1 ? Packet(result * x) : result;
+    x *= x;
+  }
+  return result;
+}
+
+/// The largest exponents and the sum in units of them, so far; lane by lane.
+struct ScaledSums
+{
+  Packet unit = broadcast(-HUGE_VAL);
+  Packet sum = {};
+};
+
+/// The terms of an objective on the elements of a mesh.
+struct ElementFunction
+{
+  ObjectiveTemplate form;
+  double power;
+  double sign; ///< -1 where larger is better
+  Fault fault;
+  const double* weights; ///< per cell, or null
+  double totalWeight;    ///< of the cells the metric is defined on
+
+  Packet weightsOf(const Batch& batch) const
+  {
+    Packet w = broadcast(1.0);
+    for (int l = 0; this->weights && l < PacketWidth; ++l)
+    {
+      w[l] = this->weights[batch.cells[l]];
+    }
+    return w;
+  }
+
+  Mask faults(const BatchContext& context, const Batch& batch) const
+  {
+    switch (this->fault)
+    {
+      case Fault::Zero:
+        return batch.value == 0.0;
+      case Fault::NotPositive:
+        return ~(batch.value > 0.0);
+      case Fault::Jacobian:
+        return jacobianFaults(context, batch);
+      default:
+        return Mask{};
+    }
+  }
+
+  /// The term of a sum and its derivative by q.
+  template <ObjectiveTemplate Form>
+  void term(const BatchContext& context, const Batch& batch, Packet& value, Packet& slope) const
+  {
+    const Packet q = batch.value;
+    if constexpr (Form == ObjectiveTemplate::SumOfSquares)
+    {
+      value = q * q;
+      slope = 2.0 * q;
+    }
+    else if constexpr (Form == ObjectiveTemplate::Sum)
+    {
+      value = this->sign * q;
+      slope = broadcast(this->sign);
+    }
+    else
+    {
+      const Packet inverse = 1.0 / q;
+      const bool squared = Form == ObjectiveTemplate::SumOfSquaredReciprocals;
+      value = squared ? Packet(inverse * inverse) : inverse;
+      slope = squared ? Packet(-2.0 * value * inverse) : Packet(-inverse * inverse);
+    }
+    if (this->fault != Fault::None)
+    {
+      const Mask bad = this->faults(context, batch);
+      value = select(bad, broadcast(HUGE_VAL), value);
+      slope = select(bad, Packet{}, slope);
+    }
+    if (this->weights)
+    {
+      const Packet w = this->weightsOf(batch);
+      value = select(w > 0.0, w * value, Packet{});
+      slope = w * slope;
+    }
+    slope = finiteOrZero(slope);
+  }
+
+  /// What is averaged by PowerMean (|q|^s) or put into the exponent by Maximum (k s q), and its derivative by q.
+  template <ObjectiveTemplate Form>
+  void exponent(const BatchContext& context, const Batch& batch, Packet& y, Packet& dy) const
+  {
+    const Packet q = batch.value;
+    if constexpr (Form == ObjectiveTemplate::Maximum)
+    {
+      y = this->power * this->sign * q;
+      dy = broadcast(this->power * this->sign);
+    }
+    else if (this->sign > 0)
+    {
+      y = abs(q);
+      dy = signOf(q);
+    }
+    else
+    {
+      y = 1.0 / abs(q);
+      dy = -y * y * signOf(q);
+    }
+    const Mask bad = this->faults(context, batch);
+    y = select(bad, broadcast(HUGE_VAL), y);
+    dy = select(bad, Packet{}, finiteOrZero(dy));
+  }
+
+  /// The factor a term takes when the unit of the others changes.
+  template <ObjectiveTemplate Form>
+  Packet scaled(Packet y, Packet unit) const
+  {
+    if constexpr (Form == ObjectiveTemplate::Maximum)
+    {
+      return select(y > -HUGE_VAL, each(y - unit, [](double x) { return std::exp(x); }), Packet{});
+    }
+    else
+    {
+      return select(y > 0.0, raised(y / unit, this->power), Packet{});
+    }
+  }
+
+  /// Adds the terms of PowerMean and Maximum, in units of the largest so far.
+  template <ObjectiveTemplate Form>
+  void addScaled(const BatchContext& context, const Batch& batch, ScaledSums& total) const
+  {
+    Packet y, dy;
+    this->exponent<Form>(context, batch, y, dy);
+    const Packet w = onlyCells(batch, this->weightsOf(batch));
+    y = select(w > 0.0, y, broadcast(-HUGE_VAL));
+    if (any(y > total.unit))
+    {
+      const Packet unit = max(total.unit, y);
+      total.sum *= select(unit > total.unit, this->scaled<Form>(total.unit, unit), broadcast(1.0));
+      total.unit = unit;
+    }
+    total.sum += select(w > 0.0, w * this->scaled<Form>(y, total.unit), Packet{});
+  }
+
+  /// The objective, from the scaled sums of its chunks in their order.
+  template <ObjectiveTemplate Form>
+  double combine(const std::vector<ScaledSums>& totals) const
+  {
+    double unit = -HUGE_VAL;
+    for (const ScaledSums& t : totals)
+    {
+      for (int l = 0; l < PacketWidth; ++l)
+      {
+        unit = t.unit[l] > unit ? t.unit[l] : unit;
+      }
+    }
+    if (unit == HUGE_VAL)
+    {
+      return unit;
+    }
+    LaneSums sum;
+    for (const ScaledSums& t : totals)
+    {
+      sum.lanes += t.sum * this->scaled<Form>(t.unit, broadcast(unit));
+    }
+    if constexpr (Form == ObjectiveTemplate::Maximum)
+    {
+      return (unit + std::log(sum.sum())) / this->power;
+    }
+    return unit > 0 ? unit * std::pow(sum.sum() / this->totalWeight, 1 / this->power) : 0.0;
+  }
+
+  /// dF/dq of PowerMean or Maximum whose value is F.
+  template <ObjectiveTemplate Form>
+  Packet slopeOf(const BatchContext& context, const Batch& batch, double F) const
+  {
+    Packet y, dy;
+    this->exponent<Form>(context, batch, y, dy);
+    const Packet w = this->weightsOf(batch);
+    Packet factor; // dF/dy
+    if constexpr (Form == ObjectiveTemplate::Maximum)
+    {
+      factor = 1.0 / this->power * this->scaled<Form>(y, broadcast(this->power * F));
+    }
+    else
+    {
+      factor = select(y > 0.0, raised(y * (1.0 / F), this->power - 1), Packet{}) *
+        (1.0 / this->totalWeight);
+    }
+    return select(w > 0.0, finiteOrZero(w * factor * dy), Packet{});
+  }
+
+  /// dF/dq of any template; F is only looked at by PowerMean and Maximum.
+  template <ObjectiveTemplate Form>
+  Packet slope(const BatchContext& context, const Batch& batch, double F) const
+  {
+    if constexpr (Form == ObjectiveTemplate::PowerMean || Form == ObjectiveTemplate::Maximum)
+    {
+      return this->slopeOf<Form>(context, batch, F);
+    }
+    else
+    {
+      Packet value, slope;
+      this->term<Form>(context, batch, value, slope);
+      return slope;
+    }
+  }
+};
+
+/// Calls work with the template as a compile-time constant.
+template <class Work>
+auto withTemplate(ObjectiveTemplate form, const Work& work)
+{
+  using T = ObjectiveTemplate;
+  switch (form)
+  {
+    case T::SumOfSquares:
+      return work(std::integral_constant<T, T::SumOfSquares>());
+    case T::SumOfSquaredReciprocals:
+      return work(std::integral_constant<T, T::SumOfSquaredReciprocals>());
+    case T::SumOfReciprocals:
+      return work(std::integral_constant<T, T::SumOfReciprocals>());
+    case T::Sum:
+      return work(std::integral_constant<T, T::Sum>());
+    case T::PowerMean:
+      return work(std::integral_constant<T, T::PowerMean>());
+    default:
+      return work(std::integral_constant<T, T::Maximum>());
+  }
+}
+
+struct ObjectiveSum::Implementation
+{
+  Objective objective;
+  ElementSum elements;
+  ElementFunction function;
+
+  Implementation(const Mesh& mesh, const Objective& objective, int threads);
+  template <bool WithGradient>
+  double run(double scale, double* gradient) const;
+};
+}
+#endif

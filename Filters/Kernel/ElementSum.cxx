@@ -1,0 +1,226 @@
+#include "ElementSum.h"
+
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// Colours a chunk may have; more means the cells must be reordered first.
+constexpr int MaxColours = 64;
+
+/// Interleaves the low 21 bits of three integers: the position on a Morton curve.
+std::uint64_t mortonCode(const Vec3& p, const Vec3& low, double scale)
+{
+  std::uint64_t code = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    std::uint64_t x = static_cast<std::uint64_t>(std::max(0.0, (p[c] - low[c]) * scale)) & 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    x = (x | x << 2) & 0x1249249249249249;
+    code |= x << c;
+  }
+  return code;
+}
+
+/// Positions of a block's cells along a Morton curve through their centres.
+std::vector<Index> spatialOrder(const Mesh& mesh, const CellBlock& block)
+{
+  std::vector<Vec3> centers(block.count);
+  Vec3 low = { HUGE_VAL, HUGE_VAL, HUGE_VAL }, high = { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
+  for (Index i = 0; i < block.count; ++i)
+  {
+    centers[i] = mesh.center(block.cell(i), block.type);
+    for (int c = 0; c < 3; ++c)
+    {
+      if (std::isfinite(centers[i][c]))
+      {
+        low[c] = std::min(low[c], centers[i][c]);
+        high[c] = std::max(high[c], centers[i][c]);
+      }
+      else
+      {
+        centers[i][c] = 0;
+      }
+    }
+  }
+  const Vec3 extent = high - low;
+  const double longest = std::max({ extent[0], extent[1], extent[2] });
+  const double scale = longest > 0 ? 0x1fffff / longest : 0.0;
+  std::vector<std::pair<std::uint64_t, Index>> keys(block.count);
+  for (Index i = 0; i < block.count; ++i)
+  {
+    keys[i] = { mortonCode(centers[i], low, scale), i };
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Index> order(block.count);
+  std::transform(
+    keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
+  return order;
+}
+}
+
+//------------------------------------------------------------------------------
+ElementSum::ElementSum(const Mesh& mesh, Metric metric, const EvaluationOptions& options)
+  : TheMesh(mesh)
+  , TheMetric(metric)
+  , Options(options)
+{
+  checkEvaluation(mesh, metricInfo(metric), options);
+  const MeshView& view = mesh.view();
+  const MetricCode code = metricCode(metric);
+  const auto& blocks = mesh.blocks();
+  this->Order.resize(blocks.size());
+
+  // Greedy colouring of chunks in order: a colour is free if no vertex of the chunk has it yet.
+  for (bool reordered : { false, true })
+  {
+    std::vector<std::uint64_t> used(view.numberOfPoints, 0);
+    std::vector<std::pair<int, Chunk>> coloured;
+    bool failed = false;
+    for (std::size_t b = 0; b < blocks.size() && !failed; ++b)
+    {
+      const CellBlock& block = blocks[b];
+      if (!evaluatorFor(mesh, metric, code, block, false))
+      {
+        continue;
+      }
+      if (reordered)
+      {
+        this->Order[b] = spatialOrder(mesh, block);
+      }
+      const Index* order = reordered ? this->Order[b].data() : nullptr;
+      const int nodes = topology(block.type).nodes;
+      for (Index begin = 0; begin < block.count && !failed; begin += ChunkSize)
+      {
+        const Index end = std::min(block.count, begin + ChunkSize);
+        auto forEachVertex = [&](auto visit)
+        {
+          for (Index i = begin; i < end; ++i)
+          {
+            const Index* node = view.connectivity + view.offsets[block.cell(order ? order[i] : i)];
+            for (int k = 0; k < nodes; ++k)
+            {
+              visit(used[node[k]]);
+            }
+          }
+        };
+        std::uint64_t taken = 0;
+        forEachVertex([&](std::uint64_t& mask) { taken |= mask; });
+        failed = taken == ~std::uint64_t(0);
+        if (!failed)
+        {
+          int colour = 0;
+          while (taken >> colour & 1)
+          {
+            ++colour;
+          }
+          forEachVertex([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << colour; });
+          coloured.push_back({ colour, { static_cast<int>(b), begin, end } });
+        }
+      }
+    }
+    // Many colours mean a numbering without locality: go along a space-filling curve instead, which
+    // keeps the chunks compact. Its own few extra colours are then accepted.
+    int colours = 0;
+    for (const auto& c : coloured)
+    {
+      colours = std::max(colours, c.first + 1);
+    }
+    const bool scattered = failed || colours * 4 > MaxColours;
+    if (scattered && !reordered)
+    {
+      continue;
+    }
+    if (failed)
+    {
+      throw Error("A vertex is shared by cells of more than " + std::to_string(MaxColours) +
+        " chunks: the mesh has a vertex with an extreme number of cells.");
+    }
+    std::stable_sort(coloured.begin(), coloured.end(),
+      [](const auto& a, const auto& b) { return a.first < b.first; });
+    this->ColourStarts.assign(1, 0);
+    for (std::size_t i = 0; i < coloured.size(); ++i)
+    {
+      if (i > 0 && coloured[i].first != coloured[i - 1].first)
+      {
+        this->ColourStarts.push_back(static_cast<Index>(i));
+      }
+      this->Chunks.push_back(coloured[i].second);
+    }
+    this->ColourStarts.push_back(static_cast<Index>(coloured.size()));
+    break;
+  }
+}
+
+namespace
+{
+/// |q|^p sign(q) and its derivative.
+void raise(Packet q, double power, Packet& value, Packet& slope)
+{
+  if (power == 1.0)
+  {
+    value = q;
+    slope = broadcast(1.0);
+  }
+  else if (power == 2.0)
+  {
+    const Packet size = abs(q);
+    value = q * size;
+    slope = 2.0 * size;
+  }
+  else
+  {
+    const Packet size = abs(q);
+    slope = select(size > 0.0, power * pow(size, power - 1.0), Packet{});
+    value = q * slope * (1.0 / power);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+MetricSum::MetricSum(
+  const Mesh& mesh, Metric metric, const EvaluationOptions& options, double power)
+  : Elements(std::make_shared<ElementSum>(mesh, metric, options))
+  , Power(power)
+{
+  if (!std::isfinite(power))
+  {
+    throw Error("The power of a metric sum must be finite.");
+  }
+}
+
+template <bool WithGradient>
+double MetricSum::run(double* gradient) const
+{
+  const double power = this->Power;
+  const auto totals = this->Elements->run<WithGradient, LaneSums>(
+    [=](const BatchContext&, const Batch& batch, LaneSums& total, Packet& slope)
+    {
+      Packet value;
+      raise(batch.value, power, value, slope);
+      total.lanes += onlyCells(batch, value);
+    },
+    gradient);
+  double sum = 0;
+  for (const LaneSums& total : totals)
+  {
+    sum += total.sum();
+  }
+  return sum;
+}
+
+double MetricSum::value() const
+{
+  return this->run<false>(nullptr);
+}
+
+double MetricSum::valueAndGradient(double* gradient) const
+{
+  std::fill(gradient, gradient + 3 * this->Elements->mesh().view().numberOfPoints, 0.0);
+  return this->run<true>(gradient);
+}
+}

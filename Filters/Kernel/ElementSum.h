@@ -1,0 +1,183 @@
+/**
+ * @file ElementSum.h
+ * @brief Sums a function of a metric over the elements of a mesh, with its gradient. Internal: not installed.
+ *
+ * The elements are cut into chunks and the chunks coloured: those of one colour share no vertex, so that
+ * threads add to the gradient without locks and in an order that the mesh alone decides.
+ */
+#ifndef tautline_ElementSum_h
+#define tautline_ElementSum_h
+
+#include "Batch.h"
+#include "Parallel.h"
+
+namespace tautline
+{
+/// The evaluators of any metric.
+MetricCode metricCode(Metric metric);
+
+/// Throws Error on a metric that the mesh's dimension does not define, and on options out of range.
+void checkEvaluation(const Mesh& mesh, const MetricInfo& info, const EvaluationOptions& options);
+
+/// The evaluator of a metric on a block, or null where the metric is not defined.
+BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
+  const CellBlock& block, bool withGradient);
+
+BatchContext contextFor(
+  const Mesh& mesh, const CellBlock& block, Metric metric, const EvaluationOptions& options);
+
+/// Undoes the mirroring of gather(), removes what is not finite, multiplies by a factor and hands
+/// the gradient at node k of cell l of the batch to put(lanes, l, k), cell by cell.
+template <int Nodes, class Put>
+void scatter(const BatchContext& context, const Batch& batch, Packet factor, const Put& put)
+{
+  const bool mirrored = context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
+  VectorLanes lanes[Nodes];
+  for (int k = 0; k < Nodes; ++k)
+  {
+    Packet g[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      g[c] = factor * finiteOrZero(batch.gradient[k][c]);
+    }
+    g[0] = mirrored ? -g[0] : g[0];
+    lanes[k].set(g);
+  }
+  for (int l = 0; l < batch.count; ++l)
+  {
+    for (int k = 0; k < Nodes; ++k)
+    {
+      put(lanes[k], l, k);
+    }
+  }
+}
+
+/// x with 0 in the lanes that only fill a batch.
+inline Packet onlyCells(const Batch& batch, Packet x)
+{
+  for (int l = batch.count; l < PacketWidth; ++l)
+  {
+    x[l] = 0;
+  }
+  return x;
+}
+
+/// What a chunk adds up: one sum per lane.
+struct LaneSums
+{
+  Packet lanes = {};
+  double sum() const
+  {
+    double total = 0;
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      total += this->lanes[l];
+    }
+    return total;
+  }
+};
+
+class ElementSum
+{
+public:
+  struct Chunk
+  {
+    int block;
+    Index begin, end;
+    Index length() const { return this->end - this->begin; }
+  };
+
+  /// Prepares the chunks and their colours. The mesh must outlive the sum.
+  ElementSum(const Mesh& mesh, Metric metric, const EvaluationOptions& options);
+
+  const Mesh& mesh() const { return this->TheMesh; }
+  const EvaluationOptions& options() const { return this->Options; }
+  const std::vector<Chunk>& chunks() const { return this->Chunks; }
+  bool empty() const { return this->Chunks.empty(); }
+
+  /// The evaluator of a chunk, and the order of its cells (or null).
+  BatchEvaluator evaluator(const Chunk& chunk, bool withGradient) const
+  {
+    return evaluatorFor(this->TheMesh, this->TheMetric, metricCode(this->TheMetric),
+      this->TheMesh.blocks()[chunk.block], withGradient);
+  }
+  BatchContext context(const Chunk& chunk) const
+  {
+    return contextFor(
+      this->TheMesh, this->TheMesh.blocks()[chunk.block], this->TheMetric, this->Options);
+  }
+  const Index* order(const Chunk& chunk) const
+  {
+    return this->Order[chunk.block].empty() ? nullptr : this->Order[chunk.block].data();
+  }
+
+  /// Calls work(i) for each chunk; at one time only for chunks that share no vertex, in an order fixed for each vertex.
+  template <class Work>
+  void forEachChunk(const Work& work) const
+  {
+    const int threads = resolveThreads(this->Options.threads);
+    for (std::size_t colour = 0; colour + 1 < this->ColourStarts.size(); ++colour)
+    {
+      const Index first = this->ColourStarts[colour], last = this->ColourStarts[colour + 1];
+#pragma omp parallel for schedule(dynamic) num_threads(threads) if (last - first > 1)
+      for (Index i = first; i < last; ++i)
+      {
+        work(i);
+      }
+    }
+  }
+
+  /**
+   * @brief Evaluates every cell and calls function(context, batch, total, slope) for each batch: it adds to
+   * `total`, and `slope` is what the metric's gradient is multiplied by and added to `gradient`.
+   * @return the totals, one per chunk, in a fixed order
+   */
+  template <bool WithGradient, class Total, class Function>
+  std::vector<Total> run(const Function& function, double* gradient) const
+  {
+    std::vector<Total> totals(this->Chunks.size());
+    this->forEachChunk(
+      [&](Index i)
+      {
+        const Chunk& chunk = this->Chunks[i];
+        const BatchEvaluator evaluate = this->evaluator(chunk, WithGradient);
+        const BatchContext context = this->context(chunk);
+        const Index* order = this->order(chunk);
+        Total total;
+        withNodes(*context.topology,
+          [&](auto nodesOfCell)
+          {
+            constexpr int Nodes = decltype(nodesOfCell)::value;
+            Batch batch;
+            BatchNodes nodes;
+            for (Index begin = chunk.begin; begin < chunk.end; begin += PacketWidth)
+            {
+              const int count = static_cast<int>(std::min<Index>(PacketWidth, chunk.end - begin));
+              gather<Nodes>(context, order, begin, count, batch, nodes);
+              evaluate(context, batch);
+              batch.value = finiteOrZero(batch.value);
+              Packet slope = {};
+              function(context, batch, total, slope);
+              if constexpr (WithGradient)
+              {
+                scatter<Nodes>(context, batch, slope,
+                  [&](const VectorLanes& lanes, int l, int k)
+                  { lanes.addTo(gradient + 3 * nodes[l][k], l); });
+              }
+            }
+          });
+        totals[i] = total;
+      });
+    return totals;
+  }
+
+private:
+  const Mesh& TheMesh;
+  Metric TheMetric;
+  EvaluationOptions Options;
+  std::vector<std::vector<Index>> Order; ///< per block: positions in cache-friendly order, or empty
+  std::vector<Chunk> Chunks;             ///< sorted by colour
+  std::vector<Index> ColourStarts;
+};
+}
+#endif
