@@ -71,8 +71,8 @@ struct Orientation
 {
   enum State
   {
-    Consistent, ///< neighbours agree and most cells are positive (or the mesh is a surface)
-    Reversed,   ///< neighbours agree and most cells of every part are negative
+    Consistent, ///< neighbours agree and every part has a positive size (or is a surface)
+    Reversed,   ///< neighbours agree and every part has a negative area or volume
     Mixed       ///< some neighbours disagree, or some parts are reversed and others are not
   };
   State state = Consistent;
@@ -80,7 +80,7 @@ struct Orientation
   Index negativeCells = 0;
   Index disagreeing = 0;   ///< interior edges (2D) or faces (3D) whose two cells disagree
   Index parts = 0;         ///< connected parts; 0 when they did not have to be looked for
-  Index reversedParts = 0; ///< parts that agree inside and are mostly negative
+  Index reversedParts = 0; ///< parts whose signed area or volume is negative
 };
 
 /// Vertex-to-cell adjacency in compressed rows: the cells of vertex v are

@@ -3,7 +3,7 @@
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
 #include "QualityTotals.h"
-#include "tautline/Targets.h"
+#include "TargetChoice.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -36,72 +36,6 @@ enum Ports
   WorstPort,
   NumberOfPorts
 };
-
-/**
- * One tuple per cell from an array of points or cells; a point array is averaged over the points of
- * each cell.
- */
-std::vector<double> perCell(
-  vtkDataArray* array, int association, const tautline::MeshView& view, const char* what)
-{
-  if (!array)
-  {
-    throw tautline::Error(std::string("The target needs ") + what +
-      ": choose a point or cell array of the mesh for it.");
-  }
-  const bool onPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  const vtkIdType wanted = onPoints ? view.numberOfPoints : view.numberOfCells;
-  if (array->GetNumberOfTuples() != wanted)
-  {
-    throw tautline::Error(std::string("The array '") + (array->GetName() ? array->GetName() : "") +
-      "' has " + std::to_string(array->GetNumberOfTuples()) + " tuples, the mesh has " +
-      std::to_string(wanted) + (onPoints ? " points." : " cells."));
-  }
-  const int components = array->GetNumberOfComponents();
-  std::vector<double> result(components * view.numberOfCells, 0.0);
-  std::vector<double> tuple(components);
-  for (tautline::Index cell = 0; cell < view.numberOfCells; ++cell)
-  {
-    double* sum = result.data() + components * cell;
-    if (!onPoints)
-    {
-      array->GetTuple(cell, sum);
-      continue;
-    }
-    const tautline::Index begin = view.offsets[cell], end = view.offsets[cell + 1];
-    for (tautline::Index i = begin; i < end; ++i)
-    {
-      array->GetTuple(view.connectivity[i], tuple.data());
-      for (int c = 0; c < components; ++c)
-      {
-        sum[c] += tuple[c] / static_cast<double>(end - begin);
-      }
-    }
-  }
-  return result;
-}
-
-/// Tensors of 6 (xx yy zz xy yz xz) or 9 components as 3 x 3 matrices.
-std::vector<double> asMatrices(const std::vector<double>& values, int components)
-{
-  if (components == 9)
-  {
-    return values;
-  }
-  if (components != 6)
-  {
-    throw tautline::Error(
-      "A metric tensor has 6 (xx yy zz xy yz xz) or 9 components, the array has " +
-      std::to_string(components) + ".");
-  }
-  constexpr int entry[9] = { 0, 3, 5, 3, 1, 4, 5, 4, 2 };
-  std::vector<double> matrices(values.size() / 6 * 9);
-  for (std::size_t i = 0; i < matrices.size(); ++i)
-  {
-    matrices[i] = values[i / 9 * 6 + entry[i % 9]];
-  }
-  return matrices;
-}
 
 /// Cells to leave out of statistics: ghosts, and 2D cells beside 3D ones. Empty if there are none.
 std::vector<unsigned char> cellsToSkip(const tautline::MeshAdapter& adapter)
@@ -454,44 +388,16 @@ void vtkElementQuality::SettleOrientation(
 tautline::Targets vtkElementQuality::MakeTargets(
   vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter)
 {
-  const tautline::Mesh& mesh = adapter.mesh();
-  int association = 0;
-  switch (this->TargetType)
-  {
-    case REFERENCE:
-    {
-      if (!reference)
-      {
-        throw tautline::Error("The target is a reference mesh but there is none: set the input "
-                              "Reference to a mesh with the same cells.");
-      }
-      tautline::MeshAdapter other(reference, this->Threads);
-      std::vector<signed char> validity(other.mesh().view().numberOfCells);
-      other.mesh().classifyCells(validity.data(), this->Threads);
-      other.mesh().setMirrored(
-        other.mesh().orientation(validity.data()).state == tautline::Orientation::Reversed);
-      return tautline::referenceTargets(mesh, other.mesh());
-    }
-    case SIZE:
-    {
-      vtkDataArray* array = this->GetInputArrayToProcess(0, input, association);
-      const auto sizes = perCell(array, association, mesh.view(), "a size");
-      if (array->GetNumberOfComponents() != 1)
-      {
-        throw tautline::Error("A size array has one component: the area or volume wanted.");
-      }
-      return tautline::sizeTargets(mesh, sizes.data());
-    }
-    case TENSOR:
-    {
-      vtkDataArray* array = this->GetInputArrayToProcess(1, input, association);
-      const auto tensors = perCell(array, association, mesh.view(), "a metric tensor");
-      return tautline::tensorTargets(
-        mesh, asMatrices(tensors, array->GetNumberOfComponents()).data());
-    }
-    default:
-      return {};
-  }
+  tautline::TargetChoice choice;
+  choice.type = static_cast<tautline::TargetType>(this->TargetType);
+  choice.reference = reference;
+  choice.size.array = this->TargetType == SIZE
+    ? this->GetInputArrayToProcess(0, input, choice.size.association)
+    : nullptr;
+  choice.tensor.array = this->TargetType == TENSOR
+    ? this->GetInputArrayToProcess(1, input, choice.tensor.association)
+    : nullptr;
+  return tautline::makeTargets(adapter.mesh(), choice, this->Threads);
 }
 
 //------------------------------------------------------------------------------

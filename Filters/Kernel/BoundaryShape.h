@@ -1,0 +1,35 @@
+/**
+ * @file BoundaryShape.h
+ * @brief Where the boundary of a mesh is flat or straight, so that its points can slide along it.
+ */
+#ifndef tautline_BoundaryShape_h
+#define tautline_BoundaryShape_h
+
+#include "Mesh.h"
+
+namespace tautline
+{
+/// What each point of the boundary may do; made by boundaryShape().
+struct BoundaryShape
+{
+  std::vector<unsigned char> fixed; ///< one flag per point: on the boundary, and cannot slide
+  /// Unit normal of the plane a point may slide in, 3 per point; zero elsewhere.
+  std::vector<double> planes;
+  /// Unit direction of the line a point may slide along, 3 per point; zero elsewhere.
+  std::vector<double> lines;
+  Index inPlanes = 0, onLines = 0; ///< how many points of each kind
+};
+
+/**
+ * @brief Looks at the boundary facets around each boundary point.
+ *
+ * In a volume mesh a point whose faces all lie in one plane may slide in it; one whose faces lie in two
+ * planes, along the line these share. In a mesh of 2D cells a point whose two boundary edges are
+ * straight may slide along them. All others, and those where three or more cells meet at one facet, are
+ * fixed.
+ * @param flatAngle facets whose normals (edges whose directions) differ by at most so many degrees
+ * count as one plane (line); 0 to 90
+ */
+TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle);
+}
+#endif

@@ -1,0 +1,120 @@
+/**
+ * @file FacetTable.h
+ * @brief The edges of 2D cells, or the faces of 3D cells, with the cells that use each. Internal.
+ */
+#ifndef tautline_FacetTable_h
+#define tautline_FacetTable_h
+
+#include "Mesh.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace tautline
+{
+/// One use of an edge or face by a cell, filed under its smallest node.
+struct FacetUse
+{
+  std::array<Index, MaxFaceNodes - 1> others; ///< the other nodes in increasing order, then -1
+  Index cell;
+  /// The sense in which the cell walks round the facet; two cells agree when theirs differ.
+  bool forward;
+};
+
+/// The facets (edges or faces) of a mesh's cells of highest dimension, filed by smallest node.
+class FacetTable
+{
+public:
+  explicit FacetTable(const Mesh& mesh)
+    : Starts(mesh.view().numberOfPoints + 1, 0)
+  {
+    const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+    forEachUse(
+      mesh, dimension, [&](Index smallest, const FacetUse&) { ++this->Starts[smallest + 1]; });
+    std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
+    this->Uses.resize(this->Starts.back());
+    std::vector<Index> next(this->Starts.begin(), this->Starts.end() - 1);
+    forEachUse(mesh, dimension,
+      [&](Index smallest, const FacetUse& use) { this->Uses[next[smallest]++] = use; });
+  }
+
+  /// Calls visit(smallest node, uses, count) for every facet; its uses are in order of cell.
+  template <class Visit>
+  void forEachFacet(const Visit& visit)
+  {
+    for (Index node = 0; node + 1 < static_cast<Index>(this->Starts.size()); ++node)
+    {
+      const Index begin = this->Starts[node], end = this->Starts[node + 1];
+      if (begin == end)
+      {
+        continue;
+      }
+      std::sort(this->Uses.begin() + begin, this->Uses.begin() + end,
+        [](const FacetUse& a, const FacetUse& b)
+        { return a.others != b.others ? a.others < b.others : a.cell < b.cell; });
+      for (Index i = begin; i < end;)
+      {
+        Index j = i + 1;
+        while (j < end && this->Uses[j].others == this->Uses[i].others)
+        {
+          ++j;
+        }
+        visit(node, &this->Uses[i], j - i);
+        i = j;
+      }
+    }
+  }
+
+private:
+  template <class Visit>
+  static void forEachUse(const Mesh& mesh, int dimension, const Visit& visit)
+  {
+    const MeshView& view = mesh.view();
+    for (const CellBlock& block : mesh.blocks())
+    {
+      const CellTopology& t = topology(block.type);
+      if (t.dimension != dimension)
+      {
+        continue;
+      }
+      const int facets = dimension == 3 ? t.faces : t.edges;
+      for (Index i = 0; i < block.count; ++i)
+      {
+        const Index cell = block.cell(i);
+        const Index* node = view.connectivity + view.offsets[cell];
+        for (int f = 0; f < facets; ++f)
+        {
+          Index nodes[MaxFaceNodes] = {};
+          const int size = dimension == 3 ? t.faceSizes[f] : 2;
+          int smallest = 0;
+          for (int k = 0; k < size; ++k)
+          {
+            nodes[k] = node[dimension == 3 ? t.faceNodes[f][k] : t.edgeNodes[f][k]];
+            smallest = nodes[k] < nodes[smallest] ? k : smallest;
+          }
+          // The sense of walking is told by the neighbours of the smallest node; for an edge, by
+          // whether the smallest node comes first.
+          const Index next = nodes[(smallest + 1) % size];
+          const Index previous = nodes[(smallest + size - 1) % size];
+          FacetUse use = { { next, -1, -1 }, cell, smallest == 0 };
+          if (size > 2)
+          {
+            use.forward = next < previous;
+            use.others = { std::min(next, previous), std::max(next, previous), -1 };
+          }
+          if (size > 3)
+          {
+            use.others[2] = nodes[(smallest + 2) % size];
+          }
+          visit(nodes[smallest], use);
+        }
+      }
+    }
+  }
+
+  std::vector<Index> Starts;
+  std::vector<FacetUse> Uses;
+};
+}
+#endif

@@ -1,0 +1,125 @@
+#include "TargetChoice.h"
+
+#include "MeshAdapter.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSet.h"
+
+#include <string>
+#include <vector>
+
+namespace tautline
+{
+namespace
+{
+/**
+ * One tuple per cell from an array of points or cells; a point array is averaged over the points of
+ * each cell.
+ */
+std::vector<double> perCell(
+  vtkDataArray* array, int association, const MeshView& view, const char* what)
+{
+  if (!array)
+  {
+    throw Error(std::string("The target needs ") + what +
+      ": choose a point or cell array of the mesh for it.");
+  }
+  const bool onPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  const vtkIdType wanted = onPoints ? view.numberOfPoints : view.numberOfCells;
+  if (array->GetNumberOfTuples() != wanted)
+  {
+    throw Error(std::string("The array '") + (array->GetName() ? array->GetName() : "") + "' has " +
+      std::to_string(array->GetNumberOfTuples()) + " tuples, the mesh has " +
+      std::to_string(wanted) + (onPoints ? " points." : " cells."));
+  }
+  const int components = array->GetNumberOfComponents();
+  std::vector<double> result(components * view.numberOfCells, 0.0);
+  std::vector<double> tuple(components);
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    double* sum = result.data() + components * cell;
+    if (!onPoints)
+    {
+      array->GetTuple(cell, sum);
+      continue;
+    }
+    const Index begin = view.offsets[cell], end = view.offsets[cell + 1];
+    for (Index i = begin; i < end; ++i)
+    {
+      array->GetTuple(view.connectivity[i], tuple.data());
+      for (int c = 0; c < components; ++c)
+      {
+        sum[c] += tuple[c] / static_cast<double>(end - begin);
+      }
+    }
+  }
+  return result;
+}
+
+/// Tensors of 6 (xx yy zz xy yz xz) or 9 components as 3 x 3 matrices.
+std::vector<double> asMatrices(const std::vector<double>& values, int components)
+{
+  if (components == 9)
+  {
+    return values;
+  }
+  if (components != 6)
+  {
+    throw Error("A metric tensor has 6 (xx yy zz xy yz xz) or 9 components, the array has " +
+      std::to_string(components) + ".");
+  }
+  constexpr int entry[9] = { 0, 3, 5, 3, 1, 4, 5, 4, 2 };
+  std::vector<double> matrices(values.size() / 6 * 9);
+  for (std::size_t i = 0; i < matrices.size(); ++i)
+  {
+    matrices[i] = values[i / 9 * 6 + entry[i % 9]];
+  }
+  return matrices;
+}
+
+/// Views the reference, as its mirror image if it is reversed.
+Targets fromReference(const Mesh& mesh, vtkDataSet* reference, int threads)
+{
+  if (!reference)
+  {
+    throw Error("The target is a reference mesh but there is none: set the input "
+                "Reference to a mesh with the same cells.");
+  }
+  MeshAdapter other(reference, threads);
+  std::vector<signed char> validity(other.mesh().view().numberOfCells);
+  other.mesh().classifyCells(validity.data(), threads);
+  other.mesh().setMirrored(
+    other.mesh().orientation(validity.data()).state == Orientation::Reversed);
+  return referenceTargets(mesh, other.mesh());
+}
+}
+
+//------------------------------------------------------------------------------
+Targets makeTargets(const Mesh& mesh, const TargetChoice& choice, int threads)
+{
+  switch (choice.type)
+  {
+    case TargetType::Reference:
+      return fromReference(mesh, choice.reference, threads);
+    case TargetType::Size:
+    {
+      const auto sizes = perCell(choice.size.array, choice.size.association, mesh.view(), "a size");
+      if (choice.size.array->GetNumberOfComponents() != 1)
+      {
+        throw Error("A size array has one component: the area or volume wanted.");
+      }
+      return sizeTargets(mesh, sizes.data());
+    }
+    case TargetType::Tensor:
+    {
+      const auto tensors =
+        perCell(choice.tensor.array, choice.tensor.association, mesh.view(), "a metric tensor");
+      return tensorTargets(
+        mesh, asMatrices(tensors, choice.tensor.array->GetNumberOfComponents()).data());
+    }
+    default:
+      return {};
+  }
+}
+}

@@ -1,0 +1,41 @@
+/**
+ * @file TargetChoice.h
+ * @brief The targets of a filter, from a reference mesh or from arrays of its input.
+ */
+#ifndef tautline_TargetChoice_h
+#define tautline_TargetChoice_h
+
+#include "TautlineQualityModule.h" // for export macro
+
+#include "tautline/Targets.h"
+
+class vtkDataArray;
+class vtkDataSet;
+
+namespace tautline
+{
+/// An array and whether it is of points or cells (vtkDataObject::FIELD_ASSOCIATION_...).
+struct ChosenArray
+{
+  vtkDataArray* array = nullptr;
+  int association = 0;
+};
+
+/// What the wanted element is, and where that is told; only what the type needs is looked at.
+struct TargetChoice
+{
+  TargetType type = TargetType::Ideal;
+  vtkDataSet* reference = nullptr;
+  ChosenArray size;   ///< area or volume, one component
+  ChosenArray tensor; ///< metric tensor, 6 (xx yy zz xy yz xz) or 9 components
+};
+
+/**
+ * @brief The targets chosen; none for TargetType::Ideal. Values of point arrays are averaged over each
+ * cell. A reference mesh that is reversed throughout is taken as its mirror image. Throws Error that
+ * names what is missing or does not fit.
+ */
+TAUTLINEQUALITY_EXPORT Targets makeTargets(
+  const Mesh& mesh, const TargetChoice& choice, int threads);
+}
+#endif
