@@ -260,6 +260,33 @@ struct ElementFunction
     return select(w > 0.0, finiteOrZero(w * factor * dy), Packet{});
   }
 
+  /**
+   * @brief The share of each element in a PowerMean or Maximum of value F, and its derivative by q: the shares
+   * add up to 1 where the mean is F.
+   */
+  template <ObjectiveTemplate Form>
+  void share(
+    const BatchContext& context, const Batch& batch, double F, Packet& value, Packet& slope) const
+  {
+    Packet y, dy;
+    this->exponent<Form>(context, batch, y, dy);
+    const Packet w = this->weightsOf(batch);
+    if constexpr (Form == ObjectiveTemplate::Maximum)
+    {
+      value = this->scaled<Form>(y, broadcast(this->power * F));
+      slope = value * dy;
+    }
+    else
+    {
+      const Packet ratio = y * (1.0 / F),
+                   lower = raised(ratio, this->power - 1) * (1.0 / this->totalWeight);
+      value = lower * ratio;
+      slope = this->power * lower * dy * (1.0 / F);
+    }
+    value = select(w > 0.0, w * value, Packet{});
+    slope = select(w > 0.0, finiteOrZero(w * slope), Packet{});
+  }
+
   /// dF/dq of any template; F is only looked at by PowerMean and Maximum.
   template <ObjectiveTemplate Form>
   Packet slope(const BatchContext& context, const Batch& batch, double F) const

@@ -2,6 +2,11 @@
  * @file Minimize.h
  * @brief Minimises a smooth function of many variables: nonlinear conjugate gradients, L-BFGS, truncated
  * Newton. Internal: not installed.
+ *
+ * Every accepted step lowers the value (Armijo) and satisfies the weak Wolfe condition, for conjugate gradients the
+ * strong one, unless largestStep() ends it before. Sources: J. Nocedal and S. J. Wright, "Numerical
+ * Optimization", 2nd ed. 2006, sections 3.5 (line search), 5.2 (Fletcher-Reeves, Polak-Ribiere+), 7.1 (truncated
+ * Newton), 7.2 (L-BFGS).
  */
 #ifndef tautline_Minimize_h
 #define tautline_Minimize_h
@@ -19,13 +24,14 @@ class SmoothFunction
 public:
   virtual ~SmoothFunction() = default;
   virtual std::size_t size() const = 0;
-  /// The value at x; +infinity where x is not allowed (an element would invert).
-  virtual double value(const double* x) = 0;
-  /// The value and the gradient at an allowed x.
+  /**
+   * @brief The value and the gradient at x; +infinity where x is not allowed (an element would invert), and
+   * the gradient is then not looked at. Minimisation calls nothing else to learn of values.
+   */
   virtual double valueAndGradient(const double* x, double* gradient) = 0;
   /**
    * @brief The largest step t in (0, wanted] for which x + t d is certainly allowed, or `wanted` if
-   * not known: value() then decides.
+   * not known: the value then decides. No longer step is tried. Called once per iteration.
    */
   virtual double largestStep(const double* /*x*/, const double* /*d*/, double wanted)
   {
@@ -33,7 +39,10 @@ public:
   }
   /// Applies a symmetric positive definite approximation of the inverse Hessian; returns false if there is none.
   virtual bool precondition(const double* /*r*/, double* /*z*/) { return false; }
-  /// Makes ready for hessianTimes() and precondition() at x; called at most once per iteration.
+  /**
+   * @brief Makes ready for hessianTimes() and precondition() at x, where the last gradient was taken. Called before
+   * every direction of NewtonConjugateGradient, and for the others at the start and every `refresh` iterations.
+   */
   virtual void linearize(const double* /*x*/) {}
   /// The product of a positive semidefinite approximation of the Hessian with d; false if there is none.
   virtual bool hessianTimes(const double* /*d*/, double* /*product*/) { return false; }
@@ -45,7 +54,8 @@ struct MinimizeOptions
   int maximumIterations = 100;
   double gradientNorm = 1e-6;  ///< relative to the first; 0: never
   double relativeChange = 0.0; ///< of the value in an iteration; 0: never
-  int threads = 0;
+  int refresh = 10; ///< iterations between calls of linearize(), except Newton's; at least 1
+  int threads = 0;  ///< 0: all cores. The result does not depend on it.
   /// After each iteration: iteration, value, gradient norm, x. Returns false to stop.
   std::function<bool(int, double, double, const double*)> observer;
 };
@@ -55,11 +65,14 @@ struct Minimization
   double value = 0;
   double gradientNorm = 0;
   int iterations = 0;
-  int evaluations = 0;
+  int evaluations = 0;                            ///< of the value and gradient
   StopReason reason = StopReason::IterationLimit; ///< Aborted if the observer said so
 };
 
-/// Minimises from x, which is overwritten by the best found. Never returns a larger value than at the start.
-Minimization minimize(SmoothFunction& function, double* x, const MinimizeOptions& options);
+/**
+ * @brief Minimises from x, which is overwritten by the best found; it is never worse than the start. From a start that is
+ * not allowed nothing is done (NoProgress, value +infinity); without variables, NoFreeVertices.
+ */
+TAUTLINE_KERNEL_EXPORT Minimization minimize(SmoothFunction& function, double* x, const MinimizeOptions& options);
 }
 #endif

@@ -150,10 +150,14 @@ void loadTargets(
   }
 }
 
-/// Builds the patch of v from the coordinates x; simplexWeights may be null.
+/**
+ * @brief Builds the patch of v from the coordinates x.
+ * @param simplexWeights per simplex, or null; simplices of weight 0 are as if they were not there
+ * @param tangents of a surface at v: the patch is projected to their plane; else null
+ */
 template <int Dim>
 void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
-  const double* simplexWeights, Patch<Dim>& patch)
+  const double* simplexWeights, Patch<Dim>& patch, const Vec3* tangents = nullptr)
 {
   const std::int32_t begin = mesh.patchStart(v), end = mesh.patchStart(v + 1);
   patch.count = (end - begin + PacketWidth - 1) / PacketWidth;
@@ -188,9 +192,17 @@ void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
     for (int k = 0; k < Dim; ++k)
     {
       loadVertices(x, ids + k, Dim, e[k]);
-      for (int c = 0; c < Dim; ++c)
+      for (int c = 0; c < (tangents ? 3 : Dim); ++c)
       {
         e[k][c] -= center[c];
+      }
+      if (tangents)
+      {
+        const Packet inPlane[2] = { e[k][0] * tangents[0][0] + e[k][1] * tangents[0][1] +
+            e[k][2] * tangents[0][2],
+          e[k][0] * tangents[1][0] + e[k][1] * tangents[1][1] + e[k][2] * tangents[1][2] };
+        e[k][0] = inPlane[0];
+        e[k][1] = inPlane[1];
       }
     }
     // Coefficients of the edges at v, of the others, and of the determinant.
@@ -252,6 +264,18 @@ void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
       {
         p.S[c] = at[0] * e[0][c] + at[1] * e[1][c];
         p.N0 += at[0] * e[0][c] * e[0][c] + at[1] * e[1][c] * e[1][c];
+      }
+    }
+    if (simplexWeights && any(p.weight == 0.0))
+    {
+      const Mask there = p.weight != 0.0;
+      p.N0 = select(there, p.N0, broadcast(Dim));
+      p.D0 = select(there, p.D0, broadcast(1.0));
+      p.C = select(there, p.C, Packet{});
+      for (int c = 0; c < Dim; ++c)
+      {
+        p.S[c] = select(there, p.S[c], Packet{});
+        p.n[c] = select(there, p.n[c], Packet{});
       }
     }
   }
@@ -317,7 +341,7 @@ double valueOver(const Patch<Dim>& patch, const double* d, const Energy& energy)
   return sumOf(f);
 }
 
-/// The step along s at which the first D of the patch vanishes; infinity if none does.
+/// The step along s at which the first positive D of the patch vanishes; infinity if none does.
 template <int Dim>
 double stepToInversion(const Patch<Dim>& patch, const double* d, const double* s)
 {
@@ -331,7 +355,7 @@ double stepToInversion(const Patch<Dim>& patch, const double* d, const double* s
       rate += s[c] * p.n[c];
       D -= d[c] * p.n[c];
     }
-    least = select((rate > 0.0) & (D < least * rate), D / rate, least);
+    least = select((rate > 0.0) & (D > 0.0) & (D < least * rate), D / rate, least);
   }
   return leastOf(least);
 }

@@ -386,7 +386,7 @@ void SimplexMesh::cut(
         const Index* node = view.connectivity + view.offsets[cell];
         for (int s = 0; s < t.samples; ++s)
         {
-          std::int32_t v[4];
+          std::int32_t v[4] = {};
           bool finite = true;
           for (int k = 0; k < corners; ++k)
           {
@@ -505,30 +505,48 @@ void SimplexMesh::findPatches()
   std::partial_sum(this->PatchStarts.begin(), this->PatchStarts.end(), this->PatchStarts.begin());
   const std::size_t entries = this->PatchStarts[this->Free];
   this->PatchVertices.resize(entries * this->Dim);
-  this->PatchCorners.resize(this->uniform() ? 0 : entries);
+  this->forEachPatchCorner(
+    [&](std::int32_t simplex, int k, std::size_t entry)
+    {
+      const std::int32_t* corner =
+        this->Corners.data() + static_cast<std::size_t>(corners) * simplex;
+      const int* front = this->Dim == 3 ? toFront3[k] : toFront2[k];
+      for (int l = 0; l < this->Dim; ++l)
+      {
+        this->PatchVertices[entry * this->Dim + l] = corner[front[l + 1]];
+      }
+    });
+  if (!this->uniform())
+  {
+    this->indexPatches();
+  }
+}
+
+//------------------------------------------------------------------------------
+template <class Visit>
+void SimplexMesh::forEachPatchCorner(const Visit& visit)
+{
+  const int corners = this->Dim + 1;
   std::vector<std::int32_t> next(this->PatchStarts.begin(), this->PatchStarts.end() - 1);
   for (std::int32_t i = 0; i < this->Simplices; ++i)
   {
     const std::int32_t* corner = this->Corners.data() + static_cast<std::size_t>(corners) * i;
     for (int k = 0; k < corners; ++k)
     {
-      const std::int32_t v = corner[k];
-      if (v >= this->Free)
+      if (corner[k] < this->Free)
       {
-        continue;
-      }
-      const std::size_t entry = next[v]++;
-      const int* front = this->Dim == 3 ? toFront3[k] : toFront2[k];
-      for (int l = 0; l < this->Dim; ++l)
-      {
-        this->PatchVertices[entry * this->Dim + l] = corner[front[l + 1]];
-      }
-      if (!this->uniform())
-      {
-        this->PatchCorners[entry] = i * corners + k;
+        visit(i, k, static_cast<std::size_t>(next[corner[k]]++));
       }
     }
   }
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::indexPatches()
+{
+  this->PatchCorners.resize(this->PatchStarts[this->Free]);
+  this->forEachPatchCorner([&](std::int32_t simplex, int k, std::size_t entry)
+    { this->PatchCorners[entry] = simplex * (this->Dim + 1) + k; });
 }
 
 //------------------------------------------------------------------------------
@@ -577,45 +595,58 @@ void SimplexMesh::findBlocks()
 }
 
 //------------------------------------------------------------------------------
+Vec3 SimplexMesh::transform(const Vec3& point) const
+{
+  const Vec3 d = point - this->Shift;
+  Vec3 x = { 0, 0, 0 };
+  for (int c = 0; c < this->Dim + this->Surface; ++c)
+  {
+    x[c] = dot(d, this->Frame[c]) / this->Scale;
+  }
+  return x;
+}
+
+//------------------------------------------------------------------------------
 void SimplexMesh::load(const double* points, int threads)
 {
   this->X.assign(static_cast<std::size_t>(VertexStride) * this->vertices(), 0.0);
-  const double perLength = 1.0 / this->Scale;
   forEachChunk(this->vertices(), threads,
     [&](Index, Index begin, Index end)
     {
       for (Index v = begin; v < end; ++v)
       {
         const double* p = points + 3 * static_cast<Index>(this->Point[v]);
-        const Vec3 d = Vec3{ p[0], p[1], p[2] } - this->Shift;
-        for (int c = 0; c < this->Dim + this->Surface; ++c)
-        {
-          this->X[VertexStride * v + c] = perLength * dot(d, this->Frame[c]);
-        }
+        const Vec3 x = this->transform({ p[0], p[1], p[2] });
+        std::copy(x.begin(), x.end(), this->X.data() + VertexStride * v);
       }
     });
 }
 
 //------------------------------------------------------------------------------
+void SimplexMesh::storeVertex(const double* x, double* p) const
+{
+  Vec3 d = this->Scale * (x[0] * this->Frame[0] + x[1] * this->Frame[1]);
+  // What a planar mesh's point has beside the plane (rounding) is kept.
+  const bool planar = this->Dim == 2 && !this->Surface;
+  const double height =
+    planar ? dot(Vec3{ p[0], p[1], p[2] } - this->Shift, this->Frame[2]) : this->Scale * x[2];
+  d += height * this->Frame[2];
+  for (int c = 0; c < 3; ++c)
+  {
+    p[c] = this->Shift[c] + d[c];
+  }
+}
+
+//------------------------------------------------------------------------------
 void SimplexMesh::store(const double* coordinates, double* points, int threads) const
 {
-  const bool planar = this->Dim == 2 && !this->Surface;
   forEachChunk(this->Free, threads,
     [&](Index, Index begin, Index end)
     {
       for (Index v = begin; v < end; ++v)
       {
-        const double* x = coordinates + VertexStride * v;
-        double* p = points + 3 * static_cast<Index>(this->Point[v]);
-        Vec3 d = this->Scale * (x[0] * this->Frame[0] + x[1] * this->Frame[1]);
-        // What a planar mesh's point has beside the plane (rounding) is kept.
-        const double height =
-          planar ? dot(Vec3{ p[0], p[1], p[2] } - this->Shift, this->Frame[2]) : this->Scale * x[2];
-        d += height * this->Frame[2];
-        for (int c = 0; c < 3; ++c)
-        {
-          p[c] = this->Shift[c] + d[c];
-        }
+        this->storeVertex(
+          coordinates + VertexStride * v, points + 3 * static_cast<Index>(this->Point[v]));
       }
     });
 }

@@ -81,13 +81,20 @@ public:
   std::int32_t patchStart(std::int32_t v) const { return this->PatchStarts[v]; }
   /// dimension() vertices per entry, so that (v, these) is an even permutation of the simplex.
   const std::int32_t* patchVertices() const { return this->PatchVertices.data(); }
-  /// simplex * (dimension() + 1) + position of v in it, per entry; empty if uniform().
+  /// simplex * (dimension() + 1) + position of v in it, per entry; unless uniform(), or after indexPatches().
   const std::int32_t* patchCorners() const { return this->PatchCorners.data(); }
+  void indexPatches();
 
   const VertexBlocks& blocks() const { return this->Blocks; }
 
   /// Sets the coordinates from 3 per point.
   void load(const double* points, int threads);
+  /// What one of these coordinates' units is in the mesh's: scale() times a unit vector.
+  Vec3 axis(int c) const { return this->Scale * this->Frame[c]; }
+  /// A point of the mesh in these coordinates.
+  Vec3 transform(const Vec3& point) const;
+  /// Writes one vertex into 3 coordinates, which had the point before.
+  void storeVertex(const double* x, double* p) const;
   /// Writes the free vertices; the other of the 3 per point stay as they are.
   void store(double* points, int threads) const { this->store(this->X.data(), points, threads); }
   void store(const double* coordinates, double* points, int threads) const;
@@ -96,6 +103,8 @@ private:
   void number(const Mesh& mesh, const std::vector<char>& free, int threads);
   void cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets);
   void findPatches();
+  template <class Visit>
+  void forEachPatchCorner(const Visit& visit);
   void findBlocks();
 
   int Dim = 3;

@@ -1,0 +1,796 @@
+#include "LocalSweep.h"
+
+#include "Parallel.h"
+
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+constexpr double sufficientDecrease = 1e-4; // Armijo's constant
+constexpr int maximumHalvings = 12;
+/// Part of the way to the first inversion that a step may go.
+constexpr double safety = 0.9;
+/// Changes above this part of an objective are seen by the scalarization itself, not by its slope.
+constexpr double visibleChange = 1e-6;
+
+/// The size squared, V = factor D.
+template <int Dim>
+struct SizeSquaredEnergy
+{
+  double factor2;
+  Packet value(Packet, Packet D) const { return this->factor2 * D * D; }
+  void terms(Packet, Packet D, EnergyTerms& e) const
+  {
+    e.f = this->factor2 * D * D;
+    e.fD = 2.0 * this->factor2 * D;
+    e.fDD = broadcast(2.0 * this->factor2);
+    e.fN = e.fNN = e.fND = Packet{};
+  }
+};
+
+/// A unit vector at a right angle to n, and the third.
+void tangentsOf(const Vec3& n, Vec3* tangents)
+{
+  int least = 0;
+  for (int c = 1; c < 3; ++c)
+  {
+    least = std::abs(n[c]) < std::abs(n[least]) ? c : least;
+  }
+  Vec3 axis = { 0, 0, 0 };
+  axis[least] = 1.0;
+  const Vec3 t = cross(n, axis);
+  tangents[0] = (1.0 / norm(t)) * t;
+  tangents[1] = cross(n, tangents[0]);
+}
+}
+
+//------------------------------------------------------------------------------
+struct LocalSweeper::Base
+{
+  virtual ~Base() = default;
+  virtual SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values) = 0;
+  std::vector<unsigned char> Active;
+};
+
+/// What a thread works in.
+template <int Dim>
+struct Worker
+{
+  PatchSite<Dim> site;
+  std::vector<PatchSum<Dim>> sums;
+  std::vector<double> trial, now, slopes, change;
+};
+
+template <int Dim>
+struct LocalSweeper::Implementation : LocalSweeper::Base
+{
+  Implementation(SimplexMesh& simplices, const Mesh& mesh, double* points,
+    const std::vector<LocalTerm>& terms, const LocalOptions& options);
+
+  SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values) override;
+
+private:
+  using Site = PatchSite<Dim>;
+
+  std::unique_ptr<PatchFunction<Dim>> makeFunction(const LocalTerm& term) const;
+  void gather(std::int32_t v, Site& site) const;
+  void gatherCells(std::int32_t v, Site& site) const;
+  void findTangents(std::int32_t v, Vec3* tangents) const;
+  bool evaluate(Worker<Dim>& w, const double* d, bool hessian) const;
+  void findSlopes(const Scalarizer& scalarizer, Worker<Dim>& w) const;
+  PatchSum<Dim> combined(const Worker<Dim>& w) const;
+  double changeAt(const Scalarizer& scalarizer, Worker<Dim>& w, const double* d) const;
+  void newton(const Worker<Dim>& w, const PatchSum<Dim>& sum, double* s) const;
+  int allowed(std::int32_t v, double basis[Dim][Dim]) const;
+  double limited(std::int32_t v, const double* d, const double* s, double t) const;
+  bool moveVertex(std::int32_t v, const Scalarizer& scalarizer, Worker<Dim>& w, double& gradient2);
+  void place(std::int32_t v, const Vec3& x);
+  bool placeOnSurface(
+    std::int32_t v, const double* d, const Scalarizer& scalarizer, Worker<Dim>& w);
+  void wake(std::int32_t v, std::vector<unsigned char>& next) const;
+
+  SimplexMesh& Simplices;
+  const Mesh& TheMesh;
+  double* Points;
+  LocalOptions Options;
+  bool NeedsCells = false;
+  VertexCells Cells;
+  std::vector<std::unique_ptr<PatchFunction<Dim>>> Functions;
+  std::vector<double> Values; ///< of the objectives when the sweep began
+};
+
+//------------------------------------------------------------------------------
+template <int Dim>
+LocalSweeper::Implementation<Dim>::Implementation(SimplexMesh& simplices, const Mesh& mesh,
+  double* points, const std::vector<LocalTerm>& terms, const LocalOptions& options)
+  : Simplices(simplices)
+  , TheMesh(mesh)
+  , Points(points)
+  , Options(options)
+{
+  for (const LocalTerm& term : terms)
+  {
+    this->Functions.push_back(this->makeFunction(term));
+    this->NeedsCells = this->NeedsCells || this->Functions.back()->needsCells();
+  }
+  if (this->NeedsCells)
+  {
+    this->Cells = mesh.vertexCells();
+  }
+  this->Active.assign(simplices.freeVertices(), 1);
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+std::unique_ptr<PatchFunction<Dim>> LocalSweeper::Implementation<Dim>::makeFunction(
+  const LocalTerm& term) const
+{
+  if (term.shapePower == 1)
+  {
+    using Energy = InverseMeanRatioEnergy<Dim, 1>;
+    return std::make_unique<EnergyFunction<Dim, Energy>>(Energy());
+  }
+  if (term.shapePower == 2)
+  {
+    using Energy = InverseMeanRatioEnergy<Dim, 2>;
+    return std::make_unique<EnergyFunction<Dim, Energy>>(Energy());
+  }
+  if (term.sizeSquared > 0)
+  {
+    using Energy = SizeSquaredEnergy<Dim>;
+    return std::make_unique<EnergyFunction<Dim, Energy>>(Energy{ term.sizeSquared });
+  }
+  return std::make_unique<MetricFunction<Dim>>(term.metric->implementation());
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void LocalSweeper::Implementation<Dim>::findTangents(std::int32_t v, Vec3* tangents) const
+{
+  // The normal is the sum of the vector areas around the vertex.
+  const double* x = this->Simplices.coordinates();
+  const auto at = [=](std::int32_t i)
+  {
+    const double* p = x + VertexStride * static_cast<std::size_t>(i);
+    return Vec3{ p[0], p[1], p[2] };
+  };
+  const Vec3 center = at(v);
+  Vec3 normal = { 0, 0, 0 };
+  for (std::int32_t i = this->Simplices.patchStart(v); i < this->Simplices.patchStart(v + 1); ++i)
+  {
+    const std::int32_t* others = this->Simplices.patchVertices() + 2 * static_cast<std::size_t>(i);
+    normal += cross(at(others[0]) - center, at(others[1]) - center);
+  }
+  const double length = norm(normal);
+  tangentsOf(length > 0 ? (1.0 / length) * normal : Vec3{ 0, 0, 1 }, tangents);
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void LocalSweeper::Implementation<Dim>::gather(std::int32_t v, Site& site) const
+{
+  site.vertex = v;
+  const double* weights = this->Options.weights.empty() ? nullptr : this->Options.weights.data();
+  if (Dim == 2 && this->Simplices.surface())
+  {
+    Vec3 tangents[2];
+    this->findTangents(v, tangents);
+    gatherPatch<Dim>(
+      this->Simplices, this->Simplices.coordinates(), v, weights, site.patch, tangents);
+    for (int c = 0; c < Dim; ++c)
+    {
+      site.axes[c] = this->Simplices.scale() * tangents[c];
+    }
+  }
+  else
+  {
+    gatherPatch<Dim>(this->Simplices, this->Simplices.coordinates(), v, weights, site.patch);
+    for (int c = 0; c < Dim; ++c)
+    {
+      site.axes[c] = this->Simplices.axis(c);
+    }
+  }
+  if (this->NeedsCells)
+  {
+    this->gatherCells(v, site);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void LocalSweeper::Implementation<Dim>::gatherCells(std::int32_t v, Site& site) const
+{
+  const MeshView& view = this->TheMesh.view();
+  const Index point = this->Simplices.point(v);
+  const auto begin = this->Cells.cells.begin() + this->Cells.offsets[point];
+  const auto end = this->Cells.cells.begin() + this->Cells.offsets[point + 1];
+  const bool mirrored = this->TheMesh.mirrored() && this->TheMesh.dimension() == Dimension::Volume;
+  const auto& blocks = this->TheMesh.blocks();
+  site.cellBatches = 0;
+  for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
+  {
+    const CellTopology& t = topology(blocks[b].type);
+    CellBatch* batch = nullptr;
+    for (auto c = begin; c != end; ++c)
+    {
+      if (blocks.size() > 1 && cornerType(view.cellTypes[*c]) != blocks[b].type)
+      {
+        continue;
+      }
+      if (!batch || batch->batch.count == PacketWidth)
+      {
+        if (static_cast<std::size_t>(site.cellBatches) == site.cells.size())
+        {
+          site.cells.emplace_back();
+        }
+        batch = &site.cells[site.cellBatches++];
+        batch->block = b;
+        batch->batch.count = 0;
+      }
+      // Lanes to come repeat the last cell.
+      const Index* node = view.connectivity + view.offsets[*c];
+      for (int l = batch->batch.count++; l < PacketWidth; ++l)
+      {
+        batch->batch.cells[l] = *c;
+        for (int k = 0; k < t.nodes; ++k)
+        {
+          const double* p = this->Points + 3 * node[k];
+          batch->batch.points[k][0][l] = mirrored ? -p[0] : p[0];
+          batch->batch.points[k][1][l] = p[1];
+          batch->batch.points[k][2][l] = p[2];
+          batch->node[l] = node[k] == point ? k : k == 0 ? 0 : batch->node[l];
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+bool LocalSweeper::Implementation<Dim>::evaluate(
+  Worker<Dim>& w, const double* d, bool hessian) const
+{
+  for (std::size_t i = 0; i < this->Functions.size(); ++i)
+  {
+    w.sums[i] = this->Functions[i]->sum(w.site, d, hessian);
+    if (!std::isfinite(w.sums[i].f))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void LocalSweeper::Implementation<Dim>::findSlopes(
+  const Scalarizer& scalarizer, Worker<Dim>& w) const
+{
+  const std::size_t n = this->Functions.size();
+  if (n == 1) // every scalarization of one objective is as low as that is
+  {
+    w.slopes[0] = 1.0;
+    return;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.now[i] = this->Functions[i]->objective(this->Values[i], w.change[i]);
+  }
+  scalarizer.value(w.now, w.slopes);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.slopes[i] *= this->Functions[i]->slope(this->Values[i]);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+PatchSum<Dim> LocalSweeper::Implementation<Dim>::combined(const Worker<Dim>& w) const
+{
+  PatchSum<Dim> sum = {};
+  for (std::size_t i = 0; i < this->Functions.size(); ++i)
+  {
+    sum.f += w.slopes[i] * w.sums[i].f;
+    for (int r = 0; r < Dim; ++r)
+    {
+      sum.g[r] += w.slopes[i] * w.sums[i].g[r];
+      for (int c = 0; c < Dim; ++c)
+      {
+        sum.H[r][c] += w.slopes[i] * w.sums[i].H[r][c];
+      }
+    }
+  }
+  return sum;
+}
+
+//------------------------------------------------------------------------------
+/// What the scalarized objective changes by when the vertex goes to d; w.trial gets the patch sums' changes.
+template <int Dim>
+double LocalSweeper::Implementation<Dim>::changeAt(
+  const Scalarizer& scalarizer, Worker<Dim>& w, const double* d) const
+{
+  const std::size_t n = this->Functions.size();
+  double linear = 0;
+  bool visible = false;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.trial[i] = this->Functions[i]->value(w.site, d) - w.sums[i].f;
+    linear += w.slopes[i] * w.trial[i];
+    visible = visible || !(std::abs(w.trial[i]) <= visibleChange * std::abs(this->Values[i]));
+  }
+  if (n == 1 || !visible || !std::isfinite(linear))
+  {
+    return std::isnan(linear) ? std::numeric_limits<double>::infinity() : linear;
+  }
+  // Differences of the whole objective lose digits; they are only taken where there are enough.
+  const double before = scalarizer.value(w.now);
+  std::vector<double>& after = w.now;
+  std::vector<double> kept = w.now;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    after[i] = this->Functions[i]->objective(this->Values[i], w.change[i] + w.trial[i]);
+  }
+  const double change = scalarizer.value(after) - before;
+  w.now = kept;
+  return change;
+}
+
+//------------------------------------------------------------------------------
+/// An orthonormal basis of the directions a vertex may go in, as columns; returns how many.
+template <int Dim>
+int LocalSweeper::Implementation<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
+{
+  const auto given = [&](const std::vector<Vec3>& directions, double* u)
+  {
+    if (directions.empty())
+    {
+      return false;
+    }
+    double length2 = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      u[c] = dot(directions[v], this->Simplices.axis(c)) / this->Simplices.scale();
+      length2 += u[c] * u[c];
+    }
+    for (int c = 0; length2 > 0 && c < Dim; ++c)
+    {
+      u[c] /= std::sqrt(length2);
+    }
+    return length2 > 0;
+  };
+  double u[Dim];
+  if (given(this->Options.lines, u))
+  {
+    for (int r = 0; r < Dim; ++r)
+    {
+      basis[r][0] = u[r];
+    }
+    return 1;
+  }
+  if (given(this->Options.planes, u))
+  {
+    if constexpr (Dim == 3)
+    {
+      Vec3 t[2];
+      tangentsOf({ u[0], u[1], u[2] }, t);
+      for (int r = 0; r < 3; ++r)
+      {
+        basis[r][0] = t[0][r];
+        basis[r][1] = t[1][r];
+      }
+      return 2;
+    }
+    basis[0][0] = -u[1];
+    basis[1][0] = u[0];
+    return 1;
+  }
+  return Dim;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void LocalSweeper::Implementation<Dim>::newton(
+  const Worker<Dim>& w, const PatchSum<Dim>& sum, double* s) const
+{
+  double basis[Dim][Dim] = {};
+  const int free = this->allowed(w.site.vertex, basis);
+  if (free == Dim)
+  {
+    newtonDirection<Dim>(sum, s);
+    return;
+  }
+  // The same in the subspace, with the unit matrix in the rest.
+  PatchSum<Dim> part = {};
+  for (int i = 0; i < Dim; ++i)
+  {
+    part.H[i][i] = i < free ? 0.0 : sum.H[0][0] + sum.H[Dim - 1][Dim - 1];
+    for (int r = 0; r < Dim && i < free; ++r)
+    {
+      part.g[i] += basis[r][i] * sum.g[r];
+      for (int c = 0; c < Dim; ++c)
+      {
+        for (int j = 0; j < free; ++j)
+        {
+          part.H[i][j] += basis[r][i] * sum.H[r][c] * basis[c][j];
+        }
+      }
+    }
+  }
+  double inPart[Dim];
+  newtonDirection<Dim>(part, inPart);
+  for (int r = 0; r < Dim; ++r)
+  {
+    s[r] = 0;
+    for (int i = 0; i < free; ++i)
+    {
+      s[r] += basis[r][i] * inPart[i];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The largest step up to t that keeps x + d + t s within the vertex's limit.
+template <int Dim>
+double LocalSweeper::Implementation<Dim>::limited(
+  std::int32_t v, const double* d, const double* s, double t) const
+{
+  if (this->Options.limits.empty() || !std::isfinite(this->Options.limits[v]))
+  {
+    return t;
+  }
+  // |a + t s|^2 <= limit^2 with a the way gone so far.
+  const double limit = this->Options.limits[v];
+  double a2 = -limit * limit, as = 0, s2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    const double a = this->Simplices.coordinates()[VertexStride * static_cast<std::size_t>(v) + c] +
+      d[c] - this->Options.start[VertexStride * static_cast<std::size_t>(v) + c];
+    a2 += a * a;
+    as += a * s[c];
+    s2 += s[c] * s[c];
+  }
+  const double root2 = as * as - a2 * s2;
+  const double most = s2 > 0 && root2 > 0 ? (std::sqrt(root2) - as) / s2 : 0.0;
+  return std::max(0.0, std::min(t, most));
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+bool LocalSweeper::Implementation<Dim>::moveVertex(
+  std::int32_t v, const Scalarizer& scalarizer, Worker<Dim>& w, double& gradient2)
+{
+  this->gather(v, w.site);
+  double d[Dim] = {}, direction[Dim] = {}, lastGradient[Dim] = {};
+  double lastNorm2 = 0;
+  std::vector<double>& change = w.change;
+  bool moved = false;
+  for (int iteration = 0; iteration < this->Options.patchIterations; ++iteration)
+  {
+    if (!this->evaluate(w, d, this->Options.newton))
+    {
+      break; // beyond the barrier, which only inverted elements of the input are
+    }
+    this->findSlopes(scalarizer, w);
+    const PatchSum<Dim> sum = this->combined(w);
+    double norm2 = 0, mixed = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      norm2 += sum.g[c] * sum.g[c];
+      mixed += sum.g[c] * (sum.g[c] - lastGradient[c]);
+    }
+    gradient2 += iteration == 0 ? norm2 : 0.0;
+    if (!(norm2 > 0) || !std::isfinite(norm2))
+    {
+      break;
+    }
+
+    double t = this->Options.relaxation;
+    if (this->Options.newton)
+    {
+      this->newton(w, sum, direction);
+    }
+    else
+    {
+      // Polak-Ribiere+, and the step to where the slope would vanish by its change over a small one.
+      const double beta = iteration > 0 ? std::max(0.0, mixed / lastNorm2) : 0.0;
+      double basis[Dim][Dim] = {}, length2 = 0;
+      const int free = this->allowed(v, basis);
+      for (int r = 0; r < Dim; ++r)
+      {
+        double projected = free == Dim ? -sum.g[r] : 0.0;
+        for (int i = 0; i < free && free < Dim; ++i)
+        {
+          for (int c = 0; c < Dim; ++c)
+          {
+            projected -= basis[r][i] * basis[c][i] * sum.g[c];
+          }
+        }
+        direction[r] = projected + beta * direction[r];
+        lastGradient[r] = sum.g[r];
+        length2 += direction[r] * direction[r];
+      }
+      lastNorm2 = norm2;
+      if (!(length2 > 0))
+      {
+        break;
+      }
+      constexpr double part = 1e-4;
+      const PatchPacket<Dim>& p = w.site.patch.packets[0];
+      const double h = part * std::sqrt(p.N0[0] / p.C[0] / length2);
+      double probe[Dim], slopeHere = 0, slopeThere = 0;
+      for (int c = 0; c < Dim; ++c)
+      {
+        probe[c] = d[c] + h * direction[c];
+        slopeHere += direction[c] * sum.g[c];
+      }
+      const std::vector<PatchSum<Dim>> kept = w.sums;
+      const bool good = this->evaluate(w, probe, false);
+      const PatchSum<Dim> there = good ? this->combined(w) : PatchSum<Dim>{};
+      w.sums = kept;
+      for (int c = 0; c < Dim; ++c)
+      {
+        slopeThere += direction[c] * there.g[c];
+      }
+      const double curvature = (slopeThere - slopeHere) / h;
+      t = good && curvature > 0 ? -slopeHere / curvature : h / part;
+    }
+
+    double slope = 0, s2 = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      slope += direction[c] * sum.g[c];
+      s2 += direction[c] * direction[c];
+    }
+    if (!(slope < 0) || !std::isfinite(s2))
+    {
+      break;
+    }
+    if (!this->Options.allowInversion)
+    {
+      t = std::min(t, safety * stepToInversion<Dim>(w.site.patch, d, direction));
+    }
+    t = this->limited(v, d, direction, t);
+    bool found = false;
+    double to[Dim];
+    for (int halving = 0; halving < maximumHalvings && t > 0; ++halving, t *= 0.5)
+    {
+      for (int c = 0; c < Dim; ++c)
+      {
+        to[c] = d[c] + t * direction[c];
+      }
+      if (this->changeAt(scalarizer, w, to) <= sufficientDecrease * t * slope)
+      {
+        found = true;
+        break;
+      }
+    }
+    if (!found)
+    {
+      break;
+    }
+    std::copy_n(to, Dim, d);
+    moved = true;
+    if (!this->Simplices.surface())
+    {
+      for (std::size_t i = 0; i < change.size(); ++i)
+      {
+        change[i] += w.trial[i];
+      }
+    }
+  }
+  if (!moved)
+  {
+    return false;
+  }
+  const PatchPacket<Dim>& p = w.site.patch.packets[0];
+  const double size2 = p.C[0] > 0 ? p.N0[0] / p.C[0] : 0.0;
+  double d2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    d2 += d[c] * d[c];
+  }
+  if (Dim == 2 && this->Simplices.surface())
+  {
+    if (!this->placeOnSurface(v, d, scalarizer, w))
+    {
+      return false;
+    }
+  }
+  else
+  {
+    Vec3 x = { 0, 0, 0 };
+    for (int c = 0; c < Dim; ++c)
+    {
+      x[c] = this->Simplices.coordinates()[VertexStride * static_cast<std::size_t>(v) + c] + d[c];
+    }
+    this->place(v, x);
+  }
+  return d2 > this->Options.culling * this->Options.culling * size2;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void LocalSweeper::Implementation<Dim>::place(std::int32_t v, const Vec3& x)
+{
+  double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+  std::copy(x.begin(), x.end(), at);
+  if (this->NeedsCells)
+  {
+    this->Simplices.storeVertex(
+      at, this->Points + 3 * static_cast<std::size_t>(this->Simplices.point(v)));
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Goes along the tangents and back to the surface, and stays there if that is better than before.
+template <int Dim>
+bool LocalSweeper::Implementation<Dim>::placeOnSurface(
+  std::int32_t v, const double* d, const Scalarizer& scalarizer, Worker<Dim>& w)
+{
+  const std::size_t n = this->Functions.size();
+  const double zero[Dim] = {};
+  const double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+  const Vec3 before = { at[0], at[1], at[2] };
+  std::vector<double> old(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    old[i] = this->Functions[i]->value(w.site, zero);
+  }
+  Vec3 x = before;
+  for (int c = 0; c < Dim; ++c)
+  {
+    x += (d[c] / this->Simplices.scale()) * w.site.axes[c];
+  }
+  this->place(v, this->Options.surface ? this->Options.surface->closest(x) : x);
+  this->gather(v, w.site);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.sums[i].f = old[i];
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  double least = infinity;
+  for (int i = 0; i < w.site.patch.count; ++i)
+  {
+    const PatchPacket<Dim>& p = w.site.patch.packets[i];
+    least = std::min(least, leastOf(p.D0));
+  }
+  const bool upright = this->Options.allowInversion || least > 0;
+  if (!upright || !(this->changeAt(scalarizer, w, zero) < 0))
+  {
+    this->place(v, before);
+    return false;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.change[i] += w.trial[i];
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void LocalSweeper::Implementation<Dim>::wake(std::int32_t v, std::vector<unsigned char>& next) const
+{
+  // Threads may write the same flag at once; they write the same.
+  __atomic_store_n(&next[v], static_cast<unsigned char>(1), __ATOMIC_RELAXED);
+  const std::int32_t* ids = this->Simplices.patchVertices();
+  const std::size_t end = static_cast<std::size_t>(Dim) * this->Simplices.patchStart(v + 1);
+  for (std::size_t i = static_cast<std::size_t>(Dim) * this->Simplices.patchStart(v); i < end; ++i)
+  {
+    if (ids[i] < this->Simplices.freeVertices())
+    {
+      __atomic_store_n(&next[ids[i]], static_cast<unsigned char>(1), __ATOMIC_RELAXED);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+SweepResult LocalSweeper::Implementation<Dim>::sweep(
+  const Scalarizer& scalarizer, std::vector<double>& values)
+{
+  const std::size_t n = this->Functions.size();
+  this->Values = values;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    this->Functions[i]->setCurrent(values[i]);
+  }
+  const VertexBlocks& blocks = this->Simplices.blocks();
+  const std::size_t numberOfBlocks = blocks.byColour.size();
+  std::vector<double> gradient2(numberOfBlocks, 0.0), changes(n * numberOfBlocks, 0.0);
+  std::vector<Index> visited(numberOfBlocks, 0), moved(numberOfBlocks, 0);
+  std::vector<unsigned char> next(this->Simplices.freeVertices(), 0);
+  std::vector<double> total(n, 0.0);
+#pragma omp parallel num_threads(resolveThreads(this->Options.threads)) if (numberOfBlocks > 1)
+  {
+    Worker<Dim> w;
+    w.sums.resize(n);
+    w.trial.assign(n, 0.0);
+    w.now = values;
+    w.slopes.assign(n, 1.0);
+    for (std::size_t colour = 0; colour + 1 < blocks.colourStarts.size(); ++colour)
+    {
+      const std::int32_t first = blocks.colourStarts[colour],
+                         last = blocks.colourStarts[colour + 1];
+#pragma omp for schedule(dynamic)
+      for (std::int32_t i = first; i < last; ++i)
+      {
+        // A block sees the changes of the colours before, and its own.
+        w.change = total;
+        const std::int32_t begin = blocks.byColour[i] * blocks.size;
+        const std::int32_t end = std::min(this->Simplices.freeVertices(), begin + blocks.size);
+        for (std::int32_t v = begin; v < end; ++v)
+        {
+          if (this->Active[v])
+          {
+            ++visited[i];
+            if (this->moveVertex(v, scalarizer, w, gradient2[i]))
+            {
+              ++moved[i];
+              this->wake(v, next);
+            }
+          }
+        }
+        for (std::size_t k = 0; k < n; ++k)
+        {
+          changes[n * i + k] = w.change[k] - total[k];
+        }
+      }
+#pragma omp single
+      for (std::int32_t i = first; i < last; ++i)
+      {
+        for (std::size_t k = 0; k < n; ++k)
+        {
+          total[k] += changes[n * i + k];
+        }
+      }
+    }
+  }
+  SweepResult result;
+  double norm2 = 0;
+  for (std::size_t i = 0; i < numberOfBlocks; ++i)
+  {
+    result.visited += visited[i];
+    result.moved += moved[i];
+    norm2 += gradient2[i];
+  }
+  result.gradientNorm = std::sqrt(norm2) / this->Simplices.scale();
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    values[i] = this->Functions[i]->objective(values[i], total[i]);
+  }
+  if (this->Options.culling > 0)
+  {
+    this->Active.swap(next);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+LocalSweeper::LocalSweeper(SimplexMesh& simplices, const Mesh& mesh, double* points,
+  const std::vector<LocalTerm>& terms, const LocalOptions& options)
+{
+  if (simplices.dimension() == 3)
+  {
+    this->Impl = std::make_unique<Implementation<3>>(simplices, mesh, points, terms, options);
+  }
+  else
+  {
+    this->Impl = std::make_unique<Implementation<2>>(simplices, mesh, points, terms, options);
+  }
+}
+
+LocalSweeper::~LocalSweeper() = default;
+
+SweepResult LocalSweeper::sweep(const Scalarizer& scalarizer, std::vector<double>& values)
+{
+  return this->Impl->sweep(scalarizer, values);
+}
+
+void LocalSweeper::wakeAll()
+{
+  std::fill(this->Impl->Active.begin(), this->Impl->Active.end(), 1);
+}
+}

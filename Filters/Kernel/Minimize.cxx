@@ -1,0 +1,549 @@
+#include "Minimize.h"
+
+#include "VectorAlgebra.h"
+
+#include <cmath>
+#include <utility>
+
+namespace tautline
+{
+namespace
+{
+constexpr double infinity = std::numeric_limits<double>::infinity();
+using Vector = std::vector<double>;
+
+// Line search.
+constexpr double sufficientDecrease = 1e-4; // Armijo
+constexpr double curvatureNewton = 0.9;     // of the slope that may remain
+constexpr double curvatureConjugate = 0.2;
+constexpr int mostTrials = 40;
+constexpr double longestExtension = 100; // of the first trial step
+constexpr double extendAtLeast = 1.5, extendAtMost = 5.0;
+constexpr double bracketMargin = 0.1; // of a bracket, at its ends, that interpolation keeps off
+constexpr double bracketEnd = 1e-12;
+constexpr double firstDecrease = 0.1; // of the value, that the first step of all aims at
+
+// Iterations in a row that change the value by rounding only, before there is no progress.
+constexpr int mostStalled = 3;
+constexpr double rounding = 1e-15;
+
+// Directions.
+constexpr int memoryLength = 8;          // pairs of L-BFGS
+constexpr double leastCurvature = 1e-10; // cosine between s and y of a pair
+constexpr double leastDescent = 1e-8;    // cosine between -g and a direction
+constexpr double restartOverlap = 0.2;   // of successive gradients (Powell)
+constexpr int mostInnerIterations = 200;
+constexpr double loosestForcing = 0.25; // of the inner residual
+constexpr double differenceStep = 1e-7;
+
+/// What conjugate gradients, L-BFGS and Newton share: the point, its gradient, the line search.
+class Minimizer
+{
+public:
+  Minimizer(SmoothFunction& function, double* x, const MinimizeOptions& options)
+    : Function(function)
+    , Options(options)
+    , Size(function.size())
+    , Algebra(this->Size, options.threads)
+    , X(x)
+    , G(this->Size)
+    , D(this->Size)
+  {
+  }
+
+  Minimization run();
+
+private:
+  struct Pair
+  {
+    Vector s, y;
+    double sy, yy;
+  };
+  struct Trial
+  {
+    double t = 0, f = infinity, slope = 0;
+  };
+
+  double dot(const Vector& a, const Vector& b) const
+  {
+    return this->Algebra.dot(a.data(), b.data());
+  }
+  void evaluate(Trial& trial);
+  void accept(const Trial& trial);
+  bool search(double first, double curvature, bool strong);
+  double firstStep() const;
+  /// z = P r, or r.
+  bool precondition(const Vector& r, Vector& z);
+  bool steepest();
+  void quasiNewton();
+  void conjugate();
+  void newton();
+  void hessianTimes(const Vector& d, Vector& product);
+  void remember();
+  bool iterate();
+
+  SmoothFunction& Function;
+  const MinimizeOptions& Options;
+  std::size_t Size;
+  VectorAlgebra Algebra;
+  double* X;
+  Vector G, D;                    ///< gradient and direction
+  Vector OldG, TrialX, TrialG, Z; ///< gradient before the last step; work space
+  double F = infinity, Norm = 0, FirstNorm = 0, Slope = 0;
+  double Step = 0, StepSlope = 0; ///< of the last step
+  double First = 1;               ///< first trial step along D
+  bool Fresh = true;              ///< D does not use the history
+  std::vector<Pair> Pairs;        ///< oldest first
+  Minimization Result;
+};
+
+//------------------------------------------------------------------------------
+void Minimizer::evaluate(Trial& trial)
+{
+  const double t = trial.t;
+  this->Algebra.each([&](Index i) { this->TrialX[i] = this->X[i] + t * this->D[i]; });
+  trial.f = this->Function.valueAndGradient(this->TrialX.data(), this->TrialG.data());
+  trial.slope = std::isfinite(trial.f) ? this->dot(this->TrialG, this->D) : 0.0;
+  ++this->Result.evaluations;
+  if (!std::isfinite(trial.f) || !std::isfinite(trial.slope))
+  {
+    trial.f = infinity;
+  }
+}
+
+void Minimizer::accept(const Trial& trial)
+{
+  std::copy(this->TrialX.begin(), this->TrialX.end(), this->X);
+  std::swap(this->OldG, this->G);
+  std::swap(this->G, this->TrialG);
+  this->F = trial.f;
+  this->Step = trial.t;
+  this->StepSlope = this->Slope;
+}
+
+/// The minimum of the cubic through two values and slopes, well inside the bracket.
+double interpolate(double lo, double flo, double slo, double hi, double fhi, double shi)
+{
+  const double width = hi - lo;
+  double t = lo + 0.5 * width;
+  if (std::isfinite(fhi))
+  {
+    const double d1 = slo + shi - 3 * (fhi - flo) / width;
+    const double d2 = std::sqrt(d1 * d1 - slo * shi);
+    const double cubic = hi - width * (shi + d2 - d1) / (shi - slo + 2 * d2);
+    t = std::isfinite(cubic) ? cubic : t;
+  }
+  return std::min(std::max(t, lo + bracketMargin * width), hi - bracketMargin * width);
+}
+
+//------------------------------------------------------------------------------
+/**
+ * @brief Goes along D to a point of the Wolfe conditions. The bracket [lo, hi] always holds one: at lo the
+ * value is low enough and falls too steeply, at hi it is too high or rises too steeply.
+ */
+bool Minimizer::search(double first, double curvature, bool strong)
+{
+  const double limit =
+    this->Function.largestStep(this->X, this->D.data(), longestExtension * first);
+  if (!(limit > 0) || !(first > 0))
+  {
+    return false;
+  }
+  Trial lo, hi, best, now;
+  lo.f = this->F;
+  lo.slope = this->Slope;
+  hi.t = infinity;
+  now.t = std::min(first, limit);
+  bool found = false;
+  for (int trial = 0; trial < mostTrials && !found; ++trial)
+  {
+    this->evaluate(now);
+    const bool low =
+      now.f <= this->F + sufficientDecrease * now.t * this->Slope && now.f <= this->F;
+    if (low && now.f < best.f)
+    {
+      best = now;
+    }
+    if (!low || (strong && now.slope > -curvature * this->Slope))
+    {
+      hi = now;
+    }
+    else if (now.slope < curvature * this->Slope)
+    {
+      if (now.t >= limit)
+      {
+        break;
+      }
+      const double secant = now.slope > lo.slope
+        ? now.t + (now.t - lo.t) * now.slope / (lo.slope - now.slope)
+        : infinity;
+      const double extended =
+        std::min(std::max(secant, extendAtLeast * now.t), extendAtMost * now.t);
+      lo = now;
+      now.t = std::min(extended, limit);
+    }
+    else
+    {
+      found = true;
+      break;
+    }
+    if (hi.t < infinity)
+    {
+      if (hi.t - lo.t <= bracketEnd * hi.t)
+      {
+        break;
+      }
+      now.t = interpolate(lo.t, lo.f, lo.slope, hi.t, hi.f, hi.slope);
+    }
+  }
+  if (!found && best.t > 0 && best.t != now.t)
+  {
+    this->evaluate(best);
+  }
+  if (!found && best.t == 0)
+  {
+    return false;
+  }
+  this->accept(found ? now : best);
+  return true;
+}
+
+/// The first step of all: to a somewhat smaller value, or one of length 1 if the value says nothing.
+double Minimizer::firstStep() const
+{
+  return this->F != 0 ? firstDecrease * std::abs(this->F) / std::abs(this->Slope)
+                      : 1 / std::sqrt(std::abs(this->Slope));
+}
+
+//------------------------------------------------------------------------------
+bool Minimizer::precondition(const Vector& r, Vector& z)
+{
+  z.resize(this->Size);
+  const bool done = this->Function.precondition(r.data(), z.data());
+  if (!done)
+  {
+    z = r;
+  }
+  return done;
+}
+
+/// Along the preconditioned gradient.
+bool Minimizer::steepest()
+{
+  const bool scaled = this->precondition(this->G, this->Z);
+  this->Algebra.each([&](Index i) { this->D[i] = -this->Z[i]; });
+  this->Slope = this->dot(this->G, this->D);
+  this->First = scaled ? 1.0 : this->firstStep();
+  this->Fresh = true;
+  return this->Slope < 0 && std::isfinite(this->Slope);
+}
+
+/// The pair of the last step, if the function curves upwards along it.
+void Minimizer::remember()
+{
+  Pair pair;
+  if (this->Pairs.size() == memoryLength)
+  {
+    pair = std::move(this->Pairs.front());
+    this->Pairs.erase(this->Pairs.begin());
+  }
+  pair.s.resize(this->Size);
+  pair.y.resize(this->Size);
+  const double t = this->Step;
+  double *s = pair.s.data(), *y = pair.y.data();
+  this->Algebra.each(
+    [&](Index i)
+    {
+      s[i] = t * this->D[i];
+      y[i] = this->G[i] - this->OldG[i];
+    });
+  pair.sy = this->Algebra.dot(s, y);
+  pair.yy = this->Algebra.dot(y, y);
+  const double ss = this->Algebra.dot(s, s);
+  if (pair.sy > leastCurvature * std::sqrt(ss * pair.yy))
+  {
+    this->Pairs.push_back(std::move(pair));
+  }
+}
+
+/// The two loops of L-BFGS; the update of each loop and the product of the next are one pass.
+void Minimizer::quasiNewton()
+{
+  const int pairs = static_cast<int>(this->Pairs.size());
+  double* q = this->D.data();
+  double product = 0;
+  if (pairs > 0)
+  {
+    const double* s = this->Pairs.back().s.data();
+    product = this->Algebra.sum(
+      [&](Index i)
+      {
+        q[i] = -this->G[i];
+        return q[i] * s[i];
+      });
+  }
+  double alpha[memoryLength];
+  for (int k = pairs - 1; k >= 0; --k)
+  {
+    alpha[k] = product / this->Pairs[k].sy;
+    const double a = alpha[k];
+    const double* y = this->Pairs[k].y.data();
+    const double* s = this->Pairs[std::max(k - 1, 0)].s.data();
+    product = this->Algebra.sum(
+      [=](Index i)
+      {
+        q[i] -= a * y[i];
+        return q[i] * s[i];
+      });
+  }
+  double gamma = this->Pairs.back().sy / this->Pairs.back().yy;
+  if (this->precondition(this->Pairs.back().y, this->Z))
+  {
+    gamma = this->Pairs.back().sy / this->dot(this->Pairs.back().y, this->Z);
+    this->precondition(this->D, this->Z);
+    std::swap(this->D, this->Z);
+    q = this->D.data();
+  }
+  const double* y = this->Pairs.front().y.data();
+  product = this->Algebra.sum(
+    [=](Index i)
+    {
+      q[i] *= gamma;
+      return q[i] * y[i];
+    });
+  for (int k = 0; k < pairs; ++k)
+  {
+    const double a = alpha[k] - product / this->Pairs[k].sy;
+    const double* s = this->Pairs[k].s.data();
+    const double* next = k + 1 < pairs ? this->Pairs[k + 1].y.data() : this->G.data();
+    product = this->Algebra.sum(
+      [=](Index i)
+      {
+        q[i] += a * s[i];
+        return q[i] * next[i];
+      });
+  }
+  this->Slope = product;
+  this->First = 1;
+  this->Fresh = false;
+}
+
+//------------------------------------------------------------------------------
+void Minimizer::conjugate()
+{
+  // With z = P g: beta is z.g / z'.g' (Fletcher-Reeves) or z.(g - g') / z'.g', at least 0 (Polak-Ribiere+).
+  this->precondition(this->OldG, this->Z);
+  const double before = this->dot(this->OldG, this->Z);
+  this->precondition(this->G, this->Z);
+  const double now = this->dot(this->G, this->Z), overlap = this->dot(this->OldG, this->Z);
+  const bool fletcher = this->Options.method == Optimizer::ConjugateGradientFletcherReeves;
+  double beta = std::max(0.0, (fletcher ? now : now - overlap) / before);
+  if (std::abs(overlap) > restartOverlap * now)
+  {
+    beta = 0;
+  }
+  this->Slope = this->Algebra.sum(
+    [&](Index i)
+    {
+      this->D[i] = beta * this->D[i] - this->Z[i];
+      return this->D[i] * this->G[i];
+    });
+  // As far as the last step would have gone by its slope.
+  this->First = this->Step * this->StepSlope / this->Slope;
+  this->Fresh = beta == 0;
+}
+
+//------------------------------------------------------------------------------
+void Minimizer::hessianTimes(const Vector& d, Vector& product)
+{
+  if (this->Function.hessianTimes(d.data(), product.data()))
+  {
+    return;
+  }
+  // Differences of gradients, on the allowed side.
+  const double xx = this->Algebra.dot(this->X, this->X);
+  const double step = differenceStep * std::max(1.0, std::sqrt(xx)) / std::sqrt(this->dot(d, d));
+  const double t = 0.5 * this->Function.largestStep(this->X, d.data(), 2 * step);
+  this->Algebra.each([&](Index i) { this->TrialX[i] = this->X[i] + t * d[i]; });
+  const double f = this->Function.valueAndGradient(this->TrialX.data(), product.data());
+  ++this->Result.evaluations;
+  const bool good = std::isfinite(f) && t > 0;
+  this->Algebra.each([&](Index i) { product[i] = good ? (product[i] - this->G[i]) / t : 0.0; });
+}
+
+/// Conjugate gradients on the Newton system, ended at directions that do not curve upwards.
+void Minimizer::newton()
+{
+  Vector p(this->Size, 0.0), r(this->G), d(this->Size), product(this->Size);
+  this->precondition(r, this->Z);
+  double rz = this->dot(r, this->Z);
+  this->Algebra.each([&](Index i) { d[i] = -this->Z[i]; });
+  const double forcing = std::min(loosestForcing, std::sqrt(this->Norm / this->FirstNorm));
+  this->First = 1;
+  this->Fresh = false;
+  const int most = static_cast<int>(std::min<std::size_t>(2 * this->Size, mostInnerIterations));
+  for (int i = 0; i < most; ++i)
+  {
+    this->hessianTimes(d, product);
+    const double curvature = this->dot(d, product), dd = this->dot(d, d);
+    if (!(curvature > 0) || !std::isfinite(rz / curvature) || !(dd > 0))
+    {
+      if (i == 0)
+      {
+        this->steepest();
+        return;
+      }
+      break;
+    }
+    const double a = rz / curvature;
+    const double rr = this->Algebra.sum(
+      [&](Index k)
+      {
+        p[k] += a * d[k];
+        r[k] += a * product[k];
+        return r[k] * r[k];
+      });
+    if (std::sqrt(rr) <= forcing * this->Norm)
+    {
+      break;
+    }
+    this->precondition(r, this->Z);
+    const double next = this->dot(r, this->Z), beta = next / rz;
+    rz = next;
+    this->Algebra.each([&](Index k) { d[k] = beta * d[k] - this->Z[k]; });
+  }
+  std::swap(this->D, p);
+  this->Slope = this->dot(this->G, this->D);
+}
+
+//------------------------------------------------------------------------------
+/// One direction and one step along it; a direction that fails is replaced by the steepest once.
+bool Minimizer::iterate()
+{
+  const Optimizer method = this->Options.method;
+  const bool conjugateGradient = method == Optimizer::ConjugateGradientFletcherReeves ||
+    method == Optimizer::ConjugateGradientPolakRibiere;
+  const double curvature = conjugateGradient ? curvatureConjugate : curvatureNewton;
+  if (method == Optimizer::NewtonConjugateGradient)
+  {
+    this->newton();
+  }
+  else if (conjugateGradient && this->Result.iterations > 0)
+  {
+    this->conjugate();
+  }
+  else if (!conjugateGradient && !this->Pairs.empty())
+  {
+    this->quasiNewton();
+  }
+  else if (!this->steepest())
+  {
+    return false;
+  }
+  const double length = std::sqrt(this->dot(this->D, this->D));
+  const bool descent = this->Slope < -leastDescent * length * this->Norm;
+  bool moved = (descent || this->Fresh) && this->Slope < 0 && std::isfinite(length) &&
+    this->search(this->First, curvature, conjugateGradient);
+  if (!moved && !this->Fresh)
+  {
+    this->Pairs.clear();
+    moved = this->steepest() && this->search(this->First, curvature, conjugateGradient);
+  }
+  if (moved && method == Optimizer::LimitedMemoryBFGS)
+  {
+    this->remember();
+  }
+  return moved;
+}
+
+//------------------------------------------------------------------------------
+Minimization Minimizer::run()
+{
+  this->F = this->Function.valueAndGradient(this->X, this->G.data());
+  ++this->Result.evaluations;
+  this->Result.value = std::isnan(this->F) ? infinity : this->F;
+  if (this->Size == 0 || !std::isfinite(this->F))
+  {
+    this->Result.reason = this->Size == 0 ? StopReason::NoFreeVertices : StopReason::NoProgress;
+    return this->Result;
+  }
+  for (Vector* work : { &this->OldG, &this->TrialX, &this->TrialG, &this->Z })
+  {
+    work->resize(this->Size);
+  }
+  this->Norm = this->FirstNorm = std::sqrt(this->dot(this->G, this->G));
+  this->Result.gradientNorm = this->Norm;
+  if (this->FirstNorm == 0 || !std::isfinite(this->FirstNorm))
+  {
+    this->Result.reason = this->FirstNorm == 0 ? StopReason::GradientNorm : StopReason::NoProgress;
+    return this->Result;
+  }
+  const bool everyTime = this->Options.method == Optimizer::NewtonConjugateGradient;
+  int stalled = 0;
+  while (this->Result.iterations < this->Options.maximumIterations)
+  {
+    if (everyTime || this->Result.iterations % this->Options.refresh == 0)
+    {
+      this->Function.linearize(this->X);
+    }
+    const double before = this->F;
+    const bool moved = this->iterate();
+    this->Norm = std::sqrt(this->dot(this->G, this->G));
+    this->Result.gradientNorm = this->Norm;
+    this->Result.value = this->F;
+    if (!moved)
+    {
+      this->Result.reason = StopReason::NoProgress;
+      return this->Result;
+    }
+    ++this->Result.iterations;
+    stalled = before - this->F <= rounding * std::abs(this->F) ? stalled + 1 : 0;
+    if (this->Options.observer &&
+      !this->Options.observer(this->Result.iterations, this->F, this->Norm, this->X))
+    {
+      this->Result.reason = StopReason::Aborted;
+      return this->Result;
+    }
+    if (this->Norm == 0 || this->Norm <= this->Options.gradientNorm * this->FirstNorm)
+    {
+      this->Result.reason = StopReason::GradientNorm;
+      return this->Result;
+    }
+    if (stalled == mostStalled)
+    {
+      this->Result.reason = StopReason::NoProgress;
+      return this->Result;
+    }
+    if (this->Options.relativeChange > 0 &&
+      before - this->F <= this->Options.relativeChange * std::abs(this->F))
+    {
+      this->Result.reason = StopReason::RelativeChange;
+      return this->Result;
+    }
+  }
+  this->Result.reason = StopReason::IterationLimit;
+  return this->Result;
+}
+}
+
+//------------------------------------------------------------------------------
+Minimization minimize(SmoothFunction& function, double* x, const MinimizeOptions& options)
+{
+  switch (options.method)
+  {
+    case Optimizer::ConjugateGradientFletcherReeves:
+    case Optimizer::ConjugateGradientPolakRibiere:
+    case Optimizer::LimitedMemoryBFGS:
+    case Optimizer::NewtonConjugateGradient:
+      break;
+    default:
+      throw Error("This optimizer works on one vertex at a time; choose a global one.");
+  }
+  if (options.maximumIterations < 0 || options.refresh < 1 || !(options.gradientNorm >= 0) ||
+    !(options.relativeChange >= 0))
+  {
+    throw Error("Iterations and tolerances must be at least 0.");
+  }
+  return Minimizer(function, x, options).run();
+}
+}

@@ -1,0 +1,259 @@
+/**
+ * @file PatchFunction.h
+ * @brief What one objective is as a function of one free vertex: in closed form where it is an energy f(N, D),
+ * else through the metric's own evaluator. Internal: not installed.
+ */
+#ifndef tautline_PatchFunction_h
+#define tautline_PatchFunction_h
+
+#include "ElementFunction.h"
+#include "Energies.h"
+
+#include <memory>
+
+namespace tautline
+{
+/// Cells of one type around a vertex, as the metrics' evaluators take them.
+struct CellBatch
+{
+  Batch batch;
+  int block = 0;
+  int node[PacketWidth]; ///< the place of the vertex in each cell
+};
+
+/// All that is known of the vertex at hand. One per thread.
+template <int Dim>
+struct PatchSite
+{
+  std::int32_t vertex = -1;
+  Patch<Dim> patch;
+  std::vector<CellBatch> cells; ///< only filled if a function needs them
+  int cellBatches = 0;
+  /// Displacement in the coordinates of the mesh = sum axes[c] d[c].
+  Vec3 axes[Dim];
+};
+
+/// The value, gradient and Hessian of one objective by the displacement of a vertex.
+template <int Dim>
+class PatchFunction
+{
+public:
+  virtual ~PatchFunction() = default;
+  virtual bool needsCells() const { return false; }
+  /// The scale of PowerMean and Maximum: the objective's current value.
+  virtual void setCurrent(double /*value*/) {}
+  /// The objective when its patch sum has changed by `change` since setCurrent(value).
+  virtual double objective(double value, double change) const { return value + change; }
+  /// Its derivative by the change, at 0.
+  virtual double slope(double /*value*/) const { return 1.0; }
+  virtual double value(const PatchSite<Dim>& site, const double* d) const = 0;
+  virtual PatchSum<Dim> sum(const PatchSite<Dim>& site, const double* d, bool hessian) const = 0;
+};
+
+template <int Dim, class Energy>
+class EnergyFunction : public PatchFunction<Dim>
+{
+public:
+  explicit EnergyFunction(const Energy& energy)
+    : TheEnergy(energy)
+  {
+  }
+  double value(const PatchSite<Dim>& site, const double* d) const override
+  {
+    return valueOver(site.patch, d, this->TheEnergy);
+  }
+  PatchSum<Dim> sum(const PatchSite<Dim>& site, const double* d, bool) const override
+  {
+    return sumOver(site.patch, d, this->TheEnergy);
+  }
+
+private:
+  Energy TheEnergy;
+};
+
+/// Any metric and template.
+template <int Dim>
+class MetricFunction : public PatchFunction<Dim>
+{
+public:
+  /// The sum must outlive the function.
+  explicit MetricFunction(const ObjectiveSum::Implementation& sum)
+    : Sum(sum)
+  {
+    for (const CellBlock& block : sum.elements.mesh().blocks())
+    {
+      const Metric metric = sum.objective.metric;
+      const Mesh& mesh = sum.elements.mesh();
+      this->Contexts.push_back(contextFor(mesh, block, metric, sum.elements.options()));
+      this->Value.push_back(evaluatorFor(mesh, metric, metricCode(metric), block, false));
+      this->Gradient.push_back(evaluatorFor(mesh, metric, metricCode(metric), block, true));
+    }
+  }
+
+  bool needsCells() const override { return true; }
+  void setCurrent(double value) override { this->Current = value; }
+
+  double objective(double value, double change) const override
+  {
+    switch (this->Sum.function.form)
+    {
+      case ObjectiveTemplate::PowerMean: // the patch sum is in units of value^p
+        return value * std::pow(std::max(0.0, 1.0 + change), 1.0 / this->Sum.function.power);
+      case ObjectiveTemplate::Maximum: // the patch sum is in units of exp(k value)
+        return value + std::log1p(std::max(-1.0, change)) / this->Sum.function.power;
+      default:
+        return value + change;
+    }
+  }
+
+  double slope(double value) const override
+  {
+    const ElementFunction& function = this->Sum.function;
+    return function.form == ObjectiveTemplate::PowerMean ? value / function.power
+      : function.form == ObjectiveTemplate::Maximum      ? 1.0 / function.power
+                                                         : 1.0;
+  }
+
+  double value(const PatchSite<Dim>& site, const double* d) const override
+  {
+    double total = 0;
+    const Vec3 shift = this->shiftOf(site, d);
+    for (int i = 0; i < site.cellBatches; ++i)
+    {
+      const CellBatch& cells = site.cells[i];
+      if (this->Value[cells.block])
+      {
+        Batch batch = cells.batch;
+        Packet value, slope;
+        this->evaluate(cells, shift, this->Value[cells.block], batch, value, slope);
+        total += sumOf(value);
+      }
+    }
+    return total;
+  }
+
+  PatchSum<Dim> sum(const PatchSite<Dim>& site, const double* d, bool hessian) const override
+  {
+    PatchSum<Dim> result = this->gradient(site, d);
+    if (hessian)
+    {
+      // By central differences of the gradient, over a small part of the patch's size.
+      constexpr double part = 1e-5;
+      const double h = part * this->sizeOf(site);
+      for (int r = 0; r < Dim; ++r)
+      {
+        double forth[Dim], back[Dim];
+        std::copy_n(d, Dim, forth);
+        std::copy_n(d, Dim, back);
+        forth[r] += h;
+        back[r] -= h;
+        const PatchSum<Dim> plus = this->gradient(site, forth), minus = this->gradient(site, back);
+        for (int c = 0; c < Dim; ++c)
+        {
+          result.H[r][c] = (plus.g[c] - minus.g[c]) / (2.0 * h);
+        }
+      }
+      for (int r = 0; r < Dim; ++r)
+      {
+        for (int c = 0; c < r; ++c)
+        {
+          result.H[r][c] = result.H[c][r] = 0.5 * (result.H[r][c] + result.H[c][r]);
+        }
+      }
+    }
+    return result;
+  }
+
+private:
+  Vec3 shiftOf(const PatchSite<Dim>& site, const double* d) const
+  {
+    Vec3 shift = { 0, 0, 0 };
+    for (int c = 0; c < Dim; ++c)
+    {
+      shift += d[c] * site.axes[c];
+    }
+    return shift;
+  }
+
+  /// Root mean square distance, in displacement coordinates, of the vertices of the first packet.
+  static double sizeOf(const PatchSite<Dim>& site)
+  {
+    const PatchPacket<Dim>& p = site.patch.packets[0];
+    return std::sqrt(p.N0[0] / p.C[0]);
+  }
+
+  void evaluate(const CellBatch& cells, const Vec3& shift, BatchEvaluator evaluator, Batch& batch,
+    Packet& value, Packet& slope) const
+  {
+    const BatchContext& context = this->Contexts[cells.block];
+    const bool mirrored =
+      context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        batch.points[cells.node[l]][c][l] += mirrored && c == 0 ? -shift[c] : shift[c];
+      }
+    }
+    evaluator(context, batch);
+    batch.value = finiteOrZero(batch.value);
+    const ElementFunction& function = this->Sum.function;
+    withTemplate(function.form,
+      [&](auto form)
+      {
+        constexpr ObjectiveTemplate Form = decltype(form)::value;
+        if constexpr (Form == ObjectiveTemplate::PowerMean || Form == ObjectiveTemplate::Maximum)
+        {
+          function.template share<Form>(context, batch, this->Current, value, slope);
+        }
+        else
+        {
+          function.template term<Form>(context, batch, value, slope);
+        }
+      });
+    value = onlyCells(batch, value);
+    slope = onlyCells(batch, slope);
+  }
+
+  PatchSum<Dim> gradient(const PatchSite<Dim>& site, const double* d) const
+  {
+    PatchSum<Dim> result = {};
+    Vec3 total = { 0, 0, 0 };
+    const Vec3 shift = this->shiftOf(site, d);
+    for (int i = 0; i < site.cellBatches; ++i)
+    {
+      const CellBatch& cells = site.cells[i];
+      if (!this->Gradient[cells.block])
+      {
+        continue;
+      }
+      Batch batch = cells.batch;
+      Packet value, slope;
+      this->evaluate(cells, shift, this->Gradient[cells.block], batch, value, slope);
+      const BatchContext& context = this->Contexts[cells.block];
+      const bool mirrored =
+        context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
+      result.f += sumOf(value);
+      for (int l = 0; l < batch.count; ++l)
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          const double g = slope[l] * batch.gradient[cells.node[l]][c][l];
+          total[c] += !std::isfinite(g) ? 0.0 : mirrored && c == 0 ? -g : g;
+        }
+      }
+    }
+    for (int c = 0; c < Dim; ++c)
+    {
+      result.g[c] = dot(total, site.axes[c]);
+    }
+    return result;
+  }
+
+  const ObjectiveSum::Implementation& Sum;
+  std::vector<BatchContext> Contexts;
+  std::vector<BatchEvaluator> Value, Gradient;
+  double Current = 1;
+};
+}
+#endif

@@ -1,0 +1,411 @@
+// The global minimisers on functions whose minima are known.
+#include "Check.h"
+
+#include "tautline/Minimize.h"
+
+#include <limits>
+#include <numeric>
+
+using namespace tautline;
+
+namespace
+{
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Optimizer methods[] = { Optimizer::ConjugateGradientFletcherReeves,
+  Optimizer::ConjugateGradientPolakRibiere, Optimizer::LimitedMemoryBFGS,
+  Optimizer::NewtonConjugateGradient };
+using Vector = std::vector<double>;
+
+const char* nameOf(Optimizer method)
+{
+  return method == Optimizer::ConjugateGradientFletcherReeves ? "Fletcher-Reeves"
+    : method == Optimizer::ConjugateGradientPolakRibiere      ? "Polak-Ribiere+"
+    : method == Optimizer::LimitedMemoryBFGS                  ? "L-BFGS"
+                                                              : "Newton";
+}
+
+/// Rosenbrock's valley in each pair of variables; 0 at (1, 1, ...).
+struct Rosenbrock : SmoothFunction
+{
+  std::size_t n;
+  explicit Rosenbrock(std::size_t size)
+    : n(size)
+  {
+  }
+  std::size_t size() const override { return this->n; }
+  double valueAndGradient(const double* x, double* g) override
+  {
+    double f = 0;
+    for (std::size_t i = 0; i < this->n; i += 2)
+    {
+      const double a = x[i + 1] - x[i] * x[i], b = 1 - x[i];
+      f += 100 * a * a + b * b;
+      g[i] = -400 * a * x[i] - 2 * b;
+      g[i + 1] = 200 * a;
+    }
+    return f;
+  }
+  Vector start() const
+  {
+    Vector x(this->n);
+    for (std::size_t i = 0; i < this->n; ++i)
+    {
+      // Not the same in each pair, or all are one.
+      x[i] = (i % 2 ? 1.0 : -1.2) + 0.1 * std::sin(static_cast<double>(i));
+    }
+    return x;
+  }
+};
+
+/// (x - a)^t H (x - a) / 2 with H = Q D Q, Q a reflection, D from 1 to `condition`; may know H and D.
+struct Quadratic : SmoothFunction
+{
+  Vector d, a, u;
+  bool knowsHessian = false, preconditioned = false;
+  int linearized = 0;
+  Quadratic(std::size_t n, double condition)
+    : d(n)
+    , a(n)
+    , u(n)
+  {
+    double length = 0;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const double t = static_cast<double>(i) / (static_cast<double>(n) - 1);
+      this->d[i] = std::pow(condition, t);
+      this->a[i] = std::cos(7.0 * t) + 2;
+      this->u[i] = std::sin(0.3 * static_cast<double>(i) + 1);
+      length += this->u[i] * this->u[i];
+    }
+    for (double& x : this->u)
+    {
+      x /= std::sqrt(length);
+    }
+  }
+  std::size_t size() const override { return this->d.size(); }
+  /// Q diag(e) Q v
+  Vector times(const Vector& e, Vector v) const
+  {
+    auto reflect = [&]
+    {
+      const double c = 2 * std::inner_product(v.begin(), v.end(), this->u.begin(), 0.0);
+      for (std::size_t i = 0; i < v.size(); ++i)
+      {
+        v[i] -= c * this->u[i];
+      }
+    };
+    reflect();
+    std::transform(v.begin(), v.end(), e.begin(), v.begin(), std::multiplies<>());
+    reflect();
+    return v;
+  }
+  double valueAndGradient(const double* x, double* g) override
+  {
+    Vector r(x, x + this->size());
+    std::transform(r.begin(), r.end(), this->a.begin(), r.begin(), std::minus<>());
+    const Vector hr = this->times(this->d, r);
+    std::copy(hr.begin(), hr.end(), g);
+    return 0.5 * std::inner_product(r.begin(), r.end(), hr.begin(), 0.0);
+  }
+  void linearize(const double*) override { ++this->linearized; }
+  bool hessianTimes(const double* v, double* product) override
+  {
+    const Vector h = this->times(this->d, Vector(v, v + this->size()));
+    std::copy(h.begin(), h.end(), product);
+    return this->knowsHessian;
+  }
+  bool precondition(const double* r, double* z) override
+  {
+    Vector inverse(this->size());
+    // Right up to a factor between 0.5 and 2.
+    for (std::size_t i = 0; i < inverse.size(); ++i)
+    {
+      inverse[i] = std::exp2(std::sin(static_cast<double>(i))) / this->d[i];
+    }
+    const Vector h = this->times(inverse, Vector(r, r + this->size()));
+    std::copy(h.begin(), h.end(), z);
+    return this->preconditioned;
+  }
+};
+
+/// sum c_i x_i - ln(1 - x_i^2): infinite outside |x_i| < 1; counts where it is asked.
+struct Barrier : SmoothFunction
+{
+  Vector c;
+  bool knowsSteps;
+  int outside = 0;
+  Barrier(std::size_t n, bool steps)
+    : c(n)
+    , knowsSteps(steps)
+  {
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      this->c[i] = 30 * std::sin(static_cast<double>(i + 1));
+    }
+  }
+  std::size_t size() const override { return this->c.size(); }
+  double valueAndGradient(const double* x, double* g) override
+  {
+    double f = 0;
+    for (std::size_t i = 0; i < this->size(); ++i)
+    {
+      if (!(std::abs(x[i]) < 1))
+      {
+        ++this->outside;
+        std::fill(g, g + this->size(), std::nan("")); // not to be looked at
+        return infinity;
+      }
+      f += this->c[i] * x[i] - std::log1p(-x[i] * x[i]);
+      g[i] = this->c[i] + 2 * x[i] / (1 - x[i] * x[i]);
+    }
+    return f;
+  }
+  double largestStep(const double* x, const double* d, double wanted) override
+  {
+    for (std::size_t i = 0; this->knowsSteps && i < this->size(); ++i)
+    {
+      if (d[i] != 0)
+      {
+        wanted = std::min(wanted, 0.99 * (1 - x[i] * (d[i] > 0 ? 1 : -1)) / std::abs(d[i]));
+      }
+    }
+    return wanted;
+  }
+  /// c + 2 x / (1 - x^2) = 0
+  double solution(std::size_t i) const
+  {
+    return -this->c[i] / (1 + std::sqrt(1 + this->c[i] * this->c[i]));
+  }
+};
+
+/// Many local minima, NaN beyond 10, flat far out.
+struct Rough : SmoothFunction
+{
+  std::size_t size() const override { return 50; }
+  double valueAndGradient(const double* x, double* g) override
+  {
+    double f = 0;
+    for (int i = 0; i < 50; ++i)
+    {
+      f += std::abs(x[i]) > 10 ? std::nan("") : std::sin(5 * x[i]) - std::exp(-x[i] * x[i]);
+      g[i] = 5 * std::cos(5 * x[i]) + 2 * x[i] * std::exp(-x[i] * x[i]);
+    }
+    return f;
+  }
+};
+
+MinimizeOptions optionsFor(Optimizer method, int iterations, double gradientNorm)
+{
+  MinimizeOptions options;
+  options.method = method;
+  options.maximumIterations = iterations;
+  options.gradientNorm = gradientNorm;
+  options.threads = 1;
+  return options;
+}
+
+void report(const char* what, Optimizer method, const Minimization& m)
+{
+  std::cout << std::setprecision(4) << what << ", " << nameOf(method) << ": " << m.iterations
+            << " iterations, " << m.evaluations << " evaluations, value " << m.value << "\n";
+}
+
+double distance(const Vector& a, const Vector& b)
+{
+  double d = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    d = std::max(d, std::abs(a[i] - b[i]));
+  }
+  return d;
+}
+
+//------------------------------------------------------------------------------
+void testRosenbrock()
+{
+  for (std::size_t n : { 2, 100, 10000 })
+  {
+    for (Optimizer method : methods)
+    {
+      const Context name(std::string(nameOf(method)) + ", " + std::to_string(n) + " variables");
+      Rosenbrock f(n);
+      Vector x = f.start(), first;
+      double last = infinity;
+      MinimizeOptions options = optionsFor(method, 2000, 1e-9);
+      options.observer = [&](int, double value, double norm, const double*)
+      {
+        TAUTLINE_CHECK(value <= last && norm >= 0);
+        last = value;
+        return true;
+      };
+      const Minimization m = minimize(f, x.data(), options);
+      report(("Rosenbrock " + std::to_string(n)).c_str(), method, m);
+      TAUTLINE_CHECK(m.reason == StopReason::GradientNorm);
+      TAUTLINE_CHECK(distance(x, Vector(n, 1.0)) < 1e-5);
+      TAUTLINE_CHECK_EQUAL(m.value, last);
+      TAUTLINE_CHECK(m.iterations <= 250);
+      if (method == Optimizer::LimitedMemoryBFGS)
+      {
+        TAUTLINE_CHECK(m.evaluations <= 1.35 * m.iterations + 5);
+      }
+      // The same bits for any number of threads.
+      for (int threads : { 2, 4 })
+      {
+        Vector again = f.start();
+        options.threads = threads;
+        last = infinity;
+        TAUTLINE_CHECK_EQUAL(minimize(f, again.data(), options).evaluations, m.evaluations);
+        TAUTLINE_CHECK(again == x);
+      }
+    }
+  }
+}
+
+void testQuadratic()
+{
+  for (Optimizer method : methods)
+  {
+    for (bool preconditioned : { false, true })
+    {
+      const Context name(std::string(nameOf(method)) + (preconditioned ? ", preconditioned" : ""));
+      Quadratic f(300, 1e6);
+      f.knowsHessian = f.preconditioned = preconditioned;
+      Vector x(f.size(), 0.0);
+      const Minimization m = minimize(f, x.data(), optionsFor(method, 20000, 1e-10));
+      report(preconditioned ? "quadratic, preconditioned" : "quadratic", method, m);
+      TAUTLINE_CHECK(m.reason == StopReason::GradientNorm);
+      TAUTLINE_CHECK(distance(x, f.a) < 1e-3);
+      TAUTLINE_CHECK(m.value < 1e-6);
+      if (preconditioned)
+      {
+        TAUTLINE_CHECK(m.iterations <= 40);
+        TAUTLINE_CHECK(f.linearized <= m.iterations && f.linearized >= (m.iterations + 9) / 10);
+      }
+    }
+  }
+}
+
+void testBarrier()
+{
+  for (Optimizer method : methods)
+  {
+    for (bool steps : { false, true })
+    {
+      const Context name(std::string(nameOf(method)) + (steps ? ", known steps" : ""));
+      Barrier f(60, steps);
+      Vector x(f.size(), 0.0), expected(f.size());
+      for (std::size_t i = 0; i < f.size(); ++i)
+      {
+        expected[i] = f.solution(i);
+      }
+      MinimizeOptions options = optionsFor(method, 1000, 1e-6);
+      options.observer = [&](int, double value, double norm, const double* at)
+      {
+        TAUTLINE_CHECK(std::isfinite(value) && std::isfinite(norm));
+        return TAUTLINE_CHECK(
+          std::all_of(at, at + f.size(), [](double v) { return std::abs(v) < 1; }));
+      };
+      const Minimization m = minimize(f, x.data(), options);
+      report(steps ? "barrier, known steps" : "barrier", method, m);
+      TAUTLINE_CHECK(m.reason == StopReason::GradientNorm);
+      TAUTLINE_CHECK(distance(x, expected) < 1e-4);
+      TAUTLINE_CHECK(steps ? f.outside == 0 : f.outside > 0);
+    }
+  }
+}
+
+void testRough()
+{
+  for (Optimizer method : methods)
+  {
+    const Context name(nameOf(method));
+    for (double spread : { 1.0, 9.9 })
+    {
+      Rough f;
+      Vector x(f.size()), g(f.size());
+      for (std::size_t i = 0; i < x.size(); ++i)
+      {
+        x[i] = spread * std::sin(static_cast<double>(3 * i + 1));
+      }
+      const double before = f.valueAndGradient(x.data(), g.data());
+      const Minimization m = minimize(f, x.data(), optionsFor(method, 100, 1e-6));
+      TAUTLINE_CHECK(m.value < before);
+      TAUTLINE_CHECK_EQUAL(f.valueAndGradient(x.data(), g.data()), m.value);
+      // From 9.9 some variables run into the wall at 10.
+      TAUTLINE_CHECK(spread > 1 || m.reason == StopReason::GradientNorm);
+      TAUTLINE_CHECK(std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }));
+    }
+    // A start that is not allowed stays.
+    Rough f;
+    Vector x(f.size(), 11.0);
+    const Minimization m = minimize(f, x.data(), optionsFor(method, 10, 0));
+    TAUTLINE_CHECK(m.reason == StopReason::NoProgress && m.value == infinity);
+    TAUTLINE_CHECK(x == Vector(f.size(), 11.0));
+  }
+}
+
+void testStopping()
+{
+  for (Optimizer method : methods)
+  {
+    const Context name(nameOf(method));
+    Rosenbrock f(100);
+    Vector x = f.start(), seen;
+    MinimizeOptions options = optionsFor(method, 1000, 0);
+    options.observer = [&](int iteration, double, double, const double* at)
+    {
+      seen.assign(at, at + f.size());
+      return iteration < 3;
+    };
+    Minimization m = minimize(f, x.data(), options);
+    TAUTLINE_CHECK(m.reason == StopReason::Aborted && m.iterations == 3);
+    TAUTLINE_CHECK(x == seen);
+
+    options.observer = nullptr;
+    options.maximumIterations = 5;
+    m = minimize(f, x.data(), options);
+    TAUTLINE_CHECK(m.reason == StopReason::IterationLimit && m.iterations == 5);
+    options.maximumIterations = 0;
+    const Vector before = x;
+    const double value = m.value;
+    m = minimize(f, x.data(), options);
+    TAUTLINE_CHECK(m.reason == StopReason::IterationLimit && m.evaluations == 1 && x == before);
+    TAUTLINE_CHECK_EQUAL(m.value, value);
+
+    // Until no step lowers the value: it ends, at the minimum, without a tolerance.
+    options.maximumIterations = 5000;
+    m = minimize(f, x.data(), options);
+    TAUTLINE_CHECK(m.reason == StopReason::NoProgress || m.reason == StopReason::GradientNorm);
+    TAUTLINE_CHECK(m.value < 1e-20);
+
+    x = f.start();
+    options.relativeChange = 0.5;
+    m = minimize(f, x.data(), options);
+    TAUTLINE_CHECK(m.reason == StopReason::RelativeChange && m.iterations < 20);
+
+    Vector minimum(f.size(), 1.0);
+    m = minimize(f, minimum.data(), options);
+    TAUTLINE_CHECK(m.reason == StopReason::GradientNorm && m.iterations == 0);
+    TAUTLINE_CHECK(minimum == Vector(f.size(), 1.0));
+
+    Rosenbrock none(0);
+    TAUTLINE_CHECK(minimize(none, nullptr, options).reason == StopReason::NoFreeVertices);
+  }
+  Rosenbrock f(2);
+  Vector x = f.start();
+  TAUTLINE_CHECK_THROWS(
+    minimize(f, x.data(), optionsFor(Optimizer::LocalNewton, 1, 0)), "a global one");
+  TAUTLINE_CHECK_THROWS(
+    minimize(f, x.data(), optionsFor(Optimizer::LimitedMemoryBFGS, -1, 0)), "at least 0");
+}
+}
+
+int TestMinimize(int, char*[])
+{
+  testRosenbrock();
+  testQuadratic();
+  testBarrier();
+  testRough();
+  testStopping();
+  return exitCode();
+}
