@@ -367,6 +367,29 @@ void flipCells(vtkDataSet* data)
 }
 
 //------------------------------------------------------------------------------
+std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter)
+{
+  const Mesh& mesh = adapter.mesh();
+  std::vector<unsigned char> skip;
+  if (adapter.ghostCells())
+  {
+    skip.assign(adapter.ghostCells(), adapter.ghostCells() + mesh.view().numberOfCells);
+  }
+  for (const CellBlock& block : mesh.blocks())
+  {
+    if (mesh.dimension() == Dimension::Volume && topology(block.type).dimension == 2)
+    {
+      skip.resize(mesh.view().numberOfCells, 0);
+      for (Index i = 0; i < block.count; ++i)
+      {
+        skip[block.cell(i)] = 1;
+      }
+    }
+  }
+  return skip;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPoints> makePoints(const std::vector<double>& coordinates, vtkPoints* like)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();

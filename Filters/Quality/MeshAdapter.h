@@ -76,6 +76,9 @@ TAUTLINEQUALITY_EXPORT std::string describe(const Orientation& orientation, cons
  */
 TAUTLINEQUALITY_EXPORT void flipCells(vtkDataSet* data);
 
+/// Cells to leave out of statistics: ghosts, and 2D cells beside 3D ones. Empty if there are none.
+TAUTLINEQUALITY_EXPORT std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter);
+
 /**
  * @brief New points for an output: in the precision of `like`, with the coordinates given in double.
  */

@@ -36,30 +36,6 @@ enum Ports
   WorstPort,
   NumberOfPorts
 };
-
-/// Cells to leave out of statistics: ghosts, and 2D cells beside 3D ones. Empty if there are none.
-std::vector<unsigned char> cellsToSkip(const tautline::MeshAdapter& adapter)
-{
-  const tautline::Mesh& mesh = adapter.mesh();
-  std::vector<unsigned char> skip;
-  if (adapter.ghostCells())
-  {
-    skip.assign(adapter.ghostCells(), adapter.ghostCells() + mesh.view().numberOfCells);
-  }
-  for (const tautline::CellBlock& block : mesh.blocks())
-  {
-    if (mesh.dimension() == tautline::Dimension::Volume &&
-      tautline::topology(block.type).dimension == 2)
-    {
-      skip.resize(mesh.view().numberOfCells, 0);
-      for (tautline::Index i = 0; i < block.count; ++i)
-      {
-        skip[block.cell(i)] = 1;
-      }
-    }
-  }
-  return skip;
-}
 }
 
 //------------------------------------------------------------------------------

@@ -1,0 +1,142 @@
+#include "BeforeAfter.h"
+
+#include "tautline/Statistics.h"
+
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSignedCharArray.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace tautline
+{
+namespace
+{
+/// A metric on one state of the mesh.
+struct Measurement
+{
+  MetricStatistics statistics;
+  ValidityCounts counts;
+  double worst = 0;
+};
+
+Measurement measure(const Mesh& mesh, const MeasuredMetric& what, const signed char* validity,
+  const unsigned char* skip, double* values)
+{
+  const MetricInfo& info = metricInfo(what.metric);
+  const Index cells = mesh.view().numberOfCells;
+  evaluateMetric(mesh, what.metric, what.options, values);
+  const CellValues data = { cells, values, validity, mesh.view().cellTypes, skip };
+  Measurement result;
+  result.statistics =
+    summarize(info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data));
+  result.counts = countValidity(validity, skip, cells);
+  result.worst = info.direction == Direction::LargerIsBetter ? result.statistics.minimum
+                                                             : result.statistics.maximum;
+  return result;
+}
+
+vtkSmartPointer<vtkDoubleArray> addCellArray(vtkDataSet* output, const std::string& name)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name.c_str());
+  array->SetNumberOfValues(output->GetNumberOfCells());
+  output->GetCellData()->AddArray(array);
+  return array;
+}
+
+void addStatistics(TableRows& rows, const std::string& ending, const Measurement& m)
+{
+  const MetricStatistics& s = m.statistics;
+  rows.add("Minimum" + ending, s.minimum);
+  rows.add("Mean" + ending, s.mean);
+  rows.add("Maximum" + ending, s.maximum);
+  rows.add("RMS" + ending, s.rms);
+  rows.add("StandardDeviation" + ending, s.standardDeviation);
+  rows.add("Worst" + ending, m.worst);
+  rows.add("OutsideAcceptable" + ending, static_cast<double>(s.outsideAcceptable));
+  rows.add("Inverted" + ending, static_cast<double>(m.counts.inverted));
+  rows.add("Degenerate" + ending, static_cast<double>(m.counts.degenerate));
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<MeasuredMetric> measuredMetrics(const std::vector<Objective>& objectives)
+{
+  std::vector<MeasuredMetric> result;
+  for (const Objective& objective : objectives)
+  {
+    const auto same = [&objective](const MeasuredMetric& m)
+    { return m.metric == objective.metric && m.options.targets == objective.evaluation.targets; };
+    if (std::any_of(result.begin(), result.end(), same))
+    {
+      continue;
+    }
+    const auto before = std::count_if(result.begin(), result.end(),
+      [&objective](const MeasuredMetric& m) { return m.metric == objective.metric; });
+    std::string name = metricInfo(objective.metric).name;
+    name += before > 0 ? " " + std::to_string(before + 1) : "";
+    result.push_back({ name, objective.metric, objective.evaluation });
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> objectiveNames(const std::vector<Objective>& objectives)
+{
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < objectives.size(); ++i)
+  {
+    const auto before = std::count_if(objectives.begin(), objectives.begin() + i,
+      [&](const Objective& other) { return other.metric == objectives[i].metric; });
+    names.emplace_back(metricInfo(objectives[i].metric).name);
+    names.back() += before > 0 ? " " + std::to_string(before + 1) : "";
+  }
+  return names;
+}
+
+//------------------------------------------------------------------------------
+std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& points,
+  const std::vector<MeasuredMetric>& metrics, int threads, const std::string& block,
+  vtkDataSet* output, TableRows& rows)
+{
+  MeshView view = mesh.mesh().view();
+  view.points = points.data();
+  Mesh moved(view, threads);
+  moved.setMirrored(mesh.mesh().mirrored());
+  vtkNew<vtkSignedCharArray> validity;
+  validity->SetName("Validity");
+  validity->SetNumberOfValues(view.numberOfCells);
+  moved.classifyCells(validity->GetPointer(0), threads);
+
+  std::ostringstream text;
+  for (const MeasuredMetric& what : metrics)
+  {
+    const Measurement before = measure(mesh.mesh(), what, mesh.validity().data(), mesh.skipped(),
+      addCellArray(output, what.name + "_before")->GetPointer(0));
+    const Measurement after = measure(moved, what, validity->GetPointer(0), mesh.skipped(),
+      addCellArray(output, what.name)->GetPointer(0));
+    rows.begin();
+    if (!block.empty())
+    {
+      rows.addText("Block", block);
+    }
+    rows.addText("Metric", what.name);
+    rows.addText("Label", metricInfo(what.metric).label);
+    addStatistics(rows, "Before", before);
+    addStatistics(rows, "After", after);
+    text << "\n"
+         << metricInfo(what.metric).label << ": mean " << before.statistics.mean << " to "
+         << after.statistics.mean << ", worst " << before.worst << " to " << after.worst << ".";
+  }
+  output->GetCellData()->AddArray(validity);
+  // Without active point scalars, views colour by the metric.
+  output->GetPointData()->SetActiveScalars(nullptr);
+  output->GetCellData()->SetActiveScalars(metrics.front().name.c_str());
+  return text.str();
+}
+}

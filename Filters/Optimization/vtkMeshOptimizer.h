@@ -1,0 +1,535 @@
+/**
+ * @class vtkMeshOptimizer
+ * @brief Moves the points of a mesh so that one or several measures of its quality become better.
+ *
+ * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from data sets
+ * with explicit points, or blocks of these (one after the other, each with its own boundary). The
+ * connectivity stays. What is lowered is chosen by a preset, or in full: up to any number of objectives (a
+ * metric, summed up by a template, against a target), how they are combined, and the algorithm.
+ *
+ * The output is never worse than the input: the combined objective does not rise, and no valid element
+ * becomes inverted unless AllowInversion. An input with inverted elements is untangled first (UntangleFirst)
+ * where the objectives cannot repair it. Points of a planar mesh stay in its plane, those of a surface are
+ * projected back to the input surface. A mesh reversed throughout is treated as its mirror image; one of
+ * mixed orientation is refused. Image data (implicit points) and cells of higher order are refused too.
+ *
+ * @par Input ports:
+ * 0 the mesh; 1 (optional) a reference mesh with the same cells, for targets of type REFERENCE and the
+ * preset PRESERVE_SHAPE; 2 (optional) a vtkSelection of points or cells that stay.
+ *
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 wanted sizes, 1 metric tensors, 2 fixed points (not
+ * 0), 3 limits of the points' displacements, 4 weights of the elements (cells, at least 0).
+ *
+ * @par Output port 0 `Mesh`:
+ * The input with new points, the point array `Displacement` (new minus old), and cell arrays: for each
+ * objective's metric its value after, named by the metric ("imr"), and before ("imr_before"); `Validity`
+ * after (see vtkElementQuality). Points that were in single precision stay so unless a valid element would
+ * not be valid when rounded; the summary says so.
+ *
+ * @par Output port 1 `History`:
+ * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric `<metric> mean` and
+ * `<metric> worst`, and with several objectives `<metric> objective`; `Inverted` (with degenerate
+ * elements), `Gradient norm`, `N moving` (points), `Time (s)`. Of composite data sets the rows of each block
+ * follow each other, told apart by the column `Block`.
+ *
+ * @par Output port 2 `Statistics`:
+ * A vtkTable with a row per metric (and block): `Metric`, `Label`, and `Before` and `After` of: `Minimum`,
+ * `Mean`, `Maximum`, `RMS`, `StandardDeviation`, `Worst`, `OutsideAcceptable`, `Inverted`, `Degenerate`.
+ *
+ * @par Several processes:
+ * Each optimises its own part. Points of ghost cells stay, so that the parts still fit together; without
+ * ghost cells the boundary of each part stays. Tables and summary are those of each process.
+ *
+ * @par Example:
+ * @code
+ * vtkNew<vtkMeshOptimizer> optimizer;
+ * optimizer->SetInputConnection(reader->GetOutputPort());
+ * optimizer->AddObjectiveByName("imr");
+ * optimizer->AddObjectiveByName("mu_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::SIZE);
+ * optimizer->SetScalarization(vtkMeshOptimizer::OBJECTIVE_PRODUCT);
+ * optimizer->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "size");
+ * optimizer->Update();
+ * std::cout << optimizer->GetSummary();
+ * @endcode
+ *
+ * Dissertation chapter 3 and section 2.4.
+ *
+ * @sa vtkMeshUntangler, vtkElementQuality, vtkMeshComparison, tautline/Optimize.h
+ */
+
+#ifndef vtkMeshOptimizer_h
+#define vtkMeshOptimizer_h
+
+#include "TautlineOptimizationModule.h" // for export macro
+#include "vtkDataObjectAlgorithm.h"
+#include "vtkTimeStamp.h" // for RunTime
+
+#include <memory> // for Rows, Runs
+#include <string> // for Summary
+#include <vector> // for Rows, Runs
+
+class vtkTable;
+
+namespace tautline
+{
+class TableRows;
+struct InputBlock;
+}
+
+class TAUTLINEOPTIMIZATION_EXPORT vtkMeshOptimizer : public vtkDataObjectAlgorithm
+{
+public:
+  static vtkMeshOptimizer* New();
+  vtkTypeMacro(vtkMeshOptimizer, vtkDataObjectAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Presets
+  {
+    CUSTOM = 0,
+    FAST_CLEAN_UP = 1,
+    BEST_SHAPE = 2,
+    UNIFORM_SIZE = 3,
+    LOW_INTERPOLATION_ERROR = 4,
+    UNTANGLE_THEN_IMPROVE = 5,
+    PRESERVE_SHAPE = 6,
+    WORST_ELEMENT = 7
+  };
+  ///@{
+  /**
+   * What to do in one word. All but CUSTOM decide on objectives, scalarization, optimizer and stopping
+   * criteria (but for the time limit), see tautline::applyPreset(); those below are for CUSTOM. The
+   * default is BEST_SHAPE.
+   */
+  vtkSetClampMacro(Preset, int, CUSTOM, WORST_ELEMENT);
+  vtkGetMacro(Preset, int);
+  ///@}
+
+  enum Templates
+  {
+    DEFAULT_TEMPLATE = -1,
+    SUM_OF_SQUARES = 0,
+    SUM_OF_SQUARED_RECIPROCALS = 1,
+    SUM_OF_RECIPROCALS = 2,
+    SUM = 3,
+    P_MEAN = 4,
+    MAXIMUM = 5
+  };
+  enum TargetTypes
+  {
+    IDEAL = 0,
+    REFERENCE = 1,
+    SIZE = 2,
+    TENSOR = 3
+  };
+  ///@{
+  /**
+   * Adds an objective and chooses the preset CUSTOM.
+   * @param metric by number (enum Metric of tautline/Metrics.h) or by name, label, symbol or alias; an
+   * unknown one is an error and changes nothing
+   * @param form one of Templates; DEFAULT_TEMPLATE is that the dissertation uses for the metric
+   * @param weight above 0, for the scalarizations that take weights
+   * @param target one of TargetTypes, as in vtkElementQuality: the ideal element, that of the mesh at port 1,
+   * the ideal shape in the size of the array at index 0 or in the metric tensor of the array at index 1
+   * (SetInputArrayToProcess; points or cells)
+   */
+  void AddObjective(
+    int metric, int form = DEFAULT_TEMPLATE, double weight = 1.0, int target = IDEAL);
+  void AddObjectiveByName(
+    const char* metric, int form = DEFAULT_TEMPLATE, double weight = 1.0, int target = IDEAL);
+  ///@}
+  /// Without objectives, CUSTOM lowers the sum of squared inverse mean ratios.
+  void RemoveAllObjectives();
+
+  ///@{
+  /// How many of the objectives count; added ones are the sum of squared inverse mean ratios.
+  void SetNumberOfObjectives(int count);
+  int GetNumberOfObjectives() const { return this->Objectives; }
+  ///@}
+
+  ///@{
+  /// The parts of one objective, for panels that set them one by one; see AddObjective().
+  void SetMetric1(int metric);
+  void SetMetric2(int metric);
+  void SetMetric3(int metric);
+  void SetMetric4(int metric);
+  void SetTemplate1(int form);
+  void SetTemplate2(int form);
+  void SetTemplate3(int form);
+  void SetTemplate4(int form);
+  void SetWeight1(double weight);
+  void SetWeight2(double weight);
+  void SetWeight3(double weight);
+  void SetWeight4(double weight);
+  void SetTarget1(int target);
+  void SetTarget2(int target);
+  void SetTarget3(int target);
+  void SetTarget4(int target);
+  ///@}
+
+  ///@{
+  /// p of the template P_MEAN (at least 1) and k of MAXIMUM (above 0). The default is 8.
+  vtkSetMacro(Power, double);
+  vtkGetMacro(Power, double);
+  ///@}
+
+  enum Combinations
+  {
+    MEAN = 0,
+    WORST = 1,
+    POWER_MEAN = 2
+  };
+  ///@{
+  /// How target metrics combine the corners of a cell, as in vtkElementQuality. The default is MEAN.
+  vtkSetClampMacro(Combination, int, MEAN, POWER_MEAN);
+  vtkGetMacro(Combination, int);
+  ///@}
+
+  ///@{
+  /// Area or volume every element should have at least, for the untangling metric. The default is 0.
+  vtkSetMacro(Beta, double);
+  vtkGetMacro(Beta, double);
+  ///@}
+
+  enum Scalarizations
+  {
+    EXPONENTIAL_SUM = 0,
+    OBJECTIVE_PRODUCT = 1,
+    EQUAL_SUM = 2,
+    WEIGHTED_SUM = 3,
+    WEIGHTED_MIN_MAX = 4,
+    EXPONENTIAL_WEIGHTED = 5,
+    LEXICOGRAPHIC = 6,
+    RAO = 7
+  };
+  ///@{
+  /// How several objectives become one, see tautline/Scalarization.h. The default is EXPONENTIAL_SUM.
+  vtkSetClampMacro(Scalarization, int, EXPONENTIAL_SUM, RAO);
+  vtkGetMacro(Scalarization, int);
+  ///@}
+
+  ///@{
+  /// c of EXPONENTIAL_SUM, above 0; 0, the default, chooses it from the initial values.
+  vtkSetMacro(C, double);
+  vtkGetMacro(C, double);
+  ///@}
+
+  ///@{
+  /// p of EXPONENTIAL_WEIGHTED, above 0. The default is 1.
+  vtkSetMacro(Exponent, double);
+  vtkGetMacro(Exponent, double);
+  ///@}
+
+  ///@{
+  /**
+   * By what part of its value an objective may rise while those after it are lowered (LEXICOGRAPHIC), at
+   * least 0. The default is 0.01.
+   */
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * The value each objective would have at best, for WEIGHTED_MIN_MAX, EXPONENTIAL_WEIGHTED and RAO: none
+   * (then they are 0) or one for each objective.
+   */
+  void AddUtopia(double value);
+  void RemoveAllUtopias();
+  ///@}
+
+  enum Optimizers
+  {
+    AUTOMATIC = 0,
+    LOCAL_NEWTON = 1,
+    LOCAL_CONJUGATE_GRADIENT = 2,
+    CONJUGATE_GRADIENT_FLETCHER_REEVES = 3,
+    CONJUGATE_GRADIENT_POLAK_RIBIERE = 4,
+    LIMITED_MEMORY_BFGS = 5,
+    NEWTON_CONJUGATE_GRADIENT = 6
+  };
+  ///@{
+  /**
+   * The algorithm: local ones sweep over the points, others move all at once. AUTOMATIC, the default,
+   * sweeps by LOCAL_NEWTON and then converges by LIMITED_MEMORY_BFGS.
+   */
+  vtkSetClampMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);
+  vtkGetMacro(Optimizer, int);
+  ///@}
+
+  ///@{
+  /// Sweeps of the local algorithms, iterations of the others. The default is 100.
+  vtkSetClampMacro(MaximumIterations, int, 0, 1000000);
+  vtkGetMacro(MaximumIterations, int);
+  ///@}
+
+  ///@{
+  /// Seconds; 0 is no limit. Also with presets. The default is 600.
+  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  ///@{
+  /// Stop when the gradient's norm has fallen by this factor; 0: never. The default is 1e-6.
+  vtkSetClampMacro(GradientNorm, double, 0.0, 1.0);
+  vtkGetMacro(GradientNorm, double);
+  ///@}
+
+  ///@{
+  /// Stop when an iteration lowers the objective by less than this part; 0: never. The default is 1e-5.
+  vtkSetClampMacro(RelativeChange, double, 0.0, 1.0);
+  vtkGetMacro(RelativeChange, double);
+  ///@}
+
+  ///@{
+  /// "Inaccurate smoothing", section 3.4: stop when all mean qualities keep two decimals. Off.
+  vtkSetMacro(TwoDigits, bool);
+  vtkGetMacro(TwoDigits, bool);
+  vtkBooleanMacro(TwoDigits, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Section 2.4: stop when this part of the possible reduction of the objective is reached; 1, the default:
+   * never. The possible reduction is that to BestKnown or, if this is 0, an estimate.
+   */
+  vtkSetClampMacro(Reduction, double, 0.0, 1.0);
+  vtkGetMacro(Reduction, double);
+  vtkSetMacro(BestKnown, double);
+  vtkGetMacro(BestKnown, double);
+  ///@}
+
+  ///@{
+  /// Stop when every element is valid. Off.
+  vtkSetMacro(StopWhenValid, bool);
+  vtkGetMacro(StopWhenValid, bool);
+  vtkBooleanMacro(StopWhenValid, bool);
+  ///@}
+
+  enum Boundaries
+  {
+    FIXED = 0,
+    SLIDING = 1,
+    FREE = 2
+  };
+  ///@{
+  /**
+   * What the points of the boundary do. FIXED: they stay. SLIDING: of a volume mesh those within a flat part
+   * of the surface move in it, those on a straight edge along it, corners and curved parts stay; of a mesh
+   * of 2D cells those on straight parts move along them (see FlatAngle). FREE: they move as all
+   * others. Points also stay where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the
+   * selection at port 2 holds them or a cell of theirs. The default is FIXED.
+   */
+  vtkSetClampMacro(Boundary, int, FIXED, FREE);
+  vtkGetMacro(Boundary, int);
+  ///@}
+
+  ///@{
+  /**
+   * Boundary facets whose normals differ by at most so many degrees are one plane (edges: one line) to
+   * slide in. On curved surfaces keep it small: points slide in the mean plane. The default is 1.
+   */
+  vtkSetClampMacro(FlatAngle, double, 0.0, 90.0);
+  vtkGetMacro(FlatAngle, double);
+  ///@}
+
+  ///@{
+  /**
+   * How far a point may go from where it was, in the unit of the coordinates; 0: any distance. Where the point
+   * array at index 3 is chosen, it gives a limit for each point instead (negative: any distance). The
+   * default is 0.
+   */
+  vtkSetClampMacro(MaximumDisplacement, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumDisplacement, double);
+  ///@}
+
+  ///@{
+  /// Project the points of a surface in space back to the input surface. On.
+  vtkSetMacro(ProjectToSurface, bool);
+  vtkGetMacro(ProjectToSurface, bool);
+  vtkBooleanMacro(ProjectToSurface, bool);
+  ///@}
+
+  ///@{
+  /// Let steps invert elements that are valid, if the objective gains by it. Off.
+  vtkSetMacro(AllowInversion, bool);
+  vtkGetMacro(AllowInversion, bool);
+  vtkBooleanMacro(AllowInversion, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Untangle an input with inverted elements first, where no objective can repair it; off: refuse it.
+   * On.
+   */
+  vtkSetMacro(UntangleFirst, bool);
+  vtkGetMacro(UntangleFirst, bool);
+  vtkBooleanMacro(UntangleFirst, bool);
+  ///@}
+
+  ///@{
+  /// Scale untangling objectives up at the start as section 3.3.3 does. On.
+  vtkSetMacro(RescaleUntangling, bool);
+  vtkGetMacro(RescaleUntangling, bool);
+  vtkBooleanMacro(RescaleUntangling, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Local algorithms leave out points that moved less than this part of their shortest edge; 0: none. The
+   * default is 1e-3.
+   */
+  vtkSetClampMacro(Culling, double, 0.0, 1.0);
+  vtkGetMacro(Culling, double);
+  ///@}
+
+  ///@{
+  /// Steps in each patch of the local algorithms. The default is 1.
+  vtkSetClampMacro(PatchIterations, int, 1, 1000);
+  vtkGetMacro(PatchIterations, int);
+  ///@}
+
+  ///@{
+  /// A step of LOCAL_NEWTON is this times Newton's; from 1, below 2. The default is 1.4.
+  vtkSetClampMacro(Relaxation, double, 1.0, 1.99);
+  vtkGetMacro(Relaxation, double);
+  ///@}
+
+  ///@{
+  /**
+   * After the objective has converged, lower the worst value of the first metric as long as its mean does
+   * not get worse by more than this part; 0, the default: do not.
+   */
+  vtkSetClampMacro(ImproveWorst, double, 0.0, 1.0);
+  vtkGetMacro(ImproveWorst, double);
+  ///@}
+
+  ///@{
+  /**
+   * Give the iterations as time steps: time t is the mesh after iteration t, so that ParaView's animation
+   * plays the optimization. Without a request for a time, the output is the result. The time of the input
+   * is then its default one. Off.
+   */
+  vtkSetMacro(Animation, bool);
+  vtkGetMacro(Animation, bool);
+  vtkBooleanMacro(Animation, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Megabytes for the points of the iterations; if they do not do, every second is dropped, and again. The
+   * default is 1000.
+   */
+  vtkSetClampMacro(AnimationMemory, double, 1.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(AnimationMemory, double);
+  ///@}
+
+  ///@{
+  /// Number of threads; 0 is all cores. The result does not depend on it. The default is 0.
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  ///@{
+  /// The outputs other than the mesh.
+  vtkTable* GetHistory();
+  vtkTable* GetStatistics();
+  ///@}
+
+  ///@{
+  /**
+   * The result of the last execution; numbers are of all blocks together, the reason is that of the last:
+   * why it stopped as a sentence and as a number (enum StopReason of tautline/Optimize.h, -1: nothing done).
+   */
+  const char* GetReason() const { return this->Reason.c_str(); }
+  int GetStopReason() const { return this->StopReason; }
+  int GetIterations() const { return this->Iterations; }
+  vtkIdType GetFreePoints() const { return this->FreePoints; }
+  vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
+  vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
+  /// Largest distance of an output point of a surface mesh from the input surface.
+  double GetSurfaceError() const { return this->SurfaceError; }
+  const char* GetSummary() const { return this->Summary.c_str(); }
+  ///@}
+
+protected:
+  vtkMeshOptimizer();
+  ~vtkMeshOptimizer() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+private:
+  vtkMeshOptimizer(const vtkMeshOptimizer&) = delete;
+  void operator=(const vtkMeshOptimizer&) = delete;
+
+  struct Row;
+  struct Setup;
+  struct Run;
+
+  Row& RowAt(int index);
+  template <class Value>
+  void SetInRow(int index, Value Row::*part, Value value);
+  int EffectiveIterations() const;
+  std::vector<double> TimeSteps() const;
+  bool HasRunFor(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selection);
+  void Improve(const tautline::InputBlock& block, Run& run, bool optimize, double blocks,
+    double time, tautline::TableRows& history, tautline::TableRows& statistics);
+  int Fail(vtkDataObject* output);
+  void Report();
+
+  std::vector<Row> Rows;
+  int Objectives = 0;
+  std::vector<double> Utopia;
+  int Preset = BEST_SHAPE;
+  double Power = 8.0;
+  int Combination = MEAN;
+  double Beta = 0.0;
+  int Scalarization = EXPONENTIAL_SUM;
+  double C = 0.0;
+  double Exponent = 1.0;
+  double Tolerance = 0.01;
+  int Optimizer = AUTOMATIC;
+  int MaximumIterations = 100;
+  double TimeLimit = 600.0;
+  double GradientNorm = 1e-6;
+  double RelativeChange = 1e-5;
+  bool TwoDigits = false;
+  double Reduction = 1.0;
+  double BestKnown = 0.0;
+  bool StopWhenValid = false;
+  int Boundary = FIXED;
+  double FlatAngle = 1.0;
+  double MaximumDisplacement = 0.0;
+  bool ProjectToSurface = true;
+  bool AllowInversion = false;
+  bool UntangleFirst = true;
+  bool RescaleUntangling = true;
+  double Culling = 1e-3;
+  int PatchIterations = 1;
+  double Relaxation = 1.4;
+  double ImproveWorst = 0.0;
+  bool Animation = false;
+  double AnimationMemory = 1000.0;
+  int Threads = 0;
+
+  std::vector<std::unique_ptr<Run>> Runs; ///< per data set of the last execution
+  vtkTimeStamp RunTime;                   ///< of Runs that can be shown again
+  std::string Reason;
+  int StopReason = -1;
+  int Iterations = 0;
+  vtkIdType FreePoints = 0;
+  vtkIdType InvertedBefore = 0;
+  vtkIdType InvertedAfter = 0;
+  double SurfaceError = 0.0;
+  std::string Summary;
+};
+
+#endif

@@ -1,0 +1,248 @@
+#include "vtkMeshUntangler.h"
+
+#include "MovableMesh.h"
+#include "tautline/Untangle.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkSelection.h"
+#include "vtkSignedCharArray.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+vtkStandardNewMacro(vtkMeshUntangler);
+
+namespace
+{
+enum Ports
+{
+  MeshPort = 0,
+  SelectionPort = 1, // input
+  HistoryPort = 1,
+  NumberOfPorts = 2
+};
+
+constexpr int ListedElements = 10;
+
+/// In the order of tautline::Obstacle.
+constexpr std::array<const char*, 5> reasons = { "valid",
+  "the iterations ended before it became valid; try a higher Effort",
+  "all its points are fixed; free some, or repair it by hand",
+  "the fixed points around leave no valid place for its free ones; free some of them",
+  "a fixed point of it is NaN or infinite" };
+
+void addFlags(vtkDataSet* output, const char* name, const std::vector<signed char>& values)
+{
+  vtkNew<vtkSignedCharArray> array;
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  output->GetCellData()->AddArray(array);
+}
+
+/// "All elements are valid", or how many are not, and for the first of them which, where and why.
+std::string verdict(const tautline::Untangling& result, const tautline::Mesh& moved)
+{
+  std::ostringstream text;
+  if (result.invertedAfter == 0)
+  {
+    text << "All elements are valid; " << result.invertedBefore << " were not.";
+    return text.str();
+  }
+  text << result.invertedAfter << " of " << result.invertedBefore
+       << " inverted or degenerate elements remain, " << result.impossible
+       << " of them because of fixed points.";
+  std::vector<std::pair<tautline::Index, tautline::CellType>> remaining;
+  for (const tautline::CellBlock& block : moved.blocks())
+  {
+    for (tautline::Index i = 0; i < block.count; ++i)
+    {
+      if (result.obstacles[block.cell(i)] != static_cast<signed char>(tautline::Obstacle::None))
+      {
+        remaining.emplace_back(block.cell(i), block.type);
+      }
+    }
+  }
+  std::sort(remaining.begin(), remaining.end());
+  const auto listed = std::min<std::size_t>(remaining.size(), ListedElements);
+  for (std::size_t i = 0; i < listed; ++i)
+  {
+    const auto [cell, type] = remaining[i];
+    const tautline::Vec3 at = moved.center(cell, type);
+    text << "\nElement " << cell << " at (" << at[0] << ", " << at[1] << ", " << at[2]
+         << "): " << reasons[result.obstacles[cell]] << ".";
+  }
+  if (remaining.size() > listed)
+  {
+    text << "\n... and " << remaining.size() - listed
+         << " more: select the cells where the array Obstacle is not 0.";
+  }
+  return text.str();
+}
+}
+
+//------------------------------------------------------------------------------
+vtkMeshUntangler::vtkMeshUntangler()
+{
+  this->SetNumberOfInputPorts(NumberOfPorts);
+  this->SetNumberOfOutputPorts(NumberOfPorts);
+}
+
+//------------------------------------------------------------------------------
+vtkMeshUntangler::~vtkMeshUntangler() = default;
+
+//------------------------------------------------------------------------------
+vtkTable* vtkMeshUntangler::GetHistory()
+{
+  return vtkTable::SafeDownCast(this->GetOutputDataObject(HistoryPort));
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshUntangler::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == SelectionPort)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkSelection");
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+    return 1;
+  }
+  // The composite type first, so that the table is that of all blocks.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshUntangler::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == MeshPort ? "vtkDataObject" : "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshUntangler::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
+  if (!input)
+  {
+    return 0;
+  }
+  tautline::provideOutputs(input, outputVector);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshUntangler::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
+  this->Reason.clear();
+  this->Summary.clear();
+  this->InvertedBefore = this->InvertedAfter = this->Impossible = 0;
+  tautline::TableRows history;
+  try
+  {
+    const auto selected =
+      tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
+    const double blocks = tautline::countBlocks(input);
+    tautline::forEachBlock(input, nullptr, selected, output,
+      [&](const tautline::InputBlock& block) { this->Untangle(block, blocks, history); });
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro("Not enough memory: untangle the mesh in parts.");
+    output->Initialize();
+    return 0;
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    output->Initialize();
+    return 0;
+  }
+  history.fill(vtkTable::GetData(outputVector, HistoryPort));
+  if (this->InvertedAfter > 0)
+  {
+    vtkWarningMacro(<< this->Summary);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshUntangler::Untangle(
+  const tautline::InputBlock& block, double blocks, tautline::TableRows& history)
+{
+  block.output->ShallowCopy(block.input);
+  if (block.input->GetNumberOfPoints() == 0 || block.input->GetNumberOfCells() == 0)
+  {
+    return;
+  }
+  tautline::MovableMesh mesh(block.input, this->Threads);
+  mesh.fix(tautline::chosenArray(this, 0, block.input, "to tell the fixed points by"), false);
+  tautline::fixSelected(mesh, block.selected);
+  if (this->FixBoundary)
+  {
+    mesh.fixBoundary();
+  }
+
+  tautline::UntangleOptions options;
+  options.effort = static_cast<tautline::Effort>(this->Effort);
+  options.maximumSeconds = this->TimeLimit;
+  options.fixed = mesh.fixed().data();
+  options.threads = this->Threads;
+  options.observer = [&](const tautline::IterationState& state)
+  {
+    this->UpdateProgress((block.number + state.progress) / blocks);
+    return !this->GetAbortExecute();
+  };
+  const tautline::Untangling result = tautline::untangle(mesh.mesh(), options);
+
+  const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), result.points);
+  addFlags(block.output, "Validity", mesh.validityAt(result.points));
+  addFlags(block.output, "Obstacle", result.obstacles);
+  block.output->GetPointData()->SetActiveScalars(nullptr);
+  block.output->GetCellData()->SetActiveScalars("Validity");
+  tautline::addHistory(history, result.history, {}, block.name);
+
+  this->Reason = tautline::describe(result.reason);
+  this->InvertedBefore += result.invertedBefore;
+  this->InvertedAfter += result.invertedAfter;
+  this->Impossible += result.impossible;
+  tautline::MeshView view = mesh.mesh().view();
+  view.points = result.points.data();
+  const tautline::Mesh moved(view, this->Threads);
+  std::ostringstream text;
+  text << (block.name.empty() ? "" : "In " + block.name + ": ") << verdict(result, moved);
+  if (result.surfaceError > 0)
+  {
+    text << "\nLargest distance from the input surface: " << result.surfaceError << ".";
+  }
+  for (const std::string& sentence : { note, mesh.notice() })
+  {
+    text << (sentence.empty() ? "" : "\n") << sentence;
+  }
+  this->Summary += (this->Summary.empty() ? "" : "\n") + text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshUntangler::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Effort: " << this->Effort << "\n";
+  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
+  os << indent << "FixBoundary: " << this->FixBoundary << "\n";
+  os << indent << "Threads: " << this->Threads << "\n";
+  os << indent << "Summary: " << this->Summary << "\n";
+}

@@ -1,0 +1,138 @@
+/**
+ * @class vtkMeshUntangler
+ * @brief Makes the elements of a mesh valid by moving its points.
+ *
+ * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from data sets
+ * with explicit points, or blocks of these. The connectivity stays, and so do the points of the boundary
+ * unless FixBoundary is off. The output never has more inverted elements than the input. What it says of the
+ * result is a guarantee: that every element is valid, or which are not, where they are, and why.
+ *
+ * A mesh reversed throughout is treated as its mirror image; one of mixed orientation, image data (implicit
+ * points) and cells of higher order are refused. For better elements run vtkMeshOptimizer afterwards.
+ *
+ * @par Input ports:
+ * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay.
+ *
+ * @par Output port 0 `Mesh`:
+ * The input with new points, the point array `Displacement` (new minus old) and the cell arrays `Validity`
+ * (see vtkElementQuality) and `Obstacle` (signed char), why an element is not valid: 0 it is valid, 1
+ * unknown (the iterations ended), 2 all its points are fixed, 3 the fixed points around leave no
+ * place, 4 a fixed point is NaN or infinite. Points in single precision stay so unless a valid element would not
+ * be valid when rounded.
+ *
+ * @par Output port 1 `History`:
+ * A vtkTable whose row i is iteration i (0 is the input): `Objective` (the energy), `Inverted` (with degenerate
+ * elements), `Gradient norm`, `N moving` (points), `Time (s)`; of composite data sets also `Block`.
+ *
+ * @par Several processes:
+ * Each untangles its own part. Points of ghost cells stay, so that the parts still fit together.
+ *
+ * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see tautline/Untangle.h.
+ *
+ * @sa vtkMeshOptimizer, vtkElementQuality, vtkMeshPerturbation
+ */
+
+#ifndef vtkMeshUntangler_h
+#define vtkMeshUntangler_h
+
+#include "TautlineOptimizationModule.h" // for export macro
+#include "vtkDataObjectAlgorithm.h"
+
+#include <string> // for Summary
+
+class vtkTable;
+
+namespace tautline
+{
+class TableRows;
+struct InputBlock;
+}
+
+class TAUTLINEOPTIMIZATION_EXPORT vtkMeshUntangler : public vtkDataObjectAlgorithm
+{
+public:
+  static vtkMeshUntangler* New();
+  vtkTypeMacro(vtkMeshUntangler, vtkDataObjectAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Efforts
+  {
+    LOCAL = 0,
+    NORMAL = 1,
+    THOROUGH = 2
+  };
+  ///@{
+  /**
+   * How hard to try: LOCAL moves only what is around inverted elements, NORMAL then all points, THOROUGH for
+   * thousands of iterations and from several starts. The default is NORMAL.
+   */
+  vtkSetClampMacro(Effort, int, LOCAL, THOROUGH);
+  vtkGetMacro(Effort, int);
+  ///@}
+
+  ///@{
+  /// Seconds; 0 is no limit. The default is 600.
+  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the points of the boundary stay. Points also stay where the point array at index 0
+   * (SetInputArrayToProcess) is not 0, and where the selection at port 1 holds them or a cell of theirs. On.
+   */
+  vtkSetMacro(FixBoundary, bool);
+  vtkGetMacro(FixBoundary, bool);
+  vtkBooleanMacro(FixBoundary, bool);
+  ///@}
+
+  ///@{
+  /// Number of threads; 0 is all cores. The result does not depend on it. The default is 0.
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  /// The output other than the mesh.
+  vtkTable* GetHistory();
+
+  ///@{
+  /**
+   * The result of the last execution; numbers are of all blocks together. Inverted elements include
+   * degenerate ones; impossible are those with an Obstacle of 2 or 3.
+   */
+  const char* GetReason() const { return this->Reason.c_str(); }
+  vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
+  vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
+  vtkIdType GetImpossible() const { return this->Impossible; }
+  const char* GetSummary() const { return this->Summary.c_str(); }
+  ///@}
+
+protected:
+  vtkMeshUntangler();
+  ~vtkMeshUntangler() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+private:
+  vtkMeshUntangler(const vtkMeshUntangler&) = delete;
+  void operator=(const vtkMeshUntangler&) = delete;
+
+  void Untangle(const tautline::InputBlock& block, double blocks, tautline::TableRows& history);
+
+  int Effort = NORMAL;
+  double TimeLimit = 600.0;
+  bool FixBoundary = true;
+  int Threads = 0;
+  std::string Reason;
+  vtkIdType InvertedBefore = 0;
+  vtkIdType InvertedAfter = 0;
+  vtkIdType Impossible = 0;
+  std::string Summary;
+};
+
+#endif
