@@ -106,79 +106,78 @@ void vtkMeshOptimizer::SetNumberOfObjectives(int count)
 
 //------------------------------------------------------------------------------
 template <class Value>
-void vtkMeshOptimizer::SetInRow(int index, Value Row::*part, Value value)
+void vtkMeshOptimizer::SetPart(Value& part, Value value)
 {
-  Value& old = this->RowAt(index).*part;
-  if (old != value)
+  if (part != value)
   {
-    old = value;
+    part = value;
     this->Modified();
   }
 }
 
 void vtkMeshOptimizer::SetMetric1(int metric)
 {
-  this->SetInRow(0, &Row::metric, metric);
+  this->SetPart(this->RowAt(0).metric, metric);
 }
 void vtkMeshOptimizer::SetMetric2(int metric)
 {
-  this->SetInRow(1, &Row::metric, metric);
+  this->SetPart(this->RowAt(1).metric, metric);
 }
 void vtkMeshOptimizer::SetMetric3(int metric)
 {
-  this->SetInRow(2, &Row::metric, metric);
+  this->SetPart(this->RowAt(2).metric, metric);
 }
 void vtkMeshOptimizer::SetMetric4(int metric)
 {
-  this->SetInRow(3, &Row::metric, metric);
+  this->SetPart(this->RowAt(3).metric, metric);
 }
 void vtkMeshOptimizer::SetTemplate1(int form)
 {
-  this->SetInRow(0, &Row::form, form);
+  this->SetPart(this->RowAt(0).form, form);
 }
 void vtkMeshOptimizer::SetTemplate2(int form)
 {
-  this->SetInRow(1, &Row::form, form);
+  this->SetPart(this->RowAt(1).form, form);
 }
 void vtkMeshOptimizer::SetTemplate3(int form)
 {
-  this->SetInRow(2, &Row::form, form);
+  this->SetPart(this->RowAt(2).form, form);
 }
 void vtkMeshOptimizer::SetTemplate4(int form)
 {
-  this->SetInRow(3, &Row::form, form);
+  this->SetPart(this->RowAt(3).form, form);
 }
 void vtkMeshOptimizer::SetWeight1(double weight)
 {
-  this->SetInRow(0, &Row::weight, weight);
+  this->SetPart(this->RowAt(0).weight, weight);
 }
 void vtkMeshOptimizer::SetWeight2(double weight)
 {
-  this->SetInRow(1, &Row::weight, weight);
+  this->SetPart(this->RowAt(1).weight, weight);
 }
 void vtkMeshOptimizer::SetWeight3(double weight)
 {
-  this->SetInRow(2, &Row::weight, weight);
+  this->SetPart(this->RowAt(2).weight, weight);
 }
 void vtkMeshOptimizer::SetWeight4(double weight)
 {
-  this->SetInRow(3, &Row::weight, weight);
+  this->SetPart(this->RowAt(3).weight, weight);
 }
 void vtkMeshOptimizer::SetTarget1(int target)
 {
-  this->SetInRow(0, &Row::target, target);
+  this->SetPart(this->RowAt(0).target, target);
 }
 void vtkMeshOptimizer::SetTarget2(int target)
 {
-  this->SetInRow(1, &Row::target, target);
+  this->SetPart(this->RowAt(1).target, target);
 }
 void vtkMeshOptimizer::SetTarget3(int target)
 {
-  this->SetInRow(2, &Row::target, target);
+  this->SetPart(this->RowAt(2).target, target);
 }
 void vtkMeshOptimizer::SetTarget4(int target)
 {
-  this->SetInRow(3, &Row::target, target);
+  this->SetPart(this->RowAt(3).target, target);
 }
 
 //------------------------------------------------------------------------------

@@ -476,7 +476,7 @@ private:
 
   Row& RowAt(int index);
   template <class Value>
-  void SetInRow(int index, Value Row::*part, Value value);
+  void SetPart(Value& part, Value value);
   int EffectiveIterations() const;
   std::vector<double> TimeSteps() const;
   bool HasRunFor(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selection);

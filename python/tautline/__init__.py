@@ -26,6 +26,7 @@ from ._mesh import Mesh, from_arrays  # noqa: E402
 from ._metrics import metrics  # noqa: E402
 from ._quality import Quality, quality  # noqa: E402
 from ._verbs import Comparison, Field, Perturbed, compare, metric_field, perturb  # noqa: E402
+from ._optimization import Optimized, Untangled, optimize, untangle  # noqa: E402
 
 try:
     from ._inputs import domain, domains  # noqa: E402

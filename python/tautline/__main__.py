@@ -8,7 +8,7 @@ import sys
 from typing import Any
 
 import tautline
-from tautline import _quality, _tables
+from tautline import _optimization, _quality, _tables
 
 
 def _names(text: str) -> list[str]:
@@ -166,6 +166,7 @@ def _parser() -> argparse.ArgumentParser:
     form.add_argument("--markdown", action="store_true", help="as a Markdown table")
     form.add_argument("--json", action="store_true", help="all facts")
 
+    _optimization.add_commands(verbs)
     try:
         from tautline._inputs import add_commands
     except ImportError:  # built without the modules of readers and domains
