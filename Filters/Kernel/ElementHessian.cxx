@@ -111,19 +111,20 @@ void rotate(Packet (&a)[Rows][Rows], Packet (&v)[Rows][Rows], int p, int q)
   // A vanishing entry, or one so small that theta overflows, needs no rotation.
   const Packet t = finiteOrZero(signOfTheta / (abs(theta) + sqrt(theta * theta + 1.0)));
   const Packet c = 1.0 / sqrt(t * t + 1.0), s = t * c;
+  a[p][p] -= t * apq;
+  a[q][q] += t * apq;
+  a[p][q] = a[q][p] = select(t == 0.0, apq, Packet{});
   for (int k = 0; k < Rows; ++k)
   {
-    const Packet x = a[k][p], y = a[k][q], vx = v[k][p], vy = v[k][q];
-    a[k][p] = c * x - s * y;
-    a[k][q] = s * x + c * y;
+    if (k != p && k != q)
+    {
+      const Packet x = a[k][p], y = a[k][q];
+      a[k][p] = a[p][k] = c * x - s * y;
+      a[k][q] = a[q][k] = s * x + c * y;
+    }
+    const Packet vx = v[k][p], vy = v[k][q];
     v[k][p] = c * vx - s * vy;
     v[k][q] = s * vx + c * vy;
-  }
-  for (int k = 0; k < Rows; ++k)
-  {
-    const Packet x = a[p][k], y = a[q][k];
-    a[p][k] = c * x - s * y;
-    a[q][k] = s * x + c * y;
   }
 }
 
@@ -157,11 +158,17 @@ void project(Packet* h)
     {
       break;
     }
-    for (int p = 0; p < Rows - 1; ++p)
+    // In rounds of pairs without common rows: the rotations of a round do not wait for each other.
+    constexpr int others = Rows - 1 + Rows % 2;
+    for (int round = 0; round < others; ++round)
     {
-      for (int q = p + 1; q < Rows; ++q)
+      if (others < Rows)
       {
-        rotate<Rows>(a, v, p, q);
+        rotate<Rows>(a, v, round, others);
+      }
+      for (int i = 1; i <= others / 2; ++i)
+      {
+        rotate<Rows>(a, v, (round + i) % others, (round + others - i) % others);
       }
     }
   }
