@@ -16,20 +16,6 @@ constexpr CellType types[] = { CellType::Triangle, CellType::Quadrilateral, Cell
   CellType::Hexahedron, CellType::Wedge, CellType::Pyramid };
 using Vector = std::vector<double>;
 
-MeshData movedBlock(CellType type, Index n, double amplitude, unsigned seed = 41)
-{
-  const bool flat = topology(type).dimension == 2;
-  MeshData data = blockMesh(type, n, n, flat ? 0 : n);
-  Random random(seed);
-  data.transform(
-    [&](Vec3 p)
-    {
-      const Vec3 d = random.vector(-amplitude, amplitude);
-      return p + Vec3{ d[0], d[1], flat ? 0 : d[2] };
-    });
-  return data;
-}
-
 Objective make(Metric metric, ObjectiveTemplate form = ObjectiveTemplate::Default)
 {
   Objective objective;
