@@ -270,13 +270,20 @@ std::size_t ElementHessian::memory(const ObjectiveSum& objective)
 }
 
 //------------------------------------------------------------------------------
-void ElementHessian::assemble()
+namespace
 {
-  const ObjectiveSum::Implementation& sum = this->TheObjective.implementation();
+/**
+ * @brief Calls work(nodes of a cell, batch, nodes, numbers) with the Hessians of each batch, which are made where
+ * place(chunk number, first cell in the chunk) says.
+ */
+template <class Place, class Work>
+void makeHessians(const ObjectiveSum& objective, const Place& place, const Work& work)
+{
+  const ObjectiveSum::Implementation& sum = objective.implementation();
   const ElementSum& elements = sum.elements;
   const ObjectiveTemplate form = sum.function.form;
   const bool scaled = form == ObjectiveTemplate::PowerMean || form == ObjectiveTemplate::Maximum;
-  const double F = scaled ? this->TheObjective.value() : 0.0;
+  const double F = scaled ? objective.value() : 0.0;
   // Called through a pointer: one body for all templates.
   using SlopeOfForm = Packet (ElementFunction::*)(const BatchContext&, const Batch&, double) const;
   const SlopeOfForm slopeOfForm = withTemplate(form,
@@ -294,21 +301,70 @@ void ElementHessian::assemble()
         [&](auto nodesOfCell)
         {
           constexpr int Nodes = decltype(nodesOfCell)::value;
-          Packet* numbers = this->Values->entries.data() + this->Values->offsets[i];
+          Packet own[entriesFor(Nodes)];
           Batch batch;
           BatchNodes nodes;
           for (Index begin = chunk.begin; begin < chunk.end; begin += PacketWidth)
           {
             const int count = static_cast<int>(std::min<Index>(PacketWidth, chunk.end - begin));
+            Packet* kept = place(i, (begin - chunk.begin) / PacketWidth * entriesFor(Nodes));
+            Packet* h = kept ? kept : own;
             gather<Nodes>(context, elements.order(chunk), begin, count, batch, nodes);
-            differences<Nodes>(context, evaluate, slope, batch, numbers);
-            if (this->Project)
-            {
-              project<rowsFor(Nodes)>(numbers);
-            }
-            numbers += entriesFor(Nodes);
+            differences<Nodes>(context, evaluate, slope, batch, h);
+            work(nodesOfCell, batch, nodes, h);
           }
         });
+    });
+}
+
+/// Adds the diagonal blocks of the cells of a batch.
+template <int Nodes>
+void addBlocks(
+  double scale, const Batch& batch, const BatchNodes& nodes, const Packet* h, double* blocks)
+{
+  // The first node's block is the sum of all blocks, of both triangles.
+  Packet block[Nodes][6] = {};
+  for (int k = 1; k < Nodes; ++k)
+  {
+    for (int m = 1; m < Nodes; ++m)
+    {
+      int position = 0;
+      for (int r = 0; r < 3; ++r)
+      {
+        for (int c = r; c < 3; ++c, ++position)
+        {
+          const Packet value = scale * h[entry(3 * (k - 1) + r, 3 * (m - 1) + c)];
+          block[0][position] += value;
+          block[k][position] = k == m ? value : block[k][position];
+        }
+      }
+    }
+  }
+  for (int l = 0; l < batch.count; ++l)
+  {
+    for (int k = 0; k < Nodes; ++k)
+    {
+      for (int position = 0; position < 6; ++position)
+      {
+        blocks[6 * nodes[l][k] + position] += block[k][position][l];
+      }
+    }
+  }
+}
+}
+
+void ElementHessian::assemble()
+{
+  makeHessians(
+    this->TheObjective,
+    [this](Index chunk, Index first)
+    { return this->Values->entries.data() + this->Values->offsets[chunk] + first; },
+    [this](auto nodesOfCell, const Batch&, const BatchNodes&, Packet* h)
+    {
+      if (this->Project)
+      {
+        project<rowsFor(decltype(nodesOfCell)::value)>(h);
+      }
     });
 }
 
@@ -360,35 +416,88 @@ void ElementHessian::addDiagonal(double scale, double* blocks) const
 {
   this->Values->forEachBatch(this->TheObjective.implementation().elements,
     [=](auto nodesOfCell, const Batch& batch, const BatchNodes& nodes, const Packet* h)
+    { addBlocks<decltype(nodesOfCell)::value>(scale, batch, nodes, h, blocks); });
+}
+
+void addDiagonalBlocks(const ObjectiveSum& objective, double scale, double* blocks)
+{
+  makeHessians(
+    objective, [](Index, Index) -> Packet* { return nullptr; },
+    [=](auto nodesOfCell, const Batch& batch, const BatchNodes& nodes, const Packet* h)
+    { addBlocks<decltype(nodesOfCell)::value>(scale, batch, nodes, h, blocks); });
+}
+
+//------------------------------------------------------------------------------
+void invertBlocks(double* blocks, Index count, int threads)
+{
+  constexpr double flattest = 1e-3; // smallest eigenvalue, relative to the largest
+  constexpr int sweeps = 5;
+  constexpr int position[3][3] = { { 0, 1, 2 }, { 1, 3, 4 }, { 2, 4, 5 } };
+  forEachChunk(count, threads,
+    [=](Index, Index begin, Index end)
     {
-      constexpr int Nodes = decltype(nodesOfCell)::value;
-      // The first node's block is the sum of all blocks, of both triangles.
-      Packet block[Nodes][6] = {};
-      for (int k = 1; k < Nodes; ++k)
+      for (Index first = begin; first < end; first += PacketWidth)
       {
-        for (int m = 1; m < Nodes; ++m)
+        const int lanes = static_cast<int>(std::min<Index>(PacketWidth, end - first));
+        Packet a[3][3], v[3][3] = {};
+        for (int r = 0; r < 3; ++r)
         {
-          int position = 0;
-          for (int r = 0; r < 3; ++r)
+          v[r][r] = broadcast(1.0);
+          for (int c = 0; c < 3; ++c)
           {
-            for (int c = r; c < 3; ++c, ++position)
+            a[r][c] = Packet{};
+            for (int l = 0; l < lanes; ++l)
             {
-              const Packet value = scale * h[entry(3 * (k - 1) + r, 3 * (m - 1) + c)];
-              block[0][position] += value;
-              block[k][position] = k == m ? value : block[k][position];
+              a[r][c][l] = blocks[6 * (first + l) + position[r][c]];
+            }
+          }
+        }
+        for (int sweep = 0; sweep < sweeps; ++sweep)
+        {
+          rotate<3>(a, v, 0, 1);
+          rotate<3>(a, v, 0, 2);
+          rotate<3>(a, v, 1, 2);
+        }
+        const Packet largest = max(max(abs(a[0][0]), abs(a[1][1])), abs(a[2][2]));
+        Packet inverse[3];
+        for (int k = 0; k < 3; ++k)
+        {
+          inverse[k] = 1.0 / max(abs(a[k][k]), flattest * largest);
+          // A point without elements, or beyond arithmetic, is left as it is.
+          inverse[k] =
+            select((largest > 0.0) & (inverse[k] < HUGE_VAL), inverse[k], broadcast(1.0));
+        }
+        for (int r = 0; r < 3; ++r)
+        {
+          for (int c = r; c < 3; ++c)
+          {
+            Packet sum = {};
+            for (int k = 0; k < 3; ++k)
+            {
+              sum += inverse[k] * v[r][k] * v[c][k];
+            }
+            for (int l = 0; l < lanes; ++l)
+            {
+              blocks[6 * (first + l) + position[r][c]] = sum[l];
             }
           }
         }
       }
-      for (int l = 0; l < batch.count; ++l)
+    });
+}
+
+void applyBlocks(const double* blocks, Index count, int threads, const double* r, double* z)
+{
+  forEachChunk(count, threads,
+    [=](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
       {
-        for (int k = 0; k < Nodes; ++k)
-        {
-          for (int position = 0; position < 6; ++position)
-          {
-            blocks[6 * nodes[l][k] + position] += block[k][position][l];
-          }
-        }
+        const double *b = blocks + 6 * i, *x = r + 3 * i;
+        const double x0 = x[0], x1 = x[1], x2 = x[2];
+        z[3 * i] = b[0] * x0 + b[1] * x1 + b[2] * x2;
+        z[3 * i + 1] = b[1] * x0 + b[3] * x1 + b[4] * x2;
+        z[3 * i + 2] = b[2] * x0 + b[4] * x1 + b[5] * x2;
       }
     });
 }

@@ -47,5 +47,22 @@ private:
   bool Project;
   std::unique_ptr<Storage> Values;
 };
+
+/**
+ * @brief Adds scale times the diagonal blocks at the points of the mesh's view without keeping Hessians: as
+ * ElementHessian without projection, and several times as fast as with it.
+ */
+TAUTLINE_KERNEL_EXPORT void addDiagonalBlocks(
+  const ObjectiveSum& objective, double scale, double* blocks);
+
+/**
+ * @brief Replaces symmetric 3 x 3 blocks (6 numbers each, as above) by positive definite inverses, in place: of |eigenvalue|,
+ * and of a thousandth of the largest where one is smaller. Blocks of zeros become the identity.
+ */
+TAUTLINE_KERNEL_EXPORT void invertBlocks(double* blocks, Index count, int threads);
+
+/// z = blocks times r, 3 entries per block; z may be r.
+TAUTLINE_KERNEL_EXPORT void applyBlocks(
+  const double* blocks, Index count, int threads, const double* r, double* z);
 }
 #endif

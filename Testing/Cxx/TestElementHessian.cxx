@@ -230,6 +230,49 @@ void testThreads()
 }
 
 //------------------------------------------------------------------------------
+/// Blocks made without Hessians, and their inverses.
+void testBlocks()
+{
+  const MeshData data = movedBlock(CellType::Tetrahedron, 4, 0.15);
+  const Mesh mesh(data.view());
+  const ObjectiveSum sum(mesh, make(Metric::InverseMeanRatio));
+  ElementHessian hessian(sum, false);
+  hessian.assemble();
+  const Index count = data.numberOfPoints();
+  Vector blocks(6 * count, 0.0), direct(6 * count, 0.0);
+  hessian.addDiagonal(3, blocks.data());
+  addDiagonalBlocks(sum, 3, direct.data());
+  TAUTLINE_CHECK(blocks == direct);
+
+  const Vector r = randomVector(data.points.size(), false, 47);
+  Vector z(r.size()), back(r.size());
+  invertBlocks(direct.data(), count, 1);
+  applyBlocks(direct.data(), count, 1, r.data(), z.data());
+  applyBlocks(blocks.data(), count, 1, z.data(), back.data());
+  Index definite = 0;
+  for (Index i = 0; i < count; ++i)
+  {
+    double difference = 0, power = 0;
+    for (Index c = 3 * i; c < 3 * i + 3; ++c)
+    {
+      difference = std::max(difference, std::abs(back[c] - r[c]));
+      power += z[c] * r[c];
+    }
+    TAUTLINE_CHECK(power > 0);
+    definite += difference < 1e-10;
+  }
+  TAUTLINE_CHECK(definite > count * 3 / 4); // the inverse proper, where there is a definite one
+
+  Vector odd = { 0, 0, 0, 0, 0, 0, 4, 0, 0, -2, 0, 0, 1e300, 0, 0, 1e-300, 0, 1 };
+  invertBlocks(odd.data(), 3, 1);
+  const Vector expected = { 1, 0, 0, 1, 0, 1, 0.25, 0, 0, 0.5, 0, 250, 1e-300, 0, 0, 1e-297, 0,
+    1e-297 };
+  for (std::size_t i = 0; i < odd.size(); ++i)
+  {
+    TAUTLINE_CHECK_RELATIVE(odd[i], expected[i], 1e-13);
+  }
+}
+
 /// The sum of squared inverse mean ratios over the inner points of a block.
 struct Smoothing : SmoothFunction
 {
@@ -356,6 +399,7 @@ int TestElementHessian(int, char*[])
   testConvex();
   testTangled();
   testThreads();
+  testBlocks();
   testNewton();
   return exitCode();
 }
