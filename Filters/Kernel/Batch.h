@@ -99,10 +99,9 @@ void withNodes(const CellTopology& topology, const Work& work)
 /// The nodes of each cell of a batch, in the connectivity.
 using BatchNodes = const Index* [PacketWidth];
 
-/// Loads the vertices of cells [begin, begin + count) of a block; order maps positions if not null.
-template <int Nodes>
-void gather(const BatchContext& context, const Index* order, Index begin, int count, Batch& batch,
-  BatchNodes& nodes)
+/// Finds the nodes of cells [begin, begin + count) of a block; order maps positions if not null.
+inline void locate(const BatchContext& context, const Index* order, Index begin, int count,
+  Batch& batch, BatchNodes& nodes)
 {
   const MeshView& view = context.mesh->view();
   for (int l = 0; l < PacketWidth; ++l)
@@ -113,6 +112,15 @@ void gather(const BatchContext& context, const Index* order, Index begin, int co
     nodes[l] = view.connectivity + view.offsets[cell];
   }
   batch.count = count;
+}
+
+/// Loads the vertices of the cells that locate() finds.
+template <int Nodes>
+void gather(const BatchContext& context, const Index* order, Index begin, int count, Batch& batch,
+  BatchNodes& nodes)
+{
+  const MeshView& view = context.mesh->view();
+  locate(context, order, begin, count, batch, nodes);
   for (int k = 0; k < Nodes; ++k)
   {
     const double* p[PacketWidth];

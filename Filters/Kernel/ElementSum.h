@@ -38,7 +38,7 @@ void scatter(const BatchContext& context, const Batch& batch, Packet factor, con
     Packet g[3];
     for (int c = 0; c < 3; ++c)
     {
-      g[c] = factor * finiteOrZero(batch.gradient[k][c]);
+      g[c] = finiteOrZero(factor * batch.gradient[k][c]);
     }
     g[0] = mirrored ? -g[0] : g[0];
     lanes[k].set(g);

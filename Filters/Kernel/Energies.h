@@ -44,5 +44,55 @@ struct InverseMeanRatioEnergy
 private:
   static Packet square(Packet x) { return x * x; }
 };
+
+/**
+ * @brief q^2 + K q_w^2 (q / q_w)^p of the inverse mean ratio q: the square, until q comes near q_w, from where on the second
+ * term leads.
+ */
+template <int Dim>
+struct WorstRatioEnergy
+{
+  static constexpr double K = 100.0;
+  static constexpr int p = 32;
+  double inverseWorst; ///< 1 / q_w
+
+  Packet value(Packet N, Packet D) const
+  {
+    Packet f, slope, curvature;
+    this->ofRatio(ratio(N, D), f, slope, curvature);
+    return select(D > 0.0, f, broadcast(std::numeric_limits<double>::infinity()));
+  }
+
+  void terms(Packet N, Packet D, EnergyTerms& e) const
+  {
+    constexpr double r = -2.0 / Dim; // q = N D^r up to a factor
+    const Packet q = ratio(N, D), overN = 1.0 / N, overD = 1.0 / D;
+    Packet slope, curvature;
+    this->ofRatio(q, e.f, slope, curvature);
+    const Packet qN = q * overN, qD = r * q * overD;
+    e.fN = slope * qN;
+    e.fD = slope * qD;
+    e.fNN = curvature * qN * qN;
+    e.fND = curvature * qN * qD + slope * (r * qN * overD);
+    e.fDD = curvature * qD * qD + slope * ((r - 1.0) * qD * overD);
+  }
+
+private:
+  static Packet ratio(Packet N, Packet D)
+  {
+    const Packet s = inverseCbrt(D);
+    return Dim == 2 ? 0.5 * N / D : (1.0 / 3.0) * N * s * s;
+  }
+
+  void ofRatio(Packet q, Packet& f, Packet& slope, Packet& curvature) const
+  {
+    const Packet u = q * this->inverseWorst;
+    const Packet u2 = u * u, u4 = u2 * u2, u8 = u4 * u4, u16 = u8 * u8;
+    const Packet lower = u16 * u8 * u4 * u2; // u^(p - 2)
+    f = q * q * (1.0 + K * lower);
+    slope = q * (2.0 + K * p * lower);
+    curvature = 2.0 + K * p * (p - 1.0) * lower;
+  }
+};
 }
 #endif

@@ -127,6 +127,11 @@ template <int Dim>
 std::unique_ptr<PatchFunction<Dim>> LocalSweeper::Implementation<Dim>::makeFunction(
   const LocalTerm& term) const
 {
+  if (term.worst > 0)
+  {
+    using Energy = WorstRatioEnergy<Dim>;
+    return std::make_unique<EnergyFunction<Dim, Energy>>(Energy{ 1.0 / term.worst });
+  }
   if (term.shapePower == 1)
   {
     using Energy = InverseMeanRatioEnergy<Dim, 1>;

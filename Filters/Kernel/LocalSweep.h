@@ -12,11 +12,13 @@
 
 namespace tautline
 {
-/// One of the objectives as the sweeps see it. Exactly one of the two is set.
+/// One of the objectives as the sweeps see it: by the power, the size or the metric, whichever is set.
 struct LocalTerm
 {
   /// The power (1 or 2) of an inverse mean ratio; 0: see metric.
   int shapePower = 0;
+  /// Above 0: the squared inverse mean ratio with emphasis on values near this, see WorstRatioEnergy.
+  double worst = 0;
   /// The size to the power of 2, times this; 0: see metric.
   double sizeSquared = 0;
   const ObjectiveSum* metric = nullptr;

@@ -113,7 +113,7 @@ void Minimizer::evaluate(Trial& trial)
 
 void Minimizer::accept(const Trial& trial)
 {
-  std::copy(this->TrialX.begin(), this->TrialX.end(), this->X);
+  this->Algebra.each([&](Index i) { this->X[i] = this->TrialX[i]; });
   std::swap(this->OldG, this->G);
   std::swap(this->G, this->TrialG);
   this->F = trial.f;

@@ -73,6 +73,7 @@ struct Minimization
  * @brief Minimises from x, which is overwritten by the best found; it is never worse than the start. From a start that is
  * not allowed nothing is done (NoProgress, value +infinity); without variables, NoFreeVertices.
  */
-TAUTLINE_KERNEL_EXPORT Minimization minimize(SmoothFunction& function, double* x, const MinimizeOptions& options);
+TAUTLINE_KERNEL_EXPORT Minimization minimize(
+  SmoothFunction& function, double* x, const MinimizeOptions& options);
 }
 #endif

@@ -26,21 +26,6 @@ struct NamedMesh
   MeshData data;
 };
 
-/// A block with all its points moved.
-MeshData movedBlock(CellType type, Index n, double amplitude, unsigned seed = 31)
-{
-  const bool flat = topology(type).dimension == 2;
-  MeshData data = blockMesh(type, n, n, flat ? 0 : n);
-  Random random(seed);
-  data.transform(
-    [&](Vec3 p)
-    {
-      const Vec3 d = random.vector(-amplitude, amplitude);
-      return p + Vec3{ d[0], d[1], flat ? 0 : d[2] };
-    });
-  return data;
-}
-
 void append(MeshData& all, const MeshData& part)
 {
   const Index shift = all.numberOfPoints();

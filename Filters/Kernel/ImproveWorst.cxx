@@ -1,0 +1,120 @@
+#include "ImproveWorst.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+constexpr int mostRounds = 20;
+constexpr int sweepsPerRound = 4;
+/// A round that lowers the worst value by less than this part is the last.
+constexpr double worthwhile = 1e-3;
+/// p: elements at 0.8 of the worst value have a thousandth of its share.
+constexpr double power = 32;
+
+/// What a round minimises.
+class WorstObjectives
+{
+public:
+  WorstObjectives(OptimizationProblem& problem, double worst)
+    : Terms(problem.localTerms())
+    , Fast(Terms[0].shapePower > 0)
+  {
+    this->Terms.resize(1);
+    if (this->Fast)
+    {
+      this->Terms[0].worst = worst;
+      return;
+    }
+    Objective mean = problem.sum(0).objective();
+    mean.form = ObjectiveTemplate::PowerMean;
+    mean.power = power;
+    this->Sum = &problem.sum(0);
+    this->Mean = std::make_unique<ObjectiveSum>(problem.moving(), mean, problem.options().threads);
+    LocalTerm second;
+    second.metric = this->Mean.get();
+    this->Terms.push_back(second);
+    this->First = this->values();
+  }
+
+  const std::vector<LocalTerm>& terms() const { return this->Terms; }
+
+  std::vector<double> values() const
+  {
+    return this->Fast ? std::vector<double>{ 1.0 }
+                      : std::vector<double>{ this->Sum->value(), this->Mean->value() };
+  }
+
+  /// Both count as much, relative to where they start.
+  Scalarizer scalarizer() const
+  {
+    ScalarizationOptions options;
+    options.method = Scalarization::WeightedSum;
+    std::vector<double> weights = { 1.0 };
+    if (!this->Fast)
+    {
+      weights = { 1.0 / std::abs(this->First[0]), 1.0 / std::abs(this->First[1]) };
+    }
+    return Scalarizer(options, weights, this->values());
+  }
+
+private:
+  std::vector<LocalTerm> Terms;
+  bool Fast;
+  const ObjectiveSum* Sum = nullptr;
+  std::unique_ptr<ObjectiveSum> Mean;
+  std::vector<double> First;
+};
+}
+
+//------------------------------------------------------------------------------
+void improveWorst(OptimizationProblem& problem, double allowance,
+  const std::function<bool(const IterationRecord&)>& report)
+{
+  const Direction direction = metricInfo(problem.options().objectives[0].metric).direction;
+  const bool larger = direction == Direction::LargerIsBetter;
+  const IterationRecord start = problem.record(0);
+  double worst = start.worst[0];
+  const double mean = start.mean[0];
+  const auto better = [=](double a, double b) { return larger ? a > b : a < b; };
+  const double bound = larger ? mean * (1 - allowance) : mean * (1 + allowance);
+
+  SimplexMesh& simplices = problem.simplices();
+  const std::size_t size = VertexStride * static_cast<std::size_t>(simplices.freeVertices());
+  std::vector<double> best(simplices.coordinates(), simplices.coordinates() + size);
+  for (int round = 0; round < mostRounds && !problem.outOfTime(); ++round)
+  {
+    const WorstObjectives objectives(problem, worst);
+    LocalOptions options = problem.localOptions();
+    options.newton = true;
+    options.relaxation = 1.0;
+    LocalSweeper sweeper(
+      simplices, problem.moving(), problem.points().data(), objectives.terms(), options);
+    const Scalarizer scalarizer = objectives.scalarizer();
+    for (int i = 0; i < sweepsPerRound; ++i)
+    {
+      std::vector<double> values = objectives.values();
+      sweeper.sweep(scalarizer, values);
+    }
+    problem.store();
+    IterationRecord now = problem.record(0);
+    const bool kept =
+      better(now.worst[0], worst) && !better(bound, now.mean[0]) && now.inverted <= start.inverted;
+    if (!kept)
+    {
+      std::copy(best.begin(), best.end(), simplices.coordinates());
+      problem.store();
+      return;
+    }
+    const double gain = std::abs(worst - now.worst[0]) / std::abs(worst);
+    worst = now.worst[0];
+    std::copy_n(simplices.coordinates(), size, best.begin());
+    if (!report(now) || gain < worthwhile)
+    {
+      return;
+    }
+  }
+}
+}

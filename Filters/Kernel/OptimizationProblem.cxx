@@ -1,0 +1,585 @@
+#include "OptimizationProblem.h"
+
+#include "Parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// Cells of the mesh's own dimension: those that are optimised.
+bool isElement(const Mesh& mesh, CellType type)
+{
+  return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
+}
+
+void requireFinite(const double* values, Index count, const char* what)
+{
+  for (Index i = 0; values && i < count; ++i)
+  {
+    if (std::isnan(values[i]))
+    {
+      throw Error(std::string(what) + " of point " + std::to_string(i / 3) + " is NaN.");
+    }
+  }
+}
+
+void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
+{
+  const StoppingCriteria& stop = options.stopping;
+  if (options.objectives.empty())
+  {
+    throw Error("There is no objective: add one, for example the inverse mean ratio.");
+  }
+  if (stop.maximumIterations < 0 || !(stop.maximumSeconds >= 0) || !(stop.gradientNorm >= 0) ||
+    !(stop.relativeChange >= 0) || !(stop.reduction > 0 && stop.reduction <= 1))
+  {
+    throw Error(
+      "Stopping criteria must not be negative, and the fraction of the possible reduction "
+      "lies between 0 (exclusive) and 1.");
+  }
+  if (!(options.relaxation > 0 && options.relaxation < 2))
+  {
+    throw Error("The relaxation must lie between 0 and 2 (both exclusive); 1 is Newton's step.");
+  }
+  if (options.patchIterations < 1 || !(options.culling >= 0) || !(options.improveWorst >= 0))
+  {
+    throw Error("Patch iterations must be at least 1; culling and the mean's allowance for the "
+                "worst element must not be negative.");
+  }
+  const bool global = options.optimizer >= Optimizer::ConjugateGradientFletcherReeves;
+  if (global && (options.limits || mesh.dimension() == Dimension::Surface))
+  {
+    throw Error(options.limits
+        ? "Limits on the way of points need a local optimizer: choose Automatic or Local Newton."
+        : "A surface in space needs a local optimizer: choose Automatic or Local Newton.");
+  }
+  requireFinite(options.limits, mesh.view().numberOfPoints, "The limit");
+  requireFinite(options.slidePlanes, 3 * mesh.view().numberOfPoints, "The slide plane");
+  requireFinite(options.slideLines, 3 * mesh.view().numberOfPoints, "The slide line");
+}
+
+/// What a chunk of simplices adds to a record.
+struct SimplexTotals
+{
+  double shape = 0, shape2 = 0, worst = 0, size = 0, size2 = 0, largest = 0;
+  Index valid = 0, invalid = 0;
+
+  void add(const SimplexTotals& t)
+  {
+    this->shape += t.shape;
+    this->shape2 += t.shape2;
+    this->worst = std::max(this->worst, t.worst);
+    this->size += t.size;
+    this->size2 += t.size2;
+    this->largest = std::max(this->largest, t.largest);
+    this->valid += t.valid;
+    this->invalid += t.invalid;
+  }
+};
+
+/// N and D of the packet of simplices from `first` on, of which `lanes` are there.
+template <int Dim>
+void simplexInvariants(const SimplexMesh& mesh, std::int32_t first, int lanes, Packet& N, Packet& D)
+{
+  constexpr int corners = Dim + 1;
+  const std::int32_t* ids = mesh.corners() + static_cast<std::size_t>(corners) * first;
+  std::int32_t filled[corners * PacketWidth];
+  if (lanes < PacketWidth)
+  {
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      std::copy_n(ids + corners * std::min(l, lanes - 1), corners, filled + corners * l);
+    }
+    ids = filled;
+  }
+  Packet x[corners][3];
+  for (int k = 0; k < corners; ++k)
+  {
+    loadVertices(mesh.coordinates(), ids + k, corners, x[k]);
+  }
+  Packet weight[6], det;
+  for (int l = 0; l < PacketWidth; ++l)
+  {
+    const TargetSimplex& t = mesh.target(first + std::min(l, lanes - 1));
+    for (int e = 0; e < 6; ++e)
+    {
+      weight[e][l] = t.edge[e];
+    }
+    det[l] = t.det;
+  }
+  N = Packet{};
+  int e = 0;
+  for (int i = 0; i < corners; ++i)
+  {
+    for (int j = i + 1; j < corners; ++j, ++e)
+    {
+      Packet d[3];
+      subtract(x[j], x[i], d);
+      N += weight[e] * dot(d, d);
+    }
+  }
+  Packet a[3], b[3], ab[3];
+  subtract(x[1], x[0], a);
+  subtract(x[2], x[0], b);
+  cross(a, b, ab);
+  if (Dim == 3)
+  {
+    Packet c[3];
+    subtract(x[corners - 1], x[0], c);
+    D = det * dot(ab, c);
+  }
+  else
+  {
+    D = det * (mesh.surface() ? sqrt(dot(ab, ab)) : ab[2]);
+  }
+}
+
+template <int Dim>
+SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weights, int threads)
+{
+  std::vector<SimplexTotals> ofChunk(numberOfChunks(mesh.simplices()));
+  forEachChunk(mesh.simplices(), threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      Packet shape = {}, shape2 = {}, worst = {}, size = {}, size2 = {}, largest = {};
+      SimplexTotals& total = ofChunk[chunk];
+      for (Index i = begin; i < end; i += PacketWidth)
+      {
+        const int lanes = static_cast<int>(std::min<Index>(PacketWidth, end - i));
+        Packet N, D;
+        simplexInvariants<Dim>(mesh, static_cast<std::int32_t>(i), lanes, N, D);
+        Packet w = broadcast(1.0);
+        for (int l = 0; l < PacketWidth; ++l)
+        {
+          w[l] = l < lanes ? (weights.empty() ? 1.0 : weights[i + l]) : 0.0;
+        }
+        // As Mesh::classifyCells() has it, with |T|^n in place of the product of the edges.
+        const Packet scale = Dim == 2 ? N : N * sqrt(N);
+        const Mask valid = D > Mesh::degenerateTolerance() * scale;
+        for (int l = 0; l < lanes; ++l)
+        {
+          total.valid += valid[l] != 0;
+          total.invalid += valid[l] == 0;
+        }
+        const Packet s = inverseCbrt(D);
+        const Packet ratio = Dim == 2 ? 0.5 * N / D : (1.0 / 3.0) * N * s * s;
+        const Packet q = select(valid, ratio, Packet{});
+        shape += select(w > 0.0, q, Packet{});
+        shape2 += w * q * q;
+        worst = max(worst, select(w > 0.0, q, Packet{}));
+        const Packet V = select(w > 0.0, D, Packet{});
+        size += V;
+        size2 += w * V * V;
+        largest = max(largest, V);
+      }
+      total.shape = sumOf(shape);
+      total.shape2 = sumOf(shape2);
+      total.worst = -leastOf(-worst);
+      total.size = sumOf(size);
+      total.size2 = sumOf(size2);
+      total.largest = -leastOf(-largest);
+    });
+  SimplexTotals total;
+  for (const SimplexTotals& t : ofChunk)
+  {
+    total.add(t);
+  }
+  return total;
+}
+}
+
+//------------------------------------------------------------------------------
+OptimizationProblem::OptimizationProblem(
+  const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points)
+  : TheMesh(mesh)
+  , Options(options)
+  , Points(points)
+  , Began(std::chrono::steady_clock::now())
+{
+  checkOptions(mesh, options);
+  MeshView view = mesh.view();
+  view.points = points.data();
+  this->Moving = std::make_unique<Mesh>(view, options.threads);
+  this->Moving->setMirrored(mesh.mirrored());
+  this->Resolved = options.objectives;
+
+  // One set of targets can be built into the simplices; objectives with others take the general way.
+  const Targets* targets = nullptr;
+  for (Objective& objective : this->Resolved)
+  {
+    objective.form = objective.form == ObjectiveTemplate::Default
+      ? defaultTemplate(objective.metric)
+      : objective.form;
+    objective.evaluation.threads = options.threads;
+    if (!targets && objective.evaluation.targets &&
+      objective.evaluation.targets->metricRoots.empty())
+    {
+      targets = objective.evaluation.targets;
+    }
+  }
+  this->Simplices =
+    std::make_unique<SimplexMesh>(*this->Moving, options.fixed, targets, options.threads);
+  if (mesh.dimension() == Dimension::Surface && options.surface.project)
+  {
+    this->Surface = std::make_unique<SurfaceProjection>(mesh, *this->Simplices);
+  }
+  this->Start.assign(this->Simplices->coordinates(),
+    this->Simplices->coordinates() +
+      VertexStride * static_cast<std::size_t>(this->Simplices->vertices()));
+  this->Sums.resize(this->Resolved.size());
+  this->Weights.resize(this->Resolved.size());
+  this->AllFast = true;
+  for (const Objective& objective : this->Resolved)
+  {
+    this->Terms.push_back(this->fastTerm(objective));
+    // Simplices carry the objective's targets, or the ideal ones.
+    const LocalTerm& term = this->Terms.back();
+    this->AllFast = this->AllFast && (term.shapePower > 0 || term.sizeSquared > 0);
+    if (objective.evaluation.targets != targets && term.shapePower > 0)
+    {
+      this->Terms.back() = LocalTerm();
+      this->AllFast = false;
+    }
+  }
+  if (this->Moving->nonFinitePoints() > 0 || !this->AllFast)
+  {
+    // Inverted elements that no objective can repair, and those with NaN, are left out.
+    std::vector<signed char> validity(view.numberOfCells);
+    this->Moving->classifyCells(validity.data(), options.threads);
+    this->leaveOut(validity);
+  }
+  else
+  {
+    const SimplexTotals totals = this->Simplices->dimension() == 3
+      ? totalsOf<3>(*this->Simplices, {}, options.threads)
+      : totalsOf<2>(*this->Simplices, {}, options.threads);
+    if (totals.invalid > 0)
+    {
+      std::vector<signed char> validity(view.numberOfCells);
+      this->Moving->classifyCells(validity.data(), options.threads);
+      this->leaveOut(validity);
+    }
+  }
+  this->rescaleUntangling();
+  const auto weighted = [](const std::vector<double>& w) { return !w.empty(); };
+  if (!this->AllFast && std::any_of(this->Weights.begin(), this->Weights.end(), weighted))
+  {
+    this->Terms.assign(this->Terms.size(), LocalTerm()); // weights of cells differ by objective
+  }
+}
+
+//------------------------------------------------------------------------------
+LocalTerm OptimizationProblem::fastTerm(const Objective& objective) const
+{
+  LocalTerm term;
+  for (const CellBlock& block : this->Moving->blocks())
+  {
+    if (!isElement(*this->Moving, block.type) || topology(block.type).samples > 1)
+    {
+      return term; // several corners make one value
+    }
+  }
+  if (this->Moving->blocks().empty() || objective.elementWeights ||
+    (objective.evaluation.targets && !objective.evaluation.targets->metricRoots.empty()))
+  {
+    return term;
+  }
+  using T = ObjectiveTemplate;
+  const T form = objective.form;
+  if (objective.metric == Metric::InverseMeanRatio)
+  {
+    term.shapePower = form == T::SumOfSquares ? 2 : form == T::Sum ? 1 : 0;
+  }
+  else if (objective.metric == Metric::MeanRatio)
+  {
+    term.shapePower = form == T::SumOfSquaredReciprocals ? 2 : form == T::SumOfReciprocals ? 1 : 0;
+  }
+  else if (objective.metric == Metric::Size && form == T::SumOfSquares &&
+    !objective.evaluation.targets && this->Simplices->uniform() && !this->Simplices->surface())
+  {
+    // V = size of the ideal cell x D, in units of the simplices' scale.
+    const CellTopology& t = topology(this->Moving->blocks()[0].type);
+    const double size = t.sizePerDeterminant / this->Simplices->target(0).det *
+      std::pow(this->Simplices->scale(), t.dimension);
+    term.sizeSquared = size * size;
+  }
+  return term;
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::leaveOut(const std::vector<signed char>& validity)
+{
+  const Index cells = static_cast<Index>(validity.size());
+  for (std::size_t i = 0; i < this->Resolved.size(); ++i)
+  {
+    Objective& objective = this->Resolved[i];
+    const bool repairs = canUntangle(objective);
+    const auto out = [&](Index cell)
+    {
+      return validity[cell] == NonFinite ||
+        ((validity[cell] == Inverted || validity[cell] == Degenerate) && !repairs);
+    };
+    Index count = 0;
+    for (Index cell = 0; cell < cells; ++cell)
+    {
+      count += out(cell);
+    }
+    if (count == 0)
+    {
+      continue;
+    }
+    this->Weights[i].assign(cells, 1.0);
+    for (Index cell = 0; cell < cells; ++cell)
+    {
+      this->Weights[i][cell] = out(cell) ? 0.0
+        : objective.elementWeights       ? objective.elementWeights[cell]
+                                         : 1.0;
+    }
+    objective.elementWeights = this->Weights[i].data();
+  }
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::rescaleUntangling()
+{
+  const bool untangles = std::any_of(this->Resolved.begin(), this->Resolved.end(),
+    [](const Objective& o) { return o.metric == Metric::UntangleBeta; });
+  if (!this->Options.rescaleUntangling || this->Resolved.size() < 2 || !untangles)
+  {
+    return;
+  }
+  const Index cells = this->Moving->view().numberOfCells;
+  std::vector<double> q(cells);
+  const auto largest = [&](const Objective& objective)
+  {
+    evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
+    double most = 0;
+    for (double value : q)
+    {
+      most = std::max(most, std::abs(value));
+    }
+    return most;
+  };
+  double others = 0;
+  for (const Objective& objective : this->Resolved)
+  {
+    others =
+      objective.metric == Metric::UntangleBeta ? others : std::max(others, largest(objective));
+  }
+  for (std::size_t i = 0; i < this->Resolved.size(); ++i)
+  {
+    Objective& objective = this->Resolved[i];
+    const double own = objective.metric == Metric::UntangleBeta ? largest(objective) : 0.0;
+    if (!(own > 0) || own > others)
+    {
+      continue;
+    }
+    // A little more than equal. The weights multiply q^2 or q, whichever the template sums.
+    constexpr double margin = 1.1;
+    const double factor = margin * others / own;
+    const double weight =
+      objective.form == ObjectiveTemplate::SumOfSquares ? factor * factor : factor;
+    this->Weights[i].resize(cells);
+    for (Index cell = 0; cell < cells; ++cell)
+    {
+      this->Weights[i][cell] =
+        weight * (objective.elementWeights ? objective.elementWeights[cell] : 1.0);
+    }
+    objective.elementWeights = this->Weights[i].data();
+  }
+}
+
+//------------------------------------------------------------------------------
+const ObjectiveSum& OptimizationProblem::sum(std::size_t objective)
+{
+  if (!this->Sums[objective])
+  {
+    this->Sums[objective] = std::make_unique<ObjectiveSum>(
+      *this->Moving, this->Resolved[objective], this->Options.threads);
+  }
+  return *this->Sums[objective];
+}
+
+//------------------------------------------------------------------------------
+std::vector<LocalTerm> OptimizationProblem::localTerms()
+{
+  for (std::size_t i = 0; i < this->Terms.size(); ++i)
+  {
+    LocalTerm& term = this->Terms[i];
+    if (term.shapePower == 0 && term.sizeSquared == 0)
+    {
+      term.metric = &this->sum(i);
+    }
+  }
+  return this->Terms;
+}
+
+//------------------------------------------------------------------------------
+LocalOptions OptimizationProblem::localOptions() const
+{
+  const SimplexMesh& s = *this->Simplices;
+  LocalOptions local;
+  local.newton = this->Options.optimizer != Optimizer::LocalConjugateGradient;
+  local.patchIterations = this->Options.patchIterations;
+  local.relaxation = this->Options.relaxation;
+  local.culling = this->Options.culling;
+  local.allowInversion = this->Options.allowInversion;
+  local.threads = this->Options.threads;
+  local.surface = this->Surface.get();
+  const auto directions = [&](const double* given, std::vector<Vec3>& ofVertex)
+  {
+    for (std::int32_t v = 0; given && v < s.freeVertices(); ++v)
+    {
+      const double* n = given + 3 * static_cast<std::size_t>(s.point(v));
+      ofVertex.push_back({ n[0], n[1], n[2] });
+    }
+  };
+  directions(this->Options.slidePlanes, local.planes);
+  directions(this->Options.slideLines, local.lines);
+  if (this->Options.limits)
+  {
+    local.start = this->Start;
+    for (std::int32_t v = 0; v < s.freeVertices(); ++v)
+    {
+      local.limits.push_back(std::max(0.0, this->Options.limits[s.point(v)]) / s.scale());
+    }
+  }
+  if (this->AllFast && !this->Weights[0].empty())
+  {
+    for (std::int32_t i = 0; i < s.simplices(); ++i)
+    {
+      local.weights.push_back(this->Weights[0][s.cell(i)]);
+    }
+    this->Simplices->indexPatches();
+  }
+  return local;
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::store()
+{
+  this->Simplices->store(this->Points.data(), this->Options.threads);
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::summarizeSimplices(IterationRecord& record) const
+{
+  std::vector<double> weights;
+  if (!this->Weights[0].empty())
+  {
+    for (std::int32_t i = 0; i < this->Simplices->simplices(); ++i)
+    {
+      weights.push_back(this->Weights[0][this->Simplices->cell(i)]);
+    }
+  }
+  const SimplexTotals t = this->Simplices->dimension() == 3
+    ? totalsOf<3>(*this->Simplices, weights, this->Options.threads)
+    : totalsOf<2>(*this->Simplices, weights, this->Options.threads);
+  const double valid = static_cast<double>(std::max<Index>(1, t.valid));
+  for (const LocalTerm& term : this->Terms)
+  {
+    const double size = std::sqrt(term.sizeSquared);
+    record.objectives.push_back(term.shapePower == 2 ? t.shape2
+        : term.shapePower == 1                       ? t.shape
+                                                     : term.sizeSquared * t.size2);
+    record.mean.push_back((term.shapePower > 0 ? t.shape : size * t.size) / valid);
+    record.worst.push_back(term.shapePower > 0 ? t.worst : size * t.largest);
+  }
+  // The metric of a mean ratio is the reciprocal; its mean is not known from these sums.
+  record.inverted = t.invalid;
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::summarizeCells(IterationRecord& record)
+{
+  const Index cells = this->Moving->view().numberOfCells;
+  std::vector<signed char> validity(cells);
+  this->Moving->classifyCells(validity.data(), this->Options.threads);
+  std::vector<double> q(cells);
+  for (std::size_t i = 0; i < this->Resolved.size(); ++i)
+  {
+    const Objective& objective = this->Resolved[i];
+    record.objectives.push_back(this->sum(i).value());
+    evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
+    const MetricInfo& info = metricInfo(objective.metric);
+    const bool larger = info.direction == Direction::LargerIsBetter;
+    double total = 0, worst = 0;
+    Index count = 0;
+    for (const CellBlock& block : this->Moving->blocks())
+    {
+      for (Index c = 0; isElement(*this->Moving, block.type) && c < block.count; ++c)
+      {
+        const Index cell = block.cell(c);
+        if (validity[cell] == Valid)
+        {
+          total += q[cell];
+          worst = count == 0 ? q[cell]
+            : larger         ? std::min(worst, q[cell])
+                             : std::max(worst, q[cell]);
+          ++count;
+        }
+      }
+    }
+    record.mean.push_back(count > 0 ? total / static_cast<double>(count) : 0.0);
+    record.worst.push_back(worst);
+  }
+  for (const CellBlock& block : this->Moving->blocks())
+  {
+    for (Index c = 0; isElement(*this->Moving, block.type) && c < block.count; ++c)
+    {
+      const signed char state = validity[block.cell(c)];
+      record.inverted += state == Inverted || state == Degenerate;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+IterationRecord OptimizationProblem::record(int iteration)
+{
+  IterationRecord record;
+  record.iteration = iteration;
+  const bool ratio = std::any_of(this->Resolved.begin(), this->Resolved.end(),
+    [](const Objective& o) { return o.metric == Metric::MeanRatio; });
+  if (this->AllFast && !ratio)
+  {
+    this->summarizeSimplices(record);
+  }
+  else
+  {
+    this->summarizeCells(record);
+  }
+  record.objective = this->TheScalarizer && record.objectives.size() > 1
+    ? this->TheScalarizer->value(record.objectives)
+    : record.objectives[0];
+  record.seconds = this->elapsed();
+  return record;
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::start(const IterationRecord& first)
+{
+  std::vector<double> weights;
+  for (const Objective& objective : this->Resolved)
+  {
+    weights.push_back(objective.weight);
+  }
+  this->TheScalarizer =
+    std::make_unique<Scalarizer>(this->Options.scalarization, weights, first.objectives);
+}
+
+//------------------------------------------------------------------------------
+double OptimizationProblem::elapsed() const
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Began).count();
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationProblem::outOfTime() const
+{
+  const double limit = this->Options.stopping.maximumSeconds;
+  return limit > 0 && this->elapsed() >= limit;
+}
+}

@@ -1,0 +1,72 @@
+/**
+ * @file OptimizationProblem.h
+ * @brief The state of an optimization: the moving points, the objectives on them, and what the history says of
+ * them. Internal: not installed.
+ */
+#ifndef tautline_OptimizationProblem_h
+#define tautline_OptimizationProblem_h
+
+#include "LocalSweep.h"
+
+#include <chrono>
+#include <memory>
+
+namespace tautline
+{
+class OptimizationProblem
+{
+public:
+  /**
+   * @param points where the optimization starts; moved in place
+   * Throws Error on options that do not fit the mesh.
+   */
+  OptimizationProblem(
+    const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points);
+
+  const Mesh& moving() const { return *this->Moving; }
+  SimplexMesh& simplices() { return *this->Simplices; }
+  const SurfaceProjection* surface() const { return this->Surface.get(); }
+  std::size_t objectives() const { return this->Resolved.size(); }
+  const Scalarizer& scalarizer() const { return *this->TheScalarizer; }
+  Scalarizer& scalarizer() { return *this->TheScalarizer; }
+  /// The objective sums, made when first asked for.
+  const ObjectiveSum& sum(std::size_t objective);
+  std::vector<LocalTerm> localTerms();
+  LocalOptions localOptions() const;
+
+  /// Writes the simplices' coordinates to the points.
+  void store();
+  /// The record of the points as they are; sets the objectives and counts the inverted elements.
+  IterationRecord record(int iteration);
+  /// Prepares the scalarization with the objectives of the start.
+  void start(const IterationRecord& first);
+  double elapsed() const;
+  bool outOfTime() const;
+  const OptimizeOptions& options() const { return this->Options; }
+  std::vector<double>& points() { return this->Points; }
+
+private:
+  LocalTerm fastTerm(const Objective& objective) const;
+  void leaveOut(const std::vector<signed char>& validity);
+  void rescaleUntangling();
+  void summarizeSimplices(IterationRecord& record) const;
+  void summarizeCells(IterationRecord& record);
+
+  const Mesh& TheMesh;
+  OptimizeOptions Options;
+  std::vector<double>& Points;
+  std::unique_ptr<Mesh> Moving;
+  std::unique_ptr<SimplexMesh> Simplices;
+  std::unique_ptr<SurfaceProjection> Surface;
+  std::vector<Objective> Resolved;
+  std::vector<LocalTerm>
+    Terms; ///< of each objective; with the metric's sum only once it was asked for
+  bool AllFast = false;
+  std::vector<std::unique_ptr<ObjectiveSum>> Sums;
+  std::vector<std::vector<double>> Weights; ///< of each objective, if not all 1
+  std::unique_ptr<Scalarizer> TheScalarizer;
+  std::vector<double> Start; ///< coordinates of the simplex mesh at the start
+  std::chrono::steady_clock::time_point Began;
+};
+}
+#endif

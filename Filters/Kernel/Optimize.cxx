@@ -1,0 +1,547 @@
+#include "Optimize.h"
+
+#include "ImproveWorst.h"
+#include "Minimize.h"
+#include "OptimizationProblem.h"
+#include "Untangle.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// Sums of element values differ in the last digits from sums of patches; so much is no loss.
+constexpr double roundingOfSums = 1e-12;
+
+/// Says when to stop, and why.
+class StopWatch
+{
+public:
+  StopWatch(const OptimizationProblem& problem)
+    : Problem(problem)
+    , Stop(problem.options().stopping)
+  {
+  }
+
+  /// Whether the last record of the history is one to stop at.
+  bool ends(const std::vector<IterationRecord>& history, StopReason& reason) const
+  {
+    const IterationRecord& now = history.back();
+    const double lowered = history.front().objective - now.objective;
+    if (this->Stop.allValid && now.inverted == 0)
+    {
+      reason = StopReason::AllValid;
+    }
+    else if (this->Stop.reduction < 1 && history.size() > 1 &&
+      lowered >= this->Stop.reduction * this->possibleReduction(history))
+    {
+      reason = StopReason::Reduction;
+    }
+    else if (this->Stop.twoDigits && history.size() > 1 && this->sameDigits(history))
+    {
+      reason = StopReason::TwoDigits;
+    }
+    else if (now.iteration >= this->Stop.maximumIterations)
+    {
+      reason = StopReason::IterationLimit;
+    }
+    else if (this->Problem.outOfTime())
+    {
+      reason = StopReason::TimeLimit;
+    }
+    else
+    {
+      return false;
+    }
+    return true;
+  }
+
+  double progress(const IterationRecord& record) const
+  {
+    const double byCount =
+      static_cast<double>(record.iteration) / std::max(1, this->Stop.maximumIterations);
+    const double byTime =
+      this->Stop.maximumSeconds > 0 ? record.seconds / this->Stop.maximumSeconds : 0.0;
+    return std::min(1.0, std::max(byCount, byTime));
+  }
+
+private:
+  /// To the best known objective, or to the limit of a geometric series of the last decreases.
+  double possibleReduction(const std::vector<IterationRecord>& history) const
+  {
+    if (std::isfinite(this->Stop.bestKnown))
+    {
+      return history.front().objective - this->Stop.bestKnown;
+    }
+    const std::size_t n = history.size();
+    if (n < 3)
+    {
+      return std::numeric_limits<double>::infinity();
+    }
+    const double last = history[n - 2].objective - history[n - 1].objective;
+    const double before = history[n - 3].objective - history[n - 2].objective;
+    constexpr double slowest = 0.9; // a ratio beyond this says nothing of the limit
+    const double ratio = before > 0 ? std::clamp(last / before, 0.0, slowest) : 0.0;
+    return history.front().objective - history.back().objective + last * ratio / (1.0 - ratio);
+  }
+
+  static bool sameDigits(const std::vector<IterationRecord>& history)
+  {
+    constexpr double hundredths = 100;
+    const std::vector<double>&now = history.back().mean, &before = history[history.size() - 2].mean;
+    for (std::size_t i = 0; i < now.size(); ++i)
+    {
+      if (std::round(hundredths * now[i]) != std::round(hundredths * before[i]))
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  const OptimizationProblem& Problem;
+  const StoppingCriteria& Stop;
+};
+
+/// Adds a record to the history and tells the observer; false if it wants to stop.
+bool report(OptimizationProblem& problem, const StopWatch& watch, Optimization& result,
+  const IterationRecord& record)
+{
+  result.history.push_back(record);
+  const auto& observer = problem.options().observer;
+  if (!observer)
+  {
+    return true;
+  }
+  const auto points = [&](double* p)
+  {
+    problem.store();
+    std::copy(problem.points().begin(), problem.points().end(), p);
+  };
+  return observer({ result.history.back(), watch.progress(record), points });
+}
+
+//------------------------------------------------------------------------------
+StopReason optimizeLocally(
+  OptimizationProblem& problem, const StopWatch& watch, Optimization& result)
+{
+  const StoppingCriteria& stop = problem.options().stopping;
+  SimplexMesh& simplices = problem.simplices();
+  LocalSweeper sweeper(simplices, problem.moving(), problem.points().data(), problem.localTerms(),
+    problem.localOptions());
+  std::vector<double> best(simplices.coordinates(),
+    simplices.coordinates() + VertexStride * static_cast<std::size_t>(simplices.freeVertices()));
+  StopReason reason = StopReason::NoProgress;
+  double firstGradient = 0;
+  bool all = true; // whether the next sweep visits every vertex
+  for (int iteration = result.history.back().iteration + 1;; ++iteration)
+  {
+    if (watch.ends(result.history, reason))
+    {
+      return reason;
+    }
+    const IterationRecord& before = result.history.back();
+    std::vector<double> values = before.objectives;
+    const SweepResult sweep = sweeper.sweep(problem.scalarizer(), values);
+    problem.store();
+    IterationRecord now = problem.record(iteration);
+    now.gradientNorm = sweep.gradientNorm;
+    now.moving = sweep.moved;
+    const double lowered = before.objective - now.objective;
+    const double size = std::abs(now.objective);
+    if (!(lowered >= -roundingOfSums * size))
+    {
+      // Blocks of one colour do not see each other's changes of a composite objective.
+      std::copy(best.begin(), best.end(), simplices.coordinates());
+      problem.store();
+      return StopReason::NoProgress;
+    }
+    std::copy_n(simplices.coordinates(), best.size(), best.begin());
+    firstGradient = iteration == 1 ? sweep.gradientNorm : firstGradient;
+    if (!report(problem, watch, result, now))
+    {
+      return StopReason::Aborted;
+    }
+
+    // Convergence is only believed of a sweep over all vertices.
+    const bool still = sweep.moved == 0 && sweep.visited == 0;
+    if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient)
+    {
+      reason = StopReason::GradientNorm;
+    }
+    else if (lowered <= stop.relativeChange * size)
+    {
+      reason = StopReason::RelativeChange;
+    }
+    else if (lowered == 0)
+    {
+      reason = StopReason::NoProgress;
+    }
+    else
+    {
+      all = false;
+      if (still || sweep.moved == 0)
+      {
+        sweeper.wakeAll();
+        all = true;
+      }
+      continue;
+    }
+    if (!all)
+    {
+      sweeper.wakeAll();
+      all = true;
+    }
+    else if (problem.scalarizer().next(result.history.back().objectives))
+    {
+      sweeper.wakeAll();
+    }
+    else
+    {
+      return reason;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The scalarized objective as a function of the coordinates of the free points.
+class GlobalFunction : public SmoothFunction
+{
+public:
+  explicit GlobalFunction(OptimizationProblem& problem)
+    : Problem(problem)
+    , Validity(problem.moving().view().numberOfCells)
+    , Gradient(3 * problem.moving().view().numberOfPoints)
+    , Objectives(problem.objectives())
+    , Slopes(problem.objectives(), 1.0)
+  {
+    problem.moving().classifyCells(this->Validity.data(), problem.options().threads);
+    this->Start = this->Validity;
+  }
+
+  std::size_t size() const override
+  {
+    return 3 * static_cast<std::size_t>(this->Problem.simplices().freeVertices());
+  }
+
+  void load(double* x) const
+  {
+    this->forEachFree([&](std::size_t i, std::size_t p)
+      { std::copy_n(this->Problem.points().data() + 3 * p, 3, x + 3 * i); });
+  }
+
+  void put(const double* x)
+  {
+    this->forEachFree([&](std::size_t i, std::size_t p)
+      { std::copy_n(x + 3 * i, 3, this->Problem.points().data() + 3 * p); });
+    this->Problem.simplices().load(this->Problem.points().data(), this->Problem.options().threads);
+  }
+
+  double valueAndGradient(const double* x, double* gradient) override
+  {
+    this->forEachFree([&](std::size_t i, std::size_t p)
+      { std::copy_n(x + 3 * i, 3, this->Problem.points().data() + 3 * p); });
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (!this->allowed())
+    {
+      return infinity;
+    }
+    const std::size_t n = this->Objectives.size();
+    double value = 0;
+    if (n > 1)
+    {
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        this->Objectives[i] = this->Problem.sum(i).value();
+      }
+      value = this->Problem.scalarizer().value(this->Objectives, this->Slopes);
+      if (!std::isfinite(value))
+      {
+        return infinity;
+      }
+    }
+    std::fill(this->Gradient.begin(), this->Gradient.end(), 0.0);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const double own = this->Problem.sum(i).addGradient(this->Slopes[i], this->Gradient.data());
+      value = n == 1 ? own : value;
+    }
+    this->forEachFree(
+      [&](std::size_t i, std::size_t p)
+      {
+        Vec3 g = { this->Gradient[3 * p], this->Gradient[3 * p + 1], this->Gradient[3 * p + 2] };
+        g = this->project(p, g);
+        std::copy(g.begin(), g.end(), gradient + 3 * i);
+      });
+    return std::isnan(value) ? infinity : value;
+  }
+
+private:
+  template <class Visit>
+  void forEachFree(const Visit& visit) const
+  {
+    const SimplexMesh& s = this->Problem.simplices();
+    for (std::int32_t v = 0; v < s.freeVertices(); ++v)
+    {
+      visit(static_cast<std::size_t>(v), static_cast<std::size_t>(s.point(v)));
+    }
+  }
+
+  /// No element that was valid at the start has become invalid.
+  bool allowed()
+  {
+    if (this->Problem.options().allowInversion)
+    {
+      return true;
+    }
+    this->Problem.moving().classifyCells(this->Validity.data(), this->Problem.options().threads);
+    for (std::size_t i = 0; i < this->Validity.size(); ++i)
+    {
+      if (this->Start[i] == Valid && this->Validity[i] != Valid)
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// The part of a gradient a point may follow.
+  Vec3 project(std::size_t p, const Vec3& g) const
+  {
+    const OptimizeOptions& options = this->Problem.options();
+    const auto along = [&](const double* u)
+    {
+      const Vec3 n = { u[3 * p], u[3 * p + 1], u[3 * p + 2] };
+      const double n2 = dot(n, n);
+      return n2 > 0 ? (dot(g, n) / n2) * n : Vec3{ 0, 0, 0 };
+    };
+    const auto given = [&](const double* u)
+    { return u && (u[3 * p] != 0 || u[3 * p + 1] != 0 || u[3 * p + 2] != 0); };
+    return given(options.slideLines) ? along(options.slideLines)
+      : given(options.slidePlanes)   ? g - along(options.slidePlanes)
+                                     : g;
+  }
+
+  OptimizationProblem& Problem;
+  std::vector<signed char> Start, Validity;
+  std::vector<double> Gradient;
+  std::vector<double> Objectives, Slopes;
+};
+
+StopReason optimizeGlobally(
+  OptimizationProblem& problem, const StopWatch& watch, Optimization& result)
+{
+  const StoppingCriteria& stop = problem.options().stopping;
+  StopReason reason = StopReason::NoProgress;
+  if (watch.ends(result.history, reason))
+  {
+    return reason;
+  }
+  GlobalFunction function(problem);
+  std::vector<double> x(function.size());
+  function.load(x.data());
+  for (;;)
+  {
+    const int before = result.history.back().iteration;
+    MinimizeOptions options;
+    options.method = problem.options().optimizer;
+    options.maximumIterations = stop.maximumIterations - before;
+    options.gradientNorm = stop.gradientNorm;
+    options.relativeChange = stop.relativeChange;
+    options.threads = problem.options().threads;
+    bool ended = false;
+    options.observer = [&](int iteration, double, double gradientNorm, const double* now)
+    {
+      if (iteration == 0)
+      {
+        return true;
+      }
+      function.put(now);
+      IterationRecord record = problem.record(before + iteration);
+      record.gradientNorm = gradientNorm;
+      if (!report(problem, watch, result, record))
+      {
+        reason = StopReason::Aborted;
+        ended = true;
+      }
+      else
+      {
+        ended = watch.ends(result.history, reason);
+      }
+      return !ended;
+    };
+    const Minimization found = minimize(function, x.data(), options);
+    function.put(x.data());
+    if (ended)
+    {
+      return reason;
+    }
+    if (!problem.scalarizer().next(problem.record(0).objectives))
+    {
+      return found.reason;
+    }
+  }
+}
+
+Index countInvalid(const Mesh& mesh, int threads)
+{
+  std::vector<signed char> validity(mesh.view().numberOfCells);
+  mesh.classifyCells(validity.data(), threads);
+  return std::count_if(validity.begin(), validity.end(),
+    [](signed char v) { return v == Inverted || v == Degenerate; });
+}
+}
+
+//------------------------------------------------------------------------------
+const char* describe(StopReason reason)
+{
+  switch (reason)
+  {
+    case StopReason::GradientNorm:
+      return "Converged: the gradient is as small as wanted.";
+    case StopReason::RelativeChange:
+      return "Converged: the objective hardly changes any more.";
+    case StopReason::TwoDigits:
+      return "The mean qualities keep two decimals.";
+    case StopReason::Reduction:
+      return "The wanted part of the possible reduction is reached.";
+    case StopReason::AllValid:
+      return "All elements are valid.";
+    case StopReason::IterationLimit:
+      return "The limit of iterations is reached.";
+    case StopReason::TimeLimit:
+      return "The time limit is reached.";
+    case StopReason::Aborted:
+      return "Stopped on request.";
+    case StopReason::NoProgress:
+      return "No step lowers the objective.";
+    default:
+      return "No vertex is free to move.";
+  }
+}
+
+//------------------------------------------------------------------------------
+void applyPreset(Preset preset, OptimizeOptions& options)
+{
+  if (preset == Preset::Custom)
+  {
+    return;
+  }
+  Objective shape;
+  options.objectives = { shape };
+  options.scalarization = ScalarizationOptions();
+  options.optimizer = Optimizer::Automatic;
+  options.stopping = StoppingCriteria();
+  options.improveWorst = 0.0;
+  options.untangleFirst = true;
+  Objective second;
+  switch (preset)
+  {
+    case Preset::FastCleanUp:
+      options.stopping.maximumIterations = 10;
+      options.stopping.reduction = 0.95;
+      break;
+    case Preset::UniformSize:
+      second.metric = Metric::Size;
+      options.objectives.push_back(second);
+      options.scalarization.method = Scalarization::ObjectiveProduct;
+      break;
+    case Preset::LowInterpolationError:
+      second.metric = Metric::InterpolationSizeShape;
+      options.objectives.push_back(second);
+      options.scalarization.method = Scalarization::ObjectiveProduct;
+      break;
+    case Preset::WorstElement:
+      options.improveWorst = 0.01;
+      break;
+    default: // BestShape, UntangleThenImprove, PreserveShape
+      break;
+  }
+}
+
+//------------------------------------------------------------------------------
+Optimization optimize(const Mesh& mesh, const OptimizeOptions& given)
+{
+  Optimization result;
+  const MeshView& view = mesh.view();
+  result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
+  if (mesh.dimension() == Dimension::None)
+  {
+    result.reason = StopReason::NoFreeVertices;
+    return result;
+  }
+  OptimizeOptions options = given;
+  result.invertedBefore = result.invertedAfter = countInvalid(mesh, options.threads);
+  const bool repairs =
+    std::any_of(options.objectives.begin(), options.objectives.end(), canUntangle);
+  if (result.invertedBefore > 0 && !repairs && mesh.dimension() != Dimension::Surface)
+  {
+    if (!options.untangleFirst)
+    {
+      throw Error(std::to_string(result.invertedBefore) +
+        " elements are inverted or degenerate, and no objective repairs them: untangle first, or "
+        "add the "
+        "untangling metric.");
+    }
+    UntangleOptions untangling;
+    untangling.fixed = options.fixed;
+    untangling.threads = options.threads;
+    untangling.maximumSeconds = options.stopping.maximumSeconds;
+    bool goOn = true;
+    untangling.observer = [&](const IterationState& state)
+    { return goOn = !options.observer || options.observer(state); };
+    Untangling untangled = untangle(mesh, untangling);
+    result.points = std::move(untangled.points);
+    result.invertedAfter = untangled.invertedAfter;
+    result.untangled = true;
+    if (!goOn)
+    {
+      result.reason = StopReason::Aborted;
+      return result;
+    }
+  }
+
+  OptimizationProblem problem(mesh, options, result.points);
+  result.freeVertices = problem.simplices().freeVertices();
+  const StopWatch watch(problem);
+  const IterationRecord first = problem.record(0);
+  problem.start(first);
+  IterationRecord scalarized = first;
+  scalarized.objective =
+    problem.objectives() > 1 ? problem.scalarizer().value(first.objectives) : first.objectives[0];
+  if (!report(problem, watch, result, scalarized))
+  {
+    result.reason = StopReason::Aborted;
+    return result;
+  }
+  if (result.freeVertices == 0)
+  {
+    result.reason = StopReason::NoFreeVertices;
+    return result;
+  }
+  const bool local = options.optimizer <= Optimizer::LocalConjugateGradient;
+  result.reason =
+    local ? optimizeLocally(problem, watch, result) : optimizeGlobally(problem, watch, result);
+  const bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
+  if (options.improveWorst > 0 && going)
+  {
+    improveWorst(problem, options.improveWorst,
+      [&](IterationRecord record)
+      {
+        record.iteration = result.history.back().iteration + 1;
+        return report(problem, watch, result, record);
+      });
+  }
+  problem.store();
+  result.iterations = result.history.back().iteration;
+  result.invertedAfter = countInvalid(problem.moving(), options.threads);
+  if (problem.surface())
+  {
+    result.surfaceError =
+      problem.surface()->distance(mesh, problem.simplices(), result.points.data(), options.threads);
+  }
+  return result;
+}
+}
