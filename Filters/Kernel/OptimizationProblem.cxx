@@ -559,6 +559,40 @@ IterationRecord OptimizationProblem::record(int iteration)
 }
 
 //------------------------------------------------------------------------------
+double OptimizationProblem::worstMovable() const
+{
+  const MeshView& view = this->Moving->view();
+  std::vector<signed char> validity(view.numberOfCells);
+  this->Moving->classifyCells(validity.data(), this->Options.threads);
+  std::vector<double> q(view.numberOfCells);
+  const Objective& objective = this->Resolved[0];
+  evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
+  std::vector<char> free(view.numberOfPoints, 0);
+  for (std::int32_t v = 0; v < this->Simplices->freeVertices(); ++v)
+  {
+    free[this->Simplices->point(v)] = 1;
+  }
+  const bool larger = metricInfo(objective.metric).direction == Direction::LargerIsBetter;
+  const double infinity = std::numeric_limits<double>::infinity();
+  double worst = larger ? infinity : -infinity;
+  for (const CellBlock& block : this->Moving->blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; isElement(*this->Moving, block.type) && i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      const Index* node = view.connectivity + view.offsets[cell];
+      const bool movable = std::any_of(node, node + nodes, [&](Index p) { return free[p] != 0; });
+      if (movable && validity[cell] == Valid)
+      {
+        worst = larger ? std::min(worst, q[cell]) : std::max(worst, q[cell]);
+      }
+    }
+  }
+  return worst;
+}
+
+//------------------------------------------------------------------------------
 void OptimizationProblem::start(const IterationRecord& first)
 {
   std::vector<double> weights;
