@@ -386,7 +386,7 @@ void SimplexMesh::cut(
         const Index* node = view.connectivity + view.offsets[cell];
         for (int s = 0; s < t.samples; ++s)
         {
-          std::int32_t v[4];
+          std::int32_t v[4] = {};
           bool finite = true;
           for (int k = 0; k < corners; ++k)
           {
