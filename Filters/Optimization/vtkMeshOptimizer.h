@@ -405,9 +405,9 @@ public:
 
   ///@{
   /**
-   * Give the iterations as time steps: time t is the mesh after iteration t, so that ParaView's animation
-   * plays the optimization. Without a request for a time, the output is the result. The time of the input
-   * is then its default one. Off.
+   * Give the iterations as time steps: time t is the mesh after iteration t (those of untangling come
+   * first), so that ParaView's animation plays the optimization. Without a request for a time, the
+   * output is the result. The time of the input is then its default one. Off.
    */
   vtkSetMacro(Animation, bool);
   vtkGetMacro(Animation, bool);
