@@ -94,5 +94,57 @@ private:
     curvature = 2.0 + K * p * (p - 1.0) * lower;
   }
 };
+
+/**
+ * @brief N / chi^(2/n) with the regularised determinant chi = (D + sqrt(D^2 + eps^2)) / 2, which is
+ * positive and smooth on inverted simplices, too, and becomes D as eps goes to zero. With eps = 0, a barrier.
+ *
+ * J. M. Escobar et al., CMAME 192 (2003); V. Garanzha et al., ACM TOG 40 (2021).
+ */
+template <int Dim>
+struct RegularizedShapeEnergy
+{
+  double eps = 0.0;
+
+  Packet value(Packet N, Packet D) const
+  {
+    const Packet chi = this->chi(D, this->root(D));
+    // Less than any chi that counts, and well above where powers of it overflow.
+    constexpr double tiny = 1e-90;
+    return select(
+      chi > tiny, N * inversePower(chi), broadcast(std::numeric_limits<double>::infinity()));
+  }
+
+  void terms(Packet N, Packet D, EnergyTerms& e) const
+  {
+    constexpr double r = -2.0 / Dim;
+    const Packet s = this->root(D), overS = 1.0 / s;
+    e.fN = inversePower(this->chi(D, s));
+    e.f = N * e.fN;
+    // d chi / dD = chi / s.
+    const Packet byD = r * overS;
+    e.fD = e.f * byD;
+    e.fNN = Packet{};
+    e.fND = e.fN * byD;
+    e.fDD = e.f * byD * (byD - D * overS * overS);
+  }
+
+private:
+  Packet root(Packet D) const { return sqrt(D * D + this->eps * this->eps); }
+  Packet chi(Packet D, Packet s) const
+  {
+    // The second form does not cancel.
+    return select(D > 0.0, 0.5 * (D + s), 0.5 * (this->eps * this->eps) / (s + abs(D)));
+  }
+  static Packet inversePower(Packet chi)
+  {
+    if constexpr (Dim == 2)
+    {
+      return 1.0 / chi;
+    }
+    const Packet y = inverseCbrt(chi);
+    return y * y;
+  }
+};
 }
 #endif

@@ -76,7 +76,11 @@ void improveWorst(OptimizationProblem& problem, double allowance,
   const Direction direction = metricInfo(problem.options().objectives[0].metric).direction;
   const bool larger = direction == Direction::LargerIsBetter;
   const IterationRecord start = problem.record(0);
-  double worst = start.worst[0];
+  double worst = problem.worstMovable(); // elements that cannot move hold nobody up
+  if (!std::isfinite(worst))
+  {
+    return;
+  }
   const double mean = start.mean[0];
   const auto better = [=](double a, double b) { return larger ? a > b : a < b; };
   const double bound = larger ? mean * (1 - allowance) : mean * (1 + allowance);
@@ -100,16 +104,17 @@ void improveWorst(OptimizationProblem& problem, double allowance,
     }
     problem.store();
     IterationRecord now = problem.record(0);
+    const double worstNow = problem.worstMovable();
     const bool kept =
-      better(now.worst[0], worst) && !better(bound, now.mean[0]) && now.inverted <= start.inverted;
+      better(worstNow, worst) && !better(bound, now.mean[0]) && now.inverted <= start.inverted;
     if (!kept)
     {
       std::copy(best.begin(), best.end(), simplices.coordinates());
       problem.store();
       return;
     }
-    const double gain = std::abs(worst - now.worst[0]) / std::abs(worst);
-    worst = now.worst[0];
+    const double gain = std::abs(worst - worstNow) / std::abs(worst);
+    worst = worstNow;
     std::copy_n(simplices.coordinates(), size, best.begin());
     if (!report(now) || gain < worthwhile)
     {

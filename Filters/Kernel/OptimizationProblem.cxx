@@ -101,7 +101,12 @@ void simplexInvariants(const SimplexMesh& mesh, std::int32_t first, int lanes, P
     loadVertices(mesh.coordinates(), ids + k, corners, x[k]);
   }
   Packet weight[6], det;
-  for (int l = 0; l < PacketWidth; ++l)
+  for (int e = 0; e < 6; ++e)
+  {
+    weight[e] = broadcast(mesh.target(first).edge[e]);
+  }
+  det = broadcast(mesh.target(first).det);
+  for (int l = 0; l < PacketWidth && !mesh.uniform(); ++l)
   {
     const TargetSimplex& t = mesh.target(first + std::min(l, lanes - 1));
     for (int e = 0; e < 6; ++e)
@@ -152,17 +157,19 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
         Packet N, D;
         simplexInvariants<Dim>(mesh, static_cast<std::int32_t>(i), lanes, N, D);
         Packet w = broadcast(1.0);
-        for (int l = 0; l < PacketWidth; ++l)
+        for (int l = 0; l < PacketWidth && (lanes < PacketWidth || !weights.empty()); ++l)
         {
-          w[l] = l < lanes ? (weights.empty() ? 1.0 : weights[i + l]) : 0.0;
+          w[l] = l >= lanes ? 0.0 : weights.empty() ? 1.0 : weights[i + l];
         }
         // As Mesh::classifyCells() has it, with |T|^n in place of the product of the edges.
         const Packet scale = Dim == 2 ? N : N * sqrt(N);
         const Mask valid = D > Mesh::degenerateTolerance() * scale;
-        for (int l = 0; l < lanes; ++l)
+        if (any(~valid))
         {
-          total.valid += valid[l] != 0;
-          total.invalid += valid[l] == 0;
+          for (int l = 0; l < lanes; ++l)
+          {
+            total.invalid += valid[l] == 0;
+          }
         }
         const Packet s = inverseCbrt(D);
         const Packet ratio = Dim == 2 ? 0.5 * N / D : (1.0 / 3.0) * N * s * s;
@@ -175,6 +182,7 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
         size2 += w * V * V;
         largest = max(largest, V);
       }
+      total.valid = end - begin - total.invalid;
       total.shape = sumOf(shape);
       total.shape2 = sumOf(shape2);
       total.worst = -leastOf(-worst);
@@ -556,6 +564,40 @@ IterationRecord OptimizationProblem::record(int iteration)
     : record.objectives[0];
   record.seconds = this->elapsed();
   return record;
+}
+
+//------------------------------------------------------------------------------
+double OptimizationProblem::worstMovable() const
+{
+  const MeshView& view = this->Moving->view();
+  std::vector<signed char> validity(view.numberOfCells);
+  this->Moving->classifyCells(validity.data(), this->Options.threads);
+  std::vector<double> q(view.numberOfCells);
+  const Objective& objective = this->Resolved[0];
+  evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
+  std::vector<char> free(view.numberOfPoints, 0);
+  for (std::int32_t v = 0; v < this->Simplices->freeVertices(); ++v)
+  {
+    free[this->Simplices->point(v)] = 1;
+  }
+  const bool larger = metricInfo(objective.metric).direction == Direction::LargerIsBetter;
+  const double infinity = std::numeric_limits<double>::infinity();
+  double worst = larger ? infinity : -infinity;
+  for (const CellBlock& block : this->Moving->blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; isElement(*this->Moving, block.type) && i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      const Index* node = view.connectivity + view.offsets[cell];
+      const bool movable = std::any_of(node, node + nodes, [&](Index p) { return free[p] != 0; });
+      if (movable && validity[cell] == Valid)
+      {
+        worst = larger ? std::min(worst, q[cell]) : std::max(worst, q[cell]);
+      }
+    }
+  }
+  return worst;
 }
 
 //------------------------------------------------------------------------------

@@ -38,6 +38,8 @@ public:
   void store();
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);
+  /// The worst value of the first objective's metric among the valid elements with a free vertex.
+  double worstMovable() const;
   /// Prepares the scalarization with the objectives of the start.
   void start(const IterationRecord& first);
   double elapsed() const;

@@ -161,7 +161,10 @@ struct OptimizeOptions
    */
   double improveWorst = 0.0;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
-  /// Called after each iteration; return false to stop. Called from the calling thread.
+  /**
+   * @brief Called after each iteration; return false to stop. Called from the calling thread. While untangle() runs
+   * first, the records are its own, with 0 for what belongs to the objectives, and progress stays 0.
+   */
   std::function<bool(const IterationState&)> observer;
 };
 
