@@ -417,7 +417,8 @@ std::string summarize(const Optimization& result, const MovableMesh& mesh, const
        << (result.untangled ? "; it was untangled first." : ".");
   if (result.surfaceError > 0)
   {
-    text << "\nLargest distance from the input surface: " << result.surfaceError << ".";
+    text << "\nLargest distance of the elements from the input surface: " << result.surfaceError
+         << ".";
   }
   return text.str();
 }

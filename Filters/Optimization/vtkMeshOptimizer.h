@@ -446,7 +446,7 @@ public:
   vtkIdType GetFreePoints() const { return this->FreePoints; }
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
   vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
-  /// Largest distance of an output point of a surface mesh from the input surface.
+  /// Largest distance of the output's elements from the input surface, of surface meshes.
   double GetSurfaceError() const { return this->SurfaceError; }
   const char* GetSummary() const { return this->Summary.c_str(); }
   ///@}

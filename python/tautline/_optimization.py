@@ -92,7 +92,7 @@ class Optimized:
     displacement: np.ndarray
     #: Per cell 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Largest distance of a point of a surface in space from the input surface.
+    #: Largest distance of the elements of a surface in space from the input surface.
     surface_error: float
     #: The result in words.
     summary: str
