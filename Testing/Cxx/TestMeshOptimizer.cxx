@@ -164,7 +164,7 @@ void testCustom()
   TAUTLINE_CHECK(pointsOf(filter) == expected.points);
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 8);
   for (const char* column : { "Objective", "imr objective", "imr mean", "imr worst", "rr objective",
-         "rr mean", "rr worst", "Inverted", "Gradient norm", "N moving", "Time (s)" })
+         "rr mean", "rr worst", "Inverted", "N gradient", "N moving", "Time (s)" })
   {
     TAUTLINE_CHECK(filter->GetHistory()->GetColumnByName(column) != nullptr);
   }

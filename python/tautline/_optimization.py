@@ -61,7 +61,7 @@ _MOST_THREADS = 1024
 _MOST_ITERATIONS = 1000000
 _OWN = "given "  # arrays given in numbers go to the filter by names that begin so
 _SIZE, _TENSOR, _FIXED, _LIMITS, _WEIGHTS = range(5)  # arrays to process of vtkMeshOptimizer
-_COLUMNS = {"Time (s)": "seconds", "N moving": "moving"}
+_COLUMNS = {"Time (s)": "seconds", "N moving": "moving", "N gradient": "gradient_norm"}
 
 #: An objective: the name of a metric, or (name, {"template": ..., "weight": ..., "target": ...}).
 Objective = Union[str, "tuple[str, dict[str, Any]]"]
@@ -404,8 +404,9 @@ def _statistics(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
         facts = {"label": table["Label"][row]}
         for name, column in table.items():
             if name not in ("Block", "Metric", "Label"):
-                number = float(column[row])
-                facts[snake(name)] = int(number) if snake(name).startswith(counts) else number
+                ending = "Before" if name.endswith("Before") else "After"
+                fact = f"{snake(name[: -len(ending)])}_{ending.lower()}"
+                facts[fact] = int(column[row]) if fact.startswith(counts) else float(column[row])
         result[key] = facts
     return result
 
