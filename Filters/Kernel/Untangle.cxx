@@ -21,6 +21,16 @@ Index countInvalid(const std::vector<signed char>& validity)
     [](signed char v) { return v == Inverted || v == Degenerate; }));
 }
 
+/// A falling sequence of regularisations, with a solve for each.
+struct Schedule
+{
+  double eps;       ///< the first
+  double factor;    ///< from each to the next
+  double tolerance; ///< a solve ends when an iteration lowers the energy by less, relative to it
+  int solves;
+  int iterations; ///< of a solve, at most
+};
+
 /// The history, the observer, the limits, and the best coordinates so far.
 class Progress
 {
@@ -151,13 +161,18 @@ private:
   }
 
   bool untangled() const { return this->State.bad == 0; }
+  double badFraction() const
+  {
+    return static_cast<double>(this->State.bad) / std::max(1, this->Simplices.simplices());
+  }
   bool done() const { return this->untangled() || this->Run.stopped(); }
 
   void markActive(int rings);
   void local(int sweeps);
   void giveUpImpossible();
   void smoothWorst();
-  void descend(double eps, double factor, double tolerance, int solves);
+  void descend(const Schedule& schedule);
+  bool startHarmonic(double tolerance);
   void global();
 
   const Mesh& Input;
@@ -241,8 +256,7 @@ void Untangler<Dim>::local(int sweeps)
   for (int sweep = 0; sweep < sweeps && !this->done() && without < patience; ++sweep)
   {
     this->markActive(std::min(mostRings, (sweep + 1) / sweepsPerRing));
-    const bool tryWidest =
-      sweep > 0 && static_cast<double>(this->State.bad) < few * this->Simplices.simplices();
+    const bool tryWidest = sweep > 0 && this->badFraction() < few;
     this->Tangled.sweep(this->Active.data(),
       [&](std::int32_t v, Patch<Dim>& patch)
       { this->Tangled.relax(this->x(), v, steps, tryWidest, patch); });
@@ -431,29 +445,28 @@ void Untangler<Dim>::smoothWorst()
  * the local sweeps try to finish; where they cannot, what they did is undone.
  */
 template <int Dim>
-void Untangler<Dim>::descend(double eps, double factor, double tolerance, int solves)
+void Untangler<Dim>::descend(const Schedule& schedule)
 {
-  constexpr int inner = 30, finishing = 10;
+  constexpr int finishing = 10;
   constexpr double few = 0.1;
   GlobalDescent<Dim> descent(this->Tangled);
-  double last = eps;
-  for (int solve = 0; solve < solves && !this->done(); ++solve, last = eps, eps *= factor)
+  double eps = schedule.eps;
+  for (int solve = 0; solve < schedule.solves && !this->done(); ++solve, eps *= schedule.factor)
   {
     double energy = descent.start(this->x(), eps).energy;
-    for (int k = 0; k < inner && !this->done(); ++k)
+    for (int k = 0; k < schedule.iterations && !this->done(); ++k)
     {
       const bool moved = descent.step(this->x());
       this->examine();
       this->record();
       const double next = descent.state().energy;
-      if (!moved || energy - next < tolerance * energy)
+      if (!moved || energy - next < schedule.tolerance * energy)
       {
         break;
       }
       energy = next;
     }
-    if (!this->done() &&
-      static_cast<double>(this->State.bad) < few * static_cast<double>(this->Simplices.simplices()))
+    if (!this->done() && this->badFraction() < few)
     {
       const std::vector<double> keep = this->coordinates();
       this->local(finishing);
@@ -463,65 +476,60 @@ void Untangler<Dim>::descend(double eps, double factor, double tolerance, int so
       }
     }
   }
-  static_cast<void>(last);
+}
+
+template <int Dim>
+bool Untangler<Dim>::startHarmonic(double tolerance)
+{
+  constexpr int iterations = 1000;
+  const bool held =
+    harmonicMap<Dim>(this->Simplices, this->x(), tolerance, iterations, this->Options.threads);
+  this->examine();
+  this->record();
+  return held;
 }
 
 template <int Dim>
 void Untangler<Dim>::global()
 {
-  // The energy's scale: a simplex of the mean edge's length has D near 1.
-  constexpr double firstEps = 1.0, ofLeast = 0.1, halve = 0.5, slower = 0.7;
-  constexpr double loose = 1e-3, tight = 1e-4, few = 0.02;
-  constexpr int quick = 2, solves = 12, manySolves = 30, harmonicIterations = 1000, finishing = 10;
-  constexpr double harmonicTolerance = 1e-3;
+  // Determinants are 1 for a simplex with edges of the mean length.
+  constexpr double firstEps = 1.0, ofLeast = 0.1, few = 0.02;
+  constexpr double loose = 1e-3, tight = 1e-4, harmonic = 1e-3, exactlyHarmonic = 1e-6;
+  constexpr int finishing = 10;
   const std::vector<double> before = this->coordinates();
+  const double depth = ofLeast * std::abs(this->State.least);
 
-  // A few bad simplices: without disturbing the others much.
-  if (static_cast<double>(this->State.bad) < few * static_cast<double>(this->Simplices.simplices()))
+  // A few bad simplices: a short try that leaves the others about where they are.
+  if (this->badFraction() < few)
   {
-    this->descend(
-      std::max(ofLeast * std::abs(this->State.least), this->Tangled.margin()), 1.0, loose, quick);
+    this->descend({ std::max(depth, this->Tangled.margin()), 1.0, loose, 2, 8 });
   }
-  if (this->done())
+  if (!this->done() && this->startHarmonic(harmonic))
   {
-    return;
-  }
-  const bool held = harmonicMap<Dim>(
-    this->Simplices, this->x(), harmonicTolerance, harmonicIterations, this->Options.threads);
-  if (held)
-  {
-    this->examine();
-    this->record();
     this->local(finishing);
-    if (!this->done())
-    {
-      this->descend(firstEps, halve, loose, solves);
-    }
+    this->descend({ firstEps, 0.5, loose, 12, 30 });
   }
   if (!this->done())
   {
     this->setCoordinates(before);
-    this->descend(std::max(firstEps, ofLeast * std::abs(this->State.least)), halve, loose, solves);
+    this->descend({ std::max(firstEps, depth), 0.5, loose, 12, 30 });
   }
   if (this->Options.effort == Effort::Thorough)
   {
-    for (const double tolerance : { loose, tight })
+    const Schedule slow = { std::max(10.0 * firstEps, depth), 0.7, loose, 30, 30 };
+    const Schedule slower = { std::max(10.0 * firstEps, depth), 0.8, tight, 40, 60 };
+    for (const Schedule& schedule : { slow, slower })
     {
-      for (const bool fromInput : { true, false })
+      if (!this->done())
       {
-        if (this->done())
-        {
-          return;
-        }
-        this->setCoordinates(fromInput ? this->Start : before);
-        if (!fromInput && held)
-        {
-          harmonicMap<Dim>(this->Simplices, this->x(), harmonicTolerance * harmonicTolerance,
-            harmonicIterations, this->Options.threads);
-          this->examine();
-        }
-        this->descend(std::max(10.0 * firstEps, ofLeast * std::abs(this->State.least)), slower,
-          tolerance, manySolves);
+        this->setCoordinates(this->Start);
+        this->descend(schedule);
+      }
+      if (!this->done())
+      {
+        this->setCoordinates(before);
+        this->startHarmonic(exactlyHarmonic);
+        this->descend(schedule);
       }
     }
   }
@@ -540,7 +548,7 @@ const double* Untangler<Dim>::run(double margin)
   constexpr double many = 0.05;
   constexpr int sweeps = 40, globalSweeps = 12;
   const bool onlyLocal = this->Options.effort == Effort::Local;
-  if (!this->done() && (onlyLocal || tangled < many))
+  if (!this->done() && (onlyLocal || this->badFraction() < many))
   {
     this->local(onlyLocal ? sweeps : globalSweeps);
   }
