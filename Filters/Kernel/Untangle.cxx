@@ -168,7 +168,8 @@ private:
   bool done() const { return this->untangled() || this->Run.stopped(); }
 
   void markActive(int rings);
-  void local(int sweeps);
+  void local(int sweeps, double progress, int patience);
+  void finish() { this->local(10, 0.7, 1); }
   void giveUpImpossible();
   void smoothWorst();
   void descend(const Schedule& schedule);
@@ -244,12 +245,12 @@ void Untangler<Dim>::markActive(int rings)
 }
 
 //------------------------------------------------------------------------------
-/// Sweeps around the bad simplices as long as they become fewer.
+/// Sweeps around the bad simplices until `patience` of them in a row leave more than the part `progress`.
 template <int Dim>
-void Untangler<Dim>::local(int sweeps)
+void Untangler<Dim>::local(int sweeps, double progress, int patience)
 {
   // With time, more vertices give way; the linear programs are for the few that are left.
-  constexpr int steps = 4, patience = 4, mostRings = 4, sweepsPerRing = 2;
+  constexpr int steps = 4, mostRings = 4, sweepsPerRing = 2;
   constexpr double few = 0.02;
   Index fewest = this->State.bad;
   int without = 0;
@@ -262,8 +263,6 @@ void Untangler<Dim>::local(int sweeps)
       { this->Tangled.relax(this->x(), v, steps, tryWidest, patch); });
     this->examine();
     this->record();
-    // It has to get on by a tenth now and then.
-    constexpr double progress = 0.9;
     const bool better =
       static_cast<double>(this->State.bad) <= progress * static_cast<double>(fewest);
     without = better ? 0 : without + 1;
@@ -447,8 +446,7 @@ void Untangler<Dim>::smoothWorst()
 template <int Dim>
 void Untangler<Dim>::descend(const Schedule& schedule)
 {
-  constexpr int finishing = 10;
-  constexpr double few = 0.1;
+  constexpr double few = 0.02;
   GlobalDescent<Dim> descent(this->Tangled);
   double eps = schedule.eps;
   for (int solve = 0; solve < schedule.solves && !this->done(); ++solve, eps *= schedule.factor)
@@ -469,7 +467,7 @@ void Untangler<Dim>::descend(const Schedule& schedule)
     if (!this->done() && this->badFraction() < few)
     {
       const std::vector<double> keep = this->coordinates();
-      this->local(finishing);
+      this->finish();
       if (!this->untangled())
       {
         this->setCoordinates(keep);
@@ -493,9 +491,8 @@ template <int Dim>
 void Untangler<Dim>::global()
 {
   // Determinants are 1 for a simplex with edges of the mean length.
-  constexpr double firstEps = 1.0, ofLeast = 0.1, few = 0.02;
+  constexpr double firstEps = 1.0, ofLeast = 0.1, few = 0.002;
   constexpr double loose = 1e-3, tight = 1e-4, harmonic = 1e-3, exactlyHarmonic = 1e-6;
-  constexpr int finishing = 10;
   const std::vector<double> before = this->coordinates();
   const double depth = ofLeast * std::abs(this->State.least);
 
@@ -506,7 +503,7 @@ void Untangler<Dim>::global()
   }
   if (!this->done() && this->startHarmonic(harmonic))
   {
-    this->local(finishing);
+    this->finish();
     this->descend({ firstEps, 0.5, loose, 12, 30 });
   }
   if (!this->done())
@@ -550,7 +547,7 @@ const double* Untangler<Dim>::run(double margin)
   const bool onlyLocal = this->Options.effort == Effort::Local;
   if (!this->done() && (onlyLocal || this->badFraction() < many))
   {
-    this->local(onlyLocal ? sweeps : globalSweeps);
+    this->local(onlyLocal ? sweeps : globalSweeps, 0.9, onlyLocal ? 6 : 3);
   }
   if (!this->done())
   {
