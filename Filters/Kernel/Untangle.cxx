@@ -540,8 +540,6 @@ const double* Untangler<Dim>::run(double margin)
   this->examine();
   this->Run.restart(std::numeric_limits<Index>::max());
   this->record();
-  const double tangled =
-    static_cast<double>(this->State.bad) / std::max(1, this->Simplices.simplices());
   constexpr double many = 0.05;
   constexpr int sweeps = 40, globalSweeps = 12;
   const bool onlyLocal = this->Options.effort == Effort::Local;
