@@ -8,6 +8,8 @@ namespace tautline
 {
 namespace
 {
+using Clock = std::chrono::steady_clock;
+
 /// Iterations an effort allows, of all phases together.
 int iterationLimit(Effort effort)
 {
@@ -36,12 +38,12 @@ class Progress
 {
 public:
   Progress(const Mesh& mesh, const SimplexMesh& simplices, const UntangleOptions& options,
-    Untangling& result)
+    Clock::time_point start, Untangling& result)
     : Input(mesh)
     , Simplices(simplices)
     , Options(options)
     , Result(result)
-    , Start(std::chrono::steady_clock::now())
+    , Start(start)
     , Best(simplices.coordinates(),
         simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices())
   {
@@ -107,14 +109,14 @@ private:
   }
   double seconds() const
   {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+    return std::chrono::duration<double>(Clock::now() - this->Start).count();
   }
 
   const Mesh& Input;
   const SimplexMesh& Simplices;
   const UntangleOptions& Options;
   Untangling& Result;
-  std::chrono::steady_clock::time_point Start;
+  Clock::time_point Start;
   std::vector<double> Best;
   Index Fewest = 0;
   bool Stopped = false;
@@ -125,13 +127,15 @@ template <int Dim>
 class Untangler
 {
 public:
-  Untangler(
-    const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options, Untangling& result)
-    : Input(mesh)
-    , Simplices(simplices)
+  Untangler(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
+    Clock::time_point start, Untangling& result)
+    : Simplices(simplices)
     , Options(options)
     , Tangled(simplices, options.threads)
-    , Run(mesh, simplices, options, result)
+    , Run(mesh, simplices, options, start, result)
+    , OnlySimplices(std::all_of(mesh.blocks().begin(), mesh.blocks().end(),
+        [](const CellBlock& block)
+        { return topology(block.type).dimension != Dim || topology(block.type).samples == 1; }))
     , Coordinates(static_cast<std::size_t>(VertexStride) * simplices.vertices())
     , Start(simplices.coordinates(), simplices.coordinates() + Coordinates)
     , Active(simplices.freeVertices())
@@ -144,11 +148,13 @@ public:
   /// Simplices no place of their free vertex makes valid while the fixed vertices are where they are.
   const std::vector<std::int32_t>& impossible() const { return this->Impossible; }
   bool stopped() const { return this->Run.stopped(); }
+  /// Cells that are not valid.
+  Index cells() const;
+  bool untangled() const { return this->State.bad == 0; }
 
 private:
   double* x() const { return this->Simplices.coordinates(); }
   bool record() { return this->Run.record(this->x(), this->cells(), this->State.depth); }
-  Index cells() const;
   void examine() { this->State = this->Tangled.examine(this->x()); }
   void setCoordinates(const std::vector<double>& from)
   {
@@ -160,7 +166,6 @@ private:
     return std::vector<double>(this->x(), this->x() + this->Coordinates);
   }
 
-  bool untangled() const { return this->State.bad == 0; }
   double badFraction() const
   {
     return static_cast<double>(this->State.bad) / std::max(1, this->Simplices.simplices());
@@ -176,11 +181,11 @@ private:
   bool startHarmonic(double tolerance);
   void global();
 
-  const Mesh& Input;
   SimplexMesh& Simplices;
   const UntangleOptions& Options;
   TangledMesh<Dim> Tangled;
   Progress Run;
+  bool OnlySimplices;
   std::size_t Coordinates;
   std::vector<double> Start; ///< coordinates of the input
   std::vector<unsigned char> Active;
@@ -188,19 +193,23 @@ private:
   MeshState State;
 };
 
-/// Cells with bad simplices.
+/// Cells with bad simplices, the hopeless included.
 template <int Dim>
 Index Untangler<Dim>::cells() const
 {
-  if (this->Simplices.simplices() == this->Input.view().numberOfCells)
+  const MeshState& state = this->State;
+  if (this->OnlySimplices)
   {
-    return this->State.bad;
+    return state.bad + static_cast<Index>(state.hopeless.size());
   }
   std::vector<Index> ids;
-  ids.reserve(this->State.simplices.size());
-  for (std::int32_t s : this->State.simplices)
+  ids.reserve(state.simplices.size() + state.hopeless.size());
+  for (const std::vector<std::int32_t>* list : { &state.simplices, &state.hopeless })
   {
-    ids.push_back(this->Simplices.cell(s));
+    for (std::int32_t s : *list)
+    {
+      ids.push_back(this->Simplices.cell(s));
+    }
   }
   std::sort(ids.begin(), ids.end());
   return std::unique(ids.begin(), ids.end()) - ids.begin();
@@ -481,7 +490,7 @@ bool Untangler<Dim>::startHarmonic(double tolerance)
 {
   constexpr int iterations = 1000;
   const bool held =
-    harmonicMap<Dim>(this->Simplices, this->x(), tolerance, iterations, this->Options.threads);
+    harmonicMap<Dim>(this->Simplices, this->x(), tolerance, iterations, this->Tangled.threads());
   this->examine();
   this->record();
   return held;
@@ -563,6 +572,7 @@ const double* Untangler<Dim>::run(double margin)
     this->record();
   }
   std::copy_n(this->Run.best(), this->Coordinates, this->x());
+  this->examine();
   return this->x();
 }
 
@@ -687,13 +697,13 @@ void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
 
 template <int Dim>
 void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
-  const std::vector<signed char>& before, Untangling& result)
+  const std::vector<signed char>& before, Clock::time_point began, Untangling& result)
 {
   const std::vector<double> start(simplices.coordinates(),
     simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices());
   const std::vector<double> input = result.points;
   std::vector<signed char> validity = before;
-  Untangler<Dim> untangler(mesh, simplices, options, result);
+  Untangler<Dim> untangler(mesh, simplices, options, began, result);
   // The judge sees rounded coordinates: if it does not agree, with a wider margin.
   for (const double margin : { 1e-12, 1e-9, 1e-6 })
   {
@@ -703,15 +713,13 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
     std::vector<signed char> after = before;
     classifyMoved(mesh, points.data(), after);
     const Index invalid = countInvalid(after);
-    const bool repaired = result.history.back().inverted == 0;
     if (invalid < result.invertedAfter)
     {
       result.invertedAfter = invalid;
       result.points = points;
       validity = after;
     }
-    if (untangler.stopped() || !repaired ||
-      invalid <= static_cast<Index>(untangler.impossible().size()))
+    if (untangler.stopped() || !untangler.untangled() || invalid <= untangler.cells())
     {
       break;
     }
@@ -723,6 +731,7 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
 //------------------------------------------------------------------------------
 Untangling untangle(const Mesh& mesh, const UntangleOptions& options)
 {
+  const Clock::time_point start = Clock::now();
   const MeshView& view = mesh.view();
   Untangling result;
   result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
@@ -750,11 +759,11 @@ Untangling untangle(const Mesh& mesh, const UntangleOptions& options)
   result.reason = StopReason::NoProgress;
   if (simplices.dimension() == 3)
   {
-    untangleSimplices<3>(mesh, simplices, options, validity, result);
+    untangleSimplices<3>(mesh, simplices, options, validity, start, result);
   }
   else
   {
-    untangleSimplices<2>(mesh, simplices, options, validity, result);
+    untangleSimplices<2>(mesh, simplices, options, validity, start, result);
   }
   if (result.invertedAfter == 0)
   {

@@ -322,8 +322,8 @@ void testFrames()
 
 void testThreads()
 {
-  for (const MeshData& data : { slightlyTangled(block(CellType::Tetrahedron, 12), 0.02),
-         scattered(block(CellType::Hexahedron, 11), 0.3), turnedHole(CellType::Triangle, 30, 90) })
+  for (const MeshData& data : { slightlyTangled(block(CellType::Tetrahedron, 16), 0.02),
+         scattered(block(CellType::Hexahedron, 13), 0.3), turnedHole(CellType::Triangle, 96, 30) })
   {
     Untangling one;
     for (int threads : { 1, 2, 4 })
@@ -391,6 +391,7 @@ void testObstacles()
     const Untangling result = untangle(Mesh(data.view()), {});
     TAUTLINE_CHECK(result.invertedBefore > 100);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 1);
+    TAUTLINE_CHECK_EQUAL(result.history.back().inverted, 1);
     TAUTLINE_CHECK_EQUAL(result.impossible, 1);
     TAUTLINE_CHECK_EQUAL(int(result.obstacles[cell]), int(Obstacle::FixedElement));
     TAUTLINE_CHECK_EQUAL(countNotValid(moved(data, result)), 1);
@@ -427,6 +428,7 @@ void testObstacles()
     data.setPoint(0, { 1.5, 1.5, 0 });
     const Untangling result = untangle(Mesh(data.view()), {});
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 1);
+    TAUTLINE_CHECK_EQUAL(result.history.back().inverted, 1);
     TAUTLINE_CHECK_EQUAL(result.impossible, 1);
     TAUTLINE_CHECK_EQUAL(int(result.obstacles[0]), int(Obstacle::FixedNeighbours));
   }
