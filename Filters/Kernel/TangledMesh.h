@@ -181,7 +181,7 @@ private:
     { 2, 3 } };
   static constexpr int Edges2[3][2] = { { 0, 1 }, { 0, 2 }, { 1, 2 } };
   /// With fewer simplices, threads wait for each other more than they work.
-  static constexpr std::int32_t WorthThreads = 16384;
+  static constexpr std::int32_t WorthThreads = 32768;
 
   SimplexMesh& Simplices;
   int Threads;

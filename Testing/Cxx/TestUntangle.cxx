@@ -322,8 +322,8 @@ void testFrames()
 
 void testThreads()
 {
-  for (const MeshData& data : { slightlyTangled(block(CellType::Tetrahedron, 16), 0.02),
-         scattered(block(CellType::Hexahedron, 13), 0.3), turnedHole(CellType::Triangle, 96, 30) })
+  for (const MeshData& data : { slightlyTangled(block(CellType::Tetrahedron, 20), 0.02),
+         scattered(block(CellType::Hexahedron, 17), 0.3), turnedHole(CellType::Triangle, 140, 30) })
   {
     Untangling one;
     for (int threads : { 1, 2, 4 })
