@@ -54,6 +54,24 @@ double sumOfSquares(const MeshData& like, const std::vector<double>& points, Met
   return sum;
 }
 
+/// Of the cells with a vertex that is not on the boundary.
+double worstMovable(const MeshData& like, const std::vector<double>& points)
+{
+  MeshData moved = like;
+  moved.points = points;
+  const std::vector<char> boundary = Mesh(like.view()).boundary().isBoundaryPoint;
+  const std::vector<double> q = valuesOf(moved, Metric::InverseMeanRatio);
+  double worst = 0;
+  for (Index c = 0; c < moved.numberOfCells(); ++c)
+  {
+    for (Index n = moved.offsets[c]; n < moved.offsets[c + 1]; ++n)
+    {
+      worst = boundary[moved.connectivity[n]] ? worst : std::max(worst, q[c]);
+    }
+  }
+  return worst;
+}
+
 Optimization run(const MeshData& data, const OptimizeOptions& options)
 {
   return optimize(Mesh(data.view()), options);
@@ -555,7 +573,7 @@ void testWorst()
     const Optimization best = run(data, options);
     applyPreset(Preset::WorstElement, options);
     const Optimization result = run(data, options);
-    TAUTLINE_CHECK(result.history.back().worst[0] < 0.999 * best.history.back().worst[0]);
+    TAUTLINE_CHECK(worstMovable(data, result.points) < 0.99 * worstMovable(data, best.points));
     TAUTLINE_CHECK(result.history.back().mean[0] <= 1.01 * best.history.back().mean[0]);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
   }
