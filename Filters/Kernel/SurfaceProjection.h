@@ -10,7 +10,7 @@
 namespace tautline
 {
 /// Triangles in a bounding volume hierarchy. Quadrilaterals are two triangles.
-class SurfaceProjection
+class TAUTLINE_KERNEL_EXPORT SurfaceProjection
 {
 public:
   /// The 2D cells of a mesh, in the coordinates of `simplices` (see SimplexMesh::transform()).
