@@ -15,6 +15,8 @@
 #include "vtkSelectionNode.h"
 #include "vtkTable.h"
 
+#include <limits>
+
 using namespace tautline;
 
 namespace
@@ -192,6 +194,17 @@ void testInputs()
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
   TAUTLINE_CHECK(!contains(filter->GetSummary(), "reversed"));
+
+  // A corner that is NaN: its elements cannot be valid, the rest is.
+  MeshData broken = tangled(CellType::Triangle, 8, 0.05);
+  broken.points[0] = std::numeric_limits<double>::quiet_NaN();
+  filter->SetInputData(toGrid(broken));
+  filter->Update();
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "2 elements are not valid"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "NaN or infinite"));
+  TAUTLINE_CHECK(messages.has("2 elements are not valid"));
+  TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Obstacle", 0), 4);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
 
   const MeshData data = tangled(CellType::Tetrahedron, 4, 0.05);
   vtkNew<vtkMultiBlockDataSet> blocks;
