@@ -50,6 +50,11 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
                 "worst element must not be negative.");
   }
   const bool global = options.optimizer >= Optimizer::ConjugateGradientFletcherReeves;
+  if (global && options.slideSurface)
+  {
+    throw Error(
+      "Sliding on the boundary needs a local optimizer: choose Automatic or Local Newton.");
+  }
   if (global && (options.limits || mesh.dimension() == Dimension::Surface))
   {
     throw Error(options.limits
@@ -233,6 +238,11 @@ OptimizationProblem::OptimizationProblem(
   if (mesh.dimension() == Dimension::Surface && options.surface.project)
   {
     this->Surface = std::make_unique<SurfaceProjection>(mesh, *this->Simplices);
+  }
+  else if (mesh.dimension() != Dimension::Surface && options.slideSurface)
+  {
+    this->Surface =
+      std::make_unique<SurfaceProjection>(SurfaceProjection::ofBoundary(mesh, *this->Simplices));
   }
   this->Start.assign(this->Simplices->coordinates(),
     this->Simplices->coordinates() +
@@ -447,6 +457,10 @@ LocalOptions OptimizationProblem::localOptions() const
   };
   directions(this->Options.slidePlanes, local.planes);
   directions(this->Options.slideLines, local.lines);
+  for (std::int32_t v = 0; this->Options.slideSurface && v < s.freeVertices(); ++v)
+  {
+    local.onSurface.push_back(this->Options.slideSurface[s.point(v)]);
+  }
   if (this->Options.limits)
   {
     local.start = this->Start;

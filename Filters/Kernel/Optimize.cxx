@@ -626,10 +626,16 @@ Optimization optimize(const Mesh& mesh, const OptimizeOptions& given)
   problem.store();
   result.iterations = result.history.back().iteration;
   result.invertedAfter = countInvalid(problem.moving(), options.threads);
-  if (problem.surface())
+  if (problem.surface() && mesh.dimension() == Dimension::Surface)
   {
     result.surfaceError =
       problem.surface()->distance(mesh, problem.simplices(), result.points.data(), options.threads);
+  }
+  else if (problem.surface())
+  {
+    const SurfaceProjection now =
+      SurfaceProjection::ofBoundary(problem.moving(), problem.simplices());
+    result.surfaceError = problem.simplices().scale() * now.distanceTo(*problem.surface());
   }
   return result;
 }

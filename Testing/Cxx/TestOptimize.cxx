@@ -3,6 +3,8 @@
 #include "Check.h"
 
 #include "tautline/Optimize.h"
+#include "tautline/SimplexMesh.h"
+#include "tautline/SurfaceProjection.h"
 #include "tautline/Targets.h"
 
 #include <cstring>
@@ -343,6 +345,67 @@ void testConstraints()
   }
 }
 
+/// Points of a curved side slide on the facets (in 2D edges) it has.
+void testSlidingSurface()
+{
+  for (CellType type : { CellType::Tetrahedron, CellType::Hexahedron, CellType::Triangle })
+  {
+    const Context context(topology(type).name);
+    const int up = topology(type).dimension - 1;
+    MeshData data = perturbedBlock(type, 5, 0.1);
+    const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+    const Index n = data.numberOfPoints();
+    std::vector<unsigned char> fixed(n, 0), slides(n, 0);
+    Random random(23);
+    for (Index i = 0; i < n; ++i)
+    {
+      Vec3 p = data.point(i);
+      bool inner = true;
+      for (int c = 0; c < up; ++c)
+      {
+        inner = inner && p[c] > 0 && p[c] < 5;
+      }
+      slides[i] = inner && p[up] == 5;
+      fixed[i] = boundary[i] && !slides[i];
+      for (int c = 0; c < up && slides[i]; ++c)
+      {
+        p[c] += random.uniform(-0.3, 0.3);
+      }
+      p[up] *= 1 + 0.05 * std::sin(0.2 * std::acos(-1.0) * p[0]);
+      data.setPoint(i, p);
+    }
+    TAUTLINE_CHECK_EQUAL(invalid(data, data.points), Index(0));
+    OptimizeOptions options;
+    std::vector<unsigned char> held = fixed;
+    for (Index i = 0; i < n; ++i)
+    {
+      held[i] = boundary[i];
+    }
+    options.fixed = held.data();
+    const double F = run(data, options).history.back().objective;
+    options.fixed = fixed.data();
+    options.slideSurface = slides.data();
+    const Optimization result = run(data, options);
+    TAUTLINE_CHECK(result.history.back().objective < 0.99 * F);
+    TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
+    TAUTLINE_CHECK(result.surfaceError > 0 && result.surfaceError < 0.05);
+    const Mesh mesh(data.view());
+    const SimplexMesh simplices(mesh, fixed.data(), nullptr, 1);
+    const SurfaceProjection surface = SurfaceProjection::ofBoundary(mesh, simplices);
+    for (Index i = 0; i < n; ++i)
+    {
+      const Vec3 x = simplices.transform(
+        { result.points[3 * i], result.points[3 * i + 1], result.points[3 * i + 2] });
+      if (slides[i])
+      {
+        TAUTLINE_CHECK_NEAR(norm(surface.closest(x) - x), 0.0, 1e-12);
+      }
+    }
+    options.optimizer = Optimizer::LimitedMemoryBFGS;
+    TAUTLINE_CHECK_THROWS(run(data, options), "local optimizer");
+  }
+}
+
 /// Several objectives under each scalarization: the scalarized value falls, and no objective is forgotten.
 void testScalarizations()
 {
@@ -658,6 +721,7 @@ int TestOptimize(int, char*[])
   testInvariance();
   testThreads();
   testConstraints();
+  testSlidingSurface();
   testScalarizations();
   testMetrics();
   testTargetsAndWeights();
