@@ -119,15 +119,7 @@ vtkTable* vtkMeshUntangler::GetHistory()
 //------------------------------------------------------------------------------
 int vtkMeshUntangler::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port == SelectionPort)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkSelection");
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-    return 1;
-  }
-  // The composite type first, so that the table is that of all blocks.
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  tautline::declareInput(info, port == SelectionPort, port != MeshPort);
   return 1;
 }
 
