@@ -1,6 +1,7 @@
 #include "MovableMesh.h"
 
 #include "tautline/BoundaryShape.h"
+#include "tautline/SimplexMesh.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -93,7 +94,7 @@ void MovableMesh::fixWhatStays()
   std::vector<char> onBoundary;
   if (mesh.dimension() == Dimension::Volume && !this->Skip.empty())
   {
-    onBoundary = mesh.boundary().isBoundaryPoint;
+    onBoundary = boundaryPoints(mesh, this->Threads);
   }
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -135,7 +136,7 @@ void MovableMesh::fix(vtkDataArray* array, bool ofCells)
 //------------------------------------------------------------------------------
 void MovableMesh::fixBoundary()
 {
-  const std::vector<char> boundary = this->mesh().boundary().isBoundaryPoint;
+  const std::vector<char> boundary = boundaryPoints(this->mesh(), this->Threads);
   std::transform(this->Fixed.begin(), this->Fixed.end(), boundary.begin(), this->Fixed.begin(),
     [](unsigned char fixed, char on) { return fixed || on; });
 }
@@ -303,6 +304,19 @@ vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input,
       "' " + what + ": choose another one, or None.");
   }
   return array;
+}
+
+//------------------------------------------------------------------------------
+void declareInput(vtkInformation* info, bool selection, bool optional)
+{
+  // The composite type first, so that the tables are those of all blocks.
+  info->Set(
+    vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), selection ? "vtkSelection" : "vtkCompositeDataSet");
+  if (!selection)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  }
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), optional);
 }
 
 //------------------------------------------------------------------------------
