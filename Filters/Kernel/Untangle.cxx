@@ -1,6 +1,6 @@
 #include "Untangle.h"
 
-#include "GlobalDescent.h"
+#include "Unwind.h"
 
 #include <chrono>
 
@@ -13,7 +13,7 @@ using Clock = std::chrono::steady_clock;
 /// Iterations an effort allows, of all phases together.
 int iterationLimit(Effort effort)
 {
-  constexpr int local = 60, normal = 500, thorough = 5000;
+  constexpr int local = 60, normal = 1000, thorough = 5000;
   return effort == Effort::Local ? local : effort == Effort::Normal ? normal : thorough;
 }
 
@@ -154,7 +154,12 @@ public:
 
 private:
   double* x() const { return this->Simplices.coordinates(); }
-  bool record() { return this->Run.record(this->x(), this->cells(), this->State.depth); }
+  bool record()
+  {
+    return this->OnTheWay
+      ? this->Run.record(this->Run.best(), this->Run.fewest(), this->State.depth)
+      : this->Run.record(this->x(), this->cells(), this->State.depth);
+  }
   void examine() { this->State = this->Tangled.examine(this->x()); }
   void setCoordinates(const std::vector<double>& from)
   {
@@ -179,6 +184,10 @@ private:
   void smoothWorst();
   void descend(const Schedule& schedule);
   bool startHarmonic(double tolerance);
+  void unwind(double tolerance);
+  void untangleOnce();
+  void untangleNearby();
+  void smoothAll();
   void global();
 
   SimplexMesh& Simplices;
@@ -191,6 +200,7 @@ private:
   std::vector<unsigned char> Active;
   std::vector<std::int32_t> Impossible;
   MeshState State;
+  bool OnTheWay = false; ///< fixed vertices are not at their places
 };
 
 /// Cells with bad simplices, the hopeless included.
@@ -496,6 +506,109 @@ bool Untangler<Dim>::startHarmonic(double tolerance)
   return held;
 }
 
+/**
+ * @brief For holes that were turned: from a mesh with the holes turned back step by step to where they
+ * are, valid after each step. Ends with the fixed vertices where they belong.
+ */
+template <int Dim>
+void Untangler<Dim>::unwind(double tolerance)
+{
+  constexpr double largestStep = 0.27, smallestStep = 0.01; // radians
+  const Winding<Dim> winding(this->Tangled, this->x(), tolerance);
+  if (winding.empty())
+  {
+    return;
+  }
+  this->OnTheWay = true;
+  this->setCoordinates(winding.start());
+  this->untangleOnce();
+  this->smoothAll();
+  const double largest = largestStep / winding.largestAngle();
+  const double smallest = smallestStep / winding.largestAngle();
+  double part = 0, step = largest;
+  while (part < 1.0 && this->untangled() && !this->Run.stopped())
+  {
+    // Shorter steps where the elements do not follow.
+    step = std::min(step, 1.0 - part);
+    const std::vector<double> keep = this->coordinates();
+    winding.advance(step, this->x());
+    this->examine();
+    this->untangleNearby();
+    if (this->untangled())
+    {
+      part += step;
+      constexpr double longer = 1.5;
+      step = std::min(largest, longer * step);
+    }
+    else
+    {
+      this->setCoordinates(keep);
+      step *= 0.5;
+      if (step < smallest)
+      {
+        break;
+      }
+    }
+    this->smoothAll();
+  }
+  this->OnTheWay = false;
+  const std::size_t free = VertexStride * static_cast<std::size_t>(this->Simplices.freeVertices());
+  std::copy(
+    this->Start.begin() + static_cast<std::ptrdiff_t>(free), this->Start.end(), this->x() + free);
+  this->examine();
+  if (!this->Run.stopped())
+  {
+    this->record();
+    this->untangleNearby();
+  }
+}
+
+/// Lowers the energy of a valid mesh a little; it stays valid.
+template <int Dim>
+void Untangler<Dim>::smoothAll()
+{
+  constexpr int iterations = 6;
+  if (!this->untangled())
+  {
+    return;
+  }
+  GlobalDescent<Dim> descent(this->Tangled);
+  descent.start(this->x(), 0.0);
+  for (int k = 0; k < iterations && !this->Run.stopped(); ++k)
+  {
+    const std::vector<double> keep = this->coordinates();
+    if (!descent.step(this->x()))
+    {
+      break;
+    }
+    this->examine();
+    this->record();
+    if (!this->untangled())
+    {
+      this->setCoordinates(keep); // positive, but not by the margin
+      break;
+    }
+  }
+}
+
+/// The local sweeps, then regularisations of the size of what is wrong, which keep most of a mesh.
+template <int Dim>
+void Untangler<Dim>::untangleNearby()
+{
+  constexpr double ofLeast = 0.3, leastEps = 1e-3, loose = 1e-3;
+  this->finish();
+  this->descend({ std::max(ofLeast * std::abs(this->State.least), leastEps), 0.5, loose, 3, 10 });
+}
+
+/// The local sweeps, then the usual schedule.
+template <int Dim>
+void Untangler<Dim>::untangleOnce()
+{
+  constexpr double firstEps = 1.0, loose = 1e-3;
+  this->finish();
+  this->descend({ firstEps, 0.5, loose, 12, 30 });
+}
+
 template <int Dim>
 void Untangler<Dim>::global()
 {
@@ -512,8 +625,12 @@ void Untangler<Dim>::global()
   }
   if (!this->done() && this->startHarmonic(harmonic))
   {
-    this->finish();
-    this->descend({ firstEps, 0.5, loose, 12, 30 });
+    this->untangleOnce();
+  }
+  if (!this->done())
+  {
+    this->setCoordinates(before);
+    this->unwind(harmonic);
   }
   if (!this->done())
   {
