@@ -215,6 +215,12 @@ void testTurnedHoles()
     checkUntangles(turnedHole(type, n, 90), "turned by 90 degrees");
     checkUntangles(turnedHole(type, n, 120), "turned by 120 degrees");
   }
+  // Half a turn, where the energies alone lead into a fold.
+  for (CellType type : { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron })
+  {
+    const Context context(topology(type).name);
+    checkUntangles(turnedHole(type, isFlat(type) ? 30 : 12, 180), "turned by 180 degrees");
+  }
 }
 
 /// Only the neighbourhood of inverted elements moves.
