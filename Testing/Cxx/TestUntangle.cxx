@@ -211,7 +211,7 @@ void testTurnedHoles()
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
-    const Index n = isFlat(type) ? 30 : 10;
+    const Index n = isFlat(type) ? 30 : type == CellType::Pyramid ? 7 : 10;
     checkUntangles(turnedHole(type, n, 90), "turned by 90 degrees");
     checkUntangles(turnedHole(type, n, 120), "turned by 120 degrees");
   }
@@ -329,13 +329,15 @@ void testFrames()
 void testThreads()
 {
   for (const MeshData& data : { slightlyTangled(block(CellType::Tetrahedron, 20), 0.02),
-         scattered(block(CellType::Hexahedron, 17), 0.3), turnedHole(CellType::Triangle, 140, 30) })
+         turnedHole(CellType::Tetrahedron, 20, 60) })
   {
     Untangling one;
     for (int threads : { 1, 2, 4 })
     {
       UntangleOptions options;
       options.threads = threads;
+      // Far enough into the phase of all vertices.
+      options.observer = [](const IterationState& state) { return state.record.iteration < 8; };
       const Untangling result = untangle(Mesh(data.view()), options);
       if (threads == 1)
       {
