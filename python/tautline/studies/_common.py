@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import csv
 import math
+import sys
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,6 +35,8 @@ except ImportError:  # pictures are left out, and the report says so
 MESQUITE_PATCH_ITERATIONS = 5
 #: c of (3.8), the upper end of the dissertation's typical values.
 TYPICAL_C = 1e6
+#: So many cells take long enough to tell what is going on.
+LARGE = 200_000
 OPTIMIZERS = {"nlcg": "local conjugate gradient", "newton": "local newton"}
 
 
@@ -89,6 +92,9 @@ class Run:
     def first(self, quantity: str) -> float:
         return float(self.values[quantity][0])
 
+    def last_second(self) -> float:
+        return float(self.seconds[-1])
+
 
 #: What is measured: name: (metric, how its values on the valid elements become a number).
 QUANTITIES: dict[str, tuple[str, Callable[[np.ndarray], float]]] = {
@@ -106,9 +112,11 @@ QUANTITIES: dict[str, tuple[str, Callable[[np.ndarray], float]]] = {
 def measure(mesh: vtkDataSet, quantities: Iterable[str]) -> dict[str, float]:
     """The quantities of a mesh over its valid elements, and `inverted`, the number of all others."""
     wanted = list(quantities)
-    found = tautline.quality(mesh, list(dict.fromkeys(QUANTITIES[q][0] for q in wanted)))
+    names = list(dict.fromkeys(QUANTITIES[q][0] for q in wanted))
+    threads = 0 if mesh.GetNumberOfCells() >= LARGE else 1
+    found = tautline.quality(mesh, names, reversed_mesh="measure as given", threads=threads)
     valid = found.validity == 1
-    result = {q: float(QUANTITIES[q][1](found.values[QUANTITIES[q][0]][valid])) for q in wanted}
+    result = {q: float(QUANTITIES[q][1](found.values[QUANTITIES[q][0]][valid])) if valid.any() else 0.0 for q in wanted}
     return {**result, "inverted": float(np.count_nonzero(~valid))}
 
 
@@ -128,15 +136,23 @@ def improve(
     reduction: float = 1.0,
     best_known: float = 0.0,
     keep: Sequence[int] = (),
+    weights: Sequence[tuple[str, float]] = (),
+    template: str = "default",
     trace: bool = True,
     threads: int = 0,
 ) -> Run:
-    """Run vtkMeshOptimizer, boundary fixed, no culling, and measure each iteration (or, without trace, the end)."""
+    """Run vtkMeshOptimizer, boundary fixed, no culling, and measure each iteration (or, without trace, the end).
+
+    weights: further objectives and their weights; the scalarization is then the weighted sum, the others weigh 1.
+    """
     filter_ = tautline.vtkMeshOptimizer()
     messages = watch(filter_)
+    form = _optimization.TEMPLATES.index(template) - 1
     for name in method.objectives:
-        filter_.AddObjectiveByName(name)
-    filter_.SetScalarization(pick("scalarization", method.scalarization, _optimization.SCALARIZATIONS))
+        filter_.AddObjectiveByName(name, form)
+    for name, weight in weights:
+        filter_.AddObjectiveByName(name, filter_.DEFAULT_TEMPLATE, weight)
+    filter_.SetScalarization(pick("scalarization", "weighted sum" if weights else method.scalarization, _optimization.SCALARIZATIONS))
     filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), _optimization.OPTIMIZERS))
     filter_.SetMaximumIterations(iterations)
     filter_.SetPatchIterations(patch_iterations)
@@ -179,6 +195,8 @@ def improve(
     values["objective"] = np.array([history.GetValueByName(i, "Objective").ToDouble() for i in range(count)])
     steps = np.arange(count) if trace else np.array([0, count - 1])
     final = _copy(filter_.GetOutputDataObject(0))
+    if mesh.GetNumberOfCells() >= LARGE:
+        print(f"{method.name}, {optimizer}: {count - 1} iterations, {seconds[-1]:.1f} CPU s", file=sys.stderr, flush=True)
     return Run(method, optimizer, steps, seconds, values, final, filter_.GetReason(), kept)
 
 
@@ -332,6 +350,21 @@ class Report:
                 axis.set(xlim=window[:2], ylim=window[2:])
             axis.set_aspect("equal")
             axis.set_title(f"{title}\n{np.count_nonzero(wrong)} inverted", fontsize=9)
+        self._save(figure, file)
+
+    def bars(self, file: str, bins: Sequence[str], axis_label: str, label: str,
+             panels: dict[str, dict[str, Sequence[float]]]) -> None:  # fmt: skip
+        """A picture of distributions, logarithmic: a panel has a row of bars for each of its series."""
+        if not self._pictures():
+            return
+        figure, axes = pyplot.subplots(1, len(panels), figsize=(6.4 * len(panels), 4.6), squeeze=False)
+        for axis, (title, series) in zip(axes[0], panels.items()):
+            width = 0.8 / len(series)
+            for number, (name, values) in enumerate(series.items()):
+                axis.bar(np.arange(len(bins)) + (number - 0.5 * (len(series) - 1)) * width, values, width, label=name)
+            axis.set(title=title, xlabel=axis_label, ylabel=label, yscale="log", xticks=range(len(bins)), xticklabels=bins)
+            axis.grid(alpha=0.3, axis="y")
+        axes[0][0].legend(fontsize=8)
         self._save(figure, file)
 
     def finish(self) -> int:

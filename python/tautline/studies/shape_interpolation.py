@@ -54,9 +54,9 @@ def main(arguments: list[str]) -> int:
         imr.last("ss_worst") > imr.at("ss_worst", half),
         f"ss_worst: start {imr.first('ss_worst'):.6g}, iteration {half} {imr.at('ss_worst', half):.6g}, "
         f"end {imr.last('ss_worst'):.6g}", "Figure 3.7 (b)")  # fmt: skip
-    seconds = {name: float(r.seconds[-1]) for name, r in runs.items()}
+    seconds = {name: r.last_second() for name, r in runs.items()}
     say("IMR alone is the fastest", seconds["imr"] == min(seconds.values()),
-        ", ".join(f"{n} {s:.2f} s" for n, s in seconds.items()), "Table 3.3")  # fmt: skip
+        ", ".join(f"{n} {s:.3g} s" for n, s in seconds.items()), "Table 3.3")  # fmt: skip
     ratio = seconds["equal-sum"] / seconds["imr"]
     say("The equal sum takes about four times as long as IMR alone (within 3 to 5)", 3 <= ratio <= 5,
         f"{ratio:.2f} times, the dissertation's {TIMES['equal-sum'][-1] / TIMES['imr'][-1]:.2f}", "Table 3.3")  # fmt: skip

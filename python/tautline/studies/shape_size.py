@@ -33,7 +33,6 @@ def main(arguments: list[str]) -> int:
     found = experiment(GOALS, given, report)
     runs = found.nlcg
     imr, size = runs["imr"], runs["size"]
-    several = [runs[name] for name in MULTI]
 
     def say(sentence: str, holds: bool, figures: str, source: str = "3.4.1") -> None:
         report.finding(source, sentence, holds, figures)
@@ -62,14 +61,15 @@ def main(arguments: list[str]) -> int:
     gain = 1 - runs["exponential-sum"].last("imr_worst") / size.last("imr_worst")
     say("The exponential sum has a far better worst element by IMR (96.6 %) than size alone", gain > 0.9,
         f"{percent(gain)}, the dissertation's {percent(WORST_GAIN)}")  # fmt: skip
-    seconds = {name: float(r.seconds[-1]) for name, r in runs.items()}
-    timing = ", ".join(f"{n} {s:.2f} s" for n, s in seconds.items())
+    seconds = {name: r.last_second() for name, r in runs.items()}
+    timing = ", ".join(f"{n} {s:.3g} s" for n, s in seconds.items())
     say("Size alone is the fastest", seconds["size"] == min(seconds.values()), timing, "Table 3.2")
     ratio = seconds["objective-product"] / seconds["size"]
     say("The objective product takes about two times as long as size alone (within 1.5 to 2.5)", 1.5 <= ratio <= 2.5,
         f"{ratio:.2f} times, the dissertation's {TIMES['objective-product'][-1] / TIMES['size'][-1]:.2f}", "Table 3.2")  # fmt: skip
     say("The exponential sum is the slowest", seconds["exponential-sum"] == max(seconds.values()), timing, "Table 3.2")
-    best = min(several, key=lambda r: r.last("imr_worst"))
-    say("Of the multiobjective methods the exponential sum has the best worst shape", best is runs["exponential-sum"],
+    others = min(runs[name].last("imr_worst") for name in MULTI[1:])
+    say("Of the multiobjective methods the exponential sum has the best worst shape (by 1 % at least)",
+        runs["exponential-sum"].last("imr_worst") <= 0.99 * others,
         compare({n: runs[n] for n in MULTI}, "imr_worst"), "3.6, conclusions")  # fmt: skip
     return report.finish()
