@@ -156,7 +156,8 @@ struct ElementFunction
     slope = finiteOrZero(slope);
   }
 
-  /// What is averaged by PowerMean (|q|^s) or put into the exponent by Maximum (k s q), and its derivative by q.
+  /// What is averaged by PowerMean (|q|^s) or put into the exponent by Maximum (k s q), and its
+  /// derivative by q.
   template <ObjectiveTemplate Form>
   void exponent(const BatchContext& context, const Batch& batch, Packet& y, Packet& dy) const
   {

@@ -1,6 +1,7 @@
 /**
  * @file ElementSum.h
- * @brief Sums a function of a metric over the elements of a mesh, with its gradient. Internal: not installed.
+ * @brief Sums a function of a metric over the elements of a mesh, with its gradient. Internal: not
+ * installed.
  *
  * The elements are cut into chunks and the chunks coloured: those of one colour share no vertex, so that
  * threads add to the gradient without locks and in an order that the mesh alone decides.
@@ -111,7 +112,8 @@ public:
     return this->Order[chunk.block].empty() ? nullptr : this->Order[chunk.block].data();
   }
 
-  /// Calls work(i) for each chunk; at one time only for chunks that share no vertex, in an order fixed for each vertex.
+  /// Calls work(i) for each chunk; at one time only for chunks that share no vertex, and in an order
+  /// that is fixed for each vertex.
   template <class Work>
   void forEachChunk(const Work& work) const
   {

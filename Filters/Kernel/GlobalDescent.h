@@ -335,6 +335,10 @@ bool GlobalDescent<Dim>::step(double* x)
             this->Last = at;
             this->Used = std::min(Memory, this->Used + 1);
           }
+          else
+          {
+            this->Used = std::min(Memory - 1, this->Used); // the oldest step is overwritten
+          }
           return true;
         }
       }

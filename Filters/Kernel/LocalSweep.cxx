@@ -85,6 +85,11 @@ private:
   void newton(const Worker<Dim>& w, const PatchSum<Dim>& sum, double* s) const;
   int allowed(std::int32_t v, double basis[Dim][Dim]) const;
   double limited(std::int32_t v, const double* d, const double* s, double t) const;
+  bool isOnSurface(std::int32_t v) const
+  {
+    return (Dim == 2 && this->Simplices.surface()) ||
+      (!this->Options.onSurface.empty() && this->Options.onSurface[v]);
+  }
   bool moveVertex(std::int32_t v, const Scalarizer& scalarizer, Worker<Dim>& w, double& gradient2);
   void place(std::int32_t v, const Vec3& x);
   bool placeOnSurface(
@@ -366,15 +371,7 @@ int LocalSweeper::Implementation<Dim>::allowed(std::int32_t v, double basis[Dim]
     return length2 > 0;
   };
   double u[Dim];
-  if (given(this->Options.lines, u))
-  {
-    for (int r = 0; r < Dim; ++r)
-    {
-      basis[r][0] = u[r];
-    }
-    return 1;
-  }
-  if (given(this->Options.planes, u))
+  const auto across = [&]()
   {
     if constexpr (Dim == 3)
     {
@@ -390,6 +387,25 @@ int LocalSweeper::Implementation<Dim>::allowed(std::int32_t v, double basis[Dim]
     basis[0][0] = -u[1];
     basis[1][0] = u[0];
     return 1;
+  };
+  if (given(this->Options.lines, u))
+  {
+    for (int r = 0; r < Dim; ++r)
+    {
+      basis[r][0] = u[r];
+    }
+    return 1;
+  }
+  if (given(this->Options.planes, u))
+  {
+    return across();
+  }
+  if (!this->Options.onSurface.empty() && this->Options.onSurface[v])
+  {
+    const double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+    const Vec3 normal = this->Options.surface->normal({ at[0], at[1], at[2] });
+    std::copy_n(normal.begin(), Dim, u);
+    return dot(normal, normal) > 0 ? across() : Dim;
   }
   return Dim;
 }
@@ -577,7 +593,7 @@ bool LocalSweeper::Implementation<Dim>::moveVertex(
     }
     std::copy_n(to, Dim, d);
     moved = true;
-    if (!this->Simplices.surface())
+    if (!this->isOnSurface(v))
     {
       for (std::size_t i = 0; i < change.size(); ++i)
       {
@@ -596,7 +612,7 @@ bool LocalSweeper::Implementation<Dim>::moveVertex(
   {
     d2 += d[c] * d[c];
   }
-  if (Dim == 2 && this->Simplices.surface())
+  if (this->isOnSurface(v))
   {
     if (!this->placeOnSurface(v, d, scalarizer, w))
     {

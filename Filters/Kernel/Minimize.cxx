@@ -32,6 +32,8 @@ constexpr int memoryLength = 8;          // pairs of L-BFGS
 constexpr double leastCurvature = 1e-10; // cosine between s and y of a pair
 constexpr double leastDescent = 1e-8;    // cosine between -g and a direction
 constexpr double restartOverlap = 0.2;   // of successive gradients (Powell)
+// Early steps change the Hessian most: linearize() at iterations 0, 1, 3, 9, ...
+constexpr int refreshGrowth = 2;
 constexpr int mostInnerIterations = 200;
 constexpr double loosestForcing = 0.25; // of the inner residual
 constexpr double differenceStep = 1e-7;
@@ -92,8 +94,9 @@ private:
   double F = infinity, Norm = 0, FirstNorm = 0, Slope = 0;
   double Step = 0, StepSlope = 0; ///< of the last step
   double First = 1;               ///< first trial step along D
-  bool Fresh = true;              ///< D does not use the history
-  std::vector<Pair> Pairs;        ///< oldest first
+  bool Preconditioned = false;
+  bool Fresh = true;       ///< D does not use the history
+  std::vector<Pair> Pairs; ///< oldest first
   Minimization Result;
 };
 
@@ -219,12 +222,12 @@ double Minimizer::firstStep() const
 bool Minimizer::precondition(const Vector& r, Vector& z)
 {
   z.resize(this->Size);
-  const bool done = this->Function.precondition(r.data(), z.data());
-  if (!done)
+  this->Preconditioned = this->Function.precondition(r.data(), z.data());
+  if (!this->Preconditioned)
   {
     z = r;
   }
-  return done;
+  return this->Preconditioned;
 }
 
 /// Along the preconditioned gradient.
@@ -479,12 +482,18 @@ Minimization Minimizer::run()
     return this->Result;
   }
   const bool everyTime = this->Options.method == Optimizer::NewtonConjugateGradient;
-  int stalled = 0;
+  int stalled = 0, next = 0;
   while (this->Result.iterations < this->Options.maximumIterations)
   {
-    if (everyTime || this->Result.iterations % this->Options.refresh == 0)
+    if (everyTime || this->Result.iterations == next)
     {
       this->Function.linearize(this->X);
+      if (this->Preconditioned)
+      {
+        this->Pairs.clear(); // they speak of a Hessian that the new preconditioner knows better
+      }
+      next = this->Result.iterations +
+        std::min(std::max(1, refreshGrowth * this->Result.iterations), this->Options.refresh);
     }
     const double before = this->F;
     const bool moved = this->iterate();

@@ -41,7 +41,9 @@ public:
   virtual bool precondition(const double* /*r*/, double* /*z*/) { return false; }
   /**
    * @brief Makes ready for hessianTimes() and precondition() at x, where the last gradient was taken. Called before
-   * every direction of NewtonConjugateGradient, and for the others at the start and every `refresh` iterations.
+   * every direction of NewtonConjugateGradient; for the others at iterations 0, 1, 3, 9 and so on, at the latest
+   * MinimizeOptions::refresh iterations after the last time. L-BFGS then forgets its pairs, if there is a
+   * preconditioner.
    */
   virtual void linearize(const double* /*x*/) {}
   /// The product of a positive semidefinite approximation of the Hessian with d; false if there is none.
@@ -54,8 +56,8 @@ struct MinimizeOptions
   int maximumIterations = 100;
   double gradientNorm = 1e-6;  ///< relative to the first; 0: never
   double relativeChange = 0.0; ///< of the value in an iteration; 0: never
-  int refresh = 10; ///< iterations between calls of linearize(), except Newton's; at least 1
-  int threads = 0;  ///< 0: all cores. The result does not depend on it.
+  int refresh = 20;            ///< most iterations between calls of linearize(); at least 1
+  int threads = 0;             ///< 0: all cores. The result does not depend on it.
   /// After each iteration: iteration, value, gradient norm, x. Returns false to stop.
   std::function<bool(int, double, double, const double*)> observer;
 };

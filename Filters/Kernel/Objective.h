@@ -107,7 +107,8 @@ public:
   double value() const;
   /**
    * @brief The objective and its gradient: 3 entries per point, *added* to what is there after
-   * multiplication by `scale`. The value may differ from value() in the last digits. Where the objective is infinite, what is added is finite but no gradient.
+   * multiplication by `scale`. The value may differ from value() in the last digits. Where the
+   * objective is infinite, what is added is finite but no gradient.
    */
   double addGradient(double scale, double* gradient) const;
   /// The metric's value of every cell of the view, 0 where it is not defined; see evaluateMetric().

@@ -50,6 +50,11 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
                 "worst element must not be negative.");
   }
   const bool global = options.optimizer >= Optimizer::ConjugateGradientFletcherReeves;
+  if (global && options.slideSurface)
+  {
+    throw Error(
+      "Sliding on the boundary needs a local optimizer: choose Automatic or Local Newton.");
+  }
   if (global && (options.limits || mesh.dimension() == Dimension::Surface))
   {
     throw Error(options.limits
@@ -101,7 +106,12 @@ void simplexInvariants(const SimplexMesh& mesh, std::int32_t first, int lanes, P
     loadVertices(mesh.coordinates(), ids + k, corners, x[k]);
   }
   Packet weight[6], det;
-  for (int l = 0; l < PacketWidth; ++l)
+  for (int e = 0; e < 6; ++e)
+  {
+    weight[e] = broadcast(mesh.target(first).edge[e]);
+  }
+  det = broadcast(mesh.target(first).det);
+  for (int l = 0; l < PacketWidth && !mesh.uniform(); ++l)
   {
     const TargetSimplex& t = mesh.target(first + std::min(l, lanes - 1));
     for (int e = 0; e < 6; ++e)
@@ -152,17 +162,19 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
         Packet N, D;
         simplexInvariants<Dim>(mesh, static_cast<std::int32_t>(i), lanes, N, D);
         Packet w = broadcast(1.0);
-        for (int l = 0; l < PacketWidth; ++l)
+        for (int l = 0; l < PacketWidth && (lanes < PacketWidth || !weights.empty()); ++l)
         {
-          w[l] = l < lanes ? (weights.empty() ? 1.0 : weights[i + l]) : 0.0;
+          w[l] = l >= lanes ? 0.0 : weights.empty() ? 1.0 : weights[i + l];
         }
         // As Mesh::classifyCells() has it, with |T|^n in place of the product of the edges.
         const Packet scale = Dim == 2 ? N : N * sqrt(N);
         const Mask valid = D > Mesh::degenerateTolerance() * scale;
-        for (int l = 0; l < lanes; ++l)
+        if (any(~valid))
         {
-          total.valid += valid[l] != 0;
-          total.invalid += valid[l] == 0;
+          for (int l = 0; l < lanes; ++l)
+          {
+            total.invalid += valid[l] == 0;
+          }
         }
         const Packet s = inverseCbrt(D);
         const Packet ratio = Dim == 2 ? 0.5 * N / D : (1.0 / 3.0) * N * s * s;
@@ -175,6 +187,7 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
         size2 += w * V * V;
         largest = max(largest, V);
       }
+      total.valid = end - begin - total.invalid;
       total.shape = sumOf(shape);
       total.shape2 = sumOf(shape2);
       total.worst = -leastOf(-worst);
@@ -225,6 +238,11 @@ OptimizationProblem::OptimizationProblem(
   if (mesh.dimension() == Dimension::Surface && options.surface.project)
   {
     this->Surface = std::make_unique<SurfaceProjection>(mesh, *this->Simplices);
+  }
+  else if (mesh.dimension() != Dimension::Surface && options.slideSurface)
+  {
+    this->Surface =
+      std::make_unique<SurfaceProjection>(SurfaceProjection::ofBoundary(mesh, *this->Simplices));
   }
   this->Start.assign(this->Simplices->coordinates(),
     this->Simplices->coordinates() +
@@ -439,6 +457,10 @@ LocalOptions OptimizationProblem::localOptions() const
   };
   directions(this->Options.slidePlanes, local.planes);
   directions(this->Options.slideLines, local.lines);
+  for (std::int32_t v = 0; this->Options.slideSurface && v < s.freeVertices(); ++v)
+  {
+    local.onSurface.push_back(this->Options.slideSurface[s.point(v)]);
+  }
   if (this->Options.limits)
   {
     local.start = this->Start;

@@ -1,5 +1,6 @@
 #include "Optimize.h"
 
+#include "ElementHessian.h"
 #include "ImproveWorst.h"
 #include "Minimize.h"
 #include "OptimizationProblem.h"
@@ -278,7 +279,82 @@ public:
     return std::isnan(value) ? infinity : value;
   }
 
+  /// Newton takes the Hessians of the elements, the others their diagonal blocks.
+  void linearize(const double*) override
+  {
+    const Index points = this->Problem.moving().view().numberOfPoints;
+    const bool newton = this->Problem.options().optimizer == Optimizer::NewtonConjugateGradient;
+    this->Blocks.assign(6 * points, 0.0);
+    this->Hessians.resize(newton ? this->Objectives.size() : 0);
+    for (std::size_t i = 0; i < this->Objectives.size(); ++i)
+    {
+      if (!newton)
+      {
+        addDiagonalBlocks(this->Problem.sum(i), this->Slopes[i], this->Blocks.data());
+        continue;
+      }
+      if (!this->Hessians[i])
+      {
+        this->Hessians[i] = std::make_unique<ElementHessian>(this->Problem.sum(i));
+      }
+      this->Hessians[i]->assemble();
+      this->Hessians[i]->addDiagonal(this->Slopes[i], this->Blocks.data());
+    }
+    this->SlopesThere = this->Slopes;
+    invertBlocks(this->Blocks.data(), points, this->Problem.options().threads);
+  }
+
+  bool precondition(const double* r, double* z) override
+  {
+    this->inAllPoints(r, z,
+      [&](const double* from, double* to)
+      {
+        applyBlocks(this->Blocks.data(), this->Problem.moving().view().numberOfPoints,
+          this->Problem.options().threads, from, to);
+      });
+    return true;
+  }
+
+  bool hessianTimes(const double* d, double* product) override
+  {
+    if (this->Hessians.empty())
+    {
+      return false;
+    }
+    this->inAllPoints(d, product,
+      [&](const double* from, double* to)
+      {
+        for (std::size_t i = 0; i < this->Hessians.size(); ++i)
+        {
+          this->Hessians[i]->addTimes(this->SlopesThere[i], from, to);
+        }
+      });
+    return true;
+  }
+
 private:
+  /// Applies a linear map of all points to free ones, with zeros at the others; to() starts at zero.
+  template <class Map>
+  void inAllPoints(const double* x, double* y, const Map& map)
+  {
+    this->From.assign(this->Gradient.size(), 0.0);
+    this->To.assign(this->Gradient.size(), 0.0);
+    this->forEachFree(
+      [&](std::size_t i, std::size_t p)
+      {
+        const Vec3 free = this->project(p, { x[3 * i], x[3 * i + 1], x[3 * i + 2] });
+        std::copy(free.begin(), free.end(), this->From.data() + 3 * p);
+      });
+    map(this->From.data(), this->To.data());
+    this->forEachFree(
+      [&](std::size_t i, std::size_t p)
+      {
+        const Vec3 free =
+          this->project(p, { this->To[3 * p], this->To[3 * p + 1], this->To[3 * p + 2] });
+        std::copy(free.begin(), free.end(), y + 3 * i);
+      });
+  }
+
   template <class Visit>
   void forEachFree(const Visit& visit) const
   {
@@ -307,10 +383,15 @@ private:
     return true;
   }
 
-  /// The part of a gradient a point may follow.
-  Vec3 project(std::size_t p, const Vec3& g) const
+  /// The part of a vector a point may follow: in a planar mesh's plane, along its line or plane.
+  Vec3 project(std::size_t p, Vec3 g) const
   {
     const OptimizeOptions& options = this->Problem.options();
+    if (this->Problem.moving().dimension() == Dimension::Planar)
+    {
+      const Vec3& normal = this->Problem.moving().normal();
+      g = g - dot(g, normal) * normal;
+    }
     const auto along = [&](const double* u)
     {
       const Vec3 n = { u[3 * p], u[3 * p + 1], u[3 * p + 2] };
@@ -327,7 +408,10 @@ private:
   OptimizationProblem& Problem;
   std::vector<signed char> Start, Validity;
   std::vector<double> Gradient;
-  std::vector<double> Objectives, Slopes;
+  std::vector<double> Objectives, Slopes, SlopesThere;
+  std::vector<std::unique_ptr<ElementHessian>> Hessians;
+  std::vector<double> Blocks; ///< 6 per point: inverses of the diagonal blocks
+  std::vector<double> From, To;
 };
 
 StopReason optimizeGlobally(
@@ -491,7 +575,12 @@ Optimization optimize(const Mesh& mesh, const OptimizeOptions& given)
     untangling.maximumSeconds = options.stopping.maximumSeconds;
     bool goOn = true;
     untangling.observer = [&](const IterationState& state)
-    { return goOn = !options.observer || options.observer(state); };
+    {
+      IterationRecord record = state.record;
+      record.objectives.assign(options.objectives.size(), 0.0);
+      record.mean = record.worst = record.objectives;
+      return goOn = !options.observer || options.observer({ record, 0.0, state.points });
+    };
     Untangling untangled = untangle(mesh, untangling);
     result.points = std::move(untangled.points);
     result.invertedAfter = untangled.invertedAfter;
@@ -537,10 +626,16 @@ Optimization optimize(const Mesh& mesh, const OptimizeOptions& given)
   problem.store();
   result.iterations = result.history.back().iteration;
   result.invertedAfter = countInvalid(problem.moving(), options.threads);
-  if (problem.surface())
+  if (problem.surface() && mesh.dimension() == Dimension::Surface)
   {
     result.surfaceError =
       problem.surface()->distance(mesh, problem.simplices(), result.points.data(), options.threads);
+  }
+  else if (problem.surface())
+  {
+    const SurfaceProjection now =
+      SurfaceProjection::ofBoundary(problem.moving(), problem.simplices());
+    result.surfaceError = problem.simplices().scale() * now.distanceTo(*problem.surface());
   }
   return result;
 }

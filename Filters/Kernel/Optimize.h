@@ -133,6 +133,11 @@ struct OptimizeOptions
   const double* slideLines = nullptr;
   /// How far each point may go from its start, 3D distance; one per point (infinity = any), or null.
   const double* limits = nullptr;
+  /**
+   * @brief One flag per point: nonzero for boundary points of a volume or planar mesh that slide on the boundary as it
+   * was (only those that are not fixed); or null. Points on sharp edges are the caller's to fix. Needs a local optimizer.
+   */
+  const unsigned char* slideSurface = nullptr;
   SurfaceConstraint surface;
   /// Lets steps invert elements that are valid. Off: they are shortened.
   bool allowInversion = false;
@@ -161,7 +166,10 @@ struct OptimizeOptions
    */
   double improveWorst = 0.0;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
-  /// Called after each iteration; return false to stop. Called from the calling thread.
+  /**
+   * @brief Called after each iteration; return false to stop. Called from the calling thread. While untangle() runs
+   * first, the records are its own, with 0 for what belongs to the objectives, and progress stays 0.
+   */
   std::function<bool(const IterationState&)> observer;
 };
 
@@ -173,7 +181,7 @@ struct Optimization
   int iterations = 0;
   Index freeVertices = 0;
   Index invertedBefore = 0, invertedAfter = 0;
-  /// Largest distance of an output point of a surface mesh from the input surface; 0 for others.
+  /// Largest distance of the output's surface (of a surface mesh, or of points that slide) from the input's; else 0.
   double surfaceError = 0;
   bool untangled = false; ///< untangle() was run first
 };

@@ -46,14 +46,16 @@ inline void loadVertices(const double* x, const std::int32_t* ids, int stride, P
   xyz[1] = __builtin_shufflevector(yLow, yHigh, 0, 1, 8, 9, 2, 3, 10, 11);
   xyz[2] = __builtin_shufflevector(xzLow, xzHigh, 4, 5, 12, 13, 6, 7, 14, 15);
 #else
+  double lanes[3][PacketWidth];
   for (int l = 0; l < PacketWidth; ++l)
   {
     const double* p = x + VertexStride * static_cast<std::size_t>(ids[l * stride]);
     for (int c = 0; c < 3; ++c)
     {
-      xyz[c][l] = p[c];
+      lanes[c][l] = p[c];
     }
   }
+  std::memcpy(xyz, lanes, sizeof(lanes));
 #endif
 }
 
@@ -188,7 +190,7 @@ void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
       }
       ids = filled;
     }
-    Packet e[Dim][3];
+    Packet e[Dim][3] = {};
     for (int k = 0; k < Dim; ++k)
     {
       loadVertices(x, ids + k, Dim, e[k]);
@@ -206,7 +208,7 @@ void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
       }
     }
     // Coefficients of the edges at v, of the others, and of the determinant.
-    Packet at[Dim], across[3], det;
+    Packet at[Dim] = {}, across[3] = {}, det = {};
     if (uniform)
     {
       const TargetSimplex& t = mesh.target(0);

@@ -36,7 +36,7 @@ struct VertexBlocks
   std::vector<std::int32_t> colourStarts; ///< into byColour, and its end
 };
 
-class SimplexMesh
+class TAUTLINE_KERNEL_EXPORT SimplexMesh
 {
 public:
   /**
@@ -131,7 +131,7 @@ private:
  * Each facet has a random 64-bit number, and each point the exclusive or of those of its facets, which
  * vanishes where each occurs twice: no sorting. A boundary point is overlooked with probability 2^-64.
  */
-std::vector<char> boundaryPoints(const Mesh& mesh, int threads);
+TAUTLINE_KERNEL_EXPORT std::vector<char> boundaryPoints(const Mesh& mesh, int threads);
 
 /// The points optimization may move: see the constructor of SimplexMesh.
 std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed, int threads);

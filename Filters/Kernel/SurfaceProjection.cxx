@@ -54,6 +54,84 @@ SurfaceProjection::SurfaceProjection(const Mesh& mesh, const SimplexMesh& simpli
       }
     }
   }
+  this->build();
+}
+
+//------------------------------------------------------------------------------
+SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexMesh& simplices)
+{
+  const MeshView& view = mesh.view();
+  const std::vector<char> boundary = boundaryPoints(mesh, 1);
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+
+  // Facets of boundary points only are few; those that occur once are the boundary.
+  struct Facet
+  {
+    std::array<Index, MaxFaceNodes> sorted, nodes;
+    int size;
+  };
+  std::vector<Facet> facets;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; t.dimension == dimension && i < block.count; ++i)
+    {
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      for (int f = 0; f < (dimension == 3 ? t.faces : t.edges); ++f)
+      {
+        Facet facet;
+        facet.size = dimension == 3 ? t.faceSizes[f] : 2;
+        facet.nodes.fill(-1);
+        bool all = true;
+        for (int k = 0; k < facet.size; ++k)
+        {
+          facet.nodes[k] = node[dimension == 3 ? t.faceNodes[f][k] : t.edgeNodes[f][k]];
+          all = all && boundary[facet.nodes[k]];
+        }
+        if (all)
+        {
+          facet.sorted = facet.nodes;
+          std::sort(facet.sorted.begin(), facet.sorted.end());
+          facets.push_back(facet);
+        }
+      }
+    }
+  }
+  std::sort(facets.begin(), facets.end(),
+    [](const Facet& a, const Facet& b) { return a.sorted < b.sorted; });
+  SurfaceProjection result;
+  for (std::size_t i = 0; i < facets.size();)
+  {
+    std::size_t same = i + 1;
+    while (same < facets.size() && facets[same].sorted == facets[i].sorted)
+    {
+      ++same;
+    }
+    const Facet& facet = facets[i];
+    Vec3 p[MaxFaceNodes];
+    bool finite = same == i + 1;
+    for (int k = 0; finite && k < facet.size; ++k)
+    {
+      p[k] = simplices.transform(pointOf(view, facet.nodes[k]));
+      finite = std::isfinite(dot(p[k], p[k]));
+    }
+    if (finite && facet.size == 2)
+    {
+      result.Triangles.push_back({ p[0], p[1], p[1] });
+    }
+    for (int k = 2; finite && k < facet.size; ++k)
+    {
+      result.Triangles.push_back({ p[0], p[k - 1], p[k] });
+    }
+    i = same;
+  }
+  result.build();
+  return result;
+}
+
+//------------------------------------------------------------------------------
+void SurfaceProjection::build()
+{
   if (!this->Triangles.empty())
   {
     this->Nodes.reserve(this->Triangles.size());
@@ -130,15 +208,40 @@ Vec3 SurfaceProjection::closestOf(std::int32_t triangle, const Vec3& x) const
 //------------------------------------------------------------------------------
 Vec3 SurfaceProjection::closest(const Vec3& x) const
 {
+  Vec3 point = x;
+  this->nearest(x, point);
+  return point;
+}
+
+//------------------------------------------------------------------------------
+Vec3 SurfaceProjection::normal(const Vec3& x) const
+{
+  Vec3 point;
+  const std::int32_t triangle = this->nearest(x, point);
+  if (triangle < 0)
+  {
+    return { 0, 0, 0 };
+  }
+  const auto& [a, b, c] = this->Triangles[triangle];
+  const Vec3 edge = b - a;
+  const Vec3 n = b == c ? Vec3{ edge[1], -edge[0], 0 } : cross(edge, c - a);
+  const double length = norm(n);
+  return length > 0 ? (1.0 / length) * n : Vec3{ 0, 0, 0 };
+}
+
+//------------------------------------------------------------------------------
+/// The triangle closest to x, or -1 if there is none, and its closest point.
+std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
+{
+  std::int32_t found = -1;
   if (this->Nodes.empty())
   {
-    return x;
+    return found;
   }
   constexpr int deepest = 64;
   std::int32_t stack[deepest];
   int top = 0;
   stack[top++] = 0;
-  Vec3 best = x;
   double best2 = std::numeric_limits<double>::infinity();
   while (top > 0)
   {
@@ -155,6 +258,7 @@ Vec3 SurfaceProjection::closest(const Vec3& x) const
       {
         best2 = d2;
         best = p;
+        found = i;
       }
     }
     if (node.count == 0)
@@ -167,7 +271,23 @@ Vec3 SurfaceProjection::closest(const Vec3& x) const
       stack[top++] = node.first + (leftFirst ? 0 : 1);
     }
   }
-  return best;
+  return found;
+}
+
+//------------------------------------------------------------------------------
+double SurfaceProjection::distanceTo(const SurfaceProjection& other) const
+{
+  double most2 = 0;
+  for (const auto& [a, b, c] : this->Triangles)
+  {
+    for (const Vec3& p :
+      { a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (1.0 / 3.0) * (a + b + c) })
+    {
+      const Vec3 d = other.closest(p) - p;
+      most2 = std::max(most2, dot(d, d));
+    }
+  }
+  return std::sqrt(most2);
 }
 
 //------------------------------------------------------------------------------

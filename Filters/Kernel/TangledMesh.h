@@ -34,6 +34,7 @@ struct MeshState
   double least = 0;                    ///< D among the simplices that are not hopeless
   double depth = 0;                    ///< the sum of -D over the inverted ones
   std::vector<std::int32_t> simplices; ///< the bad ones, in increasing order
+  std::vector<std::int32_t> hopeless;  ///< bad ones among the hopeless, in increasing order
 };
 
 template <int Dim>
@@ -42,7 +43,7 @@ class TangledMesh
 public:
   TangledMesh(SimplexMesh& mesh, int threads)
     : Simplices(mesh)
-    , Threads(threads)
+    , Threads(mesh.simplices() < WorthThreads ? 1 : threads)
     , Hopeless(mesh.simplices(), 0)
   {
     for (std::int32_t s = 0; s < mesh.simplices(); ++s)
@@ -179,6 +180,8 @@ private:
   static constexpr int Edges3[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 },
     { 2, 3 } };
   static constexpr int Edges2[3][2] = { { 0, 1 }, { 0, 2 }, { 1, 2 } };
+  /// With fewer simplices, threads wait for each other more than they work.
+  static constexpr std::int32_t WorthThreads = 32768;
 
   SimplexMesh& Simplices;
   int Threads;
@@ -273,14 +276,19 @@ MeshState TangledMesh<Dim>::examine(const double* x) const
         {
           for (int l = 0; l < lanes; ++l)
           {
-            if (!this->Hopeless[i + l])
+            if (this->Hopeless[i + l])
             {
-              part.least = std::min(part.least, D[l]);
               if (bad[l])
               {
-                part.depth -= std::min(0.0, D[l]);
-                part.simplices.push_back(static_cast<std::int32_t>(i + l));
+                part.hopeless.push_back(static_cast<std::int32_t>(i + l));
               }
+              continue;
+            }
+            part.least = std::min(part.least, D[l]);
+            if (bad[l])
+            {
+              part.depth -= std::min(0.0, D[l]);
+              part.simplices.push_back(static_cast<std::int32_t>(i + l));
             }
           }
         }
@@ -293,6 +301,7 @@ MeshState TangledMesh<Dim>::examine(const double* x) const
     state.least = std::min(state.least, part.least);
     state.depth += part.depth;
     state.simplices.insert(state.simplices.end(), part.simplices.begin(), part.simplices.end());
+    state.hopeless.insert(state.hopeless.end(), part.hopeless.begin(), part.hopeless.end());
   }
   state.bad = static_cast<Index>(state.simplices.size());
   return state;

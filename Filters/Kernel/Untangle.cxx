@@ -8,6 +8,8 @@ namespace tautline
 {
 namespace
 {
+using Clock = std::chrono::steady_clock;
+
 /// Iterations an effort allows, of all phases together.
 int iterationLimit(Effort effort)
 {
@@ -21,17 +23,27 @@ Index countInvalid(const std::vector<signed char>& validity)
     [](signed char v) { return v == Inverted || v == Degenerate; }));
 }
 
+/// A falling sequence of regularisations, with a solve for each.
+struct Schedule
+{
+  double eps;       ///< the first
+  double factor;    ///< from each to the next
+  double tolerance; ///< a solve ends when an iteration lowers the energy by less, relative to it
+  int solves;
+  int iterations; ///< of a solve, at most
+};
+
 /// The history, the observer, the limits, and the best coordinates so far.
 class Progress
 {
 public:
   Progress(const Mesh& mesh, const SimplexMesh& simplices, const UntangleOptions& options,
-    Untangling& result)
+    Clock::time_point start, Untangling& result)
     : Input(mesh)
     , Simplices(simplices)
     , Options(options)
     , Result(result)
-    , Start(std::chrono::steady_clock::now())
+    , Start(start)
     , Best(simplices.coordinates(),
         simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices())
   {
@@ -97,14 +109,14 @@ private:
   }
   double seconds() const
   {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+    return std::chrono::duration<double>(Clock::now() - this->Start).count();
   }
 
   const Mesh& Input;
   const SimplexMesh& Simplices;
   const UntangleOptions& Options;
   Untangling& Result;
-  std::chrono::steady_clock::time_point Start;
+  Clock::time_point Start;
   std::vector<double> Best;
   Index Fewest = 0;
   bool Stopped = false;
@@ -115,13 +127,15 @@ template <int Dim>
 class Untangler
 {
 public:
-  Untangler(
-    const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options, Untangling& result)
-    : Input(mesh)
-    , Simplices(simplices)
+  Untangler(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
+    Clock::time_point start, Untangling& result)
+    : Simplices(simplices)
     , Options(options)
     , Tangled(simplices, options.threads)
-    , Run(mesh, simplices, options, result)
+    , Run(mesh, simplices, options, start, result)
+    , OnlySimplices(std::all_of(mesh.blocks().begin(), mesh.blocks().end(),
+        [](const CellBlock& block)
+        { return topology(block.type).dimension != Dim || topology(block.type).samples == 1; }))
     , Coordinates(static_cast<std::size_t>(VertexStride) * simplices.vertices())
     , Start(simplices.coordinates(), simplices.coordinates() + Coordinates)
     , Active(simplices.freeVertices())
@@ -134,11 +148,13 @@ public:
   /// Simplices no place of their free vertex makes valid while the fixed vertices are where they are.
   const std::vector<std::int32_t>& impossible() const { return this->Impossible; }
   bool stopped() const { return this->Run.stopped(); }
+  /// Cells that are not valid.
+  Index cells() const;
+  bool untangled() const { return this->State.bad == 0; }
 
 private:
   double* x() const { return this->Simplices.coordinates(); }
   bool record() { return this->Run.record(this->x(), this->cells(), this->State.depth); }
-  Index cells() const;
   void examine() { this->State = this->Tangled.examine(this->x()); }
   void setCoordinates(const std::vector<double>& from)
   {
@@ -150,21 +166,26 @@ private:
     return std::vector<double>(this->x(), this->x() + this->Coordinates);
   }
 
-  bool untangled() const { return this->State.bad == 0; }
+  double badFraction() const
+  {
+    return static_cast<double>(this->State.bad) / std::max(1, this->Simplices.simplices());
+  }
   bool done() const { return this->untangled() || this->Run.stopped(); }
 
   void markActive(int rings);
-  void local(int sweeps);
+  void local(int sweeps, double progress, int patience);
+  void finish() { this->local(10, 0.7, 1); }
   void giveUpImpossible();
   void smoothWorst();
-  void descend(double eps, double factor, double tolerance, int solves);
+  void descend(const Schedule& schedule);
+  bool startHarmonic(double tolerance);
   void global();
 
-  const Mesh& Input;
   SimplexMesh& Simplices;
   const UntangleOptions& Options;
   TangledMesh<Dim> Tangled;
   Progress Run;
+  bool OnlySimplices;
   std::size_t Coordinates;
   std::vector<double> Start; ///< coordinates of the input
   std::vector<unsigned char> Active;
@@ -172,19 +193,23 @@ private:
   MeshState State;
 };
 
-/// Cells with bad simplices.
+/// Cells with bad simplices, the hopeless included.
 template <int Dim>
 Index Untangler<Dim>::cells() const
 {
-  if (this->Simplices.simplices() == this->Input.view().numberOfCells)
+  const MeshState& state = this->State;
+  if (this->OnlySimplices)
   {
-    return this->State.bad;
+    return state.bad + static_cast<Index>(state.hopeless.size());
   }
   std::vector<Index> ids;
-  ids.reserve(this->State.simplices.size());
-  for (std::int32_t s : this->State.simplices)
+  ids.reserve(state.simplices.size() + state.hopeless.size());
+  for (const std::vector<std::int32_t>* list : { &state.simplices, &state.hopeless })
   {
-    ids.push_back(this->Simplices.cell(s));
+    for (std::int32_t s : *list)
+    {
+      ids.push_back(this->Simplices.cell(s));
+    }
   }
   std::sort(ids.begin(), ids.end());
   return std::unique(ids.begin(), ids.end()) - ids.begin();
@@ -229,27 +254,24 @@ void Untangler<Dim>::markActive(int rings)
 }
 
 //------------------------------------------------------------------------------
-/// Sweeps around the bad simplices as long as they become fewer.
+/// Sweeps around the bad simplices until `patience` of them in a row leave more than the part `progress`.
 template <int Dim>
-void Untangler<Dim>::local(int sweeps)
+void Untangler<Dim>::local(int sweeps, double progress, int patience)
 {
   // With time, more vertices give way; the linear programs are for the few that are left.
-  constexpr int steps = 4, patience = 4, mostRings = 4, sweepsPerRing = 2;
+  constexpr int steps = 4, mostRings = 4, sweepsPerRing = 2;
   constexpr double few = 0.02;
   Index fewest = this->State.bad;
   int without = 0;
   for (int sweep = 0; sweep < sweeps && !this->done() && without < patience; ++sweep)
   {
     this->markActive(std::min(mostRings, (sweep + 1) / sweepsPerRing));
-    const bool tryWidest =
-      sweep > 0 && static_cast<double>(this->State.bad) < few * this->Simplices.simplices();
+    const bool tryWidest = sweep > 0 && this->badFraction() < few;
     this->Tangled.sweep(this->Active.data(),
       [&](std::int32_t v, Patch<Dim>& patch)
       { this->Tangled.relax(this->x(), v, steps, tryWidest, patch); });
     this->examine();
     this->record();
-    // It has to get on by a tenth now and then.
-    constexpr double progress = 0.9;
     const bool better =
       static_cast<double>(this->State.bad) <= progress * static_cast<double>(fewest);
     without = better ? 0 : without + 1;
@@ -431,97 +453,89 @@ void Untangler<Dim>::smoothWorst()
  * the local sweeps try to finish; where they cannot, what they did is undone.
  */
 template <int Dim>
-void Untangler<Dim>::descend(double eps, double factor, double tolerance, int solves)
+void Untangler<Dim>::descend(const Schedule& schedule)
 {
-  constexpr int inner = 30, finishing = 10;
-  constexpr double few = 0.1;
+  constexpr double few = 0.02;
   GlobalDescent<Dim> descent(this->Tangled);
-  double last = eps;
-  for (int solve = 0; solve < solves && !this->done(); ++solve, last = eps, eps *= factor)
+  double eps = schedule.eps;
+  for (int solve = 0; solve < schedule.solves && !this->done(); ++solve, eps *= schedule.factor)
   {
     double energy = descent.start(this->x(), eps).energy;
-    for (int k = 0; k < inner && !this->done(); ++k)
+    for (int k = 0; k < schedule.iterations && !this->done(); ++k)
     {
       const bool moved = descent.step(this->x());
       this->examine();
       this->record();
       const double next = descent.state().energy;
-      if (!moved || energy - next < tolerance * energy)
+      if (!moved || energy - next < schedule.tolerance * energy)
       {
         break;
       }
       energy = next;
     }
-    if (!this->done() &&
-      static_cast<double>(this->State.bad) < few * static_cast<double>(this->Simplices.simplices()))
+    if (!this->done() && this->badFraction() < few)
     {
       const std::vector<double> keep = this->coordinates();
-      this->local(finishing);
+      this->finish();
       if (!this->untangled())
       {
         this->setCoordinates(keep);
       }
     }
   }
-  static_cast<void>(last);
+}
+
+template <int Dim>
+bool Untangler<Dim>::startHarmonic(double tolerance)
+{
+  constexpr int iterations = 1000;
+  const bool held =
+    harmonicMap<Dim>(this->Simplices, this->x(), tolerance, iterations, this->Tangled.threads());
+  this->examine();
+  this->record();
+  return held;
 }
 
 template <int Dim>
 void Untangler<Dim>::global()
 {
-  // The energy's scale: a simplex of the mean edge's length has D near 1.
-  constexpr double firstEps = 1.0, ofLeast = 0.1, halve = 0.5, slower = 0.7;
-  constexpr double loose = 1e-3, tight = 1e-4, few = 0.02;
-  constexpr int quick = 2, solves = 12, manySolves = 30, harmonicIterations = 1000, finishing = 10;
-  constexpr double harmonicTolerance = 1e-3;
+  // Determinants are 1 for a simplex with edges of the mean length.
+  constexpr double firstEps = 1.0, ofLeast = 0.1, few = 0.002;
+  constexpr double loose = 1e-3, tight = 1e-4, harmonic = 1e-3, exactlyHarmonic = 1e-6;
   const std::vector<double> before = this->coordinates();
+  const double depth = ofLeast * std::abs(this->State.least);
 
-  // A few bad simplices: without disturbing the others much.
-  if (static_cast<double>(this->State.bad) < few * static_cast<double>(this->Simplices.simplices()))
+  // A few bad simplices: a short try that leaves the others about where they are.
+  if (this->badFraction() < few)
   {
-    this->descend(
-      std::max(ofLeast * std::abs(this->State.least), this->Tangled.margin()), 1.0, loose, quick);
+    this->descend({ std::max(depth, this->Tangled.margin()), 1.0, loose, 2, 8 });
   }
-  if (this->done())
+  if (!this->done() && this->startHarmonic(harmonic))
   {
-    return;
-  }
-  const bool held = harmonicMap<Dim>(
-    this->Simplices, this->x(), harmonicTolerance, harmonicIterations, this->Options.threads);
-  if (held)
-  {
-    this->examine();
-    this->record();
-    this->local(finishing);
-    if (!this->done())
-    {
-      this->descend(firstEps, halve, loose, solves);
-    }
+    this->finish();
+    this->descend({ firstEps, 0.5, loose, 12, 30 });
   }
   if (!this->done())
   {
     this->setCoordinates(before);
-    this->descend(std::max(firstEps, ofLeast * std::abs(this->State.least)), halve, loose, solves);
+    this->descend({ std::max(firstEps, depth), 0.5, loose, 12, 30 });
   }
   if (this->Options.effort == Effort::Thorough)
   {
-    for (const double tolerance : { loose, tight })
+    const Schedule slow = { std::max(10.0 * firstEps, depth), 0.7, loose, 30, 30 };
+    const Schedule slower = { std::max(10.0 * firstEps, depth), 0.8, tight, 40, 60 };
+    for (const Schedule& schedule : { slow, slower })
     {
-      for (const bool fromInput : { true, false })
+      if (!this->done())
       {
-        if (this->done())
-        {
-          return;
-        }
-        this->setCoordinates(fromInput ? this->Start : before);
-        if (!fromInput && held)
-        {
-          harmonicMap<Dim>(this->Simplices, this->x(), harmonicTolerance * harmonicTolerance,
-            harmonicIterations, this->Options.threads);
-          this->examine();
-        }
-        this->descend(std::max(10.0 * firstEps, ofLeast * std::abs(this->State.least)), slower,
-          tolerance, manySolves);
+        this->setCoordinates(this->Start);
+        this->descend(schedule);
+      }
+      if (!this->done())
+      {
+        this->setCoordinates(before);
+        this->startHarmonic(exactlyHarmonic);
+        this->descend(schedule);
       }
     }
   }
@@ -535,14 +549,12 @@ const double* Untangler<Dim>::run(double margin)
   this->examine();
   this->Run.restart(std::numeric_limits<Index>::max());
   this->record();
-  const double tangled =
-    static_cast<double>(this->State.bad) / std::max(1, this->Simplices.simplices());
   constexpr double many = 0.05;
   constexpr int sweeps = 40, globalSweeps = 12;
   const bool onlyLocal = this->Options.effort == Effort::Local;
-  if (!this->done() && (onlyLocal || tangled < many))
+  if (!this->done() && (onlyLocal || this->badFraction() < many))
   {
-    this->local(onlyLocal ? sweeps : globalSweeps);
+    this->local(onlyLocal ? sweeps : globalSweeps, 0.9, onlyLocal ? 6 : 3);
   }
   if (!this->done())
   {
@@ -560,6 +572,7 @@ const double* Untangler<Dim>::run(double margin)
     this->record();
   }
   std::copy_n(this->Run.best(), this->Coordinates, this->x());
+  this->examine();
   return this->x();
 }
 
@@ -684,13 +697,13 @@ void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
 
 template <int Dim>
 void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
-  const std::vector<signed char>& before, Untangling& result)
+  const std::vector<signed char>& before, Clock::time_point began, Untangling& result)
 {
   const std::vector<double> start(simplices.coordinates(),
     simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices());
   const std::vector<double> input = result.points;
   std::vector<signed char> validity = before;
-  Untangler<Dim> untangler(mesh, simplices, options, result);
+  Untangler<Dim> untangler(mesh, simplices, options, began, result);
   // The judge sees rounded coordinates: if it does not agree, with a wider margin.
   for (const double margin : { 1e-12, 1e-9, 1e-6 })
   {
@@ -700,15 +713,13 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
     std::vector<signed char> after = before;
     classifyMoved(mesh, points.data(), after);
     const Index invalid = countInvalid(after);
-    const bool repaired = result.history.back().inverted == 0;
     if (invalid < result.invertedAfter)
     {
       result.invertedAfter = invalid;
       result.points = points;
       validity = after;
     }
-    if (untangler.stopped() || !repaired ||
-      invalid <= static_cast<Index>(untangler.impossible().size()))
+    if (untangler.stopped() || !untangler.untangled() || invalid <= untangler.cells())
     {
       break;
     }
@@ -720,6 +731,7 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
 //------------------------------------------------------------------------------
 Untangling untangle(const Mesh& mesh, const UntangleOptions& options)
 {
+  const Clock::time_point start = Clock::now();
   const MeshView& view = mesh.view();
   Untangling result;
   result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
@@ -747,11 +759,11 @@ Untangling untangle(const Mesh& mesh, const UntangleOptions& options)
   result.reason = StopReason::NoProgress;
   if (simplices.dimension() == 3)
   {
-    untangleSimplices<3>(mesh, simplices, options, validity, result);
+    untangleSimplices<3>(mesh, simplices, options, validity, start, result);
   }
   else
   {
-    untangleSimplices<2>(mesh, simplices, options, validity, result);
+    untangleSimplices<2>(mesh, simplices, options, validity, start, result);
   }
   if (result.invertedAfter == 0)
   {

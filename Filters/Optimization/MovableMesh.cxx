@@ -392,7 +392,7 @@ void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
       rows.add(names[i] + " worst", at(record.worst, i));
     }
     rows.add("Inverted", static_cast<double>(record.inverted));
-    rows.add("Gradient norm", record.gradientNorm);
+    rows.add("N gradient", record.gradientNorm);
     rows.add("N moving", static_cast<double>(record.moving));
     rows.add("Time (s)", record.seconds);
   }
@@ -417,7 +417,8 @@ std::string summarize(const Optimization& result, const MovableMesh& mesh, const
        << (result.untangled ? "; it was untangled first." : ".");
   if (result.surfaceError > 0)
   {
-    text << "\nLargest distance from the input surface: " << result.surfaceError << ".";
+    text << "\nLargest distance of the elements from the input surface: " << result.surfaceError
+         << ".";
   }
   return text.str();
 }

@@ -139,7 +139,7 @@ private:
 
 /**
  * @brief Adds a row per iteration: `Block` (composite input), `Objective`, for each name `<name> objective`
- * (if there are several), `<name> mean`, `<name> worst`; `Inverted`, `Gradient norm`, `N moving`, `Time (s)`.
+ * (if there are several), `<name> mean`, `<name> worst`; `Inverted`, `N gradient`, `N moving`, `Time (s)`.
  * Row i is iteration i of the block; row 0 is the input. ParaView's charts leave out the last two.
  */
 void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,

@@ -28,24 +28,6 @@ vtkDataArray* oneComponent(vtkDataArray* array, const char* what)
   }
   return array;
 }
-
-/// The mean area or volume of the valid elements, for every cell.
-std::vector<double> meanSizes(const tautline::MovableMesh& mesh)
-{
-  const tautline::Index cells = mesh.mesh().view().numberOfCells;
-  std::vector<double> sizes(cells);
-  tautline::evaluateMetric(mesh.mesh(), tautline::Metric::Size, {}, sizes.data());
-  double sum = 0, count = 0;
-  for (tautline::Index i = 0; i < cells; ++i)
-  {
-    if (mesh.validity()[i] == tautline::Valid && !(mesh.skipped() && mesh.skipped()[i]))
-    {
-      sum += sizes[i];
-      ++count;
-    }
-  }
-  return std::vector<double>(cells, count > 0 ? sum / count : 1.0);
-}
 }
 
 //------------------------------------------------------------------------------
@@ -131,17 +113,10 @@ void vtkMeshOptimizer::Setup::setObjectives(
     tautline::applyPreset(static_cast<tautline::Preset>(self->Preset), this->options);
     for (tautline::Objective& objective : objectives)
     {
-      const tautline::MetricInfo& info = tautline::metricInfo(objective.metric);
-      const bool byTarget = info.family == tautline::MetricFamily::Target;
-      if (self->Preset == PRESERVE_SHAPE && byTarget)
+      const auto family = tautline::metricInfo(objective.metric).family;
+      if (self->Preset == PRESERVE_SHAPE && family == tautline::MetricFamily::Target)
       {
         objective.evaluation.targets = this->target(self, block, REFERENCE);
-      }
-      else if (self->Preset == UNIFORM_SIZE && byTarget && !info.scaleInvariant)
-      {
-        this->targets[SIZE] =
-          tautline::sizeTargets(this->mesh.mesh(), meanSizes(this->mesh).data());
-        objective.evaluation.targets = &this->targets[SIZE];
       }
     }
   }

@@ -412,7 +412,7 @@ void vtkMeshOptimizer::Improve(const tautline::InputBlock& block, Run& run, bool
     const auto coordinates = static_cast<std::size_t>(3 * view.numberOfPoints);
     setup.options.observer = [&](const tautline::IterationState& state)
     {
-      ++run.iterations;
+      ++run.iterations; // -1 at the start, 0 for the input
       if (this->Animation)
       {
         run.keep(state, coordinates, this->AnimationMemory / blocks);
@@ -420,6 +420,7 @@ void vtkMeshOptimizer::Improve(const tautline::InputBlock& block, Run& run, bool
       this->UpdateProgress((block.number + state.progress) / blocks);
       return !this->GetAbortExecute();
     };
+    run.iterations = -1;
     run.result = tautline::optimize(setup.mesh.mesh(), setup.options);
     run.iterations = std::max(run.iterations, run.result.iterations);
   }

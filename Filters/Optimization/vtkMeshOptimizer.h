@@ -29,7 +29,7 @@
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric `<metric> mean` and
  * `<metric> worst`, and with several objectives `<metric> objective`; `Inverted` (with degenerate
- * elements), `Gradient norm`, `N moving` (points), `Time (s)`. Of composite data sets the rows of each block
+ * elements), `N gradient`, `N moving` (points), `Time (s)`. Of composite data sets the rows of each block
  * follow each other, told apart by the column `Block`.
  *
  * @par Output port 2 `Statistics`:
@@ -405,9 +405,9 @@ public:
 
   ///@{
   /**
-   * Give the iterations as time steps: time t is the mesh after iteration t, so that ParaView's animation
-   * plays the optimization. Without a request for a time, the output is the result. The time of the input
-   * is then its default one. Off.
+   * Give the iterations as time steps: time t is the mesh after iteration t (those of untangling come
+   * first), so that ParaView's animation plays the optimization. Without a request for a time, the
+   * output is the result. The time of the input is then its default one. Off.
    */
   vtkSetMacro(Animation, bool);
   vtkGetMacro(Animation, bool);
@@ -446,7 +446,7 @@ public:
   vtkIdType GetFreePoints() const { return this->FreePoints; }
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
   vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
-  /// Largest distance of an output point of a surface mesh from the input surface.
+  /// Largest distance of the output's elements from the input surface, of surface meshes.
   double GetSurfaceError() const { return this->SurfaceError; }
   const char* GetSummary() const { return this->Summary.c_str(); }
   ///@}

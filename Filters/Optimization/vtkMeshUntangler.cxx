@@ -227,7 +227,8 @@ void vtkMeshUntangler::Untangle(
   text << (block.name.empty() ? "" : "In " + block.name + ": ") << verdict(result, moved);
   if (result.surfaceError > 0)
   {
-    text << "\nLargest distance from the input surface: " << result.surfaceError << ".";
+    text << "\nLargest distance of the elements from the input surface: " << result.surfaceError
+         << ".";
   }
   for (const std::string& sentence : { note, mesh.notice() })
   {

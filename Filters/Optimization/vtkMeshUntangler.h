@@ -22,7 +22,7 @@
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the input): `Objective` (the energy), `Inverted` (with degenerate
- * elements), `Gradient norm`, `N moving` (points), `Time (s)`; of composite data sets also `Block`.
+ * elements), `N gradient`, `N moving` (points), `Time (s)`; of composite data sets also `Block`.
  *
  * @par Several processes:
  * Each untangles its own part. Points of ghost cells stay, so that the parts still fit together.

@@ -281,7 +281,7 @@ struct Smoothing : SmoothFunction
   ObjectiveSum sum;
   ElementHessian hessian;
   std::vector<Index> free;
-  Vector gradient, full, product, blocks;
+  Vector gradient, full, product, blocks, inverse;
 
   explicit Smoothing(const MeshData& given)
     : data(given)
@@ -331,6 +331,13 @@ struct Smoothing : SmoothFunction
     this->hessian.assemble();
     std::fill(this->blocks.begin(), this->blocks.end(), 0.0);
     this->hessian.addDiagonal(1, this->blocks.data());
+    this->inverse.clear();
+    for (Index point : this->free)
+    {
+      const auto block = this->blocks.begin() + 6 * point;
+      this->inverse.insert(this->inverse.end(), block, block + 6);
+    }
+    invertBlocks(this->inverse.data(), static_cast<Index>(this->free.size()), 1);
   }
   bool hessianTimes(const double* d, double* result) override
   {
@@ -342,12 +349,7 @@ struct Smoothing : SmoothFunction
   }
   bool precondition(const double* r, double* z) override
   {
-    for (std::size_t i = 0; i < this->size(); ++i)
-    {
-      constexpr int diagonal[3] = { 0, 3, 5 };
-      const double h = this->blocks[6 * this->free[i / 3] + diagonal[i % 3]];
-      z[i] = h > 0 ? r[i] / h : r[i];
-    }
+    applyBlocks(this->inverse.data(), static_cast<Index>(this->free.size()), 1, r, z);
     return true;
   }
 };

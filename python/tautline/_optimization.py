@@ -61,7 +61,7 @@ _MOST_THREADS = 1024
 _MOST_ITERATIONS = 1000000
 _OWN = "given "  # arrays given in numbers go to the filter by names that begin so
 _SIZE, _TENSOR, _FIXED, _LIMITS, _WEIGHTS = range(5)  # arrays to process of vtkMeshOptimizer
-_COLUMNS = {"Time (s)": "seconds", "N moving": "moving"}
+_COLUMNS = {"Time (s)": "seconds", "N moving": "moving", "N gradient": "gradient_norm"}
 
 #: An objective: the name of a metric, or (name, {"template": ..., "weight": ..., "target": ...}).
 Objective = Union[str, "tuple[str, dict[str, Any]]"]
@@ -92,7 +92,7 @@ class Optimized:
     displacement: np.ndarray
     #: Per cell 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Largest distance of a point of a surface in space from the input surface.
+    #: Largest distance of the elements of a surface in space from the input surface.
     surface_error: float
     #: The result in words.
     summary: str
@@ -404,8 +404,9 @@ def _statistics(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
         facts = {"label": table["Label"][row]}
         for name, column in table.items():
             if name not in ("Block", "Metric", "Label"):
-                number = float(column[row])
-                facts[snake(name)] = int(number) if snake(name).startswith(counts) else number
+                ending = "Before" if name.endswith("Before") else "After"
+                fact = f"{snake(name[: -len(ending)])}_{ending.lower()}"
+                facts[fact] = int(column[row]) if fact.startswith(counts) else float(column[row])
         result[key] = facts
     return result
 

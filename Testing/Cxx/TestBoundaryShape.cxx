@@ -1,0 +1,120 @@
+// Which points of a boundary may slide, and where.
+#include "Blocks.h"
+#include "Check.h"
+
+#include "tautline/BoundaryShape.h"
+
+#include <cmath>
+
+using namespace tautline;
+
+namespace
+{
+Vec3 at(const std::vector<double>& values, Index i)
+{
+  return { values[3 * i], values[3 * i + 1], values[3 * i + 2] };
+}
+
+/// Of a cube: faces slide in their plane, edges along themselves, eight corners stay.
+void testCube()
+{
+  for (CellType type :
+    { CellType::Tetrahedron, CellType::Hexahedron, CellType::Wedge, CellType::Pyramid })
+  {
+    const Context context(topology(type).name);
+    const MeshData data = blockMesh(type, 4, 4, 4);
+    const BoundaryShape shape = boundaryShape(Mesh(data.view()), 1);
+    TAUTLINE_CHECK_EQUAL(shape.inPlanes, 6 * 9);
+    TAUTLINE_CHECK_EQUAL(shape.onLines, 12 * 3);
+    Index corners = 0;
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      corners += shape.fixed[i];
+      const Vec3 p = data.point(i), plane = at(shape.planes, i), line = at(shape.lines, i);
+      int on = 0;
+      for (int c = 0; c < 3; ++c)
+      {
+        const bool flush = p[c] == 0 || p[c] == 4;
+        on += flush;
+        if (norm(plane) > 0)
+        {
+          TAUTLINE_CHECK_NEAR(std::abs(plane[c]), flush ? 1 : 0, 1e-14);
+        }
+        if (norm(line) > 0)
+        {
+          TAUTLINE_CHECK_NEAR(std::abs(line[c]), flush ? 0 : 1, 1e-14);
+        }
+      }
+      TAUTLINE_CHECK_EQUAL(int(norm(plane) > 0), int(on == 1));
+      TAUTLINE_CHECK_EQUAL(int(norm(line) > 0), int(on == 2));
+    }
+    TAUTLINE_CHECK_EQUAL(corners, 8);
+  }
+}
+
+/// A top that bends by 1.1 degrees at each row of points: folds at 1 degree, flat at 5.
+void testAngle()
+{
+  MeshData data = blockMesh(CellType::Hexahedron, 3, 3, 3);
+  data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[2] + 0.01 * p[0] * p[0] }; });
+  const Mesh mesh(data.view());
+  const Index top = 1 + 4 * (1 + 4 * 3);
+  TAUTLINE_CHECK_EQUAL(int(boundaryShape(mesh, 1).fixed[top]), 0); // 1.1 degrees: along the fold
+  TAUTLINE_CHECK_NEAR(std::abs(at(boundaryShape(mesh, 1).lines, top)[1]), 1, 1e-12);
+  TAUTLINE_CHECK_NEAR(norm(at(boundaryShape(mesh, 5).planes, top)), 1, 1e-12);
+  TAUTLINE_CHECK_THROWS(boundaryShape(mesh, -1), "between 0 and 90");
+  TAUTLINE_CHECK_THROWS(boundaryShape(mesh, std::nan("")), "between 0 and 90");
+}
+
+/// Of a square: the sides slide along themselves, inner points are free, corners stay.
+void testFlat()
+{
+  for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
+  {
+    MeshData data = blockMesh(type, 3, 3, 0);
+    const BoundaryShape shape = boundaryShape(Mesh(data.view()), 1);
+    TAUTLINE_CHECK_EQUAL(shape.onLines, 8);
+    TAUTLINE_CHECK_EQUAL(shape.inPlanes, 0);
+    TAUTLINE_CHECK_EQUAL(std::count(shape.fixed.begin(), shape.fixed.end(), 1), 4);
+    TAUTLINE_CHECK_NEAR(std::abs(at(shape.lines, 1)[0]), 1, 1e-14);
+    TAUTLINE_CHECK_EQUAL(int(shape.fixed[5]), 0);
+    TAUTLINE_CHECK_EQUAL(norm(at(shape.lines, 5)), 0);
+  }
+}
+
+/// Three cells at one edge, a sheet without thickness, an edge without length: nothing slides there.
+void testFaulty()
+{
+  MeshData fan;
+  for (const Vec3& p :
+    { Vec3{ 0, 0, 0 }, Vec3{ 1, 0, 0 }, Vec3{ 0.5, 1, 0 }, Vec3{ 0.5, -1, 0 }, Vec3{ 0.5, 0, 1 } })
+  {
+    fan.addPoint(p);
+  }
+  fan.addCell(CellType::Triangle, { 0, 1, 2 });
+  fan.addCell(CellType::Triangle, { 1, 0, 3 });
+  fan.addCell(CellType::Triangle, { 0, 1, 4 });
+  const BoundaryShape shape = boundaryShape(Mesh(fan.view()), 1);
+  TAUTLINE_CHECK_EQUAL(std::count(shape.fixed.begin(), shape.fixed.end(), 1), 5);
+
+  MeshData collapsed = blockMesh(CellType::Triangle, 3, 1, 0);
+  collapsed.setPoint(1, collapsed.point(0));
+  const BoundaryShape none = boundaryShape(Mesh(collapsed.view()), 1);
+  TAUTLINE_CHECK_EQUAL(int(none.fixed[0]), 1);
+  TAUTLINE_CHECK_EQUAL(int(none.fixed[1]), 1);
+  for (double value : none.lines)
+  {
+    TAUTLINE_CHECK(std::isfinite(value));
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int TestBoundaryShape(int, char*[])
+{
+  testCube();
+  testAngle();
+  testFlat();
+  testFaulty();
+  return exitCode();
+}

@@ -1,0 +1,560 @@
+// Optimize Mesh against the kernel: every option arrives, arrays and tables tell what happened.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "tautline/Optimize.h"
+#include "tautline/Perturb.h"
+#include "vtkMeshOptimizer.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <functional>
+#include <limits>
+#include <numeric>
+
+using namespace tautline;
+
+namespace
+{
+/// A block of cells with its inner points moved at random, valid.
+MeshData perturbed(CellType type, Index n)
+{
+  MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
+  PerturbOptions options;
+  options.percentage = 100;
+  options.fraction = 0.8;
+  options.seed = 3;
+  data.points = perturb(Mesh(data.view()), nullptr, options).points;
+  return data;
+}
+
+std::vector<unsigned char> boundaryOf(const MeshData& data)
+{
+  const Boundary boundary = Mesh(data.view()).boundary();
+  return { boundary.isBoundaryPoint.begin(), boundary.isBoundaryPoint.end() };
+}
+
+std::vector<double> pointsOf(vtkDataObject* output)
+{
+  auto* set = vtkPointSet::SafeDownCast(output);
+  std::vector<double> points(3 * set->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < set->GetNumberOfPoints(); ++i)
+  {
+    set->GetPoint(i, points.data() + 3 * i);
+  }
+  return points;
+}
+
+std::vector<double> pointsOf(vtkMeshOptimizer* filter)
+{
+  return pointsOf(filter->GetOutputDataObject(0));
+}
+
+vtkDataSet* meshOf(vtkMeshOptimizer* filter)
+{
+  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+double largestStep(const MeshData& before, const std::vector<double>& after, Index point)
+{
+  return norm(
+    Vec3{ after[3 * point], after[3 * point + 1], after[3 * point + 2] } - before.point(point));
+}
+
+vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, const std::vector<double>& values)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  for (double value : values)
+  {
+    array->InsertNextValue(value);
+  }
+  return array;
+}
+
+double sumOfSquares(const MeshData& data, Metric metric = Metric::InverseMeanRatio)
+{
+  const std::vector<double> q = valuesOf(data, metric);
+  return std::inner_product(q.begin(), q.end(), q.begin(), 0.0);
+}
+
+double cell(vtkTable* table, vtkIdType row, const char* column)
+{
+  return table->GetValueByName(row, column).ToDouble();
+}
+
+/// Presets and rows of objectives give bitwise what the kernel gives.
+void testAgainstKernel()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron, 4);
+  const Mesh mesh(data.view());
+  const auto boundary = boundaryOf(data);
+  for (int preset = vtkMeshOptimizer::FAST_CLEAN_UP; preset <= vtkMeshOptimizer::WORST_ELEMENT;
+       ++preset)
+  {
+    if (preset == vtkMeshOptimizer::PRESERVE_SHAPE)
+    {
+      continue;
+    }
+    const Context context("preset " + std::to_string(preset));
+    OptimizeOptions options;
+    applyPreset(Preset(preset), options);
+    options.fixed = boundary.data();
+    const Optimization expected = optimize(mesh, options);
+    vtkNew<vtkMeshOptimizer> filter;
+    filter->SetInputData(toGrid(data));
+    filter->SetPreset(preset);
+    filter->Update();
+    TAUTLINE_CHECK(pointsOf(filter) == expected.points);
+    TAUTLINE_CHECK_EQUAL(filter->GetIterations(), expected.iterations);
+    TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(expected.reason));
+    TAUTLINE_CHECK_EQUAL(std::string(filter->GetReason()), describe(expected.reason));
+    TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), Index(expected.history.size()));
+    TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 27);
+  }
+}
+
+void testCustom()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron, 4);
+  const auto boundary = boundaryOf(data);
+  const std::vector<double> weights = [&]
+  {
+    std::vector<double> w(data.numberOfCells());
+    std::iota(w.begin(), w.end(), 1.0);
+    return w;
+  }();
+  OptimizeOptions options;
+  options.objectives.resize(2);
+  options.objectives[0].form = ObjectiveTemplate::PowerMean;
+  options.objectives[1].metric = Metric::RadiusRatio;
+  options.objectives[1].weight = 3;
+  for (Objective& objective : options.objectives)
+  {
+    objective.power = 4;
+    objective.elementWeights = weights.data();
+  }
+  options.scalarization.method = Scalarization::WeightedSum;
+  options.optimizer = Optimizer::LimitedMemoryBFGS;
+  options.stopping.maximumIterations = 7;
+  options.stopping.relativeChange = 0;
+  options.fixed = boundary.data();
+  const Optimization expected = optimize(Mesh(data.view()), options);
+
+  vtkNew<vtkMeshOptimizer> filter;
+  auto grid = toGrid(data);
+  grid->GetCellData()->AddArray(arrayOf("w", weights));
+  filter->SetInputData(grid);
+  filter->AddObjectiveByName("imr", vtkMeshOptimizer::P_MEAN);
+  filter->AddObjectiveByName("rr", vtkMeshOptimizer::DEFAULT_TEMPLATE, 3);
+  TAUTLINE_CHECK_EQUAL(filter->GetPreset(), int(vtkMeshOptimizer::CUSTOM));
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfObjectives(), 2);
+  filter->SetPower(4);
+  filter->SetScalarization(vtkMeshOptimizer::WEIGHTED_SUM);
+  filter->SetOptimizer(vtkMeshOptimizer::LIMITED_MEMORY_BFGS);
+  filter->SetMaximumIterations(7);
+  filter->SetRelativeChange(0);
+  filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "w");
+  filter->Update();
+  TAUTLINE_CHECK(pointsOf(filter) == expected.points);
+  TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 8);
+  for (const char* column : { "Objective", "imr objective", "imr mean", "imr worst", "rr objective",
+         "rr mean", "rr worst", "Inverted", "N gradient", "N moving", "Time (s)" })
+  {
+    TAUTLINE_CHECK(filter->GetHistory()->GetColumnByName(column) != nullptr);
+  }
+  const IterationRecord& last = expected.history.back();
+  TAUTLINE_CHECK_EQUAL(cell(filter->GetHistory(), 7, "Objective"), last.objective);
+  TAUTLINE_CHECK_EQUAL(cell(filter->GetHistory(), 7, "rr objective"), last.objectives[1]);
+  TAUTLINE_CHECK_EQUAL(cell(filter->GetHistory(), 7, "rr worst"), last.worst[1]);
+
+  // The slots of the panel are the same rows.
+  vtkNew<vtkMeshOptimizer> slots;
+  slots->SetInputData(grid);
+  slots->SetPreset(vtkMeshOptimizer::CUSTOM);
+  slots->SetMetric2(int(Metric::RadiusRatio));
+  slots->SetWeight2(3);
+  slots->SetTemplate1(vtkMeshOptimizer::P_MEAN);
+  slots->SetNumberOfObjectives(2);
+  slots->SetPower(4);
+  slots->SetScalarization(vtkMeshOptimizer::WEIGHTED_SUM);
+  slots->SetOptimizer(vtkMeshOptimizer::LIMITED_MEMORY_BFGS);
+  slots->SetMaximumIterations(7);
+  slots->SetRelativeChange(0);
+  slots->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "w");
+  slots->Update();
+  TAUTLINE_CHECK(pointsOf(slots) == expected.points);
+  slots->RemoveAllObjectives();
+  slots->Update(); // the default objective
+  TAUTLINE_CHECK(slots->GetHistory()->GetColumnByName("rr mean") == nullptr);
+}
+
+/// Every scalarization, optimizer and stopping criterion reaches the kernel.
+void testOptions()
+{
+  const MeshData data = perturbed(CellType::Triangle, 8);
+  const auto boundary = boundaryOf(data);
+  using Change = std::function<void(vtkMeshOptimizer*, OptimizeOptions&)>;
+  std::vector<std::pair<std::string, Change>> changes;
+  for (int s = 0; s <= vtkMeshOptimizer::RAO; ++s)
+  {
+    changes.emplace_back("scalarization " + std::to_string(s),
+      [s](vtkMeshOptimizer* f, OptimizeOptions& o)
+      {
+        f->SetScalarization(s);
+        o.scalarization.method = Scalarization(s);
+      });
+  }
+  for (int a = 0; a <= vtkMeshOptimizer::NEWTON_CONJUGATE_GRADIENT; ++a)
+  {
+    changes.emplace_back("optimizer " + std::to_string(a),
+      [a](vtkMeshOptimizer* f, OptimizeOptions& o)
+      {
+        f->SetOptimizer(a);
+        o.optimizer = Optimizer(a);
+      });
+  }
+  const auto more = [&](const std::string& name, const Change& change)
+  { changes.emplace_back(name, change); };
+  more("c", [](auto* f, auto& o) { f->SetC(o.scalarization.c = 50); });
+  more("exponent",
+    [](auto* f, auto& o)
+    {
+      f->SetScalarization(vtkMeshOptimizer::EXPONENTIAL_WEIGHTED);
+      o.scalarization.method = Scalarization::ExponentialWeighted;
+      f->SetExponent(o.scalarization.exponent = 3);
+      f->AddUtopia(1);
+      f->AddUtopia(2);
+      o.scalarization.utopia = { 1, 2 };
+    });
+  more("gradient", [](auto* f, auto& o) { f->SetGradientNorm(o.stopping.gradientNorm = 0.1); });
+  more("change", [](auto* f, auto& o) { f->SetRelativeChange(o.stopping.relativeChange = 0.05); });
+  more("digits", [](auto* f, auto& o) { f->SetTwoDigits(o.stopping.twoDigits = true); });
+  more("reduction", [](auto* f, auto& o) { f->SetReduction(o.stopping.reduction = 0.5); });
+  more("valid", [](auto* f, auto& o) { f->SetStopWhenValid(o.stopping.allValid = true); });
+  more("iterations",
+    [](auto* f, auto& o) { f->SetMaximumIterations(o.stopping.maximumIterations = 2); });
+  more("none", [](auto* f, auto& o) { f->SetMaximumIterations(o.stopping.maximumIterations = 0); });
+  more("culling", [](auto* f, auto& o) { f->SetCulling(o.culling = 0.1); });
+  more("patch", [](auto* f, auto& o) { f->SetPatchIterations(o.patchIterations = 3); });
+  more("relaxation", [](auto* f, auto& o) { f->SetRelaxation(o.relaxation = 1.0); });
+  more("worst", [](auto* f, auto& o) { f->SetImproveWorst(o.improveWorst = 0.01); });
+  more("combination",
+    [](auto* f, auto& o)
+    {
+      f->SetCombination(vtkMeshOptimizer::WORST);
+      o.objectives[0].evaluation.combination = Combination::Worst;
+      o.objectives[1].evaluation.combination = Combination::Worst;
+    });
+  for (const auto& [name, change] : changes)
+  {
+    const Context context(name);
+    OptimizeOptions options;
+    options.objectives.resize(2);
+    options.objectives[1].metric = Metric::Size;
+    options.stopping.maximumIterations = 12;
+    options.fixed = boundary.data();
+    vtkNew<vtkMeshOptimizer> filter;
+    filter->SetInputData(toGrid(data));
+    filter->AddObjectiveByName("imr");
+    filter->AddObjectiveByName("size");
+    filter->SetMaximumIterations(12);
+    change(filter, options);
+    filter->Update();
+    const Optimization expected = optimize(Mesh(data.view()), options);
+    TAUTLINE_CHECK(pointsOf(filter) == expected.points);
+    TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(expected.reason));
+  }
+}
+
+void testArrays()
+{
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    const MeshData data = perturbed(type, 4);
+    vtkNew<vtkMeshOptimizer> filter;
+    auto grid = toGrid(data);
+    grid->GetPointData()->AddArray(arrayOf("mine", std::vector<double>(data.numberOfPoints(), 5)));
+    filter->SetInputData(grid);
+    filter->Update();
+    vtkDataSet* output = meshOf(filter);
+    const MeshData after = withPointsOf(data, output);
+    const std::vector<double> before = valuesOf(data, Metric::InverseMeanRatio),
+                              now = valuesOf(after, Metric::InverseMeanRatio);
+    for (Index i = 0; i < data.numberOfCells(); ++i)
+    {
+      TAUTLINE_CHECK_EQUAL(component(output->GetCellData(), "imr_before", i), before[i]);
+      TAUTLINE_CHECK_EQUAL(component(output->GetCellData(), "imr", i), now[i]);
+      TAUTLINE_CHECK_EQUAL(component(output->GetCellData(), "Validity", i), 1);
+    }
+    const auto boundary = boundaryOf(data);
+    double moved = 0;
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      const Vec3 step = after.point(i) - data.point(i);
+      for (int c = 0; c < 3; ++c)
+      {
+        TAUTLINE_CHECK_EQUAL(component(output->GetPointData(), "Displacement", i, c), step[c]);
+      }
+      TAUTLINE_CHECK(!boundary[i] || norm(step) == 0);
+      moved += norm(step) > 0.01;
+    }
+    TAUTLINE_CHECK(moved > 3);
+    TAUTLINE_CHECK(output->GetPointData()->GetArray("mine") != nullptr);
+    TAUTLINE_CHECK_EQUAL(std::string(output->GetCellData()->GetScalars()->GetName()), "imr");
+    TAUTLINE_CHECK(grid->GetPointData()->GetArray("Displacement") == nullptr);
+
+    vtkTable* statistics = filter->GetStatistics();
+    TAUTLINE_CHECK_EQUAL(statistics->GetNumberOfRows(), 1);
+    TAUTLINE_CHECK_EQUAL(statistics->GetValueByName(0, "Metric").ToString(), "imr");
+    const auto n = double(data.numberOfCells());
+    TAUTLINE_CHECK_RELATIVE(cell(statistics, 0, "MeanBefore"),
+      std::accumulate(before.begin(), before.end(), 0.0) / n, 1e-13);
+    TAUTLINE_CHECK_RELATIVE(
+      cell(statistics, 0, "MeanAfter"), std::accumulate(now.begin(), now.end(), 0.0) / n, 1e-13);
+    TAUTLINE_CHECK_EQUAL(
+      cell(statistics, 0, "WorstBefore"), *std::max_element(before.begin(), before.end()));
+    TAUTLINE_CHECK_EQUAL(
+      cell(statistics, 0, "WorstAfter"), *std::max_element(now.begin(), now.end()));
+    TAUTLINE_CHECK_EQUAL(cell(statistics, 0, "InvertedAfter"), 0);
+    TAUTLINE_CHECK(cell(statistics, 0, "RMSAfter") < 0.97 * cell(statistics, 0, "RMSBefore"));
+    TAUTLINE_CHECK_RELATIVE(cell(filter->GetHistory(), 0, "Objective"), sumOfSquares(data), 1e-12);
+    TAUTLINE_CHECK_RELATIVE(
+      cell(filter->GetHistory(), filter->GetHistory()->GetNumberOfRows() - 1, "Objective"),
+      sumOfSquares(after), 1e-10);
+    TAUTLINE_CHECK(
+      std::string(filter->GetSummary()).find("Inverse mean ratio: mean ") != std::string::npos);
+  }
+}
+
+/// What stays: by array, by a selection of points or cells, ghost cells, lines.
+void testFixed()
+{
+  const MeshData data = perturbed(CellType::Triangle, 8);
+  const Index center = 4 * 9 + 4;
+  auto run = [&](const std::function<void(vtkMeshOptimizer*, vtkUnstructuredGrid*)>& change)
+  {
+    auto grid = toGrid(data);
+    vtkNew<vtkMeshOptimizer> filter;
+    change(filter, grid);
+    filter->SetInputData(grid);
+    filter->Update();
+    return pointsOf(filter);
+  };
+  const auto select = [](int type, vtkIdType id, vtkMeshOptimizer* filter)
+  {
+    vtkNew<vtkIdTypeArray> ids;
+    ids->InsertNextValue(id);
+    vtkNew<vtkSelectionNode> node;
+    node->SetContentType(vtkSelectionNode::INDICES);
+    node->SetFieldType(type);
+    node->SetSelectionList(ids);
+    vtkNew<vtkSelection> selection;
+    selection->AddNode(node);
+    filter->SetInputData(2, selection);
+  };
+  const auto plain = run([](auto*, auto*) {});
+  TAUTLINE_CHECK(largestStep(data, plain, center) > 0.01);
+  const auto byArray = run(
+    [&](auto* filter, auto* grid)
+    {
+      std::vector<double> stay(data.numberOfPoints(), 0);
+      stay[center] = 2;
+      grid->GetPointData()->AddArray(arrayOf("stay", stay));
+      filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "stay");
+    });
+  TAUTLINE_CHECK_EQUAL(largestStep(data, byArray, center), 0);
+  TAUTLINE_CHECK(largestStep(data, byArray, center + 1) > 0);
+  const auto byPoint =
+    run([&](auto* filter, auto*) { select(vtkSelectionNode::POINT, center, filter); });
+  TAUTLINE_CHECK(byPoint == byArray);
+  const auto byCell =
+    run([&](auto* filter, auto*) { select(vtkSelectionNode::CELL, 2 * (4 * 8 + 4), filter); });
+  TAUTLINE_CHECK_EQUAL(largestStep(data, byCell, center), 0);
+  TAUTLINE_CHECK_EQUAL(largestStep(data, byCell, center + 1), 0);
+  TAUTLINE_CHECK_EQUAL(largestStep(data, byCell, center + 10), 0);
+  TAUTLINE_CHECK(largestStep(data, byCell, center + 9) > 0);
+  const auto byGhost = run(
+    [&](auto*, auto* grid)
+    {
+      grid->AllocateCellGhostArray();
+      grid->GetCellGhostArray()->SetValue(2 * (4 * 8 + 4), vtkDataSetAttributes::DUPLICATECELL);
+    });
+  TAUTLINE_CHECK(byGhost == byCell);
+  const auto byLine = run(
+    [&](auto*, auto* grid)
+    {
+      const vtkIdType ends[2] = { center, 0 };
+      grid->InsertNextCell(VTK_LINE, 2, ends);
+    });
+  TAUTLINE_CHECK(byLine == byArray);
+}
+
+bool isOnBlock(const Vec3& p, double size)
+{
+  return std::any_of(p.begin(), p.end(), [size](double x) { return x == 0 || x == size; });
+}
+
+/// Sliding keeps planes, edges and corners of the block; free does not.
+void testBoundary()
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, 4, 4, 4);
+  // Shift the points of faces and edges within them, so that sliding has work to do.
+  Random random(2);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      Vec3 shifted = p;
+      for (double& x : shifted)
+      {
+        x += x == 0 || x == 4 ? 0 : random.uniform(-0.25, 0.25) * (isOnBlock(p, 4) ? 1 : 0);
+      }
+      return shifted;
+    });
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputData(toGrid(data));
+  filter->Update();
+  const double fixed = sumOfSquares(withPointsOf(data, meshOf(filter)));
+  filter->SetBoundary(vtkMeshOptimizer::SLIDING);
+  filter->Update();
+  const MeshData slid = withPointsOf(data, meshOf(filter));
+  TAUTLINE_CHECK(sumOfSquares(slid) < 0.98 * fixed);
+  Index inFace = 0, onEdge = 0;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    int kept = 0;
+    for (int c = 0; c < 3; ++c)
+    {
+      const double before = data.point(i)[c];
+      if (before == 0 || before == 4)
+      {
+        TAUTLINE_CHECK_NEAR(slid.point(i)[c], before, 1e-13);
+        ++kept;
+      }
+    }
+    const double step = norm(slid.point(i) - data.point(i));
+    TAUTLINE_CHECK(kept < 3 || step == 0);
+    inFace += kept == 1 && step > 1e-3;
+    onEdge += kept == 2 && step > 1e-3;
+  }
+  TAUTLINE_CHECK(inFace > 40);
+  TAUTLINE_CHECK(onEdge > 24);
+  filter->SetBoundary(vtkMeshOptimizer::FREE);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 125);
+  TAUTLINE_CHECK(norm(withPointsOf(data, meshOf(filter)).point(0) - data.point(0)) > 1e-3);
+
+  // A flat mesh: along its sides only.
+  MeshData flat = perturbed(CellType::Triangle, 4);
+  flat.setPoint(2, { 2.4, 0, 0 });
+  vtkNew<vtkMeshOptimizer> sides;
+  sides->SetInputData(toGrid(flat));
+  sides->SetBoundary(vtkMeshOptimizer::SLIDING);
+  sides->Update();
+  const MeshData after = withPointsOf(flat, meshOf(sides));
+  TAUTLINE_CHECK_NEAR(after.point(2)[1], 0, 1e-14);
+  TAUTLINE_CHECK(std::abs(after.point(2)[0] - 2.4) > 1e-2);
+  TAUTLINE_CHECK_EQUAL(norm(after.point(0) - flat.point(0)), 0);
+}
+
+void testLimits()
+{
+  const MeshData data = perturbed(CellType::Triangle, 8);
+  vtkNew<vtkMeshOptimizer> filter;
+  auto grid = toGrid(data);
+  std::vector<double> limits(data.numberOfPoints(), 0.02);
+  limits[40] = 0;
+  limits[41] = -1;
+  grid->GetPointData()->AddArray(arrayOf("limit", limits));
+  filter->SetInputData(grid);
+  filter->SetMaximumDisplacement(0.01);
+  filter->Update();
+  const auto byNumber = pointsOf(filter);
+  filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "limit");
+  filter->Update();
+  const auto byArray = pointsOf(filter);
+  double longest = 0;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    TAUTLINE_CHECK(largestStep(data, byNumber, i) <= 0.01 * (1 + 1e-12));
+    TAUTLINE_CHECK(limits[i] < 0 || largestStep(data, byArray, i) <= limits[i] * (1 + 1e-12));
+    longest = std::max(longest, largestStep(data, byArray, i));
+  }
+  TAUTLINE_CHECK(longest > 0.01);
+}
+
+/// With the wanted elements as reference, sizes or tensors, the mesh goes there.
+void testTargets()
+{
+  const MeshData data = perturbed(CellType::Triangle, 6);
+  MeshData wanted = blockMesh(CellType::Triangle, 6, 6, 0);
+  wanted.transform([](const Vec3& p) { return Vec3{ p[0] * p[0] / 6, p[1], 0 }; });
+  MeshData start = wanted;
+  PerturbOptions perturbation;
+  perturbation.fraction = 0.6;
+  start.points = perturb(Mesh(wanted.view()), nullptr, perturbation).points;
+
+  vtkNew<vtkMeshOptimizer> filter;
+  auto grid = toGrid(start);
+  grid->GetCellData()->AddArray(arrayOf("size", valuesOf(wanted, Metric::Size)));
+  filter->SetInputData(0, grid);
+  filter->SetInputData(1, toGrid(wanted));
+  filter->AddObjectiveByName(
+    "mu_shape_size_orientation_nb", vtkMeshOptimizer::SUM, 1.0, vtkMeshOptimizer::REFERENCE);
+  filter->SetMaximumIterations(300);
+  filter->SetRelativeChange(1e-12);
+  filter->Update();
+  const auto points = pointsOf(filter);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    TAUTLINE_CHECK_NEAR(points[i], wanted.points[i], 1e-4);
+  }
+  filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE);
+  filter->Update();
+  TAUTLINE_CHECK(cell(filter->GetStatistics(), 0, "MeanAfter") < 1.001);
+
+  filter->RemoveAllObjectives();
+  filter->AddObjectiveByName(
+    "mu_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::SIZE);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "size");
+  filter->Update();
+  TAUTLINE_CHECK(cell(filter->GetStatistics(), 0, "MeanAfter") <
+    0.1 * cell(filter->GetStatistics(), 0, "MeanBefore"));
+}
+
+void testThreads()
+{
+  const auto grid = toGrid(perturbed(CellType::Tetrahedron, 8));
+  std::vector<double> first;
+  for (int threads : { 1, 2, 4 })
+  {
+    vtkNew<vtkMeshOptimizer> filter;
+    filter->SetInputData(grid);
+    filter->SetThreads(threads);
+    filter->Update();
+    first = first.empty() ? pointsOf(filter) : first;
+    TAUTLINE_CHECK(pointsOf(filter) == first);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMeshOptimizer(int, char*[])
+{
+  testAgainstKernel();
+  testCustom();
+  testOptions();
+  testArrays();
+  testFixed();
+  testBoundary();
+  testLimits();
+  testTargets();
+  testThreads();
+  return exitCode();
+}

@@ -1,0 +1,446 @@
+// Optimize Mesh on inputs of all kinds: refused by name, or taken as they are; blocks, precision,
+// iterations as time steps, abort.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "tautline/Optimize.h"
+#include "tautline/Perturb.h"
+#include "vtkMeshOptimizer.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSphereSource.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTable.h"
+#include "vtkTriangleFilter.h"
+
+#include <functional>
+#include <limits>
+#include <numeric>
+
+using namespace tautline;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+namespace
+{
+MeshData perturbed(CellType type, Index n, double fraction = 0.8)
+{
+  MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
+  PerturbOptions options;
+  options.percentage = 100;
+  options.fraction = fraction;
+  options.seed = 5;
+  data.points = perturb(Mesh(data.view()), nullptr, options).points;
+  return data;
+}
+
+vtkPointSet* meshOf(vtkMeshOptimizer* filter)
+{
+  return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+double sumOfSquares(const MeshData& data)
+{
+  const std::vector<double> q = valuesOf(data, Metric::InverseMeanRatio);
+  return std::inner_product(q.begin(), q.end(), q.begin(), 0.0);
+}
+
+double objective(vtkMeshOptimizer* filter, vtkIdType row)
+{
+  return filter->GetHistory()->GetValueByName(row, "Objective").ToDouble();
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+/// Each is refused with a message that names what is wrong and what to do; the output is empty.
+void testRefused()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron, 3);
+  const auto refuse = [](
+                        const std::string& text, vtkDataObject* input,
+                        const std::function<void(vtkMeshOptimizer*)>& change = [](auto*) {})
+  {
+    const Context context(text);
+    vtkNew<vtkMeshOptimizer> filter;
+    Messages messages(filter);
+    filter->SetInputDataObject(0, input);
+    change(filter);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has(text));
+    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    TAUTLINE_CHECK(!output || output->GetNumberOfCells() == 0);
+    TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), -1);
+  };
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(3, 3, 3);
+  refuse("Image Data to Point Set", image);
+
+  auto mixed = data;
+  std::swap(mixed.connectivity[0], mixed.connectivity[1]);
+  refuse("orientation of the mesh is mixed", toGrid(mixed));
+
+  MeshData quadratic = data;
+  const Index first = quadratic.numberOfPoints();
+  for (int k = 0; k < 6; ++k)
+  {
+    quadratic.addPoint({ 9.0 + k, 9, 9 });
+  }
+  quadratic.addCell(VTK_QUADRATIC_TETRA,
+    { 0, 1, 4, 16, first, first + 1, first + 2, first + 3, first + 4, first + 5 });
+  refuse("run Tessellate", toGrid(quadratic));
+
+  MeshData lines;
+  lines.points = data.points;
+  lines.addCell(VTK_LINE, { 0, 1 });
+  refuse("no element whose points could move", toGrid(lines));
+
+  const auto custom = [](const char* metric, int form = -1, double weight = 1, int target = 0)
+  {
+    return [=](vtkMeshOptimizer* filter)
+    { filter->AddObjectiveByName(metric, form, weight, target); };
+  };
+  refuse("no template", toGrid(data),
+    [&](auto* filter)
+    {
+      custom("imr", 17)(filter);
+      filter->SetInputData(nullptr);
+      filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
+    });
+  refuse("set the input Reference", toGrid(data), custom("mu_2", -1, 1, 1));
+  refuse("needs a size", toGrid(data), custom("mu_size", -1, 1, 2));
+  refuse("needs a metric tensor", toGrid(data), custom("mu_size", -1, 1, 3));
+  refuse("weight", toGrid(data), custom("imr", -1, -2));
+  refuse("no point array 'absent'", toGrid(data),
+    [](auto* filter) {
+      filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
+    });
+  refuse("no cell array 'absent'", toGrid(data),
+    [](auto* filter)
+    { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent"); });
+  refuse("set the input Reference", toGrid(data),
+    [](auto* filter) { filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE); });
+
+  vtkNew<vtkMeshOptimizer> filter;
+  Messages messages(filter);
+  filter->AddObjectiveByName("nonsense");
+  TAUTLINE_CHECK(messages.has("no metric 'nonsense'"));
+  messages.clear();
+  filter->AddObjective(4711);
+  TAUTLINE_CHECK(!messages.empty());
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfObjectives(), 0);
+}
+
+/// Empty, without a free point, with one, reversed, disconnected, far from the origin, not finite.
+void testTaken()
+{
+  vtkNew<vtkMeshOptimizer> filter;
+  Messages messages(filter);
+  vtkNew<vtkUnstructuredGrid> empty;
+  filter->SetInputData(empty);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
+  TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 0);
+
+  const MeshData none = blockMesh(CellType::Triangle, 1, 1, 0);
+  filter->SetInputData(toGrid(none));
+  filter->Update();
+  TAUTLINE_CHECK(withPointsOf(none, meshOf(filter)).points == none.points);
+  TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(StopReason::NoFreeVertices));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "0 of 4 points were free"));
+
+  MeshData one = blockMesh(CellType::Quadrilateral, 2, 2, 0);
+  one.setPoint(4, { 1.6, 0.7, 0 });
+  filter->SetInputData(toGrid(one));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 1);
+  TAUTLINE_CHECK_NEAR(norm(withPointsOf(one, meshOf(filter)).point(4) - Vec3{ 1, 1, 0 }), 0, 1e-2);
+
+  // Listed the other way round, the points go where they went, and it is said.
+  const MeshData data = perturbed(CellType::Triangle, 6);
+  filter->SetInputData(toGrid(data));
+  filter->Update();
+  const MeshData straight = withPointsOf(data, meshOf(filter));
+  MeshData reversed = data;
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    std::swap(reversed.connectivity[3 * i + 1], reversed.connectivity[3 * i + 2]);
+  }
+  filter->SetInputData(toGrid(reversed));
+  filter->Update();
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "The mesh is reversed"));
+  const MeshData mirrored = withPointsOf(data, meshOf(filter));
+  for (std::size_t i = 0; i < data.points.size(); ++i)
+  {
+    TAUTLINE_CHECK_NEAR(mirrored.points[i], straight.points[i], 1e-3);
+  }
+  TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Validity", 0), 1);
+
+  MeshData far = data;
+  far.transform([](const Vec3& p) { return p + Vec3{ 1e6, -1e6, 0 }; });
+  filter->SetInputData(toGrid(far));
+  filter->Update();
+  MeshData back = withPointsOf(far, meshOf(filter));
+  back.transform([](const Vec3& p) { return p - Vec3{ 1e6, -1e6, 0 }; });
+  TAUTLINE_CHECK_RELATIVE(sumOfSquares(back), sumOfSquares(straight), 1e-4);
+
+  MeshData twice = data;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    twice.addPoint(data.point(i) + Vec3{ 20, 0, 0 });
+  }
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    const Index* node = data.connectivity.data() + 3 * i;
+    const Index shift = data.numberOfPoints();
+    twice.addCell(CellType::Triangle, { node[0] + shift, node[1] + shift, node[2] + shift });
+  }
+  filter->SetInputData(toGrid(twice));
+  filter->Update();
+  TAUTLINE_CHECK_RELATIVE(
+    sumOfSquares(withPointsOf(twice, meshOf(filter))), 2 * sumOfSquares(straight), 1e-4);
+  TAUTLINE_CHECK(messages.empty());
+
+  // A NaN: either refused by name, or the rest is finite and no worse.
+  MeshData broken = data;
+  broken.points[3 * 24] = std::numeric_limits<double>::quiet_NaN();
+  filter->SetInputData(toGrid(broken));
+  filter->Update();
+  for (vtkIdType i = 0; i < meshOf(filter)->GetNumberOfPoints(); ++i)
+  {
+    TAUTLINE_CHECK(i == 24 || std::isfinite(meshOf(filter)->GetPoint(i)[0]));
+  }
+  TAUTLINE_CHECK(!messages.empty() || contains(filter->GetSummary(), "NaN"));
+}
+
+/// Points stay in single precision where that keeps the elements valid.
+void testPrecision()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron, 4, 0.5);
+  for (int type : { VTK_FLOAT, VTK_DOUBLE })
+  {
+    vtkNew<vtkMeshOptimizer> filter;
+    filter->SetInputData(toGrid(data, type));
+    filter->Update();
+    TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetPoints()->GetDataType(), type);
+    const MeshData after = withPointsOf(data, meshOf(filter));
+    TAUTLINE_CHECK(sumOfSquares(after) < sumOfSquares(data));
+    const auto validity = validityOf(after);
+    TAUTLINE_CHECK(std::count(validity.begin(), validity.end(), Valid) == data.numberOfCells());
+  }
+  // Beyond 2^25 single precision has every fourth number. The point that halves a rectangle of 4 by 8 must
+  // lie between two of them.
+  const double far = 1 << 25;
+  MeshData narrow;
+  for (const Vec3& p :
+    { Vec3{ 0, 0, 0 }, Vec3{ 4, 0, 0 }, Vec3{ 4, 8, 0 }, Vec3{ 0, 8, 0 }, Vec3{ 0, 4, 0 } })
+  {
+    narrow.addPoint(p + Vec3{ far, far, 0 });
+  }
+  for (Index k = 0; k < 4; ++k)
+  {
+    narrow.addCell(CellType::Triangle, { k, (k + 1) % 4, 4 });
+  }
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputData(toGrid(narrow, VTK_FLOAT));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), 1);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetPoints()->GetDataType(), VTK_DOUBLE);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "given in double precision"));
+}
+
+void testBlocks()
+{
+  const MeshData flat = perturbed(CellType::Triangle, 5),
+                 solid = perturbed(CellType::Hexahedron, 3);
+  vtkNew<vtkMultiBlockDataSet> blocks, references;
+  blocks->SetBlock(0, toGrid(flat));
+  blocks->SetBlock(2, toPolyData(flat));
+  blocks->SetBlock(3, toGrid(solid));
+  vtkNew<vtkMeshOptimizer> filter, single;
+  filter->SetInputData(blocks);
+  filter->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(output->GetNumberOfBlocks(), 4u);
+  double rows = 0, free = 0;
+  for (const auto& [number, data] :
+    { std::make_pair(0u, &flat), std::make_pair(2u, &flat), std::make_pair(3u, &solid) })
+  {
+    single->SetInputData(toGrid(*data));
+    single->Update();
+    auto* block = vtkPointSet::SafeDownCast(output->GetBlock(number));
+    TAUTLINE_CHECK(block->IsA(number == 2 ? "vtkPolyData" : "vtkUnstructuredGrid"));
+    TAUTLINE_CHECK(withPointsOf(*data, block).points == withPointsOf(*data, meshOf(single)).points);
+    rows += double(single->GetHistory()->GetNumberOfRows());
+    free += double(single->GetFreePoints());
+  }
+  TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), rows);
+  TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), free);
+  TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
+  TAUTLINE_CHECK_EQUAL(filter->GetStatistics()->GetNumberOfRows(), 3);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 4: "));
+
+  Messages messages(filter);
+  filter->SetInputData(1, toGrid(flat));
+  filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("the reference has none"));
+  messages.clear();
+  references->SetBlock(0, toGrid(flat));
+  references->SetBlock(2, toGrid(flat));
+  references->SetBlock(3, toGrid(flat));
+  filter->SetInputData(1, references);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("In block 4: "));
+}
+
+/// A time is an iteration: the mesh the kernel's observer saw.
+void testAnimation()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron, 4);
+  const auto on = Mesh(data.view()).boundary().isBoundaryPoint;
+  const std::vector<unsigned char> boundary(on.begin(), on.end());
+  std::vector<std::vector<double>> seen;
+  OptimizeOptions options;
+  options.fixed = boundary.data();
+  options.observer = [&](const IterationState& state)
+  {
+    seen.emplace_back(data.points.size());
+    state.points(seen.back().data());
+    return true;
+  };
+  const Optimization expected = optimize(Mesh(data.view()), options);
+  TAUTLINE_CHECK(seen.size() > 5);
+
+  vtkNew<vtkMeshOptimizer> filter;
+  int runs = 0;
+  vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&runs);
+  count->SetCallback([](vtkObject*, unsigned long, void* n, void*) { ++*static_cast<int*>(n); });
+  filter->SetInputData(toGrid(data));
+  filter->SetAnimation(true);
+  filter->UpdateInformation();
+  vtkInformation* info = filter->GetOutputInformation(0);
+  TAUTLINE_CHECK_EQUAL(info->Length(Pipeline::TIME_STEPS()), 101); // as many as there can be
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(info->Length(Pipeline::TIME_STEPS()), int(seen.size()));
+  TAUTLINE_CHECK(withPointsOf(data, meshOf(filter)).points == expected.points);
+  filter->AddObserver(vtkCommand::ProgressEvent, count);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+  {
+    const Context context("iteration " + std::to_string(i));
+    filter->UpdateTimeStep(double(i));
+    TAUTLINE_CHECK(withPointsOf(data, meshOf(filter)).points ==
+      (i + 1 < seen.size() ? seen[i] : expected.points));
+    TAUTLINE_CHECK_EQUAL(
+      meshOf(filter)->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), double(i));
+  }
+  filter->UpdateTimeStep(2.5);
+  TAUTLINE_CHECK(withPointsOf(data, meshOf(filter)).points == seen[2]);
+  filter->UpdateTimeStep(1000);
+  TAUTLINE_CHECK(withPointsOf(data, meshOf(filter)).points == expected.points);
+  TAUTLINE_CHECK(runs < int(seen.size()) * 6); // no iteration was computed again
+
+  // Another option starts anew.
+  filter->SetPreset(vtkMeshOptimizer::CUSTOM);
+  filter->SetMaximumIterations(2);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetOutputInformation(0)->Length(Pipeline::TIME_STEPS()), 3);
+
+  // A megabyte holds about 31 meshes of 1331 points: then every second iteration.
+  vtkNew<vtkMeshOptimizer> bounded;
+  bounded->SetInputData(toGrid(perturbed(CellType::Tetrahedron, 10)));
+  bounded->SetAnimation(true);
+  bounded->SetAnimationMemory(1);
+  bounded->AddObjectiveByName("imr");
+  bounded->SetOptimizer(vtkMeshOptimizer::CONJUGATE_GRADIENT_FLETCHER_REEVES);
+  bounded->SetRelativeChange(0);
+  bounded->SetGradientNorm(0);
+  bounded->Update();
+  TAUTLINE_CHECK(bounded->GetIterations() > 34);
+  const auto at = [&](double time)
+  {
+    bounded->UpdateTimeStep(time);
+    return withPointsOf(blockMesh(CellType::Tetrahedron, 10, 10, 10), meshOf(bounded)).points;
+  };
+  TAUTLINE_CHECK(at(33) == at(32));
+  TAUTLINE_CHECK(at(34) != at(32));
+}
+
+/// Stops when asked, keeps what it has; a time limit of almost nothing too.
+void testStops()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron, 6);
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputData(toGrid(data));
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback(
+    [](vtkObject* caller, unsigned long, void*, void*)
+    {
+      auto* self = static_cast<vtkMeshOptimizer*>(caller);
+      self->SetAbortExecute(self->GetProgress() > 0.015 ? 1 : 0);
+    });
+  const auto tag = filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(StopReason::Aborted));
+  TAUTLINE_CHECK(filter->GetIterations() > 0 && filter->GetIterations() < 5);
+  const double aborted = sumOfSquares(withPointsOf(data, meshOf(filter)));
+  TAUTLINE_CHECK(aborted < sumOfSquares(data));
+  filter->RemoveObserver(tag);
+  filter->SetAbortExecute(0);
+  filter->SetTimeLimit(1e-9);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(StopReason::TimeLimit));
+  TAUTLINE_CHECK(filter->GetIterations() <= 2);
+  TAUTLINE_CHECK(sumOfSquares(withPointsOf(data, meshOf(filter))) <= sumOfSquares(data));
+  filter->SetTimeLimit(0);
+  filter->Update();
+  TAUTLINE_CHECK(sumOfSquares(withPointsOf(data, meshOf(filter))) < aborted);
+  TAUTLINE_CHECK_RELATIVE(objective(filter, 0), sumOfSquares(data), 1e-12);
+}
+
+/// The points of a sphere stay on it, and the error is told.
+void testSurface()
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(24);
+  sphere->SetPhiResolution(24);
+  sphere->SetRadius(1);
+  sphere->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputConnection(sphere->GetOutputPort());
+  filter->Update();
+  TAUTLINE_CHECK(meshOf(filter)->IsA("vtkPolyData"));
+  const double longest = 2 * vtkMath::Pi() / 24;
+  double off = 0;
+  for (vtkIdType i = 0; i < meshOf(filter)->GetNumberOfPoints(); ++i)
+  {
+    const double* p = meshOf(filter)->GetPoint(i);
+    off = std::max(off, std::abs(std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) - 1));
+  }
+  TAUTLINE_CHECK(off < 0.25 * longest * longest);
+  TAUTLINE_CHECK(filter->GetSurfaceError() > 0);
+  TAUTLINE_CHECK(filter->GetSurfaceError() < 0.25 * longest * longest);
+  TAUTLINE_CHECK(filter->GetStatistics()->GetValueByName(0, "MeanAfter").ToDouble() <
+    filter->GetStatistics()->GetValueByName(0, "MeanBefore").ToDouble());
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMeshOptimizerInputs(int, char*[])
+{
+  testRefused();
+  testTaken();
+  testPrecision();
+  testBlocks();
+  testAnimation();
+  testStops();
+  testSurface();
+  return exitCode();
+}

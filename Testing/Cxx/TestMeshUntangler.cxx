@@ -1,0 +1,248 @@
+// Untangle Mesh: valid, or a report of which elements remain, where and why.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "tautline/Perturb.h"
+#include "tautline/Untangle.h"
+#include "vtkMeshUntangler.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkTable.h"
+
+using namespace tautline;
+
+namespace
+{
+MeshData tangled(CellType type, Index n, double fraction)
+{
+  MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
+  PerturbOptions options;
+  options.fraction = 0.5;
+  options.tangledFraction = fraction;
+  options.seed = 7;
+  data.points = perturb(Mesh(data.view()), nullptr, options).points;
+  return data;
+}
+
+Index invalidOf(const MeshData& data)
+{
+  const auto validity = validityOf(data);
+  return Index(validity.size()) - std::count(validity.begin(), validity.end(), Valid);
+}
+
+vtkPointSet* meshOf(vtkMeshUntangler* filter)
+{
+  return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+void testValid()
+{
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    const bool flat = topology(type).dimension == 2;
+    const MeshData data = tangled(type, flat ? 10 : 4, 0.05);
+    const Mesh mesh(data.view());
+    const auto boundary = mesh.boundary().isBoundaryPoint;
+    const std::vector<unsigned char> fixed(boundary.begin(), boundary.end());
+    UntangleOptions options;
+    options.fixed = fixed.data();
+    const Untangling expected = untangle(mesh, options);
+    vtkNew<vtkMeshUntangler> filter;
+    Messages messages(filter);
+    filter->SetInputData(toGrid(data));
+    filter->Update();
+    const MeshData after = withPointsOf(data, meshOf(filter));
+    TAUTLINE_CHECK(after.points == expected.points);
+    TAUTLINE_CHECK(invalidOf(data) > 0);
+    TAUTLINE_CHECK_EQUAL(invalidOf(after), 0);
+    TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), invalidOf(data));
+    TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+    TAUTLINE_CHECK_EQUAL(filter->GetImpossible(), 0);
+    TAUTLINE_CHECK(contains(filter->GetSummary(), "All elements are valid; "));
+    TAUTLINE_CHECK(messages.empty());
+    vtkTable* history = filter->GetHistory();
+    TAUTLINE_CHECK_EQUAL(history->GetNumberOfRows(), Index(expected.history.size()));
+    TAUTLINE_CHECK_EQUAL(
+      history->GetValueByName(history->GetNumberOfRows() - 1, "Inverted").ToDouble(), 0);
+    for (Index i = 0; i < data.numberOfCells(); ++i)
+    {
+      TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Obstacle", i), 0);
+      TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Validity", i), 1);
+    }
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      const double step = norm(after.point(i) - data.point(i));
+      TAUTLINE_CHECK(!fixed[i] || step == 0);
+      TAUTLINE_CHECK_NEAR(component(meshOf(filter)->GetPointData(), "Displacement", i, 0),
+        after.point(i)[0] - data.point(i)[0], 0);
+    }
+    const MeshData valid = blockMesh(type, 3, 3, flat ? 0 : 3);
+    filter->SetInputData(toGrid(valid));
+    filter->Update();
+    TAUTLINE_CHECK(withPointsOf(valid, meshOf(filter)).points == valid.points);
+    TAUTLINE_CHECK(contains(filter->GetSummary(), "All elements are valid; 0 were not."));
+  }
+}
+
+/// What cannot be: an element of fixed points; one whose fixed neighbours leave no place.
+void testImpossible()
+{
+  MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
+  data.setPoint(6, { 2.5, 2.6, 0 }); // a point of the second row beyond its neighbours
+  auto grid = toGrid(data);
+  vtkNew<vtkDoubleArray> all;
+  all->SetName("all");
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    all->InsertNextValue(1);
+  }
+  grid->GetPointData()->AddArray(all);
+  vtkNew<vtkMeshUntangler> filter;
+  Messages messages(filter);
+  filter->SetInputData(grid);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "all");
+  filter->Update();
+  const Index inverted = invalidOf(data);
+  TAUTLINE_CHECK(inverted > 0);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), inverted);
+  TAUTLINE_CHECK_EQUAL(filter->GetImpossible(), inverted);
+  const auto validity = validityOf(data);
+  Index first = -1;
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    first = first < 0 && validity[i] != Valid ? i : first;
+    TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Obstacle", i),
+      validity[i] == Valid ? 0 : int(Obstacle::FixedElement));
+  }
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "Element " + std::to_string(first) + " at ("));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "all its points are fixed"));
+  TAUTLINE_CHECK(messages.has("because of fixed points"));
+
+  // Freed but for the one point, the others cannot follow: or they can, and all is valid.
+  all->Fill(0);
+  all->Modified();
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+
+  // A selection that fixes the misplaced point: its star reaches over fixed points of the boundary.
+  MeshData star = blockMesh(CellType::Triangle, 2, 2, 0);
+  star.setPoint(4, { 5, 5, 0 });
+  vtkNew<vtkIdTypeArray> ids;
+  ids->InsertNextValue(4);
+  vtkNew<vtkSelectionNode> node;
+  node->SetContentType(vtkSelectionNode::INDICES);
+  node->SetFieldType(vtkSelectionNode::POINT);
+  node->SetSelectionList(ids);
+  vtkNew<vtkSelection> selection;
+  selection->AddNode(node);
+  vtkNew<vtkMeshUntangler> chosen;
+  Messages warnings(chosen);
+  chosen->SetInputData(0, toGrid(star));
+  chosen->Update();
+  TAUTLINE_CHECK_EQUAL(chosen->GetInvertedAfter(), 0);
+  chosen->SetInputData(1, selection);
+  chosen->Update();
+  TAUTLINE_CHECK(chosen->GetInvertedAfter() > 0);
+  TAUTLINE_CHECK_EQUAL(chosen->GetImpossible(), chosen->GetInvertedAfter());
+}
+
+void testInputs()
+{
+  vtkNew<vtkMeshUntangler> filter;
+  Messages messages(filter);
+  vtkNew<vtkUnstructuredGrid> empty;
+  filter->SetInputData(empty);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(3, 3, 3);
+  filter->SetInputData(image);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("Image Data to Point Set"));
+  messages.clear();
+
+  // More than half of the elements inverted is tangled, not reversed: the boundary tells.
+  MeshData worse = blockMesh(CellType::Triangle, 6, 6, 0);
+  Random random(11);
+  const auto boundary = Mesh(worse.view()).boundary().isBoundaryPoint;
+  for (Index i = 0; i < worse.numberOfPoints(); ++i)
+  {
+    if (!boundary[i])
+    {
+      worse.setPoint(i, { 6 - worse.point(i)[0], worse.point(i)[1], 0 });
+    }
+  }
+  const auto validity = validityOf(worse);
+  TAUTLINE_CHECK(
+    2 * std::count(validity.begin(), validity.end(), Inverted) > worse.numberOfCells());
+  filter->SetInputData(toGrid(worse));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  TAUTLINE_CHECK(!contains(filter->GetSummary(), "reversed"));
+
+  const MeshData data = tangled(CellType::Tetrahedron, 4, 0.05);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, toGrid(data, VTK_FLOAT));
+  blocks->SetBlock(1, toGrid(data));
+  filter->SetInputData(blocks);
+  filter->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  for (unsigned int i : { 0u, 1u })
+  {
+    auto* block = vtkPointSet::SafeDownCast(output->GetBlock(i));
+    TAUTLINE_CHECK_EQUAL(invalidOf(withPointsOf(data, block)), 0);
+    TAUTLINE_CHECK_EQUAL(block->GetPoints()->GetDataType(), i == 0 ? VTK_FLOAT : VTK_DOUBLE);
+  }
+  TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 2: All elements are valid"));
+}
+
+void testStops()
+{
+  const MeshData data = tangled(CellType::Tetrahedron, 6, 0.3);
+  vtkNew<vtkMeshUntangler> filter;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(data));
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  filter->Update();
+  TAUTLINE_CHECK(invalidOf(withPointsOf(data, meshOf(filter))) <= invalidOf(data));
+  filter->RemoveAllObservers();
+  filter->SetAbortExecute(0);
+  std::vector<double> first;
+  for (int threads : { 1, 2, 4 })
+  {
+    filter->SetThreads(threads);
+    filter->Update();
+    const auto points = withPointsOf(data, meshOf(filter)).points;
+    first = first.empty() ? points : first;
+    TAUTLINE_CHECK(points == first);
+  }
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMeshUntangler(int, char*[])
+{
+  testValid();
+  testImpossible();
+  testInputs();
+  testStops();
+  return exitCode();
+}
