@@ -35,6 +35,8 @@ except ImportError:  # pictures are left out, and the report says so
 MESQUITE_PATCH_ITERATIONS = 5
 #: c of (3.8), the upper end of the dissertation's typical values.
 TYPICAL_C = 1e6
+#: A curve that exceeds so many times its start would hide the others.
+BEYOND = 3.0
 #: So many cells take long enough to tell what is going on.
 LARGE = 200_000
 OPTIMIZERS = {"nlcg": "local conjugate gradient", "newton": "local newton"}
@@ -323,6 +325,11 @@ class Report:
                           linewidth=1.2, label=run_.method.label)  # fmt: skip
             axis.set(xlabel="iterations", ylabel=label, yscale="log" if logarithmic else "linear")
             axis.grid(alpha=0.3)
+            start = runs[0].first(quantity)
+            beyond = [r.method.label for r in runs if r.values[quantity].max() > BEYOND * start > 0]
+            if beyond and not logarithmic:
+                axis.set_ylim(top=1.05 * start)
+                axis.set_title("beyond the axis: " + ", ".join(beyond), fontsize=8)
         axes[0][0].legend(fontsize=8)
         self._save(figure, file)
 
@@ -333,7 +340,7 @@ class Report:
             return
         columns = min(columns, len(shown))
         rows = -(-len(shown) // columns)
-        figure, axes = pyplot.subplots(rows, columns, figsize=(4.2 * columns, 4.3 * rows), squeeze=False)
+        figure, axes = pyplot.subplots(rows, columns, figsize=(4.2 * columns, 4.7 * rows), squeeze=False)
         for axis in axes.flat:
             axis.set_axis_off()
         for axis, (title, mesh) in zip(axes.flat, shown):
@@ -390,7 +397,7 @@ class Report:
 
     def _save(self, figure: Any, file: str) -> None:
         figure.tight_layout()
-        figure.savefig(self.out / f"{file}.png", dpi=110)
+        figure.savefig(self.out / f"{file}.png", dpi=110, bbox_inches="tight")
         pyplot.close(figure)
 
 

@@ -90,9 +90,9 @@ def experiment(goals: Goals, given: argparse.Namespace, report: Report) -> Outco
     _quality_table(goals, report, {**nlcg, **{f"{k} newton": r for k, r in newton.items()}}, first)
     _digits(goals, report, nlcg, newton)
     runs = list(nlcg.values())
-    report.plot("average", runs, [(goals.means[0], goals.axes[0], True), (goals.means[1], goals.axes[1], False)])
+    report.plot("average", runs, [(goals.means[0], goals.axes[0], False), (goals.means[1], goals.axes[1], False)])
     report.plot("worst", runs, [(q, a.replace("Average", "Worst"), True) for q, a in zip(goals.worsts, goals.axes)])
-    report.plot("average_newton", list(newton.values()), [(goals.means[0], goals.axes[0], True), (goals.means[1], goals.axes[1], False)])  # fmt: skip
+    report.plot("average_newton", list(newton.values()), [(goals.means[0], goals.axes[0], False), (goals.means[1], goals.axes[1], False)])  # fmt: skip
     others = {first: nlcg}
     for domain in rest:
         mesh = start_mesh(goals, domain, given.cells)

@@ -58,8 +58,9 @@ def main(arguments: list[str]) -> int:
     report.table("toy", "Inverted elements and SI (0.1443 is best) of the valid ones", ["method", *headings], rows)
     report.curves("curves", list(runs.values()))
     report.meshes("meshes", [
-        ("(a) structured mesh", initial), ("(b) one vertex perturbed", tangled),
+        ("one vertex perturbed", tangled),
         *((f"{runs[n].method.label}\nafter one iteration", runs[n].kept[1]) for n in ("untangle", *MULTI)),
+        ("structured mesh", initial),
         *((f"{runs[n].method.label}\nconverged", runs[n].mesh) for n in ("untangle", *MULTI)),
     ], columns=5)  # fmt: skip
 
