@@ -41,6 +41,21 @@ vtkDataSet* withPoints(vtkDataSet* input)
   }
   return input;
 }
+
+/// Mesh::boundary() sorts all facets; a volume or planar mesh seldom needs that.
+std::vector<char> pointsOnBoundary(const Mesh& mesh, int threads)
+{
+  if (mesh.dimension() != Dimension::Surface)
+  {
+    std::vector<char> found = boundaryPoints(mesh, threads);
+    // Without any, every cell is there twice.
+    if (std::find(found.begin(), found.end(), 1) != found.end())
+    {
+      return found;
+    }
+  }
+  return mesh.boundary().isBoundaryPoint;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -94,7 +109,7 @@ void MovableMesh::fixWhatStays()
   std::vector<char> onBoundary;
   if (mesh.dimension() == Dimension::Volume && !this->Skip.empty())
   {
-    onBoundary = boundaryPoints(mesh, this->Threads);
+    onBoundary = pointsOnBoundary(mesh, this->Threads);
   }
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -136,7 +151,7 @@ void MovableMesh::fix(vtkDataArray* array, bool ofCells)
 //------------------------------------------------------------------------------
 void MovableMesh::fixBoundary()
 {
-  const std::vector<char> boundary = boundaryPoints(this->mesh(), this->Threads);
+  const std::vector<char> boundary = pointsOnBoundary(this->mesh(), this->Threads);
   std::transform(this->Fixed.begin(), this->Fixed.end(), boundary.begin(), this->Fixed.begin(),
     [](unsigned char fixed, char on) { return fixed || on; });
 }
@@ -304,19 +319,6 @@ vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input,
       "' " + what + ": choose another one, or None.");
   }
   return array;
-}
-
-//------------------------------------------------------------------------------
-void declareInput(vtkInformation* info, bool selection, bool optional)
-{
-  // The composite type first, so that the tables are those of all blocks.
-  info->Set(
-    vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), selection ? "vtkSelection" : "vtkCompositeDataSet");
-  if (!selection)
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  }
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), optional);
 }
 
 //------------------------------------------------------------------------------
