@@ -322,6 +322,19 @@ vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input,
 }
 
 //------------------------------------------------------------------------------
+void declareInput(vtkInformation* info, bool selection, bool optional)
+{
+  // The composite type first, so that the tables are those of all blocks.
+  info->Set(
+    vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), selection ? "vtkSelection" : "vtkCompositeDataSet");
+  if (!selection)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  }
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), optional);
+}
+
+//------------------------------------------------------------------------------
 void provideOutputs(vtkDataObject* input, vtkInformationVector* outputs)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
