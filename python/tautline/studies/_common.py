@@ -1,0 +1,423 @@
+"""What the studies of mesh optimization share: methods, runs measured iteration by iteration, reports."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Callable, Iterable, Sequence
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkDataSet
+
+import tautline
+from tautline import _optimization
+from tautline._errors import Error, run, watch
+from tautline._metrics import pick
+from tautline._tables import align
+
+try:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    from matplotlib.collections import PolyCollection
+except ImportError:  # pictures are left out, and the report says so
+    pyplot = None
+
+#: Inner steps per patch of Mesquite's nonlinear conjugate gradients unless told otherwise.
+MESQUITE_PATCH_ITERATIONS = 5
+#: c of (3.8), the upper end of the dissertation's typical values.
+TYPICAL_C = 1e6
+#: A curve that exceeds so many times its start would hide the others.
+BEYOND = 3.0
+#: So many cells take long enough to tell what is going on.
+LARGE = 200_000
+OPTIMIZERS = {"nlcg": "local conjugate gradient", "newton": "local newton"}
+
+
+# --- methods and runs -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Method:
+    """A column or row of the dissertation's tables: objectives and how they become one."""
+
+    name: str
+    label: str
+    objectives: tuple[str, ...]
+    scalarization: str = "equal sum"
+
+
+def methods(*objectives: str, names: Sequence[str]) -> list[Method]:
+    """Each objective alone, then the three scalarizations of all of them (section 3.3.1)."""
+    single = [Method(o.split("_")[0], f"{n} single objective", (o,)) for o, n in zip(objectives, names)]
+    every = ", ".join(names[:-1]) + " and " + names[-1]
+    several = [
+        Method(scalarization.replace(" ", "-"), f"{scalarization.capitalize()} ({every})", objectives, scalarization)
+        for scalarization in ("exponential sum", "objective product", "equal sum")
+    ]
+    return single + several
+
+
+@dataclass
+class Run:
+    """An optimization, measured before it (row 0) and after each iteration."""
+
+    method: Method
+    optimizer: str
+    iterations: np.ndarray
+    #: CPU seconds of all threads from the filter's start to the end of each iteration, set-up included.
+    seconds: np.ndarray
+    #: Per quantity its value in each row.
+    values: dict[str, np.ndarray]
+    #: The mesh after the last iteration, and why that was the last.
+    mesh: vtkDataSet
+    reason: str
+    #: Meshes after the iterations asked for.
+    kept: dict[int, vtkDataSet] = field(default_factory=dict)
+
+    def at(self, quantity: str, iteration: int) -> float:
+        """The value after an iteration; after the last one where it stopped earlier."""
+        series = self.seconds if quantity == "seconds" else self.values[quantity]
+        return float(series[min(iteration, len(series) - 1)])
+
+    def last(self, quantity: str) -> float:
+        return float(self.values[quantity][-1])
+
+    def first(self, quantity: str) -> float:
+        return float(self.values[quantity][0])
+
+    def last_second(self) -> float:
+        return float(self.seconds[-1])
+
+
+#: What is measured: name: (metric, how its values on the valid elements become a number).
+QUANTITIES: dict[str, tuple[str, Callable[[np.ndarray], float]]] = {
+    "imr_mean": ("imr", np.mean),
+    "imr_worst": ("imr", np.max),
+    "size_rms": ("size", lambda v: math.sqrt(np.mean(v * v))),
+    "size_worst": ("size", np.max),
+    "ss_mean": ("ss", lambda q: np.mean(1 / q)),
+    "ss_worst": ("ss", lambda q: np.max(1 / q)),
+    "si_mean": ("si", np.mean),
+    "si_worst": ("si", np.min),
+}
+
+
+def measure(mesh: vtkDataSet, quantities: Iterable[str]) -> dict[str, float]:
+    """The quantities of a mesh over its valid elements, and `inverted`, the number of all others."""
+    wanted = list(quantities)
+    names = list(dict.fromkeys(QUANTITIES[q][0] for q in wanted))
+    threads = 0 if mesh.GetNumberOfCells() >= LARGE else 1
+    found = tautline.quality(mesh, names, reversed_mesh="measure as given", threads=threads)
+    valid = found.validity == 1
+    result = {q: float(QUANTITIES[q][1](found.values[QUANTITIES[q][0]][valid])) if valid.any() else 0.0 for q in wanted}
+    return {**result, "inverted": float(np.count_nonzero(~valid))}
+
+
+def improve(
+    mesh: vtkDataSet,
+    method: Method,
+    iterations: int,
+    quantities: Iterable[str],
+    *,
+    optimizer: str = "nlcg",
+    patch_iterations: int = 1,
+    beta: float = 0.0,
+    c: float = 0.0,
+    allow_inversion: bool = False,
+    two_digits: bool = False,
+    relative_change: float = 0.0,
+    reduction: float = 1.0,
+    best_known: float = 0.0,
+    keep: Sequence[int] = (),
+    weights: Sequence[tuple[str, float]] = (),
+    template: str = "default",
+    trace: bool = True,
+    threads: int = 0,
+) -> Run:
+    """Run vtkMeshOptimizer, boundary fixed, no culling, and measure each iteration (or, without trace, the end).
+
+    weights: further objectives and their weights; the scalarization is then the weighted sum, the others weigh 1.
+    """
+    filter_ = tautline.vtkMeshOptimizer()
+    messages = watch(filter_)
+    form = _optimization.TEMPLATES.index(template) - 1
+    for name in method.objectives:
+        filter_.AddObjectiveByName(name, form)
+    for name, weight in weights:
+        filter_.AddObjectiveByName(name, filter_.DEFAULT_TEMPLATE, weight)
+    filter_.SetScalarization(pick("scalarization", "weighted sum" if weights else method.scalarization, _optimization.SCALARIZATIONS))
+    filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), _optimization.OPTIMIZERS))
+    filter_.SetMaximumIterations(iterations)
+    filter_.SetPatchIterations(patch_iterations)
+    filter_.SetBeta(beta)
+    filter_.SetC(c)
+    filter_.SetAllowInversion(allow_inversion)
+    filter_.SetUntangleFirst(False)
+    filter_.SetTwoDigits(two_digits)
+    filter_.SetRelativeChange(relative_change)
+    filter_.SetGradientNorm(0.0)
+    filter_.SetReduction(reduction)
+    filter_.SetBestKnown(best_known)
+    filter_.SetCulling(0.0)
+    filter_.SetTimeLimit(0.0)
+    filter_.SetThreads(threads)
+    filter_.SetAnimation(trace)
+    filter_.SetInputDataObject(0, mesh)
+    stamps: list[tuple[float, float]] = []
+    tag = filter_.AddObserver("ProgressEvent", lambda *_: stamps.append((filter_.GetProgress(), time.process_time())))
+    began = time.process_time()
+    run(filter_, messages)
+    filter_.RemoveObserver(tag)
+    history = filter_.GetHistory()
+    count = history.GetNumberOfRows()
+    seconds = np.array([stamp - began for _, stamp in stamps])
+    # The pipeline itself reports progress too: 0 before and 1 after the filter's own.
+    seconds = seconds[len(seconds) - 1 - count : -1] if len(seconds) > count else np.resize(seconds, count)
+    rows, kept = [], {}
+    for step in range(count) if trace else (0, count - 1):
+        if trace:
+            filter_.UpdateTimeStep(step)
+            messages.raise_errors()
+            shown = filter_.GetOutputDataObject(0)
+        else:
+            shown = mesh if step == 0 else filter_.GetOutputDataObject(0)
+        rows.append(measure(shown, quantities))
+        if step in keep:
+            kept[step] = _copy(shown)
+    values = {key: np.array([row[key] for row in rows]) for key in rows[0]}
+    values["objective"] = np.array([history.GetValueByName(i, "Objective").ToDouble() for i in range(count)])
+    steps = np.arange(count) if trace else np.array([0, count - 1])
+    final = _copy(filter_.GetOutputDataObject(0))
+    if mesh.GetNumberOfCells() >= LARGE:
+        print(f"{method.name}, {optimizer}: {count - 1} iterations, {seconds[-1]:.1f} CPU s", file=sys.stderr, flush=True)
+    return Run(method, optimizer, steps, seconds, values, final, filter_.GetReason(), kept)
+
+
+def _copy(mesh: vtkDataSet) -> vtkDataSet:
+    copy = mesh.NewInstance()
+    copy.ShallowCopy(mesh)
+    return copy
+
+
+# --- meshes ---------------------------------------------------------------------------------------------
+
+
+def points_of(mesh: vtkDataSet) -> np.ndarray:
+    """The coordinates, n x 3, a copy in double precision."""
+    return np.array(vtk_to_numpy(mesh.GetPoints().GetData()), float)
+
+
+def cells_of(mesh: vtkDataSet) -> np.ndarray:
+    """The corners of a mesh of one cell type, one row per cell."""
+    corners = mesh.GetCell(0).GetNumberOfPoints()
+    return vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, corners)
+
+
+def with_points(mesh: vtkDataSet, points: np.ndarray) -> vtkDataSet:
+    """The mesh with other coordinates."""
+    copy = _copy(mesh)
+    moved = vtkPoints()
+    moved.SetData(numpy_to_vtk(np.ascontiguousarray(points, float), deep=True))
+    copy.SetPoints(moved)
+    return copy
+
+
+def sizes_of(mesh: vtkDataSet) -> np.ndarray:
+    """Signed areas (of a mesh in the plane z = 0) or volumes."""
+    p, cells = points_of(mesh), cells_of(mesh)
+    a, b = p[cells[:, 1]] - p[cells[:, 0]], p[cells[:, 2]] - p[cells[:, 0]]
+    if cells.shape[1] == 3:
+        return 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    return np.einsum("ij,ij->i", np.cross(a, b), p[cells[:, 3]] - p[cells[:, 0]]) / 6
+
+
+def scaled(mesh: vtkDataSet, factor: float) -> vtkDataSet:
+    """The mesh in another unit of length."""
+    return with_points(mesh, factor * points_of(mesh))
+
+
+# --- reports --------------------------------------------------------------------------------------------
+
+
+def parser(name: str, text: str | None, cells: int = 0) -> argparse.ArgumentParser:
+    """The options every study has."""
+    made = argparse.ArgumentParser(prog=f"python3 -m tautline study {name}", description=(text or "").split("\n")[0])
+    made.add_argument("--small", action="store_true", help="a small mesh, for a look or a test: seconds")
+    made.add_argument("--out", type=Path, default=Path(f"study-{name}"), metavar="DIR", help="where files go (%(default)s)")  # fmt: skip
+    made.add_argument("--threads", type=int, default=1, help="0 is all cores (%(default)s, for comparable times)")
+    if cells:
+        made.add_argument("--cells", type=int, default=0, help=f"about how many (default: {cells:,})")
+    return made
+
+
+class Report:
+    """Collects tables, pictures and findings of a study and writes them to a directory."""
+
+    def __init__(self, name: str, title: str, out: Path) -> None:
+        self.name, self.out = name, Path(out)
+        self.parts = [f"{title}\n{'=' * len(title)}"]
+        self.findings: list[tuple[str, str, bool, str]] = []
+        try:
+            self.out.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise Error(f"{self.out}: cannot be made: {error.strerror}") from None
+
+    def text(self, paragraph: str) -> None:
+        self.parts.append(paragraph)
+
+    def table(self, file: str, title: str, headings: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+        """A table in the text and a CSV file."""
+        self.csv(file, headings, rows)
+        shown = [[_short(value) for value in row] for row in rows]
+        self.parts.append(f"{title}  [{file}.csv]\n{align(shown, headings)}")
+
+    def beside(self, file: str, title: str, columns: Sequence[Any], ours: dict[str, Sequence[float]],
+               theirs: dict[str, Sequence[float]], head: str = "method") -> None:  # fmt: skip
+        """Our numbers, the dissertation's in brackets where it has any; in the CSV they have columns of their own."""
+        rows, shown = [], []
+        for label, values in ours.items():
+            known = list(theirs.get(label, [])) or [math.nan] * len(values)
+            rows.append([label, *values, *known])
+            pairs = zip(values, known)
+            shown.append([label, *(_short(v) + ("" if math.isnan(k) else f" ({_short(k)})") for v, k in pairs)])
+        names = [str(column) for column in columns]
+        self.csv(file, [head, *names, *(f"{name} dissertation" for name in names)], rows)
+        self.parts.append(f"{title}; in brackets the dissertation's  [{file}.csv]\n{align(shown, [head, *names])}")
+
+    def csv(self, file: str, headings: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+        with open(self.out / f"{file}.csv", "w", encoding="utf-8", newline="") as stream:
+            writer = csv.writer(stream)
+            writer.writerow(headings)
+            writer.writerows([["" if _missing(value) else value for value in row] for row in rows])
+
+    def curves(self, file: str, runs: Sequence[Run]) -> None:
+        """Every quantity of every run after every iteration, as CSV."""
+        names = list(runs[0].values)
+        rows = [
+            [r.method.name, r.optimizer, int(r.iterations[i]), r.seconds[i], *(r.values[name][i] for name in names)]
+            for r in runs
+            for i in range(len(r.iterations))
+        ]
+        self.csv(file, ["method", "optimizer", "iteration", "cpu_seconds", *names], rows)
+
+    def finding(self, source: str, sentence: str, holds: bool, figures: str) -> None:
+        """A sentence of the dissertation, whether our numbers agree, and the numbers."""
+        self.findings.append((source, sentence, bool(holds), figures))
+
+    def plot(self, file: str, runs: Sequence[Run], panels: Sequence[tuple[str, str, bool]]) -> None:
+        """A picture of quantities against iterations; a panel is (quantity, label of the axis, logarithmic)."""
+        if not self._pictures():
+            return
+        figure, axes = pyplot.subplots(1, len(panels), figsize=(6.4 * len(panels), 4.6), squeeze=False)
+        for axis, (quantity, label, logarithmic) in zip(axes[0], panels):
+            for run_, marker in zip(runs, "osv^D<>*xp+"):
+                line = "-" if run_.optimizer == "nlcg" else ":"
+                axis.plot(run_.iterations, run_.values[quantity], line, marker=marker, markersize=4,
+                          linewidth=1.2, label=run_.method.label)  # fmt: skip
+            axis.set(xlabel="iterations", ylabel=label, yscale="log" if logarithmic else "linear")
+            axis.grid(alpha=0.3)
+            start = runs[0].first(quantity)
+            beyond = [r.method.label for r in runs if r.values[quantity].max() > BEYOND * start > 0]
+            if beyond and not logarithmic:
+                axis.set_ylim(top=1.05 * start)
+                axis.set_title("beyond the axis: " + ", ".join(beyond), fontsize=8)
+        axes[0][0].legend(fontsize=8)
+        self._save(figure, file)
+
+    def meshes(self, file: str, shown: Sequence[tuple[str, vtkDataSet]], columns: int = 4,
+               window: Sequence[float] | None = None) -> None:  # fmt: skip
+        """A picture of meshes of triangles, inverted ones filled; window: xmin xmax ymin ymax."""
+        if not self._pictures():
+            return
+        columns = min(columns, len(shown))
+        rows = -(-len(shown) // columns)
+        figure, axes = pyplot.subplots(rows, columns, figsize=(4.2 * columns, 4.7 * rows), squeeze=False)
+        for axis in axes.flat:
+            axis.set_axis_off()
+        for axis, (title, mesh) in zip(axes.flat, shown):
+            p, cells, wrong = points_of(mesh)[:, :2], cells_of(mesh), sizes_of(mesh) <= 0
+            if window is not None:
+                near = p[cells]
+                inside = ((near >= [window[0], window[2]]) & (near <= [window[1], window[3]])).all(axis=2).any(axis=1)
+                cells, wrong = cells[inside], wrong[inside]
+            axis.add_collection(PolyCollection(p[cells], facecolors="none", edgecolors="#1f4e79", linewidths=0.5))
+            if wrong.any():
+                axis.add_collection(PolyCollection(p[cells[wrong]], facecolors="#d000d055", edgecolors="#d000d0"))
+            axis.autoscale_view()
+            if window is not None:
+                axis.set(xlim=window[:2], ylim=window[2:])
+            axis.set_aspect("equal")
+            axis.set_title(f"{title}\n{np.count_nonzero(wrong)} inverted", fontsize=9)
+        self._save(figure, file)
+
+    def bars(self, file: str, bins: Sequence[str], axis_label: str, label: str,
+             panels: dict[str, dict[str, Sequence[float]]]) -> None:  # fmt: skip
+        """A picture of distributions, logarithmic: a panel has a row of bars for each of its series."""
+        if not self._pictures():
+            return
+        figure, axes = pyplot.subplots(1, len(panels), figsize=(6.4 * len(panels), 4.6), squeeze=False)
+        for axis, (title, series) in zip(axes[0], panels.items()):
+            width = 0.8 / len(series)
+            for number, (name, values) in enumerate(series.items()):
+                axis.bar(np.arange(len(bins)) + (number - 0.5 * (len(series) - 1)) * width, values, width, label=name)
+            axis.set(title=title, xlabel=axis_label, ylabel=label, yscale="log", xticks=range(len(bins)), xticklabels=bins)
+            axis.grid(alpha=0.3, axis="y")
+        axes[0][0].legend(fontsize=8)
+        self._save(figure, file)
+
+    def finish(self) -> int:
+        """Write and print everything."""
+        holding = sum(holds for _, _, holds, _ in self.findings)
+        lines = [f"Findings of the dissertation: {holding} of {len(self.findings)} hold"]
+        for source, sentence, holds, figures in self.findings:
+            lines.append(f"- {'HOLDS' if holds else 'DOES NOT HOLD'} ({source}): {sentence}\n    ours: {figures}")
+        self.parts.append("\n".join(lines))
+        self.csv("findings", ["source", "finding", "holds", "figures"],
+                 [[s, f, "yes" if h else "no", n] for s, f, h, n in self.findings])  # fmt: skip
+        text = "\n\n".join(self.parts) + "\n"
+        (self.out / f"{self.name}.txt").write_text(text, encoding="utf-8")
+        print(text)
+        print(f"Files: {self.out}")
+        return 0
+
+    def _pictures(self) -> bool:
+        missing = "No pictures: matplotlib is not installed."
+        if pyplot is None and missing not in self.parts:
+            self.parts.append(missing)
+        return pyplot is not None
+
+    def _save(self, figure: Any, file: str) -> None:
+        figure.tight_layout()
+        figure.savefig(self.out / f"{file}.png", dpi=110, bbox_inches="tight")
+        pyplot.close(figure)
+
+
+def _missing(value: Any) -> bool:
+    return isinstance(value, float) and not math.isfinite(value)
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    if _missing(value):
+        return "-"
+    return f"{value:,.0f}" if float(value).is_integer() and abs(value) < 1e9 else f"{value:.4g}"
+
+
+def percent(part: float) -> str:
+    return f"{100 * part:.1f} %"
+
+
+def compare(runs: dict[str, Run], quantity: str) -> str:
+    """The final values of a quantity, for the figures of a finding."""
+    start = next(iter(runs.values())).first(quantity)
+    return f"{quantity}: start {start:.4g}; " + ", ".join(f"{n} {r.last(quantity):.4g}" for n, r in runs.items())

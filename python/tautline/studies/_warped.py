@@ -1,0 +1,132 @@
+"""Meshes warped by the motion of their boundary, and what the studies of section 3.5 do with them."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Sequence
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataSet
+
+import tautline
+from tautline._errors import Error
+
+from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, cells_of, parser, points_of, scaled, sizes_of, with_points
+from ._tangled import NOTE, by_unit, counts, diverged, tangled_methods, untangle
+
+QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")
+MULTI = ("exponential-sum", "objective-product", "equal-sum")
+ABOUT = (
+    "Only the boundary's motion is given; the vertices inside follow harmonically (linear finite elements on the initial mesh, "
+    "solved by conjugate gradients), which is what one step of FEMWARP does."
+)
+UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)  # mean sizes of the elements
+_TOLERANCE = 1e-10  # of the residual of the harmonic extension
+_BISECTIONS = 60
+
+
+def of_points(mesh: vtkDataSet, name: str) -> np.ndarray:
+    """A point array of the mesh."""
+    return np.array(vtk_to_numpy(mesh.GetPointData().GetArray(name)))
+
+
+def harmonic(mesh: vtkDataSet, given: np.ndarray) -> np.ndarray:
+    """A motion of the boundary's points (n x 3), extended to the others by Laplace's equation on the mesh."""
+    fixed = of_points(mesh, "Fixed") != 0
+    p, cells = points_of(mesh), cells_of(mesh)
+    sizes = np.abs(sizes_of(mesh))
+    corners = cells.shape[1]
+    # Gradients of the hat functions: rows of the inverse of the edge matrix.
+    edges = (p[cells[:, 1:]] - p[cells[:, :1]])[:, :, : corners - 1]
+    inner = np.linalg.inv(edges).transpose(0, 2, 1)
+    gradients = np.concatenate([-inner.sum(axis=1, keepdims=True), inner], axis=1)
+    local = np.einsum("eik,ejk,e->eij", gradients, gradients, sizes)
+    rows, columns = np.repeat(cells, corners, axis=1).ravel(), np.tile(cells, corners).ravel()
+    entries = local.ravel()
+
+    def times(x: np.ndarray) -> np.ndarray:
+        return np.column_stack([np.bincount(rows, entries * x[columns, k], len(p)) for k in range(x.shape[1])])
+
+    diagonal = np.bincount(rows[rows == columns], entries[rows == columns], len(p))
+    x = np.where(fixed[:, None], given, 0.0)
+    residual = np.where(fixed[:, None], 0.0, -times(x))
+    first = np.linalg.norm(residual)
+    direction = z = residual / diagonal[:, None]
+    rho = np.sum(residual * z)
+    for _ in range(10 * len(p)):
+        if np.linalg.norm(residual) <= _TOLERANCE * first:
+            return x
+        product = np.where(fixed[:, None], 0.0, times(direction))
+        step = rho / np.sum(direction * product)
+        x, residual = x + step * direction, residual - step * product
+        z = residual / diagonal[:, None]
+        rho, before = np.sum(residual * z), rho
+        direction = z + (rho / before) * direction
+    raise Error("the harmonic extension of the boundary's motion did not converge")
+
+
+def warp(mesh: vtkDataSet, points: np.ndarray, motion: np.ndarray, inverted: int, most: float) -> tuple[vtkDataSet, float]:
+    """The mesh at points + t motion with the least t up to `most` that inverts as many elements, and t."""
+
+    def moved(amount: float) -> tuple[vtkDataSet, int]:
+        result = with_points(mesh, points + amount * motion)
+        return result, int(np.count_nonzero(sizes_of(result) <= 0))
+
+    low, high = 0.0, most
+    if moved(high)[1] < inverted:
+        raise Error(f"{most:g} times the motion inverts only {moved(high)[1]} elements, {inverted} are wanted")
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if moved(middle)[1] >= inverted else (middle, high)
+    return moved(high)[0], high
+
+
+def options(name: str, text: str | None, arguments: Sequence[str]) -> argparse.Namespace:
+    made = parser(name, text)
+    made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
+                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")  # fmt: skip
+    return made.parse_args(arguments)
+
+
+def experiment(report: Report, mesh: vtkDataSet, motion: str, iterations: int, steps: Sequence[int], theirs: dict,
+               given: argparse.Namespace) -> dict[str, Run]:  # fmt: skip
+    """Run every method, write tables and curves; motion says what moved."""
+    mean = float(np.mean(np.abs(sizes_of(mesh))))
+    mesh = scaled(mesh, mean ** (-1.0 / (cells_of(mesh).shape[1] - 1)))
+    wrong = np.count_nonzero(sizes_of(mesh) <= 0)
+    report.text(
+        f"{mesh.GetNumberOfCells():,} elements, {wrong} inverted by {motion}. {ABOUT}\n{NOTE}\n"
+        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = {TYPICAL_C:g}. "
+        "Unit of length: elements have the mean size 1 (the dissertation names no unit; exponential and equal sum depend on it)."
+    )
+    common = dict(threads=given.threads)
+    every = tangled_methods("si", "untangle_beta")
+    runs = {
+        m.name: untangle(mesh, m, iterations, QUANTITIES, patch_iterations=given.patch_iterations, **common)
+        for m in every
+    }
+    newton = {m.name: untangle(mesh, m, iterations, QUANTITIES, optimizer="newton", **common) for m in every}
+    for file, found in (("inverted", runs), ("inverted_newton", newton)):
+        known = {r.method.label: theirs.get(n, ()) for n, r in found.items()}
+        title = "Inverted elements after so many iterations, " + ("local NLCG" if found is runs else "Local Newton")
+        report.beside(file, title, steps, counts(found, steps), known)
+    if diverged(runs):
+        report.text(diverged(runs))
+    by_unit(report, mesh, ("si", "untangle_beta"), iterations, UNITS[::2] if given.small else UNITS,
+            patch_iterations=given.patch_iterations, **common)  # fmt: skip
+    sus = tautline.untangle(mesh, threads=given.threads)
+    report.text(f"Untangle Mesh on the same mesh: {sus.inverted_before} inverted before, {sus.inverted} after.")
+    rows = [["start", *(runs["si"].first(q) for q in QUANTITIES)]]
+    rows += [[r.method.label, *(r.last(q) for q in QUANTITIES)] for r in runs.values()]
+    report.table("quality", f"Quality of the valid elements after {iterations} iterations", ["method", *QUANTITIES], rows)
+    report.curves("curves", [*runs.values(), *newton.values()])
+    report.plot("inverted", list(runs.values()), [("inverted", "Inverted elements", False), ("si_worst", "Worst SI", True)])
+    return runs
+
+
+def better_worst(report: Report, runs: dict[str, Run], source: str) -> None:
+    """The finding both studies share."""
+    report.finding(source, "Exponential and equal sum have a better worst element than untangling alone",
+                   min(runs[n].last("si_worst") for n in ("exponential-sum", "equal-sum")) > runs["untangle"].last("si_worst"),
+                   "worst SI: " + ", ".join(f"{n} {r.last('si_worst'):.4g}" for n, r in runs.items()))  # fmt: skip
