@@ -3,6 +3,7 @@
 #include "tautline/BoundaryShape.h"
 #include "tautline/SimplexMesh.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
