@@ -16,7 +16,8 @@ def main(arguments: list[str]) -> int:
     given = options("bore", __doc__, arguments)
     report = Report("bore", "Bore in space (section 3.5.2)", given.out)
     report.text(
-        "The dissertation's meshes are those of other authors. This one is the project's domain `bore`, a block with a bore that "
+        "The dissertation's meshes are those of other authors. This one is the project's domain `bore`, a block with "
+        "a bore that "
         "widens in the middle. Condition numbers (Table 3.9) are not part of this study."
     )
     initial = tautline.domain("bore", 3_000 if given.small else CELLS)
@@ -24,9 +25,11 @@ def main(arguments: list[str]) -> int:
     mesh, amount = warp(initial, points_of(initial), motion, 5 if given.small else INVERTED, MOST)
     runs = experiment(report, mesh, f"{amount:.3f} times the motion of the domain", STEPS[-1], STEPS, {}, given)
     figures = after(runs)
-    report.finding("3.5.2", "SI alone does not eliminate the inverted elements", runs["si"].last("inverted") > 0, figures)
+    report.finding(
+        "3.5.2", "SI alone does not eliminate the inverted elements", runs["si"].last("inverted") > 0, figures,
+    )
     for name, label in (("exponential-sum", "The exponential sum"), ("objective-product", "The objective product"),
-                        ("untangle", "Untangling alone")):  # fmt: skip
+                        ("untangle", "Untangling alone")):
         report.finding("3.5.2", f"{label} eliminates them in one iteration", untangled_after(runs[name]) <= 1, figures)
     better_worst(report, runs, "Table 3.9")
     return report.finish()

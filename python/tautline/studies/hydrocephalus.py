@@ -40,8 +40,10 @@ def main(arguments: list[str]) -> int:
     given = options("hydrocephalus", __doc__, arguments)
     report = Report("hydrocephalus", "Hydrocephalus in the plane (section 3.5.1)", given.out)
     report.text(
-        "The dissertation's brain comes from segmented images, which are not published. This one is the project's parametric "
-        "domain `brain`: an outline with two ventricles that shrink, more in width than in height, as after treatment, and that "
+        "The dissertation's brain comes from segmented images, which are not published. This one is the project's "
+        "parametric "
+        "domain `brain`: an outline with two ventricles that shrink, more in width than in height, as after "
+        "treatment, and that "
         "are displaced sideways as far as it takes to invert elements."
     )
     initial = tautline.domain("brain", 1_500 if given.small else CELLS)
@@ -59,15 +61,19 @@ def main(arguments: list[str]) -> int:
     si = runs["si"]
     report.finding("Table 3.7", "SI alone inverts more elements and untangles none",
                    si.last("inverted") > si.first("inverted"),
-                   f"start {si.first('inverted'):g}, end {si.last('inverted'):g}, most {si.values['inverted'].max():g}")  # fmt: skip
-    report.finding("Table 3.7", "Untangling alone eliminates all (after 33 iterations)", ends["untangle"] <= iterations, figures)
-    report.finding("Table 3.7", "The exponential sum eliminates all (after 9)", ends["exponential-sum"] <= iterations, figures)
+                   f"start {si.first('inverted'):g}, end {si.last('inverted'):g}, most {si.values['inverted'].max():g}")
+    report.finding(
+        "Table 3.7", "Untangling alone eliminates all (after 33 iterations)", ends["untangle"] <= iterations, figures,
+    )
+    report.finding(
+        "Table 3.7", "The exponential sum eliminates all (after 9)", ends["exponential-sum"] <= iterations, figures,
+    )
     report.finding("Table 3.7", "The equal sum eliminates all (after 12)", ends["equal-sum"] <= iterations, figures)
     report.finding("Table 3.7", "The exponential sum needs fewer iterations than untangling alone",
-                   ends["exponential-sum"] < ends["untangle"], figures)  # fmt: skip
+                   ends["exponential-sum"] < ends["untangle"], figures)
     report.finding("Table 3.7", "The exponential sum needs fewer iterations than the equal sum",
-                   ends["exponential-sum"] < ends["equal-sum"], figures)  # fmt: skip
+                   ends["exponential-sum"] < ends["equal-sum"], figures)
     report.finding("Table 3.7", "The objective product does not eliminate all (6 left)",
-                   runs["objective-product"].last("inverted") > 0, figures)  # fmt: skip
+                   runs["objective-product"].last("inverted") > 0, figures)
     better_worst(report, runs, "Figure 3.11")
     return report.finish()
