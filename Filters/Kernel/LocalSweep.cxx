@@ -222,36 +222,44 @@ void LocalSweeper::Implementation<Dim>::gatherCells(std::int32_t v, Site& site) 
   for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
   {
     const CellTopology& t = topology(blocks[b].type);
-    CellBatch* batch = nullptr;
-    for (auto c = begin; c != end; ++c)
+    for (auto c = begin; c != end;)
     {
-      if (blocks.size() > 1 && cornerType(view.cellTypes[*c]) != blocks[b].type)
+      if (static_cast<std::size_t>(site.cellBatches) == site.cells.size())
       {
-        continue;
+        site.cells.emplace_back();
       }
-      if (!batch || batch->batch.count == PacketWidth)
+      CellBatch& batch = site.cells[site.cellBatches];
+      batch.block = b;
+      int& count = batch.batch.count = 0;
+      for (; c != end && count < PacketWidth; ++c)
       {
-        if (static_cast<std::size_t>(site.cellBatches) == site.cells.size())
+        if (blocks.size() == 1 || cornerType(view.cellTypes[*c]) == blocks[b].type)
         {
-          site.cells.emplace_back();
+          batch.batch.cells[count++] = *c;
         }
-        batch = &site.cells[site.cellBatches++];
-        batch->block = b;
-        batch->batch.count = 0;
       }
-      // Lanes to come repeat the last cell.
-      const Index* node = view.connectivity + view.offsets[*c];
-      for (int l = batch->batch.count++; l < PacketWidth; ++l)
+      if (count == 0)
       {
-        batch->batch.cells[l] = *c;
-        for (int k = 0; k < t.nodes; ++k)
+        break;
+      }
+      ++site.cellBatches;
+      const Index* nodes[PacketWidth];
+      for (int l = 0; l < PacketWidth; ++l)
+      {
+        const Index cell = batch.batch.cells[l] = batch.batch.cells[std::min(l, count - 1)];
+        nodes[l] = view.connectivity + view.offsets[cell];
+      }
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        const double* p[PacketWidth];
+        for (int l = 0; l < PacketWidth; ++l)
         {
-          const double* p = this->Points + 3 * node[k];
-          batch->batch.points[k][0][l] = mirrored ? -p[0] : p[0];
-          batch->batch.points[k][1][l] = p[1];
-          batch->batch.points[k][2][l] = p[2];
-          batch->node[l] = node[k] == point ? k : k == 0 ? 0 : batch->node[l];
+          p[l] = this->Points + 3 * nodes[l][k];
+          batch.here[k][l] = nodes[l][k] == point ? 1.0 : 0.0;
         }
+        loadPoints(p, batch.batch.points[k]);
+        batch.batch.points[k][0] =
+          mirrored ? Packet(-batch.batch.points[k][0]) : batch.batch.points[k][0];
       }
     }
   }

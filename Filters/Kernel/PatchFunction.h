@@ -18,7 +18,7 @@ struct CellBatch
 {
   Batch batch;
   int block = 0;
-  int node[PacketWidth]; ///< the place of the vertex in each cell
+  Packet here[MaxNodes]; ///< 1 in the lanes whose cell has the vertex in this place, else 0
 };
 
 /// All that is known of the vertex at hand. One per thread.
@@ -123,7 +123,7 @@ public:
       const CellBatch& cells = site.cells[i];
       if (this->Value[cells.block])
       {
-        Batch batch = cells.batch;
+        Batch batch;
         Packet value, slope;
         this->evaluate(cells, shift, this->Value[cells.block], batch, value, slope);
         total += sumOf(value);
@@ -137,20 +137,18 @@ public:
     PatchSum<Dim> result = this->gradient(site, d);
     if (hessian)
     {
-      // By central differences of the gradient, over a small part of the patch's size.
-      constexpr double part = 1e-5;
+      // By differences of the gradient, over a small part of the patch's size; one-sided ones are enough for a direction.
+      constexpr double part = 1e-6;
       const double h = part * this->sizeOf(site);
       for (int r = 0; r < Dim; ++r)
       {
-        double forth[Dim], back[Dim];
+        double forth[Dim];
         std::copy_n(d, Dim, forth);
-        std::copy_n(d, Dim, back);
         forth[r] += h;
-        back[r] -= h;
-        const PatchSum<Dim> plus = this->gradient(site, forth), minus = this->gradient(site, back);
+        const PatchSum<Dim> plus = this->gradient(site, forth);
         for (int c = 0; c < Dim; ++c)
         {
-          result.H[r][c] = (plus.g[c] - minus.g[c]) / (2.0 * h);
+          result.H[r][c] = (plus.g[c] - result.g[c]) / h;
         }
       }
       for (int r = 0; r < Dim; ++r)
@@ -188,11 +186,14 @@ private:
     const BatchContext& context = this->Contexts[cells.block];
     const bool mirrored =
       context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
-    for (int l = 0; l < PacketWidth; ++l)
+    batch.count = cells.batch.count;
+    std::copy_n(cells.batch.cells, PacketWidth, batch.cells);
+    for (int k = 0; k < context.topology->nodes; ++k)
     {
       for (int c = 0; c < 3; ++c)
       {
-        batch.points[cells.node[l]][c][l] += mirrored && c == 0 ? -shift[c] : shift[c];
+        const double by = mirrored && c == 0 ? -shift[c] : shift[c];
+        batch.points[k][c] = cells.batch.points[k][c] + by * cells.here[k];
       }
     }
     evaluator(context, batch);
@@ -227,20 +228,22 @@ private:
       {
         continue;
       }
-      Batch batch = cells.batch;
+      Batch batch;
       Packet value, slope;
       this->evaluate(cells, shift, this->Gradient[cells.block], batch, value, slope);
       const BatchContext& context = this->Contexts[cells.block];
       const bool mirrored =
         context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
       result.f += sumOf(value);
-      for (int l = 0; l < batch.count; ++l)
+      for (int c = 0; c < 3; ++c)
       {
-        for (int c = 0; c < 3; ++c)
+        Packet g = {};
+        for (int k = 0; k < context.topology->nodes; ++k)
         {
-          const double g = slope[l] * batch.gradient[cells.node[l]][c][l];
-          total[c] += !std::isfinite(g) ? 0.0 : mirrored && c == 0 ? -g : g;
+          g += select(cells.here[k] > 0.0, batch.gradient[k][c], Packet{});
         }
+        const double sum = sumOf(finiteOrZero(slope * g));
+        total[c] += mirrored && c == 0 ? -sum : sum;
       }
     }
     for (int c = 0; c < Dim; ++c)

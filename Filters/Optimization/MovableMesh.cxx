@@ -1,6 +1,7 @@
 #include "MovableMesh.h"
 
 #include "tautline/BoundaryShape.h"
+#include "tautline/SimplexMesh.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -39,6 +40,21 @@ vtkDataSet* withPoints(vtkDataSet* input)
       "first, which give them coordinates.");
   }
   return input;
+}
+
+/// Mesh::boundary() sorts all facets; a volume or planar mesh seldom needs that.
+std::vector<char> pointsOnBoundary(const Mesh& mesh, int threads)
+{
+  if (mesh.dimension() != Dimension::Surface)
+  {
+    std::vector<char> found = boundaryPoints(mesh, threads);
+    // Without any, every cell is there twice.
+    if (std::find(found.begin(), found.end(), 1) != found.end())
+    {
+      return found;
+    }
+  }
+  return mesh.boundary().isBoundaryPoint;
 }
 }
 
@@ -93,7 +109,7 @@ void MovableMesh::fixWhatStays()
   std::vector<char> onBoundary;
   if (mesh.dimension() == Dimension::Volume && !this->Skip.empty())
   {
-    onBoundary = mesh.boundary().isBoundaryPoint;
+    onBoundary = pointsOnBoundary(mesh, this->Threads);
   }
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -135,7 +151,7 @@ void MovableMesh::fix(vtkDataArray* array, bool ofCells)
 //------------------------------------------------------------------------------
 void MovableMesh::fixBoundary()
 {
-  const std::vector<char> boundary = this->mesh().boundary().isBoundaryPoint;
+  const std::vector<char> boundary = pointsOnBoundary(this->mesh(), this->Threads);
   std::transform(this->Fixed.begin(), this->Fixed.end(), boundary.begin(), this->Fixed.begin(),
     [](unsigned char fixed, char on) { return fixed || on; });
 }

@@ -19,6 +19,7 @@ class vtkAlgorithm;
 class vtkDataArray;
 class vtkDataObject;
 class vtkDataSet;
+class vtkInformation;
 class vtkInformationVector;
 class vtkPointSet;
 class vtkSelection;
@@ -111,6 +112,9 @@ void fixSelected(MovableMesh& mesh, vtkDataSet* selected);
 
 /// A point or cell array named by an algorithm's input array choice; null if none is. Throws Error.
 vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* what);
+
+/// Sets what an input port takes: data sets and composite ones, or a selection of what stays.
+void declareInput(vtkInformation* info, bool selection, bool optional);
 
 /// Makes the outputs: like the input on port 0, tables on the others.
 void provideOutputs(vtkDataObject* input, vtkInformationVector* outputs);

@@ -209,17 +209,7 @@ vtkTable* vtkMeshOptimizer::GetStatistics()
 //------------------------------------------------------------------------------
 int vtkMeshOptimizer::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port == SelectionPort)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkSelection");
-  }
-  else
-  {
-    // The composite type first, so that the tables are those of all blocks.
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  }
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), port != MeshPort);
+  tautline::declareInput(info, port == SelectionPort, port != MeshPort);
   return 1;
 }
 

@@ -50,20 +50,13 @@ void addFlags(vtkDataSet* output, const char* name, const std::vector<signed cha
   output->GetCellData()->AddArray(array);
 }
 
-/// "All elements are valid", or how many are not, and for the first of them which, where and why.
-std::string verdict(const tautline::Untangling& result, const tautline::Mesh& moved)
+using Remaining = std::vector<std::pair<tautline::Index, tautline::CellType>>;
+
+/// The elements with an obstacle, by id.
+Remaining remainingOf(const tautline::Untangling& result, const tautline::Mesh& mesh)
 {
-  std::ostringstream text;
-  if (result.invertedAfter == 0)
-  {
-    text << "All elements are valid; " << result.invertedBefore << " were not.";
-    return text.str();
-  }
-  text << result.invertedAfter << " of " << result.invertedBefore
-       << " inverted or degenerate elements remain, " << result.impossible
-       << " of them because of fixed points.";
-  std::vector<std::pair<tautline::Index, tautline::CellType>> remaining;
-  for (const tautline::CellBlock& block : moved.blocks())
+  Remaining remaining;
+  for (const tautline::CellBlock& block : mesh.blocks())
   {
     for (tautline::Index i = 0; i < block.count; ++i)
     {
@@ -74,6 +67,22 @@ std::string verdict(const tautline::Untangling& result, const tautline::Mesh& mo
     }
   }
   std::sort(remaining.begin(), remaining.end());
+  return remaining;
+}
+
+/// "All elements are valid", or how many are not, and for the first of them which, where and why.
+std::string verdict(
+  const tautline::Untangling& result, const Remaining& remaining, const tautline::Mesh& moved)
+{
+  std::ostringstream text;
+  if (remaining.empty())
+  {
+    text << "All elements are valid; " << result.invertedBefore << " were not.";
+    return text.str();
+  }
+  text << remaining.size() << " elements are not valid, " << result.impossible
+       << " of them because of fixed points; " << result.invertedBefore
+       << " were inverted or degenerate before.";
   const auto listed = std::min<std::size_t>(remaining.size(), ListedElements);
   for (std::size_t i = 0; i < listed; ++i)
   {
@@ -110,15 +119,7 @@ vtkTable* vtkMeshUntangler::GetHistory()
 //------------------------------------------------------------------------------
 int vtkMeshUntangler::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port == SelectionPort)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkSelection");
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-    return 1;
-  }
-  // The composite type first, so that the table is that of all blocks.
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  tautline::declareInput(info, port == SelectionPort, port != MeshPort);
   return 1;
 }
 
@@ -150,7 +151,7 @@ int vtkMeshUntangler::RequestData(
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   this->Reason.clear();
   this->Summary.clear();
-  this->InvertedBefore = this->InvertedAfter = this->Impossible = 0;
+  this->InvertedBefore = this->InvertedAfter = this->Impossible = this->NotValid = 0;
   tautline::TableRows history;
   try
   {
@@ -173,7 +174,7 @@ int vtkMeshUntangler::RequestData(
     return 0;
   }
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
-  if (this->InvertedAfter > 0)
+  if (this->NotValid > 0)
   {
     vtkWarningMacro(<< this->Summary);
   }
@@ -223,8 +224,11 @@ void vtkMeshUntangler::Untangle(
   tautline::MeshView view = mesh.mesh().view();
   view.points = result.points.data();
   const tautline::Mesh moved(view, this->Threads);
+  const Remaining remaining = remainingOf(result, moved);
+  this->NotValid += static_cast<vtkIdType>(remaining.size());
   std::ostringstream text;
-  text << (block.name.empty() ? "" : "In " + block.name + ": ") << verdict(result, moved);
+  text << (block.name.empty() ? "" : "In " + block.name + ": ")
+       << verdict(result, remaining, moved);
   if (result.surfaceError > 0)
   {
     text << "\nLargest distance of the elements from the input surface: " << result.surfaceError

@@ -132,6 +132,7 @@ private:
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;
   vtkIdType Impossible = 0;
+  vtkIdType NotValid = 0; ///< with NaN coordinates too
   std::string Summary;
 };
 

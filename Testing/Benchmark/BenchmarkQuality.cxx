@@ -5,17 +5,13 @@
 //   memory-tautline, memory-verdict   one filter, once; peak memory in bytes per element
 
 #include "../../Filters/Quality/MeshAdapter.h"
-#include "../Cxx/Blocks.h"
 #include "../Cxx/VtkMeshes.h"
+#include "Clocks.h"
+#include "KuhnMesh.h"
 
 #include "vtkElementQuality.h"
 #include "vtkMeshQuality.h"
 
-#include <malloc.h>
-
-#include <chrono>
-#include <ctime>
-#include <fstream>
 #include <iostream>
 #include <limits>
 
@@ -27,7 +23,6 @@ namespace
 /// point moved by up to a tenth of an edge.
 MeshData makeMesh(CellType type, Index n)
 {
-  const Index m = n + 1;
   MeshData data = blockMesh(CellType::Hexahedron, n, n, n);
   std::mt19937 random(1);
   data.transform(
@@ -43,22 +38,7 @@ MeshData makeMesh(CellType type, Index n)
   {
     return data;
   }
-  const std::vector<Index> cubes = std::move(data.connectivity);
-  data.types.clear();
-  data.offsets = { 0 };
-  data.connectivity.clear();
-  const Index step[3] = { 1, m, m * m };
-  for (std::size_t cube = 0; cube < cubes.size(); cube += 8)
-  {
-    const Index a = cubes[cube], d = a + step[0] + step[1] + step[2];
-    for (int i = 0; i < 3; ++i)
-    {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      data.addCell(CellType::Tetrahedron, { a, a + step[i], a + step[i] + step[j], d });
-      data.addCell(CellType::Tetrahedron, { a, a + step[i] + step[k], a + step[i], d });
-    }
-  }
-  return data;
+  return cutIntoTetrahedra(std::move(data), n);
 }
 
 /// The memory floor: read every element's coordinates, add something to its vertices' gradient.
@@ -116,19 +96,6 @@ double plainInverseMeanRatio(const MeshData& mesh, double* gradient)
     }
   }
   return sum;
-}
-
-double wallTime()
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// What this thread has computed for; on a busy machine less than the time that passed.
-double threadTime()
-{
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 /// Tasks that take turns, so that all of them see the same machine; the best time of each counts.
@@ -309,21 +276,6 @@ void filterPart(Index n, int repeats)
   std::cout << "difference from vtkMeshQuality\t" << difference << '\n';
 }
 
-/// A line of /proc/self/status in bytes.
-double statusBytes(const std::string& key)
-{
-  std::ifstream status("/proc/self/status");
-  std::string line;
-  while (std::getline(status, line))
-  {
-    if (line.compare(0, key.size() + 1, key + ":") == 0)
-    {
-      return 1024.0 * std::stod(line.substr(key.size() + 1));
-    }
-  }
-  return 0;
-}
-
 void memoryPart(Index n, bool verdict)
 {
   const auto grid = toGrid(makeMesh(CellType::Tetrahedron, n));
@@ -331,8 +283,7 @@ void memoryPart(Index n, bool verdict)
   // A small mesh first: libraries load, thread pools start.
   const auto warm = toGrid(makeMesh(CellType::Tetrahedron, 2));
   verdict ? verdictFilter(warm)->Update() : tautlineFilter(warm)->Update();
-  malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5\n"; // the peak starts again from here
+  resetPeakMemory();
   const double before = statusBytes("VmRSS");
   if (verdict)
   {

@@ -1,9 +1,10 @@
-"""run.py --build DIR [--size N] [--repeats N] [--output DIR]: runs the benchmarks and reports ratios.
+"""run.py --build DIR [--only PART] [--repeats N] [--output DIR]: runs the benchmarks and reports ratios.
 
-Every time is the best of several turns, in nanoseconds per element, and every ratio is between times of
-one run. Single-thread times are CPU time; those of the thread speed-up are wall time. Prints a table;
-writes benchmark.json (times and ratios) and benchmark.csv (the same, one per line) to the output
-directory, by default DIR/benchmark.
+Every time is the best of several turns, and every ratio is between times of one run. Single-thread times
+are CPU time; those of the thread speed-up are wall time. Prints tables; writes benchmark.json (times in
+nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
+elements and optimization.json and .csv of the optimizer (see optimization.py) to the output directory,
+by default DIR/benchmark.
 """
 
 import argparse
@@ -12,6 +13,8 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+
+import optimization
 
 KERNEL, FILTER, MEMORY = "kernel", "filter", ("memory-tautline", "memory-verdict")
 
@@ -77,31 +80,59 @@ def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None
         print(f"{key:54}{times[key]:10.0e}")
 
 
-def save(directory: Path, times: dict[str, float], summary: list[tuple[str, float, str]]) -> None:
+def show_table(rows: list[tuple[str, float, str]]) -> None:
+    print(f"\n{'passes of one thread, unless said otherwise':66}{'':>12}{'aim':>12}")
+    for what, number, aim in rows:
+        print(f"{what:66}{number:12.5g}{aim:>12}")
+    print(f"{optimization.misses(rows)} aims missed")
+
+
+def save(directory: Path, name: str, times: dict[str, float], ratios: dict[str, float]) -> None:
     directory.mkdir(parents=True, exist_ok=True)
-    content = {"measured": times, "ratios": {what.strip(): number for what, number, _ in summary}}
-    (directory / "benchmark.json").write_text(json.dumps(content, indent=2) + "\n")
-    with open(directory / "benchmark.csv", "w", newline="") as file:
+    content = {"measured": times, "ratios": ratios}
+    (directory / f"{name}.json").write_text(json.dumps(content, indent=2) + "\n")
+    with open(directory / f"{name}.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("table", "name", "value"))
-        writer.writerows((table, name, v) for table, rows in content.items() for name, v in rows.items())
-    print(f"\nwrote {directory}/benchmark.json and .csv")
+        writer.writerows((table, key, v) for table, rows in content.items() for key, v in rows.items())
+    print(f"\nwrote {directory}/{name}.json and .csv")
+
+
+def run_quality(build: Path, output: Path, size: int, repeats: int) -> None:
+    times: dict[str, float] = {}
+    for part in (KERNEL, FILTER, *MEMORY):
+        times |= measure(build / "bin" / "BenchmarkQuality", part, size, repeats)
+    summary = ratios(times)
+    show(times, summary)
+    save(output, "benchmark", times, {what.strip(): number for what, number, _ in summary})
+
+
+def run_optimization(build: Path, output: Path, repeats: int, quick: bool, huge: bool) -> None:
+    program = build / "bin" / "BenchmarkOptimization"
+    times, rows = optimization.run(program, output, repeats, quick, huge)
+    show_table(rows)
+    mesh, table = "", {}
+    for what, number, _ in rows:
+        mesh = mesh if what.startswith(" ") else what.split(":")[0]
+        table[f"{mesh}: {what.strip()}" if what.startswith(" ") else what] = number
+    save(output, "optimization", times, table)
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parser.add_argument("--size", type=int, default=55, help="cubes along an edge; 6 tetrahedra each")
-    parser.add_argument("--repeats", type=int, default=9, help="turns of which the best counts")
-    parser.add_argument("--output", type=Path, help="where benchmark.json and .csv go")
+    parser.add_argument("--only", choices=("quality", "optimization"), help="one part; both otherwise")
+    parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
+    parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer 3")
+    parser.add_argument("--quick", action="store_true", help="optimization: tiny meshes only")
+    parser.add_argument("--huge", action="store_true", help="optimization: also 10,000,000 tetrahedra")
+    parser.add_argument("--output", type=Path, help="where the results go")
     options = parser.parse_args()
-    program = options.build / "bin" / "BenchmarkQuality"
-    times: dict[str, float] = {}
-    for part in (KERNEL, FILTER, *MEMORY):
-        times |= measure(program, part, options.size, options.repeats)
-    summary = ratios(times)
-    show(times, summary)
-    save(options.output or options.build / "benchmark", times, summary)
+    output = options.output or options.build / "benchmark"
+    if options.only != "optimization":
+        run_quality(options.build, output, options.size, options.repeats or 9)
+    if options.only != "quality":
+        run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
     return 0
 
 

@@ -8,24 +8,53 @@ import sys
 from pathlib import Path
 
 
-def main(build: Path, output: Path) -> int:
-    subprocess.run(["cmake", "--build", str(build), "--target", "benchmarks"], check=True)
-    script = Path(__file__).with_name("run.py")
-    run = [sys.executable, str(script), "--build", str(build), "--output", str(output)]
-    subprocess.run([*run, "--size", "4", "--repeats", "1"], check=True)
-
-    content = json.loads((output / "benchmark.json").read_text())
+def read(output: Path, name: str) -> tuple[dict[str, float], dict[str, float]]:
+    """Both tables, after a look at the numbers and at the other file that has them."""
+    content = json.loads((output / f"{name}.json").read_text())
     measured, ratios = content["measured"], content["ratios"]
+    assert all(math.isfinite(x) for x in (*measured.values(), *ratios.values())), content
+    with open(output / f"{name}.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["name"]: float(row["value"]) for row in rows} == measured | ratios
+    return measured, ratios
+
+
+def check_quality(output: Path) -> None:
+    measured, ratios = read(output, "benchmark")
     assert measured["elements tetrahedra"] == 6 * 4**3, measured
     assert measured["elements hexahedra"] == 4**3, measured
-    assert all(math.isfinite(x) for x in (*measured.values(), *ratios.values())), content
     assert ratios and all(measured[key] > 0 for key in measured if key.endswith((" value", " gradient")))
     # The one thing about the numbers that is the same on every machine: they time the same quantity.
     assert measured["difference from the plain loop"] < 1e-12, measured
     assert measured["difference from vtkMeshQuality"] < 1e-12, measured
-    with open(output / "benchmark.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert {row["name"]: float(row["value"]) for row in rows} == measured | ratios
+
+
+def check_optimization(output: Path) -> None:
+    measured, ratios = read(output, "optimization")
+    passes = [key for key in measured if key.endswith(" passes")]
+    assert len(passes) >= 10 and all(measured[key] > 0 for key in passes), measured
+    assert measured["memory: elements"] == 6 * 4**3, measured
+    # What was reached does not depend on the machine.
+    shape = "shape disk2d-perturbed: "
+    assert measured[shape + "95 % reduction"] >= 0.95, measured
+    assert measured[shape + "close / best"] <= 1.0001, measured
+    assert measured[shape + "best sum"] <= measured[shape + "best shape sum"] < measured[shape + "before sum"]
+    for mesh in ("disk3d-tangled", "disk2d-tangled", "disk3d-scattered"):
+        assert measured[f"untangle {mesh}: inverted before"] > 0, measured
+        assert measured[f"untangle {mesh}: inverted left"] == 0, measured
+        assert measured[f"converge {mesh}: inverted left"] == 0, measured
+    for method in ("conjugate gradient", "Newton"):
+        assert measured[f"sweeps disk2d-perturbed: {method} sweeps"] == 10, measured
+
+
+def main(build: Path, output: Path) -> int:
+    subprocess.run(["cmake", "--build", str(build), "--target", "benchmarks"], check=True)
+    script = Path(__file__).with_name("run.py")
+    run = [sys.executable, str(script), "--build", str(build), "--output", str(output)]
+    subprocess.run([*run, "--size", "4", "--repeats", "1", "--quick", "--huge"], check=True)
+
+    check_quality(output)
+    check_optimization(output)
     return 0
 
 

@@ -15,6 +15,8 @@
 #include "vtkSelectionNode.h"
 #include "vtkTable.h"
 
+#include <limits>
+
 using namespace tautline;
 
 namespace
@@ -193,6 +195,17 @@ void testInputs()
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
   TAUTLINE_CHECK(!contains(filter->GetSummary(), "reversed"));
 
+  // A corner that is NaN: its elements cannot be valid, the rest is.
+  MeshData broken = tangled(CellType::Triangle, 8, 0.05);
+  broken.points[0] = std::numeric_limits<double>::quiet_NaN();
+  filter->SetInputData(toGrid(broken));
+  filter->Update();
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "2 elements are not valid"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "NaN or infinite"));
+  TAUTLINE_CHECK(messages.has("2 elements are not valid"));
+  TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Obstacle", 0), 4);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+
   const MeshData data = tangled(CellType::Tetrahedron, 4, 0.05);
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, toGrid(data, VTK_FLOAT));
@@ -208,6 +221,38 @@ void testInputs()
   }
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
   TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 2: All elements are valid"));
+}
+
+/// A part, then all of the inner points anywhere: valid, or each element left has its reason.
+void testRandom()
+{
+  for (CellType type : { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron })
+  {
+    const bool flat = topology(type).dimension == 2;
+    const Index n = flat ? 12 : 5;
+    for (double part : { 0.3, 0.6, 1.0 })
+    {
+      const Context context(std::string(topology(type).name) + " " + std::to_string(part));
+      MeshData data = blockMesh(type, n, n, flat ? 0 : n);
+      const auto boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+      Random random(4);
+      for (Index i = 0; i < data.numberOfPoints(); ++i)
+      {
+        if (!boundary[i] && random.uniform(0, 1) < part)
+        {
+          const Vec3 p = random.vector(0, double(n));
+          data.setPoint(i, { p[0], p[1], flat ? 0 : p[2] });
+        }
+      }
+      vtkNew<vtkMeshUntangler> filter;
+      Messages messages(filter);
+      filter->SetInputData(toGrid(data));
+      filter->Update();
+      TAUTLINE_CHECK(!contains(filter->GetSummary(), "reversed"));
+      TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+      TAUTLINE_CHECK_EQUAL(invalidOf(withPointsOf(data, meshOf(filter))), 0);
+    }
+  }
 }
 
 void testStops()
@@ -243,6 +288,7 @@ int TestMeshUntangler(int, char*[])
   testValid();
   testImpossible();
   testInputs();
+  testRandom();
   testStops();
   return exitCode();
 }

@@ -110,6 +110,38 @@ void testOrientation(CellType type)
   }
 }
 
+//------------------------------------------------------------------------------
+/// Inner points mirrored: most cells are inverted, yet the boundary tells which side is inside.
+void testMostlyInverted()
+{
+  for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
+  {
+    const Index n = type == CellType::Triangle ? 8 : 10;
+    MeshData data = blockMesh(type, n, n, type == CellType::Triangle ? 0 : n);
+    const Boundary boundary = Mesh(data.view()).boundary();
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      if (!boundary.isBoundaryPoint[i])
+      {
+        data.setPoint(i, Vec3{ double(n) - data.point(i)[0], data.point(i)[1], data.point(i)[2] });
+      }
+    }
+    Orientation o = orientationOf(Mesh(data.view()));
+    TAUTLINE_CHECK(o.negativeCells > o.positiveCells);
+    TAUTLINE_CHECK_EQUAL(o.state, Orientation::Consistent);
+    for (Index i = 0; i < data.numberOfCells(); ++i)
+    {
+      flip(data, i);
+    }
+    Mesh reversed(data.view());
+    o = orientationOf(reversed);
+    TAUTLINE_CHECK(o.negativeCells < o.positiveCells);
+    TAUTLINE_CHECK_EQUAL(o.state, Orientation::Reversed);
+    reversed.setMirrored(true);
+    TAUTLINE_CHECK_EQUAL(orientationOf(reversed).state, Orientation::Consistent);
+  }
+}
+
 void testSurfaceOrientation()
 {
   MeshData curved = box(CellType::Triangle);
@@ -149,6 +181,7 @@ int TestOrientation(int, char*[])
     const Context context(topology(type).name);
     testOrientation(type);
   }
+  testMostlyInverted();
   testSurfaceOrientation();
   return exitCode();
 }

@@ -234,7 +234,8 @@ def _set_method(filter_: Any, preset: str | None, custom: dict[str, Any], target
 
 
 def _add_objective(filter_: Any, objective: Any, targets: list[str]) -> None:
-    name, facts = (objective, {}) if isinstance(objective, str) else tuple(objective)
+    pair = (objective, {}) if isinstance(objective, str) else objective
+    name, facts = pair if isinstance(pair, (tuple, list)) and len(pair) == 2 else (None, None)
     if not isinstance(name, str) or not isinstance(facts, dict):
         raise Error(f"an objective is the name of a metric or (name, dict), not {objective!r}")
     unknown = set(facts) - {"template", "weight", "target"}

@@ -1,4 +1,4 @@
-"""The main job in one script: measure a mesh, colour it by quality, write mesh, table and picture.
+"""The main job in one script: measure a mesh, make it valid and better, write meshes, table and pictures by quality.
 
 usage: pvpython demo.py OUTPUT_DIRECTORY [MESH]
 
@@ -43,6 +43,15 @@ def measure(mesh: Path, output: Path) -> list[Path]:
     tautline.write(result, written[0])
     written[1].write_text(_tables.csv_text(_tables.quality_rows(result)))
     return written
+
+
+def improve(mesh: Path, output: Path) -> Path:
+    """Untangle and optimise with the Python verbs; print what they say, write the mesh."""
+    valid = tautline.untangle(mesh)
+    better = tautline.optimize(valid)
+    print(f"{valid.summary}\n{better.summary}\n")
+    tautline.write(better, output / "better.vtu")
+    return output / "better.vtu"
 
 
 def show(proxy, view, **options):
@@ -110,11 +119,14 @@ def picture(mesh: Path, file: Path) -> None:
 
 
 def main(mesh: Path | None, output: Path) -> None:
-    """Write quality.vtu, quality.csv and quality.png of a mesh to a directory."""
+    """Write quality.vtu, quality.csv and quality.png of a mesh to a directory, better.vtu and better.png of the improved one."""
     output.mkdir(parents=True, exist_ok=True)
     mesh = mesh or start(output)
     written = [*measure(mesh, output), output / "quality.png"]
     picture(mesh, written[-1])
+    better = improve(mesh, output)
+    written += [better, output / "better.png"]
+    picture(better, written[-1])
     print("\n".join(map(str, written)))
 
 

@@ -2,6 +2,7 @@
 #include <vtkCellTypeSource.h>
 #include <vtkDataSet.h>
 #include <vtkElementQuality.h>
+#include <vtkMeshOptimizer.h>
 #include <vtkNew.h>
 
 #include <cstdlib>
@@ -18,5 +19,10 @@ int main()
   auto* mesh = vtkDataSet::SafeDownCast(quality->GetOutputDataObject(0));
   const vtkIdType cells = mesh ? mesh->GetNumberOfCells() : 0;
   std::cout << "measured " << cells << " tetrahedra\n";
-  return cells > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+
+  vtkNew<vtkMeshOptimizer> optimizer;
+  optimizer->SetInputConnection(quality->GetOutputPort());
+  optimizer->Update();
+  std::cout << optimizer->GetSummary() << "\n";
+  return cells > 0 && optimizer->GetStopReason() >= 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,0 +1,198 @@
+"""The verbs optimize and untangle, and their commands; untangles every mesh in ../shared/data/tangled, if it is there."""
+
+import csv
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import tautline as tl
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
+
+DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
+BRACKET, TANGLED, PLATE = DATA / "bracket.vtu", DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
+SHARED = DATA.parent.parent / "shared" / "data" / "tangled"
+
+
+def refused(text, verb, *arguments, **options):
+    try:
+        verb(*arguments, **options)
+    except tl.Error as error:
+        assert text in str(error), error
+    else:
+        raise AssertionError(f"nothing raised, expected {text!r}")
+
+
+def points(mesh):
+    return vtk_to_numpy(mesh.GetPoints().GetData())
+
+
+def test_optimize():
+    mesh = tl.read(BRACKET)
+    before = tl.quality(mesh).values["imr"]
+    result = tl.optimize(mesh)
+    after = tl.quality(result).values["imr"]
+    facts = result.statistics["imr"]
+    assert np.isclose(facts["mean_before"], before.mean()) and np.isclose(facts["mean_after"], after.mean())
+    assert facts["worst_before"] == before.max() and facts["worst_after"] == after.max()
+    assert facts["label"] == "Inverse mean ratio" and facts["inverted_after"] == 0 and "rms_after" in facts
+    history = result.history
+    assert np.isclose(history["objective"][0], (before**2).sum())
+    assert np.isclose(history["objective"][-1], (after**2).sum())
+    assert (history["iteration"] == np.arange(result.iterations + 1)).all()
+    assert np.isclose(history["imr_mean"][-1], after.mean()) and np.isclose(history["imr_worst"][-1], after.max())
+    assert (history["inverted"] == 0).all() and (np.diff(history["seconds"]) >= 0).all()
+    assert {"moving", "gradient_norm"} < set(history)
+    assert (after**2).sum() < 0.8 * (before**2).sum()
+    assert result.inverted_before == result.inverted == 0 and (result.validity == 1).all()
+    assert (result.displacement == points(result.mesh) - points(mesh)).all() and "Converged" in result.reason
+    assert result.free == np.any(tl.perturb(mesh, percentage=100).displacement, axis=1).sum()
+    one, two = (tl.optimize(mesh, threads=threads) for threads in (1, 2))
+    assert (points(one.mesh) == points(two.mesh)).all()
+    assert mesh.GetPointData().GetArray("Displacement") is None
+
+
+def test_objectives():
+    result = tl.optimize(
+        PLATE,
+        ["imr", ("size", {"template": "sum of squares", "weight": 2})],
+        scalarization="weighted sum",
+        optimizer="l-bfgs",
+        maximum_iterations=5,
+    )
+    assert list(result.statistics) == ["imr", "size"] and result.iterations <= 5
+    history = result.history
+    assert np.allclose(history["objective"], history["imr_objective"] + 2 * history["size_objective"])
+    by_preset = tl.optimize(PLATE, preset="fast clean-up")
+    assert by_preset.iterations < tl.optimize(PLATE).iterations and "reduction" in by_preset.reason
+    # a reference is what the mesh goes back to
+    moved = tl.perturb(PLATE, percentage=100, fraction=0.6)
+    shape = ("mu_shape_size_orientation_nb", {"template": "sum"})
+    back = tl.optimize(moved, [shape], reference=PLATE, relative_change=1e-12, optimizer="newton-cg")
+    away, rest = (np.abs(points(m) - points(tl.read(PLATE))).max() for m in (moved.mesh, back.mesh))
+    assert rest < 1e-3 * away, (away, rest)
+    sized = tl.optimize(moved, ["mu_size"], size=tl.quality(PLATE, "size").values["size"])
+    assert sized.statistics["mu_size"]["mean_after"] < 0.1 * sized.statistics["mu_size"]["mean_before"]
+    assert sized.mesh.GetCellData().GetArray("given size") is None
+    kept = tl.optimize(moved, preset="preserve shape", reference=PLATE)
+    assert kept.statistics["imr"]["mean_after"] < 1.001
+
+
+def test_points_that_stay():
+    mesh = tl.read(PLATE)
+    fixed = np.zeros(mesh.GetNumberOfPoints())
+    fixed[points(mesh)[:, 0] > points(mesh)[:, 0].mean()] = 1
+    result = tl.optimize(mesh, fixed=fixed)
+    assert not result.displacement[fixed == 1].any() and result.displacement[fixed == 0].any()
+    assert result.mesh.GetPointData().GetArray("given fixed") is None
+    limited = tl.optimize(mesh, limits=1e-3)
+    assert 0 < np.linalg.norm(limited.displacement, axis=1).max() <= 1e-3 * (1 + 1e-9)
+    limited = tl.optimize(mesh, limits=np.where(fixed == 1, 0.0, 1e-3))
+    assert not limited.displacement[fixed == 1].any()
+    free = tl.optimize(mesh, boundary="sliding").free
+    assert tl.optimize(mesh).free < free < tl.optimize(mesh, boundary="free").free == len(fixed)
+    weights = np.zeros(mesh.GetNumberOfCells())
+    weights[0] = 1
+    weighted = tl.optimize(mesh, element_weights=weights)
+    assert 0 < np.any(weighted.displacement, axis=1).sum() <= 4
+
+
+def test_blocks_and_arrays():
+    mesh = tl.read(PLATE)
+    blocks = vtkMultiBlockDataSet()
+    for i in range(2):
+        blocks.SetBlock(i, mesh)
+    single, both = tl.optimize(mesh), tl.optimize(blocks)
+    assert (both.displacement == np.concatenate([single.displacement] * 2)).all()
+    assert list(both.statistics) == ["block 1 imr", "block 2 imr"]
+    assert both.history["iteration"].tolist() == single.history["iteration"].tolist() * 2
+    assert set(both.history["block"]) == {"block 1", "block 2"}
+    square = [[0, 0], [1, 0], [1, 1], [0, 1], [0.7, 0.8]]
+    result = tl.optimize((square, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]))
+    assert np.allclose(points(result.mesh)[4], [0.5, 0.5, 0], atol=1e-2)
+
+
+def test_refused():
+    for text, options in (
+        ("no metric 'nope'", {"objectives": ["nope"]}),
+        ("template is 'x'", {"objectives": [("imr", {"template": "x"})]}),
+        ("there is no 'power'", {"objectives": [("imr", {"power": 2})]}),
+        ("weight is -1", {"objectives": [("imr", {"weight": -1})]}),
+        ("'reference' is not given", {"objectives": [("imr", {"target": "reference"})]}),
+        ("no objective", {"objectives": []}),
+        ("not 5", {"objectives": [5]}),
+        ("preset is 'best'", {"preset": "best"}),
+        ("decides on objectives", {"preset": "best shape", "objectives": ["imr"]}),
+        ("needs a reference", {"preset": "preserve shape"}),
+        ("scalarization is 'x'", {"scalarization": "x"}),
+        ("optimizer is 'x'", {"optimizer": "x"}),
+        ("no option 'speed'", {"speed": 1}),
+        ("maximum_iterations is -1", {"maximum_iterations": -1}),
+        ("boundary is 'x'", {"boundary": "x"}),
+        ("time_limit is -1", {"time_limit": -1}),
+        ("each of the 1190 points", {"fixed": [1]}),
+        ("each of the 1913 cells", {"element_weights": [1]}),
+        ("no point array 'x'", {"fixed": "x"}),
+    ):
+        refused(text, tl.optimize, PLATE, **options)
+    image = vtkImageData()
+    image.SetDimensions(3, 3, 3)
+    refused("implicit", tl.optimize, image)
+    refused("implicit", tl.untangle, image)
+    refused("effort is 'x'", tl.untangle, PLATE, "x")
+    refused("there is no such file", tl.untangle, "absent.vtu")
+
+
+def test_untangle():
+    result = tl.untangle(TANGLED)
+    assert result.inverted_before == 41 and result.inverted == result.impossible == 0
+    assert tl.quality(result).inverted == 0 and not result.obstacle.any() and (result.validity == 1).all()
+    assert result.history["inverted"][0] == 41 and result.history["inverted"][-1] == 0
+    assert result.summary == "All elements are valid; 41 were not." and "valid" in result.reason
+    worst = tl.optimize(TANGLED)
+    assert worst.inverted_before == 41 and worst.inverted == 0 and "untangled first" in worst.summary
+    refused("untangle first", tl.optimize, TANGLED, untangle_first=False)
+    stuck = tl.untangle(TANGLED, fixed=np.ones(2343))
+    assert stuck.inverted == stuck.impossible == 41 and (np.unique(stuck.obstacle) == [0, 2]).all()
+    assert "all its points are fixed" in stuck.summary and "Element " in stuck.summary
+    inverted = np.flatnonzero(tl.quality(TANGLED).validity == -1)
+    assert (np.flatnonzero(stuck.obstacle) == inverted).all() and f"Element {inverted[0]} at (" in stuck.summary
+
+
+def test_commands():
+    def run(*arguments, code=0):
+        command = [sys.executable, "-m", "tautline", *map(str, arguments)]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == code, (arguments, done.returncode, done.stdout, done.stderr)
+        return done.stdout + done.stderr
+
+    mesh, table = OUT / "cli-optimized.vtu", OUT / "cli-optimized.csv"
+    options = ("--objective", "imr", "--objective", "size,weight=2", "--scalarization", "weighted sum")
+    text = run("optimize", PLATE, "-o", mesh, "--csv", table, *options, "--iterations", 3)
+    expected = tl.optimize(PLATE, ["imr", ("size", {"weight": 2})], scalarization="weighted sum", maximum_iterations=3)
+    assert (points(tl.read(mesh)) == points(expected.mesh)).all()
+    with open(table, newline="") as lines:
+        rows = list(csv.DictReader(lines))
+    assert [float(row["objective"]) for row in rows] == expected.history["objective"].tolist()
+    assert "Inverse mean ratio: mean" in text and str(mesh) in text
+    assert "All elements are valid; 41 were not." in run("untangle", TANGLED, "-o", mesh)
+    assert "no metric 'nope'" in run("optimize", PLATE, "-o", mesh, "--objective", "nope", code=1)
+    assert "is not KEY=VALUE" in run("optimize", PLATE, "-o", mesh, "--objective", "imr,x", code=2)
+    assert "invalid choice: 'x'" in run("untangle", PLATE, "-o", mesh, "--effort", "x", code=2)
+
+
+def test_tangled_meshes():
+    files = sorted(SHARED.glob("*.vtk"))
+    if not files:
+        print(f"skipped: there are no meshes in {SHARED}")
+    for file in files:
+        result = tl.untangle(file)
+        assert result.inverted_before > 0 == result.inverted == tl.quality(result).inverted, (file, result.summary)
+        print(f"{file.name}: {result.inverted_before} inverted, now none")
+
+
+for name, test in list(globals().items()):
+    if name.startswith("test_"):
+        test()
