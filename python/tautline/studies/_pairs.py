@@ -76,16 +76,13 @@ def experiment(goals: Goals, given: argparse.Namespace, report: Report) -> Outco
     patch = dict(patch_iterations=given.patch_iterations)
     report.text(
         f"{first}: {mesh.GetNumberOfCells():,} elements, {mesh.GetNumberOfPoints():,} vertices, half of the interior "
-        "ones "
-        f"perturbed by up to {PERTURBATION:g} of the distance to inversion, boundary fixed.\n"
+        f"ones perturbed by up to {PERTURBATION:g} of the distance to inversion, boundary fixed.\n"
         f"Unit of length: that in which {goals.unit[0]} starts at {goals.unit[1]:g} as in the dissertation (the "
-        "exponential and "
-        f"the equal sum depend on it). c = {TYPICAL_C:g}.\n"
+        f"exponential and the equal sum depend on it). c = {TYPICAL_C:g}.\n"
         f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and sweep; an iteration "
-        "is a sweep "
-        "over all vertices. Beside it Local Newton (over-relaxed, one step). Times are CPU seconds of "
-        f"{given.threads or 'all'} "
-        "thread(s), set-up included; the dissertation's were measured on a Core2 Duo T7500 at 2.2 GHz."
+        "is a sweep over all vertices. Beside it Local Newton (over-relaxed, one step). Times are CPU seconds of "
+        f"{given.threads or 'all'} thread(s), set-up included; the dissertation's were measured on a Core2 Duo T7500 "
+        "at 2.2 GHz."
     )
     nlcg = {m.name: improve(mesh, m, given.iterations, quantities, **common, **patch) for m in every}
     newton = {m.name: improve(mesh, m, given.iterations, quantities, optimizer="newton", **common) for m in every}

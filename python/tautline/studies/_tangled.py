@@ -16,10 +16,8 @@ BETA = 0.01
 LABELS = {"si": "SI", "size": "size", "untangle_beta": "untangling"}
 NOTE = (
     "Objectives: sum of 1 / SI over the elements valid at the start of an iteration, sum of the squared untangling "
-    "metric "
-    f"(3.3) with beta = {BETA:g} of the mean size. (The dissertation's sum of 1 / SI includes inverted elements, "
-    "whose terms "
-    "are negative.) Steps may invert elements, as with the metrics without a barrier there."
+    f"metric (3.3) with beta = {BETA:g} of the mean size. (The dissertation's sum of 1 / SI includes inverted "
+    "elements, whose terms are negative.) Steps may invert elements, as with the metrics without a barrier there."
 )
 #: A weight that leaves the untangling metric without effect: an optimizer is only given tangled meshes with it.
 _NEGLIGIBLE = 1e-30
@@ -118,8 +116,8 @@ def by_unit(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterati
     title = f"In other units of length, {iterations} iterations: when all are valid, how many are not at the end"
     report.table("units", title, ["mean size", "method", "valid after", "inverted", "worst SI"], rows)
     report.text(
-        "Rows repeat where the largest value of the untangling metric is below that of the other metrics: the optimizer then "
-        "rescales it as section 3.3.3 says, which takes the unit out."
+        "Rows repeat where the largest value of the untangling metric is below that of the other metrics: the "
+        "optimizer then rescales it as section 3.3.3 says, which takes the unit out."
     )
 
 

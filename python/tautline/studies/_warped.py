@@ -20,8 +20,7 @@ QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")
 MULTI = ("exponential-sum", "objective-product", "equal-sum")
 ABOUT = (
     "Only the boundary's motion is given; the vertices inside follow harmonically (linear finite elements on the "
-    "initial mesh, "
-    "solved by conjugate gradients), which is what one step of FEMWARP does."
+    "initial mesh, solved by conjugate gradients), which is what one step of FEMWARP does."
 )
 UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)  # mean sizes of the elements
 _TOLERANCE = 1e-10  # of the residual of the harmonic extension
@@ -100,11 +99,11 @@ def experiment(report: Report, mesh: vtkDataSet, motion: str, iterations: int, s
     mesh = scaled(mesh, mean ** (-1.0 / (cells_of(mesh).shape[1] - 1)))
     wrong = np.count_nonzero(sizes_of(mesh) <= 0)
     report.text(
-        f"{mesh.GetNumberOfCells():,} elements, {wrong} inverted by {motion}. {ABOUT}\n{NOTE}\n"
+        f"{mesh.GetNumberOfCells():,} elements, {wrong} inverted by {motion}. {ABOUT}\n"
+        f"{NOTE}\n"
         f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
-        f"{TYPICAL_C:g}. "
-        "Unit of length: elements have the mean size 1 (the dissertation names no unit; exponential and equal sum "
-        "depend on it)."
+        f"{TYPICAL_C:g}. Unit of length: elements have the mean size 1 (the dissertation names no unit; exponential "
+        "and equal sum depend on it)."
     )
     common = dict(threads=given.threads)
     every = tangled_methods("si", "untangle_beta")

@@ -17,8 +17,7 @@ def main(arguments: list[str]) -> int:
     report = Report("bore", "Bore in space (section 3.5.2)", given.out)
     report.text(
         "The dissertation's meshes are those of other authors. This one is the project's domain `bore`, a block with "
-        "a bore that "
-        "widens in the middle. Condition numbers (Table 3.9) are not part of this study."
+        "a bore that widens in the middle. Condition numbers (Table 3.9) are not part of this study."
     )
     initial = tautline.domain("bore", 3_000 if given.small else CELLS)
     motion = harmonic(initial, of_points(initial, "Displacement"))

@@ -41,10 +41,8 @@ def main(arguments: list[str]) -> int:
     report = Report("hydrocephalus", "Hydrocephalus in the plane (section 3.5.1)", given.out)
     report.text(
         "The dissertation's brain comes from segmented images, which are not published. This one is the project's "
-        "parametric "
-        "domain `brain`: an outline with two ventricles that shrink, more in width than in height, as after "
-        "treatment, and that "
-        "are displaced sideways as far as it takes to invert elements."
+        "parametric domain `brain`: an outline with two ventricles that shrink, more in width than in height, as "
+        "after treatment, and that are displaced sideways as far as it takes to invert elements."
     )
     initial = tautline.domain("brain", 1_500 if given.small else CELLS)
     ventricles = (of_points(initial, "BoundaryMarker") >= FIRST_VENTRICLE) & (of_points(initial, "Fixed") != 0)

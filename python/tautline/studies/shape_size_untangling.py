@@ -32,11 +32,10 @@ def main(arguments: list[str]) -> int:
     mesh = tangled("disk3d", cells, INVERTED_3D / CELLS_3D)
     mesh = scaled(mesh, (SIZE_RMS / measure(mesh, ["size_rms"])["size_rms"]) ** (1.0 / 3.0))
     report.text(
-        f"disk3d: {mesh.GetNumberOfCells():,} elements. {NOTE}\nLocal Polak-Ribiere conjugate gradients, "
-        f"{given.patch_iterations} steps per vertex and iteration; c = {TYPICAL_C:g}; unit of length: the size (rms) "
-        f"is {SIZE_RMS:g} "
-        "at the start, about as in Figure 3.10 (b); the untangling metric is then rescaled as section 3.3.3 says. "
-        "Averages are over the valid elements."
+        f"disk3d: {mesh.GetNumberOfCells():,} elements. {NOTE}\n"
+        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
+        f"{TYPICAL_C:g}; unit of length: the size (rms) is {SIZE_RMS:g} at the start, about as in Figure 3.10 (b); "
+        "the untangling metric is then rescaled as section 3.3.3 says. Averages are over the valid elements."
     )
     every = tangled_methods(*OBJECTIVES)
     options = dict(patch_iterations=given.patch_iterations, threads=given.threads)
@@ -84,7 +83,6 @@ def main(arguments: list[str]) -> int:
     report.finding("3.4.4", "Size alone improves shape and size but leaves inverted elements",
                    improves("size") and runs["size"].last("inverted") > 0,
                    f"size alone: inverted {runs['size'].last('inverted'):g}, average SI "
-                   f"{runs['size'].first('si_mean'):.4g} to "
-                   f"{runs['size'].last('si_mean'):.4g}, size {runs['size'].first('size_rms'):.4g} to "
-                   f"{runs['size'].last('size_rms'):.4g}")
+                   f"{runs['size'].first('si_mean'):.4g} to {runs['size'].last('si_mean'):.4g}, size "
+                   f"{runs['size'].first('size_rms'):.4g} to {runs['size'].last('size_rms'):.4g}")
     return report.finish()

@@ -92,13 +92,12 @@ def main(arguments: list[str]) -> int:
     flat = tangled("barrier2d", 3_000 if given.small else CELLS_2D, 0.01 if given.small else INVERTED_2D)
     solid = tangled("disk3d", 3_000 if given.small else CELLS_3D, 0.0022 if given.small else INVERTED_3D)
     report.text(
-        f"{NOTE}\nLocal Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c "
-        f"= {TYPICAL_C:g}; "
-        f"unit of length: the untangling metric is at most {LARGEST_UNTANGLING} at the start.\n"
+        f"{NOTE}\n"
+        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
+        f"{TYPICAL_C:g}; unit of length: the untangling metric is at most {LARGEST_UNTANGLING} at the start.\n"
         "The dissertation speaks of 1 % of about 1,000,000 elements, its tables of 543 and of 111 inverted ones, and "
-        "of the mesh "
-        "with 111 as one of about 50,000: the tables are made with the latter numbers (543 are 1 % of 54,300), and "
-        "a mesh of 1,000,000 triangles with 1 % inverted follows."
+        "of the mesh with 111 as one of about 50,000: the tables are made with the latter numbers (543 are 1 % of "
+        "54,300), and a mesh of 1,000,000 triangles with 1 % inverted follows."
     )
     shown = (1, ITERATIONS_3_4[-1])
     runs2 = {m.name: untangle(flat, m, ITERATIONS_3_4[-1], QUANTITIES, keep=shown, **common) for m in every}

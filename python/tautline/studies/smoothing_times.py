@@ -74,19 +74,14 @@ def main(arguments: list[str]) -> int:
     report = Report("smoothing_times", "Smoothing times and angles (section 2.4, Tables 2.6 and 2.7)", given.out)
     report.text(
         f"Each metric is smoothed to {100 * REDUCTION:g} % of the possible reduction of its objective, whose best "
-        "value is that of "
-        "a converged run (L-BFGS after Local Newton sweeps, relative change 1e-5). Sum of squares of IMR and RR, sum "
-        "of squared "
-        "reciprocals of SI and SS; boundary fixed; half of the interior vertices perturbed by up to 0.5 of the "
-        "distance to inversion. "
-        "Local conjugate gradients are Polak-Ribiere's, one step per vertex and sweep (the dissertation: "
-        "Fletcher-Reeves, which with "
-        f"one step is the same). Times are CPU seconds of {given.threads or 'all'} thread(s), set-up included; the "
-        "dissertation's are of an "
-        "Intel Nehalem at 2.66 GHz, 500,000 vertices.\n"
+        "value is that of a converged run (L-BFGS after Local Newton sweeps, relative change 1e-5). Sum of squares "
+        "of IMR and RR, sum of squared reciprocals of SI and SS; boundary fixed; half of the interior vertices "
+        "perturbed by up to 0.5 of the distance to inversion. Local conjugate gradients are Polak-Ribiere's, one "
+        "step per vertex and sweep (the dissertation: Fletcher-Reeves, which with one step is the same). Times are "
+        f"CPU seconds of {given.threads or 'all'} thread(s), set-up included; the dissertation's are of an Intel "
+        "Nehalem at 2.66 GHz, 500,000 vertices.\n"
         "Of a triangle, SI = 1 / (4 sqrt(3) IMR): these two objectives differ by a factor only, and so their results "
-        "are the same; that the "
-        "dissertation's differ must come from where the smoothing stopped."
+        "are the same; that the dissertation's differ must come from where the smoothing stopped."
     )
     seconds, newton, shares, boundary = {}, {}, {}, {}
     for domain in DOMAINS:

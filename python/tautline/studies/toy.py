@@ -47,12 +47,10 @@ def main(arguments: list[str]) -> int:
     runs = runs_of(EDGE, 20 if given.small else CONVERGED, MESQUITE_PATCH_ITERATIONS, 0.0, given.threads)
     report.text(
         f"{tangled.GetNumberOfCells()} triangles; the vertex in the middle is moved {SHIFT:g} edges along its row, "
-        "which inverts "
-        f"two. {NOTE}\nLocal Polak-Ribiere conjugate gradients, {MESQUITE_PATCH_ITERATIONS} steps per vertex and "
-        "iteration; edges "
+        f"which inverts two. {NOTE}\n"
+        f"Local Polak-Ribiere conjugate gradients, {MESQUITE_PATCH_ITERATIONS} steps per vertex and iteration; edges "
         f"of length {EDGE:g}; c of the exponential sum is chosen from the initial values (the typical 1e4 to 1e6 are "
-        "far above "
-        "these objectives, which makes the exponential sum the equal sum)."
+        "far above these objectives, which makes the exponential sum the equal sum)."
     )
     rows = [
         [r.method.label, *(r.at(q, k) for q in ("inverted", "si_mean", "si_worst") for k in (0, 1, CONVERGED))]
