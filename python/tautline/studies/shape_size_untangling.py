@@ -29,7 +29,7 @@ def main(arguments: list[str]) -> int:
     given = made.parse_args(arguments)
     report = Report("shape_size_untangling", "Shape, size and untangling (section 3.4.4)", given.out)
     cells = given.cells or (3_000 if given.small else CELLS_3D)
-    mesh = tangled("disk3d", cells, INVERTED_3D / CELLS_3D)
+    mesh = tangled("disk3d", cells, INVERTED_3D if cells == CELLS_3D else INVERTED_3D / CELLS_3D)
     mesh = scaled(mesh, (SIZE_RMS / measure(mesh, ["size_rms"])["size_rms"]) ** (1.0 / 3.0))
     report.text(
         f"disk3d: {mesh.GetNumberOfCells():,} elements. {NOTE}\n"
