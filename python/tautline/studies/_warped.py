@@ -13,7 +13,7 @@ import tautline
 from tautline._errors import Error
 
 from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, parser
-from ._common import cells_of, points_of, scaled, sizes_of, with_points
+from ._common import cells_of, points_of, sizes_of, with_points
 from ._tangled import NOTE, by_unit, counts, diverged, tangled_methods, untangle
 
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")
@@ -92,18 +92,15 @@ def options(name: str, text: str | None, arguments: Sequence[str]) -> argparse.N
     return made.parse_args(arguments)
 
 
-def experiment(report: Report, mesh: vtkDataSet, motion: str, iterations: int, steps: Sequence[int], theirs: dict,
-               given: argparse.Namespace) -> dict[str, Run]:
-    """Run every method, write tables and curves; motion says what moved."""
-    mean = float(np.mean(np.abs(sizes_of(mesh))))
-    mesh = scaled(mesh, mean ** (-1.0 / (cells_of(mesh).shape[1] - 1)))
+def experiment(report: Report, mesh: vtkDataSet, motion: str, unit: str, iterations: int, steps: Sequence[int],
+               theirs: dict, given: argparse.Namespace) -> dict[str, Run]:
+    """Run every method, write tables and curves; motion says what moved, unit what the unit of length is."""
     wrong = np.count_nonzero(sizes_of(mesh) <= 0)
     report.text(
         f"{mesh.GetNumberOfCells():,} elements, {wrong} inverted by {motion}. {ABOUT}\n"
         f"{NOTE}\n"
         f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
-        f"{TYPICAL_C:g}. Unit of length: elements have the mean size 1 (the dissertation names no unit; exponential "
-        "and equal sum depend on it)."
+        f"{TYPICAL_C:g}. Unit of length: {unit} (the dissertation names none; exponential and equal sum depend on it)."
     )
     common = dict(threads=given.threads)
     every = tangled_methods("si", "untangle_beta")

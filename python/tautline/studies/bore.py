@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 import tautline
 
-from ._common import Report, points_of
+from ._common import Report, points_of, scaled, sizes_of
 from ._tangled import after, untangled_after
 from ._warped import better_worst, experiment, harmonic, of_points, options, warp
 
@@ -22,8 +24,10 @@ def main(arguments: list[str]) -> int:
     initial = tautline.domain("bore", 3_000 if given.small else CELLS)
     motion = harmonic(initial, of_points(initial, "Displacement"))
     mesh, amount = warp(initial, points_of(initial), motion, 5 if given.small else INVERTED, MOST)
+    mesh = scaled(mesh, float(np.mean(np.abs(sizes_of(mesh)))) ** (-1.0 / 3.0))
     iterations = 5 if given.small else STEPS[-1]
-    runs = experiment(report, mesh, f"{amount:.3f} times the motion of the domain", iterations, STEPS, {}, given)
+    motion = f"{amount:.3f} times the motion of the domain"
+    runs = experiment(report, mesh, motion, "elements have the mean size 1", iterations, STEPS, {}, given)
     figures = after(runs)
     report.finding(
         "3.5.2", "SI alone does not eliminate the inverted elements", runs["si"].last("inverted") > 0, figures,
