@@ -27,15 +27,16 @@ STUDIES = {
     "shape_interpolation": (8, ("average", "worst", "average_newton"),
                             {"times": 5, "times_newton": 5, "two_digits": 10, "quality_disk3d": 11, "curves": 210}),
     "shape_untangling": (14, ("meshes", "quality"),
-                         {"table_3_4": 5, "table_3_4_newton": 5, "table_3_5": 6, "quality_barrier2d": 6, "quality_disk3d": 7,
-                          "curves_disk3d": 105}),
+                         {"table_3_4": 5, "table_3_4_newton": 5, "table_3_5": 6, "quality_barrier2d": 6,
+                          "quality_disk3d": 7, "curves_disk3d": 105}),
     "shape_size_untangling": (6, ("average",), {"table_3_6": 6, "table_3_6_newton": 6, "quality": 7, "units": 12}),
-    "hydrocephalus": (8, ("domain", "close_up", "inverted"), {"inverted": 5, "inverted_newton": 5, "quality": 6, "units": 12}),
+    "hydrocephalus": (8, ("domain", "close_up", "inverted"),
+                      {"inverted": 5, "inverted_newton": 5, "quality": 6, "units": 12}),
     "bore": (5, ("inverted",), {"inverted": 5, "inverted_newton": 5, "quality": 6, "units": 12}),
     "smoothing_times": (8, ("angles",),
-                        {"table_2_6": 2, "table_2_6_newton": 2, "table_2_7_wrench": 5, "table_2_7_hinge": 5, "boundary": 8,
-                         "iterations_wrench": 4, "iterations_hinge": 4}),
-}  # fmt: skip
+                        {"table_2_6": 2, "table_2_6_newton": 2, "table_2_7_wrench": 5, "table_2_7_hinge": 5,
+                         "boundary": 8, "iterations_wrench": 4, "iterations_hinge": 4}),
+}
 
 
 def rows_of(study, table):
@@ -93,7 +94,7 @@ def check_toy():
         inverted = [int(float(r["inverted"])) for r in rows_of("toy", "curves") if r["method"] == name]
         assert inverted[0] == 2 and inverted[1] == inverted[-1] == 0, f"{name}: {inverted}"
     worst = {r["method"]: float(r["worst SI end"]) for r in rows_of("toy", "toy")}
-    assert abs(worst["Exponential sum (SI and untangling)"] - 0.125) < 1e-3, "the structured mesh again: right triangles"
+    assert abs(worst["Exponential sum (SI and untangling)"] - 0.125) < 1e-3, "right triangles again"
 
 
 def check_smoothing():
@@ -136,7 +137,7 @@ def check_untangling():
 def check_angles():
     for domain in ("wrench", "hinge"):
         rows = {r["metric"]: [float(r[b]) for b in ("< 20", "20 - 40", "40 - 80", "80 - 100", "> 100")]
-                for r in rows_of("smoothing_times", f"table_2_7_{domain}")}  # fmt: skip
+                for r in rows_of("smoothing_times", f"table_2_7_{domain}")}
         assert all(abs(sum(shares) - 100) < 1e-9 for shares in rows.values())
         assert all(rows[metric][2] > rows["initial"][2] + 10 for metric in ("imr", "rr", "si", "ss")), rows
         # In the plane SI is 1 / (4 sqrt(3) IMR), so that both have the same best mesh.
@@ -149,7 +150,9 @@ def check_harmonic():
     for name, dimension in (("brain", 2), ("bore", 3)):
         mesh = tl.domain(name, 1000)
         points = _common.points_of(mesh)
-        slope = np.array([[0.3, -0.2, 0.0], [0.1, 0.4, 0.0], [0.2, -0.3, 0.5 * (dimension == 3)]]) * (np.arange(3) < dimension)
+        slope = np.array([[0.3, -0.2, 0.0], [0.1, 0.4, 0.0], [0.2, -0.3, 0.5 * (dimension == 3)]]) * (
+            np.arange(3) < dimension,
+        )
         wanted = points @ slope + [1.0, 2.0, 0.0]
         fixed = _warped.of_points(mesh, "Fixed") != 0
         found = _warped.harmonic(mesh, np.where(fixed[:, None], wanted, 7.0))

@@ -154,7 +154,9 @@ def improve(
         filter_.AddObjectiveByName(name, form)
     for name, weight in weights:
         filter_.AddObjectiveByName(name, filter_.DEFAULT_TEMPLATE, weight)
-    filter_.SetScalarization(pick("scalarization", "weighted sum" if weights else method.scalarization, _optimization.SCALARIZATIONS))
+    filter_.SetScalarization(
+        pick("scalarization", "weighted sum" if weights else method.scalarization, _optimization.SCALARIZATIONS),
+    )
     filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), _optimization.OPTIMIZERS))
     filter_.SetMaximumIterations(iterations)
     filter_.SetPatchIterations(patch_iterations)
@@ -194,11 +196,13 @@ def improve(
         if step in keep:
             kept[step] = _copy(shown)
     values = {key: np.array([row[key] for row in rows]) for key in rows[0]}
-    values["objective"] = np.array([history.GetValueByName(i, "Objective").ToDouble() for i in range(count)])
     steps = np.arange(count) if trace else np.array([0, count - 1])
+    values["objective"] = np.array([history.GetValueByName(int(i), "Objective").ToDouble() for i in steps])
     final = _copy(filter_.GetOutputDataObject(0))
     if mesh.GetNumberOfCells() >= LARGE:
-        print(f"{method.name}, {optimizer}: {count - 1} iterations, {seconds[-1]:.1f} CPU s", file=sys.stderr, flush=True)
+        print(
+            f"{method.name}, {optimizer}: {count - 1} iterations, {seconds[-1]:.1f} CPU s", file=sys.stderr, flush=True,
+        )
     return Run(method, optimizer, steps, seconds, values, final, filter_.GetReason(), kept)
 
 
@@ -252,7 +256,9 @@ def parser(name: str, text: str | None, cells: int = 0) -> argparse.ArgumentPars
     """The options every study has."""
     made = argparse.ArgumentParser(prog=f"python3 -m tautline study {name}", description=(text or "").split("\n")[0])
     made.add_argument("--small", action="store_true", help="a small mesh, for a look or a test: seconds")
-    made.add_argument("--out", type=Path, default=Path(f"study-{name}"), metavar="DIR", help="where files go (%(default)s)")  # fmt: skip
+    made.add_argument(
+        "--out", type=Path, default=Path(f"study-{name}"), metavar="DIR", help="where files go (%(default)s)",
+    )
     made.add_argument("--threads", type=int, default=1, help="0 is all cores (%(default)s, for comparable times)")
     if cells:
         made.add_argument("--cells", type=int, default=0, help=f"about how many (default: {cells:,})")
@@ -281,7 +287,7 @@ class Report:
         self.parts.append(f"{title}  [{file}.csv]\n{align(shown, headings)}")
 
     def beside(self, file: str, title: str, columns: Sequence[Any], ours: dict[str, Sequence[float]],
-               theirs: dict[str, Sequence[float]], head: str = "method") -> None:  # fmt: skip
+               theirs: dict[str, Sequence[float]], head: str = "method") -> None:
         """Our numbers, the dissertation's in brackets where it has any; in the CSV they have columns of their own."""
         rows, shown = [], []
         for label, values in ours.items():
@@ -319,10 +325,12 @@ class Report:
             return
         figure, axes = pyplot.subplots(1, len(panels), figsize=(6.4 * len(panels), 4.6), squeeze=False)
         for axis, (quantity, label, logarithmic) in zip(axes[0], panels):
-            for run_, marker in zip(runs, "osv^D<>*xp+"):
-                line = "-" if run_.optimizer == "nlcg" else ":"
+            for number, (run_, marker) in enumerate(zip(runs, "osv^D<>*xp+")):
+                # The last one is dashed, so that the one it hides can be seen.
+                line = "--" if number == len(runs) - 1 else "-"
                 axis.plot(run_.iterations, run_.values[quantity], line, marker=marker, markersize=4,
-                          linewidth=1.2, label=run_.method.label)  # fmt: skip
+                          linewidth=1.2, label=run_.method.label)
+            axis.xaxis.get_major_locator().set_params(integer=True)
             axis.set(xlabel="iterations", ylabel=label, yscale="log" if logarithmic else "linear")
             axis.grid(alpha=0.3)
             start = runs[0].first(quantity)
@@ -334,7 +342,7 @@ class Report:
         self._save(figure, file)
 
     def meshes(self, file: str, shown: Sequence[tuple[str, vtkDataSet]], columns: int = 4,
-               window: Sequence[float] | None = None) -> None:  # fmt: skip
+               window: Sequence[float] | None = None) -> None:
         """A picture of meshes of triangles, inverted ones filled; window: xmin xmax ymin ymax."""
         if not self._pictures():
             return
@@ -360,7 +368,7 @@ class Report:
         self._save(figure, file)
 
     def bars(self, file: str, bins: Sequence[str], axis_label: str, label: str,
-             panels: dict[str, dict[str, Sequence[float]]]) -> None:  # fmt: skip
+             panels: dict[str, dict[str, Sequence[float]]]) -> None:
         """A picture of distributions, logarithmic: a panel has a row of bars for each of its series."""
         if not self._pictures():
             return
@@ -369,7 +377,9 @@ class Report:
             width = 0.8 / len(series)
             for number, (name, values) in enumerate(series.items()):
                 axis.bar(np.arange(len(bins)) + (number - 0.5 * (len(series) - 1)) * width, values, width, label=name)
-            axis.set(title=title, xlabel=axis_label, ylabel=label, yscale="log", xticks=range(len(bins)), xticklabels=bins)
+            axis.set(
+                title=title, xlabel=axis_label, ylabel=label, yscale="log", xticks=range(len(bins)), xticklabels=bins,
+            )
             axis.grid(alpha=0.3, axis="y")
         axes[0][0].legend(fontsize=8)
         self._save(figure, file)
@@ -382,7 +392,7 @@ class Report:
             lines.append(f"- {'HOLDS' if holds else 'DOES NOT HOLD'} ({source}): {sentence}\n    ours: {figures}")
         self.parts.append("\n".join(lines))
         self.csv("findings", ["source", "finding", "holds", "figures"],
-                 [[s, f, "yes" if h else "no", n] for s, f, h, n in self.findings])  # fmt: skip
+                 [[s, f, "yes" if h else "no", n] for s, f, h, n in self.findings])
         text = "\n\n".join(self.parts) + "\n"
         (self.out / f"{self.name}.txt").write_text(text, encoding="utf-8")
         print(text)

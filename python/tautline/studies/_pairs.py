@@ -41,7 +41,7 @@ def options(goals: Goals, text: str | None, arguments: Sequence[str]) -> argpars
     made = parser(goals.name, text, CELLS)
     made.add_argument("--iterations", type=int, default=ITERATIONS, help="sweeps (default: %(default)s)")
     made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
-                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")  # fmt: skip
+                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
     made.add_argument("--domains", nargs="+", choices=DOMAINS, default=list(DOMAINS), help="default: all four")
     given = made.parse_args(arguments)
     given.cells = given.cells or (SMALL_CELLS if given.small else CELLS)
@@ -75,13 +75,14 @@ def experiment(goals: Goals, given: argparse.Namespace, report: Report) -> Outco
     common = dict(c=TYPICAL_C, threads=given.threads)
     patch = dict(patch_iterations=given.patch_iterations)
     report.text(
-        f"{first}: {mesh.GetNumberOfCells():,} elements, {mesh.GetNumberOfPoints():,} vertices, half of the interior ones "
-        f"perturbed by up to {PERTURBATION:g} of the distance to inversion, boundary fixed.\n"
-        f"Unit of length: that in which {goals.unit[0]} starts at {goals.unit[1]:g} as in the dissertation (the exponential and "
-        f"the equal sum depend on it). c = {TYPICAL_C:g}.\n"
-        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and sweep; an iteration is a sweep "
-        f"over all vertices. Beside it Local Newton (over-relaxed, one step). Times are CPU seconds of {given.threads or 'all'} "
-        "thread(s), set-up included; the dissertation's were measured on a Core2 Duo T7500 at 2.2 GHz."
+        f"{first}: {mesh.GetNumberOfCells():,} elements, {mesh.GetNumberOfPoints():,} vertices, half of the interior "
+        f"ones perturbed by up to {PERTURBATION:g} of the distance to inversion, boundary fixed.\n"
+        f"Unit of length: that in which {goals.unit[0]} starts at {goals.unit[1]:g} as in the dissertation (the "
+        f"exponential and the equal sum depend on it). c = {TYPICAL_C:g}.\n"
+        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and sweep; an iteration "
+        "is a sweep over all vertices. Beside it Local Newton (over-relaxed, one step). Times are CPU seconds of "
+        f"{given.threads or 'all'} thread(s), set-up included; the dissertation's were measured on a Core2 Duo T7500 "
+        "at 2.2 GHz."
     )
     nlcg = {m.name: improve(mesh, m, given.iterations, quantities, **common, **patch) for m in every}
     newton = {m.name: improve(mesh, m, given.iterations, quantities, optimizer="newton", **common) for m in every}
@@ -90,9 +91,11 @@ def experiment(goals: Goals, given: argparse.Namespace, report: Report) -> Outco
     _quality_table(goals, report, {**nlcg, **{f"{k} newton": r for k, r in newton.items()}}, first)
     _digits(goals, report, nlcg, newton)
     runs = list(nlcg.values())
-    report.plot("average", runs, [(goals.means[0], goals.axes[0], False), (goals.means[1], goals.axes[1], False)])
-    report.plot("worst", runs, [(q, a.replace("Average", "Worst"), True) for q, a in zip(goals.worsts, goals.axes)])
-    report.plot("average_newton", list(newton.values()), [(goals.means[0], goals.axes[0], False), (goals.means[1], goals.axes[1], False)])  # fmt: skip
+    averages = [(q, label, False) for q, label in zip(goals.means, goals.axes)]
+    report.plot("average", runs, averages)
+    labels = [a.replace("Average", "Worst").replace(" (rms)", "") for a in goals.axes]
+    report.plot("worst", runs, [(q, label, True) for q, label in zip(goals.worsts, labels)])
+    report.plot("average_newton", list(newton.values()), averages)
     others = {first: nlcg}
     for domain in rest:
         mesh = start_mesh(goals, domain, given.cells)
@@ -128,7 +131,8 @@ def _digits(goals: Goals, report: Report, nlcg: dict[str, Run], newton: dict[str
         iteration = int(same[0]) + 1 if same.size else -1
         seconds = run.at("seconds", iteration) if same.size else float("nan")
         rows.append([name, "not reached" if iteration < 0 else str(iteration), seconds])
-    report.table("two_digits", "Inaccurate smoothing: mean qualities keep two decimals", ["method", "at iteration", "CPU s"], rows)  # fmt: skip
+    title = "Inaccurate smoothing: mean qualities keep two decimals"
+    report.table("two_digits", title, ["method", "at iteration", "CPU s"], rows)
 
 
 def everywhere(others: dict[str, dict[str, Run]], test) -> tuple[bool, str]:

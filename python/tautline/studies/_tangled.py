@@ -11,13 +11,13 @@ from tautline._errors import Error
 
 from ._common import TYPICAL_C, Method, Report, Run, cells_of, improve, measure, methods, scaled, sizes_of
 
-#: Of the mean size: the size up to which the untangling metric (3.3) counts an element. The dissertation names no value.
+#: Of the mean size: up to which size the untangling metric (3.3) counts an element. The dissertation names no value.
 BETA = 0.01
 LABELS = {"si": "SI", "size": "size", "untangle_beta": "untangling"}
 NOTE = (
-    "Objectives: sum of 1 / SI over the elements valid at the start of an iteration, sum of the squared untangling metric "
-    f"(3.3) with beta = {BETA:g} of the mean size. (The dissertation's sum of 1 / SI includes inverted elements, whose terms "
-    "are negative.) Steps may invert elements, as with the metrics without a barrier there."
+    "Objectives: sum of 1 / SI over the elements valid at the start of an iteration, sum of the squared untangling "
+    f"metric (3.3) with beta = {BETA:g} of the mean size. (The dissertation's sum of 1 / SI includes inverted "
+    "elements, whose terms are negative.) Steps may invert elements, as with the metrics without a barrier there."
 )
 #: A weight that leaves the untangling metric without effect: an optimizer is only given tangled meshes with it.
 _NEGLIGIBLE = 1e-30
@@ -30,7 +30,7 @@ def tangled_methods(*objectives: str) -> list[Method]:
 
 
 def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iterable[str], *,
-             keep: Sequence[int] = (), c: float = TYPICAL_C, **options: Any) -> Run:  # fmt: skip
+             keep: Sequence[int] = (), c: float = TYPICAL_C, **options: Any) -> Run:
     """Run a method on a tangled mesh, one iteration at a time while it has inverted elements.
 
     The optimizer leaves shape terms of elements that are inverted at its start out until its end; starting it anew
@@ -48,7 +48,7 @@ def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iter
         repaired = not tangled
         try:
             run = improve(now, method, chunk, quantities, beta=beta, c=c, allow_inversion=True,
-                          keep=[k - done for k in keep], weights=_weights(method), **options)  # fmt: skip
+                          keep=[k - done for k in keep], weights=_weights(method), **options)
         except Error as error:
             reason = str(error)
             break
@@ -71,7 +71,9 @@ def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iter
         seconds.append(seconds[-1])
     kept.update({k: now for k in keep if k not in kept and k >= done})
     values = {key: np.array([row[key] for row in rows]) for key in rows[0]}
-    return Run(method, options.get("optimizer", "nlcg"), np.arange(len(rows)), np.array(seconds), values, now, reason, kept)
+    return Run(
+        method, options.get("optimizer", "nlcg"), np.arange(len(rows)), np.array(seconds), values, now, reason, kept,
+    )
 
 
 def _weights(method: Method) -> list[tuple[str, float]]:
@@ -97,7 +99,7 @@ def after(runs: dict[str, Run]) -> str:
 
 
 def by_unit(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterations: int, mean_sizes: Sequence[float],
-            **options: Any) -> None:  # fmt: skip
+            **options: Any) -> None:
     """A table of how the scalarizations do in other units of length, told by the mean size of the elements."""
     dimension = cells_of(mesh).shape[1] - 1
     mean = float(np.mean(np.abs(sizes_of(mesh))))
@@ -109,9 +111,14 @@ def by_unit(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterati
         for name, method, c in variants:
             run = untangle(start, method, iterations, ("si_mean", "si_worst"), c=c, **options)
             done = untangled_after(run)
-            rows.append([size, name, "never" if np.isinf(done) else f"{done:g}", int(run.last("inverted")), run.last("si_worst")])
-    report.table("units", f"In other units of length, {iterations} iterations: when all elements are valid, how many are not at "
-                 "the end, worst SI of the valid ones", ["mean size", "method", "valid after", "inverted", "worst SI"], rows)  # fmt: skip
+            valid_after = "never" if np.isinf(done) else f"{done:g}"
+            rows.append([size, name, valid_after, int(run.last("inverted")), run.last("si_worst")])
+    title = f"In other units of length, {iterations} iterations: when all are valid, how many are not at the end"
+    report.table("units", title, ["mean size", "method", "valid after", "inverted", "worst SI"], rows)
+    report.text(
+        "Rows repeat where the largest value of the untangling metric is below that of the other metrics: the "
+        "optimizer then rescales it as section 3.3.3 says, which takes the unit out."
+    )
 
 
 def diverged(runs: dict[str, Run]) -> str:

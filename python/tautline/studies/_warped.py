@@ -12,14 +12,15 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 import tautline
 from tautline._errors import Error
 
-from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, cells_of, parser, points_of, scaled, sizes_of, with_points
+from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, parser
+from ._common import cells_of, points_of, sizes_of, with_points
 from ._tangled import NOTE, by_unit, counts, diverged, tangled_methods, untangle
 
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")
 MULTI = ("exponential-sum", "objective-product", "equal-sum")
 ABOUT = (
-    "Only the boundary's motion is given; the vertices inside follow harmonically (linear finite elements on the initial mesh, "
-    "solved by conjugate gradients), which is what one step of FEMWARP does."
+    "Only the boundary's motion is given; the vertices inside follow harmonically (linear finite elements on the "
+    "initial mesh, solved by conjugate gradients), which is what one step of FEMWARP does."
 )
 UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)  # mean sizes of the elements
 _TOLERANCE = 1e-10  # of the residual of the harmonic extension
@@ -66,7 +67,9 @@ def harmonic(mesh: vtkDataSet, given: np.ndarray) -> np.ndarray:
     raise Error("the harmonic extension of the boundary's motion did not converge")
 
 
-def warp(mesh: vtkDataSet, points: np.ndarray, motion: np.ndarray, inverted: int, most: float) -> tuple[vtkDataSet, float]:
+def warp(
+    mesh: vtkDataSet, points: np.ndarray, motion: np.ndarray, inverted: int, most: float
+) -> tuple[vtkDataSet, float]:
     """The mesh at points + t motion with the least t up to `most` that inverts as many elements, and t."""
 
     def moved(amount: float) -> tuple[vtkDataSet, int]:
@@ -85,20 +88,19 @@ def warp(mesh: vtkDataSet, points: np.ndarray, motion: np.ndarray, inverted: int
 def options(name: str, text: str | None, arguments: Sequence[str]) -> argparse.Namespace:
     made = parser(name, text)
     made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
-                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")  # fmt: skip
+                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
     return made.parse_args(arguments)
 
 
-def experiment(report: Report, mesh: vtkDataSet, motion: str, iterations: int, steps: Sequence[int], theirs: dict,
-               given: argparse.Namespace) -> dict[str, Run]:  # fmt: skip
-    """Run every method, write tables and curves; motion says what moved."""
-    mean = float(np.mean(np.abs(sizes_of(mesh))))
-    mesh = scaled(mesh, mean ** (-1.0 / (cells_of(mesh).shape[1] - 1)))
+def experiment(report: Report, mesh: vtkDataSet, motion: str, unit: str, iterations: int, steps: Sequence[int],
+               theirs: dict, given: argparse.Namespace) -> dict[str, Run]:
+    """Run every method, write tables and curves; motion says what moved, unit what the unit of length is."""
     wrong = np.count_nonzero(sizes_of(mesh) <= 0)
     report.text(
-        f"{mesh.GetNumberOfCells():,} elements, {wrong} inverted by {motion}. {ABOUT}\n{NOTE}\n"
-        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = {TYPICAL_C:g}. "
-        "Unit of length: elements have the mean size 1 (the dissertation names no unit; exponential and equal sum depend on it)."
+        f"{mesh.GetNumberOfCells():,} elements, {wrong} inverted by {motion}. {ABOUT}\n"
+        f"{NOTE}\n"
+        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
+        f"{TYPICAL_C:g}. Unit of length: {unit} (the dissertation names none; exponential and equal sum depend on it)."
     )
     common = dict(threads=given.threads)
     every = tangled_methods("si", "untangle_beta")
@@ -114,19 +116,24 @@ def experiment(report: Report, mesh: vtkDataSet, motion: str, iterations: int, s
     if diverged(runs):
         report.text(diverged(runs))
     by_unit(report, mesh, ("si", "untangle_beta"), iterations, UNITS[::2] if given.small else UNITS,
-            patch_iterations=given.patch_iterations, **common)  # fmt: skip
+            patch_iterations=given.patch_iterations, **common)
     sus = tautline.untangle(mesh, threads=given.threads)
     report.text(f"Untangle Mesh on the same mesh: {sus.inverted_before} inverted before, {sus.inverted} after.")
     rows = [["start", *(runs["si"].first(q) for q in QUANTITIES)]]
     rows += [[r.method.label, *(r.last(q) for q in QUANTITIES)] for r in runs.values()]
-    report.table("quality", f"Quality of the valid elements after {iterations} iterations", ["method", *QUANTITIES], rows)
+    report.table(
+        "quality", f"Quality of the valid elements after {iterations} iterations", ["method", *QUANTITIES], rows,
+    )
     report.curves("curves", [*runs.values(), *newton.values()])
-    report.plot("inverted", list(runs.values()), [("inverted", "Inverted elements", False), ("si_worst", "Worst SI", True)])
+    report.plot(
+        "inverted", list(runs.values()), [("inverted", "Inverted elements", False), ("si_worst", "Worst SI", True)],
+    )
     return runs
 
 
 def better_worst(report: Report, runs: dict[str, Run], source: str) -> None:
     """The finding both studies share."""
+    sums = min(runs[n].last("si_worst") for n in ("exponential-sum", "equal-sum"))
     report.finding(source, "Exponential and equal sum have a better worst element than untangling alone",
-                   min(runs[n].last("si_worst") for n in ("exponential-sum", "equal-sum")) > runs["untangle"].last("si_worst"),
-                   "worst SI: " + ", ".join(f"{n} {r.last('si_worst'):.4g}" for n, r in runs.items()))  # fmt: skip
+                   sums > runs["untangle"].last("si_worst"),
+                   "worst SI: " + ", ".join(f"{n} {r.last('si_worst'):.4g}" for n, r in runs.items()))

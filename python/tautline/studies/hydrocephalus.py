@@ -7,7 +7,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, Run, cells_of, points_of, sizes_of
+from ._common import Report, Run, cells_of, points_of, scaled, sizes_of
 from ._tangled import after, untangled_after
 from ._warped import better_worst, experiment, harmonic, of_points, options, warp
 
@@ -21,7 +21,8 @@ TABLE_3_7 = {
 }
 ITERATIONS = 40
 CELLS, INVERTED = 8166, 13
-CLOSE = 6.0  # half the side of the close-up; elements have the mean size 1
+LENGTH, PIXELS = 2.0, 1000.0  # of the brain, in the domain and in an image as segmentations are made of
+CLOSE = 50.0  # pixels, half the side of the close-up
 FIRST_VENTRICLE = 2  # its boundary marker; 1 is the outline
 MOST = 0.45  # of a length; beyond, a ventricle meets the outline
 
@@ -40,18 +41,21 @@ def main(arguments: list[str]) -> int:
     given = options("hydrocephalus", __doc__, arguments)
     report = Report("hydrocephalus", "Hydrocephalus in the plane (section 3.5.1)", given.out)
     report.text(
-        "The dissertation's brain comes from segmented images, which are not published. This one is the project's parametric "
-        "domain `brain`: an outline with two ventricles that shrink, more in width than in height, as after treatment, and that "
-        "are displaced sideways as far as it takes to invert elements."
+        "The dissertation's brain comes from segmented images, which are not published. This one is the project's "
+        "parametric domain `brain`: an outline with two ventricles that shrink, more in width than in height, as "
+        "after treatment, and that are displaced sideways as far as it takes to invert elements."
     )
     initial = tautline.domain("brain", 1_500 if given.small else CELLS)
     ventricles = (of_points(initial, "BoundaryMarker") >= FIRST_VENTRICLE) & (of_points(initial, "Fixed") != 0)
     shrunk = points_of(initial) + harmonic(initial, of_points(initial, "Displacement"))
     aside = harmonic(initial, np.outer(ventricles, (1.0, 0.0, 0.0)))
     mesh, shift = warp(initial, shrunk, aside, 5 if given.small else INVERTED, MOST)
-    motion = f"shrinking the ventricles as the domain does and moving them aside by {shift:.3f} (the brain is 2 long)"
+    motion = "shrinking the ventricles as the domain does and moving them aside by "
+    motion += f"{shift:.3f} (the brain is {LENGTH:g} long)"
     iterations = 12 if given.small else ITERATIONS
-    runs = experiment(report, mesh, motion, iterations, STEPS, TABLE_3_7, given)
+    unit = f"the pixel of an image in which the brain is {PIXELS:g} long"
+    mesh = scaled(mesh, PIXELS / LENGTH)
+    runs = experiment(report, mesh, motion, unit, iterations, STEPS, TABLE_3_7, given)
     close_up(report, initial, mesh, runs)
 
     figures = after(runs)
@@ -59,15 +63,19 @@ def main(arguments: list[str]) -> int:
     si = runs["si"]
     report.finding("Table 3.7", "SI alone inverts more elements and untangles none",
                    si.last("inverted") > si.first("inverted"),
-                   f"start {si.first('inverted'):g}, end {si.last('inverted'):g}, most {si.values['inverted'].max():g}")  # fmt: skip
-    report.finding("Table 3.7", "Untangling alone eliminates all (after 33 iterations)", ends["untangle"] <= iterations, figures)
-    report.finding("Table 3.7", "The exponential sum eliminates all (after 9)", ends["exponential-sum"] <= iterations, figures)
-    report.finding("Table 3.7", "The equal sum eliminates all (after 12)", ends["equal-sum"] <= iterations, figures)
+                   f"start {si.first('inverted'):g}, end {si.last('inverted'):g}, most {si.values['inverted'].max():g}")
+    report.finding(
+        "Table 3.7", "Untangling alone eliminates all (there after 33 iterations)", ends["untangle"] <= iterations, figures,
+    )
+    report.finding(
+        "Table 3.7", "The exponential sum eliminates all (there after 9)", ends["exponential-sum"] <= iterations, figures,
+    )
+    report.finding("Table 3.7", "The equal sum eliminates all (there after 12)", ends["equal-sum"] <= iterations, figures)
     report.finding("Table 3.7", "The exponential sum needs fewer iterations than untangling alone",
-                   ends["exponential-sum"] < ends["untangle"], figures)  # fmt: skip
+                   ends["exponential-sum"] < ends["untangle"], figures)
     report.finding("Table 3.7", "The exponential sum needs fewer iterations than the equal sum",
-                   ends["exponential-sum"] < ends["equal-sum"], figures)  # fmt: skip
-    report.finding("Table 3.7", "The objective product does not eliminate all (6 left)",
-                   runs["objective-product"].last("inverted") > 0, figures)  # fmt: skip
+                   ends["exponential-sum"] < ends["equal-sum"], figures)
+    report.finding("Table 3.7", "The objective product does not eliminate all (there 6 are left)",
+                   runs["objective-product"].last("inverted") > 0, figures)
     better_worst(report, runs, "Figure 3.11")
     return report.finish()

@@ -25,24 +25,28 @@ MULTI = ("exponential-sum", "objective-product", "equal-sum")
 def main(arguments: list[str]) -> int:
     made = parser("shape_size_untangling", __doc__, CELLS_3D)
     made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
-                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")  # fmt: skip
+                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
     given = made.parse_args(arguments)
     report = Report("shape_size_untangling", "Shape, size and untangling (section 3.4.4)", given.out)
     cells = given.cells or (3_000 if given.small else CELLS_3D)
-    mesh = tangled("disk3d", cells, INVERTED_3D / CELLS_3D)
+    mesh = tangled("disk3d", cells, INVERTED_3D if cells == CELLS_3D else INVERTED_3D / CELLS_3D)
     mesh = scaled(mesh, (SIZE_RMS / measure(mesh, ["size_rms"])["size_rms"]) ** (1.0 / 3.0))
     report.text(
-        f"disk3d: {mesh.GetNumberOfCells():,} elements. {NOTE}\nLocal Polak-Ribiere conjugate gradients, "
-        f"{given.patch_iterations} steps per vertex and iteration; c = {TYPICAL_C:g}; unit of length: the size (rms) is {SIZE_RMS:g} "
-        "at the start, about as in Figure 3.10 (b); the untangling metric is then rescaled as section 3.3.3 says. Averages are over the valid elements."
+        f"disk3d: {mesh.GetNumberOfCells():,} elements. {NOTE}\n"
+        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
+        f"{TYPICAL_C:g}; unit of length: the size (rms) is {SIZE_RMS:g} at the start, about as in Figure 3.10 (b); "
+        "the untangling metric is then rescaled as section 3.3.3 says. Averages are over the valid elements."
     )
     every = tangled_methods(*OBJECTIVES)
     options = dict(patch_iterations=given.patch_iterations, threads=given.threads)
     runs = {m.name: untangle(mesh, m, ITERATIONS[-1], QUANTITIES, **options) for m in every}
-    newton = {m.name: untangle(mesh, m, ITERATIONS[-1], QUANTITIES, optimizer="newton", threads=given.threads) for m in every}
+    alike = dict(optimizer="newton", threads=given.threads)
+    newton = {m.name: untangle(mesh, m, ITERATIONS[-1], QUANTITIES, **alike) for m in every}
     for file, found in (("table_3_6", runs), ("table_3_6_newton", newton)):
         theirs = {r.method.label: TABLE_3_6[name] for name, r in found.items()}
-        report.beside(file, f"Inverted elements after so many iterations, {file}", ITERATIONS, counts(found, ITERATIONS), theirs)
+        report.beside(
+            file, f"Inverted elements after so many iterations, {file}", ITERATIONS, counts(found, ITERATIONS), theirs,
+        )
     by_unit(report, mesh, OBJECTIVES, ITERATIONS[-1], UNITS[::2] if given.small else UNITS, **options)
     if diverged(runs):
         report.text(diverged(runs))
@@ -51,30 +55,34 @@ def main(arguments: list[str]) -> int:
     report.table("quality", f"Quality after {ITERATIONS[-1]} iterations", ["method", *QUANTITIES, "CPU s"], rows)
     report.curves("curves", [*runs.values(), *newton.values()])
     report.plot("average", list(runs.values()), [
-        ("si_mean", "Average element quality, shape (SI)", False), ("size_rms", "Average element quality, size (rms)", False),
-    ])  # fmt: skip
+        ("si_mean", "Average element quality, shape (SI)", False),
+        ("size_rms", "Average element quality, size (rms)", False),
+    ])
 
     when = after(runs)
     untangling = ("untangle", *MULTI)
     report.finding("Table 3.6", "The multiobjective methods and untangling alone eliminate all inverted elements",
-                   all(runs[n].last("inverted") == 0 for n in untangling), when)  # fmt: skip
+                   all(runs[n].last("inverted") == 0 for n in untangling), when)
     report.finding("Table 3.6", "SI alone and size alone do not",
-                   all(runs[n].last("inverted") > 0 for n in ("si", "size")), when)  # fmt: skip
+                   all(runs[n].last("inverted") > 0 for n in ("si", "size")), when)
     first = untangled_after(runs["exponential-sum"])
     report.finding("Table 3.6", "The exponential sum eliminates them in the fewest iterations (or as few as any)",
-                   first <= min(untangled_after(r) for r in runs.values()), when)  # fmt: skip
+                   first <= min(untangled_after(r) for r in runs.values()), when)
 
     def improves(name: str) -> bool:
         run = runs[name]
         return run.last("si_mean") > run.first("si_mean") and run.last("size_rms") < run.first("size_rms")
 
     both = [n for n in runs if improves(n) and runs[n].last("inverted") == 0]
-    figures = f"improved and untangled by {', '.join(both) or 'none'}; {compare(runs, 'si_mean')}; {compare(runs, 'size_rms')}"
+    figures = f"improved and untangled by {', '.join(both) or 'none'}; "
+    figures += f"{compare(runs, 'si_mean')}; {compare(runs, 'size_rms')}"
     report.finding("Figure 3.10", "Exponential and equal sum improve shape and size while they untangle",
-                   {"exponential-sum", "equal-sum"} <= set(both), figures)  # fmt: skip
-    report.finding("Figure 3.10", "No other method does", set(both) <= {"exponential-sum", "equal-sum"}, f"by {', '.join(both) or 'none'}")
+                   {"exponential-sum", "equal-sum"} <= set(both), figures)
+    report.finding("Figure 3.10", "No other method does", set(both) <= {"exponential-sum", "equal-sum"},
+                   f"by {', '.join(both) or 'none'}")
     report.finding("3.4.4", "Size alone improves shape and size but leaves inverted elements",
                    improves("size") and runs["size"].last("inverted") > 0,
-                   f"size alone: inverted {runs['size'].last('inverted'):g}, average SI {runs['size'].first('si_mean'):.4g} to "
-                   f"{runs['size'].last('si_mean'):.4g}, size {runs['size'].first('size_rms'):.4g} to {runs['size'].last('size_rms'):.4g}")  # fmt: skip
+                   f"size alone: inverted {runs['size'].last('inverted'):g}, average SI "
+                   f"{runs['size'].first('si_mean'):.4g} to {runs['size'].last('si_mean'):.4g}, size "
+                   f"{runs['size'].first('size_rms'):.4g} to {runs['size'].last('size_rms'):.4g}")
     return report.finish()

@@ -7,7 +7,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, cells_of, measure, parser, points_of, scaled, sizes_of
+from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, measure, parser
+from ._common import cells_of, points_of, scaled, sizes_of
 from ._tangled import BETA, NOTE, after, counts, diverged, tangled_methods, untangle, untangled_after
 
 # Inverted elements by iteration; the second table has Escobar's method too.
@@ -38,7 +39,7 @@ LARGE, LARGE_FRACTION = 1_000_000, 0.01
 
 
 def tangled(domain: str, cells: int, inverted: float) -> vtkDataSet:
-    """A perturbed domain with so many inverted elements (below 1: such a part), in the dissertation's unit of length."""
+    """A perturbed domain with so many inverted elements (below 1: such a part), in the unit of the dissertation."""
     mesh = tautline.domain(domain, cells)
     part = inverted if inverted < 1 else inverted / mesh.GetNumberOfCells()
     mesh = tautline.perturb(mesh, tangle=part).mesh
@@ -50,7 +51,7 @@ def tangled(domain: str, cells: int, inverted: float) -> vtkDataSet:
 def table(report: Report, file: str, runs: dict[str, Run], iterations, theirs: dict, extra: dict | None = None) -> None:
     known = {r.method.label: theirs.get(name, ()) for name, r in runs.items()} | ({SUS: theirs["sus"]} if extra else {})
     report.beside(file, f"Inverted elements after so many iterations, {file}", iterations,
-                  counts(runs, iterations) | (extra or {}), known)  # fmt: skip
+                  counts(runs, iterations) | (extra or {}), known)
     gone = diverged(runs)
     if gone:
         report.text(gone)
@@ -58,9 +59,10 @@ def table(report: Report, file: str, runs: dict[str, Run], iterations, theirs: d
 
 def quality(report: Report, file: str, runs: dict[str, Run], iteration: int, extra: list | None = None) -> None:
     rows = [["start", *(next(iter(runs.values())).first(q) for q in QUANTITIES), 0.0]]
-    rows += [[r.method.label, *(r.at(q, iteration) for q in QUANTITIES), r.at("seconds", iteration)] for r in runs.values()]
+    wanted = (*QUANTITIES, "seconds")
+    rows += [[r.method.label, *(r.at(q, iteration) for q in wanted)] for r in runs.values()]
     report.table(file, f"Quality of the valid elements after {iteration} iterations, {file}",
-                 ["method", *QUANTITIES, "CPU s"], rows + (extra or []))  # fmt: skip
+                 ["method", *QUANTITIES, "CPU s"], rows + (extra or []))
 
 
 def escobar(mesh: vtkDataSet, iterations: int, threads: int) -> tuple[list[float], vtkDataSet]:
@@ -81,7 +83,7 @@ def around_inverted(mesh: vtkDataSet, side: float) -> list[float]:
 def main(arguments: list[str]) -> int:
     made = parser("shape_untangling", __doc__)
     made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
-                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")  # fmt: skip
+                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
     made.add_argument("--no-large", action="store_true", help=f"leave out the mesh of {LARGE:,} triangles")
     given = made.parse_args(arguments)
     report = Report("shape_untangling", "Shape and untangling (section 3.4.3)", given.out)
@@ -90,33 +92,37 @@ def main(arguments: list[str]) -> int:
     flat = tangled("barrier2d", 3_000 if given.small else CELLS_2D, 0.01 if given.small else INVERTED_2D)
     solid = tangled("disk3d", 3_000 if given.small else CELLS_3D, 0.0022 if given.small else INVERTED_3D)
     report.text(
-        f"{NOTE}\nLocal Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = {TYPICAL_C:g}; "
-        f"unit of length: the untangling metric is at most {LARGEST_UNTANGLING} at the start.\n"
-        "The dissertation speaks of 1 % of about 1,000,000 elements, its tables of 543 and of 111 inverted ones, and of the mesh "
-        "with 111 as one of about 50,000: the tables are made with the latter numbers (543 are 1 % of 54,300), and "
-        "a mesh of 1,000,000 triangles with 1 % inverted follows."
+        f"{NOTE}\n"
+        f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
+        f"{TYPICAL_C:g}; unit of length: the untangling metric is at most {LARGEST_UNTANGLING} at the start.\n"
+        "The dissertation speaks of 1 % of about 1,000,000 elements, its tables of 543 and of 111 inverted ones, and "
+        "of the mesh with 111 as one of about 50,000: the tables are made with the latter numbers (543 are 1 % of "
+        "54,300), and a mesh of 1,000,000 triangles with 1 % inverted follows."
     )
     shown = (1, ITERATIONS_3_4[-1])
     runs2 = {m.name: untangle(flat, m, ITERATIONS_3_4[-1], QUANTITIES, keep=shown, **common) for m in every}
-    newton = {m.name: untangle(flat, m, ITERATIONS_3_4[-1], QUANTITIES, optimizer="newton", threads=given.threads) for m in every}
+    alike = dict(optimizer="newton", threads=given.threads)
+    newton = {m.name: untangle(flat, m, ITERATIONS_3_4[-1], QUANTITIES, **alike) for m in every}
     table(report, "table_3_4", runs2, ITERATIONS_3_4, TABLE_3_4)
     table(report, "table_3_4_newton", newton, ITERATIONS_3_4, TABLE_3_4)
     quality(report, "quality_barrier2d", runs2, ITERATIONS_3_4[-1])
     report.curves("curves_barrier2d", [*runs2.values(), *newton.values()])
     last = ITERATIONS_3_4[-1]
     report.meshes("meshes", [("start", flat), *((r.method.label, r.kept[last]) for r in runs2.values())], columns=3,
-                  window=around_inverted(flat, 8 * np.sqrt(np.abs(sizes_of(flat)).mean())))  # fmt: skip
+                  window=around_inverted(flat, 8 * np.sqrt(np.abs(sizes_of(flat)).mean())))
 
     runs3 = {m.name: untangle(solid, m, ITERATIONS, QUANTITIES, **common) for m in every}
     inverted, mesh = escobar(solid, ITERATIONS_3_5[-1], given.threads)
     sus = measure(mesh, QUANTITIES)
     table(report, "table_3_5", runs3, ITERATIONS_3_5, TABLE_3_5, {SUS: inverted})
-    report.text(f"{SUS}: Untangle Mesh with effort local (Escobar's regularised determinant, around the inverted elements only).")
+    report.text(
+        f"{SUS}: Untangle Mesh with effort local (Escobar's regularised determinant, around inverted elements only)."
+    )
     quality(report, "quality_disk3d", runs3, ITERATIONS, [[SUS, *(sus[q] for q in QUANTITIES), float("nan")]])
     report.curves("curves_disk3d", list(runs3.values()))
     report.plot("quality", [r for n, r in runs3.items() if n != "si"], [
         ("si_mean", "Average SI", False), ("si_worst", "Worst SI", True), ("inverted", "Inverted elements", False),
-    ])  # fmt: skip
+    ])
     large = {}
     if not given.small and not given.no_large:
         mesh = tangled("barrier2d", LARGE, LARGE_FRACTION)
@@ -138,31 +144,35 @@ def findings(report: Report, flat: dict[str, Run], solid: dict[str, Run], large:
 
     say("Tables 3.4, 3.5", "SI alone inverts more elements than there were",
         all(most[n] > runs["si"].first("inverted") for n, runs in both.items()),
-        ", ".join(f"{n}: start {r['si'].first('inverted'):g}, most {most[n]:g}, end {r['si'].last('inverted'):g}" for n, r in both.items()))  # fmt: skip
+        ", ".join(f"{n}: start {r['si'].first('inverted'):g}, most {most[n]:g}, end {r['si'].last('inverted'):g}"
+                  for n, r in both.items()))
     say("3.4.3", "SI alone does not untangle", all(r["si"].last("inverted") > 0 for r in both.values()), when)
     say("Tables 3.4, 3.5", "Untangling alone eliminates all inverted elements within three iterations",
-        all(untangled_after(r["untangle"]) <= 3 for r in both.values()), when)  # fmt: skip
+        all(untangled_after(r["untangle"]) <= 3 for r in both.values()), when)
     for name in MULTI:
         label = flat[name].method.label
         say("Tables 3.4, 3.5", f"{label} eliminates all within three iterations",
-            all(untangled_after(r[name]) <= 3 for r in both.values()), when)  # fmt: skip
+            all(untangled_after(r[name]) <= 3 for r in both.values()), when)
     say("3.4.3", "All three multiobjective methods eliminate them in the end",
-        all(r[n].last("inverted") == 0 for r in both.values() for n in MULTI), when)  # fmt: skip
+        all(r[n].last("inverted") == 0 for r in both.values() for n in MULTI), when)
     say("Table 3.4", "Exponential and equal sum need fewer iterations than untangling alone",
-        max(untangled_after(flat[n]) for n in ("exponential-sum", "equal-sum")) < untangled_after(flat["untangle"]), when)  # fmt: skip
+        max(untangled_after(flat[n]) for n in ("exponential-sum", "equal-sum")) < untangled_after(flat["untangle"]),
+        when)
     say("3.4.3", "The exponential sum eliminates them sooner than the objective product (or as soon)",
-        all(untangled_after(r["exponential-sum"]) <= untangled_after(r["objective-product"]) for r in both.values()), when)  # fmt: skip
+        all(untangled_after(r["exponential-sum"]) <= untangled_after(r["objective-product"]) for r in both.values()),
+        when)
     valid = [n for n, r in flat.items() if r.last("inverted") == 0]
     figures = ", ".join(f"{n} {r.last('si_mean'):.4f}" for n, r in flat.items())
     best = max(valid, key=lambda n: round(flat[n].last("si_mean"), 4)) if valid else ""
     top = flat[best].last("si_mean") if best else 0.0
-    say("Figure 3.8", "The exponential sum yields the best element shapes (average SI to 4 decimals) of the methods that untangle",
-        "exponential-sum" in valid and round(flat["exponential-sum"].last("si_mean"), 4) >= round(top, 4), figures)  # fmt: skip
+    say("Figure 3.8",
+        "The exponential sum yields the best element shapes (average SI to 4 decimals) of the methods that untangle",
+        "exponential-sum" in valid and round(flat["exponential-sum"].last("si_mean"), 4) >= round(top, 4), figures)
     seconds = {f"{name} {n}": runs[n].last_second() for name, runs in both.items() for n in MULTI}
     say("3.4.3", "Each multiobjective method takes less than a minute", max(seconds.values()) < 60,
-        ", ".join(f"{n} {s:.3g} s" for n, s in seconds.items()))  # fmt: skip
+        ", ".join(f"{n} {s:.3g} s" for n, s in seconds.items()))
     say("Table 3.5", f"{SUS} eliminates them in one iteration", inverted[1] == 0, f"inverted by iteration: {inverted}")
     for quantity, word in (("si_mean", "average"), ("si_worst", "worst")):
         say("Figure 3.9", f"Exponential and equal sum have a better {word} SI than {SUS.lower()}",
             all(solid[n].last(quantity) > sus[quantity] for n in ("exponential-sum", "equal-sum")),
-            f"{SUS} {sus[quantity]:.4g}, " + ", ".join(f"{n} {solid[n].last(quantity):.4g}" for n in MULTI))  # fmt: skip
+            f"{SUS} {sus[quantity]:.4g}, " + ", ".join(f"{n} {solid[n].last(quantity):.4g}" for n in MULTI))

@@ -26,15 +26,16 @@ def structured(edge: float, shift: float) -> vtkUnstructuredGrid:
     points = edge * np.column_stack([x, y, np.zeros(row * row)]).astype(float)
     points[(SQUARES // 2) * (row + 1), 0] += shift * edge
     lower = np.array([i + row * j for j in range(SQUARES) for i in range(SQUARES)])
-    triangles = [np.column_stack([lower, lower + 1, lower + row + 1]), np.column_stack([lower, lower + row + 1, lower + row])]
-    return tautline.from_arrays(points, {"triangle": np.vstack(triangles)})
+    below = np.column_stack([lower, lower + 1, lower + row + 1])
+    above = np.column_stack([lower, lower + row + 1, lower + row])
+    return tautline.from_arrays(points, {"triangle": np.vstack([below, above])})
 
 
 def runs_of(edge: float, iterations: int, patch_iterations: int, c: float, threads: int) -> dict[str, Run]:
     every = tangled_methods("si", "untangle_beta")
     return {
         m.name: untangle(structured(edge, SHIFT), m, iterations, QUANTITIES, keep=(1,), c=c,
-                         patch_iterations=patch_iterations, threads=threads)  # fmt: skip
+                         patch_iterations=patch_iterations, threads=threads)
         for m in every
     }
 
@@ -45,13 +46,14 @@ def main(arguments: list[str]) -> int:
     initial, tangled = structured(EDGE, 0.0), structured(EDGE, SHIFT)
     runs = runs_of(EDGE, 20 if given.small else CONVERGED, MESQUITE_PATCH_ITERATIONS, 0.0, given.threads)
     report.text(
-        f"{tangled.GetNumberOfCells()} triangles; the vertex in the middle is moved {SHIFT:g} edges along its row, which inverts "
-        f"two. {NOTE}\nLocal Polak-Ribiere conjugate gradients, {MESQUITE_PATCH_ITERATIONS} steps per vertex and iteration; edges "
-        f"of length {EDGE:g}; c of the exponential sum is chosen from the initial values (the typical 1e4 to 1e6 are far above "
-        "these objectives, which makes the exponential sum the equal sum)."
+        f"{tangled.GetNumberOfCells()} triangles; the vertex in the middle is moved {SHIFT:g} edges along its row, "
+        f"which inverts two. {NOTE}\n"
+        f"Local Polak-Ribiere conjugate gradients, {MESQUITE_PATCH_ITERATIONS} steps per vertex and iteration; edges "
+        f"of length {EDGE:g}; c of the exponential sum is chosen from the initial values (the typical 1e4 to 1e6 are "
+        "far above these objectives, which makes the exponential sum the equal sum)."
     )
     rows = [
-        [r.method.label, *(r.at(q, k) for q in ("inverted", "si_mean", "si_worst") for k in (0, 1, len(r.iterations) - 1))]
+        [r.method.label, *(r.at(q, k) for q in ("inverted", "si_mean", "si_worst") for k in (0, 1, CONVERGED))]
         for r in runs.values()
     ]
     headings = [f"{q} {k}" for q in ("inverted", "mean SI", "worst SI") for k in ("start", "after 1", "end")]
@@ -62,7 +64,7 @@ def main(arguments: list[str]) -> int:
         *((f"{runs[n].method.label}\nafter one iteration", runs[n].kept[1]) for n in ("untangle", *MULTI)),
         ("structured mesh", initial),
         *((f"{runs[n].method.label}\nconverged", runs[n].mesh) for n in ("untangle", *MULTI)),
-    ], columns=5)  # fmt: skip
+    ], columns=5)
 
     table = []
     for edge in (UNITS[0], UNITS[-1]) if given.small else UNITS:
@@ -71,7 +73,7 @@ def main(arguments: list[str]) -> int:
                 found = runs_of(edge, 1, steps, c, given.threads)
                 table.append([edge, steps, name, *(int(found[n].last("inverted")) for n in ("si", "untangle", *MULTI))])
     report.table("sensitivity", "Inverted elements after one iteration, by unit of length, steps per vertex and c",
-                 ["edge", "steps", "c", "si", "untangle", *MULTI], table)  # fmt: skip
+                 ["edge", "steps", "c", "si", "untangle", *MULTI], table)
 
     one = {n: int(runs[n].at("inverted", 1)) for n in MULTI}
     source = "Figure 3.2 (c) to (e)"
@@ -82,16 +84,18 @@ def main(arguments: list[str]) -> int:
     ):
         removed = sum(row[5 + MULTI.index(name)] == 0 for row in table)
         report.finding(source, sentence, (one[name] == 0) == expected,
-                       f"{one[name]} left; it removes them in {removed} of the {len(table)} settings of sensitivity.csv")  # fmt: skip
+                       f"{one[name]} left; it removes them in {removed} of the {len(table)} settings of "
+                       "sensitivity.csv")
     end = {n: int(runs[n].last("inverted")) for n in MULTI}
     source = "Figure 3.2 (f) to (h)"
     report.finding(source, "Converged, all three have removed them", not any(end.values()),
-                   ", ".join(f"{n} {k}" for n, k in end.items()))  # fmt: skip
+                   ", ".join(f"{n} {k}" for n, k in end.items()))
     worst = {n: runs[n].last("si_worst") for n in MULTI}
     report.finding(source, "Converged, exponential and equal sum have better elements than the objective product",
                    min(worst["exponential-sum"], worst["equal-sum"]) > worst["objective-product"],
-                   "worst SI: " + ", ".join(f"{n} {q:.4g}" for n, q in worst.items()))  # fmt: skip
+                   "worst SI: " + ", ".join(f"{n} {q:.4g}" for n, q in worst.items()))
     apart = np.linalg.norm(points_of(runs["exponential-sum"].mesh) - points_of(runs["equal-sum"].mesh), axis=1).max()
-    report.finding(source, "The converged meshes of exponential and equal sum are nearly the same (within 5 % of an edge)",
-                   apart < 0.05 * EDGE, f"largest distance of a vertex: {apart / EDGE:.4f} edges")  # fmt: skip
+    report.finding(source,
+                   "The converged meshes of exponential and equal sum are nearly the same (within 5 % of an edge)",
+                   apart < 0.05 * EDGE, f"largest distance of a vertex: {apart / EDGE:.4f} edges")
     return report.finish()
