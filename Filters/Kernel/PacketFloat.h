@@ -44,12 +44,24 @@ inline FloatPacket abs(FloatPacket x)
 
 inline FloatPacket max(FloatPacket a, FloatPacket b)
 {
+#if defined(__AVX512F__)
+  return (FloatPacket)_mm512_mask_max_ps((__m512)a, 0xffff, (__m512)a, (__m512)b);
+#elif defined(__AVX__)
+  return (FloatPacket)_mm256_max_ps((__m256)a, (__m256)b);
+#else
   return select(a > b, a, b);
+#endif
 }
 
 inline FloatPacket min(FloatPacket a, FloatPacket b)
 {
+#if defined(__AVX512F__)
+  return (FloatPacket)_mm512_mask_min_ps((__m512)a, 0xffff, (__m512)a, (__m512)b);
+#elif defined(__AVX__)
+  return (FloatPacket)_mm256_min_ps((__m256)a, (__m256)b);
+#else
   return select(a < b, a, b);
+#endif
 }
 
 inline FloatPacket sqrt(FloatPacket x)
@@ -81,6 +93,17 @@ inline FloatPacket log(FloatPacket x)
   const FloatPacket series = low + f2 * f2 * high;
   return 0.69314718056f * __builtin_convertvector(exponent, FloatPacket) +
     (f - 0.5f * f2 + f * f2 * series);
+}
+
+inline bool anyOf(FloatMask mask)
+{
+#if defined(__AVX512F__)
+  return _mm512_test_epi32_mask((__m512i)mask, (__m512i)mask) != 0;
+#elif defined(__AVX__)
+  return _mm256_movemask_ps((__m256)mask) != 0;
+#else
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+#endif
 }
 
 /// The least element.

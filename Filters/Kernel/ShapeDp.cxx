@@ -10,6 +10,9 @@ namespace tautline
 {
 namespace
 {
+/// Steps of fewer triangles are done by one thread.
+constexpr Index SmallStep = 100000;
+
 /// How the cost of a triangle is computed: one function for each set of terms.
 template <class Action>
 void dispatch(const ShapeEnergy& energy, const Action& action)
@@ -121,7 +124,8 @@ PairTable PlacementSolver::take(Index from, Index to)
   }
   if ((to + 1) % n == from)
   {
-    return transpose(*this->Problem.edges[to]);
+    const PairTable& table = *this->Problem.edges[to];
+    return this->Problem.symmetricEdges ? table : transpose(table);
   }
   auto found = this->Pending.find({ from, to });
   const bool turned = found == this->Pending.end();
@@ -242,73 +246,105 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
   const PairTable minI = rowMinima(step.fromI, sk), minJ = rowMinima(step.fromJ, sk);
   const bool bounds = this->Problem.bounds;
   const float limit = bounds ? this->StepLimit : Unreachable;
-  std::vector<float> leastJ;
-  for (Index q = 0; q < minJ.rows; ++q)
+  const bool screen = bounds && step.terms.deformation > 0.0f;
+  const float inverse = screen ? 1.0f / step.terms.deformation : 0.0f;
+  PairTable normJ;
+  if (screen)
   {
-    leastJ.push_back(leastOf(minJ.row(q), sk.rows));
+    normJ = lengthJK;
+    for (float& length : normJ.values)
+    {
+      length *= length * step.terms.weights[2];
+    }
   }
   const Index count = static_cast<Index>(si.used.size());
-  const double done = static_cast<double>(number) / static_cast<double>(this->Problem.mesh->triangles.size());
+  const double triangles = static_cast<double>(this->Problem.mesh->triangles.size());
   std::atomic<bool> stopped{ false };
   dispatch(this->Problem.energy,
     [&](auto distortion, auto rotation, auto mirrored)
     {
-#pragma omp parallel for schedule(dynamic, 4) num_threads(resolveThreads(this->Problem.threads)) \
-  if (count * si.size() * sk.size() > 200000)
-      for (Index at = 0; at < count; ++at)
+#pragma omp parallel num_threads(resolveThreads(this->Problem.threads)) \
+  if (count * sj.size() * sk.size() > SmallStep)
       {
-        if (stopped)
+        std::vector<float> best(static_cast<std::size_t>(sj.size()));
+        std::vector<Index> guess(best.size(), 0), tried(best.size(), 0);
+        std::vector<BaseEdge> edges;
+#pragma omp for schedule(dynamic, 4)
+        for (Index at = 0; at < count; ++at)
         {
-          continue;
-        }
-        const Index p = si.used[at];
-        const float leastP = leastOf(minI.row(p), sk.rows);
-        const float px = si.x[p], py = si.y[p];
-        Index guess = 0;
-        for (Index q : sj.used)
-        {
-          const float length = lengthIJ.row(p)[q];
-          const float apart = bounds ? step.terms.bound(length) : 0.0f;
-          float best = limit;
-          if (bounds && leastP + leastJ[q] + apart >= best)
+          if (stopped)
           {
             continue;
           }
-          const BaseEdge base(step.terms, sj.x[q], sj.y[q], px, py, length);
-          const auto visit = [&](Index row)
+          const Index p = si.used[at];
+          const float px = si.x[p], py = si.y[p];
+          edges.clear();
+          for (Index q = 0; q < sj.size(); ++q)
+          {
+            edges.emplace_back(step.terms, sj.x[q], sj.y[q], px, py, lengthIJ.row(p)[q]);
+            best[q] = limit;
+          }
+          // The best of a packet of places r for vertex k, with q for vertex j.
+          const auto visit = [&](Index q, Index row)
           {
             const Index r = row * FloatWidth;
-            const FloatPacket cost = triangleCost<distortion, rotation, mirrored>(step.terms, base,
-              loadFloats(sk.x.data() + r) - px, loadFloats(sk.y.data() + r) - py,
-              loadFloats(lengthIK.row(p) + r), loadFloats(lengthJK.row(q) + r));
-            const float value = least(
-              cost + (loadFloats(step.fromI.row(p) + r) + loadFloats(step.fromJ.row(q) + r)));
-            if (value < best)
+            const FloatPacket parts =
+              loadFloats(step.fromI.row(p) + r) + loadFloats(step.fromJ.row(q) + r);
+            const float value = least(parts +
+              triangleCost<distortion, rotation, mirrored>(step.terms, edges[q],
+                loadFloats(sk.x.data() + r) - px, loadFloats(sk.y.data() + r) - py,
+                loadFloats(lengthIK.row(p) + r), loadFloats(lengthJK.row(q) + r)));
+            if (value < best[q])
             {
-              best = value;
-              guess = row;
+              best[q] = value;
+              guess[q] = row;
             }
           };
-          // The row where the last pair found its best comes first; most others cannot beat it.
-          const Index first = guess;
-          const float *rowsI = minI.row(p), *rowsJ = minJ.row(q);
-          if (rowsI[first] + rowsJ[first] + apart < best || !bounds)
+          // The row where the last p found the best comes first; few of the others can beat it.
+          const float* rowsI = minI.row(p);
+          tried = guess;
+          for (Index q : sj.used)
           {
-            visit(first);
+            if (!bounds ||
+              rowsI[guess[q]] + minJ.row(q)[guess[q]] + step.terms.bound(edges[q].length) < limit)
+            {
+              visit(q, tried[q]);
+            }
           }
           for (Index row = 0; row < sk.rows; ++row)
           {
-            if (row != first && (!bounds || rowsI[row] + rowsJ[row] + apart < best))
+            const Index r = row * FloatWidth;
+            const FloatPacket rx = loadFloats(sk.x.data() + r) - px;
+            const FloatPacket ry = loadFloats(sk.y.data() + r) - py;
+            const FloatPacket pr = loadFloats(lengthIK.row(p) + r);
+            const FloatPacket normI = step.terms.weights[1] * (pr * pr);
+            const FloatPacket partI = loadFloats(step.fromI.row(p) + r);
+            for (Index q : sj.used)
             {
-              visit(row);
+              if (row == tried[q])
+              {
+                continue;
+              }
+              const float value = best[q] * inverse;
+              if (!screen || value > TriangleTerms::MostLog2 ||
+                mayStayBelow<mirrored>(edges[q], rx, ry,
+                  edges[q].weighted + normI + loadFloats(normJ.row(q) + r),
+                  partI + loadFloats(step.fromJ.row(q) + r), value, inverse))
+              {
+                visit(q, row);
+              }
             }
           }
-          out.row(p)[q] = best < limit ? best : Unreachable;
-        }
-        if (omp_get_thread_num() == 0 && at % 16 == 0 &&
-          !this->going(done + static_cast<double>(at) / static_cast<double>(count * this->Problem.mesh->triangles.size())))
-        {
-          stopped = true;
+          for (Index q : sj.used)
+          {
+            out.row(p)[q] = best[q] < limit ? best[q] : Unreachable;
+          }
+          if (omp_get_thread_num() == 0 && at % 16 == 0 &&
+            !this->going(
+              (static_cast<double>(number) + static_cast<double>(at) / static_cast<double>(count)) / triangles))
+          {
+            stopped = true;
+          }
         }
       }
     });

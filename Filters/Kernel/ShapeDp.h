@@ -21,6 +21,7 @@ struct PlacementProblem
   std::vector<const LocationSet*> sets;    ///< per vertex
   /// Cost of the boundary edge from each vertex to the next, over their sets.
   std::vector<const PairTable*> edges;
+  bool symmetricEdges = false; ///< each table is its own transpose
   /// Cost per vertex over the slots of its set; empty if there is none.
   std::vector<std::vector<float>> vertices;
   bool bounds = true;

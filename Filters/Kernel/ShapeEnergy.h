@@ -31,6 +31,7 @@ struct TriangleTerms
   float distortion;
   float logLength; ///< log of the source's sum of edge lengths, with the scale if it is signed
   float logScale;  ///< |log delta|; 0 if the distortion is signed
+  float longest;  ///< sum of edges beyond which the distortion grows, with a margin for rounding
   float rotation;
   float cosine[4]; ///< trace of the map from (q-p, r-p): x y of each
   float sine[4];   ///< its antisymmetric part
@@ -50,6 +51,7 @@ struct TriangleTerms
     const bool isSigned = energy.signedDistortion;
     this->logLength = static_cast<float>(std::log(length) - (isSigned ? std::log(delta) : 0.0));
     this->logScale = static_cast<float>(isSigned ? 0.0 : std::abs(std::log(delta)));
+    this->longest = 1.001f * std::exp(this->logLength + this->logScale);
     this->rotation = static_cast<float>(energy.rotation);
     const double trace[4] = { e2[1], -e2[0], -e1[1], e1[0] }, skew[4] = { e2[0], e2[1], -e1[0],
       -e1[1] };
@@ -60,11 +62,16 @@ struct TriangleTerms
     }
   }
 
-  /// A bound from below of the energy of any triangle with an edge of this length.
+  /// Coefficients of a polynomial that is at least cosh(sqrt(y)) for 0 <= y <= MostLog2.
+  static constexpr float CoshSeries[5] = { 1.0f + 1e-5f, 0.5f, 1.0f / 24.0f, 1.0f / 720.0f, 4.6e-5f };
+  static constexpr float MostLog2 = 49.0f;
+
+  /// A bound from below of the energy of any triangle with an edge of this length: the sum of its edges is
+  /// at least twice that, and log x >= 1 - 1 / x.
   float bound(float edge) const
   {
-    const float excess = std::log(std::fmax(2.0f * edge, LeastLength)) - this->logLength - this->logScale;
-    return this->distortion > 0.0f && excess > 0.0f ? 0.999f * this->distortion * excess : 0.0f;
+    const float most = this->longest / (2.0f * edge + LeastLength);
+    return most < 1.0f ? this->distortion * (1.0f - most) : 0.0f;
   }
 };
 
@@ -83,6 +90,29 @@ struct BaseEdge
   {
   }
 };
+
+/**
+ * @brief Whether, for some r of a packet, the deformation may leave the sum below a value.
+ *
+ * Without division, root or logarithm: a log(alpha / beta)^2 < value - parts is norm < size cosh(sqrt(y))
+ * with y = (value - parts) / a, at most MostLog2. Never wrong where the answer is no.
+ * @param norm the anisotropy times the size
+ * @param parts the other costs
+ * @param value divided by a
+ * @param inverse 1 / a
+ */
+template <bool Mirrored>
+inline bool mayStayBelow(const BaseEdge& base, FloatPacket rx, FloatPacket ry, FloatPacket norm,
+  FloatPacket parts, float value, float inverse)
+{
+  constexpr const float* c = TriangleTerms::CoshSeries;
+  const FloatPacket y = max(value - parts * inverse, FloatPacket{});
+  const FloatPacket det = base.dx * ry - base.dy * rx;
+  const FloatPacket size = Mirrored ? abs(det) : det;
+  const FloatPacket y2 = y * y;
+  const FloatPacket most = (c[0] + c[1] * y) + y2 * ((c[2] + c[3] * y) + c[4] * y2);
+  return anyOf(norm < size * most);
+}
 
 /**
  * @brief Deformation, distortion and rotation of the triangles p, q, r for a packet of r.

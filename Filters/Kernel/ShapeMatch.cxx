@@ -20,6 +20,9 @@ constexpr std::size_t SmallTarget = 30;
 /// Coarse to fine: locations around a vertex, along each axis, and how often their distance is halved.
 constexpr int RefineRadius = 3;
 constexpr int RefineLevels = 3;
+/// A first solution on a contour is improved by moves of so many locations either way, so often.
+constexpr Index LocalReach = 3;
+constexpr int LocalPasses = 2;
 
 double distance(const Vec2& a, const Vec2& b)
 {
@@ -131,7 +134,9 @@ public:
     if (haveFirst && this->Options.bounds)
     {
       // The coarse locations are some of the full ones: the best is no worse.
-      problem.limit = static_cast<float>(first.energy * (1.0 + 1e-4) + 1e-4);
+      const double energy =
+        this->Target.arc.empty() ? first.energy : this->improved(problem, first.points);
+      problem.limit = static_cast<float>(energy * (1.0 + 1e-4) + 1e-4);
     }
     problem.progress = this->Progress;
     ShapeMatch match;
@@ -201,6 +206,7 @@ private:
     const std::size_t n = this->Source.mesh.points.size();
     problem.sets.assign(n, &this->Target.locations);
     problem.edges.assign(n, &this->Target.edges);
+    problem.symmetricEdges = !this->Target.energy.directedEdges && !this->ordered();
     if (this->ordered())
     {
       this->EdgeTables.reserve(2 * n);
@@ -224,6 +230,7 @@ private:
     const std::size_t n = this->Source.mesh.points.size();
     problem.sets.assign(n, &this->Target.coarse);
     problem.edges.assign(n, &this->Target.coarseEdges);
+    problem.symmetricEdges = !this->Target.energy.directedEdges && !this->ordered();
     if (this->ordered())
     {
       this->CoarseTables.reserve(n);
@@ -249,6 +256,95 @@ private:
       problem.vertices[v] = this->vertexCosts(v, this->Target.coarse, this->Target.coarseOf);
     }
     return problem;
+  }
+
+  /// The energy of a placement on the contour after moves of each vertex by a few locations.
+  double improved(const PlacementProblem& full, const std::vector<Vec2>& points) const
+  {
+    const Index count = static_cast<Index>(this->Target.locations.points.size());
+    const std::size_t n = points.size();
+    std::vector<Index> at;
+    for (const Vec2& p : points)
+    {
+      const auto& all = this->Target.locations.points;
+      at.push_back(std::find(all.begin(), all.end(), p) - all.begin());
+    }
+    double energy = 0.0;
+    for (int pass = 0; pass < LocalPasses; ++pass)
+    {
+      PlacementProblem problem = this->emptyProblem();
+      problem.symmetricEdges = false;
+      std::vector<LocationSet> sets;
+      std::vector<std::vector<Index>> of(n);
+      std::vector<PairTable> tables;
+      for (std::size_t v = 0; v < n; ++v)
+      {
+        std::vector<Vec2> around;
+        for (Index k = -LocalReach; k <= LocalReach; ++k)
+        {
+          of[v].push_back((at[v] + k + count) % count);
+          around.push_back(this->Target.locations.points[of[v].back()]);
+        }
+        sets.push_back(LocationSet::list(around));
+      }
+      for (std::size_t v = 0; v < n; ++v)
+      {
+        const std::size_t next = (v + 1) % n;
+        PairTable table(sets[v].size(), sets[next].size(), Unreachable);
+        for (std::size_t i = 0; i < of[v].size(); ++i)
+        {
+          for (std::size_t j = 0; j < of[next].size(); ++j)
+          {
+            table.row(static_cast<Index>(i))[j] = full.edges[v]->row(of[v][i])[of[next][j]];
+          }
+          if (!full.vertices[v].empty())
+          {
+            problem.vertices[v].resize(static_cast<std::size_t>(sets[v].size()), 0.0f);
+            problem.vertices[v][i] = full.vertices[v][of[v][i]];
+          }
+        }
+        tables.push_back(std::move(table));
+      }
+      for (std::size_t v = 0; v < n; ++v)
+      {
+        problem.sets.push_back(&sets[v]);
+        problem.edges.push_back(&tables[v]);
+      }
+      PlacementSolver solver(problem);
+      solver.run();
+      const auto [value, p, q] = best(problem, solver);
+      energy = value;
+      const std::vector<Index> slots = solver.trace(p, q);
+      for (std::size_t v = 0; v < n; ++v)
+      {
+        at[v] = of[v][slots[v]];
+      }
+    }
+    return energy;
+  }
+
+  struct Solution
+  {
+    float value;
+    Index p, q;
+    bool operator<(const Solution& other) const
+    {
+      return std::tie(this->value, this->p, this->q) < std::tie(other.value, other.p, other.q);
+    }
+  };
+
+  Solution best(const PlacementProblem& problem, const PlacementSolver& solver) const
+  {
+    const EliminationStep& last = this->Source.mesh.elimination.back();
+    Solution least = { 4.0f * Unreachable, 0, 0 };
+    for (Index p : problem.sets[last.parents[0]]->used)
+    {
+      for (Index q : problem.sets[last.parents[1]]->used)
+      {
+        least = std::min(least, Solution{ solver.values().row(p)[q], p, q });
+      }
+    }
+    return least;
   }
 
   Vec2 meanOf(const std::vector<Vec2>& points) const
@@ -279,23 +375,7 @@ private:
     const PairTable& values = solver.values();
     const EliminationStep& last = this->Source.mesh.elimination.back();
     const LocationSet &si = *problem.sets[last.parents[0]], &sj = *problem.sets[last.parents[1]];
-    struct Solution
-    {
-      float value;
-      Index p, q;
-      bool operator<(const Solution& other) const
-      {
-        return std::tie(this->value, this->p, this->q) < std::tie(other.value, other.p, other.q);
-      }
-    };
-    Solution best = { 4.0f * Unreachable, 0, 0 };
-    for (Index p : si.used)
-    {
-      for (Index q : sj.used)
-      {
-        best = std::min(best, Solution{ values.row(p)[q], p, q });
-      }
-    }
+    const Solution best = this->best(problem, solver);
     const double tolerance = this->Options.centreTolerance * this->Target.maxDistance;
     const auto take = [&](const Solution& s) { return this->pointsOf(problem, solver.trace(s.p, s.q)); };
     std::vector<Vec2> points = take(best);

@@ -61,7 +61,7 @@ struct ShapeEnergy
   /// Weight per boundary edge of |log(length along the target's outline / expected)|, with the outline
   /// run through in the polygon's direction. Contour locations only.
   double ordering = 0.0;
-  Reflection reflection = Reflection::Free;
+  Reflection reflection = Reflection::Forbidden;
 
   /// The dissertation's: a = 4 b, lambda = 0.1, b = 3.
   static ShapeEnergy dissertation() { return {}; }
