@@ -61,7 +61,8 @@ std::vector<std::string> split(const std::string& line)
   return fields;
 }
 
-std::size_t columnOf(const std::vector<std::string>& names, std::initializer_list<const char*> wanted)
+std::size_t columnOf(
+  const std::vector<std::string>& names, std::initializer_list<const char*> wanted)
 {
   for (const char* name : wanted)
   {
@@ -87,7 +88,8 @@ std::vector<Entry> readList(const fs::path& list)
   const std::size_t label = columnOf(names, { "class", "label", "class_id" });
   if (file == names.size())
   {
-    throw Error(list.string() + ":1: no column 'file'; the first line must name the columns file and class");
+    throw Error(
+      list.string() + ":1: no column 'file'; the first line must name the columns file and class");
   }
   std::vector<Entry> entries;
   for (int number = 2; std::getline(stream, line); ++number)
@@ -99,8 +101,9 @@ std::vector<Entry> readList(const fs::path& list)
     }
     if (fields.size() != names.size())
     {
-      throw Error(list.string() + ":" + std::to_string(number) + ": " + std::to_string(fields.size()) +
-        " fields, " + std::to_string(names.size()) + " are expected");
+      throw Error(list.string() + ":" + std::to_string(number) + ": " +
+        std::to_string(fields.size()) + " fields, " + std::to_string(names.size()) +
+        " are expected");
     }
     fs::path path = list.parent_path() / fields[file];
     if (!fs::exists(path))
@@ -109,8 +112,8 @@ std::vector<Entry> readList(const fs::path& list)
     }
     if (!fs::exists(path))
     {
-      throw Error(list.string() + ":" + std::to_string(number) + ": there is no file '" + fields[file] +
-        "' beside the list or in the folder images");
+      throw Error(list.string() + ":" + std::to_string(number) + ": there is no file '" +
+        fields[file] + "' beside the list or in the folder images");
     }
     entries.push_back({ path, label < fields.size() ? fields[label] : std::string() });
   }
@@ -190,7 +193,8 @@ int vtkSilhouetteSetReader::RequestData(
     const fs::path path = this->FileName ? this->FileName : "";
     if (path.empty() || !fs::exists(path))
     {
-      throw Error(path.empty() ? "no file name is set" : path.string() + ": there is no such file or folder");
+      throw Error(
+        path.empty() ? "no file name is set" : path.string() + ": there is no such file or folder");
     }
     const bool list = path.extension() == ".csv";
     const std::vector<Entry> entries = fs::is_directory(path) ? readFolder(path)
@@ -219,7 +223,8 @@ int vtkSilhouetteSetReader::RequestData(
       addText(image, "Label", entries[i].label);
       addText(image, "File", entries[i].file.filename().string());
       output->SetBlock(i, image);
-      output->GetMetaData(i)->Set(vtkCompositeDataSet::NAME(), entries[i].file.stem().string().c_str());
+      output->GetMetaData(i)->Set(
+        vtkCompositeDataSet::NAME(), entries[i].file.stem().string().c_str());
       this->UpdateProgress(static_cast<double>(i + 1) / static_cast<double>(entries.size()));
     }
   }

@@ -86,8 +86,8 @@ inline FloatPacket log(FloatPacket x)
   const FloatPacket f = reinterpret_cast<FloatPacket>(mantissa) - 1.0f;
   const FloatPacket f2 = f * f;
   // Estrin's scheme: short chains.
-  const FloatPacket low = 3.3333331174e-1f - 2.4999993993e-1f * f +
-    f2 * (2.0000714765e-1f - 1.6668057665e-1f * f);
+  const FloatPacket low =
+    3.3333331174e-1f - 2.4999993993e-1f * f + f2 * (2.0000714765e-1f - 1.6668057665e-1f * f);
   const FloatPacket high = 1.4249322787e-1f - 1.2420140846e-1f * f +
     f2 * (1.1676998740e-1f - 1.1514610310e-1f * f + 7.0376836292e-2f * f2);
   const FloatPacket series = low + f2 * f2 * high;

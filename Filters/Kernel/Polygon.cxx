@@ -71,8 +71,7 @@ std::vector<Triangle> findNeighbours(const std::vector<Triangle>& triangles)
     for (int c = 0; c < 3; ++c)
     {
       const Index a = triangles[t][(c + 1) % 3], b = triangles[t][(c + 2) % 3];
-      const auto inserted =
-        edges.insert({ std::minmax(a, b), { static_cast<Index>(t), c } });
+      const auto inserted = edges.insert({ std::minmax(a, b), { static_cast<Index>(t), c } });
       if (!inserted.second)
       {
         const auto [other, corner] = inserted.first->second;
@@ -254,8 +253,8 @@ PolygonMesh triangulatePolygon(std::vector<Vec2> polygon)
 {
   if (polygon.size() < 3)
   {
-    throw Error("A polygon needs at least 3 vertices, this one has " +
-      std::to_string(polygon.size()) + ".");
+    throw Error(
+      "A polygon needs at least 3 vertices, this one has " + std::to_string(polygon.size()) + ".");
   }
   for (const Vec2& p : polygon)
   {

@@ -121,9 +121,8 @@ int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
     const Vec2 &p = *points[i], &q = *points[(i + 1) % 3], &r = *points[(i + 2) % 3];
     const Expansion px = difference(p[0], d[0]), py = difference(p[1], d[1]);
     const Expansion lift = plus(times(px, px), times(py, py));
-    const Expansion minor =
-      plus(times(difference(q[0], d[0]), difference(r[1], d[1])),
-        times(difference(q[1], d[1]), difference(r[0], d[0])), -1.0);
+    const Expansion minor = plus(times(difference(q[0], d[0]), difference(r[1], d[1])),
+      times(difference(q[1], d[1]), difference(r[0], d[0])), -1.0);
     exact = plus(std::move(exact), times(lift, minor));
   }
   return sign(exact);

@@ -179,8 +179,8 @@ bool PlacementSolver::run()
       this->Floor -= leastOf(part->values.data(), static_cast<Index>(part->values.size()));
     }
     // Rounding must not exclude the best placement itself.
-    this->StepLimit = static_cast<float>(
-      this->Problem.limit - std::max(0.0, this->Floor) * (1.0 - 1e-5) + 1e-5);
+    this->StepLimit =
+      static_cast<float>(this->Problem.limit - std::max(0.0, this->Floor) * (1.0 - 1e-5) + 1e-5);
     const std::vector<float>& vertex = this->Problem.vertices[k];
     for (Index p = 0; p < step.fromI.rows && !vertex.empty(); ++p)
     {
@@ -210,8 +210,8 @@ bool PlacementSolver::run()
       for (Index q = 0; q < out.columns; ++q)
       {
         float& value = out.row(p)[q];
-        value = std::min(Unreachable, value + last.row(p)[q] + (ui.empty() ? 0.0f : ui[p]) +
-            (uj.empty() ? 0.0f : uj[q]));
+        value = std::min(Unreachable,
+          value + last.row(p)[q] + (ui.empty() ? 0.0f : ui[p]) + (uj.empty() ? 0.0f : uj[q]));
       }
     }
     this->Values = std::move(out);
@@ -223,8 +223,8 @@ void PlacementSolver::solveStep(std::size_t number, const Step& step, PairTable&
 {
   const EliminationStep& e = step.elimination;
   const LocationSet* set = this->Problem.sets[e.vertex];
-  const bool grid = set->grid && this->Problem.sets[e.parents[0]] == set &&
-    this->Problem.sets[e.parents[1]] == set;
+  const bool grid =
+    set->grid && this->Problem.sets[e.parents[0]] == set && this->Problem.sets[e.parents[1]] == set;
   if (grid)
   {
     this->solveGrid(number, step, out);
@@ -263,8 +263,8 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
   dispatch(this->Problem.energy,
     [&](auto distortion, auto rotation, auto mirrored)
     {
-#pragma omp parallel num_threads(resolveThreads(this->Problem.threads)) \
-  if (count * sj.size() * sk.size() > SmallStep)
+#pragma omp parallel num_threads( \
+  resolveThreads(this->Problem.threads)) if (count * sj.size() * sk.size() > SmallStep)
       {
         std::vector<float> best(static_cast<std::size_t>(sj.size()));
         std::vector<Index> guess(best.size(), 0), tried(best.size(), 0);
@@ -341,7 +341,8 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
           }
           if (omp_get_thread_num() == 0 && at % 16 == 0 &&
             !this->going(
-              (static_cast<double>(number) + static_cast<double>(at) / static_cast<double>(count)) / triangles))
+              (static_cast<double>(number) + static_cast<double>(at) / static_cast<double>(count)) /
+              triangles))
           {
             stopped = true;
           }
@@ -467,7 +468,9 @@ void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable&
             }
           }
           if (omp_get_thread_num() == 0 && offset % 32 == 0 &&
-            !this->going((static_cast<double>(number) + static_cast<double>(offset) / static_cast<double>(offsets)) / triangles))
+            !this->going((static_cast<double>(number) +
+                           static_cast<double>(offset) / static_cast<double>(offsets)) /
+              triangles))
           {
             stopped = true;
           }
@@ -489,19 +492,22 @@ std::vector<Index> PlacementSolver::trace(Index p, Index q) const
       {
         const EliminationStep& e = step->elimination;
         const LocationSet &si = *this->Problem.sets[e.parents[0]],
-                          &sj = *this->Problem.sets[e.parents[1]], &sk = *this->Problem.sets[e.vertex];
+                          &sj = *this->Problem.sets[e.parents[1]],
+                          &sk = *this->Problem.sets[e.vertex];
         const Index i = slots[e.parents[0]], j = slots[e.parents[1]];
         const float px = si.x[i], py = si.y[i], qx = sj.x[j], qy = sj.y[j];
-        const BaseEdge base(step->terms, qx, qy, px, py, std::sqrt((qx - px) * (qx - px) + (qy - py) * (qy - py)));
+        const BaseEdge base(
+          step->terms, qx, qy, px, py, std::sqrt((qx - px) * (qx - px) + (qy - py) * (qy - py)));
         float best = 4.0f * Unreachable;
         Index slot = sk.used.front();
         for (Index c = 0; c < sk.size(); c += FloatWidth)
         {
           const FloatPacket x = loadFloats(sk.x.data() + c), y = loadFloats(sk.y.data() + c);
           const FloatPacket fromP[2] = { x - px, y - py }, fromQ[2] = { x - qx, y - qy };
-          const FloatPacket value = triangleCost<distortion, rotation, mirrored>(step->terms, base,
-                                      fromP[0], fromP[1], sqrt(fromP[0] * fromP[0] + fromP[1] * fromP[1]),
-                                      sqrt(fromQ[0] * fromQ[0] + fromQ[1] * fromQ[1])) +
+          const FloatPacket value =
+            triangleCost<distortion, rotation, mirrored>(step->terms, base, fromP[0], fromP[1],
+              sqrt(fromP[0] * fromP[0] + fromP[1] * fromP[1]),
+              sqrt(fromQ[0] * fromQ[0] + fromQ[1] * fromQ[1])) +
             (loadFloats(step->fromI.row(i) + c) + loadFloats(step->fromJ.row(j) + c));
           for (int l = 0; l < FloatWidth; ++l)
           {

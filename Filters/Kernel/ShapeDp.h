@@ -17,8 +17,8 @@ struct PlacementProblem
 {
   const PolygonMesh* mesh = nullptr;
   ShapeEnergy energy;
-  double delta = 1.0;                      ///< of the sizes of source and target
-  std::vector<const LocationSet*> sets;    ///< per vertex
+  double delta = 1.0;                   ///< of the sizes of source and target
+  std::vector<const LocationSet*> sets; ///< per vertex
   /// Cost of the boundary edge from each vertex to the next, over their sets.
   std::vector<const PairTable*> edges;
   bool symmetricEdges = false; ///< each table is its own transpose

@@ -31,12 +31,13 @@ struct TriangleTerms
   float distortion;
   float logLength; ///< log of the source's sum of edge lengths, with the scale if it is signed
   float logScale;  ///< |log delta|; 0 if the distortion is signed
-  float longest;  ///< sum of edges beyond which the distortion grows, with a margin for rounding
+  float longest;   ///< sum of edges beyond which the distortion grows, with a margin for rounding
   float rotation;
   float cosine[4]; ///< trace of the map from (q-p, r-p): x y of each
   float sine[4];   ///< its antisymmetric part
 
-  TriangleTerms(const Vec2& a, const Vec2& b, const Vec2& c, const ShapeEnergy& energy, double delta)
+  TriangleTerms(
+    const Vec2& a, const Vec2& b, const Vec2& c, const ShapeEnergy& energy, double delta)
   {
     const double e1[2] = { b[0] - a[0], b[1] - a[1] }, e2[2] = { c[0] - a[0], c[1] - a[1] };
     const double det = e1[0] * e2[1] - e1[1] * e2[0];
@@ -53,8 +54,8 @@ struct TriangleTerms
     this->logScale = static_cast<float>(isSigned ? 0.0 : std::abs(std::log(delta)));
     this->longest = 1.001f * std::exp(this->logLength + this->logScale);
     this->rotation = static_cast<float>(energy.rotation);
-    const double trace[4] = { e2[1], -e2[0], -e1[1], e1[0] }, skew[4] = { e2[0], e2[1], -e1[0],
-      -e1[1] };
+    const double trace[4] = { e2[1], -e2[0], -e1[1], e1[0] },
+                 skew[4] = { e2[0], e2[1], -e1[0], -e1[1] };
     for (int x = 0; x < 4; ++x)
     {
       this->cosine[x] = static_cast<float>(trace[x] / det);
@@ -63,7 +64,8 @@ struct TriangleTerms
   }
 
   /// Coefficients of a polynomial that is at least cosh(sqrt(y)) for 0 <= y <= MostLog2.
-  static constexpr float CoshSeries[5] = { 1.0f + 1e-5f, 0.5f, 1.0f / 24.0f, 1.0f / 720.0f, 4.6e-5f };
+  static constexpr float CoshSeries[5] = { 1.0f + 1e-5f, 0.5f, 1.0f / 24.0f, 1.0f / 720.0f,
+    4.6e-5f };
   static constexpr float MostLog2 = 49.0f;
 
   /// A bound from below of the energy of any triangle with an edge of this length: the sum of its edges is
@@ -128,7 +130,8 @@ inline FloatPacket triangleCost(const TriangleTerms& t, const BaseEdge& base, Fl
   const FloatPacket length = max(base.length + pr + qr, broadcast(LeastLength));
   const FloatPacket norm = base.weighted + t.weights[1] * (pr * pr) + t.weights[2] * (qr * qr);
   const FloatMask flat = size <= FlatArea * (length * length);
-  FloatPacket k = select(flat, broadcast(FlatAnisotropy), norm / select(flat, broadcast(1.0f), size));
+  FloatPacket k =
+    select(flat, broadcast(FlatAnisotropy), norm / select(flat, broadcast(1.0f), size));
   k = min(max(k, broadcast(1.0f)), broadcast(FlatAnisotropy));
   // log(alpha / beta) = acosh(k)
   const FloatPacket anisotropy = log(k + sqrt(k * k - 1.0f));
@@ -141,7 +144,8 @@ inline FloatPacket triangleCost(const TriangleTerms& t, const BaseEdge& base, Fl
   {
     const FloatPacket u =
       t.cosine[0] * base.dx + t.cosine[1] * base.dy + t.cosine[2] * rx + t.cosine[3] * ry;
-    const FloatPacket v = t.sine[1] * base.dy + t.sine[0] * base.dx + t.sine[2] * rx + t.sine[3] * ry;
+    const FloatPacket v =
+      t.sine[1] * base.dy + t.sine[0] * base.dx + t.sine[2] * rx + t.sine[3] * ry;
     const FloatPacket r2 = max(u * u + v * v, broadcast(1e-20f));
     sum += t.rotation * (1.0f - u / sqrt(r2));
   }

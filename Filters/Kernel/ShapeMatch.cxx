@@ -47,7 +47,8 @@ void check(const MatchOptions& options)
   if (options.maxSolutions < 1 || options.rotations < 1 || options.scales < 1 ||
     options.rotations > 360 || options.scales > 31 || options.scales % 2 == 0)
   {
-    throw Error("At least 1 solution, 1 to 360 rotations and an odd number of scales from 1 to 31 are needed.");
+    throw Error("At least 1 solution, 1 to 360 rotations and an odd number of scales from 1 to 31 "
+                "are needed.");
   }
 }
 
@@ -108,8 +109,8 @@ public:
 
   ShapeMatch run()
   {
-    const bool hasCoarse = this->Target.locations.points.size() >= SmallTarget &&
-      this->Target.coarse.points.size() >= 3;
+    const bool hasCoarse =
+      this->Target.locations.points.size() >= SmallTarget && this->Target.coarse.points.size() >= 3;
     ShapeMatch first;
     bool haveFirst = false;
     if (hasCoarse && (this->Options.bounds || this->Options.coarseToFine || this->Progress))
@@ -188,7 +189,8 @@ private:
   }
 
   /// Cost of a vertex at each location, over the slots of a set of some of the locations.
-  std::vector<float> vertexCosts(std::size_t vertex, const LocationSet& set, const std::vector<Index>& of) const
+  std::vector<float> vertexCosts(
+    std::size_t vertex, const LocationSet& set, const std::vector<Index>& of) const
   {
     std::vector<float> costs(static_cast<std::size_t>(set.size()), 0.0f);
     for (std::size_t l = 0; l < set.points.size(); ++l)
@@ -242,9 +244,10 @@ private:
         {
           for (std::size_t j = 0; j < this->Target.coarseOf.size(); ++j)
           {
-            table.row(static_cast<Index>(i))[j] += static_cast<float>(
-              this->Options.energy.ordering *
-              orderingCost(this->Target.arc[this->Target.coarseOf[i]], this->Target.arc[this->Target.coarseOf[j]], expected));
+            table.row(static_cast<Index>(i))[j] +=
+              static_cast<float>(this->Options.energy.ordering *
+                orderingCost(this->Target.arc[this->Target.coarseOf[i]],
+                  this->Target.arc[this->Target.coarseOf[j]], expected));
           }
         }
         this->CoarseTables.push_back(std::move(table));
@@ -370,14 +373,16 @@ private:
   }
 
   /// The first solution, in the order of the energy, whose centre is near the target's centre of mass.
-  ShapeMatch choose(const PlacementProblem& problem, const PlacementSolver& solver, bool nextBest) const
+  ShapeMatch choose(
+    const PlacementProblem& problem, const PlacementSolver& solver, bool nextBest) const
   {
     const PairTable& values = solver.values();
     const EliminationStep& last = this->Source.mesh.elimination.back();
     const LocationSet &si = *problem.sets[last.parents[0]], &sj = *problem.sets[last.parents[1]];
     const Solution best = this->best(problem, solver);
     const double tolerance = this->Options.centreTolerance * this->Target.maxDistance;
-    const auto take = [&](const Solution& s) { return this->pointsOf(problem, solver.trace(s.p, s.q)); };
+    const auto take = [&](const Solution& s)
+    { return this->pointsOf(problem, solver.trace(s.p, s.q)); };
     std::vector<Vec2> points = take(best);
     Index rank = 1;
     double d = distance(this->meanOf(points), this->Target.centre);
@@ -395,8 +400,10 @@ private:
           }
         }
       }
-      const std::size_t count = std::min(solutions.size(), static_cast<std::size_t>(this->Options.maxSolutions));
-      std::partial_sort(solutions.begin(), solutions.begin() + static_cast<std::ptrdiff_t>(count), solutions.end());
+      const std::size_t count =
+        std::min(solutions.size(), static_cast<std::size_t>(this->Options.maxSolutions));
+      std::partial_sort(
+        solutions.begin(), solutions.begin() + static_cast<std::ptrdiff_t>(count), solutions.end());
       for (std::size_t s = 1; s < count && !accepted; ++s)
       {
         std::vector<Vec2> next = take(solutions[s]);
@@ -425,11 +432,13 @@ private:
     const std::size_t n = points.size();
     for (const auto& t : mesh.triangles)
     {
-      TriangleEnergy terms = triangleEnergy({ mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]] },
-        { points[t[0]], points[t[1]], points[t[2]] }, this->Delta, energy);
+      TriangleEnergy terms =
+        triangleEnergy({ mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]] },
+          { points[t[0]], points[t[1]], points[t[2]] }, this->Delta, energy);
       for (int c = 0; c < 3; ++c)
       {
-        const std::size_t a = static_cast<std::size_t>(t[c]), b = static_cast<std::size_t>(t[(c + 1) % 3]);
+        const std::size_t a = static_cast<std::size_t>(t[c]),
+                          b = static_cast<std::size_t>(t[(c + 1) % 3]);
         if ((a + 1) % n == b)
         {
           terms.edge += this->Target.edgeCost(points[a], points[b]);
@@ -459,18 +468,21 @@ private:
     {
       const std::vector<Vec2>& all = this->Target.locations.points;
       at.push_back(static_cast<std::size_t>(
-        std::min_element(all.begin(), all.end(), [&](const Vec2& a, const Vec2& b) { return distance(a, p) < distance(b, p); }) - all.begin()));
+        std::min_element(all.begin(), all.end(),
+          [&](const Vec2& a, const Vec2& b) { return distance(a, p) < distance(b, p); }) -
+        all.begin()));
     }
     for (std::size_t v = 0; v < at.size(); ++v)
     {
       if (this->described())
       {
-        match.descriptor += squaredDifference(this->Source.descriptors[v], this->Target.descriptors[at[v]]);
+        match.descriptor +=
+          squaredDifference(this->Source.descriptors[v], this->Target.descriptors[at[v]]);
       }
       if (this->ordered())
       {
-        match.ordering += orderingCost(this->Target.arc[at[v]], this->Target.arc[at[(v + 1) % at.size()]],
-          expectedAdvance(this->Source, v));
+        match.ordering += orderingCost(this->Target.arc[at[v]],
+          this->Target.arc[at[(v + 1) % at.size()]], expectedAdvance(this->Source, v));
       }
     }
   }
@@ -555,8 +567,8 @@ private:
   const std::function<bool(double)>& Progress;
   std::vector<PairTable> EdgeTables, CoarseTables;
 
-  friend ShapeMatch tautline::evaluatePlacement(const ShapeSource&, const ShapeTarget&,
-    const ShapeEnergy&, const std::vector<Vec2>&);
+  friend ShapeMatch tautline::evaluatePlacement(
+    const ShapeSource&, const ShapeTarget&, const ShapeEnergy&, const std::vector<Vec2>&);
 };
 
 Vec2 turned(const Vec2& p, double angle, bool mirrored)
@@ -662,10 +674,11 @@ ShapeMatch matchShape(
     throw Error("The source has no triangles: make it with makeShapeSource().");
   }
   const ShapeEnergy &e = options.energy, &made = target.data().energy;
-  if (e.lambda != made.lambda || e.smoothing != made.smoothing || e.directedEdges != made.directedEdges ||
-    (e.descriptor > 0.0 && made.descriptor == 0.0))
+  if (e.lambda != made.lambda || e.smoothing != made.smoothing ||
+    e.directedEdges != made.directedEdges || (e.descriptor > 0.0 && made.descriptor == 0.0))
   {
-    throw Error("The target was prepared for another lambda, smoothing or kind of edges, or without descriptors.");
+    throw Error("The target was prepared for another lambda, smoothing or kind of edges, or "
+                "without descriptors.");
   }
   const auto start = std::chrono::steady_clock::now();
   const double delta = source.maxDistance / target.maxDistance();
@@ -678,12 +691,14 @@ ShapeMatch matchShape(
   {
     progress = [&](double part)
     {
-      if (stop == MatchStop::Complete && options.progress && !options.progress((done + part) / runs))
+      if (stop == MatchStop::Complete && options.progress &&
+        !options.progress((done + part) / runs))
       {
         stop = MatchStop::Stopped;
       }
       const std::chrono::duration<double> used = std::chrono::steady_clock::now() - start;
-      if (stop == MatchStop::Complete && options.timeLimit > 0.0 && used.count() > options.timeLimit)
+      if (stop == MatchStop::Complete && options.timeLimit > 0.0 &&
+        used.count() > options.timeLimit)
       {
         stop = MatchStop::TimeLimit;
       }
@@ -696,7 +711,8 @@ ShapeMatch matchShape(
   {
     for (Index rotation = 0; rotation < options.rotations; ++rotation)
     {
-      const double angle = 2.0 * Pi * static_cast<double>(rotation) / static_cast<double>(options.rotations);
+      const double angle =
+        2.0 * Pi * static_cast<double>(rotation) / static_cast<double>(options.rotations);
       const ShapeSource* shape = &source;
       ShapeSource other;
       if (mirror || rotation)
@@ -720,7 +736,9 @@ ShapeMatch matchShape(
           // Back to the order of the source's vertices and triangles.
           std::reverse(match.points.begin(), match.points.end());
         }
-        const bool better = !found || (match.centreAccepted != best.centreAccepted ? match.centreAccepted : match.energy < best.energy);
+        const bool better = !found ||
+          (match.centreAccepted != best.centreAccepted ? match.centreAccepted
+                                                       : match.energy < best.energy);
         if (better)
         {
           best = std::move(match);
@@ -746,11 +764,12 @@ ShapeMatch evaluatePlacement(const ShapeSource& source, const ShapeTarget& targe
   options.energy = energy;
   check(options);
   const std::function<bool(double)> none;
-  return Matcher(source, target, options, source.maxDistance / target.maxDistance(), none).evaluate(points);
+  return Matcher(source, target, options, source.maxDistance / target.maxDistance(), none)
+    .evaluate(points);
 }
 
-TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source,
-  const std::array<Vec2, 3>& target, double delta, const ShapeEnergy& energy)
+TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source, const std::array<Vec2, 3>& target,
+  double delta, const ShapeEnergy& energy)
 {
   double s[4], t[4], lengthS = 0.0, lengthT = 0.0;
   for (int x = 0; x < 2; ++x)
@@ -784,8 +803,9 @@ TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source,
   const double logRatio = std::acosh(std::max(1.0, k));
   terms.deformation = logRatio * logRatio;
   const double growth = std::log(longest / lengthS);
-  terms.distortion = energy.signedDistortion ? std::abs(growth + std::log(delta))
-                                             : std::abs(std::abs(growth) - std::abs(std::log(delta)));
+  terms.distortion = energy.signedDistortion
+    ? std::abs(growth + std::log(delta))
+    : std::abs(std::abs(growth) - std::abs(std::log(delta)));
   terms.rotation = u > 0.0 ? 1.0 - (a[0] + a[3]) / u : 1.0;
   return terms;
 }

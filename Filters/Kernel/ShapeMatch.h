@@ -35,8 +35,8 @@ namespace tautline
 enum class Reflection
 {
   Forbidden = 0, ///< they count as flat
-  Whole = 1,     ///< the shape or its mirror image, whichever fits better; single triangles as above
-  Free = 2       ///< they cost nothing by themselves, as in the dissertation's formula
+  Whole = 1, ///< the shape or its mirror image, whichever fits better; single triangles as above
+  Free = 2   ///< they cost nothing by themselves, as in the dissertation's formula
 };
 
 /// The terms of the energy and their weights.
@@ -79,8 +79,8 @@ struct ShapeSource
 {
   PolygonMesh mesh;
   Vec2 centre = {};
-  double maxDistance = 0; ///< d_max of the source
-  double perimeter = 0;   ///< of the outline
+  double maxDistance = 0;  ///< d_max of the source
+  double perimeter = 0;    ///< of the outline
   std::vector<double> arc; ///< where each vertex lies along the outline, 0 to 1; empty if not known
   std::vector<std::array<float, 5>> descriptors; ///< per vertex; empty if not known
 };
@@ -94,9 +94,9 @@ TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(std::vector<Vec2> polygon);
 /// Where vertices may go.
 enum class Locations
 {
-  Grid = 0,    ///< the centres of columns x rows equal rectangles of the image
+  Grid = 0,     ///< the centres of columns x rows equal rectangles of the image
   NearGrid = 1, ///< those of them within a grid step of the target's outline
-  Contour = 2  ///< points at equal distances along the target's outline
+  Contour = 2   ///< points at equal distances along the target's outline
 };
 
 struct LocationOptions
@@ -179,22 +179,22 @@ enum class MatchStop
 
 struct ShapeMatch
 {
-  std::vector<Vec2> points;  ///< of the source's vertices in the target
-  double energy = 0;         ///< E, all weighted terms
-  double edge = 0;           ///< sum of E_edge
-  double deformation = 0;    ///< sum of E_def
-  double distortion = 0;     ///< sum of E_dis
-  double rotation = 0;       ///< sum of 1 - cos(angle)
-  double descriptor = 0;     ///< sum of squared differences
-  double ordering = 0;       ///< sum of |log|
+  std::vector<Vec2> points; ///< of the source's vertices in the target
+  double energy = 0;        ///< E, all weighted terms
+  double edge = 0;          ///< sum of E_edge
+  double deformation = 0;   ///< sum of E_def
+  double distortion = 0;    ///< sum of E_dis
+  double rotation = 0;      ///< sum of 1 - cos(angle)
+  double descriptor = 0;    ///< sum of squared differences
+  double ordering = 0;      ///< sum of |log|
   std::vector<TriangleEnergy> triangles;
   Index rank = 1;            ///< of the solution taken: 1 is the least energy
   double centreDistance = 0; ///< D, from the mean of the points to the target's centre of mass
   bool centreAccepted = true;
-  bool mirrored = false;     ///< the source's mirror image was matched
-  double angle = 0;          ///< by which the source was turned, in degrees
-  double scale = 1;          ///< factor on the expected size
-  bool exact = true;         ///< no placement on the locations has a lower energy (rank 1)
+  bool mirrored = false; ///< the source's mirror image was matched
+  double angle = 0;      ///< by which the source was turned, in degrees
+  double scale = 1;      ///< factor on the expected size
+  bool exact = true;     ///< no placement on the locations has a lower energy (rank 1)
   MatchStop stop = MatchStop::Complete;
 };
 

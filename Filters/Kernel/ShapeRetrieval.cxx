@@ -131,7 +131,8 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
     {
       stop = static_cast<int>(MatchStop::TimeLimit);
     }
-    else if (options.match.progress && !options.match.progress(static_cast<double>(done) / static_cast<double>(work)))
+    else if (options.match.progress &&
+      !options.match.progress(static_cast<double>(done) / static_cast<double>(work)))
     {
       stop = static_cast<int>(MatchStop::Stopped);
     }
@@ -150,7 +151,8 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
       if (at < errorAt)
       {
         errorAt = at;
-        error = std::make_exception_ptr(Error("Shape " + std::to_string(at % count) + ": " + caught.what()));
+        error = std::make_exception_ptr(
+          Error("Shape " + std::to_string(at % count) + ": " + caught.what()));
       }
       stop = static_cast<int>(MatchStop::Stopped);
     }
@@ -187,10 +189,8 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
       }
       const Index s = pair / count, t = pair % count;
       guarded(count + s,
-        [&]
-        {
-          result.distances[pair] =
-            s == t ? 0.0 : matchShape(sources[s], *targets[t], match).energy;
+        [&] {
+          result.distances[pair] = s == t ? 0.0 : matchShape(sources[s], *targets[t], match).energy;
         });
       report();
     }
@@ -211,7 +211,8 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
     {
       for (Index t = 0; t < count; ++t)
       {
-        const double there = result.distances[s * count + t], back = result.distances[t * count + s];
+        const double there = result.distances[s * count + t],
+                     back = result.distances[t * count + s];
         if (there >= 0.0 && back >= 0.0)
         {
           both[s * count + t] = there / static_cast<double>(result.vertices[s] - 2) +

@@ -34,11 +34,11 @@ struct RetrievalOptions
 /// How many of the best matches are of the query's class.
 struct Recognition
 {
-  double rate = 0;             ///< hits / possible, 0 to 1
+  double rate = 0; ///< hits / possible, 0 to 1
   Index hits = 0;
-  Index possible = 0;          ///< per query the smaller of `best` and the others in its class
-  std::vector<Index> hitsAt;   ///< queries whose k-th best match is of their class
-  std::vector<Index> classes;  ///< the labels there are, ascending
+  Index possible = 0;         ///< per query the smaller of `best` and the others in its class
+  std::vector<Index> hitsAt;  ///< queries whose k-th best match is of their class
+  std::vector<Index> classes; ///< the labels there are, ascending
   /// Row after row: the part of the best matches of a class's queries that are of each class.
   std::vector<double> confusion;
 };

@@ -16,6 +16,8 @@ constexpr double Pi = 3.14159265358979323846;
 constexpr double DescriptorRadii[4] = { 0.12, 0.25, 0.45, 0.8 };
 /// A coarse set has every third location.
 constexpr Index CoarseStep = 3;
+/// Bytes that the table of edge costs may take.
+constexpr double TableLimit = 4.0 * 1024 * 1024 * 1024;
 
 void requireNonNegative(double value, const char* name)
 {
@@ -146,16 +148,16 @@ std::vector<Descriptor> describe(const Silhouette& shape, const std::vector<Vec2
       const double radius = std::max(1.0, DescriptorRadii[k] * shape.maxDistance);
       double area = 0.0;
       const Index first = static_cast<Index>(std::ceil(std::max(0.0, p[1] - radius)));
-      const Index last = static_cast<Index>(
-        std::floor(std::min(static_cast<double>(height - 1), p[1] + radius)));
+      const Index last =
+        static_cast<Index>(std::floor(std::min(static_cast<double>(height - 1), p[1] + radius)));
       for (Index j = first; j <= last; ++j)
       {
         const double dy = static_cast<double>(j) - p[1];
         const double half = std::sqrt(std::max(0.0, radius * radius - dy * dy));
-        const Index from = static_cast<Index>(
-          std::ceil(std::clamp(p[0] - half, 0.0, static_cast<double>(width))));
-        const Index to = static_cast<Index>(std::floor(
-          std::clamp(p[0] + half, -1.0, static_cast<double>(width - 1))));
+        const Index from =
+          static_cast<Index>(std::ceil(std::clamp(p[0] - half, 0.0, static_cast<double>(width))));
+        const Index to = static_cast<Index>(
+          std::floor(std::clamp(p[0] + half, -1.0, static_cast<double>(width - 1))));
         if (to >= from)
         {
           area += sums[j * (width + 1) + to + 1] - sums[j * (width + 1) + from];
@@ -185,15 +187,14 @@ double ShapeTarget::Data::edgeCost(const Vec2& p, const Vec2& q) const
       continue;
     }
     // The polygon runs counter-clockwise: its inside is on the left.
-    const double along = length > 0.0 ? (-dy * bilinear(this->gradientX, this->width, this->height, x, y) +
-                                          dx * bilinear(this->gradientY, this->width, this->height, x, y)) /
+    const double along = length > 0.0
+      ? (-dy * bilinear(this->gradientX, this->width, this->height, x, y) +
+          dx * bilinear(this->gradientY, this->width, this->height, x, y)) /
         length
-                                      : 0.0;
-    static const bool mf = getenv("MF");
-    sum += mf ? std::max(0.0, along) : 1.0 / (this->energy.lambda + std::max(0.0, along));
+      : 0.0;
+    sum += 1.0 / (this->energy.lambda + std::max(0.0, along));
   }
-  static const bool mf = getenv("MF");
-  return mf ? 1.0 / (this->energy.lambda + sum / samples) : sum / samples;
+  return sum / samples;
 }
 
 PairTable ShapeTarget::Data::edgeTable(const LocationSet& a, const LocationSet& b) const
@@ -269,14 +270,15 @@ ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options
     gauss[k] /= sum;
     slope[k] *= step / moment;
   }
-  d.gradientX = convolve(
-    convolve(image, d.width, d.height, true, gauss), d.width, d.height, false, slope);
-  d.gradientY = convolve(
-    convolve(image, d.width, d.height, false, gauss), d.width, d.height, true, slope);
+  d.gradientX =
+    convolve(convolve(image, d.width, d.height, true, gauss), d.width, d.height, false, slope);
+  d.gradientY =
+    convolve(convolve(image, d.width, d.height, false, gauss), d.width, d.height, true, slope);
   d.cost.resize(image.size());
   for (std::size_t i = 0; i < image.size(); ++i)
   {
-    static const bool mf = getenv("MF"); d.cost[i] = mf ? std::hypot(d.gradientX[i], d.gradientY[i]) : 1.0f / (static_cast<float>(energy.lambda) + std::hypot(d.gradientX[i], d.gradientY[i]));
+    d.cost[i] =
+      1.0f / (static_cast<float>(energy.lambda) + std::hypot(d.gradientX[i], d.gradientY[i]));
   }
 
   std::vector<Vec2> coarse;
@@ -305,7 +307,8 @@ ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options
     const Vec2 cell = { static_cast<double>(d.width) / static_cast<double>(options.columns),
       static_cast<double>(d.height) / static_cast<double>(options.rows) };
     d.gridStep = cell;
-    d.locations = LocationSet::lattice({ 0.5 * cell[0] - 0.5, 0.5 * cell[1] - 0.5 }, cell, options.columns, options.rows);
+    d.locations = LocationSet::lattice(
+      { 0.5 * cell[0] - 0.5, 0.5 * cell[1] - 0.5 }, cell, options.columns, options.rows);
     if (options.kind == Locations::NearGrid)
     {
       std::vector<Vec2> near;
@@ -322,6 +325,13 @@ ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options
       }
       d.locations = LocationSet::list(near);
     }
+  }
+  const double tableSize =
+    static_cast<double>(d.locations.size()) * static_cast<double>(d.locations.size());
+  if (tableSize * sizeof(float) > TableLimit)
+  {
+    throw Error("A table over all pairs of " + std::to_string(d.locations.points.size()) +
+      " locations would take more than 4 GiB: use fewer locations.");
   }
   // A coarse set for a first solution: every third location, in both directions of a grid.
   const Index columns = d.locations.grid ? d.locations.columns : 1;

@@ -22,9 +22,9 @@ struct LocationSet
   bool grid = false;   ///< all of a regular grid
   Vec2 step = {};      ///< of the grid
   std::vector<float> x, y;
-  std::vector<Index> used;    ///< slots with a location, ascending
-  std::vector<Index> slots;   ///< slot of each location
-  std::vector<Vec2> points;   ///< of the locations
+  std::vector<Index> used;  ///< slots with a location, ascending
+  std::vector<Index> slots; ///< slot of each location
+  std::vector<Vec2> points; ///< of the locations
 
   Index size() const { return this->rows * this->rowLength; }
   Index locationOf(Index slot) const;
@@ -62,8 +62,8 @@ struct ShapeTarget::Data
   std::vector<float> gradientX; ///< for directed edges
   std::vector<float> gradientY;
   LocationSet locations;
-  LocationSet coarse;             ///< every third of them
-  PairTable edges;                ///< edge cost from slot to slot
+  LocationSet coarse; ///< every third of them
+  PairTable edges;    ///< edge cost from slot to slot
   PairTable coarseEdges;
   std::vector<Descriptor> descriptors; ///< per location
   std::vector<double> arc;             ///< of contour locations, 0 to 1

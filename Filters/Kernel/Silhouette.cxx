@@ -155,13 +155,15 @@ private:
     const std::size_t inner = first ? a : b, outer = first ? b : a;
     // Beyond the image the background is taken as far below the threshold as the shape is above.
     const Index i = static_cast<Index>(a) % this->Width, j = static_cast<Index>(a) / this->Width;
-    const bool frame = i == 0 || j == 0 || (up ? j + 2 : i + 2) == (up ? this->Height : this->Width);
+    const bool frame =
+      i == 0 || j == 0 || (up ? j + 2 : i + 2) == (up ? this->Height : this->Width);
     const double above = this->Values[inner];
     const double below = frame ? above : -this->Values[outer];
     double t = above + below > 0.0 ? above / (above + below) : 0.5;
     t = std::clamp(t, CrossingMargin, 1.0 - CrossingMargin);
     t = first ? t : 1.0 - t;
-    return { static_cast<double>(i - 1) + (up ? 0.0 : t), static_cast<double>(j - 1) + (up ? t : 0.0) };
+    return { static_cast<double>(i - 1) + (up ? 0.0 : t),
+      static_cast<double>(j - 1) + (up ? t : 0.0) };
   }
 
   Index Width;
@@ -276,7 +278,8 @@ public:
       sum[0] = 0.0;
       for (std::size_t end = this->Least; end <= n; ++end)
       {
-        for (int step = this->Least; step <= std::min<int>(this->Most, static_cast<int>(end)); ++step)
+        for (int step = this->Least; step <= std::min<int>(this->Most, static_cast<int>(end));
+             ++step)
         {
           const double value = sum[end - step] + this->cost((start + end - step) % n, step);
           if (value < sum[end])
@@ -332,8 +335,8 @@ Silhouette traceSilhouette(const ImageView& image, const SilhouetteOptions& opti
   }
   const auto [low, high] = std::minmax_element(image.values, image.values + n);
   Silhouette shape;
-  shape.threshold = std::isnan(options.threshold) ? 0.5 * (double{ *low } + double{ *high })
-                                                  : options.threshold;
+  shape.threshold =
+    std::isnan(options.threshold) ? 0.5 * (double{ *low } + double{ *high }) : options.threshold;
   if (!std::isfinite(shape.threshold))
   {
     throw Error("The threshold is not finite.");

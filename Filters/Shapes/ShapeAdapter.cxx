@@ -31,7 +31,8 @@ constexpr double PlaneTolerance = 1e-6;
 
 Error stray()
 {
-  return Error("The source mesh has points inside, holes or several parts: a polygon triangulated between its own "
+  return Error("The source mesh has points inside, holes or several parts: a polygon triangulated "
+               "between its own "
                "vertices is needed. Silhouette to Mesh makes one.");
 }
 }
@@ -59,15 +60,16 @@ GreyImage::GreyImage(vtkImageData* image, vtkDataArray* array)
   this->Size = std::abs(spacing[this->AxisU]);
   if (std::abs(this->Size - std::abs(spacing[this->AxisV])) > SquareTolerance * this->Size)
   {
-    throw Error("The pixels of the image are not square (" + std::to_string(spacing[this->AxisU]) + " by " +
-      std::to_string(spacing[this->AxisV]) + "): resample it first.");
+    throw Error("The pixels of the image are not square (" + std::to_string(spacing[this->AxisU]) +
+      " by " + std::to_string(spacing[this->AxisV]) + "): resample it first.");
   }
   vtkPointData* data = image->GetPointData();
   array = array ? array : data->GetScalars();
   array = array || data->GetNumberOfArrays() == 0 ? array : data->GetArray(0);
   if (!array)
   {
-    throw Error("The image has no point array of numbers; of cell data, Cell Data to Point Data makes one.");
+    throw Error(
+      "The image has no point array of numbers; of cell data, Cell Data to Point Data makes one.");
   }
   const vtkIdType count = array->GetNumberOfTuples();
   if (count != this->Width * this->Height)
@@ -99,7 +101,8 @@ void GreyImage::toSpace(const Vec2& pixel, double x[3]) const
 {
   int extent[6];
   this->Image->GetExtent(extent);
-  double index[3] = { static_cast<double>(extent[0]), static_cast<double>(extent[2]), static_cast<double>(extent[4]) };
+  double index[3] = { static_cast<double>(extent[0]), static_cast<double>(extent[2]),
+    static_cast<double>(extent[4]) };
   index[this->AxisU] += pixel[0];
   index[this->AxisV] += pixel[1];
   this->Image->TransformContinuousIndexToPhysicalPoint(index, x);
@@ -120,7 +123,8 @@ SourceMesh takeSourceMesh(vtkDataSet* mesh)
   {
     if (mesh->GetCellType(cell) != VTK_TRIANGLE)
     {
-      throw Error("Cell " + std::to_string(cell) + " of the source mesh is not a triangle: run Triangulate first.");
+      throw Error("Cell " + std::to_string(cell) +
+        " of the source mesh is not a triangle: run Triangulate first.");
     }
     vtkIdList* ids = mesh->GetCell(cell)->GetPointIds();
     double x[3][3];
@@ -128,7 +132,8 @@ SourceMesh takeSourceMesh(vtkDataSet* mesh)
     {
       mesh->GetPoint(ids->GetId(c), x[c]);
     }
-    const double area = (x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[1][1] - x[0][1]) * (x[2][0] - x[0][0]);
+    const double area =
+      (x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[1][1] - x[0][1]) * (x[2][0] - x[0][0]);
     for (int c = 0; c < 3; ++c)
     {
       const vtkIdType a = ids->GetId(c), b = ids->GetId((c + 1) % 3);
@@ -162,7 +167,8 @@ SourceMesh takeSourceMesh(vtkDataSet* mesh)
     }
     at = found->second;
   } while (at != next.begin()->first && polygon.size() <= next.size());
-  if (polygon.size() != next.size() || static_cast<vtkIdType>(polygon.size()) != mesh->GetNumberOfPoints())
+  if (polygon.size() != next.size() ||
+    static_cast<vtkIdType>(polygon.size()) != mesh->GetNumberOfPoints())
   {
     throw stray();
   }

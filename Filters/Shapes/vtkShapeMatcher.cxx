@@ -67,8 +67,8 @@ vtkSmartPointer<vtkDoubleArray> makeArray(const char* name, int components, vtkI
   return array;
 }
 
-void addTriangleTerms(vtkUnstructuredGrid* grid, const tautline::ShapeMatch& match,
-  const tautline::ShapeEnergy& energy)
+void addTriangleTerms(
+  vtkUnstructuredGrid* grid, const tautline::ShapeMatch& match, const tautline::ShapeEnergy& energy)
 {
   const vtkIdType n = static_cast<vtkIdType>(match.triangles.size());
   auto edge = makeArray("EdgeCost", 1, n), deformation = makeArray("Deformation", 1, n),
@@ -130,7 +130,8 @@ int vtkShapeMatcher::RequestData(
   this->Energy = this->CentreDistance = 0.0;
   this->Rank = 0;
   this->Exact = false;
-  if (!input || !targetInput || input->GetNumberOfPoints() == 0 || targetInput->GetNumberOfPoints() == 0)
+  if (!input || !targetInput || input->GetNumberOfPoints() == 0 ||
+    targetInput->GetNumberOfPoints() == 0)
   {
     return 1;
   }
@@ -195,7 +196,8 @@ int vtkShapeMatcher::RequestData(
     std::ostringstream text;
     text << "Energy " << match.energy << ": edges " << match.edge << ", deformation "
          << match.deformation << ", distortion " << match.distortion << " (unweighted); solution "
-         << match.rank << ", centre off by " << match.centreDistance << " of " << theta << " pixels.";
+         << match.rank << ", centre off by " << match.centreDistance << " of " << theta
+         << " pixels.";
     if (match.stop != tautline::MatchStop::Complete)
     {
       text << " Ended early: the best so far.";

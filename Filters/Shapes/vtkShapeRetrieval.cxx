@@ -32,7 +32,7 @@ struct ShapeSet
 {
   std::vector<std::string> names, labels;
   std::vector<tautline::Silhouette> shapes;
-  std::vector<std::string> classes;    ///< in order of their first shape
+  std::vector<std::string> classes;     ///< in order of their first shape
   std::vector<tautline::Index> numbers; ///< of the class of each shape
 };
 
@@ -222,9 +222,9 @@ int vtkShapeRetrieval::RequestData(
     fillTables(set, result, tables[0], tables[1], tables[2], tables[3]);
     this->RecognitionRate = 100.0 * result.recognition.rate;
     std::ostringstream text;
-    text << result.count << " shapes of " << set.classes.size() << " classes: " << result.recognition.hits
-         << " of " << result.recognition.possible << " best matches are of the query's class, "
-         << this->RecognitionRate << " %.";
+    text << result.count << " shapes of " << set.classes.size()
+         << " classes: " << result.recognition.hits << " of " << result.recognition.possible
+         << " best matches are of the query's class, " << this->RecognitionRate << " %.";
     if (result.stop != tautline::MatchStop::Complete)
     {
       text << " Ended early: distances of -1 were not computed.";

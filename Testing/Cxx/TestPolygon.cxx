@@ -29,7 +29,8 @@ double circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
     m[i][2] = m[i][0] * m[i][0] + m[i][1] * m[i][1];
   }
   return static_cast<double>(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-    m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
+    m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+    m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
 }
 
 void checkMesh(const std::vector<Vec2>& polygon, double tolerance)
@@ -60,7 +61,8 @@ void checkMesh(const std::vector<Vec2>& polygon, double tolerance)
       {
         if (w != v[0] && w != v[1] && w != v[2])
         {
-          TAUTLINE_CHECK(circle(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[w]) <= tolerance);
+          TAUTLINE_CHECK(circle(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]],
+                           mesh.points[w]) <= tolerance);
         }
       }
     }
@@ -75,7 +77,8 @@ void checkMesh(const std::vector<Vec2>& polygon, double tolerance)
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     {
       const auto& v = mesh.triangles[t];
-      left += !triangles.count(static_cast<Index>(t)) && (v[0] == step.vertex || v[1] == step.vertex || v[2] == step.vertex);
+      left += !triangles.count(static_cast<Index>(t)) &&
+        (v[0] == step.vertex || v[1] == step.vertex || v[2] == step.vertex);
     }
     TAUTLINE_CHECK_EQUAL(left, 1);
     TAUTLINE_CHECK(gone.insert(step.vertex).second);
@@ -88,8 +91,8 @@ void checkMesh(const std::vector<Vec2>& polygon, double tolerance)
 int TestPolygon(int, char*[])
 {
   checkMesh({ { 0, 0 }, { 1, 0 }, { 0, 1 } }, 0);
-  checkMesh({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } }, 0); // cocircular: either diagonal
-  checkMesh({ { 0, 0 }, { 0, 1 }, { 1, 1 }, { 1, 0 } }, 0); // clockwise
+  checkMesh({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } }, 0);           // cocircular: either diagonal
+  checkMesh({ { 0, 0 }, { 0, 1 }, { 1, 1 }, { 1, 0 } }, 0);           // clockwise
   checkMesh({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 2, 1 }, { 0, 4 } }, 0); // concave
   checkMesh({ { 0, 0 }, { 1, 0 }, { 2, 0 }, { 3, 0 }, { 1.5, 1 } }, 0); // collinear vertices
   {
@@ -97,7 +100,8 @@ int TestPolygon(int, char*[])
     const PolygonMesh mesh = triangulatePolygon({ { 0, 0 }, { 2, -0.2 }, { 4, 0 }, { 2, 0.2 } });
     for (const auto& t : mesh.triangles)
     {
-      TAUTLINE_CHECK(std::count(t.begin(), t.end(), 1) == 1 && std::count(t.begin(), t.end(), 3) == 1);
+      TAUTLINE_CHECK(
+        std::count(t.begin(), t.end(), 1) == 1 && std::count(t.begin(), t.end(), 3) == 1);
     }
   }
   // Stars with random radii, at usual and extreme places and sizes.
@@ -122,11 +126,14 @@ int TestPolygon(int, char*[])
   checkMesh({ { 0, 0 }, { 1, 1e-17 }, { 2, 0 }, { 1, 1 } }, 1e-12);
 
   TAUTLINE_CHECK_THROWS(triangulatePolygon({ { 0, 0 }, { 1, 0 } }), "at least 3");
-  TAUTLINE_CHECK_THROWS(triangulatePolygon({ { 0, 0 }, { 2, 2 }, { 2, 0 }, { 0, 2 } }), "meets itself");
-  TAUTLINE_CHECK_THROWS(triangulatePolygon({ { 0, 0 }, { 1, 0 }, { 1, 0 }, { 0, 1 } }), "meets itself");
+  TAUTLINE_CHECK_THROWS(
+    triangulatePolygon({ { 0, 0 }, { 2, 2 }, { 2, 0 }, { 0, 2 } }), "meets itself");
+  TAUTLINE_CHECK_THROWS(
+    triangulatePolygon({ { 0, 0 }, { 1, 0 }, { 1, 0 }, { 0, 1 } }), "meets itself");
   TAUTLINE_CHECK_THROWS(triangulatePolygon({ { 0, 0 }, { 1, 0 }, { 2, 0 } }), "");
   TAUTLINE_CHECK_THROWS(
-    triangulatePolygon({ { 0, 0 }, { std::numeric_limits<double>::quiet_NaN(), 0 }, { 0, 1 } }), "not finite");
+    triangulatePolygon({ { 0, 0 }, { std::numeric_limits<double>::quiet_NaN(), 0 }, { 0, 1 } }),
+    "not finite");
 
   const Vec2 centre = centreOfMass({ { 0, 0 }, { 6, 0 }, { 0, 3 } });
   TAUTLINE_CHECK_NEAR(centre[0], 2.0, 1e-14);

@@ -41,7 +41,8 @@ void testSubPixel()
   {
     for (Index i = 10; i < 40; ++i)
     {
-      picture.at(i, j) = static_cast<float>(std::min(100.0, std::max(0.0, 40.0 * (static_cast<double>(i) - 20.25) + 50.0)));
+      picture.at(i, j) = static_cast<float>(
+        std::min(100.0, std::max(0.0, 40.0 * (static_cast<double>(i) - 20.25) + 50.0)));
     }
   }
   const Silhouette shape = traceSilhouette(picture.view());
@@ -98,7 +99,9 @@ void testPolarityAndComponents()
 void testExtremes()
 {
   // At the border, one pixel, a thin line, all but one pixel.
-  const Silhouette whole = traceSilhouette(paint(40, 30, [](double x, double) { return 20.5 - x; }).view(), { std::nan(""), Foreground::Bright });
+  const Silhouette whole =
+    traceSilhouette(paint(40, 30, [](double x, double) { return 20.5 - x; }).view(),
+      { std::nan(""), Foreground::Bright });
   TAUTLINE_CHECK(whole.touchesBorder);
   TAUTLINE_CHECK_NEAR(whole.area, 21.0 * 30.0, 1.0);
   Picture dot = paint(9, 9, [](double, double) { return -1.0; });
@@ -107,7 +110,8 @@ void testExtremes()
   TAUTLINE_CHECK_NEAR(pixel.area, 0.5, 1e-6);
   const ShapeSource smallest = makeShapeSource(pixel, 25.0);
   TAUTLINE_CHECK(smallest.mesh.points.size() >= 3);
-  Picture line = paint(60, 9, [](double x, double y) { return x > 4 && x < 55 && y == 4 ? 1.0 : -1.0; });
+  Picture line =
+    paint(60, 9, [](double x, double y) { return x > 4 && x < 55 && y == 4 ? 1.0 : -1.0; });
   const ShapeSource thin = makeShapeSource(traceSilhouette(line.view()), 25.0);
   TAUTLINE_CHECK(thin.mesh.triangles.size() >= 1);
   Picture huge = disc(3000, 1500, 1500, 1200);
@@ -124,8 +128,11 @@ void testRefused()
   TAUTLINE_CHECK_THROWS(traceSilhouette(white.view()), "one value");
   Picture picture = disc(40, 20, 20, 10);
   TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view(), { 300.0, Foreground::Bright }), "No pixel");
-  TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view(), { 300.0, Foreground::Dark }), "Every pixel");
-  TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view(), { std::numeric_limits<double>::infinity(), Foreground::Bright }), "not finite");
+  TAUTLINE_CHECK_THROWS(
+    traceSilhouette(picture.view(), { 300.0, Foreground::Dark }), "Every pixel");
+  TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view(),
+                          { std::numeric_limits<double>::infinity(), Foreground::Bright }),
+    "not finite");
   const Silhouette shape = traceSilhouette(picture.view());
   for (double spacing : { 0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity() })
   {
