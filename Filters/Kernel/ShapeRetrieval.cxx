@@ -26,7 +26,9 @@ RetrievalOptions RetrievalOptions::highest()
   options.locations.kind = Locations::Contour;
   options.locations.contour = 80;
   options.match.energy.directedEdges = true;
-  options.match.energy.ordering = 2.0;
+  options.match.energy.ordering = 1.0;
+  options.match.energy.descriptor = 100.0;
+  options.match.energy.rotation = 1.0;
   options.match.centreTolerance = 0.0;
   options.symmetric = true;
   return options;

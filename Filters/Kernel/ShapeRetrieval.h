@@ -25,10 +25,10 @@ struct RetrievalOptions
   /// The dissertation's setting: spacing 25, 30 x 30 grid, a = 4 b, theta = d_max / 3.
   static RetrievalOptions dissertation() { return {}; }
   /// The same with Felzenszwalb's energy and without the centre of mass.
-  static RetrievalOptions felzenszwalb();
-  /// What recognizes best here: vertices 15 pixels apart, 80 locations on the contour, directed edges, ordering,
-  /// both directions. The help page tells how it was chosen.
-  static RetrievalOptions highest();
+  TAUTLINE_KERNEL_EXPORT static RetrievalOptions felzenszwalb();
+  /// What recognizes best here: vertices 15 pixels apart, 80 locations on the contour, directed edges,
+  /// ordering 1, descriptors 100, rotation 1, both directions. The help page tells how it was chosen.
+  TAUTLINE_KERNEL_EXPORT static RetrievalOptions highest();
 };
 
 /// How many of the best matches are of the query's class.

@@ -82,10 +82,11 @@ ShapeSet takeShapes(vtkMultiBlockDataSet* input, tautline::Foreground foreground
 }
 
 template <class Array>
-Array* addColumn(vtkTable* table, const char* name)
+Array* addColumn(vtkTable* table, const char* name, vtkIdType rows)
 {
   vtkNew<Array> column;
   column->SetName(name);
+  column->SetNumberOfValues(rows);
   table->AddColumn(column);
   return column; // the table keeps it
 }
@@ -94,71 +95,75 @@ void fillTables(const ShapeSet& set, const tautline::Retrieval& result, vtkTable
   vtkTable* ranking, vtkTable* statistics, vtkTable* confusion)
 {
   const vtkIdType n = result.count;
-  auto* names = addColumn<vtkStringArray>(distances, "Name");
-  auto* labels = addColumn<vtkStringArray>(distances, "Label");
+  auto* names = addColumn<vtkStringArray>(distances, "Name", n);
+  auto* labels = addColumn<vtkStringArray>(distances, "Label", n);
   for (vtkIdType s = 0; s < n; ++s)
   {
-    names->InsertNextValue(set.names[s]);
-    labels->InsertNextValue(set.labels[s]);
+    names->SetValue(s, set.names[s]);
+    labels->SetValue(s, set.labels[s]);
   }
   for (vtkIdType t = 0; t < n; ++t)
   {
-    auto* column = addColumn<vtkDoubleArray>(distances, set.names[t].c_str());
+    auto* column = addColumn<vtkDoubleArray>(distances, set.names[t].c_str(), n);
     for (vtkIdType s = 0; s < n; ++s)
     {
-      column->InsertNextValue(result.distances[s * n + t]);
+      column->SetValue(s, result.distances[s * n + t]);
     }
   }
 
   const tautline::Recognition& found = result.recognition;
   const vtkIdType best = static_cast<vtkIdType>(found.hitsAt.size());
-  auto* query = addColumn<vtkStringArray>(ranking, "Query");
-  auto* queryLabel = addColumn<vtkStringArray>(ranking, "QueryLabel");
-  auto* rank = addColumn<vtkIntArray>(ranking, "Rank");
-  auto* match = addColumn<vtkStringArray>(ranking, "Match");
-  auto* matchLabel = addColumn<vtkStringArray>(ranking, "MatchLabel");
-  auto* distance = addColumn<vtkDoubleArray>(ranking, "Distance");
-  auto* correct = addColumn<vtkIntArray>(ranking, "Correct");
+  auto* query = addColumn<vtkStringArray>(ranking, "Query", n * best);
+  auto* queryLabel = addColumn<vtkStringArray>(ranking, "QueryLabel", n * best);
+  auto* rank = addColumn<vtkIntArray>(ranking, "Rank", n * best);
+  auto* match = addColumn<vtkStringArray>(ranking, "Match", n * best);
+  auto* matchLabel = addColumn<vtkStringArray>(ranking, "MatchLabel", n * best);
+  auto* distance = addColumn<vtkDoubleArray>(ranking, "Distance", n * best);
+  auto* correct = addColumn<vtkIntArray>(ranking, "Correct", n * best);
   for (vtkIdType s = 0; s < n; ++s)
   {
     for (vtkIdType k = 0; k < best; ++k)
     {
+      const vtkIdType row = s * best + k;
       const tautline::Index t = result.ranking[s * (n - 1) + k];
-      query->InsertNextValue(set.names[s]);
-      queryLabel->InsertNextValue(set.labels[s]);
-      rank->InsertNextValue(static_cast<int>(k + 1));
-      match->InsertNextValue(set.names[t]);
-      matchLabel->InsertNextValue(set.labels[t]);
-      distance->InsertNextValue(result.distances[s * n + t]);
-      correct->InsertNextValue(set.numbers[s] == set.numbers[t]);
+      query->SetValue(row, set.names[s]);
+      queryLabel->SetValue(row, set.labels[s]);
+      rank->SetValue(row, static_cast<int>(k + 1));
+      match->SetValue(row, set.names[t]);
+      matchLabel->SetValue(row, set.labels[t]);
+      distance->SetValue(row, result.distances[s * n + t]);
+      correct->SetValue(row, set.numbers[s] == set.numbers[t]);
     }
   }
 
-  auto* at = addColumn<vtkIntArray>(statistics, "Rank");
-  auto* hits = addColumn<vtkIntArray>(statistics, "Correct");
-  auto* rate = addColumn<vtkDoubleArray>(statistics, "Rate");
+  auto* at = addColumn<vtkIntArray>(statistics, "Rank", best);
+  auto* hits = addColumn<vtkIntArray>(statistics, "Correct", best);
+  auto* rate = addColumn<vtkDoubleArray>(statistics, "Rate", best);
   for (vtkIdType k = 0; k < best; ++k)
   {
-    at->InsertNextValue(static_cast<int>(k + 1));
-    hits->InsertNextValue(static_cast<int>(found.hitsAt[k]));
-    rate->InsertNextValue(100.0 * static_cast<double>(found.hitsAt[k]) / static_cast<double>(n));
+    at->SetValue(k, static_cast<int>(k + 1));
+    hits->SetValue(k, static_cast<int>(found.hitsAt[k]));
+    rate->SetValue(k, 100.0 * static_cast<double>(found.hitsAt[k]) / static_cast<double>(n));
   }
   vtkNew<vtkDoubleArray> total;
   total->SetName("RecognitionRate");
   total->InsertNextValue(100.0 * found.rate);
   statistics->GetFieldData()->AddArray(total);
 
-  auto* ofClass = addColumn<vtkStringArray>(confusion, "Label");
-  for (const std::string& name : set.classes)
+  auto* ofClass =
+    addColumn<vtkStringArray>(confusion, "Label", static_cast<vtkIdType>(set.classes.size()));
+  for (std::size_t c = 0; c < set.classes.size(); ++c)
   {
-    ofClass->InsertNextValue(name);
+    ofClass->SetValue(static_cast<vtkIdType>(c), set.classes[c]);
   }
   for (std::size_t c = 0; c < set.classes.size(); ++c)
   {
-    auto* column = addColumn<vtkDoubleArray>(confusion, set.classes[c].c_str());
+    auto* column = addColumn<vtkDoubleArray>(
+      confusion, set.classes[c].c_str(), static_cast<vtkIdType>(set.classes.size()));
     for (std::size_t row = 0; row < set.classes.size(); ++row)
     {
-      column->InsertNextValue(100.0 * found.confusion[row * set.classes.size() + c]);
+      column->SetValue(
+        static_cast<vtkIdType>(row), 100.0 * found.confusion[row * set.classes.size() + c]);
     }
   }
 }

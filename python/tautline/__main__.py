@@ -8,7 +8,7 @@ import sys
 from typing import Any
 
 import tautline
-from tautline import _quality, _tables
+from tautline import _quality, _tables, studies
 
 
 def _names(text: str) -> list[str]:
@@ -171,7 +171,24 @@ def _parser() -> argparse.ArgumentParser:
     except ImportError:  # built without the modules of readers and domains
         return parser
     add_commands(verbs)
+    _add_shapes(verbs)
+    _add_studies(verbs)
     return parser
+
+
+def _add_shapes(verbs: Any) -> None:
+    try:
+        from tautline._shapes import add_commands
+    except ImportError:  # built without the module of shapes
+        return
+    add_commands(verbs)
+
+
+def _add_studies(verbs: Any) -> None:
+    made = verbs.add_parser("study", help="regenerate a table or figure of the dissertation; `study list` names them",
+                            add_help=False)  # fmt: skip
+    made.add_argument("arguments", nargs=argparse.REMAINDER)
+    made.set_defaults(run=lambda parsed: studies.main(parsed.arguments))
 
 
 def main(arguments: list[str] | None = None) -> int:
