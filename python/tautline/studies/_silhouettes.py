@@ -71,14 +71,14 @@ def families(per_class: int = 11, classes: int = 9, seed: int = 1) -> tuple[list
 
 
 def data_set(folder: str | None, size: str, seed: int):
-    """(shapes, labels or None, description) for retrieval(): Kimia's set if there, else the families."""
+    """(shapes, labels or None, matches that count, description): Kimia's set if there, else the families."""
     candidates = [Path(folder)] if folder else [Path.cwd().parent / "shared" / "data" / "kimia99", Path("kimia99")]
     for candidate in candidates:
         if (candidate / "labels.csv").is_file():
             import tautline
 
-            return tautline.read_silhouettes(candidate), None, f"Kimia's silhouettes in {candidate.name}"
+            return tautline.read_silhouettes(candidate), None, 10, f"Kimia's silhouettes in {candidate.name}"
     per_class, classes = {"small": (4, 5), "medium": (8, 9), "full": (11, 9)}[size]
     shapes, labels = families(per_class, classes, seed)
     text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed} (Kimia's set was not found. {SOURCE})"
-    return shapes, labels, text
+    return shapes, labels, min(10, per_class - 1), text

@@ -211,12 +211,12 @@ def main(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     options.out.mkdir(parents=True, exist_ok=True)
     folder = str(options.out / "none") if options.synthetic else options.data
-    shapes, labels, text = _silhouettes.data_set(folder, options.size, options.seed)
+    shapes, labels, best, text = _silhouettes.data_set(folder, options.size, options.seed)
     print(text)
     results, rows = {}, []
     for key, setting in _settings(options.locations).items():
         start = time.perf_counter()
-        results[key] = tl.retrieval(shapes, labels, threads=options.threads, **setting)
+        results[key] = tl.retrieval(shapes, labels, best=best, threads=options.threads, **setting)
         r = results[key]
         rows.append([key, f"{r.rate:.1f}", PRINTED.get(key, ""), f"{time.perf_counter() - start:.1f}", *r.correct_at])
         print(f"{TITLES[key]:40}{r.rate:6.1f} %   dissertation {PRINTED.get(key, '-')}   {rows[-1][3]} s")
@@ -233,7 +233,7 @@ def main(argv: list[str]) -> int:
     if options.sweep:
         swept = []
         for name, setting in _sweep(options.locations):
-            r = tl.retrieval(shapes, labels, threads=options.threads, **setting)
+            r = tl.retrieval(shapes, labels, best=best, threads=options.threads, **setting)
             swept.append([name, f"{r.rate:.2f}"])
             print(f"{name:40}{r.rate:6.1f} %")
         _write(options.out / "sweep.csv", ["setting", "rate"], swept)
