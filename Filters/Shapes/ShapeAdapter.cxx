@@ -6,6 +6,7 @@
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -63,16 +64,26 @@ GreyImage::GreyImage(vtkImageData* image, vtkDataArray* array)
     throw Error("The pixels of the image are not square (" + std::to_string(spacing[this->AxisU]) +
       " by " + std::to_string(spacing[this->AxisV]) + "): resample it first.");
   }
-  vtkPointData* data = image->GetPointData();
-  array = array ? array : data->GetScalars();
-  array = array || data->GetNumberOfArrays() == 0 ? array : data->GetArray(0);
+  const auto firstOf = [](vtkDataSetAttributes* data)
+  {
+    return data->GetScalars() || data->GetNumberOfArrays() == 0 ? data->GetScalars()
+                                                                : data->GetArray(0);
+  };
+  array = array ? array : firstOf(image->GetPointData());
   if (!array)
   {
-    throw Error(
-      "The image has no point array of numbers; of cell data, Cell Data to Point Data makes one.");
+    // Values of cells are pixels, too: the readers of geographic images give them so.
+    array = firstOf(image->GetCellData());
+    this->Shift = 0.5;
+    --this->Width;
+    --this->Height;
+  }
+  if (!array)
+  {
+    throw Error("The image has no array of numbers.");
   }
   const vtkIdType count = array->GetNumberOfTuples();
-  if (count != this->Width * this->Height)
+  if (count < 1 || count != this->Width * this->Height)
   {
     throw Error("The array of the image has not one value per pixel.");
   }
@@ -103,8 +114,8 @@ void GreyImage::toSpace(const Vec2& pixel, double x[3]) const
   this->Image->GetExtent(extent);
   double index[3] = { static_cast<double>(extent[0]), static_cast<double>(extent[2]),
     static_cast<double>(extent[4]) };
-  index[this->AxisU] += pixel[0];
-  index[this->AxisV] += pixel[1];
+  index[this->AxisU] += pixel[0] + this->Shift;
+  index[this->AxisV] += pixel[1] + this->Shift;
   this->Image->TransformContinuousIndexToPhysicalPoint(index, x);
 }
 

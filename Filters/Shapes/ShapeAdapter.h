@@ -27,8 +27,8 @@ public:
    * @brief Takes the grey values of a planar image.
    *
    * Colours become their luminance. Of an image with an alpha channel that is not constant, the alpha is taken: what
-   * is transparent is not the shape. Throws Error on volumes, on pixels that are not square, without point data.
-   * @param array the values; null: the active point scalars, or the first point array
+   * is transparent is not the shape. Throws Error on volumes, on pixels that are not square, without an array.
+   * @param array the values; null: the active point scalars, the first point array, or the same of the cells
    */
   explicit GreyImage(vtkImageData* image, vtkDataArray* array = nullptr);
 
@@ -44,6 +44,7 @@ private:
   int AxisU = 0;
   int AxisV = 1;
   double Size = 1;
+  double Shift = 0; ///< of a pixel's centre from the grid point of its number, in pixels
 };
 
 /// The polygon of a source mesh, and the point of the input each vertex was.

@@ -7,7 +7,7 @@
  * triangulation without interior points (dissertation sections 5.2.1 and 5.2.2). That is the shape Match Shape looks for.
  *
  * @par Input:
- * vtkImageData of one slice with square pixels and a point array: grey values, colours (their luminance is taken), or
+ * vtkImageData of one slice with square pixels and a point or cell array: grey values, colours (their luminance is taken), or
  * with an alpha channel (taken if it is not constant). Input array 0 chooses it; the default are the active scalars.
  *
  * @par Output 0, Mesh:

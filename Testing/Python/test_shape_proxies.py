@@ -8,13 +8,15 @@ from paraview import simple as pv
 DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
 pv.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], remote=False, ns=globals())
 
+# ParaView opens it as values of cells (GDAL); the PNG reader as values of points. Both are images.
 source = pv.OpenDataFile(str(DATA / "fish.png"))
-target = pv.OpenDataFile(str(DATA / "fish-bent.png"))
+target = pv.PNGSeriesReader(FileNames=[str(DATA / "fish-bent.png")])
 mesh = SilhouettetoMesh(Input=source, Spacing=15)  # noqa: F821
 mesh.UpdatePipeline()
 cells = mesh.GetDataInformation().GetNumberOfCells()
 assert cells > 10, cells
-assert "triangles" in mesh.GetProperty("Result")[0] if mesh.GetProperty("Result") else True
+mesh.UpdatePropertyInformation()
+assert "triangles" in mesh.Result, mesh.Result
 
 match = MatchShape(Input=mesh, Target=target, Locations="Points on the outline", PointsontheOutline=80)  # noqa: F821
 match.UpdatePipeline()
