@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 SOURCE = (
-    "The 99 silhouettes are those of T. Sebastian, P. Klein and B. Kimia (Brown University); a list labels.csv with the "
-    "columns file and class, and the images in a folder images beside it, are expected. --data names the folder."
+    "The 99 silhouettes are those of T. Sebastian, P. Klein and B. Kimia (Brown University); a list labels.csv with "
+    "the columns file and class, and the images in a folder images beside it, are expected. --data names the folder."
 )
 _SIZE = 128
 
@@ -71,7 +71,7 @@ def families(per_class: int = 11, classes: int = 9, seed: int = 1) -> tuple[list
 
 
 def data_set(folder: str | None, size: str, seed: int):
-    """(shapes, labels or None, matches that count, description): Kimia's set if there, else the families."""
+    """Shapes, labels or None, matches that count, description: Kimia's set if there, else the families."""
     candidates = [Path(folder)] if folder else [Path.cwd().parent / "shared" / "data" / "kimia99", Path("kimia99")]
     for candidate in candidates:
         if (candidate / "labels.csv").is_file():
@@ -80,5 +80,5 @@ def data_set(folder: str | None, size: str, seed: int):
             return tautline.read_silhouettes(candidate), None, 10, f"Kimia's silhouettes in {candidate.name}"
     per_class, classes = {"small": (4, 5), "medium": (8, 9), "full": (11, 9)}[size]
     shapes, labels = families(per_class, classes, seed)
-    text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed} (Kimia's set was not found. {SOURCE})"
+    text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed}; Kimia's set was not found. {SOURCE}"
     return shapes, labels, min(10, per_class - 1), text

@@ -17,7 +17,11 @@ from . import _silhouettes
 
 #: Table 5.1 of the dissertation, percent.
 PRINTED = {"felzenszwalb": 64.4, "dissertation": 72.2}
-TITLES = {"felzenszwalb": "Felzenszwalb's energy", "dissertation": "with distortion and centre of mass", "highest": "highest rate"}
+TITLES = {
+    "felzenszwalb": "Felzenszwalb's energy",
+    "dissertation": "with distortion and centre of mass",
+    "highest": "highest rate",
+}
 _BASE = dict(setting="custom", spacing=25.0, locations="near grid", a=12.0, b=3.0, centre_tolerance=1 / 3)
 
 
@@ -76,13 +80,14 @@ class Canvas:
 
         renderer = vtkRenderer()
         w, h = 1 / self.columns, 1 / self.rows
-        renderer.SetViewport(column * w + 0.03 * w, 1 - (row + 1) * h + 0.03 * h, (column + 1) * w - 0.03 * w, 1 - row * h - 0.03 * h)
+        left, top = (column + 0.03) * w, 1 - (row + 0.03) * h
+        renderer.SetViewport(left, top - 0.94 * h, left + 0.94 * w, top)
         renderer.SetBackground(background)
         self.window.AddRenderer(renderer)
         return renderer
 
     def draw(self, column: int, row: int, image: vtkImageData, mesh: Any = None, frame: str = "") -> None:
-        from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper, vtkPolyDataMapper
+        from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
 
         colours = {"right": (0.80, 0.92, 0.80), "wrong": (0.98, 0.78, 0.74), "": (1.0, 1.0, 1.0)}
         renderer = self._renderer(column, row, colours[frame])
@@ -165,10 +170,11 @@ def _figures(out: Path, shapes: Any, results: dict[str, Any], options: Any) -> N
     images = _images(shapes)
     ours, theirs = _correct(results["dissertation"]), _correct(results["felzenszwalb"])
     # Good queries are right in both at most ranks; poor ones are those where ours is worst, one per class.
-    first = {label: results["dissertation"].labels.index(label) for label in results["dissertation"].classes}
-    members = {label: [i for i, l in enumerate(results["dissertation"].labels) if l == label] for label in first}
-    good = sorted((max(m, key=lambda i: (ours[i] + theirs[i], -i)) for m in members.values()), key=lambda i: (-ours[i] - theirs[i], i))[:3]
-    poor = sorted((min(m, key=lambda i: (ours[i], i)) for m in members.values()), key=lambda i: (ours[i], i))[:3]
+    labels = results["dissertation"].labels
+    members = [[i for i, label in enumerate(labels) if label == name] for name in dict.fromkeys(labels)]
+    both = ours + theirs
+    good = sorted((max(m, key=lambda i: (both[i], -i)) for m in members), key=lambda i: (-both[i], i))[:3]
+    poor = sorted((min(m, key=lambda i: (ours[i], i)) for m in members), key=lambda i: (ours[i], i))[:3]
     _strips(out / "figure_5_5.png", images, results, good)
     _strips(out / "figure_5_6.png", images, results, poor)
 
@@ -176,8 +182,9 @@ def _figures(out: Path, shapes: Any, results: dict[str, Any], options: Any) -> N
     canvas = Canvas(4, 3, 150)
     gain = np.argsort(theirs - ours, kind="stable")[:6]
     for k, query in enumerate(gain):
-        same = [t for t in results["dissertation"].ranking[query] if results["dissertation"].labels[t] == results["dissertation"].labels[query]]
-        target = int(same[len(same) // 2]) if same else int(results["dissertation"].ranking[query, 0])
+        ranking = [int(t) for t in results["dissertation"].ranking[query]]
+        same = [t for t in ranking if labels[t] == labels[query]]
+        target = same[len(same) // 2] if same else ranking[0]
         column, row = 2 * (k % 2), k // 2
         plain = tl.match(images[query], images[target], b=0.0, centre_tolerance=0.0, **near)
         full = tl.match(images[query], images[target], **near)
