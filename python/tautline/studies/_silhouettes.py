@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 SOURCE = (
-    "The 99 silhouettes are those of T. Sebastian, P. Klein and B. Kimia (Brown University); a list labels.csv with "
-    "the columns file and class, and the images in a folder images beside it, are expected. --data names the folder."
+    "Kimia's set was not found or not wanted. Its 99 silhouettes are those of T. Sebastian, P. "
+    "Klein and B. Kimia (Brown University); a list labels.csv with the columns file and class, and the images in a folder images beside it, are expected. --data names the folder."
 )
 _SIZE = 128
 
@@ -80,5 +80,5 @@ def data_set(folder: str | None, size: str, seed: int):
             return tautline.read_silhouettes(candidate), None, 10, f"Kimia's silhouettes in {candidate.name}"
     per_class, classes = {"small": (4, 5), "medium": (8, 9), "full": (11, 9)}[size]
     shapes, labels = families(per_class, classes, seed)
-    text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed}; Kimia's set was not found. {SOURCE}"
+    text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed}. {SOURCE}"
     return shapes, labels, min(10, per_class - 1), text

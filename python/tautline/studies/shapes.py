@@ -210,7 +210,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--seed", type=int, default=1, help="of the synthetic set")
     parser.add_argument("--synthetic", action="store_true", help="the synthetic set even if another is there")
     parser.add_argument("--locations", choices=("grid", "near grid", "contour"), default="near grid",
-                        help="where vertices may go in the dissertation's setting; grid takes hours on 99 shapes")  # fmt: skip
+                        help="of the dissertation's setting; grid takes hours on 99 shapes")  # fmt: skip
     parser.add_argument("--sweep", action="store_true", help="also sweep a / b, theta, grid and spacing")
     parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--no-pictures", action="store_true")
