@@ -17,6 +17,8 @@ constexpr double Pi = 3.14159265358979323846;
 constexpr double MemoryLimit = 4.0 * 1024 * 1024 * 1024;
 /// Targets smaller than this need no first solution on fewer locations.
 constexpr std::size_t SmallTarget = 30;
+/// A first solution on more locations than this can be stopped, too.
+constexpr std::size_t LargeCoarse = 200;
 /// Coarse to fine: locations around a vertex, along each axis, and how often their distance is halved.
 constexpr int RefineRadius = 3;
 constexpr int RefineLevels = 3;
@@ -116,8 +118,15 @@ public:
     if (hasCoarse && (this->Options.bounds || this->Options.coarseToFine || this->Progress))
     {
       PlacementProblem problem = this->coarseProblem();
+      if (this->Progress && this->Target.coarse.points.size() > LargeCoarse)
+      {
+        problem.progress = [this](double) { return this->Progress(0.0); };
+      }
       PlacementSolver solver(problem);
-      solver.run();
+      if (!solver.run())
+      {
+        return this->stopped(first, false);
+      }
       first = this->choose(problem, solver, this->Options.coarseToFine);
       haveFirst = true;
     }

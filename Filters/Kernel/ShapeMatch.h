@@ -105,6 +105,7 @@ struct LocationOptions
   Index columns = 30; ///< of the grid
   Index rows = 30;
   Index contour = 60; ///< points on the outline
+  int threads = 0;    ///< 0: all cores. The result does not depend on it.
 };
 
 /// The target: an image, its outline, and the locations. Precomputed once, shared by any number of matches.
@@ -115,7 +116,7 @@ public:
    * Prepares a target. Edge costs are tables over pairs of locations, which depend on lambda, smoothing and
    * directedEdges of the energy only; descriptors are made if it weights them.
    * @param grey the image, if its grey values rather than the silhouette shall give the gradient; may be null
-   * Throws Error if there are less than 3 locations, they lie on a line, or an option is out of range.
+   * Throws Error if there are less than 3 locations, their table would take more than 4 GiB, or an option is out of range.
    */
   ShapeTarget(const Silhouette& shape, const LocationOptions& locations,
     const ShapeEnergy& energy = {}, const ImageView* grey = nullptr);

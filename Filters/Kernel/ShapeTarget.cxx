@@ -202,7 +202,8 @@ PairTable ShapeTarget::Data::edgeTable(const LocationSet& a, const LocationSet& 
   PairTable table(a.size(), b.size(), Unreachable);
   const bool symmetric = &a == &b && !this->energy.directedEdges;
   const Index n = static_cast<Index>(a.points.size());
-#pragma omp parallel for schedule(dynamic, 8) if (n > 200)
+#pragma omp parallel for schedule(dynamic, 8) \
+  num_threads(resolveThreads(this->threads)) if (n > 200)
   for (Index i = 0; i < n; ++i)
   {
     for (Index j = symmetric ? i : 0; j < static_cast<Index>(b.points.size()); ++j)
@@ -230,6 +231,7 @@ ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options
   }
   Data& d = *this->Private;
   d.energy = energy;
+  d.threads = options.threads;
   d.width = shape.width;
   d.height = shape.height;
   d.centre = shape.centre;

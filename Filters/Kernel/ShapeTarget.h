@@ -62,6 +62,7 @@ struct ShapeTarget::Data
 {
   ShapeEnergy energy;
   Index width = 0, height = 0;
+  int threads = 0;
   std::vector<float> cost;      ///< 1 / (lambda + |grad I|) per pixel
   std::vector<float> gradientX; ///< for directed edges
   std::vector<float> gradientY;

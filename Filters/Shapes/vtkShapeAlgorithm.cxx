@@ -10,6 +10,7 @@ void vtkShapeAlgorithm::GetOptions(
   locations.columns = this->GridSize[0];
   locations.rows = this->GridSize[1];
   locations.contour = this->ContourPoints;
+  locations.threads = this->Threads;
   tautline::ShapeEnergy& energy = match.energy;
   energy.lambda = this->Lambda;
   energy.deformation = this->DeformationWeight;

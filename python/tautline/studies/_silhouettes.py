@@ -8,7 +8,8 @@ import numpy as np
 
 SOURCE = (
     "Kimia's set was not found or not wanted. Its 99 silhouettes are those of T. Sebastian, P. "
-    "Klein and B. Kimia (Brown University); a list labels.csv with the columns file and class, and the images in a folder images beside it, are expected. --data names the folder."
+    "Klein and B. Kimia (Brown University); a list labels.csv with the columns file and class, and the images in a "
+    "folder images beside it, are expected; --data names the folder."
 )
 _SIZE = 128
 
