@@ -8,8 +8,7 @@ from paraview import simple as pv
 DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
 pv.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], remote=False, ns=globals())
 
-# ParaView opens it as values of cells (GDAL); the PNG reader as values of points. Both are images.
-source = pv.OpenDataFile(str(DATA / "fish.png"))
+source = pv.PNGSeriesReader(FileNames=[str(DATA / "fish.png")])
 target = pv.PNGSeriesReader(FileNames=[str(DATA / "fish-bent.png")])
 mesh = SilhouettetoMesh(Input=source, Spacing=15)  # noqa: F821
 mesh.UpdatePipeline()
@@ -28,9 +27,11 @@ assert match.DeformationWeighta == 12 and match.DistortionWeightb == 3
 shapes = SilhouetteSetReader(FileName=str(DATA / "silhouettes.csv"))  # noqa: F821
 found = ShapeRetrieval(Input=shapes, BestMatches=1)  # noqa: F821
 found.UpdatePipeline()
-table = pv.servermanager.Fetch(pv.OutputPort(found, 2))
+found.UpdatePropertyInformation()
+assert "4 shapes of 2 classes" in found.Result, found.Result
+table = found.GetClientSideObject().GetOutputDataObject(2)
 assert table.GetNumberOfRows() == 1, table
-distances = pv.servermanager.Fetch(pv.OutputPort(found, 0))
+distances = pv.servermanager.Fetch(found)
 assert distances.GetNumberOfRows() == 4 and distances.GetNumberOfColumns() == 6
 assert distances.GetValueByName(0, "fish-bent").ToDouble() < distances.GetValueByName(0, "clover").ToDouble()
 opened = pv.OpenDataFile(str(DATA / "silhouettes.csv"))
