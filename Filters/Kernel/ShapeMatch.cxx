@@ -102,7 +102,6 @@ public:
     double delta, const std::function<bool(double)>& progress)
     : Source(source)
     , Target(target.data())
-    , Public(target)
     , Options(options)
     , Delta(delta)
     , Progress(progress)
@@ -570,7 +569,6 @@ private:
 
   const ShapeSource& Source;
   const ShapeTarget::Data& Target;
-  const ShapeTarget& Public;
   const MatchOptions& Options;
   double Delta;
   const std::function<bool(double)>& Progress;
