@@ -52,7 +52,7 @@ public:
   /**
    * CUSTOM (0): the properties as they are. DISSERTATION (1): spacing 25, 30 x 30 grid, a = 4 b, theta = d_max / 3.
    * FELZENSZWALB (2): the same without the distortion and the centre of mass. HIGHEST (3, the default): contour locations,
-   * denser vertices, directed edges, ordering, both directions, the highest rate and the fastest. All but CUSTOM override
+   * denser vertices, directed edges, ordering, descriptors, a weight of turning, both directions. All but CUSTOM override
    * the properties of the energy, the locations, the spacing, the rule and Symmetric.
    */
   vtkSetClampMacro(Setting, int, CUSTOM, HIGHEST);
