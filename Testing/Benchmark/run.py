@@ -54,6 +54,18 @@ def ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
     ]
 
 
+def shape_ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
+    """Shape matching, in units of the plain loop for one tetrahedron (its IMR and gradient)."""
+    unit = t["tetrahedra plain imr"]
+    return [
+        ("contour match of two like shapes / plain imr", t["shapes contour like"] / unit, "<= 20000"),
+        ("contour match, mean over shapes / plain imr", t["shapes contour mean"] / unit, ""),
+        ("exact grid match [s]", t["shapes grid"] / 1e9, "<= 3"),
+        ("two threads over one, exact grid match", t["shapes grid wall 1"] / t["shapes grid wall 2"], ">= 1.7"),
+        ("exact grid match without bounds / with", t["shapes grid plain"] / t["shapes grid"], ""),
+    ]
+
+
 def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None:
     print(f"{times['elements tetrahedra']:.0f} tetrahedra, {times['elements hexahedra']:.0f} hexahedra; one thread\n")
     print(f"{'ns per element':34}{'value':>10}{'gradient':>10}{'/ floor':>10}{'/ plain':>10}")
@@ -102,7 +114,8 @@ def run_quality(build: Path, output: Path, size: int, repeats: int) -> None:
     times: dict[str, float] = {}
     for part in (KERNEL, FILTER, *MEMORY):
         times |= measure(build / "bin" / "BenchmarkQuality", part, size, repeats)
-    summary = ratios(times)
+    times |= measure(build / "bin" / "BenchmarkShapes", "shapes", size, repeats)
+    summary = ratios(times) + shape_ratios(times)
     show(times, summary)
     save(output, "benchmark", times, {what.strip(): number for what, number, _ in summary})
 

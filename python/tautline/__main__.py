@@ -177,12 +177,21 @@ def _parser() -> argparse.ArgumentParser:
     made.set_defaults(run=_study_run)
 
     _optimization.add_commands(verbs)
+    _add_shapes(verbs)
     try:
         from tautline._inputs import add_commands
     except ImportError:  # built without the modules of readers and domains
         return parser
     add_commands(verbs)
     return parser
+
+
+def _add_shapes(verbs: Any) -> None:
+    try:
+        from tautline._shapes import add_commands
+    except ImportError:  # built without the module of shapes
+        return
+    add_commands(verbs)
 
 
 def main(arguments: list[str] | None = None) -> int:
