@@ -65,8 +65,10 @@ struct HorizonMesh
  * the linear basis is unknown at the points strictly inside. The collar is then too thin for those next to a side.
  * See also structuredSquare(), whose collar has whole layers. Throws Error where the extent is no
  * whole number of elements.
+ * @param extraLayers layers of elements added on each side, for a collar that is wide enough all the same
  */
-TAUTLINE_KERNEL_EXPORT HorizonMesh horizonSquare(double h, double aspectRatio, double delta);
+TAUTLINE_KERNEL_EXPORT HorizonMesh horizonSquare(
+  double h, double aspectRatio, double delta, Index extraLayers = 0);
 
 /// The kernel k(r), r < delta.
 enum class KernelShape

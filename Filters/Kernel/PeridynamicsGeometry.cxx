@@ -292,7 +292,7 @@ double collarDeficit(const HorizonMesh& mesh, double horizon, int threads)
 }
 
 //------------------------------------------------------------------------------
-HorizonMesh horizonSquare(double h, double aspectRatio, double delta)
+HorizonMesh horizonSquare(double h, double aspectRatio, double delta, Index extraLayers)
 {
   if (!(h > 0.0) || !(aspectRatio > 0.0) || !(delta >= 0.0) ||
     !std::isfinite(h + delta + aspectRatio))
@@ -311,7 +311,7 @@ HorizonMesh horizonSquare(double h, double aspectRatio, double delta)
         (c == 0 ? " elements fit side by side" : " elements fit one above the other") +
         "; choose the element size, the aspect ratio and delta so that this is a whole number");
     }
-    cells[c] = std::llround(count);
+    cells[c] = std::llround(count) + 2 * extraLayers;
   }
   HorizonMesh mesh;
   const auto inside = [](double x) { return x > 1e-9 && x < 1.0 - 1e-9; };
@@ -319,8 +319,8 @@ HorizonMesh horizonSquare(double h, double aspectRatio, double delta)
   {
     for (Index i = 0; i <= cells[0]; ++i)
     {
-      const double x = -delta + static_cast<double>(i) * steps[0];
-      const double y = -delta + static_cast<double>(j) * steps[1];
+      const double x = -delta + static_cast<double>(i - extraLayers) * steps[0];
+      const double y = -delta + static_cast<double>(j - extraLayers) * steps[1];
       mesh.points.push_back(x);
       mesh.points.push_back(y);
       mesh.givenPoints.push_back(!(inside(x) && inside(y)));

@@ -24,7 +24,7 @@ constexpr double orbit[2] = { 0.10128650732345634, 0.47014206410511509 };
 constexpr double fineWeights[3] = { 0.225, 0.12593918054482715, 0.13239415278850619 };
 constexpr double coarseWeights[2] = { 0.48411983265637886, 0.17196005578120705 };
 
-constexpr int MostDepth = 9, MostParts = 3000;
+constexpr int MostDepth = 9, MostTouchingDepth = 4, MostParts = 3000;
 constexpr double pieceLength = 2.0; // in t = asinh(s / d): eight nodes are then exact to 3e-9
 
 int momentAt(int degree, int y)
@@ -55,7 +55,7 @@ PairIntegrator::PairIntegrator(const PeridynamicOptions& options, int functions)
   const double p =
     options.kernel.shape == KernelShape::Power ? options.kernel.exponent - this->FirstDegree : 0.0;
   const double power = (options.basis == PeridynamicBasis::Linear ? 4.0 : 2.0) - std::max(p, 0.0);
-  this->EdgeGrading = std::clamp(std::ceil(4.0 / (power + 1.0)), 2.0, 12.0);
+  this->EdgeGrading = std::clamp(std::ceil(4.0 / (power + 1.0)), 2.0, 20.0);
 }
 
 //------------------------------------------------------------------------------
@@ -373,7 +373,9 @@ bool PairIntegrator::applyRules(const Triangle& part)
 //------------------------------------------------------------------------------
 void PairIntegrator::refine(const Triangle& part, int depth)
 {
-  if (this->applyRules(part) || depth == MostDepth || ++this->Parts > MostParts)
+  const bool touching = part[0].touches || part[1].touches || part[2].touches;
+  if (this->applyRules(part) || depth == (touching ? MostTouchingDepth : MostDepth) ||
+    ++this->Parts > MostParts)
   {
     for (int at = 0; at < this->blockSize(); ++at)
     {
