@@ -377,6 +377,10 @@ FunctionSpace::FunctionSpace(
   }
   for (Index f = 0; f < this->functions; ++f)
   {
+    if (this->unknownOf[f] == unused)
+    {
+      this->low[f] = this->high[f] = triangles.low[0]; // anywhere
+    }
     if (this->unknownOf[f] == unknown)
     {
       this->unknownOf[f] = this->unknowns++;

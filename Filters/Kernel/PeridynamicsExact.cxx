@@ -150,10 +150,14 @@ void PairIntegrals::findShapes()
   {
     low = { std::min(low.x, mesh.low[t].x), std::min(low.y, mesh.low[t].y) };
   }
-  for (const Vec2 p : mesh.points)
+  this->Lattice.assign(mesh.points.size(), { 0, 0 }); // points of no triangle may be anywhere
+  for (const auto& triangle : mesh.triangles)
   {
-    this->Lattice.push_back(
-      { std::llround((p.x - low.x) / this->Unit), std::llround((p.y - low.y) / this->Unit) });
+    for (const std::int32_t id : triangle)
+    {
+      const Vec2 p = mesh.points[id] - low;
+      this->Lattice[id] = { std::llround(p.x / this->Unit), std::llround(p.y / this->Unit) };
+    }
   }
   std::map<std::array<Index, 4>, std::int32_t> shapes; // by two edges
   for (Index t = 0; t < mesh.size(); ++t)
