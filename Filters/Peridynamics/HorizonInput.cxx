@@ -82,6 +82,16 @@ Vec3 HorizonInput::lift(double x, double y) const
 }
 
 //------------------------------------------------------------------------------
+void HorizonInput::setGivenPoints(vtkDataArray* array)
+{
+  this->Mesh.givenPoints.clear();
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    this->Mesh.givenPoints.push_back(array->GetComponent(i, 0) != 0.0);
+  }
+}
+
+//------------------------------------------------------------------------------
 vtkDataArray* chosenArray(
   vtkInformation* choice, vtkDataSet* input, const char* purpose, bool& onPoints)
 {

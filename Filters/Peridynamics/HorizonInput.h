@@ -31,6 +31,8 @@ public:
   HorizonInput(vtkDataSet* input, vtkDataArray* region, double collarValue, int threads);
 
   const HorizonMesh& mesh() const { return this->Mesh; }
+  /// Marks the points where the continuous linear basis is given: those where the array is not 0.
+  void setGivenPoints(vtkDataArray* array);
   /// The cell a triangle is.
   vtkIdType cell(Index triangle) const { return this->Cells[static_cast<std::size_t>(triangle)]; }
   /// A place in the plane, in space.

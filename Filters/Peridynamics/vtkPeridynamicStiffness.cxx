@@ -171,7 +171,16 @@ int vtkPeridynamicStiffness::RequestData(
     {
       region = tautline::chosenArray(choice, input, "collar", onPoints);
     }
-    const tautline::HorizonInput taken(input, region, this->CollarValue, this->Threads);
+    tautline::HorizonInput taken(input, region, this->CollarValue, this->Threads);
+    if (vtkDataArray* points =
+          tautline::chosenArray(this->GetInputArrayInformation(3), input, "given points", onPoints))
+    {
+      if (!onPoints)
+      {
+        throw tautline::Error("the given points are to be told by a point array");
+      }
+      taken.setGivenPoints(points);
+    }
     const tautline::Index components = this->Elastic ? 2 : 1;
     std::vector<double> given;
     if (vtkDataArray* array = tautline::chosenArray(

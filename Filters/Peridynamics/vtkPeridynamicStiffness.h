@@ -21,6 +21,7 @@
  * - 0, region: cell array with one component; cells where it is CollarValue are the collar.
  * - 1, source b: on points or cells, one component (elastic: two or three). None: UniformSource.
  * - 2, given g: in the collar; on points, or with discontinuous bases on cells. None: 0.
+ * - 3, given points: point array, not 0 where the continuous linear basis is given. None: the points of collar cells.
  *
  * @par Output port 0 `Mesh`:
  * The input with arrays on the points (continuous linear basis) or cells (others; the discontinuous linear one has a

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from importlib import import_module
 from typing import Any
 
 import tautline
@@ -87,6 +88,10 @@ def _metrics_run(arguments: argparse.Namespace) -> None:
         print(_tables.metrics_text(facts))
 
 
+def _study_run(arguments: argparse.Namespace) -> int:
+    return import_module("tautline.studies").main(arguments.arguments)
+
+
 def _number_or_name(text: str | None) -> float | str | None:
     try:
         return None if text is None else float(text)
@@ -166,11 +171,15 @@ def _parser() -> argparse.ArgumentParser:
     form.add_argument("--markdown", action="store_true", help="as a Markdown table")
     form.add_argument("--json", action="store_true", help="all facts")
 
-    try:
-        from tautline._inputs import add_commands
-    except ImportError:  # built without the modules of readers and domains
-        return parser
-    add_commands(verbs)
+    for module in ("_peridynamics", "_inputs"):
+        try:
+            import_module(f"tautline.{module}").add_commands(verbs)
+        except ImportError:  # built without the modules it needs
+            pass
+    made = verbs.add_parser("study", help="regenerate tables and figures of the dissertation; study list names them",
+                            add_help=False)  # fmt: skip
+    made.add_argument("arguments", nargs=argparse.REMAINDER)
+    made.set_defaults(run=_study_run)
     return parser
 
 

@@ -1,0 +1,34 @@
+"""Studies that regenerate the tables and figures of the dissertation: python3 -m tautline study NAME.
+
+A study is a module of this package with `main(arguments)` and a docstring whose first line says what it
+does; the name of the module is that of the study.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pkgutil import iter_modules
+
+from .._errors import Error
+
+
+def names() -> list[str]:
+    """The studies there are."""
+    return sorted(found.name for found in iter_modules(__path__) if not found.name.startswith("_"))
+
+
+def main(arguments: list[str]) -> int:
+    """Run a study with its own arguments; `list` prints the names and what each does."""
+    if not arguments or arguments[0] in ("list", "-h", "--help"):
+        for name in names():
+            text = (import_module(f"{__name__}.{name}").__doc__ or "").strip().split("\n")[0]
+            print(f"{name:20} {text}")
+        return 0
+    if arguments[0] not in names():
+        raise Error(f"there is no study '{arguments[0]}'; there are {', '.join(names())}")
+    return import_module(f"{__name__}.{arguments[0]}").main(arguments[1:]) or 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
