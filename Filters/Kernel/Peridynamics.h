@@ -131,7 +131,7 @@ struct PeridynamicOptions
   Reading reading = Reading::Exact;
   RuleSet rules = RuleSet::Tables;
   /// Exact: wanted relative error of the integral over each pair of triangles, 1e-10 to 0.1.
-  double tolerance = 1e-6;
+  double tolerance = 1e-5;
   /// Whether functions of the collar are given. False: all are unknown, nothing is constrained, and
   /// constants (Elastic: rigid motions) are in the null space.
   bool constrained = true;

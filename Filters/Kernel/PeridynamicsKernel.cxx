@@ -32,7 +32,7 @@ RadialKernel::RadialKernel(const KernelFunction& function, double horizon)
     for (int m = 0; m < Orders; ++m)
     {
       const double q = m + 2.0 - p;
-      this->Full[m] = q == 0.0 ? std::log(horizon) : std::pow(horizon, q) / q;
+      this->Full[m] = q == 0.0 ? 0.0 : std::pow(horizon, q) / q;
     }
     return;
   }
@@ -153,7 +153,8 @@ void RadialKernel::evaluate(const double* squares, double* values, Index count) 
 }
 
 //------------------------------------------------------------------------------
-void RadialKernel::ratios(const Nodes& squares, int first, int last, Nodes* ratios) const
+void RadialKernel::ratios(
+  const Nodes& squares, int first, int last, Nodes* ratios, bool fromOrigin) const
 {
   if (this->Function.shape == KernelShape::Power)
   {
@@ -162,9 +163,19 @@ void RadialKernel::ratios(const Nodes& squares, int first, int last, Nodes* rati
     for (int m = first; m <= last; ++m)
     {
       const double q = m + 2.0 - this->Function.exponent;
+      if (!this->isShifted(m) || fromOrigin)
+      {
+        for (int l = 0; l < NodeCount; ++l)
+        {
+          ratios[m][l] = k[l] * (1.0 / q);
+        }
+        continue;
+      }
+      // (R^q - horizon^q) / q, for q near 0 as well.
       for (int l = 0; l < NodeCount; ++l)
       {
-        ratios[m][l] = k[l] * (q == 0.0 ? 0.5 * std::log(squares[l]) : 1.0 / q);
+        const double fall = 0.5 * std::log(this->Horizon * this->Horizon / squares[l]);
+        ratios[m][l] = -k[l] * (q == 0.0 ? fall : std::expm1(q * fall) / q);
       }
     }
     return;

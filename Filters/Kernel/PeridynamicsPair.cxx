@@ -55,6 +55,8 @@ PairIntegrator::PairIntegrator(const PeridynamicOptions& options, int functions)
   const double p =
     options.kernel.shape == KernelShape::Power ? options.kernel.exponent - this->FirstDegree : 0.0;
   const double power = (options.basis == PeridynamicBasis::Linear ? 4.0 : 2.0) - std::max(p, 0.0);
+  this->BlindDepth =
+    std::clamp(static_cast<int>(std::lround(-0.5 * std::log10(this->Tolerance))), 1, 4);
   this->EdgeGrading = std::clamp(std::ceil(4.0 / (power + 1.0)), 2.0, 20.0);
 }
 
@@ -199,17 +201,19 @@ void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
 
 //------------------------------------------------------------------------------
 /// Moments of z = y - x over the part of the second triangle in the disc around x; false if there is none.
-bool PairIntegrator::moments(Vec2 x, double* m) const
+bool PairIntegrator::moments(Vec2 x, double* m)
 {
   const Vec2* corners = this->Pair->second;
   const Vec2 z[3] = { corners[0] - x, corners[1] - x, corners[2] - x };
   double t0[3], t1[3];
-  bool inside[3], any = false;
+  bool inside[3], any = false, all = true;
   for (int k = 0; k < 3; ++k)
   {
     inside[k] = this->clip(z[k], z[(k + 1) % 3], t0[k], t1[k]);
     any = any || inside[k];
+    all = all && inside[k] && t0[k] == 0.0 && t1[k] == 1.0;
   }
+  this->CutSamples += any && !all;
   if (!any)
   {
     return false; // x is not in the triangle, so the disc misses it
@@ -308,7 +312,7 @@ void PairIntegrator::sample(Vec2 x, double weight, double coarseWeight)
 
 //------------------------------------------------------------------------------
 /// Two rules on a part of the first triangle; true if they agree.
-bool PairIntegrator::applyRules(const Triangle& part)
+bool PairIntegrator::applyRules(const Triangle& part, bool cut)
 {
   this->Fine.fill(0.0);
   this->Coarse.fill(0.0);
@@ -319,6 +323,8 @@ bool PairIntegrator::applyRules(const Triangle& part)
   if (touching == 0)
   {
     const Vec2 centre = (1.0 / 3.0) * (a + b + c);
+    // Not where circles cut the second triangle: that has kinks.
+    agreement = cut ? 3.0 * std::pow(this->Tolerance, 0.75) : agreement;
     this->sample(centre, area * fineWeights[0], area * coarseWeights[0]);
     for (int ring = 0; ring < 2; ++ring)
     {
@@ -371,11 +377,60 @@ bool PairIntegrator::applyRules(const Triangle& part)
 }
 
 //------------------------------------------------------------------------------
+/// Whether circles around points of a part may cut the second triangle; or whether none reaches it.
+bool PairIntegrator::isCut(const Triangle& part, bool& apart) const
+{
+  const double square = this->Horizon * this->Horizon;
+  const Vec2* other = this->Pair->second;
+  double farthest = 0.0, nearest = 1e300;
+  for (const Corner& corner : part)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vec2 d = corner.at - other[k];
+      farthest = std::max(farthest, dot(d, d));
+    }
+  }
+  apart = false;
+  if (farthest <= square)
+  {
+    return false;
+  }
+  const auto toSegment = [&](Vec2 p, Vec2 a, Vec2 b)
+  {
+    const Vec2 e = b - a, d = p - a;
+    const double t = std::clamp(dot(d, e) / dot(e, e), 0.0, 1.0);
+    const Vec2 rest = d - t * e;
+    nearest = std::min(nearest, dot(rest, rest));
+  };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      toSegment(part[i].at, other[k], other[(k + 1) % 3]);
+      toSegment(other[i], part[k].at, part[(k + 1) % 3].at);
+    }
+  }
+  apart = nearest >= square;
+  return !apart;
+}
+
+//------------------------------------------------------------------------------
 void PairIntegrator::refine(const Triangle& part, int depth)
 {
+  bool apart;
+  const bool cut = this->isCut(part, apart);
+  if (apart)
+  {
+    return;
+  }
   const bool touching = part[0].touches || part[1].touches || part[2].touches;
-  if (this->applyRules(part) || depth == (touching ? MostTouchingDepth : MostDepth) ||
-    ++this->Parts > MostParts)
+  this->CutSamples = 0;
+  const bool agreed = this->applyRules(part, cut);
+  // Two rules agree on what neither sees.
+  const bool blind = cut && this->CutSamples == 0 && depth < this->BlindDepth;
+  if ((agreed && !blind) || depth == MostDepth ||
+    (touching && !cut && depth >= MostTouchingDepth) || ++this->Parts > MostParts)
   {
     for (int at = 0; at < this->blockSize(); ++at)
     {
@@ -402,8 +457,8 @@ void PairIntegrator::identicalPair(const TrianglePair& pair, double* block)
   const Vec2 e0 = c[1] - c[0], e1 = c[2] - c[1], e2 = c[0] - c[2];
   const Vec2 hexagon[4] = { e0, -1.0 * e2, e1, -1.0 * e0 };
   const int degree = this->Components == 3 ? 4 : 2;
-  const double f[3] = { this->Kernel.atHorizon(degree), this->Kernel.atHorizon(degree + 1),
-    this->Kernel.atHorizon(degree + 2) };
+  const double f[3] = { this->Kernel.atHorizon(degree, true),
+    this->Kernel.atHorizon(degree + 1, true), this->Kernel.atHorizon(degree + 2, true) };
   double m[5] = {};
   // F_d(R) - 2 F_d+1(R) / rho + F_d+2(R) / rho^2, rho to the hexagon and R to the horizon if that is nearer.
   const auto along = [&](Vec2 a, Vec2 b, bool inside)
@@ -414,7 +469,7 @@ void PairIntegrator::identicalPair(const TrianglePair& pair, double* block)
         Nodes ratios[RadialKernel::Orders];
         if (inside)
         {
-          this->Kernel.ratios(squares, degree, degree + 2, ratios);
+          this->Kernel.ratios(squares, degree, degree + 2, ratios, true);
         }
         for (int l = 0; l < NodeCount; ++l)
         {
@@ -514,10 +569,17 @@ void PairIntegrator::integrate(const TrianglePair& pair, double* block)
   this->Kernel.evaluate(&square, &k, 1);
   // A kernel may vanish at a distance; its mean does not.
   const double mean = 2.0 * this->Kernel.atHorizon(0) / (this->Horizon * this->Horizon);
-  const double areas = 0.25 *
-    std::abs(cross(pair.first[1] - pair.first[0], pair.first[2] - pair.first[0]) *
-      cross(pair.second[1] - pair.second[0], pair.second[2] - pair.second[0]));
-  this->Scale = areas * std::max(k, 0.01 * mean) * (this->Components == 3 ? square : 1.0);
+  // What a pair can contribute: of triangles larger than the disc, that of the disc; of linear functions
+  // both triangles share, that of differences over the horizon.
+  const auto areaOf = [](const Vec2* c) { return 0.5 * std::abs(cross(c[1] - c[0], c[2] - c[0])); };
+  const double disc = M_PI * this->Horizon * this->Horizon;
+  const double first = areaOf(pair.first), second = areaOf(pair.second);
+  this->Scale = std::min(first, disc) * std::min(second, disc) * std::max(k, 0.01 * mean);
+  this->Scale *= this->Components == 3 ? square : 1.0;
+  if (this->Functions == 3 && pair.contacts() > 0)
+  {
+    this->Scale *= std::min(1.0, disc / std::max(first, second));
+  }
   this->Parts = 0;
   this->Sum.fill(0.0);
   Triangle whole;

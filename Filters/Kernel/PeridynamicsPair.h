@@ -68,9 +68,10 @@ private:
 
   void identicalPair(const TrianglePair& pair, double* block);
   void refine(const Triangle& part, int depth);
-  bool applyRules(const Triangle& part);
+  bool applyRules(const Triangle& part, bool cut);
   void sample(Vec2 x, double weight, double coarseWeight);
-  bool moments(Vec2 x, double* m) const;
+  bool moments(Vec2 x, double* m);
+  bool isCut(const Triangle& part, bool& apart) const;
   void alongEdge(Vec2 a, Vec2 b, double* m) const;
   void alongCircle(Vec2 a, Vec2 b, double* m) const;
   template <class Work>
@@ -89,7 +90,9 @@ private:
   int Used[6], NumberUsed = 0; ///< functions with entries
   Vec2 Gradients[6];           ///< of the second triangle's part of each function
   double Scale = 0.0;
-  int Parts = 0;
+  int Parts = 0, CutSamples = 0;
+  int
+    BlindDepth; ///< down to which a part is quartered if the circle cuts the second triangle unseen
   std::array<double, 108> Fine, Coarse, Sum; ///< blocks: of two rules on a part; of all parts
 };
 }

@@ -194,7 +194,7 @@ public:
 
   ///@{
   /**
-   * Wanted relative error of the integral over each pair of triangles in exact reading, 1e-10 to 0.1. The default is 1e-6.
+   * Wanted relative error of the integral over each pair of triangles in exact reading, 1e-10 to 0.1. The default is 1e-5.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
@@ -334,7 +334,7 @@ private:
   bool Elastic = false;
   int Reading = EXACT;
   int Rules = TABLES;
-  double Tolerance = 1e-6;
+  double Tolerance = 1e-5;
   double CollarValue = 2.0;
   bool Constrained = true;
   bool AllowThinCollar = false;

@@ -71,7 +71,7 @@ def peridynamics(
     model: str = "scalar",
     reading: str = "exact",
     rules: str = "tables",
-    tolerance: float = 1e-6,
+    tolerance: float = 1e-5,
     region: str | Sequence | None = "Reference",
     collar_value: float = 2,
     given_points: str | Sequence | None = None,
@@ -227,7 +227,7 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--model", choices=MODELS, default="scalar")
     made.add_argument("--reading", choices=READINGS, default="exact")
     made.add_argument("--rules", choices=RULES, default="tables", help="of the dissertation's reading")
-    made.add_argument("--tolerance", type=float, default=1e-6, help="of the exact reading (default: 1e-6)")
+    made.add_argument("--tolerance", type=float, default=1e-5, help="of the exact reading (default: 1e-5)")
     made.add_argument("--region", default="Reference", metavar="ARRAY", help="cell array, 2 in the collar")
     made.add_argument("--collar", action="store_true", help="put a collar of width delta around the mesh first")
     made.add_argument("--allow-thin-collar", action="store_true")
