@@ -281,6 +281,13 @@ private:
   std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
 };
 
+/// Threads that have to wait for each other after less work than this do not pay.
+int threadsFor(const SparseMatrix& matrix, const LanczosOptions& options)
+{
+  constexpr Index worthwhile = 300000; // entries
+  return matrix.nonzeros() < worthwhile ? 1 : options.threads;
+}
+
 void scale(std::vector<double>& x, double factor)
 {
   for (double& v : x)
@@ -299,7 +306,7 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
     throw Error("the matrix is empty: there is no unknown");
   }
   const Clock clock(options.timeLimit);
-  const int threads = options.threads;
+  const int threads = threadsFor(matrix, options);
   Spectrum spectrum;
   std::vector<std::vector<double>> basis;
   Tridiagonal t;
@@ -362,7 +369,7 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
   std::vector<double>& x, double tolerance, const LanczosOptions& options)
 {
   const Index n = matrix.size;
-  const int threads = options.threads;
+  const int threads = threadsFor(matrix, options);
   const Clock clock(options.timeLimit);
   SolveReport report;
   x.assign(n, 0.0);
