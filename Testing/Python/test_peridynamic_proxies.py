@@ -19,7 +19,7 @@ update(condition)
 assert abs(condition.Condition / 9.2827 - 1) < 1e-3, condition.Condition
 assert "Condition number" in condition.Summary
 assert {"Unknown", "Neighbors", "RowSum", "Diagonal", "SmallestMode", "LargestMode"} <= set(condition.PointData.keys())
-table = servermanager.Fetch(simple.OutputPort(condition, 1))
+table = servermanager.Fetch(condition, idx=1)
 assert table.GetNumberOfRows() == 1 and table.GetValueByName(0, "Rows").ToInt() == 81
 
 condition.Basis = "Piecewise Constant"
@@ -29,7 +29,7 @@ condition.Solve = 1
 update(condition)
 assert abs(condition.Condition / 16.31 - 1) < 1e-3, condition.Condition
 assert "Solution" in condition.CellData.keys()
-image = servermanager.Fetch(simple.OutputPort(condition, 2))
+image = servermanager.Fetch(condition, idx=2)
 assert image.GetDimensions() == (50, 50, 1)
 
 condition.Kernel = "Table"

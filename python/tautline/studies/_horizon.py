@@ -31,20 +31,21 @@ TABLES = {name: dict(zip(_KEYS, values)) for name, values in _PRINTED.items()}
 MODELS = {"4.1": ("constant", 1.0), "4.2": ("linear", 1.0), "4.3": ("linear", 2.5)}
 
 
-def square(n: int, aspect_ratio: float, delta: float, extra: int = 0):
+def square(n: int, aspect_ratio: float, delta: float, extra: int = 0, aligned: bool = True):
     """The unit square of right triangles with a collar, and the points where the linear basis is given.
 
-    The grid starts at -delta, as the dissertation's numbers need it, or with whole layers where delta is no multiple
-    of an element; `extra` layers are added. None if the aspect ratio does not fit.
+    Aligned, the sides of the square are mesh lines and the collar has whole layers; otherwise the grid starts at
+    -delta, as the numbers of the dissertation's tables need it. `extra` layers are added. None if the
+    aspect ratio does not fit.
     """
     steps = (math.sqrt(aspect_ratio) / n, 1 / (n * math.sqrt(aspect_ratio)))
     axes = []
     for step in steps:
         cells, inner = (1 + 2 * delta) / step, 1 / step
-        if abs(cells - round(cells)) < 1e-6:
+        if not aligned and abs(cells - round(cells)) < 1e-6:
             first, count = -delta - extra * step, round(cells) + 2 * extra
-        elif abs(inner - round(inner)) < 1e-6:
-            layers = math.ceil(delta / step) + extra
+        elif aligned and abs(inner - round(inner)) < 1e-6:
+            layers = math.ceil(delta / step - 1e-9) + extra
             first, count = -layers * step, round(inner) + 2 * layers
         else:
             return None
@@ -60,11 +61,14 @@ def square(n: int, aspect_ratio: float, delta: float, extra: int = 0):
     return tautline.from_arrays(points, {"triangle": cells}), region, np.where(inside(points), 0.0, 1.0)
 
 
-def solve(n: int, aspect_ratio: float, delta: float, basis: str, p: float, reading: str, threads: int = 0, **more: Any):
+def solve(
+    n: int, aspect_ratio: float, delta: float, basis: str, p: float, reading: str, threads: int = 0,
+    aligned: bool = True, **more: Any,
+):  # fmt: skip
     """The result of peridynamics() on such a square, or None where there is none."""
-    # The exact reading is of a collar that is wide enough; one grid of the tables is not.
-    off = (aspect_ratio, n, delta) == (4, 10, 0.3) and reading == "exact"
-    made = square(n, aspect_ratio, delta, 1 if off else 0)
+    # The exact reading is of a collar that is wide enough: the grid of one cell of the tables is not.
+    off = not aligned and reading == "exact" and (aspect_ratio, n, delta) == (4, 10, 0.3)
+    made = square(n, aspect_ratio, delta, 1 if off else 0, aligned)
     if made is None:
         return None
     mesh, region, given = made
@@ -116,8 +120,11 @@ class Report:
         figure = Figure(figsize=(5.2 * len(panels), 4.2), layout="constrained")
         FigureCanvasAgg(figure)
         for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
+            colours: dict[str, str] = {}  # one for both readings
             for label, (x, y, *style) in panel["lines"].items():
-                axes.plot(x, y, *(style or ["o-"]), label=label, markersize=4)
+                colour = colours.setdefault(label.split(", dissertation")[0], f"C{len(colours) % 10}")
+                own = {} if style and style[0].startswith("C") else {"color": colour}
+                axes.plot(x, y, *(style or ["o-"]), label=label, markersize=4, **own)
             axes.set_title(panel["title"])
             axes.set_xlabel(panel["x"])
             axes.set_ylabel(panel.get("y", "condition number"))

@@ -30,9 +30,9 @@ def main(arguments: Sequence[str]) -> int:
             if n > finest:
                 continue
             case = (n, ar, delta, basis, p)
-            a = condition(*case, "dissertation", options.threads)
-            literal = condition(*case, "dissertation", options.threads, rules="literal")
-            b = condition(*case, "exact", options.threads)
+            a = condition(*case, "dissertation", options.threads, False)
+            literal = condition(*case, "dissertation", options.threads, False, rules="literal")
+            b = condition(*case, "exact", options.threads, False)
             values[table, ar, n, delta] = a, b
             shown = "indefinite" if math.isnan(literal) else f"{literal:.2f}"
             line = [ar, n, delta, number, f"{a:.2f}", _differ(a, number), shown, f"{b:.4f}", _differ(a, b),
