@@ -139,11 +139,16 @@ double bytesFor(const HorizonMesh& mesh, const FunctionSpace& space, const BoxGr
   const double c = options.model == PeridynamicModel::Elastic ? 2.0 : 1.0;
   const double nonzeros =
     c * c * entries / static_cast<double>(sampled) * static_cast<double>(space.unknowns);
-  // Values twice, as they are mirrored once; columns; the mesh with its boxes and grid; sums per thread.
+  // Values twice, as they are mirrored once; columns; the mesh with its boxes and grid; sums per thread;
+  // integrals of pairs that touch, of which a triangle has about thirteen.
+  const double triangles = static_cast<double>(mesh.numberOfTriangles());
   const double perEntry = 2.0 * sizeof(double) + sizeof(std::int32_t);
   const double sums = 3.0 * c * c * sizeof(double) * static_cast<double>(space.functions) *
     resolveThreads(options.threads);
-  return perEntry * nonzeros + 300.0 * static_cast<double>(mesh.numberOfTriangles()) + sums;
+  const double perPair = options.reading == Reading::Exact
+    ? 4.0 * c * c * space.perTriangle() * space.perTriangle() * sizeof(double)
+    : 0.0;
+  return perEntry * nonzeros + (300.0 + 6.5 * perPair) * triangles + sums;
 }
 
 double availableMemory()

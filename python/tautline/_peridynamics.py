@@ -143,7 +143,7 @@ def peridynamics(
 
     if region is None:
         stiffness.SetInputArrayToProcess(_REGION, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "None")
-    elif region != "Reference" if isinstance(region, str) else True:
+    elif not (isinstance(region, str) and region == "Reference"):  # that is the filter's own default
         use(_REGION, region, "given region")
     if np.ndim(source) == 0 and not isinstance(source, str):
         stiffness.SetUniformSource(float(source))
