@@ -77,6 +77,21 @@ Place placeOf(Vec2 p, const std::vector<Edge>& edges)
   return place;
 }
 
+/// The distance of a triangle from the boundary.
+double distanceOf(const Vec2* corner, const std::vector<Edge>& edges)
+{
+  double nearest = 1e300;
+  for (const Edge& edge : edges)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      nearest =
+        std::min(nearest, squaredSegmentDistance(corner[k], corner[(k + 1) % 3], edge.a, edge.b));
+    }
+  }
+  return std::sqrt(nearest);
+}
+
 /// A number from -1 to 1 that looks random.
 double noise(Index i, Index j, int what)
 {
@@ -215,8 +230,10 @@ HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options)
     {
       radius = std::max(radius, std::sqrt(dot(c - centre, c - centre)));
     }
-    // No part of what is left out is nearer than the width.
-    if ((ofBoundary && place.inside) || place.distance - radius > options.width)
+    // Those that come nearer than the width are kept; far from the mesh they may be long.
+    const bool reaches = place.distance <= options.width ||
+      (place.distance - radius <= options.width && distanceOf(corner, edges) <= options.width);
+    if ((ofBoundary && place.inside) || !reaches)
     {
       continue;
     }

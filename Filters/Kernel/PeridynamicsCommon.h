@@ -39,6 +39,9 @@ inline double cross(Vec2 a, Vec2 b)
   return a.x * b.y - a.y * b.x;
 }
 
+/// Squared distance of the segments a-b and c-d, 0 where they cross.
+double squaredSegmentDistance(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
+
 /// The mesh with all triangles counter-clockwise, and what is known of each.
 struct PlanarTriangles
 {

@@ -20,19 +20,6 @@ double squaredDistance(Vec2 p, Vec2 a, Vec2 b)
   return dot(d, d);
 }
 
-/// Squared distance of two segments, 0 where they cross.
-double squaredDistance(Vec2 a, Vec2 b, Vec2 c, Vec2 d)
-{
-  const double c1 = cross(b - a, c - a), c2 = cross(b - a, d - a);
-  const double c3 = cross(d - c, a - c), c4 = cross(d - c, b - c);
-  if (c1 * c2 < 0.0 && c3 * c4 < 0.0)
-  {
-    return 0.0;
-  }
-  return std::min({ squaredDistance(a, c, d), squaredDistance(b, c, d), squaredDistance(c, a, b),
-    squaredDistance(d, a, b) });
-}
-
 /// Where the segment from a (inside) to b (outside) leaves the circle, as a part of its length.
 double exitParameter(Vec2 a, Vec2 b, double radius)
 {
@@ -66,6 +53,19 @@ std::string triangleName(Index t)
 {
   return "triangle " + std::to_string(t);
 }
+}
+
+//------------------------------------------------------------------------------
+double squaredSegmentDistance(Vec2 a, Vec2 b, Vec2 c, Vec2 d)
+{
+  const double c1 = cross(b - a, c - a), c2 = cross(b - a, d - a);
+  const double c3 = cross(d - c, a - c), c4 = cross(d - c, b - c);
+  if (c1 * c2 < 0.0 && c3 * c4 < 0.0)
+  {
+    return 0.0;
+  }
+  return std::min({ squaredDistance(a, c, d), squaredDistance(b, c, d), squaredDistance(c, a, b),
+    squaredDistance(d, a, b) });
 }
 
 //------------------------------------------------------------------------------
@@ -282,7 +282,7 @@ double collarDeficit(const HorizonMesh& mesh, double horizon, int threads)
     for (const auto& edge : outer)
     {
       nearest[i] =
-        std::min(nearest[i], squaredDistance(domain[i][0], domain[i][1], edge[0], edge[1]));
+        std::min(nearest[i], squaredSegmentDistance(domain[i][0], domain[i][1], edge[0], edge[1]));
     }
   }
   const double least =

@@ -426,6 +426,29 @@ void testCollar()
   }
   const double least = 4 * 0.1 + M_PI * 0.01 + 1.0 / 9.0 - std::pow(1.0 / 3.0 - 0.2, 2);
   TAUTLINE_CHECK(area > least && area < 2.0 * least);
+  // In the bay of a concave domain nothing is bridged: no triangle of the collar is long.
+  HorizonMesh bay = ring;
+  bay.triangles.clear();
+  for (Index t = 0; t < ring.numberOfTriangles(); ++t)
+  {
+    const Index cell = t / 2, i = cell % 12, j = cell / 12;
+    if (i < 2 || i >= 10 || j < 2)
+    {
+      bay.triangles.insert(bay.triangles.end(), &ring.triangles[3 * t], &ring.triangles[3 * t] + 3);
+    }
+  }
+  bay.collar.assign(bay.numberOfTriangles(), 0);
+  const HorizonMesh held = addCollar(bay, collar);
+  TAUTLINE_CHECK_EQUAL(collarDeficit(held, 0.1), 0.0);
+  for (Index t = bay.numberOfTriangles(); t < held.numberOfTriangles(); ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const double* a = &held.points[2 * held.triangles[3 * t + k]];
+      const double* b = &held.points[2 * held.triangles[3 * t + (k + 1) % 3]];
+      TAUTLINE_CHECK(std::hypot(a[0] - b[0], a[1] - b[1]) < 2.5 / 12);
+    }
+  }
   collar.width = 0.0;
   TAUTLINE_CHECK_THROWS(addCollar(bare, collar), "width of the collar is 0");
   collar.width = 0.2;
