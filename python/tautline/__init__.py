@@ -37,3 +37,8 @@ try:
     from ._shapes import Match, Retrieved, SilhouetteMesh, match, read_silhouettes, retrieval, silhouette  # noqa: E402
 except ImportError:  # built without the module of shapes
     pass
+
+try:
+    from ._peridynamics import Peridynamics, collar, peridynamics  # noqa: E402
+except ImportError:  # built without the module of nonlocal models
+    pass
