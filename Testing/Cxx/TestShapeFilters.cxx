@@ -209,6 +209,13 @@ void testMatcher()
   TAUTLINE_CHECK_EQUAL(value("Rank"), 1.0);
   TAUTLINE_CHECK_EQUAL(value("Stop"), 0.0);
 
+  // A smaller target after a larger one, in one filter: each image is asked for as a whole.
+  fromImage->SetTargetData(makeImage(blob(80, 40, 40, 20)));
+  TAUTLINE_CHECK(errorOf(fromImage).empty());
+  fromImage->SetInputDataObject(0, makeImage(blob(60, 30, 30, 15)));
+  TAUTLINE_CHECK(errorOf(fromImage).empty());
+  TAUTLINE_CHECK(fromImage->GetExact());
+
   // Abort and time limit keep the best so far.
   fromMesh->SetTimeLimit(1e-9);
   fromMesh->Update();
