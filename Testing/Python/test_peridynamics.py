@@ -96,7 +96,7 @@ def test_commands():
 def test_studies():
     def rows(name):
         done = subprocess.run(
-            [sys.executable, "-m", "tautline", "study", name, "--size", "small", "--out", str(OUT / name)],
+            [sys.executable, "-m", "tautline", "study", name, "--size", "small", "--threads", "1", "--out", str(OUT / name)],
             capture_output=True, text=True,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
