@@ -114,19 +114,17 @@ inline void locate(const BatchContext& context, const Index* order, Index begin,
   batch.count = count;
 }
 
-/// Loads the vertices of the cells that locate() finds.
-template <int Nodes>
-void gather(const BatchContext& context, const Index* order, Index begin, int count, Batch& batch,
-  BatchNodes& nodes)
+/// Loads the vertices of the cells of a batch, of which `nodes` has the numbers.
+template <int Nodes, class Numbers>
+void loadNodes(
+  const BatchContext& context, const double* points, const Numbers& nodes, Batch& batch)
 {
-  const MeshView& view = context.mesh->view();
-  locate(context, order, begin, count, batch, nodes);
   for (int k = 0; k < Nodes; ++k)
   {
     const double* p[PacketWidth];
     for (int l = 0; l < PacketWidth; ++l)
     {
-      p[l] = view.points + 3 * nodes[l][k];
+      p[l] = points + 3 * static_cast<Index>(nodes[l][k]);
     }
     loadPoints(p, batch.points[k]);
   }
@@ -137,6 +135,15 @@ void gather(const BatchContext& context, const Index* order, Index begin, int co
       batch.points[k][0] = -batch.points[k][0];
     }
   }
+}
+
+/// Loads the vertices of the cells that locate() finds.
+template <int Nodes>
+void gather(const BatchContext& context, const Index* order, Index begin, int count, Batch& batch,
+  BatchNodes& nodes)
+{
+  locate(context, order, begin, count, batch, nodes);
+  loadNodes<Nodes>(context, context.mesh->view().points, nodes, batch);
 }
 }
 #endif

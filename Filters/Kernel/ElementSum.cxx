@@ -1,6 +1,8 @@
 #include "ElementSum.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tautline
 {
@@ -8,6 +10,8 @@ namespace
 {
 /// Colours a chunk may have; more means the cells must be reordered first.
 constexpr int MaxColours = 64;
+/// Coordinates and gradient of so many points fit into the cache of a core.
+constexpr Index FewPoints = 1 << 15;
 
 /// Interleaves the low 21 bits of three integers: the position on a Morton curve.
 std::uint64_t mortonCode(const Vec3& p, const Vec3& low, double scale)
@@ -154,6 +158,81 @@ ElementSum::ElementSum(const Mesh& mesh, Metric metric, const EvaluationOptions&
     this->ColourStarts.push_back(static_cast<Index>(coloured.size()));
     break;
   }
+  this->pack();
+}
+
+//------------------------------------------------------------------------------
+void ElementSum::pack()
+{
+  const MeshView& view = this->TheMesh.view();
+  if (view.numberOfPoints > std::numeric_limits<std::int32_t>::max())
+  {
+    throw Error("The mesh has more than 2,147,483,647 points: split it.");
+  }
+  const bool reordered = std::any_of(this->Order.begin(), this->Order.end(),
+    [](const std::vector<Index>& order) { return !order.empty(); });
+  const bool renumber = reordered && view.numberOfPoints > FewPoints;
+  std::vector<std::int32_t> place(renumber ? view.numberOfPoints : 0, -1);
+  const auto& blocks = this->TheMesh.blocks();
+  this->PackedConnectivity.resize(blocks.size());
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+  {
+    if (!evaluatorFor(
+          this->TheMesh, this->TheMetric, metricCode(this->TheMetric), blocks[b], false))
+    {
+      continue;
+    }
+    const int nodes = topology(blocks[b].type).nodes;
+    std::vector<std::int32_t>& packed = this->PackedConnectivity[b];
+    packed.reserve(nodes * blocks[b].count);
+    const std::vector<Index>& order = this->Order[b];
+    for (Index i = 0; i < blocks[b].count; ++i)
+    {
+      const Index cell = blocks[b].cell(order.empty() ? i : order[i]);
+      const Index* node = view.connectivity + view.offsets[cell];
+      for (int k = 0; k < nodes; ++k)
+      {
+        if (renumber && place[node[k]] < 0)
+        {
+          place[node[k]] = static_cast<std::int32_t>(this->PackedPoints.size());
+          this->PackedPoints.push_back(node[k]);
+        }
+        packed.push_back(renumber ? place[node[k]] : static_cast<std::int32_t>(node[k]));
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+const double* ElementSum::packedCoordinates(std::vector<double>& coordinates) const
+{
+  coordinates.resize(3 * this->PackedPoints.size());
+  tautline::forEachChunk(static_cast<Index>(this->PackedPoints.size()), this->Options.threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        std::copy_n(
+          this->TheMesh.view().points + 3 * this->PackedPoints[i], 3, coordinates.data() + 3 * i);
+      }
+    });
+  return coordinates.data();
+}
+
+//------------------------------------------------------------------------------
+void ElementSum::addUnpacked(const std::vector<double>& packedGradient, double* gradient) const
+{
+  tautline::forEachChunk(static_cast<Index>(this->PackedPoints.size()), this->Options.threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          gradient[3 * this->PackedPoints[i] + c] += packedGradient[3 * i + c];
+        }
+      }
+    });
 }
 
 namespace

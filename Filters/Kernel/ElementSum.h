@@ -5,12 +5,19 @@
  *
  * The elements are cut into chunks and the chunks coloured: those of one colour share no vertex, so that
  * threads add to the gradient without locks and in an order that the mesh alone decides.
+ *
+ * Where the numbering of the mesh has no locality the cells are visited along a space-filling curve. Sums go
+ * over copies of the connectivity in that order and, if they do not fit into the cache anyway, of the coordinates and
+ * the gradient in the order the cells meet the points: all would be read and written at random otherwise.
  */
 #ifndef tautline_ElementSum_h
 #define tautline_ElementSum_h
 
 #include "Batch.h"
 #include "Parallel.h"
+
+#include <atomic>
+#include <cstdint>
 
 namespace tautline
 {
@@ -138,24 +145,36 @@ public:
   std::vector<Total> run(const Function& function, double* gradient) const
   {
     std::vector<Total> totals(this->Chunks.size());
+    const Scratch scratch(*this);
+    const bool renumbered = !this->PackedPoints.empty();
+    const double* const coordinates =
+      renumbered ? this->packedCoordinates(scratch.use().coordinates) : this->TheMesh.view().points;
+    std::vector<double>& packedGradient = scratch.use().gradient;
+    packedGradient.assign(WithGradient ? 3 * this->PackedPoints.size() : 0, 0.0);
+    double* const gradientThere = renumbered ? packedGradient.data() : gradient;
     this->forEachChunk(
       [&](Index i)
       {
         const Chunk& chunk = this->Chunks[i];
         const BatchEvaluator evaluate = this->evaluator(chunk, WithGradient);
         const BatchContext context = this->context(chunk);
-        const Index* order = this->order(chunk);
         Total total;
         withNodes(*context.topology,
           [&](auto nodesOfCell)
           {
             constexpr int Nodes = decltype(nodesOfCell)::value;
+            // Copies that stores to the gradient cannot change.
+            const double* const points = coordinates;
+            double* const sums = gradientThere;
+            const Index* const order = this->order(chunk);
+            const std::int32_t* const connectivity = this->PackedConnectivity[chunk.block].data();
+            const Index end = chunk.end;
             Batch batch;
-            BatchNodes nodes;
-            for (Index begin = chunk.begin; begin < chunk.end; begin += PacketWidth)
+            PackedNodes nodes;
+            for (Index begin = chunk.begin; begin < end; begin += PacketWidth)
             {
-              const int count = static_cast<int>(std::min<Index>(PacketWidth, chunk.end - begin));
-              gather<Nodes>(context, order, begin, count, batch, nodes);
+              const int count = static_cast<int>(std::min<Index>(PacketWidth, end - begin));
+              gatherPacked<Nodes>(context, order, connectivity, points, begin, count, batch, nodes);
               evaluate(context, batch);
               batch.value = finiteOrZero(batch.value);
               Packet slope = {};
@@ -164,21 +183,85 @@ public:
               {
                 scatter<Nodes>(context, batch, slope,
                   [&](const VectorLanes& lanes, int l, int k)
-                  { lanes.addTo(gradient + 3 * nodes[l][k], l); });
+                  { lanes.addTo(sums + 3 * static_cast<Index>(nodes[l][k]), l); });
               }
             }
           });
         totals[i] = total;
       });
+    if (WithGradient && renumbered)
+    {
+      this->addUnpacked(packedGradient, gradient);
+    }
     return totals;
   }
 
 private:
+  /// The nodes of each cell of a batch, as places in PackedPoints or as points.
+  using PackedNodes = const std::int32_t* [PacketWidth];
+
+  /// 3 per packed point.
+  struct Buffers
+  {
+    std::vector<double> coordinates, gradient;
+  };
+
+  /// The buffers kept from call to call, or new ones while another thread has those.
+  class Scratch
+  {
+  public:
+    explicit Scratch(const ElementSum& sum)
+      : Sum(sum)
+      , Kept(!sum.Busy.test_and_set(std::memory_order_acquire))
+    {
+    }
+    ~Scratch()
+    {
+      if (this->Kept)
+      {
+        this->Sum.Busy.clear(std::memory_order_release);
+      }
+    }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+    Buffers& use() const { return this->Kept ? this->Sum.KeptBuffers : this->Own; }
+
+  private:
+    const ElementSum& Sum;
+    const bool Kept;
+    mutable Buffers Own;
+  };
+
+  void pack();
+  /// Fills the array with the coordinates of the packed points.
+  const double* packedCoordinates(std::vector<double>& coordinates) const;
+  void addUnpacked(const std::vector<double>& packedGradient, double* gradient) const;
+
+  /// As gather(), from packed connectivity and coordinates.
+  template <int Nodes>
+  static void gatherPacked(const BatchContext& context, const Index* order,
+    const std::int32_t* connectivity, const double* coordinates, Index begin, int count,
+    Batch& batch, PackedNodes& nodes)
+  {
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      const Index position = begin + (l < count ? l : count - 1);
+      batch.cells[l] = context.block->cell(order ? order[position] : position);
+      nodes[l] = connectivity + Nodes * position;
+    }
+    batch.count = count;
+    loadNodes<Nodes>(context, coordinates, nodes, batch);
+  }
+
   const Mesh& TheMesh;
   Metric TheMetric;
   EvaluationOptions Options;
   std::vector<std::vector<Index>> Order; ///< per block: positions in cache-friendly order, or empty
   std::vector<Chunk> Chunks;             ///< sorted by colour
+  std::vector<Index> PackedPoints; ///< points in the order the cells meet them; empty: as they are
+  std::vector<std::vector<std::int32_t>> PackedConnectivity; ///< per block, in its Order
+  mutable Buffers KeptBuffers;
+  mutable std::atomic_flag Busy = ATOMIC_FLAG_INIT;
   std::vector<Index> ColourStarts;
 };
 }

@@ -220,10 +220,11 @@ double bestSum(vtkDataSet* mesh)
 {
   const auto shape = optimizerOf(mesh, vtkMeshOptimizer::BEST_SHAPE);
   shape->Update();
-  constexpr double accurate = 1e-8;
+  constexpr double accurate = 1e-6, settled = 1e-9;
   const auto newton = optimizerTo(outputOf(shape), 1, 0);
   newton->SetOptimizer(vtkMeshOptimizer::NEWTON_CONJUGATE_GRADIENT);
   newton->SetGradientNorm(accurate);
+  newton->SetRelativeChange(settled);
   newton->Update();
   return shapeOf(newton).sum;
 }
