@@ -15,7 +15,10 @@ struct Directions
 {
   Vec3 first = { 0, 0, 0 }, second = { 0, 0, 0 }; ///< unit: the first seen of each kind
   Vec3 firstSum = { 0, 0, 0 }, secondSum = { 0, 0, 0 };
-  int kinds = 0; ///< 3: three or more, or something that forbids to slide
+  Vec3 sum = { 0, 0, 0 };
+  double leastCosine = 1; ///< between a facet and the sum
+  bool faulty = false;    ///< a facet without size, or of three cells
+  int kinds = 0;          ///< 3: three or more, or something that forbids to slide
   int facets = 0;
 };
 
@@ -26,8 +29,11 @@ void add(Directions& d, const Vec3& area, double cosine)
   ++d.facets;
   if (!(length > 0) || !std::isfinite(length))
   {
+    d.faulty = true;
     d.kinds = 3;
+    return;
   }
+  d.sum += area;
   if (d.kinds == 3)
   {
     return;
@@ -90,39 +96,69 @@ void set(std::vector<double>& all, Index point, const Vec3& v)
 }
 
 //------------------------------------------------------------------------------
-BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle)
+BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle, double featureAngle)
 {
   if (!(flatAngle >= 0 && flatAngle <= 90))
   {
     throw Error("The angle up to which the boundary counts as flat is " +
       std::to_string(flatAngle) + " degrees; it must be between 0 and 90.");
   }
+  if (!(featureAngle >= 0 && featureAngle <= 180))
+  {
+    throw Error("The angle from which on an edge of the boundary is sharp is " +
+      std::to_string(featureAngle) + " degrees; it must be between 0 and 180.");
+  }
   const MeshView& view = mesh.view();
   // Rounding makes even the faces of a cube differ a little.
   const double cosine = std::min(std::cos(flatAngle * Pi / 180), 1 - 1e-12);
   std::vector<Directions> around(view.numberOfPoints);
-  FacetTable(mesh).forEachFacet(
-    [&](Index smallest, const FacetUse* uses, Index count)
+  FacetTable facets(mesh);
+  const auto forEachBoundaryFacet = [&](const auto& visit)
+  {
+    facets.forEachFacet(
+      [&](Index smallest, const FacetUse* uses, Index count)
+      {
+        if (count == 2)
+        {
+          return;
+        }
+        Index nodes[MaxFaceNodes];
+        const int size = walk(smallest, *uses, nodes);
+        const Vec3 along = direction(view, *uses, nodes, size);
+        for (int k = 0; k < size; ++k)
+        {
+          visit(around[nodes[k]], along, count);
+        }
+      });
+  };
+  forEachBoundaryFacet(
+    [cosine](Directions& here, const Vec3& along, Index count)
     {
-      if (count == 2)
+      if (count > 2)
       {
-        return;
+        here.faulty = true;
+        here.kinds = 3;
       }
-      Index nodes[MaxFaceNodes];
-      const int size = walk(smallest, *uses, nodes);
-      const Vec3 along = direction(view, *uses, nodes, size);
-      for (int k = 0; k < size; ++k)
-      {
-        Directions& here = around[nodes[k]];
-        here.kinds = count > 2 ? 3 : here.kinds;
-        add(here, along, cosine);
-      }
+      add(here, along, cosine);
     });
+  const bool smooth = featureAngle > 0 && mesh.dimension() != Dimension::Surface;
+  const double smoothCosine = std::cos(0.5 * featureAngle * Pi / 180);
+  if (smooth)
+  {
+    forEachBoundaryFacet(
+      [](Directions& here, const Vec3& along, Index)
+      {
+        const double lengths = norm(along) * norm(here.sum);
+        here.leastCosine =
+          std::min(here.leastCosine, lengths > 0 ? dot(along, here.sum) / lengths : -1.0);
+      });
+  }
 
   BoundaryShape shape;
   shape.fixed.assign(view.numberOfPoints, 0);
   shape.planes.assign(3 * view.numberOfPoints, 0.0);
   shape.lines.assign(3 * view.numberOfPoints, 0.0);
+  shape.surface.assign(view.numberOfPoints, 0);
   const bool volume = mesh.dimension() == Dimension::Volume;
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
@@ -137,15 +173,20 @@ BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle)
       set(shape.planes, i, d.firstSum);
       ++shape.inPlanes;
     }
+    else if (!volume && d.kinds == 1 && d.facets == 2)
+    {
+      set(shape.lines, i, d.firstSum);
+      ++shape.onLines;
+    }
+    else if (smooth && !d.faulty && (volume || d.facets == 2) && d.leastCosine >= smoothCosine)
+    {
+      shape.surface[i] = 1;
+      ++shape.onSurface;
+    }
     else if (volume && d.kinds == 2 &&
       norm(shared) > std::sqrt(1 - cosine * cosine) * norm(d.firstSum) * norm(d.secondSum))
     {
       set(shape.lines, i, shared);
-      ++shape.onLines;
-    }
-    else if (!volume && d.kinds == 1 && d.facets == 2)
-    {
-      set(shape.lines, i, d.firstSum);
       ++shape.onLines;
     }
     else

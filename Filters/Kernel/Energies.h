@@ -146,5 +146,20 @@ private:
     return y * y;
   }
 };
+
+/// The size squared, V = factor D.
+template <int Dim>
+struct SizeSquaredEnergy
+{
+  double factor2; ///< factor^2
+  Packet value(Packet, Packet D) const { return this->factor2 * D * D; }
+  void terms(Packet, Packet D, EnergyTerms& e) const
+  {
+    e.f = this->factor2 * D * D;
+    e.fD = 2.0 * this->factor2 * D;
+    e.fDD = broadcast(2.0 * this->factor2);
+    e.fN = e.fNN = e.fND = Packet{};
+  }
+};
 }
 #endif

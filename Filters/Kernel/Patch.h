@@ -110,6 +110,24 @@ inline double leastOf(Packet x)
   return least;
 }
 
+/// A length of the patch's size: of its first simplex that counts, some edge lengths.
+template <int Dim>
+double sizeOf(const Patch<Dim>& patch)
+{
+  for (int i = 0; i < patch.count; ++i)
+  {
+    const PatchPacket<Dim>& p = patch.packets[i];
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      if (p.C[l] > 0)
+      {
+        return std::sqrt(p.N0[l] / p.C[l]);
+      }
+    }
+  }
+  return 0.0;
+}
+
 /// N and D of a packet's simplices at the displacement d.
 template <int Dim>
 void invariants(const PatchPacket<Dim>& p, const double* d, Packet& N, Packet& D)

@@ -139,7 +139,7 @@ public:
     {
       // By differences of the gradient, over a small part of the patch's size; one-sided ones are enough for a direction.
       constexpr double part = 1e-6;
-      const double h = part * this->sizeOf(site);
+      const double h = part * sizeOf(site.patch);
       for (int r = 0; r < Dim; ++r)
       {
         double forth[Dim];
@@ -171,13 +171,6 @@ private:
       shift += d[c] * site.axes[c];
     }
     return shift;
-  }
-
-  /// Root mean square distance, in displacement coordinates, of the vertices of the first packet.
-  static double sizeOf(const PatchSite<Dim>& site)
-  {
-    const PatchPacket<Dim>& p = site.patch.packets[0];
-    return std::sqrt(p.N0[0] / p.C[0]);
   }
 
   void evaluate(const CellBatch& cells, const Vec3& shift, BatchEvaluator evaluator, Batch& batch,

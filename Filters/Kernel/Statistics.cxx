@@ -188,7 +188,7 @@ std::vector<WorstElement> worstElements(const MetricInfo& info, const CellValues
 
 //------------------------------------------------------------------------------
 MetricStatistics summarize(
-  const MetricInfo& info, int dimension, const std::vector<double>& measured)
+  const MetricInfo& info, int dimension, const std::vector<double>& measured, bool withQuantiles)
 {
   MetricStatistics result;
   result.measured = static_cast<Index>(measured.size());
@@ -244,6 +244,10 @@ MetricStatistics summarize(
   result.rms = std::sqrt(squares / n) * unit;
   result.standardDeviation = std::sqrt(deviations / n) * unit;
 
+  if (!withQuantiles)
+  {
+    return result;
+  }
   std::vector<double> position(quantileFractions.size());
   for (std::size_t i = 0; i < position.size(); ++i)
   {

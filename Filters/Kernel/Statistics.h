@@ -65,9 +65,10 @@ TAUTLINE_KERNEL_EXPORT std::vector<double> measuredValues(
 /**
  * @brief Summarizes measured values.
  * @param dimension 2 or 3: which acceptable range counts
+ * @param withQuantiles off: the quantiles, which cost more than all the rest, stay 0
  */
-TAUTLINE_KERNEL_EXPORT MetricStatistics summarize(
-  const MetricInfo& info, int dimension, const std::vector<double>& measured);
+TAUTLINE_KERNEL_EXPORT MetricStatistics summarize(const MetricInfo& info, int dimension,
+  const std::vector<double>& measured, bool withQuantiles = true);
 
 /**
  * @brief Up to WorstCount elements, worst first. Inverted elements come first, then degenerate ones,

@@ -32,8 +32,8 @@ Measurement measure(const Mesh& mesh, const MeasuredMetric& what, const signed c
   evaluateMetric(mesh, what.metric, what.options, values);
   const CellValues data = { cells, values, validity, mesh.view().cellTypes, skip };
   Measurement result;
-  result.statistics =
-    summarize(info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data));
+  result.statistics = summarize(
+    info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data), false);
   result.counts = countValidity(validity, skip, cells);
   result.worst = info.direction == Direction::LargerIsBetter ? result.statistics.minimum
                                                              : result.statistics.maximum;

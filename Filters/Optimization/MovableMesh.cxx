@@ -3,6 +3,7 @@
 #include "tautline/BoundaryShape.h"
 #include "tautline/SimplexMesh.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -319,6 +320,19 @@ vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input,
       "' " + what + ": choose another one, or None.");
   }
   return array;
+}
+
+//------------------------------------------------------------------------------
+void declareInput(vtkInformation* info, bool selection, bool optional)
+{
+  // The composite type first, so that the tables are those of all blocks.
+  info->Set(
+    vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), selection ? "vtkSelection" : "vtkCompositeDataSet");
+  if (!selection)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  }
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), optional);
 }
 
 //------------------------------------------------------------------------------

@@ -41,9 +41,10 @@ void vtkMeshOptimizer::Setup::setFixed(vtkMeshOptimizer* self, const tautline::I
   {
     this->mesh.fixBoundary();
   }
-  else if (self->Boundary == SLIDING)
+  else if (self->Boundary == SLIDING || self->Boundary == ON_SURFACE)
   {
-    this->shape = tautline::boundaryShape(this->mesh.mesh(), self->FlatAngle);
+    this->shape = tautline::boundaryShape(
+      this->mesh.mesh(), self->FlatAngle, self->Boundary == ON_SURFACE ? self->FeatureAngle : 0.0);
     this->mesh.fixCorners(this->shape);
     for (std::size_t i = 0; i < 3 * points; ++i)
     {
@@ -52,6 +53,11 @@ void vtkMeshOptimizer::Setup::setFixed(vtkMeshOptimizer* self, const tautline::I
         this->shape.planes[i] = this->shape.lines[i] = 0;
       }
     }
+    for (std::size_t i = 0; i < points; ++i)
+    {
+      this->shape.surface[i] &= !this->mesh.fixed()[i];
+    }
+    this->options.slideSurface = this->shape.onSurface > 0 ? this->shape.surface.data() : nullptr;
     this->options.slidePlanes = this->shape.planes.data();
     this->options.slideLines = this->shape.lines.data();
   }

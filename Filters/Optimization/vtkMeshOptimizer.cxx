@@ -488,6 +488,7 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StopWhenValid: " << this->StopWhenValid << "\n";
   os << indent << "Boundary: " << this->Boundary << "\n";
   os << indent << "FlatAngle: " << this->FlatAngle << "\n";
+  os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "MaximumDisplacement: " << this->MaximumDisplacement << "\n";
   os << indent << "ProjectToSurface: " << this->ProjectToSurface << "\n";
   os << indent << "AllowInversion: " << this->AllowInversion << "\n";

@@ -309,17 +309,20 @@ public:
   {
     FIXED = 0,
     SLIDING = 1,
-    FREE = 2
+    FREE = 2,
+    ON_SURFACE = 3
   };
   ///@{
   /**
    * What the points of the boundary do. FIXED: they stay. SLIDING: of a volume mesh those within a flat part
    * of the surface move in it, those on a straight edge along it, corners and curved parts stay; of a mesh
-   * of 2D cells those on straight parts move along them (see FlatAngle). FREE: they move as all
-   * others. Points also stay where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the
+   * of 2D cells those on straight parts move along them (see FlatAngle). ON_SURFACE: besides, those where the
+   * boundary of a volume or planar mesh is curved but smooth (see FeatureAngle) slide on it as it was; this needs
+   * a local optimizer, and GetSurfaceError() tells how far the new boundary is from the old. FREE: they
+   * move as all others. Points also stay where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the
    * selection at port 2 holds them or a cell of theirs. The default is FIXED.
    */
-  vtkSetClampMacro(Boundary, int, FIXED, FREE);
+  vtkSetClampMacro(Boundary, int, FIXED, ON_SURFACE);
   vtkGetMacro(Boundary, int);
   ///@}
 
@@ -330,6 +333,15 @@ public:
    */
   vtkSetClampMacro(FlatAngle, double, 0.0, 90.0);
   vtkGetMacro(FlatAngle, double);
+  ///@}
+
+  ///@{
+  /**
+   * For ON_SURFACE: edges of the boundary at which it bends by more than so many degrees are sharp. The
+   * default is 30.
+   */
+  vtkSetClampMacro(FeatureAngle, double, 0.0, 180.0);
+  vtkGetMacro(FeatureAngle, double);
   ///@}
 
   ///@{
@@ -446,7 +458,7 @@ public:
   vtkIdType GetFreePoints() const { return this->FreePoints; }
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
   vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
-  /// Largest distance of the output's elements from the input surface, of surface meshes.
+  /// Largest distance of the output's surface from the input's, where points move on it.
   double GetSurfaceError() const { return this->SurfaceError; }
   const char* GetSummary() const { return this->Summary.c_str(); }
   ///@}
@@ -507,6 +519,7 @@ private:
   bool StopWhenValid = false;
   int Boundary = FIXED;
   double FlatAngle = 1.0;
+  double FeatureAngle = 30.0;
   double MaximumDisplacement = 0.0;
   bool ProjectToSurface = true;
   bool AllowInversion = false;

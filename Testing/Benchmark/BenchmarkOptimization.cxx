@@ -62,7 +62,7 @@ public:
     vtkIdType elements, const std::function<void()>& work, double (*clock)() = processTime)
   {
     double best = std::numeric_limits<double>::infinity();
-    constexpr int unitsPerTurn = 3;
+    constexpr int unitsPerTurn = 1;
     for (int i = 0; i < this->Repeats; ++i)
     {
       this->Unit = std::min(this->Unit, this->Stick.measure(unitsPerTurn));

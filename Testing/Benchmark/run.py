@@ -54,6 +54,32 @@ def ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
     ]
 
 
+def shape_ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
+    """Shape matching, in units of the plain loop for one tetrahedron (its IMR and gradient)."""
+    unit = t["tetrahedra plain imr"]
+    return [
+        ("contour match of two like shapes / plain imr", t["shapes contour like"] / unit, "<= 20000"),
+        ("contour match, mean over shapes / plain imr", t["shapes contour mean"] / unit, ""),
+        ("exact grid match [s]", t["shapes grid"] / 1e9, "<= 3"),
+        ("two threads over one, exact grid match", t["shapes grid wall 1"] / t["shapes grid wall 2"], ">= 1.7"),
+        ("exact grid match without bounds / with", t["shapes grid plain"] / t["shapes grid"], ""),
+    ]
+
+
+def peridynamics(program: Path, n: int, repeats: int) -> dict[str, float]:
+    """CPU and wall seconds of nonlocal matrices of the square with h = 1/n, delta = 0.2."""
+    if n % 5:  # delta is a whole number of elements
+        n += 5 - n % 5
+    output = subprocess.run([str(program), str(n), str(repeats)], check=True, capture_output=True, text=True).stdout
+    return {key: float(number) for key, number in (line.split("\t") for line in output.splitlines())}
+
+
+def speedups(t: dict[str, float]) -> list[tuple[str, float]]:
+    """Of each nonlocal matrix, two threads over one."""
+    names = [key.removesuffix(" cpu") for key in t if key.endswith(" cpu")]
+    return [(f"two threads over one, {name}", t[f"{name} wall 1"] / t[f"{name} wall 2"]) for name in names]
+
+
 def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None:
     print(f"{times['elements tetrahedra']:.0f} tetrahedra, {times['elements hexahedra']:.0f} hexahedra; one thread\n")
     print(f"{'ns per element':34}{'value':>10}{'gradient':>10}{'/ floor':>10}{'/ plain':>10}")
@@ -73,6 +99,9 @@ def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None
     for key, value in times.items():
         if key.startswith("filter"):
             print(f"{key:34}{value:10.2f}")
+    for key, value in times.items():
+        if key.startswith("peridynamics") and key.endswith("cpu"):
+            print(f"{key:44}{value:10.3f} s")
     print(f"\n{'ratio':54}{'':>10}{'aim':>10}")
     for what, number, aim in summary:
         print(f"{what:54}{number:10.2f}{aim:>10}")
@@ -102,7 +131,12 @@ def run_quality(build: Path, output: Path, size: int, repeats: int) -> None:
     times: dict[str, float] = {}
     for part in (KERNEL, FILTER, *MEMORY):
         times |= measure(build / "bin" / "BenchmarkQuality", part, size, repeats)
-    summary = ratios(times)
+    times |= measure(build / "bin" / "BenchmarkShapes", "shapes", size, repeats)
+    elements = min(40, max(5, 2 * size // 3))  # 1 / h of the nonlocal matrices
+    nonlocal_times = peridynamics(build / "bin" / "BenchmarkPeridynamics", elements, min(repeats, 3))
+    times |= nonlocal_times
+    summary = ratios(times) + shape_ratios(times)
+    summary += [(key, number, ">= 1.7" if "two threads" in key else "") for key, number in speedups(nonlocal_times)]
     show(times, summary)
     save(output, "benchmark", times, {what.strip(): number for what, number, _ in summary})
 

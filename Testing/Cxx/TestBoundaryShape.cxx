@@ -82,6 +82,42 @@ void testFlat()
   }
 }
 
+/// A disk of a square: its rim is smooth at 30 degrees but for the square's corners, at 60 all of it.
+void testSmooth()
+{
+  MeshData disk = blockMesh(CellType::Triangle, 16, 16, 0);
+  const auto onRim = Mesh(disk.view()).boundary().isBoundaryPoint;
+  disk.transform(
+    [](const Vec3& p)
+    {
+      const double x = p[0] / 8 - 1, y = p[1] / 8 - 1;
+      return Vec3{ x * std::sqrt(1 - y * y / 2), y * std::sqrt(1 - x * x / 2), 0 };
+    });
+  const BoundaryShape none = boundaryShape(Mesh(disk.view()), 1);
+  TAUTLINE_CHECK_EQUAL(none.onSurface, 0);
+  const BoundaryShape rim = boundaryShape(Mesh(disk.view()), 1, 60);
+  TAUTLINE_CHECK_EQUAL(rim.onSurface, 64);
+  TAUTLINE_CHECK_EQUAL(std::count(rim.fixed.begin(), rim.fixed.end(), 1), 0);
+  for (Index i = 0; i < disk.numberOfPoints(); ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(int(rim.surface[i]), int(onRim[i]));
+  }
+  // A cube has planes and straight sharp edges only; bent a little, its top is smooth.
+  const MeshData cube = blockMesh(CellType::Tetrahedron, 4, 4, 4);
+  const BoundaryShape sharp = boundaryShape(Mesh(cube.view()), 1, 60);
+  TAUTLINE_CHECK_EQUAL(sharp.onSurface, 0);
+  TAUTLINE_CHECK_EQUAL(sharp.inPlanes, 54);
+  TAUTLINE_CHECK_EQUAL(sharp.onLines, 36);
+  MeshData bent = cube;
+  bent.transform(
+    [](const Vec3& p) {
+      return Vec3{ p[0], p[1], p[2] + 0.02 * p[0] * p[0] * p[2] };
+    });
+  const BoundaryShape smooth = boundaryShape(Mesh(bent.view()), 1, 60);
+  TAUTLINE_CHECK_EQUAL(smooth.onSurface, 9);
+  TAUTLINE_CHECK_THROWS(boundaryShape(Mesh(cube.view()), 1, -5), "between 0 and 180");
+}
+
 /// Three cells at one edge, a sheet without thickness, an edge without length: nothing slides there.
 void testFaulty()
 {
@@ -115,6 +151,7 @@ int TestBoundaryShape(int, char*[])
   testCube();
   testAngle();
   testFlat();
+  testSmooth();
   testFaulty();
   return exitCode();
 }

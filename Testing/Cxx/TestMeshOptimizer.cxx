@@ -463,6 +463,42 @@ void testBoundary()
   TAUTLINE_CHECK_EQUAL(norm(after.point(0) - flat.point(0)), 0);
 }
 
+/// On a ball, points of the sphere slide on it; with fixed points the mesh is worse.
+void testOnSurface()
+{
+  MeshData ball = perturbed(CellType::Tetrahedron, 6);
+  ball.transform(
+    [](const Vec3& p)
+    {
+      const double x = p[0] / 3 - 1, y = p[1] / 3 - 1, z = p[2] / 3 - 1;
+      const double xx = x * x, yy = y * y, zz = z * z;
+      return Vec3{ x * std::sqrt(1 - yy / 2 - zz / 2 + yy * zz / 3),
+        y * std::sqrt(1 - xx / 2 - zz / 2 + xx * zz / 3),
+        z * std::sqrt(1 - xx / 2 - yy / 2 + xx * yy / 3) };
+    });
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputData(toGrid(ball));
+  filter->Update();
+  const double fixed = sumOfSquares(withPointsOf(ball, meshOf(filter)));
+  filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
+  filter->SetFeatureAngle(90);
+  filter->Update();
+  const MeshData slid = withPointsOf(ball, meshOf(filter));
+  TAUTLINE_CHECK(sumOfSquares(slid) < 0.98 * fixed);
+  const auto boundary = boundaryOf(ball);
+  Index moved = 0;
+  for (Index i = 0; i < ball.numberOfPoints(); ++i)
+  {
+    // The facets of the sphere are up to 0.05 inside it.
+    TAUTLINE_CHECK(!boundary[i] || std::abs(norm(slid.point(i)) - 1) < 0.05);
+    moved += boundary[i] && norm(slid.point(i) - ball.point(i)) > 1e-3;
+  }
+  TAUTLINE_CHECK(moved > 100);
+  TAUTLINE_CHECK(filter->GetSurfaceError() > 0 && filter->GetSurfaceError() < 0.05);
+  const auto validity = validityOf(slid);
+  TAUTLINE_CHECK_EQUAL(std::count(validity.begin(), validity.end(), Valid), ball.numberOfCells());
+}
+
 void testLimits()
 {
   const MeshData data = perturbed(CellType::Triangle, 8);
@@ -553,6 +589,7 @@ int TestMeshOptimizer(int, char*[])
   testArrays();
   testFixed();
   testBoundary();
+  testOnSurface();
   testLimits();
   testTargets();
   testThreads();

@@ -86,6 +86,13 @@ void testByHand()
     TAUTLINE_CHECK_NEAR(s.quantiles[i], expected[i], 1e-14);
   }
 
+  const MetricStatistics without = summarize(imr, 2, values, false);
+  TAUTLINE_CHECK(without.quantiles == decltype(without.quantiles){});
+  TAUTLINE_CHECK_EQUAL(without.mean, s.mean);
+  TAUTLINE_CHECK_EQUAL(without.rms, s.rms);
+  TAUTLINE_CHECK_EQUAL(without.standardDeviation, s.standardDeviation);
+  TAUTLINE_CHECK_EQUAL(without.outsideAcceptable, s.outsideAcceptable);
+
   std::vector<double> none, one = { 2 };
   const MetricStatistics empty = summarize(imr, 2, none), single = summarize(imr, 2, one);
   TAUTLINE_CHECK_EQUAL(empty.measured, 0);

@@ -92,7 +92,10 @@ def test_points_that_stay():
     limited = tl.optimize(mesh, limits=np.where(fixed == 1, 0.0, 1e-3))
     assert not limited.displacement[fixed == 1].any()
     free = tl.optimize(mesh, boundary="sliding").free
-    assert tl.optimize(mesh).free < free < tl.optimize(mesh, boundary="free").free == len(fixed)
+    on_surface = tl.optimize(mesh, boundary="on surface")  # the hole is round
+    assert tl.optimize(mesh).free < free < on_surface.free < tl.optimize(mesh, boundary="free").free == len(fixed)
+    assert 0 < on_surface.surface_error < 0.05 * np.ptp(points(mesh)) and on_surface.inverted == 0
+    refused("needs a local optimizer", tl.optimize, mesh, optimizer="l-bfgs", boundary="on surface")
     weights = np.zeros(mesh.GetNumberOfCells())
     weights[0] = 1
     weighted = tl.optimize(mesh, element_weights=weights)

@@ -32,3 +32,13 @@ try:
     from ._inputs import domain, domains  # noqa: E402
 except ImportError:  # built without the modules of readers and domains
     pass
+
+try:
+    from ._shapes import Match, Retrieved, SilhouetteMesh, match, read_silhouettes, retrieval, silhouette  # noqa: E402
+except ImportError:  # built without the module of shapes
+    pass
+
+try:
+    from ._peridynamics import Peridynamics, collar, peridynamics  # noqa: E402
+except ImportError:  # built without the module of nonlocal models
+    pass

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 import tautline
-from tautline import _optimization, _quality, _tables
+from tautline import _quality, _tables
 
 
 def _names(text: str) -> list[str]:
@@ -176,12 +176,11 @@ def _parser() -> argparse.ArgumentParser:
     made.add_argument("arguments", nargs=argparse.REMAINDER)
     made.set_defaults(run=_study_run)
 
-    _optimization.add_commands(verbs)
-    try:
-        from tautline._inputs import add_commands
-    except ImportError:  # built without the modules of readers and domains
-        return parser
-    add_commands(verbs)
+    for module in ("_optimization", "_shapes", "_peridynamics", "_inputs"):
+        try:
+            import_module(f"tautline.{module}").add_commands(verbs)
+        except ImportError:  # built without the modules it needs
+            pass
     return parser
 
 

@@ -54,7 +54,7 @@ OPTIMIZERS = (
     "l-bfgs",
     "newton-cg",
 )
-BOUNDARIES = ("fixed", "sliding", "free")
+BOUNDARIES = ("fixed", "sliding", "free", "on surface")
 EFFORTS = ("local", "normal", "thorough")
 
 _MOST_THREADS = 1024
@@ -111,6 +111,7 @@ def optimize(
     fixed: str | Sequence | None = None,
     boundary: str = "fixed",
     flat_angle: float = 1.0,
+    feature_angle: float = 30.0,
     limits: str | float | Sequence | None = None,
     element_weights: str | Sequence | None = None,
     project_to_surface: bool = True,
@@ -138,8 +139,8 @@ def optimize(
         "polak-ribiere", "l-bfgs", "newton-cg".
     reference, size, tensor: what the wanted element is, see quality().
     fixed: points that stay: truth values, one per point, or the name of a point array.
-    boundary: "fixed"; "sliding" (points in flat or straight parts move along them, see flat_angle, degrees)
-        or "free".
+    boundary: "fixed"; "sliding" (points in flat or straight parts move along them, see flat_angle, degrees);
+        "on surface" (in curved but smooth parts too, see feature_angle, degrees); or "free".
     limits: how far points may go: a number, one per point (negative: any distance), or a point array.
     element_weights: at least 0, one per cell, or the name of a cell array.
     project_to_surface: keep the points of a surface in space on it.
@@ -167,6 +168,7 @@ def optimize(
     messages.raise_errors()
     filter_.SetBoundary(pick("boundary", boundary, BOUNDARIES))
     filter_.SetFlatAngle(within("flat_angle", flat_angle, 0, 90))
+    filter_.SetFeatureAngle(within("feature_angle", feature_angle, 0, 180))
     filter_.SetProjectToSurface(bool(project_to_surface))
     filter_.SetUntangleFirst(bool(untangle_first))
     filter_.SetAllowInversion(bool(allow_inversion))

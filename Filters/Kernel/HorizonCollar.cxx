@@ -1,0 +1,282 @@
+#include "HorizonCollar.h"
+
+#include "Parallel.h"
+#include "PeridynamicsCommon.h"
+#include "PlanarDelaunay.h"
+
+#include <algorithm>
+#include <map>
+
+namespace tautline
+{
+namespace
+{
+constexpr double LeastGap = 0.55; // of lattice points from the boundary, in element sizes
+constexpr double Margin = 2.5;    // of lattice points beyond the width, in element sizes
+constexpr double Shake = 0.02;    // of lattice points, in element sizes: no four on a circle
+constexpr double MostPoints = 5e6;
+
+struct Edge
+{
+  Vec2 a, b;           ///< the mesh is on the left
+  Index first, second; ///< point numbers
+};
+
+std::vector<Edge> boundaryEdges(const PlanarTriangles& mesh)
+{
+  std::map<std::pair<Index, Index>, int> uses;
+  for (const auto& t : mesh.triangles)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const Index a = t[k], b = t[(k + 1) % 3];
+      ++uses[{ std::min(a, b), std::max(a, b) }];
+    }
+  }
+  std::vector<Edge> edges;
+  for (const auto& t : mesh.triangles)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const Index a = t[k], b = t[(k + 1) % 3];
+      if (uses[{ std::min(a, b), std::max(a, b) }] == 1)
+      {
+        edges.push_back({ mesh.points[a], mesh.points[b], a, b });
+      }
+    }
+  }
+  return edges;
+}
+
+/// What a place is to the mesh: its distance to the boundary, and whether it is inside.
+struct Place
+{
+  double distance = 0.0;
+  bool inside = false;
+  bool crowds = false; ///< in the circle over an edge, which then were no Delaunay edge
+};
+
+Place placeOf(Vec2 p, const std::vector<Edge>& edges)
+{
+  Place place;
+  double nearest = 1e300;
+  int winding = 0;
+  for (const Edge& edge : edges)
+  {
+    const Vec2 e = edge.b - edge.a, toA = p - edge.a, toB = p - edge.b;
+    const double t = std::clamp(dot(toA, e) / dot(e, e), 0.0, 1.0);
+    const Vec2 d = toA - t * e;
+    nearest = std::min(nearest, dot(d, d));
+    place.crowds = place.crowds || dot(toA, toB) <= 0.1 * dot(e, e);
+    const double side = cross(e, toA);
+    winding += edge.a.y <= p.y && edge.b.y > p.y && side > 0.0;
+    winding -= edge.a.y > p.y && edge.b.y <= p.y && side < 0.0;
+  }
+  place.distance = std::sqrt(nearest);
+  place.inside = winding != 0;
+  return place;
+}
+
+/// The distance of a triangle from the boundary.
+double distanceOf(const Vec2* corner, const std::vector<Edge>& edges)
+{
+  double nearest = 1e300;
+  for (const Edge& edge : edges)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      nearest =
+        std::min(nearest, squaredSegmentDistance(corner[k], corner[(k + 1) % 3], edge.a, edge.b));
+    }
+  }
+  return std::sqrt(nearest);
+}
+
+/// A number from -1 to 1 that looks random.
+double noise(Index i, Index j, int what)
+{
+  std::uint64_t z =
+    static_cast<std::uint64_t>(i * 2654435761 + j * 40503 + what * 97) * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
+}
+
+void proceed(const CollarOptions& options, double part)
+{
+  if (options.progress && !options.progress(part))
+  {
+    throw Error("stopped by the user");
+  }
+}
+
+/// Points of the lattice around the mesh that become part of the collar.
+std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<Edge>& edges,
+  double size, const CollarOptions& options)
+{
+  Vec2 low = { 1e300, 1e300 }, high = { -1e300, -1e300 };
+  for (Index t = 0; t < mesh.size(); ++t)
+  {
+    low = { std::min(low.x, mesh.low[t].x), std::min(low.y, mesh.low[t].y) };
+    high = { std::max(high.x, mesh.high[t].x), std::max(high.y, mesh.high[t].y) };
+  }
+  const double reach = options.width + Margin * size, rise = 0.5 * std::sqrt(3.0) * size;
+  const Vec2 from = { low.x - reach, low.y - reach };
+  const double columns = std::ceil((high.x + reach - from.x) / size) + 1.0;
+  const double rows = std::ceil((high.y + reach - from.y) / rise) + 1.0;
+  if (!(columns * rows <= MostPoints))
+  {
+    throw Error("a collar of this width with elements of size " + std::to_string(size) +
+      " has too many of them: give a larger element size");
+  }
+  const auto m = static_cast<Index>(columns), n = static_cast<Index>(rows);
+  std::vector<Vec2> points(m * n);
+  std::vector<char> kept(m * n, 0);
+  Index done = 0;
+#pragma omp parallel for schedule(dynamic) num_threads(resolveThreads(options.threads))
+  for (Index j = 0; j < n; ++j)
+  {
+    for (Index i = 0; i < m; ++i)
+    {
+      const double shift = j % 2 == 0 ? 0.0 : 0.5;
+      const Vec2 p = { from.x + (static_cast<double>(i) + shift + Shake * noise(i, j, 0)) * size,
+        from.y + (static_cast<double>(j)) * rise + Shake * noise(i, j, 1) * size };
+      const Place place = placeOf(p, edges);
+      points[j * m + i] = p;
+      kept[j * m + i] = !place.inside && !place.crowds && place.distance > LeastGap * size &&
+        place.distance < reach;
+    }
+#pragma omp atomic
+    ++done;
+  }
+  std::vector<Vec2> chosen;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (kept[i])
+    {
+      chosen.push_back(points[i]);
+    }
+  }
+  return chosen;
+}
+}
+
+//------------------------------------------------------------------------------
+HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options)
+{
+  if (!(options.width > 0.0) || !std::isfinite(options.width))
+  {
+    throw Error(
+      "the width of the collar is " + std::to_string(options.width) + "; it has to be above 0");
+  }
+  if (!(options.elementSize >= 0.0) || !std::isfinite(options.elementSize))
+  {
+    throw Error("the element size of the collar is " + std::to_string(options.elementSize) +
+      "; it has to be 0 or more");
+  }
+  const PlanarTriangles triangles(mesh);
+  const std::vector<Edge> edges = boundaryEdges(triangles);
+  double length = 0.0;
+  std::map<Index, Index> localOf;
+  std::vector<Index> globalOf;
+  std::vector<double> points;
+  std::vector<std::pair<Index, Index>> segments;
+  const auto local = [&](Index p, Vec2 at)
+  {
+    const auto [place, fresh] = localOf.emplace(p, static_cast<Index>(globalOf.size()));
+    if (fresh)
+    {
+      globalOf.push_back(p);
+      points.push_back(at.x);
+      points.push_back(at.y);
+    }
+    return place->second;
+  };
+  for (const Edge& edge : edges)
+  {
+    const Vec2 e = edge.b - edge.a;
+    length += std::sqrt(dot(e, e)) / static_cast<double>(edges.size());
+    const Index a = local(edge.first, edge.a), b = local(edge.second, edge.b);
+    segments.emplace_back(a, b);
+  }
+  const double size = options.elementSize > 0.0 ? options.elementSize : length;
+  HorizonMesh result = mesh;
+  proceed(options, 0.05);
+  for (const Vec2 p : latticePoints(triangles, edges, size, options))
+  {
+    globalOf.push_back(result.numberOfPoints());
+    result.points.push_back(p.x);
+    result.points.push_back(p.y);
+    points.push_back(p.x);
+    points.push_back(p.y);
+  }
+  proceed(options, 0.5);
+  const auto boundaryPoints = static_cast<Index>(localOf.size());
+  const std::vector<std::array<Index, 3>> all = constrainedDelaunay(points, segments);
+  proceed(options, 0.8);
+  for (const auto& t : all)
+  {
+    Vec2 corner[3], centre;
+    bool ofBoundary = true;
+    for (int k = 0; k < 3; ++k)
+    {
+      corner[k] = { points[2 * t[k]], points[2 * t[k] + 1] };
+      centre = centre + (1.0 / 3.0) * corner[k];
+      ofBoundary = ofBoundary && t[k] < boundaryPoints;
+    }
+    const Place place = placeOf(centre, edges);
+    double radius = 0.0;
+    for (const Vec2 c : corner)
+    {
+      radius = std::max(radius, std::sqrt(dot(c - centre, c - centre)));
+    }
+    // Those that come nearer than the width are kept; far from the mesh they may be long.
+    const bool reaches = place.distance <= options.width ||
+      (place.distance - radius <= options.width && distanceOf(corner, edges) <= options.width);
+    if ((ofBoundary && place.inside) || !reaches)
+    {
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const int turned = triangles.flipped ? (3 - k) % 3 : k;
+      result.triangles.push_back(globalOf[t[turned]]);
+    }
+    result.collar.push_back(1);
+  }
+  if (!result.givenPoints.empty())
+  {
+    result.givenPoints.resize(result.numberOfPoints(), 1);
+  }
+  // Points that no triangle has in the end are not kept.
+  std::vector<Index> newId(result.numberOfPoints(), -1);
+  for (Index i = 0; i < mesh.numberOfPoints(); ++i)
+  {
+    newId[i] = i;
+  }
+  Index next = mesh.numberOfPoints();
+  for (const Index id : result.triangles)
+  {
+    newId[id] = newId[id] < 0 ? -2 : newId[id];
+  }
+  for (Index i = mesh.numberOfPoints(); i < result.numberOfPoints(); ++i)
+  {
+    if (newId[i] == -2)
+    {
+      result.points[2 * next] = result.points[2 * i];
+      result.points[2 * next + 1] = result.points[2 * i + 1];
+      newId[i] = next++;
+    }
+  }
+  result.points.resize(2 * next);
+  if (!result.givenPoints.empty())
+  {
+    result.givenPoints.resize(next);
+  }
+  for (Index& id : result.triangles)
+  {
+    id = newId[id];
+  }
+  return result;
+}
+}

@@ -1,0 +1,441 @@
+#include "Lanczos.h"
+
+#include "Parallel.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+constexpr Index VectorChunk = 1024; // entries per chunk of the ordered sums
+
+Index chunksOf(Index n)
+{
+  return (n + VectorChunk - 1) / VectorChunk;
+}
+
+/// Calls work(chunk, begin, end) for each chunk of a vector.
+template <class Work>
+void forEachPiece(Index n, int threads, const Work& work)
+{
+  const Index chunks = chunksOf(n);
+#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads)) if (chunks > 3)
+  for (Index chunk = 0; chunk < chunks; ++chunk)
+  {
+    work(chunk, chunk * VectorChunk, std::min(n, (chunk + 1) * VectorChunk));
+  }
+}
+
+double sumOf(const double* x, const double* y, Index begin, Index end)
+{
+  double sums[8] = {};
+  Index i = begin;
+  for (; i + 8 <= end; i += 8)
+  {
+    for (int l = 0; l < 8; ++l)
+    {
+      sums[l] += x[i + l] * y[i + l];
+    }
+  }
+  for (; i < end; ++i)
+  {
+    sums[0] += x[i] * y[i];
+  }
+  return ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
+}
+
+double product(const std::vector<double>& x, const std::vector<double>& y, int threads)
+{
+  const auto n = static_cast<Index>(x.size());
+  std::vector<double> partial(chunksOf(n));
+  forEachPiece(n, threads,
+    [&](Index chunk, Index begin, Index end)
+    { partial[chunk] = sumOf(x.data(), y.data(), begin, end); });
+  double sum = 0.0;
+  for (const double p : partial)
+  {
+    sum += p;
+  }
+  return sum;
+}
+
+/// w -= V (V^T w) for the first `count` columns of V, each of length n.
+void orthogonalize(
+  const std::vector<std::vector<double>>& basis, Index count, std::vector<double>& w, int threads)
+{
+  const auto n = static_cast<Index>(w.size());
+  std::vector<double> partial(chunksOf(n) * count), coefficients(count, 0.0);
+  forEachPiece(n, threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index j = 0; j < count; ++j)
+      {
+        partial[chunk * count + j] = sumOf(basis[j].data(), w.data(), begin, end);
+      }
+    });
+  for (Index chunk = 0; chunk < chunksOf(n); ++chunk)
+  {
+    for (Index j = 0; j < count; ++j)
+    {
+      coefficients[j] += partial[chunk * count + j];
+    }
+  }
+  forEachPiece(n, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index j = 0; j < count; ++j)
+      {
+        const double c = coefficients[j];
+        const double* v = basis[j].data();
+        for (Index i = begin; i < end; ++i)
+        {
+          w[i] -= c * v[i];
+        }
+      }
+    });
+}
+
+/// A symmetric tridiagonal matrix.
+struct Tridiagonal
+{
+  std::vector<double> diagonal, beside; ///< beside[i] couples i and i + 1
+
+  /// The number of eigenvalues below x (Sturm).
+  Index below(double x) const
+  {
+    Index count = 0;
+    double q = 1.0;
+    for (std::size_t i = 0; i < this->diagonal.size(); ++i)
+    {
+      const double b = i > 0 ? this->beside[i - 1] : 0.0;
+      q = this->diagonal[i] - x - (i > 0 ? b * b / q : 0.0);
+      if (std::abs(q) < std::numeric_limits<double>::min() * 1e20)
+      {
+        q = -std::numeric_limits<double>::min() * 1e20;
+      }
+      count += q < 0.0;
+    }
+    return count;
+  }
+
+  /// The eigenvalue with `index` ones below it, by bisection between Gershgorin's bounds.
+  double eigenvalue(Index index) const
+  {
+    double low = 1e300, high = -1e300;
+    for (std::size_t i = 0; i < this->diagonal.size(); ++i)
+    {
+      const double r = (i > 0 ? std::abs(this->beside[i - 1]) : 0.0) +
+        (i + 1 < this->diagonal.size() ? std::abs(this->beside[i]) : 0.0);
+      low = std::min(low, this->diagonal[i] - r);
+      high = std::max(high, this->diagonal[i] + r);
+    }
+    for (int step = 0; step < 200 && high - low > 1e-15 * std::max(std::abs(low), std::abs(high));
+         ++step)
+    {
+      const double middle = 0.5 * (low + high);
+      (this->below(middle) > index ? high : low) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+
+  /// Its eigenvector, of norm 1, by inverse iteration with pivoting.
+  std::vector<double> eigenvector(double value) const
+  {
+    const std::size_t n = this->diagonal.size();
+    std::vector<double> x(n);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      x[i] = 1.0 + 0.3 * std::cos(1.7 * static_cast<double>(i)); // no symmetry
+    }
+    const double tiny = std::max(1e-300, 1e-15 * std::abs(value));
+    for (int turn = 0; turn < 3; ++turn)
+    {
+      // Gaussian elimination of the band, with rows exchanged where the entry below is larger.
+      std::vector<double> a(n), b(n, 0.0), c(n, 0.0);
+      double current = this->diagonal[0] - value, next = n > 1 ? this->beside[0] : 0.0;
+      for (std::size_t i = 0; i + 1 < n; ++i)
+      {
+        const double under = this->beside[i], diagonal = this->diagonal[i + 1] - value;
+        const double far = i + 2 < n ? this->beside[i + 1] : 0.0;
+        if (std::abs(under) > std::abs(current))
+        {
+          const double factor = current / under;
+          a[i] = under;
+          b[i] = diagonal;
+          c[i] = far;
+          std::swap(x[i], x[i + 1]);
+          x[i + 1] -= factor * x[i];
+          current = next - factor * diagonal;
+          next = -factor * far;
+        }
+        else
+        {
+          a[i] = std::abs(current) < tiny ? tiny : current;
+          b[i] = next;
+          const double factor = under / a[i];
+          x[i + 1] -= factor * x[i];
+          current = diagonal - factor * next;
+          next = far;
+        }
+      }
+      a[n - 1] = std::abs(current) < tiny ? tiny : current;
+      double length = 0.0;
+      for (std::size_t i = n; i-- > 0;)
+      {
+        const double right =
+          x[i] - (i + 1 < n ? b[i] * x[i + 1] : 0.0) - (i + 2 < n ? c[i] * x[i + 2] : 0.0);
+        x[i] = right / a[i];
+        length = std::max(length, std::abs(x[i]));
+      }
+      double square = 0.0;
+      for (double& v : x)
+      {
+        v /= length;
+        square += v * v;
+      }
+      for (double& v : x)
+      {
+        v /= std::sqrt(square);
+      }
+    }
+    return x;
+  }
+};
+
+/// One end of the spectrum of the tridiagonal matrix.
+struct RitzPair
+{
+  double value = 0.0, bound = 0.0;
+  std::vector<double> vector;
+};
+
+RitzPair ritzPair(const Tridiagonal& t, bool smallest, double residual)
+{
+  const auto n = static_cast<Index>(t.diagonal.size());
+  RitzPair pair;
+  pair.value = t.eigenvalue(smallest ? 0 : n - 1);
+  pair.vector = t.eigenvector(pair.value);
+  const double r = residual * std::abs(pair.vector.back());
+  pair.bound = r;
+  if (n > 1)
+  {
+    const double gap = std::abs(t.eigenvalue(smallest ? 1 : n - 2) - pair.value);
+    pair.bound = gap > r ? std::min(r, r * r / gap) : r;
+  }
+  return pair;
+}
+
+std::vector<double> combine(const std::vector<std::vector<double>>& basis,
+  const std::vector<double>& weights, Index n, int threads)
+{
+  std::vector<double> result(n, 0.0);
+  forEachPiece(n, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (std::size_t j = 0; j < weights.size(); ++j)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          result[i] += weights[j] * basis[j][i];
+        }
+      }
+    });
+  return result;
+}
+
+std::vector<double> startVector(Index n)
+{
+  std::vector<double> x(n);
+  std::uint64_t state = 0x9e3779b97f4a7c15u; // splitmix64
+  for (double& v : x)
+  {
+    state += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = state;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    v = static_cast<double>(z >> 11) * 0x1p-53 + 0.25; // no sign: the lowest mode has none
+  }
+  return x;
+}
+
+class Clock
+{
+public:
+  explicit Clock(double limit)
+    : Limit(limit)
+  {
+  }
+  bool isUp() const
+  {
+    const auto now = std::chrono::steady_clock::now();
+    return this->Limit > 0.0 &&
+      std::chrono::duration<double>(now - this->Start).count() > this->Limit;
+  }
+
+private:
+  double Limit;
+  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+};
+
+/// Threads that have to wait for each other after less work than this do not pay.
+int threadsFor(const SparseMatrix& matrix, const LanczosOptions& options)
+{
+  constexpr Index worthwhile = 300000; // entries
+  return matrix.nonzeros() < worthwhile ? 1 : options.threads;
+}
+
+void scale(std::vector<double>& x, double factor)
+{
+  for (double& v : x)
+  {
+    v *= factor;
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& options)
+{
+  const Index n = matrix.size;
+  if (n == 0)
+  {
+    throw Error("the matrix is empty: there is no unknown");
+  }
+  const Clock clock(options.timeLimit);
+  const int threads = threadsFor(matrix, options);
+  Spectrum spectrum;
+  std::vector<std::vector<double>> basis;
+  Tridiagonal t;
+  std::vector<double> w = startVector(n);
+  scale(w, 1.0 / std::sqrt(product(w, w, threads)));
+  double beta = 0.0, size = 0.0;
+  RitzPair low, high;
+  const Index most = std::min(n, std::max<Index>(1, options.maxIterations));
+  Index nextCheck = std::min<Index>(most, 12);
+  for (Index k = 0; k < most; ++k)
+  {
+    basis.push_back(w);
+    matrix.multiply(basis[k].data(), w.data(), threads);
+    const double alpha = product(basis[k], w, threads);
+    if (!std::isfinite(alpha))
+    {
+      throw Error("the matrix has entries that are not finite numbers");
+    }
+    orthogonalize(basis, k + 1, w, threads);
+    orthogonalize(basis, k + 1, w, threads);
+    beta = std::sqrt(product(w, w, threads));
+    t.diagonal.push_back(alpha);
+    size = std::max({ size, std::abs(alpha), beta });
+    const bool invariant = beta <= 1e-14 * size;
+    const bool stop = clock.isUp() ||
+      (options.progress &&
+        !options.progress(static_cast<double>(k + 1) / static_cast<double>(most)));
+    if (k + 1 >= nextCheck || k + 1 == most || invariant || stop)
+    {
+      low = ritzPair(t, true, invariant ? 0.0 : beta);
+      high = ritzPair(t, false, invariant ? 0.0 : beta);
+      spectrum.converged = low.bound <= options.tolerance * std::abs(low.value) &&
+        high.bound <= options.tolerance * std::abs(high.value);
+      spectrum.iterations = k + 1;
+      nextCheck = k + 1 + std::max<Index>(4, (k + 1) / 10);
+      if (spectrum.converged || invariant || stop)
+      {
+        break;
+      }
+    }
+    t.beside.push_back(beta);
+    scale(w, 1.0 / beta);
+  }
+  t.beside.resize(t.diagonal.size() - 1);
+  spectrum.smallest = low.value;
+  spectrum.largest = high.value;
+  spectrum.smallestBound = low.bound;
+  spectrum.largestBound = high.bound;
+  // Rounding moves eigenvalues by about this much, whatever the bounds say.
+  const double rounding = 1e-14 * std::max(std::abs(low.value), std::abs(high.value));
+  spectrum.definite = low.value > std::max(rounding, spectrum.converged ? low.bound : 0.0);
+  spectrum.condition = spectrum.definite ? high.value / low.value : 0.0;
+  spectrum.smallestVector = combine(basis, low.vector, n, threads);
+  spectrum.largestVector = combine(basis, high.vector, n, threads);
+  return spectrum;
+}
+
+//------------------------------------------------------------------------------
+SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vector<double>& b,
+  std::vector<double>& x, double tolerance, const LanczosOptions& options)
+{
+  const Index n = matrix.size;
+  const int threads = threadsFor(matrix, options);
+  const Clock clock(options.timeLimit);
+  SolveReport report;
+  x.assign(n, 0.0);
+  std::vector<double> inverse(n), r = b, z(n), q(n);
+  for (Index i = 0; i < n; ++i)
+  {
+    const double d = matrix.at(i, i);
+    if (!(d > 0.0))
+    {
+      throw Error("the matrix is not positive definite: the diagonal entry of row " +
+        std::to_string(i) + " is " + std::to_string(d));
+    }
+    inverse[i] = 1.0 / d;
+  }
+  const double norm = std::sqrt(product(b, b, threads));
+  if (!std::isfinite(norm))
+  {
+    throw Error("the right side has values that are not finite numbers");
+  }
+  if (norm == 0.0)
+  {
+    report.converged = true;
+    return report;
+  }
+  const auto precondition = [&]
+  {
+    for (Index i = 0; i < n; ++i)
+    {
+      z[i] = inverse[i] * r[i];
+    }
+  };
+  precondition();
+  std::vector<double> p = z;
+  double rho = product(r, z, threads);
+  report.residual = 1.0;
+  while (report.residual > tolerance && report.iterations < options.maxIterations && !clock.isUp())
+  {
+    matrix.multiply(p.data(), q.data(), threads);
+    const double curvature = product(p, q, threads);
+    if (!(curvature > 0.0))
+    {
+      throw Error("the matrix is not positive definite: the problem has no unique solution");
+    }
+    const double step = rho / curvature;
+    for (Index i = 0; i < n; ++i)
+    {
+      x[i] += step * p[i];
+      r[i] -= step * q[i];
+    }
+    precondition();
+    const double next = product(r, z, threads);
+    for (Index i = 0; i < n; ++i)
+    {
+      p[i] = z[i] + next / rho * p[i];
+    }
+    rho = next;
+    report.residual = std::sqrt(product(r, r, threads)) / norm;
+    ++report.iterations;
+    if (options.progress &&
+      !options.progress(
+        static_cast<double>(report.iterations) / static_cast<double>(options.maxIterations)))
+    {
+      break;
+    }
+  }
+  report.converged = report.residual <= tolerance;
+  return report;
+}
+}

@@ -1,0 +1,75 @@
+/**
+ * @file Lanczos.h
+ * @brief Extreme eigenvalues of a sparse symmetric matrix, and the conjugate gradient method.
+ *
+ * For well-conditioned matrices of any size that fit in memory: nothing is factorised. Results are
+ * bitwise the same for any number of threads.
+ */
+#ifndef tautline_Lanczos_h
+#define tautline_Lanczos_h
+
+#include "SparseMatrix.h"
+
+#include <functional>
+
+namespace tautline
+{
+/// How far to go.
+struct LanczosOptions
+{
+  double tolerance = 1e-8;              ///< wanted relative error bound of both eigenvalues
+  Index maxIterations = 2000;           ///< at most; each keeps a vector
+  double timeLimit = 0.0;               ///< seconds; 0 is none
+  int threads = 0;                      ///< 0 is all cores
+  std::function<bool(double)> progress; ///< told a fraction done; stops when it returns false
+};
+
+/// What was found.
+struct Spectrum
+{
+  double smallest = 0.0, largest = 0.0; ///< eigenvalues
+  /// Absolute error bounds: the norm r of the residual or, if that is less, r^2 over the distance to
+  /// the next Ritz value (Kato-Temple, with the Ritz value for the eigenvalue).
+  double smallestBound = 0.0, largestBound = 0.0;
+  /// largest / smallest, the condition number of a positive definite matrix in the 2-norm; 0 where
+  /// the smallest eigenvalue is not positive beyond its bound.
+  double condition = 0.0;
+  bool definite = false;  ///< the smallest eigenvalue is positive, beyond its error bound
+  bool converged = false; ///< both bounds are within the tolerance
+  Index iterations = 0;
+  std::vector<double> smallestVector, largestVector; ///< of norm 1
+};
+
+/**
+ * @brief Both ends of the spectrum of a symmetric matrix by the Lanczos method with full
+ * reorthogonalisation (twice), from a fixed pseudo-random vector.
+ *
+ * Of a spectrum with more than `maxIterations` steps to go, or when time is up or progress() says
+ * stop, the best found so far, with its bounds and `converged` false. Throws Error for an empty matrix
+ * and for one with entries that are not finite.
+ *
+ * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., section 10.1-10.3; the bound: B. N. Parlett,
+ * The Symmetric Eigenvalue Problem, section 10.6.
+ */
+TAUTLINE_KERNEL_EXPORT Spectrum extremeEigenvalues(
+  const SparseMatrix& matrix, const LanczosOptions& options = {});
+
+/// How the conjugate gradient method ended.
+struct SolveReport
+{
+  Index iterations = 0;
+  double residual = 0.0; ///< norm of b - A x over that of b
+  bool converged = false;
+};
+
+/**
+ * @brief Solves A x = b, A symmetric positive definite, by conjugate gradients with the diagonal as the
+ * preconditioner, from x = 0, to a relative residual of `tolerance`.
+ *
+ * Throws Error if A is found not to be positive definite.
+ */
+TAUTLINE_KERNEL_EXPORT SolveReport solveConjugateGradients(const SparseMatrix& matrix,
+  const std::vector<double>& b, std::vector<double>& x, double tolerance = 1e-10,
+  const LanczosOptions& options = {});
+}
+#endif

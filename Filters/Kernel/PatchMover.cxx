@@ -1,0 +1,654 @@
+#include "PatchMover.h"
+
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+constexpr double sufficientDecrease = 1e-4; // Armijo's constant
+constexpr int maximumHalvings = 12;
+/// Part of the way to the first inversion that a step may go.
+constexpr double safety = 0.9;
+/// Changes above this part of an objective are seen by the scalarization itself, not by its slope.
+constexpr double visibleChange = 1e-6;
+
+/// A unit vector at a right angle to n, and the third.
+void tangentsOf(const Vec3& n, Vec3* tangents)
+{
+  int least = 0;
+  for (int c = 1; c < 3; ++c)
+  {
+    least = std::abs(n[c]) < std::abs(n[least]) ? c : least;
+  }
+  Vec3 axis = { 0, 0, 0 };
+  axis[least] = 1.0;
+  const Vec3 t = cross(n, axis);
+  tangents[0] = (1.0 / norm(t)) * t;
+  tangents[1] = cross(n, tangents[0]);
+}
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+PatchMover<Dim>::PatchMover(SimplexMesh& simplices, const Mesh& mesh, double* points,
+  const std::vector<LocalTerm>& terms, const LocalOptions& options)
+  : Simplices(simplices)
+  , TheMesh(mesh)
+  , Points(points)
+  , Options(options)
+{
+  for (const LocalTerm& term : terms)
+  {
+    this->Functions.push_back(this->makeFunction(term));
+    this->NeedsCells = this->NeedsCells || this->Functions.back()->needsCells();
+  }
+  if (this->NeedsCells)
+  {
+    this->Cells = mesh.vertexCells();
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void PatchMover<Dim>::begin(const std::vector<double>& values)
+{
+  this->Values = values;
+  for (std::size_t i = 0; i < this->Functions.size(); ++i)
+  {
+    this->Functions[i]->setCurrent(values[i]);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+PatchWorker<Dim> PatchMover<Dim>::makeWorker() const
+{
+  PatchWorker<Dim> w;
+  const std::size_t n = this->Functions.size();
+  w.sums.resize(n);
+  w.trial.assign(n, 0.0);
+  w.now = this->Values;
+  w.slopes.assign(n, 1.0);
+  return w;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+std::unique_ptr<PatchFunction<Dim>> PatchMover<Dim>::makeFunction(const LocalTerm& term) const
+{
+  if (term.worst > 0)
+  {
+    using Energy = WorstRatioEnergy<Dim>;
+    return std::make_unique<EnergyFunction<Dim, Energy>>(Energy{ 1.0 / term.worst });
+  }
+  if (term.shapePower == 1)
+  {
+    using Energy = InverseMeanRatioEnergy<Dim, 1>;
+    return std::make_unique<EnergyFunction<Dim, Energy>>(Energy());
+  }
+  if (term.shapePower == 2)
+  {
+    using Energy = InverseMeanRatioEnergy<Dim, 2>;
+    return std::make_unique<EnergyFunction<Dim, Energy>>(Energy());
+  }
+  if (term.sizeSquared > 0)
+  {
+    using Energy = SizeSquaredEnergy<Dim>;
+    return std::make_unique<EnergyFunction<Dim, Energy>>(Energy{ term.sizeSquared });
+  }
+  return std::make_unique<MetricFunction<Dim>>(term.metric->implementation());
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void PatchMover<Dim>::findTangents(std::int32_t v, Vec3* tangents) const
+{
+  // The normal is the sum of the vector areas around the vertex.
+  const double* x = this->Simplices.coordinates();
+  const auto at = [=](std::int32_t i)
+  {
+    const double* p = x + VertexStride * static_cast<std::size_t>(i);
+    return Vec3{ p[0], p[1], p[2] };
+  };
+  const Vec3 center = at(v);
+  Vec3 normal = { 0, 0, 0 };
+  for (std::int32_t i = this->Simplices.patchStart(v); i < this->Simplices.patchStart(v + 1); ++i)
+  {
+    const std::int32_t* others = this->Simplices.patchVertices() + 2 * static_cast<std::size_t>(i);
+    normal += cross(at(others[0]) - center, at(others[1]) - center);
+  }
+  const double length = norm(normal);
+  tangentsOf(length > 0 ? (1.0 / length) * normal : Vec3{ 0, 0, 1 }, tangents);
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void PatchMover<Dim>::gather(std::int32_t v, Site& site) const
+{
+  site.vertex = v;
+  const double* weights = this->Options.weights.empty() ? nullptr : this->Options.weights.data();
+  if (Dim == 2 && this->Simplices.surface())
+  {
+    Vec3 tangents[2];
+    this->findTangents(v, tangents);
+    gatherPatch<Dim>(
+      this->Simplices, this->Simplices.coordinates(), v, weights, site.patch, tangents);
+    for (int c = 0; c < Dim; ++c)
+    {
+      site.axes[c] = this->Simplices.scale() * tangents[c];
+    }
+  }
+  else
+  {
+    gatherPatch<Dim>(this->Simplices, this->Simplices.coordinates(), v, weights, site.patch);
+    for (int c = 0; c < Dim; ++c)
+    {
+      site.axes[c] = this->Simplices.axis(c);
+    }
+  }
+  if (this->NeedsCells)
+  {
+    this->gatherCells(v, site);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void PatchMover<Dim>::gatherCells(std::int32_t v, Site& site) const
+{
+  const MeshView& view = this->TheMesh.view();
+  const Index point = this->Simplices.point(v);
+  const auto begin = this->Cells.cells.begin() + this->Cells.offsets[point];
+  const auto end = this->Cells.cells.begin() + this->Cells.offsets[point + 1];
+  const bool mirrored = this->TheMesh.mirrored() && this->TheMesh.dimension() == Dimension::Volume;
+  const auto& blocks = this->TheMesh.blocks();
+  site.cellBatches = 0;
+  for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
+  {
+    const CellTopology& t = topology(blocks[b].type);
+    for (auto c = begin; c != end;)
+    {
+      if (static_cast<std::size_t>(site.cellBatches) == site.cells.size())
+      {
+        site.cells.emplace_back();
+      }
+      CellBatch& batch = site.cells[site.cellBatches];
+      batch.block = b;
+      int& count = batch.batch.count = 0;
+      for (; c != end && count < PacketWidth; ++c)
+      {
+        if (blocks.size() == 1 || cornerType(view.cellTypes[*c]) == blocks[b].type)
+        {
+          batch.batch.cells[count++] = *c;
+        }
+      }
+      if (count == 0)
+      {
+        break;
+      }
+      ++site.cellBatches;
+      const Index* nodes[PacketWidth];
+      for (int l = 0; l < PacketWidth; ++l)
+      {
+        const Index cell = batch.batch.cells[l] = batch.batch.cells[std::min(l, count - 1)];
+        nodes[l] = view.connectivity + view.offsets[cell];
+      }
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        const double* p[PacketWidth];
+        for (int l = 0; l < PacketWidth; ++l)
+        {
+          p[l] = this->Points + 3 * nodes[l][k];
+          batch.here[k][l] = nodes[l][k] == point ? 1.0 : 0.0;
+        }
+        loadPoints(p, batch.batch.points[k]);
+        batch.batch.points[k][0] =
+          mirrored ? Packet(-batch.batch.points[k][0]) : batch.batch.points[k][0];
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+bool PatchMover<Dim>::evaluate(PatchWorker<Dim>& w, const double* d, bool hessian) const
+{
+  for (std::size_t i = 0; i < this->Functions.size(); ++i)
+  {
+    w.sums[i] = this->Functions[i]->sum(w.site, d, hessian);
+    if (!std::isfinite(w.sums[i].f))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void PatchMover<Dim>::findSlopes(const Scalarizer& scalarizer, PatchWorker<Dim>& w) const
+{
+  const std::size_t n = this->Functions.size();
+  if (n == 1) // every scalarization of one objective is as low as that is
+  {
+    w.slopes[0] = 1.0;
+    return;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.now[i] = this->Functions[i]->objective(this->Values[i], w.change[i]);
+  }
+  scalarizer.value(w.now, w.slopes);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.slopes[i] *= this->Functions[i]->slope(this->Values[i]);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+PatchSum<Dim> PatchMover<Dim>::combined(const PatchWorker<Dim>& w) const
+{
+  PatchSum<Dim> sum = {};
+  for (std::size_t i = 0; i < this->Functions.size(); ++i)
+  {
+    sum.f += w.slopes[i] * w.sums[i].f;
+    for (int r = 0; r < Dim; ++r)
+    {
+      sum.g[r] += w.slopes[i] * w.sums[i].g[r];
+      for (int c = 0; c < Dim; ++c)
+      {
+        sum.H[r][c] += w.slopes[i] * w.sums[i].H[r][c];
+      }
+    }
+  }
+  return sum;
+}
+
+//------------------------------------------------------------------------------
+/// What the scalarized objective changes by when the vertex goes to d; w.trial gets the patch sums' changes.
+template <int Dim>
+double PatchMover<Dim>::changeAt(
+  const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d) const
+{
+  const std::size_t n = this->Functions.size();
+  double linear = 0;
+  bool visible = false;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.trial[i] = this->Functions[i]->value(w.site, d) - w.sums[i].f;
+    linear += w.slopes[i] * w.trial[i];
+    visible = visible || !(std::abs(w.trial[i]) <= visibleChange * std::abs(this->Values[i]));
+  }
+  if (n == 1 || !visible || !std::isfinite(linear))
+  {
+    return std::isnan(linear) ? std::numeric_limits<double>::infinity() : linear;
+  }
+  // Differences of the whole objective lose digits; they are only taken where there are enough.
+  const double before = scalarizer.value(w.now);
+  std::vector<double>& after = w.now;
+  std::vector<double> kept = w.now;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    after[i] = this->Functions[i]->objective(this->Values[i], w.change[i] + w.trial[i]);
+  }
+  const double change = scalarizer.value(after) - before;
+  w.now = kept;
+  return change;
+}
+
+//------------------------------------------------------------------------------
+/// An orthonormal basis of the directions a vertex may go in, as columns; returns how many.
+template <int Dim>
+int PatchMover<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
+{
+  const auto given = [&](const std::vector<Vec3>& directions, double* u)
+  {
+    if (directions.empty())
+    {
+      return false;
+    }
+    double length2 = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      u[c] = dot(directions[v], this->Simplices.axis(c)) / this->Simplices.scale();
+      length2 += u[c] * u[c];
+    }
+    for (int c = 0; length2 > 0 && c < Dim; ++c)
+    {
+      u[c] /= std::sqrt(length2);
+    }
+    return length2 > 0;
+  };
+  double u[Dim];
+  const auto across = [&]()
+  {
+    if constexpr (Dim == 3)
+    {
+      Vec3 t[2];
+      tangentsOf({ u[0], u[1], u[2] }, t);
+      for (int r = 0; r < 3; ++r)
+      {
+        basis[r][0] = t[0][r];
+        basis[r][1] = t[1][r];
+      }
+      return 2;
+    }
+    basis[0][0] = -u[1];
+    basis[1][0] = u[0];
+    return 1;
+  };
+  if (given(this->Options.lines, u))
+  {
+    for (int r = 0; r < Dim; ++r)
+    {
+      basis[r][0] = u[r];
+    }
+    return 1;
+  }
+  if (given(this->Options.planes, u))
+  {
+    return across();
+  }
+  if (!this->Options.onSurface.empty() && this->Options.onSurface[v])
+  {
+    const double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+    const Vec3 normal = this->Options.surface->normal({ at[0], at[1], at[2] });
+    std::copy_n(normal.begin(), Dim, u);
+    return dot(normal, normal) > 0 ? across() : Dim;
+  }
+  return Dim;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void PatchMover<Dim>::newton(const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, double* s) const
+{
+  double basis[Dim][Dim] = {};
+  const int free = this->allowed(w.site.vertex, basis);
+  if (free == Dim)
+  {
+    newtonDirection<Dim>(sum, s);
+    return;
+  }
+  // The same in the subspace, with the unit matrix in the rest.
+  PatchSum<Dim> part = {};
+  for (int i = 0; i < Dim; ++i)
+  {
+    part.H[i][i] = i < free ? 0.0 : sum.H[0][0] + sum.H[Dim - 1][Dim - 1];
+    for (int r = 0; r < Dim && i < free; ++r)
+    {
+      part.g[i] += basis[r][i] * sum.g[r];
+      for (int c = 0; c < Dim; ++c)
+      {
+        for (int j = 0; j < free; ++j)
+        {
+          part.H[i][j] += basis[r][i] * sum.H[r][c] * basis[c][j];
+        }
+      }
+    }
+  }
+  double inPart[Dim];
+  newtonDirection<Dim>(part, inPart);
+  for (int r = 0; r < Dim; ++r)
+  {
+    s[r] = 0;
+    for (int i = 0; i < free; ++i)
+    {
+      s[r] += basis[r][i] * inPart[i];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The largest step up to t that keeps x + d + t s within the vertex's limit.
+template <int Dim>
+double PatchMover<Dim>::limited(std::int32_t v, const double* d, const double* s, double t) const
+{
+  if (this->Options.limits.empty() || !std::isfinite(this->Options.limits[v]))
+  {
+    return t;
+  }
+  // |a + t s|^2 <= limit^2 with a the way gone so far.
+  const double limit = this->Options.limits[v];
+  double a2 = -limit * limit, as = 0, s2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    const double a = this->Simplices.coordinates()[VertexStride * static_cast<std::size_t>(v) + c] +
+      d[c] - this->Options.start[VertexStride * static_cast<std::size_t>(v) + c];
+    a2 += a * a;
+    as += a * s[c];
+    s2 += s[c] * s[c];
+  }
+  const double root2 = as * as - a2 * s2;
+  const double most = s2 > 0 && root2 > 0 ? (std::sqrt(root2) - as) / s2 : 0.0;
+  return std::max(0.0, std::min(t, most));
+}
+
+//------------------------------------------------------------------------------
+/// Turns `direction` into Polak-Ribiere+'s and returns the step to where the slope would vanish by its change over a
+/// small one; 0 if there is nowhere to go.
+template <int Dim>
+double PatchMover<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d,
+  int iteration, double* direction, double* lastGradient) const
+{
+  double mixed = 0, last2 = 0, length2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    mixed += sum.g[c] * (sum.g[c] - lastGradient[c]);
+    last2 += lastGradient[c] * lastGradient[c];
+  }
+  const double beta = iteration > 0 && last2 > 0 ? std::max(0.0, mixed / last2) : 0.0;
+  double basis[Dim][Dim] = {};
+  const int free = this->allowed(w.site.vertex, basis);
+  for (int r = 0; r < Dim; ++r)
+  {
+    double projected = free == Dim ? -sum.g[r] : 0.0;
+    for (int i = 0; i < free && free < Dim; ++i)
+    {
+      for (int c = 0; c < Dim; ++c)
+      {
+        projected -= basis[r][i] * basis[c][i] * sum.g[c];
+      }
+    }
+    direction[r] = projected + beta * direction[r];
+    lastGradient[r] = sum.g[r];
+    length2 += direction[r] * direction[r];
+  }
+  if (!(length2 > 0))
+  {
+    return 0.0;
+  }
+  constexpr double part = 1e-4;
+  const double h = part * sizeOf(w.site.patch) / std::sqrt(length2);
+  double probe[Dim], slopeHere = 0, slopeThere = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    probe[c] = d[c] + h * direction[c];
+    slopeHere += direction[c] * sum.g[c];
+  }
+  const std::vector<PatchSum<Dim>> kept = w.sums;
+  const bool good = this->evaluate(w, probe, false);
+  const PatchSum<Dim> there = good ? this->combined(w) : PatchSum<Dim>{};
+  w.sums = kept;
+  for (int c = 0; c < Dim; ++c)
+  {
+    slopeThere += direction[c] * there.g[c];
+  }
+  const double curvature = (slopeThere - slopeHere) / h;
+  return good && curvature > 0 ? -slopeHere / curvature : h / part;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+bool PatchMover<Dim>::moveVertex(
+  std::int32_t v, const Scalarizer& scalarizer, PatchWorker<Dim>& w, double& gradient2)
+{
+  this->gather(v, w.site);
+  double d[Dim] = {}, direction[Dim] = {}, lastGradient[Dim] = {};
+  std::vector<double>& change = w.change;
+  bool moved = false;
+  for (int iteration = 0; iteration < this->Options.patchIterations; ++iteration)
+  {
+    if (!this->evaluate(w, d, this->Options.newton))
+    {
+      break; // beyond the barrier, which only inverted elements of the input are
+    }
+    this->findSlopes(scalarizer, w);
+    const PatchSum<Dim> sum = this->combined(w);
+    double norm2 = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      norm2 += sum.g[c] * sum.g[c];
+    }
+    gradient2 += iteration == 0 ? norm2 : 0.0;
+    if (!(norm2 > 0) || !std::isfinite(norm2))
+    {
+      break;
+    }
+
+    double t = this->Options.relaxation;
+    if (this->Options.newton)
+    {
+      this->newton(w, sum, direction);
+    }
+    else
+    {
+      t = this->conjugate(w, sum, d, iteration, direction, lastGradient);
+    }
+
+    double slope = 0, s2 = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      slope += direction[c] * sum.g[c];
+      s2 += direction[c] * direction[c];
+    }
+    if (!(slope < 0) || !std::isfinite(s2))
+    {
+      break;
+    }
+    if (!this->Options.allowInversion)
+    {
+      t = std::min(t, safety * stepToInversion<Dim>(w.site.patch, d, direction));
+    }
+    t = this->limited(v, d, direction, t);
+    bool found = false;
+    double to[Dim];
+    for (int halving = 0; halving < maximumHalvings && t > 0; ++halving, t *= 0.5)
+    {
+      for (int c = 0; c < Dim; ++c)
+      {
+        to[c] = d[c] + t * direction[c];
+      }
+      if (this->changeAt(scalarizer, w, to) <= sufficientDecrease * t * slope)
+      {
+        found = true;
+        break;
+      }
+    }
+    if (!found)
+    {
+      break;
+    }
+    std::copy_n(to, Dim, d);
+    moved = true;
+    if (!this->isOnSurface(v))
+    {
+      for (std::size_t i = 0; i < change.size(); ++i)
+      {
+        change[i] += w.trial[i];
+      }
+    }
+  }
+  if (!moved)
+  {
+    return false;
+  }
+  const double size = sizeOf(w.site.patch);
+  double d2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    d2 += d[c] * d[c];
+  }
+  if (this->isOnSurface(v))
+  {
+    if (!this->placeOnSurface(v, d, scalarizer, w))
+    {
+      return false;
+    }
+  }
+  else
+  {
+    Vec3 x = { 0, 0, 0 };
+    for (int c = 0; c < Dim; ++c)
+    {
+      x[c] = this->Simplices.coordinates()[VertexStride * static_cast<std::size_t>(v) + c] + d[c];
+    }
+    this->place(v, x);
+  }
+  return std::sqrt(d2) > this->Options.culling * size;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void PatchMover<Dim>::place(std::int32_t v, const Vec3& x)
+{
+  double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+  std::copy(x.begin(), x.end(), at);
+  if (this->NeedsCells)
+  {
+    this->Simplices.storeVertex(
+      at, this->Points + 3 * static_cast<std::size_t>(this->Simplices.point(v)));
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Goes along the tangents and back to the surface, and stays there if that is better than before.
+template <int Dim>
+bool PatchMover<Dim>::placeOnSurface(
+  std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
+{
+  const std::size_t n = this->Functions.size();
+  const double zero[Dim] = {};
+  const double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+  const Vec3 before = { at[0], at[1], at[2] };
+  std::vector<double> old(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    old[i] = this->Functions[i]->value(w.site, zero);
+  }
+  Vec3 x = before;
+  for (int c = 0; c < Dim; ++c)
+  {
+    x += (d[c] / this->Simplices.scale()) * w.site.axes[c];
+  }
+  this->place(v, this->Options.surface ? this->Options.surface->closest(x) : x);
+  this->gather(v, w.site);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.sums[i].f = old[i];
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  double least = infinity;
+  for (int i = 0; i < w.site.patch.count; ++i)
+  {
+    const PatchPacket<Dim>& p = w.site.patch.packets[i];
+    least = std::min(least, leastOf(p.D0));
+  }
+  const bool upright = this->Options.allowInversion || least > 0;
+  if (!upright || !(this->changeAt(scalarizer, w, zero) < 0))
+  {
+    this->place(v, before);
+    return false;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.change[i] += w.trial[i];
+  }
+  return true;
+}
+
+template class PatchMover<2>;
+template class PatchMover<3>;
+}

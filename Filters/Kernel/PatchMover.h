@@ -1,0 +1,85 @@
+/**
+ * @file PatchMover.h
+ * @brief Moves one free vertex so that the scalarized objective becomes smaller, given where the others are.
+ * Internal: not installed.
+ */
+#ifndef tautline_PatchMover_h
+#define tautline_PatchMover_h
+
+#include "LocalSweep.h"
+
+namespace tautline
+{
+/// What a thread works in.
+template <int Dim>
+struct PatchWorker
+{
+  PatchSite<Dim> site;
+  std::vector<PatchSum<Dim>> sums; ///< of each objective over the patch
+  /// Of each objective: the patch sum's change on trial, the value now, dF/d(patch sum), the change since the sweep began.
+  std::vector<double> trial, now, slopes, change;
+};
+
+template <int Dim>
+class PatchMover
+{
+public:
+  /// See LocalSweeper.
+  PatchMover(SimplexMesh& simplices, const Mesh& mesh, double* points,
+    const std::vector<LocalTerm>& terms, const LocalOptions& options);
+
+  /// The objectives as a sweep begins.
+  void begin(const std::vector<double>& values);
+  PatchWorker<Dim> makeWorker() const;
+  /// The objectives of the beginning when their patch sums have changed by so much.
+  double objective(std::size_t i, double change) const
+  {
+    return this->Functions[i]->objective(this->Values[i], change);
+  }
+  /**
+   * @brief Moves v if that lowers the objective; adds to worker.change.
+   * @param gradient2 gets the square of the gradient's norm added
+   * @return whether it went farther than the culling asks
+   */
+  bool moveVertex(
+    std::int32_t v, const Scalarizer& scalarizer, PatchWorker<Dim>& worker, double& gradient2);
+
+private:
+  using Site = PatchSite<Dim>;
+
+  std::unique_ptr<PatchFunction<Dim>> makeFunction(const LocalTerm& term) const;
+  void gather(std::int32_t v, Site& site) const;
+  void gatherCells(std::int32_t v, Site& site) const;
+  void findTangents(std::int32_t v, Vec3* tangents) const;
+  bool evaluate(PatchWorker<Dim>& w, const double* d, bool hessian) const;
+  void findSlopes(const Scalarizer& scalarizer, PatchWorker<Dim>& w) const;
+  PatchSum<Dim> combined(const PatchWorker<Dim>& w) const;
+  double changeAt(const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d) const;
+  void newton(const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, double* s) const;
+  double conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d, int iteration,
+    double* direction, double* lastGradient) const;
+  int allowed(std::int32_t v, double basis[Dim][Dim]) const;
+  double limited(std::int32_t v, const double* d, const double* s, double t) const;
+  bool isOnSurface(std::int32_t v) const
+  {
+    return (Dim == 2 && this->Simplices.surface()) ||
+      (!this->Options.onSurface.empty() && this->Options.onSurface[v]);
+  }
+  void place(std::int32_t v, const Vec3& x);
+  bool placeOnSurface(
+    std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w);
+
+  SimplexMesh& Simplices;
+  const Mesh& TheMesh;
+  double* Points;
+  LocalOptions Options;
+  bool NeedsCells = false;
+  VertexCells Cells;
+  std::vector<std::unique_ptr<PatchFunction<Dim>>> Functions;
+  std::vector<double> Values; ///< of the objectives when the sweep began
+};
+
+extern template class PatchMover<2>;
+extern template class PatchMover<3>;
+}
+#endif

@@ -1,0 +1,557 @@
+#include "PeridynamicsCommon.h"
+
+#include "Parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+
+#include <unistd.h>
+
+namespace tautline
+{
+namespace
+{
+constexpr Index SampledRows = 200; // of the estimate of memory
+
+std::string number(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+void checkOptions(const PeridynamicOptions& o)
+{
+  if (!(o.horizon > 0.0) || !std::isfinite(o.horizon))
+  {
+    throw Error("the horizon is " + number(o.horizon) + "; it has to be above 0");
+  }
+  if (!(o.tolerance >= 1e-10) || !(o.tolerance <= 0.1))
+  {
+    throw Error("the tolerance is " + number(o.tolerance) + "; 1e-10 to 0.1 are possible");
+  }
+  const KernelFunction& k = o.kernel;
+  const double limit = singularLimit(o.basis, o.model);
+  if (k.shape == KernelShape::Power && !(k.exponent >= 0.0 && k.exponent < limit))
+  {
+    throw Error("the exponent p is " + number(k.exponent) +
+      "; with this basis it has to be from 0 to below " + number(limit) +
+      ", where the integrals become infinite" +
+      (o.basis == PeridynamicBasis::Linear ? "" : " (the linear basis allows more)"));
+  }
+  if (k.shape == KernelShape::Gaussian && !(k.width > 0.0 && std::isfinite(k.width)))
+  {
+    throw Error("the width of the Gaussian is " + number(k.width) + "; it has to be above 0");
+  }
+  if (k.shape == KernelShape::Table)
+  {
+    bool positive = false;
+    for (const double v : k.table)
+    {
+      if (!std::isfinite(v) || v < 0.0)
+      {
+        throw Error("the tabulated kernel has values that are negative or not finite");
+      }
+      positive = positive || v > 0.0;
+    }
+    if (k.table.size() < 2 || !positive)
+    {
+      throw Error("the tabulated kernel needs two or more values, not all of them 0");
+    }
+  }
+}
+
+/// Colours triangles so that those of one colour share no function; each colour in increasing order.
+std::vector<std::vector<std::int32_t>> colourTriangles(
+  const PlanarTriangles& triangles, const FunctionSpace& space, const std::vector<char>& wanted)
+{
+  std::vector<std::vector<std::int32_t>> colours;
+  if (space.basis != PeridynamicBasis::Linear)
+  {
+    colours.emplace_back();
+    for (Index t = 0; t < triangles.size(); ++t)
+    {
+      if (wanted[t])
+      {
+        colours[0].push_back(static_cast<std::int32_t>(t));
+      }
+    }
+    return colours;
+  }
+  std::vector<std::vector<char>> used; // per colour and vertex
+  for (Index t = 0; t < triangles.size(); ++t)
+  {
+    if (!wanted[t])
+    {
+      continue;
+    }
+    std::size_t colour = 0;
+    const auto& ids = triangles.triangles[t];
+    while (colour < used.size() &&
+      (used[colour][ids[0]] || used[colour][ids[1]] || used[colour][ids[2]]))
+    {
+      ++colour;
+    }
+    if (colour == used.size())
+    {
+      used.emplace_back(triangles.points.size(), 0);
+      colours.emplace_back();
+    }
+    for (const std::int32_t id : ids)
+    {
+      used[colour][id] = 1;
+    }
+    colours[colour].push_back(static_cast<std::int32_t>(t));
+  }
+  return colours;
+}
+
+/// The unknown functions near an unknown one, itself included, in increasing order of unknowns.
+void neighbours(const FunctionSpace& space, const BoxGrid& supports, double horizon, Index unknown,
+  std::vector<std::int32_t>& found)
+{
+  const Index f = space.functionOf[unknown];
+  supports.near(space.low[f], space.high[f], horizon, found);
+  std::size_t kept = 0;
+  for (const std::int32_t g : found)
+  {
+    if (space.unknownOf[g] >= 0)
+    {
+      found[kept++] = static_cast<std::int32_t>(space.unknownOf[g]);
+    }
+  }
+  found.resize(kept);
+  std::sort(found.begin(), found.end());
+}
+
+double bytesFor(const HorizonMesh& mesh, const FunctionSpace& space, const BoxGrid& supports,
+  const PeridynamicOptions& options)
+{
+  const Index sampled = std::min(space.unknowns, SampledRows);
+  std::vector<std::int32_t> found;
+  double entries = 0.0;
+  for (Index s = 0; s < sampled; ++s)
+  {
+    neighbours(space, supports, options.horizon, s * space.unknowns / sampled, found);
+    entries += static_cast<double>(found.size());
+  }
+  const double c = options.model == PeridynamicModel::Elastic ? 2.0 : 1.0;
+  const double nonzeros =
+    c * c * entries / static_cast<double>(sampled) * static_cast<double>(space.unknowns);
+  // Values twice, as they are mirrored once; columns; the mesh with its boxes and grid; sums per thread;
+  // integrals of pairs that touch, of which a triangle has about thirteen.
+  const double triangles = static_cast<double>(mesh.numberOfTriangles());
+  const double perEntry = 2.0 * sizeof(double) + sizeof(std::int32_t);
+  const double sums = 3.0 * c * c * sizeof(double) * static_cast<double>(space.functions) *
+    resolveThreads(options.threads);
+  const double perPair = options.reading == Reading::Exact
+    ? 4.0 * c * c * space.perTriangle() * space.perTriangle() * sizeof(double)
+    : 0.0;
+  return perEntry * nonzeros + (300.0 + 6.5 * perPair) * triangles + sums;
+}
+
+double availableMemory()
+{
+  return static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) *
+    static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+void checkMemory(double needed, const PeridynamicOptions& options)
+{
+  const double limit = options.memoryLimit > 0.0 ? options.memoryLimit : 0.9 * availableMemory();
+  if (needed > limit)
+  {
+    throw Error("the matrix takes about " + number(needed / 1048576.0) + " MiB and " +
+      number(limit / 1048576.0) +
+      " MiB are allowed: take a smaller horizon, larger elements or a piecewise linear basis, or "
+      "raise the limit");
+  }
+}
+
+void checkCollar(const HorizonMesh& mesh, const PeridynamicOptions& options, double deficit)
+{
+  if (!options.constrained || options.allowThinCollar || deficit == 0.0)
+  {
+    return;
+  }
+  const bool none =
+    std::all_of(mesh.collar.begin(), mesh.collar.end(), [](unsigned char c) { return c == 0; });
+  throw Error(none ? "the mesh has no collar; one of width " + number(options.horizon) +
+        " around the domain is needed: add it with Horizon Collar"
+                   : "the collar is " + number(options.horizon - deficit) +
+        " wide and the horizon is " + number(options.horizon) + ": a collar of width " +
+        number(options.horizon) + " is needed (Horizon Collar makes it), or allow a thin one");
+}
+
+/// Stops an assembly, from any thread, for the first reason there is.
+class Watch
+{
+public:
+  Watch(const PeridynamicOptions& options, double first, double last)
+    : Options(options)
+    , First(first)
+    , Last(last)
+  {
+  }
+  /// Called by one thread at a time per part done; false when the work is to stop.
+  bool proceed(double part)
+  {
+    if (this->Stopped)
+    {
+      return false;
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - this->Start;
+    const bool late = this->Options.timeLimit > 0.0 && elapsed.count() > this->Options.timeLimit;
+    if (late && !this->Claimed.exchange(true))
+    {
+      this->Stopped = true;
+      this->Reason = "the time limit of " + number(this->Options.timeLimit) +
+        " s is over; take a smaller horizon, larger elements or a longer limit";
+    }
+    if (!this->Stopped && omp_get_thread_num() == 0 && this->Options.progress &&
+      !this->Options.progress(this->First + (this->Last - this->First) * part) &&
+      !this->Claimed.exchange(true))
+    {
+      this->Stopped = true;
+      this->Reason = "stopped by the user";
+    }
+    return !this->Stopped;
+  }
+  void throwIfStopped() const
+  {
+    if (this->Stopped)
+    {
+      throw Error(this->Reason);
+    }
+  }
+  void setRange(double first, double last)
+  {
+    this->First = first;
+    this->Last = last;
+  }
+
+private:
+  const PeridynamicOptions& Options;
+  double First, Last;
+  std::atomic<bool> Stopped{ false }, Claimed{ false };
+  std::string Reason;
+  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+};
+
+SparseMatrix makePattern(const FunctionSpace& space, const BoxGrid& supports, double horizon,
+  Index components, int threads)
+{
+  SparseMatrix pattern;
+  const Index rows = space.unknowns;
+  pattern.size = rows * components;
+  std::vector<Index> counts(rows);
+  for (const bool fill : { false, true })
+  {
+#pragma omp parallel num_threads(resolveThreads(threads))
+    {
+      std::vector<std::int32_t> found;
+#pragma omp for schedule(dynamic, 64)
+      for (Index row = 0; row < rows; ++row)
+      {
+        neighbours(space, supports, horizon, row, found);
+        counts[row] = static_cast<Index>(found.size());
+        for (Index c = 0; fill && c < components; ++c)
+        {
+          std::int32_t* to = pattern.columns.data() + pattern.offsets[row * components + c];
+          for (const std::int32_t f : found)
+          {
+            for (Index d = 0; d < components; ++d)
+            {
+              *to++ = static_cast<std::int32_t>(f * components + d);
+            }
+          }
+        }
+      }
+    }
+    if (!fill)
+    {
+      pattern.offsets.assign(pattern.size + 1, 0);
+      for (Index i = 0; i < pattern.size; ++i)
+      {
+        pattern.offsets[i + 1] = pattern.offsets[i] + components * counts[i / components];
+      }
+      pattern.columns.resize(pattern.offsets.back());
+      pattern.values.assign(pattern.offsets.back(), 0.0);
+    }
+  }
+  return pattern;
+}
+
+/// Moves the sums of a triangle's functions to their rows.
+void flush(const PeridynamicWork& work, Index t, const std::vector<std::int32_t>& near,
+  RowSums& sums, double scale, const std::vector<double>* given, PeridynamicSystem& system)
+{
+  const FunctionSpace& space = work.space;
+  const int functions = space.perTriangle();
+  const auto c = static_cast<int>(system.components);
+  SparseMatrix& matrix = system.matrix;
+  for (int a = 0; a < functions; ++a)
+  {
+    const Index row = space.unknownOf[space.function(work.triangles, t, a)];
+    if (row < 0)
+    {
+      continue;
+    }
+    for (int i = 0; i < c; ++i)
+    {
+      const Index begin = matrix.offsets[row * c + i], end = matrix.offsets[row * c + i + 1];
+      for (Index k = begin; k < end; k += c)
+      {
+        const double* from = sums.at(a, space.functionOf[matrix.columns[k] / c]) + i * c;
+        for (int j = 0; j < c; ++j)
+        {
+          matrix.values[k + j] += scale * from[j];
+        }
+      }
+    }
+  }
+  // What belongs to given functions; then the sums are 0 again.
+  for (const std::int32_t other : near)
+  {
+    for (int b = 0; b < functions; ++b)
+    {
+      const Index f = space.function(work.triangles, other, b);
+      for (int a = 0; a < functions; ++a)
+      {
+        double* from = sums.at(a, f);
+        const Index row = space.unknownOf[space.function(work.triangles, t, a)];
+        for (int i = 0; given && row >= 0 && space.unknownOf[f] < 0 && i < c; ++i)
+        {
+          for (int j = 0; j < c; ++j)
+          {
+            system.constraintLoad[row * c + i] += scale * from[i * c + j] * (*given)[f * c + j];
+          }
+        }
+        std::fill(from, from + c * c, 0.0);
+      }
+    }
+  }
+}
+
+void checkDiagonal(const PeridynamicSystem& system)
+{
+  for (Index row = 0; row < system.matrix.size; ++row)
+  {
+    const double diagonal = system.matrix.at(row, row);
+    if (!std::isfinite(diagonal))
+    {
+      throw Error("the matrix has an entry that is not finite, in row " + std::to_string(row));
+    }
+    if (diagonal == 0.0)
+    {
+      throw Error("row " + std::to_string(row) +
+        " of the matrix is empty: the horizon is smaller than the elements, and the dissertation's "
+        "rules see no "
+        "neighbour; take the exact reading, a larger horizon or smaller elements");
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+FunctionSpace::FunctionSpace(
+  const HorizonMesh& mesh, const PlanarTriangles& triangles, const PeridynamicOptions& options)
+  : basis(options.basis)
+  , functions(numberOfFunctions(mesh, options.basis))
+{
+  constexpr Index unused = -2, given = -1, unknown = 0;
+  this->unknownOf.assign(this->functions, unused);
+  this->low.assign(this->functions, { 1e300, 1e300 });
+  this->high.assign(this->functions, { -1e300, -1e300 });
+  for (Index t = 0; t < triangles.size(); ++t)
+  {
+    for (int k = 0; k < this->perTriangle(); ++k)
+    {
+      const Index f = this->function(triangles, t, k);
+      // A vertex of any collar triangle is given: those on the boundary of the domain are not unknown.
+      const bool byPoint = this->basis == PeridynamicBasis::Linear && !mesh.givenPoints.empty();
+      const bool fixed =
+        options.constrained && (byPoint ? mesh.givenPoints[f] != 0 : mesh.collar[t] != 0);
+      this->unknownOf[f] = fixed || this->unknownOf[f] == given ? given : unknown;
+      this->low[f] = { std::min(this->low[f].x, triangles.low[t].x),
+        std::min(this->low[f].y, triangles.low[t].y) };
+      this->high[f] = { std::max(this->high[f].x, triangles.high[t].x),
+        std::max(this->high[f].y, triangles.high[t].y) };
+    }
+  }
+  for (Index f = 0; f < this->functions; ++f)
+  {
+    if (this->unknownOf[f] == unused)
+    {
+      this->low[f] = this->high[f] = triangles.low[0]; // anywhere
+    }
+    if (this->unknownOf[f] == unknown)
+    {
+      this->unknownOf[f] = this->unknowns++;
+      this->functionOf.push_back(f);
+    }
+  }
+  if (this->unknowns == 0)
+  {
+    throw Error(
+      "there is no unknown: every function belongs to the collar. The domain has to be larger, or "
+      "the elements smaller");
+  }
+}
+
+//------------------------------------------------------------------------------
+double singularLimit(PeridynamicBasis basis, PeridynamicModel model)
+{
+  return (basis == PeridynamicBasis::Linear ? 4.0 : 3.0) +
+    (model == PeridynamicModel::Elastic ? 2.0 : 0.0);
+}
+
+//------------------------------------------------------------------------------
+Index numberOfFunctions(const HorizonMesh& mesh, PeridynamicBasis basis)
+{
+  return basis == PeridynamicBasis::Linear ? mesh.numberOfPoints()
+    : basis == PeridynamicBasis::Constant  ? mesh.numberOfTriangles()
+                                           : 3 * mesh.numberOfTriangles();
+}
+
+//------------------------------------------------------------------------------
+double kernelScale(const PeridynamicOptions& options)
+{
+  const double p = options.kernel.shape == KernelShape::Power ? options.kernel.exponent : 0.0;
+  const double more = options.model == PeridynamicModel::Elastic ? 2.0 : 0.0;
+  return std::pow(options.horizon, p - 4.0 - more);
+}
+
+//------------------------------------------------------------------------------
+double estimatePeridynamicMemory(const HorizonMesh& mesh, const PeridynamicOptions& options)
+{
+  checkOptions(options);
+  const PlanarTriangles triangles(mesh);
+  const FunctionSpace space(mesh, triangles, options);
+  const BoxGrid supports(space.low, space.high);
+  return bytesFor(mesh, space, supports, options);
+}
+
+//------------------------------------------------------------------------------
+PeridynamicSystem assemblePeridynamics(
+  const HorizonMesh& mesh, const PeridynamicOptions& options, const std::vector<double>* given)
+{
+  checkOptions(options);
+  const PlanarTriangles triangles(mesh);
+  PeridynamicSystem system;
+  system.components = options.model == PeridynamicModel::Elastic ? 2 : 1;
+  system.collarDeficit =
+    options.constrained ? collarDeficit(mesh, options.horizon, options.threads) : 0.0;
+  checkCollar(mesh, options, system.collarDeficit);
+  const FunctionSpace space(mesh, triangles, options);
+  if (given && static_cast<Index>(given->size()) != space.functions * system.components)
+  {
+    throw Error("the given solution has " + std::to_string(given->size()) + " values; " +
+      std::to_string(space.functions * system.components) + " are expected");
+  }
+  const BoxGrid grid(triangles.low, triangles.high), supports(space.low, space.high);
+  system.memory = bytesFor(mesh, space, supports, options);
+  checkMemory(system.memory, options);
+
+  const PeridynamicWork work = { triangles, grid, space, options };
+  Watch watch(options, 0.0, 0.5);
+  const bool exact = options.reading == Reading::Exact;
+  std::shared_ptr<PairIntegrals> integrals;
+  if (exact)
+  {
+    integrals = makePairIntegrals(work, [&](double part) { return watch.proceed(part); });
+    watch.throwIfStopped();
+    system.integratedPairs = numberOfIntegratedPairs(*integrals);
+  }
+  watch.setRange(exact ? 0.5 : 0.0, 1.0);
+  system.matrix = makePattern(space, supports, options.horizon, system.components, options.threads);
+  system.constraintLoad.assign(given ? system.matrix.size : 0, 0.0);
+
+  std::vector<char> wanted(triangles.size(), 0);
+  for (Index t = 0; t < triangles.size(); ++t)
+  {
+    for (int k = 0; k < space.perTriangle(); ++k)
+    {
+      wanted[t] |= space.unknownOf[space.function(triangles, t, k)] >= 0;
+    }
+  }
+  const auto colours = colourTriangles(triangles, space, wanted);
+  const double scale = kernelScale(options);
+  Index done = 0;
+#pragma omp parallel num_threads(resolveThreads(options.threads))
+  {
+    RowSums sums(space.functions, static_cast<int>(system.components));
+    const std::unique_ptr<TriangleAssembler> assembler =
+      exact ? makeExactAssembler(work, *integrals) : makeDissertationAssembler(work);
+    std::vector<std::int32_t> near;
+    for (const std::vector<std::int32_t>& colour : colours)
+    {
+#pragma omp for schedule(dynamic, 16)
+      for (std::size_t k = 0; k < colour.size(); ++k)
+      {
+        if (k % 64 == 0 &&
+          !watch.proceed(static_cast<double>(done) / static_cast<double>(triangles.size())))
+        {
+          continue;
+        }
+        const Index t = colour[k];
+        grid.near(triangles.low[t], triangles.high[t], options.horizon, near);
+        assembler->assemble(t, near, sums);
+        flush(work, t, near, sums, scale, given, system);
+      }
+#pragma omp single
+      done += static_cast<Index>(colour.size());
+    }
+  }
+  watch.throwIfStopped();
+  system.asymmetry = symmetrize(system.matrix, options.threads);
+  dropZeros(system.matrix);
+  if (exact)
+  {
+    system.asymmetry = 0.0; // rounding
+  }
+  checkDiagonal(system);
+  system.unknownOf = space.unknownOf;
+  system.functionOf = space.functionOf;
+  return system;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> sourceLoad(const HorizonMesh& mesh, const PeridynamicSystem& system,
+  PeridynamicBasis basis, const std::vector<double>& source, bool perVertex)
+{
+  const Index c = system.components;
+  const Index expected = c * (perVertex ? mesh.numberOfPoints() : mesh.numberOfTriangles());
+  if (static_cast<Index>(source.size()) != expected)
+  {
+    throw Error("the source has " + std::to_string(source.size()) + " values; " +
+      std::to_string(expected) + " are expected");
+  }
+  const PlanarTriangles triangles(mesh);
+  std::vector<double> load(system.matrix.size, 0.0);
+  for (Index t = 0; t < triangles.size(); ++t)
+  {
+    const int functions = basis == PeridynamicBasis::Constant ? 1 : 3;
+    for (int a = 0; a < functions; ++a)
+    {
+      const Index f = functions == 1        ? t
+        : basis == PeridynamicBasis::Linear ? triangles.triangles[t][a]
+                                            : 3 * t + (triangles.flipped ? (3 - a) % 3 : a);
+      const Index row = system.unknownOf[f];
+      for (Index i = 0; row >= 0 && i < c; ++i)
+      {
+        double sum = 0.0; // of the source at the corners, times the integral of its linear function
+        for (int k = 0; k < 3; ++k)
+        {
+          const Index from = perVertex ? triangles.triangles[t][k] : t;
+          const double weight = functions == 1 ? 1.0 / 3.0 : k == a ? 1.0 / 6.0 : 1.0 / 12.0;
+          sum += weight * source[c * from + i];
+        }
+        load[c * row + i] += triangles.areas[t] * sum;
+      }
+    }
+  }
+  return load;
+}
+}

@@ -1,0 +1,525 @@
+/// The exact reading: which pairs of triangles are integrated, and where their integrals go.
+#include "PeridynamicsPair.h"
+
+#include "Parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <unordered_map>
+
+namespace tautline
+{
+namespace
+{
+/// A pair of triangles up to a translation, in units of the lattice coordinates are rounded to.
+struct PairKey
+{
+  std::int32_t first, second; ///< shapes; without reuse, triangles
+  Index x, y;        ///< from the first corner of one to that of the other; without reuse, 0
+  std::int32_t code; ///< which corners are shared
+
+  bool operator==(const PairKey& o) const
+  {
+    return this->first == o.first && this->second == o.second && this->x == o.x && this->y == o.y &&
+      this->code == o.code;
+  }
+};
+
+std::uint64_t mix(std::uint64_t h, std::uint64_t value)
+{
+  h = (h ^ value) * 0x9fb21c651e98df25u;
+  return h ^ (h >> 32);
+}
+
+std::uint64_t hashOf(const PairKey& key)
+{
+  std::uint64_t h =
+    static_cast<std::uint64_t>(key.first) << 32 | static_cast<std::uint32_t>(key.second);
+  h = mix(h, static_cast<std::uint64_t>(key.x));
+  h = mix(h, static_cast<std::uint64_t>(key.y));
+  return mix(h, static_cast<std::uint64_t>(key.code));
+}
+
+struct PairKeyHash
+{
+  std::size_t operator()(const PairKey& key) const { return hashOf(key); }
+};
+
+/// The surroundings of a triangle, up to a translation: two hashes of the keys of its pairs, in order.
+struct Signature
+{
+  std::uint64_t a = 0x243f6a8885a308d3u, b = 0x13198a2e03707344u;
+  bool operator==(const Signature& o) const { return this->a == o.a && this->b == o.b; }
+  void add(const PairKey& key)
+  {
+    const std::uint64_t h = hashOf(key);
+    this->a = mix(this->a, h);
+    this->b = (this->b << 7 | this->b >> 57) * 0xff51afd7ed558ccdu + h;
+  }
+};
+
+struct SignatureHash
+{
+  std::size_t operator()(const Signature& s) const { return s.a; }
+};
+
+/// Where the integrals of a pair are, seen from its first or its second triangle.
+using Slot = std::int32_t; // 2 x block + 1 if seen from the second
+}
+
+//------------------------------------------------------------------------------
+class PairIntegrals
+{
+public:
+  PairIntegrals(const PeridynamicWork& work, const std::function<bool(double)>& proceed);
+
+  Index integrated() const { return this->Integrated; }
+  /// Whether all pairs are here. Otherwise those that touch are.
+  bool complete() const { return this->Reuse; }
+
+  /// The key of a pair seen from triangle t, and whether its two triangles are exchanged in it.
+  PairKey key(Index t, Index other, bool& exchanged) const;
+  TrianglePair pair(Index t, Index other, bool exchanged) const;
+  bool touch(Index t, Index other) const;
+
+  /// The slots of all pairs of a triangle, in the order of `near`.
+  const std::vector<Slot>* slotsOf(Index t, const std::vector<std::int32_t>& near) const;
+  /// The slot of a pair that touches.
+  Slot slotOf(Index t, Index other) const;
+  /// The rows of the functions of the triangle a pair is seen from: functions x 2 functions x components^2.
+  const double* rows(Slot slot) const
+  {
+    return this->Rows.data() + static_cast<std::size_t>(slot) * this->RowSize;
+  }
+  int rowSize() const { return this->RowSize; }
+  /// Turns the block of a pair into the rows seen from its first triangle and from its second.
+  void toRows(const TrianglePair& pair, const double* block, double* first, double* second) const;
+
+private:
+  void findShapes();
+  std::vector<char> wantedTriangles() const;
+  void findPairs(const std::vector<char>& wanted);
+  void findTouching(const std::vector<char>& wanted);
+  void integrate(const std::function<bool(double)>& proceed);
+  Vec2 corner(Index t, int k, Index fromX, Index fromY) const;
+
+  const PeridynamicWork& Work;
+  int Functions, Components, RowSize;
+  bool Reuse = false;
+  Index Integrated = 0;
+  double Unit;                               ///< coordinates are multiples of it
+  std::vector<std::array<Index, 2>> Lattice; ///< per point
+  std::vector<std::int32_t> Shapes;          ///< per triangle
+  Index NumberOfShapes = 0;
+  struct Example
+  {
+    std::int32_t first, second; ///< triangles
+  };
+  std::unordered_map<PairKey, std::int32_t, PairKeyHash> Blocks;
+  std::vector<Example> Examples; ///< per block
+  std::unordered_map<Signature, std::vector<Slot>, SignatureHash> Surroundings;
+  std::vector<double> Rows;
+};
+
+//------------------------------------------------------------------------------
+PairIntegrals::PairIntegrals(
+  const PeridynamicWork& work, const std::function<bool(double)>& proceed)
+  : Work(work)
+  , Functions(work.space.perTriangle())
+  , Components(work.options.model == PeridynamicModel::Elastic ? 2 : 1)
+  , RowSize(2 * this->Functions * this->Functions * this->Components * this->Components)
+{
+  // A power of two, so that the rounding of exact coordinates is exact, far below every length.
+  constexpr double fineness = 1e-10;
+  this->Unit = std::exp2(std::floor(std::log2(fineness * work.triangles.shortestEdge)));
+  this->findShapes();
+  const Index few = std::max<Index>(64, work.triangles.size() / 16);
+  this->Reuse = work.options.reuseCongruent && this->NumberOfShapes <= few;
+  const std::vector<char> wanted = this->wantedTriangles();
+  this->Reuse ? this->findPairs(wanted) : this->findTouching(wanted);
+  this->integrate(proceed);
+}
+
+//------------------------------------------------------------------------------
+void PairIntegrals::findShapes()
+{
+  const PlanarTriangles& mesh = this->Work.triangles;
+  Vec2 low = mesh.points[mesh.triangles[0][0]];
+  for (Index t = 0; t < mesh.size(); ++t)
+  {
+    low = { std::min(low.x, mesh.low[t].x), std::min(low.y, mesh.low[t].y) };
+  }
+  this->Lattice.assign(mesh.points.size(), { 0, 0 }); // points of no triangle may be anywhere
+  for (const auto& triangle : mesh.triangles)
+  {
+    for (const std::int32_t id : triangle)
+    {
+      const Vec2 p = mesh.points[id] - low;
+      this->Lattice[id] = { std::llround(p.x / this->Unit), std::llround(p.y / this->Unit) };
+    }
+  }
+  std::map<std::array<Index, 4>, std::int32_t> shapes; // by two edges
+  for (Index t = 0; t < mesh.size(); ++t)
+  {
+    const auto& a = this->Lattice[mesh.triangles[t][0]];
+    const auto& b = this->Lattice[mesh.triangles[t][1]];
+    const auto& c = this->Lattice[mesh.triangles[t][2]];
+    const auto next = static_cast<std::int32_t>(shapes.size());
+    const std::array<Index, 4> edges = { b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1] };
+    this->Shapes.push_back(shapes.emplace(edges, next).first->second);
+  }
+  this->NumberOfShapes = static_cast<Index>(shapes.size());
+}
+
+//------------------------------------------------------------------------------
+std::vector<char> PairIntegrals::wantedTriangles() const
+{
+  std::vector<char> wanted(this->Work.triangles.size(), 0);
+  for (Index t = 0; t < this->Work.triangles.size(); ++t)
+  {
+    for (int k = 0; k < this->Functions; ++k)
+    {
+      const Index f = this->Work.space.function(this->Work.triangles, t, k);
+      wanted[t] |= this->Work.space.unknownOf[f] >= 0;
+    }
+  }
+  return wanted;
+}
+
+//------------------------------------------------------------------------------
+bool PairIntegrals::touch(Index t, Index other) const
+{
+  const PlanarTriangles& mesh = this->Work.triangles;
+  if (mesh.low[t].x > mesh.high[other].x + this->Unit ||
+    mesh.low[other].x > mesh.high[t].x + this->Unit ||
+    mesh.low[t].y > mesh.high[other].y + this->Unit ||
+    mesh.low[other].y > mesh.high[t].y + this->Unit)
+  {
+    return false;
+  }
+  for (const std::int32_t p : mesh.triangles[t])
+  {
+    for (const std::int32_t q : mesh.triangles[other])
+    {
+      if (this->Lattice[p] == this->Lattice[q])
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+PairKey PairIntegrals::key(Index t, Index other, bool& exchanged) const
+{
+  const PlanarTriangles& mesh = this->Work.triangles;
+  const auto& a = this->Lattice[mesh.triangles[t][0]];
+  const auto& b = this->Lattice[mesh.triangles[other][0]];
+  PairKey key = { this->Shapes[t], this->Shapes[other], b[0] - a[0], b[1] - a[1], 0 };
+  // Of the two orders of a pair, one is taken, whichever triangle it is seen from.
+  exchanged = key.first != key.second ? key.first > key.second : key.x != 0 ? key.x < 0 : key.y < 0;
+  if (exchanged)
+  {
+    std::swap(t, other);
+    key = { key.second, key.first, -key.x, -key.y, 0 };
+  }
+  if (this->Work.space.basis == PeridynamicBasis::Linear && mesh.low[t].x <= mesh.high[other].x &&
+    mesh.low[other].x <= mesh.high[t].x && mesh.low[t].y <= mesh.high[other].y &&
+    mesh.low[other].y <= mesh.high[t].y)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      for (int l = 0; l < 3; ++l)
+      {
+        const bool same = mesh.triangles[t][l] == mesh.triangles[other][k];
+        key.code += same ? (l + 1) << (2 * k) : 0;
+      }
+    }
+  }
+  return key;
+}
+
+//------------------------------------------------------------------------------
+Vec2 PairIntegrals::corner(Index t, int k, Index fromX, Index fromY) const
+{
+  const auto& p = this->Lattice[this->Work.triangles.triangles[t][k]];
+  return { static_cast<double>(p[0] - fromX) * this->Unit,
+    static_cast<double>(p[1] - fromY) * this->Unit };
+}
+
+//------------------------------------------------------------------------------
+TrianglePair PairIntegrals::pair(Index t, Index other, bool exchanged) const
+{
+  if (exchanged)
+  {
+    std::swap(t, other);
+  }
+  const PlanarTriangles& mesh = this->Work.triangles;
+  const auto& origin = this->Lattice[mesh.triangles[t][0]];
+  TrianglePair pair;
+  pair.identical = t == other;
+  for (int k = 0; k < 3; ++k)
+  {
+    pair.first[k] = this->corner(t, k, origin[0], origin[1]);
+    pair.second[k] = this->corner(other, k, origin[0], origin[1]);
+    for (int l = 0; l < 3; ++l)
+    {
+      const std::int32_t p = mesh.triangles[t][l], q = mesh.triangles[other][k];
+      if (this->Work.space.basis == PeridynamicBasis::Linear && p == q)
+      {
+        pair.shared[k] = l;
+      }
+      if (this->Lattice[p] == this->Lattice[q])
+      {
+        pair.touching[k] = l;
+      }
+    }
+  }
+  return pair;
+}
+
+//------------------------------------------------------------------------------
+void PairIntegrals::findPairs(const std::vector<char>& wanted)
+{
+  const PlanarTriangles& mesh = this->Work.triangles;
+  // Surroundings that are new, by chunk of triangles; then, in order, the pairs in them.
+  std::vector<std::vector<std::pair<Signature, Index>>> found(numberOfChunks(mesh.size()));
+  forEachChunk(mesh.size(), this->Work.options.threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      std::unordered_map<Signature, char, SignatureHash> seen;
+      std::vector<std::int32_t> near;
+      for (Index t = begin; t < end; ++t)
+      {
+        if (!wanted[t])
+        {
+          continue;
+        }
+        this->Work.grid.near(mesh.low[t], mesh.high[t], this->Work.options.horizon, near);
+        Signature signature;
+        for (const std::int32_t other : near)
+        {
+          bool exchanged;
+          signature.add(this->key(t, other, exchanged));
+        }
+        if (seen.emplace(signature, 1).second)
+        {
+          found[chunk].emplace_back(signature, t);
+        }
+      }
+    });
+  std::vector<std::int32_t> near;
+  for (const auto& chunk : found)
+  {
+    for (const auto& [signature, t] : chunk)
+    {
+      std::vector<Slot>& slots = this->Surroundings[signature];
+      if (!slots.empty())
+      {
+        continue;
+      }
+      this->Work.grid.near(mesh.low[t], mesh.high[t], this->Work.options.horizon, near);
+      for (const std::int32_t other : near)
+      {
+        bool exchanged;
+        const PairKey key = this->key(t, other, exchanged);
+        const auto next = static_cast<std::int32_t>(this->Examples.size());
+        const auto [place, fresh] = this->Blocks.emplace(key, next);
+        if (fresh)
+        {
+          this->Examples.push_back({ static_cast<std::int32_t>(exchanged ? other : t),
+            static_cast<std::int32_t>(exchanged ? t : other) });
+        }
+        slots.push_back(2 * place->second + (exchanged ? 1 : 0));
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void PairIntegrals::findTouching(const std::vector<char>& wanted)
+{
+  const PlanarTriangles& mesh = this->Work.triangles;
+  std::vector<std::int32_t> near;
+  for (Index t = 0; t < mesh.size(); ++t)
+  {
+    this->Work.grid.near(mesh.low[t], mesh.high[t], this->Unit, near);
+    std::sort(near.begin(), near.end());
+    for (const std::int32_t other : near)
+    {
+      if (other >= t && (wanted[t] || wanted[other]) && (other == t || this->touch(t, other)))
+      {
+        const auto next = static_cast<std::int32_t>(this->Examples.size());
+        this->Blocks.emplace(PairKey{ static_cast<std::int32_t>(t), other, 0, 0, 0 }, next);
+        this->Examples.push_back({ static_cast<std::int32_t>(t), other });
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+const std::vector<Slot>* PairIntegrals::slotsOf(
+  Index t, const std::vector<std::int32_t>& near) const
+{
+  Signature signature;
+  for (const std::int32_t other : near)
+  {
+    bool exchanged;
+    signature.add(this->key(t, other, exchanged));
+  }
+  return &this->Surroundings.at(signature);
+}
+
+//------------------------------------------------------------------------------
+Slot PairIntegrals::slotOf(Index t, Index other) const
+{
+  const bool exchanged = other < t;
+  const PairKey key = { static_cast<std::int32_t>(exchanged ? other : t),
+    static_cast<std::int32_t>(exchanged ? t : other), 0, 0, 0 };
+  return 2 * this->Blocks.at(key) + (exchanged ? 1 : 0);
+}
+
+//------------------------------------------------------------------------------
+void PairIntegrals::toRows(
+  const TrianglePair& pair, const double* block, double* first, double* second) const
+{
+  const int f = this->Functions, n = 2 * f, c = this->Components;
+  // Seen from each triangle, columns are the functions of that one, then those of the other.
+  for (const bool exchanged : { false, true })
+  {
+    double* to = exchanged ? second : first;
+    for (int a = 0; a < f; ++a)
+    {
+      const bool sharedByOther = f == 3 && !pair.identical &&
+        (exchanged ? pair.shared[a] >= 0
+                   : pair.shared[0] == a || pair.shared[1] == a || pair.shared[2] == a);
+      const int row = !exchanged ? a : f == 3 && pair.shared[a] >= 0 ? pair.shared[a] : f + a;
+      const double half = sharedByOther ? 0.5 : 1.0; // both triangles add to its row
+      for (int b = 0; b < n; ++b)
+      {
+        const int column = exchanged ? (b + f) % n : b;
+        for (int i = 0; i < c; ++i)
+        {
+          for (int j = 0; j < c; ++j)
+          {
+            const int from = (row * n + column) * (c == 2 ? 3 : 1) + i + j;
+            *to++ = half * block[from];
+          }
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void PairIntegrals::integrate(const std::function<bool(double)>& proceed)
+{
+  const auto count = static_cast<Index>(this->Examples.size());
+  this->Integrated = count;
+  this->Rows.assign(static_cast<std::size_t>(2 * count) * this->RowSize, 0.0);
+  std::atomic<Index> done{ 0 };
+#pragma omp parallel num_threads(resolveThreads(this->Work.options.threads))
+  {
+    PairIntegrator integrator(this->Work.options, this->Functions);
+    std::vector<double> block(integrator.blockSize());
+#pragma omp for schedule(dynamic, 4)
+    for (Index i = 0; i < count; ++i)
+    {
+      if (i % 16 == 0 && !proceed(static_cast<double>(done) / static_cast<double>(count)))
+      {
+        continue;
+      }
+      const TrianglePair pair =
+        this->pair(this->Examples[i].first, this->Examples[i].second, false);
+      integrator.integrate(pair, block.data());
+      this->toRows(pair, block.data(), this->Rows.data() + 2 * i * this->RowSize,
+        this->Rows.data() + (2 * i + 1) * this->RowSize);
+      ++done;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+namespace
+{
+class ExactAssembler : public TriangleAssembler
+{
+public:
+  ExactAssembler(const PeridynamicWork& work, const PairIntegrals& integrals)
+    : Work(work)
+    , Integrals(integrals)
+    , Integrator(work.options, work.space.perTriangle())
+    , Block(this->Integrator.blockSize())
+    , First(integrals.rowSize())
+    , Second(integrals.rowSize())
+  {
+  }
+
+  void assemble(Index t, const std::vector<std::int32_t>& near, RowSums& sums) override
+  {
+    const std::vector<Slot>* slots =
+      this->Integrals.complete() ? this->Integrals.slotsOf(t, near) : nullptr;
+    for (std::size_t i = 0; i < near.size(); ++i)
+    {
+      const Index other = near[i];
+      if (slots || other == t || this->Integrals.touch(t, other))
+      {
+        const Slot slot = slots ? (*slots)[i] : this->Integrals.slotOf(t, other);
+        this->add(t, other, this->Integrals.rows(slot), sums);
+        continue;
+      }
+      const bool exchanged = other < t;
+      const TrianglePair pair = this->Integrals.pair(t, other, exchanged);
+      this->Integrator.integrate(pair, this->Block.data());
+      this->Integrals.toRows(pair, this->Block.data(), this->First.data(), this->Second.data());
+      this->add(t, other, exchanged ? this->Second.data() : this->First.data(), sums);
+    }
+  }
+
+private:
+  void add(Index t, Index other, const double* rows, RowSums& sums)
+  {
+    const int functions = this->Work.space.perTriangle();
+    const int c = this->Work.options.model == PeridynamicModel::Elastic ? 4 : 1;
+    for (int a = 0; a < functions; ++a)
+    {
+      for (int b = 0; b < 2 * functions; ++b)
+      {
+        const Index f =
+          this->Work.space.function(this->Work.triangles, b < functions ? t : other, b % functions);
+        double* to = sums.at(a, f);
+        for (int k = 0; k < c; ++k)
+        {
+          to[k] += *rows++;
+        }
+      }
+    }
+  }
+
+  const PeridynamicWork& Work;
+  const PairIntegrals& Integrals;
+  PairIntegrator Integrator;
+  std::vector<double> Block, First, Second;
+};
+}
+
+//------------------------------------------------------------------------------
+std::shared_ptr<PairIntegrals> makePairIntegrals(
+  const PeridynamicWork& work, const std::function<bool(double)>& proceed)
+{
+  return std::make_shared<PairIntegrals>(work, proceed);
+}
+
+Index numberOfIntegratedPairs(const PairIntegrals& integrals)
+{
+  return integrals.integrated();
+}
+
+std::unique_ptr<TriangleAssembler> makeExactAssembler(
+  const PeridynamicWork& work, const PairIntegrals& integrals)
+{
+  return std::make_unique<ExactAssembler>(work, integrals);
+}
+}

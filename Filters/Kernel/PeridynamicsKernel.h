@@ -1,0 +1,61 @@
+/**
+ * @file PeridynamicsKernel.h
+ * @brief A radial kernel and its radial integrals. Internal to the kernel: not installed.
+ */
+#ifndef tautline_PeridynamicsKernel_h
+#define tautline_PeridynamicsKernel_h
+
+#include "Peridynamics.h"
+
+#include <array>
+
+namespace tautline
+{
+/// Points that are evaluated together.
+constexpr int NodeCount = 8;
+using Nodes = std::array<double, NodeCount>;
+
+/**
+ * @brief k(r) for 0 < r <= delta, and F_m(R) = int_0^R r^(m+1) k(r) dr, m = 0 .. 6.
+ *
+ * Of powers whose integral from 0 diverges (m + 2 < p), F_m is the primitive that vanishes at infinity; near
+ * m + 2 = p the one that vanishes at the horizon. Sums of F_m over directions that close around nothing are
+ * right all the same; those around a point need the integral from 0, which then exists (fromOrigin).
+ */
+class RadialKernel
+{
+public:
+  static constexpr int Orders = 7;
+
+  RadialKernel(const KernelFunction& function, double horizon);
+
+  /// k at given squares of r; 0 where r is not more than 1e-10 horizons.
+  void evaluate(const double* squares, double* values, Index count) const;
+  /// F_m(R) / R^(m+2) at given squares of R, for m from first to last, into ratios[m].
+  void ratios(
+    const Nodes& squares, int first, int last, Nodes* ratios, bool fromOrigin = false) const;
+  /// F_m(horizon).
+  double atHorizon(int m, bool fromOrigin = false) const
+  {
+    return this->isShifted(m) && !fromOrigin ? 0.0 : this->Full[m];
+  }
+
+private:
+  void power(const double* squares, double* values, Index count) const;
+  double value(double r) const;
+  bool isShifted(int m) const
+  {
+    constexpr double near = 0.25;
+    return this->Function.shape == KernelShape::Power &&
+      std::abs(m + 2.0 - this->Function.exponent) < near;
+  }
+
+  KernelFunction Function;
+  double Horizon;
+  int Quarters = -1; ///< of r^2 in the power, when it is a whole number of them
+  double Full[Orders];
+  /// Other shapes than powers: values of F_m at equal distances from 0 to the horizon.
+  std::vector<double> Radii, Integrals[Orders];
+};
+}
+#endif

@@ -1,0 +1,25 @@
+/**
+ * @file Predicates.h
+ * @brief Signs of the orientation and in-circle determinants, exact for finite doubles.
+ *
+ * A determinant is computed in doubles first; if it is smaller than the bound of its rounding error
+ * (Shewchuk, Discrete & Computational Geometry 18, 1997), it is computed again as an unevaluated sum
+ * of doubles, which is exact short of overflow and underflow. Internal to the kernel: not installed.
+ */
+#ifndef tautline_Predicates_h
+#define tautline_Predicates_h
+
+#include "Polygon.h"
+
+namespace tautline
+{
+/// 1 if a, b, c run counter-clockwise, -1 if clockwise, 0 if they lie on a line.
+int orientation(const Vec2& a, const Vec2& b, const Vec2& c);
+
+/// 1 if d lies inside the circle through a, b, c (counter-clockwise), 0 on it, -1 outside.
+int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
+/// Whether the closed segments ab and cd have a point in common.
+bool segmentsMeet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+}
+#endif

@@ -1,0 +1,76 @@
+/**
+ * @file ShapeRetrieval.h
+ * @brief Which of a set of labelled silhouettes are alike: all matches, the ranking and the recognition rate.
+ *
+ *     tautline::Retrieval result = tautline::retrieveShapes(shapes, labels, tautline::RetrievalOptions::highest());
+ *     // result.recognition.rate: 1 if the 10 best matches of each are of its own class
+ */
+#ifndef tautline_ShapeRetrieval_h
+#define tautline_ShapeRetrieval_h
+
+#include "ShapeMatch.h"
+
+namespace tautline
+{
+struct RetrievalOptions
+{
+  double spacing = 25.0; ///< of the polygons' vertices, pixels, above 0
+  LocationOptions locations;
+  MatchOptions match; ///< its threads, timeLimit and progress are those of the whole run
+  /// The distance of two shapes is E(a to b) / triangles of a + E(b to a) / triangles of b, rather than
+  /// E(a to b): each must be found in the other.
+  bool symmetric = false;
+  Index best = 10; ///< matches per query that count, at least 1
+
+  /// The dissertation's setting: spacing 25, 30 x 30 grid, a = 4 b, theta = d_max / 3.
+  static RetrievalOptions dissertation() { return {}; }
+  /// The same with Felzenszwalb's energy and without the centre of mass.
+  TAUTLINE_KERNEL_EXPORT static RetrievalOptions felzenszwalb();
+  /// What recognizes best here: vertices 15 pixels apart, 80 locations on the contour, directed edges,
+  /// ordering 1, descriptors 100, rotation 1, both directions. The help page tells how it was chosen.
+  TAUTLINE_KERNEL_EXPORT static RetrievalOptions highest();
+};
+
+/// How many of the best matches are of the query's class.
+struct Recognition
+{
+  double rate = 0; ///< hits / possible, 0 to 1
+  Index hits = 0;
+  Index possible = 0;         ///< per query the smaller of `best` and the others in its class
+  std::vector<Index> hitsAt;  ///< queries whose k-th best match is of their class
+  std::vector<Index> classes; ///< the labels there are, ascending
+  /// Row after row: the part of the best matches of a class's queries that are of each class.
+  std::vector<double> confusion;
+};
+
+struct Retrieval
+{
+  Index count = 0;
+  /// Row after row, the distance of a query (row) to a target; 0 to itself, -1 if it was not computed.
+  std::vector<double> distances;
+  /// Row after row, the other shapes in order of their distance: count - 1 each.
+  std::vector<Index> ranking;
+  Recognition recognition;
+  std::vector<Index> vertices; ///< of each shape's polygon
+  MatchStop stop = MatchStop::Complete;
+};
+
+/**
+ * @brief Matches each of the shapes with each other one.
+ *
+ * @param labels the class of each shape
+ * Throws Error on less than 2 shapes, on another number of labels, and on options out of range; errors with a
+ * shape name its number.
+ */
+TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(const std::vector<Silhouette>& shapes,
+  const std::vector<Index>& labels, const RetrievalOptions& options);
+
+/// The others in order of a row of distances; equal ones in their order, those not computed (-1) last.
+TAUTLINE_KERNEL_EXPORT std::vector<Index> rankShapes(
+  const std::vector<double>& distances, Index count);
+
+/// Counts hits of a ranking of `count` shapes.
+TAUTLINE_KERNEL_EXPORT Recognition recognize(
+  const std::vector<Index>& ranking, const std::vector<Index>& labels, Index best);
+}
+#endif

@@ -1,0 +1,392 @@
+#include "ShapeTarget.h"
+
+#include "PacketFloat.h"
+#include "Parallel.h"
+#include "ShapeEnergy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+/// Radii of the discs of a descriptor, as parts of d_max.
+constexpr double DescriptorRadii[4] = { 0.12, 0.25, 0.45, 0.8 };
+/// A coarse set has every third location.
+constexpr Index CoarseStep = 3;
+/// Bytes that the table of edge costs may take.
+constexpr double TableLimit = 4.0 * 1024 * 1024 * 1024;
+
+void requireNonNegative(double value, const char* name)
+{
+  if (!(value >= 0.0) || !std::isfinite(value))
+  {
+    throw Error(std::string("The ") + name + " must be at least 0 and finite.");
+  }
+}
+
+/// Convolution with a Gaussian and its derivative along x (stride 1) or y (stride width).
+std::vector<float> convolve(const std::vector<float>& image, Index width, Index height, bool alongY,
+  const std::vector<double>& weights)
+{
+  const Index radius = static_cast<Index>(weights.size()) / 2;
+  const Index length = alongY ? height : width, stride = alongY ? width : 1;
+  std::vector<float> result(image.size());
+  for (Index j = 0; j < height; ++j)
+  {
+    for (Index i = 0; i < width; ++i)
+    {
+      const Index at = alongY ? j : i, base = j * width + i - at * stride;
+      double sum = 0.0;
+      for (Index k = -radius; k <= radius; ++k)
+      {
+        // The image goes on with the value of its border.
+        const Index from = std::clamp<Index>(at + k, 0, length - 1);
+        sum += weights[static_cast<std::size_t>(k + radius)] * image[base + from * stride];
+      }
+      result[j * width + i] = static_cast<float>(sum);
+    }
+  }
+  return result;
+}
+
+float bilinear(const std::vector<float>& image, Index width, Index height, double x, double y)
+{
+  const double cx = std::clamp(x, 0.0, static_cast<double>(width - 1));
+  const double cy = std::clamp(y, 0.0, static_cast<double>(height - 1));
+  const Index i = std::min(static_cast<Index>(cx), std::max<Index>(width - 2, 0));
+  const Index j = std::min(static_cast<Index>(cy), std::max<Index>(height - 2, 0));
+  const float u = static_cast<float>(cx - static_cast<double>(i));
+  const float v = static_cast<float>(cy - static_cast<double>(j));
+  const float* p = image.data() + j * width + i;
+  const Index right = width > 1 ? 1 : 0, up = height > 1 ? width : 0;
+  return (1 - v) * ((1 - u) * p[0] + u * p[right]) + v * ((1 - u) * p[up] + u * p[up + right]);
+}
+
+double distanceToOutline(const std::vector<Vec2>& outline, const Vec2& p)
+{
+  double best = std::numeric_limits<double>::infinity();
+  for (const Vec2& q : outline)
+  {
+    best = std::min(best, std::hypot(p[0] - q[0], p[1] - q[1]));
+  }
+  return best;
+}
+}
+
+Index LocationSet::locationOf(Index slot) const
+{
+  return std::lower_bound(this->used.begin(), this->used.end(), slot) - this->used.begin();
+}
+
+LocationSet LocationSet::list(const std::vector<Vec2>& points)
+{
+  LocationSet set;
+  set.rowLength = FloatWidth;
+  set.rows = (static_cast<Index>(points.size()) + FloatWidth - 1) / FloatWidth;
+  set.points = points;
+  // Slots without a location repeat the last one, so that no arithmetic is done on nonsense.
+  set.x.assign(static_cast<std::size_t>(set.size()), static_cast<float>(points.back()[0]));
+  set.y.assign(static_cast<std::size_t>(set.size()), static_cast<float>(points.back()[1]));
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    set.x[i] = static_cast<float>(points[i][0]);
+    set.y[i] = static_cast<float>(points[i][1]);
+    set.used.push_back(static_cast<Index>(i));
+  }
+  set.slots = set.used;
+  return set;
+}
+
+LocationSet LocationSet::lattice(const Vec2& first, const Vec2& step, Index columns, Index rows)
+{
+  LocationSet set;
+  set.grid = true;
+  set.step = step;
+  set.columns = columns;
+  set.rows = rows;
+  set.rowLength = (columns + FloatWidth - 1) / FloatWidth * FloatWidth;
+  for (Index j = 0; j < rows; ++j)
+  {
+    for (Index i = 0; i < set.rowLength; ++i)
+    {
+      const Vec2 p = { first[0] + step[0] * static_cast<double>(std::min(i, columns - 1)),
+        first[1] + step[1] * static_cast<double>(j) };
+      set.x.push_back(static_cast<float>(p[0]));
+      set.y.push_back(static_cast<float>(p[1]));
+      if (i < columns)
+      {
+        set.used.push_back(j * set.rowLength + i);
+        set.points.push_back(p);
+      }
+    }
+  }
+  set.slots = set.used;
+  return set;
+}
+
+std::vector<Descriptor> describe(const Silhouette& shape, const std::vector<Vec2>& points)
+{
+  const Index width = shape.width, height = shape.height;
+  // Sums along rows make a disc cost one subtraction per row.
+  std::vector<float> sums(static_cast<std::size_t>((width + 1) * height), 0.0f);
+  for (Index j = 0; j < height; ++j)
+  {
+    for (Index i = 0; i < width; ++i)
+    {
+      sums[j * (width + 1) + i + 1] = sums[j * (width + 1) + i] + shape.mask[j * width + i];
+    }
+  }
+  std::vector<Descriptor> result;
+  for (const Vec2& p : points)
+  {
+    Descriptor d = {};
+    for (int k = 0; k < 4; ++k)
+    {
+      const double radius = std::max(1.0, DescriptorRadii[k] * shape.maxDistance);
+      double area = 0.0;
+      const Index first = static_cast<Index>(std::ceil(std::max(0.0, p[1] - radius)));
+      const Index last =
+        static_cast<Index>(std::floor(std::min(static_cast<double>(height - 1), p[1] + radius)));
+      for (Index j = first; j <= last; ++j)
+      {
+        const double dy = static_cast<double>(j) - p[1];
+        const double half = std::sqrt(std::max(0.0, radius * radius - dy * dy));
+        const Index from =
+          static_cast<Index>(std::ceil(std::clamp(p[0] - half, 0.0, static_cast<double>(width))));
+        const Index to = static_cast<Index>(
+          std::floor(std::clamp(p[0] + half, -1.0, static_cast<double>(width - 1))));
+        if (to >= from)
+        {
+          area += sums[j * (width + 1) + to + 1] - sums[j * (width + 1) + from];
+        }
+      }
+      d[static_cast<std::size_t>(k)] = static_cast<float>(area / (Pi * radius * radius));
+    }
+    d[4] = static_cast<float>(
+      std::hypot(p[0] - shape.centre[0], p[1] - shape.centre[1]) / shape.maxDistance);
+    result.push_back(d);
+  }
+  return result;
+}
+
+double ShapeTarget::Data::edgeCost(const Vec2& p, const Vec2& q) const
+{
+  const double dx = q[0] - p[0], dy = q[1] - p[1], length = std::hypot(dx, dy);
+  const int samples = std::max(1, static_cast<int>(std::ceil(std::min(length, 1e6))));
+  double sum = 0.0;
+  for (int s = 0; s < samples; ++s)
+  {
+    const double t = (s + 0.5) / samples;
+    const double x = p[0] + t * dx, y = p[1] + t * dy;
+    if (!this->energy.directedEdges)
+    {
+      sum += bilinear(this->cost, this->width, this->height, x, y);
+      continue;
+    }
+    // The polygon runs counter-clockwise: its inside is on the left.
+    const double along = length > 0.0
+      ? (-dy * bilinear(this->gradientX, this->width, this->height, x, y) +
+          dx * bilinear(this->gradientY, this->width, this->height, x, y)) /
+        length
+      : 0.0;
+    sum += 1.0 / (this->energy.lambda + std::max(0.0, along));
+  }
+  return sum / samples;
+}
+
+PairTable ShapeTarget::Data::edgeTable(const LocationSet& a, const LocationSet& b) const
+{
+  PairTable table(a.size(), b.size(), Unreachable);
+  const bool symmetric = &a == &b && !this->energy.directedEdges;
+  const Index n = static_cast<Index>(a.points.size());
+#pragma omp parallel for schedule(dynamic, 8) \
+  num_threads(resolveThreads(this->threads)) if (n > 200)
+  for (Index i = 0; i < n; ++i)
+  {
+    for (Index j = symmetric ? i : 0; j < static_cast<Index>(b.points.size()); ++j)
+    {
+      const float value = static_cast<float>(this->edgeCost(a.points[i], b.points[j]));
+      table.row(a.slots[i])[b.slots[j]] = value;
+      if (symmetric)
+      {
+        table.row(b.slots[j])[a.slots[i]] = value;
+      }
+    }
+  }
+  return table;
+}
+
+ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options,
+  const ShapeEnergy& energy, const ImageView* grey)
+  : Private(std::make_unique<Data>())
+{
+  requireNonNegative(energy.lambda, "edge constant lambda");
+  requireNonNegative(energy.smoothing, "smoothing");
+  if (energy.lambda == 0.0 || energy.smoothing == 0.0)
+  {
+    throw Error("The edge constant lambda and the smoothing must be above 0.");
+  }
+  Data& d = *this->Private;
+  d.energy = energy;
+  d.threads = options.threads;
+  d.width = shape.width;
+  d.height = shape.height;
+  d.centre = shape.centre;
+  d.maxDistance = shape.maxDistance;
+  d.perimeter = shape.perimeter;
+
+  // The gradient of the smoothed image, 1 on a straight edge.
+  std::vector<float> image = shape.mask;
+  if (grey)
+  {
+    if (grey->width != shape.width || grey->height != shape.height)
+    {
+      throw Error("The grey image and the silhouette differ in size.");
+    }
+    image.assign(grey->values, grey->values + shape.width * shape.height);
+    const auto [low, high] = std::minmax_element(image.begin(), image.end());
+    const float from = *low, range = *high - *low;
+    for (float& value : image)
+    {
+      value = (shape.dark ? from + range - value : value - from) / range;
+    }
+  }
+  const Index radius = std::max<Index>(1, static_cast<Index>(std::ceil(4.0 * energy.smoothing)));
+  std::vector<double> gauss, slope;
+  double sum = 0.0, moment = 0.0;
+  for (Index k = -radius; k <= radius; ++k)
+  {
+    const double x = static_cast<double>(k) / energy.smoothing;
+    gauss.push_back(std::exp(-0.5 * x * x));
+    slope.push_back(x * gauss.back());
+    sum += gauss.back();
+    moment += slope.back() * static_cast<double>(k);
+  }
+  // A unit step has the gradient 1 / (sigma sqrt(2 pi)) at its place; a pixel's step is half a pixel off.
+  const double step = energy.smoothing * std::sqrt(2.0 * Pi);
+  for (std::size_t k = 0; k < gauss.size(); ++k)
+  {
+    gauss[k] /= sum;
+    slope[k] *= step / moment;
+  }
+  d.gradientX =
+    convolve(convolve(image, d.width, d.height, true, gauss), d.width, d.height, false, slope);
+  d.gradientY =
+    convolve(convolve(image, d.width, d.height, false, gauss), d.width, d.height, true, slope);
+  d.cost.resize(image.size());
+  for (std::size_t i = 0; i < image.size(); ++i)
+  {
+    d.cost[i] =
+      1.0f / (static_cast<float>(energy.lambda) + std::hypot(d.gradientX[i], d.gradientY[i]));
+  }
+
+  std::vector<Vec2> coarse;
+  if (options.kind == Locations::Contour)
+  {
+    if (options.contour < 3)
+    {
+      throw Error("At least 3 locations on the contour are needed.");
+    }
+    d.locations = LocationSet::list(resampleOutline(shape.outline, options.contour));
+    const double between = shape.perimeter / static_cast<double>(options.contour);
+    d.gridStep = { between, between };
+    for (Index i = 0; i < options.contour; ++i)
+    {
+      d.arc.push_back(static_cast<double>(i) / static_cast<double>(options.contour));
+    }
+  }
+  else
+  {
+    if (options.columns < 1 || options.rows < 1 || options.columns * options.rows < 3 ||
+      std::min(options.columns, options.rows) < 2)
+    {
+      throw Error("A grid of " + std::to_string(options.columns) + " x " +
+        std::to_string(options.rows) + " locations is too small: 2 x 2 is the least.");
+    }
+    const Vec2 cell = { static_cast<double>(d.width) / static_cast<double>(options.columns),
+      static_cast<double>(d.height) / static_cast<double>(options.rows) };
+    d.gridStep = cell;
+    d.locations = LocationSet::lattice(
+      { 0.5 * cell[0] - 0.5, 0.5 * cell[1] - 0.5 }, cell, options.columns, options.rows);
+    if (options.kind == Locations::NearGrid)
+    {
+      std::vector<Vec2> near;
+      for (const Vec2& p : d.locations.points)
+      {
+        if (distanceToOutline(shape.outline, p) <= std::max(cell[0], cell[1]))
+        {
+          near.push_back(p);
+        }
+      }
+      if (near.size() < 3)
+      {
+        throw Error("Less than 3 grid locations are near the outline: use a finer grid.");
+      }
+      d.locations = LocationSet::list(near);
+    }
+  }
+  const double tableSize =
+    static_cast<double>(d.locations.size()) * static_cast<double>(d.locations.size());
+  if (tableSize * sizeof(float) > TableLimit)
+  {
+    throw Error("A table over all pairs of " + std::to_string(d.locations.points.size()) +
+      " locations would take more than 4 GiB: use fewer locations.");
+  }
+  // A coarse set for a first solution: every third location, in both directions of a grid.
+  const Index columns = d.locations.grid ? d.locations.columns : 1;
+  for (std::size_t i = 0; i < d.locations.points.size(); ++i)
+  {
+    const Index row = static_cast<Index>(i) / columns, column = static_cast<Index>(i) % columns;
+    if (row % CoarseStep == 1 && (columns == 1 || column % CoarseStep == 1))
+    {
+      coarse.push_back(d.locations.points[i]);
+      d.coarseOf.push_back(static_cast<Index>(i));
+    }
+  }
+  d.edges = d.edgeTable(d.locations, d.locations);
+  if (coarse.size() >= 3)
+  {
+    d.coarse = LocationSet::list(coarse);
+    d.coarseEdges = PairTable(d.coarse.size(), d.coarse.size(), Unreachable);
+    for (std::size_t i = 0; i < coarse.size(); ++i)
+    {
+      for (std::size_t j = 0; j < coarse.size(); ++j)
+      {
+        d.coarseEdges.row(static_cast<Index>(i))[j] =
+          d.edges.row(d.locations.slots[d.coarseOf[i]])[d.locations.slots[d.coarseOf[j]]];
+      }
+    }
+  }
+  if (energy.descriptor > 0.0)
+  {
+    d.descriptors = describe(shape, d.locations.points);
+  }
+}
+
+ShapeTarget::~ShapeTarget() = default;
+ShapeTarget::ShapeTarget(ShapeTarget&&) noexcept = default;
+ShapeTarget& ShapeTarget::operator=(ShapeTarget&&) noexcept = default;
+
+const std::vector<Vec2>& ShapeTarget::locations() const
+{
+  return this->Private->locations.points;
+}
+
+Vec2 ShapeTarget::centre() const
+{
+  return this->Private->centre;
+}
+
+double ShapeTarget::maxDistance() const
+{
+  return this->Private->maxDistance;
+}
+
+double ShapeTarget::edgeCost(const Vec2& p, const Vec2& q) const
+{
+  return this->Private->edgeCost(p, q);
+}
+}

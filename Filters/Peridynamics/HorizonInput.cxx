@@ -1,0 +1,118 @@
+#include "HorizonInput.h"
+
+#include "MeshAdapter.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkPointData.h"
+
+#include <string>
+
+namespace tautline
+{
+//------------------------------------------------------------------------------
+HorizonInput::HorizonInput(vtkDataSet* input, vtkDataArray* region, double collarValue, int threads)
+{
+  const MeshAdapter adapter(input, threads);
+  const class Mesh& mesh = adapter.mesh();
+  const MeshView& view = mesh.view();
+  const CellBlock* triangles = nullptr;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    if (block.type != CellType::Triangle && block.count > 0)
+    {
+      throw Error("the mesh has " + std::to_string(block.count) + " cells that are no triangles (" +
+        topology(block.type).name +
+        "): run Triangulate first, or for a volume take a slice or its surface");
+    }
+    triangles = block.type == CellType::Triangle ? &block : triangles;
+  }
+  if (!triangles || triangles->count == 0)
+  {
+    throw Error("the mesh has no triangles. " + adapter.notice());
+  }
+  if (mesh.dimension() != Dimension::Planar)
+  {
+    throw Error("the triangles do not lie in a plane: nonlocal models are for planar meshes here");
+  }
+  if (adapter.ghostCells())
+  {
+    throw Error("the mesh has ghost cells: a nonlocal matrix needs the whole mesh in one piece");
+  }
+  this->Frame = mesh.frame();
+  const Vec3 first = pointOf(view, view.connectivity[view.offsets[triangles->cell(0)]]);
+  this->Offset = dot(first, mesh.normal()) * mesh.normal();
+  this->Mesh.points.resize(static_cast<std::size_t>(2 * view.numberOfPoints));
+  for (Index i = 0; i < view.numberOfPoints; ++i)
+  {
+    const auto p = this->project(pointOf(view, i));
+    this->Mesh.points[static_cast<std::size_t>(2 * i)] = p[0];
+    this->Mesh.points[static_cast<std::size_t>(2 * i + 1)] = p[1];
+  }
+  for (Index i = 0; i < triangles->count; ++i)
+  {
+    const Index cell = triangles->cell(i);
+    this->Cells.push_back(static_cast<vtkIdType>(cell));
+    for (int k = 0; k < 3; ++k)
+    {
+      this->Mesh.triangles.push_back(view.connectivity[view.offsets[cell] + k]);
+    }
+    this->Mesh.collar.push_back(
+      region && region->GetComponent(static_cast<vtkIdType>(cell), 0) == collarValue);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::array<double, 2> HorizonInput::project(const Vec3& p) const
+{
+  return { dot(p, this->Frame[0]), dot(p, this->Frame[1]) };
+}
+
+Vec3 HorizonInput::liftVector(double x, double y) const
+{
+  return x * this->Frame[0] + y * this->Frame[1];
+}
+
+Vec3 HorizonInput::lift(double x, double y) const
+{
+  return this->liftVector(x, y) + this->Offset;
+}
+
+//------------------------------------------------------------------------------
+void HorizonInput::setGivenPoints(vtkDataArray* array)
+{
+  this->Mesh.givenPoints.clear();
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    this->Mesh.givenPoints.push_back(array->GetComponent(i, 0) != 0.0);
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* chosenArray(
+  vtkInformation* choice, vtkDataSet* input, const char* purpose, bool& onPoints)
+{
+  onPoints = false;
+  const char* name = choice ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  if (!name || !*name || std::string(name) == "None")
+  {
+    return nullptr;
+  }
+  vtkDataArray* array = nullptr;
+  if (choice->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_POINTS)
+  {
+    array = input->GetPointData()->GetArray(name);
+    onPoints = array != nullptr;
+  }
+  array = array ? array : input->GetCellData()->GetArray(name);
+  if (!array)
+  {
+    throw Error(std::string("there is no array '") + name + "' to take the " + purpose +
+      " from: choose another one, or None");
+  }
+  return array;
+}
+}

@@ -1,0 +1,60 @@
+/**
+ * @file HorizonInput.h
+ * @brief A vtkDataSet of planar triangles as the kernel's HorizonMesh, and back.
+ */
+#ifndef tautline_HorizonInput_h
+#define tautline_HorizonInput_h
+
+#include "tautline/Mesh.h"
+#include "tautline/Peridynamics.h"
+
+#include "vtkType.h"
+
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataArray;
+class vtkDataSet;
+class vtkInformation;
+
+namespace tautline
+{
+class HorizonInput
+{
+public:
+  /**
+   * @brief Takes the triangles of a planar mesh; points keep their numbers.
+   *
+   * Vertices and lines are left out; other cells, surfaces in space and an input without triangles throw Error.
+   * @param region cell array, may be null; @param collarValue its value in the collar
+   */
+  HorizonInput(vtkDataSet* input, vtkDataArray* region, double collarValue, int threads);
+
+  const HorizonMesh& mesh() const { return this->Mesh; }
+  /// Marks the points where the continuous linear basis is given: those where the array is not 0.
+  void setGivenPoints(vtkDataArray* array);
+  /// The cell a triangle is.
+  vtkIdType cell(Index triangle) const { return this->Cells[static_cast<std::size_t>(triangle)]; }
+  /// A place in the plane, in space.
+  Vec3 lift(double x, double y) const;
+  /// A direction in the plane, in space.
+  Vec3 liftVector(double x, double y) const;
+  /// Coordinates in the plane of a point or, without the plane's place, of a direction in space.
+  std::array<double, 2> project(const Vec3& p) const;
+
+private:
+  HorizonMesh Mesh;
+  std::vector<vtkIdType> Cells;
+  std::array<Vec3, 2> Frame;
+  Vec3 Offset; ///< normal to the plane
+};
+
+/**
+ * @brief The array an information of SetInputArrayToProcess names, or null if it names none.
+ *
+ * Throws Error if the input has no such array. @param onPoints set where it is
+ */
+vtkDataArray* chosenArray(
+  vtkInformation* choice, vtkDataSet* input, const char* purpose, bool& onPoints);
+}
+#endif

@@ -1,0 +1,54 @@
+/**
+ * @file PeridynamicOutput.h
+ * @brief Numbers per row of a nonlocal matrix as VTK arrays, tables and pictures.
+ */
+#ifndef tautline_PeridynamicOutput_h
+#define tautline_PeridynamicOutput_h
+
+#include "HorizonInput.h"
+
+#include "tautline/Lanczos.h"
+
+#include <vector>
+
+class vtkDataArray;
+class vtkDataSet;
+class vtkImageData;
+class vtkTable;
+
+namespace tautline
+{
+/// A system with the mesh and the basis it is of.
+struct PeridynamicResult
+{
+  const HorizonInput& input;
+  PeridynamicBasis basis;
+  const PeridynamicSystem& system;
+};
+
+/// Adds `Unknown`, `Neighbors`, `RowSum` and `Diagonal` to the points or cells the basis is on.
+void addRowData(const PeridynamicResult& result, vtkDataSet* output);
+
+/**
+ * @brief Adds a vector over the rows as an array: on points (continuous linear) or on cells, with as many
+ * components as there are functions; of the elastic model, vectors in space.
+ * @param given values of functions that are not unknown, may be null: 0
+ */
+void addRowVector(const PeridynamicResult& result, const std::vector<double>& values,
+  const char* name, const std::vector<double>* given, vtkDataSet* output);
+
+/// Values of an array on the functions of the basis, `components` each; of vectors in space, those in the plane.
+std::vector<double> onFunctions(const HorizonInput& input, PeridynamicBasis basis, Index components,
+  vtkDataArray* array, bool onPoints);
+
+/// Values of an array per point or per triangle, `components` each.
+std::vector<double> onMesh(
+  const HorizonInput& input, Index components, vtkDataArray* array, bool onPoints);
+
+/// One row: the facts of the matrix and, if there is one, of its spectrum.
+void fillSpectrum(const PeridynamicSystem& system, const Spectrum* spectrum, vtkTable* table);
+
+/// Entries per pixel, rows from top to bottom (Figure 4.2); at most `pixels` each way.
+void drawSparsity(const SparseMatrix& matrix, int pixels, vtkImageData* image);
+}
+#endif

@@ -1,0 +1,135 @@
+#include "vtkHorizonCollar.h"
+
+#include "HorizonInput.h"
+
+#include "tautline/HorizonCollar.h"
+
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <functional>
+
+vtkStandardNewMacro(vtkHorizonCollar);
+
+namespace
+{
+/// Copies arrays: rows `from(i)` of the input, zeros where that is negative.
+void passData(vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkIdType count,
+  const std::function<vtkIdType(vtkIdType)>& from)
+{
+  for (int a = 0; a < input->GetNumberOfArrays(); ++a)
+  {
+    vtkDataArray* array = input->GetArray(a);
+    if (!array)
+    {
+      continue;
+    }
+    auto copy = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+    copy->SetName(array->GetName());
+    copy->SetNumberOfComponents(array->GetNumberOfComponents());
+    copy->SetNumberOfTuples(count);
+    copy->Fill(0.0);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      if (from(i) >= 0)
+      {
+        copy->SetTuple(i, from(i), array);
+      }
+    }
+    output->AddArray(copy);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int vtkHorizonCollar::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkHorizonCollar::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
+  if (input->GetNumberOfCells() == 0)
+  {
+    return 1;
+  }
+  try
+  {
+    const tautline::HorizonInput taken(input, nullptr, 0.0, this->Threads);
+    tautline::CollarOptions options;
+    options.width = this->Width;
+    options.elementSize = this->ElementSize;
+    options.threads = this->Threads;
+    options.progress = [this](double done)
+    {
+      this->UpdateProgress(done);
+      return !this->GetAbortExecute();
+    };
+    const tautline::HorizonMesh made = tautline::addCollar(taken.mesh(), options);
+
+    vtkNew<vtkPoints> points;
+    points->SetDataType(VTK_DOUBLE);
+    points->SetNumberOfPoints(static_cast<vtkIdType>(made.numberOfPoints()));
+    for (tautline::Index i = 0; i < made.numberOfPoints(); ++i)
+    {
+      const auto id = static_cast<vtkIdType>(i);
+      tautline::Vec3 p = taken.lift(made.points[2 * i], made.points[2 * i + 1]);
+      if (id < input->GetNumberOfPoints())
+      {
+        input->GetPoint(id, p.data());
+      }
+      points->SetPoint(id, p.data());
+    }
+    output->SetPoints(points);
+    vtkNew<vtkIntArray> reference;
+    reference->SetName("Reference");
+    output->Allocate(static_cast<vtkIdType>(made.numberOfTriangles()));
+    for (tautline::Index t = 0; t < made.numberOfTriangles(); ++t)
+    {
+      const vtkIdType ids[3] = { static_cast<vtkIdType>(made.triangles[3 * t]),
+        static_cast<vtkIdType>(made.triangles[3 * t + 1]),
+        static_cast<vtkIdType>(made.triangles[3 * t + 2]) };
+      output->InsertNextCell(VTK_TRIANGLE, 3, ids);
+      reference->InsertNextValue(made.collar[t] ? 2 : 1);
+    }
+    const vtkIdType oldPoints = input->GetNumberOfPoints();
+    const auto oldTriangles = static_cast<vtkIdType>(taken.mesh().numberOfTriangles());
+    passData(input->GetPointData(), output->GetPointData(), points->GetNumberOfPoints(),
+      [&](vtkIdType i) { return i < oldPoints ? i : -1; });
+    passData(input->GetCellData(), output->GetCellData(), reference->GetNumberOfTuples(),
+      [&](vtkIdType i) { return i < oldTriangles ? taken.cell(i) : -1; });
+    output->GetCellData()->AddArray(reference);
+    output->GetCellData()->SetActiveScalars("Reference");
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    output->Initialize();
+    return 0;
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkHorizonCollar::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Width: " << this->Width << "\n";
+  os << indent << "ElementSize: " << this->ElementSize << "\n";
+  os << indent << "Threads: " << this->Threads << "\n";
+}

@@ -1,0 +1,86 @@
+/**
+ * @class vtkHorizonCollar
+ * @brief Puts a collar of triangles around a planar mesh, for the volume constraint of nonlocal models.
+ *
+ * A nonlocal (peridynamic) problem is given its solution not on the boundary but in a region around the domain that is
+ * as wide as the horizon (dissertation section 4.2, Figure 4.3). This filter adds that region: outside the
+ * mesh and in its holes, up to Width from it. The collar has the edges and points of the boundary.
+ *
+ * @par Input:
+ * Any vtkDataSet of triangles in a plane. Other cells but vertices and lines are refused.
+ *
+ * @par Output:
+ * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the collar. Points of
+ * the input come first and keep their numbers. Point and cell data of the input pass, with zeros in the collar.
+ * The cell array `Reference` (int) is 1 in the domain, 2 in the collar: vtkPeridynamicStiffness takes it.
+ *
+ * @par Limitations:
+ * Elements of the collar are about equally large (ElementSize). Where the boundary's edges are much longer
+ * or shorter than that, elements next to it are flat: no matter for the matrix in exact reading.
+ *
+ * @par Example:
+ * @code
+ * vtkNew<vtkHorizonCollar> collar;
+ * collar->SetInputConnection(reader->GetOutputPort());
+ * collar->SetWidth(0.2);
+ * vtkNew<vtkPeridynamicStiffness> stiffness;
+ * stiffness->SetInputConnection(collar->GetOutputPort());
+ * stiffness->SetHorizon(0.2);
+ * @endcode
+ *
+ * @sa tautline::addCollar (Filters/Kernel/HorizonCollar.h), vtkPeridynamicStiffness, vtkDomainSource
+ */
+
+#ifndef vtkHorizonCollar_h
+#define vtkHorizonCollar_h
+
+#include "TautlinePeridynamicsModule.h" // for export macro
+#include "vtkUnstructuredGridAlgorithm.h"
+
+class TAUTLINEPERIDYNAMICS_EXPORT vtkHorizonCollar : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static vtkHorizonCollar* New();
+  vtkTypeMacro(vtkHorizonCollar, vtkUnstructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Least width of the collar, above 0, in the unit of the mesh. The default is 0.2.
+   */
+  vtkSetMacro(Width, double);
+  vtkGetMacro(Width, double);
+  ///@}
+
+  ///@{
+  /**
+   * Edge of the collar's triangles; 0, the default, is the mean length of the boundary's edges.
+   */
+  vtkSetMacro(ElementSize, double);
+  vtkGetMacro(ElementSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * Number of threads; 0, the default, is all cores. The result does not depend on it.
+   */
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+protected:
+  vtkHorizonCollar() = default;
+  ~vtkHorizonCollar() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkHorizonCollar(const vtkHorizonCollar&) = delete;
+  void operator=(const vtkHorizonCollar&) = delete;
+
+  double Width = 0.2;
+  double ElementSize = 0.0;
+  int Threads = 0;
+};
+
+#endif

@@ -1,0 +1,70 @@
+/**
+ * @class vtkHorizonNeighbors
+ * @brief Draws the horizon of a point and the triangles that meet it, by the cases of dissertation Figure 4.4.
+ *
+ * To see what a row of a nonlocal matrix is made of, and what the dissertation's approximation of cut
+ * triangles leaves out.
+ *
+ * @par Input:
+ * Any vtkDataSet of triangles in a plane.
+ *
+ * @par Output port 0 `Triangles`:
+ * vtkPolyData: the triangles that meet the disc. Cell arrays: `Case` (int), 1 all three corners inside, 2 two,
+ * 3 one, 0 none (an edge is cut, or the disc lies in the triangle: the dissertation leaves these out);
+ * `CellId`; `Area` of the part in the disc; `ChordArea`, the same as the dissertation takes it; `Missed`, the difference.
+ *
+ * @par Output port 1 `Horizon`:
+ * vtkPolyData: the circle, as a closed line of 256 pieces.
+ *
+ * @par Output port 2 `Pieces`:
+ * vtkPolyData: the one or two triangles that stand for each (Figure 4.5), with `Case` and `CellId`.
+ *
+ * A centre off the plane is projected to it.
+ *
+ * @sa tautline::intersectDisc (Filters/Kernel/Peridynamics.h), vtkPeridynamicStiffness
+ */
+
+#ifndef vtkHorizonNeighbors_h
+#define vtkHorizonNeighbors_h
+
+#include "TautlinePeridynamicsModule.h" // for export macro
+#include "vtkPolyDataAlgorithm.h"
+
+class TAUTLINEPERIDYNAMICS_EXPORT vtkHorizonNeighbors : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkHorizonNeighbors* New();
+  vtkTypeMacro(vtkHorizonNeighbors, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The point. The default is (0.5, 0.5, 0).
+   */
+  vtkSetVector3Macro(Center, double);
+  vtkGetVector3Macro(Center, double);
+  ///@}
+
+  ///@{
+  /**
+   * The horizon, above 0. The default is 0.2.
+   */
+  vtkSetMacro(Horizon, double);
+  vtkGetMacro(Horizon, double);
+  ///@}
+
+protected:
+  vtkHorizonNeighbors();
+  ~vtkHorizonNeighbors() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkHorizonNeighbors(const vtkHorizonNeighbors&) = delete;
+  void operator=(const vtkHorizonNeighbors&) = delete;
+
+  double Center[3] = { 0.5, 0.5, 0.0 };
+  double Horizon = 0.2;
+};
+
+#endif

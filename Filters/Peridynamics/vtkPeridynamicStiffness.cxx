@@ -1,0 +1,346 @@
+#include "vtkPeridynamicStiffness.h"
+
+#include "HorizonInput.h"
+#include "PeridynamicOutput.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <sstream>
+
+vtkStandardNewMacro(vtkPeridynamicStiffness);
+
+namespace
+{
+enum Ports
+{
+  MeshPort,
+  SpectrumPort,
+  SparsityPort,
+  NumberOfPorts
+};
+
+// Parts of the progress: until the matrix is there, and until its eigenvalues are.
+constexpr double AssemblyShare = 0.7, SpectrumShare = 0.9;
+constexpr double MebiByte = 1048576.0;
+}
+
+//------------------------------------------------------------------------------
+vtkPeridynamicStiffness::vtkPeridynamicStiffness()
+{
+  this->SetNumberOfOutputPorts(NumberOfPorts);
+  // The region array, where there is one; an input without is told so.
+  this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Reference");
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::AddKernelValue(double value)
+{
+  this->KernelValues.push_back(value);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::ClearKernelValues()
+{
+  this->KernelValues.clear();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+int vtkPeridynamicStiffness::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkPeridynamicStiffness::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(),
+    port == MeshPort         ? "vtkDataSet"
+      : port == SpectrumPort ? "vtkTable"
+                             : "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkPeridynamicStiffness::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
+  if (!input)
+  {
+    return 0;
+  }
+  const auto provide = [&](int port, vtkDataObject* made)
+  {
+    const auto object = vtkSmartPointer<vtkDataObject>::Take(made);
+    vtkInformation* info = outputVector->GetInformationObject(port);
+    vtkDataObject* output = vtkDataObject::GetData(info);
+    if (!output || std::string(output->GetClassName()) != object->GetClassName())
+    {
+      info->Set(vtkDataObject::DATA_OBJECT(), object);
+    }
+  };
+  provide(MeshPort, input->NewInstance());
+  provide(SpectrumPort, vtkTable::New());
+  provide(SparsityPort, vtkImageData::New());
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkPeridynamicStiffness::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  // The picture's extent is known when the matrix is: what is promised is the most there can be.
+  const int last = std::max(this->SparsityPixels, 1) - 1;
+  const int extent[6] = { 0, last, 0, last, 0, 0 };
+  outputVector->GetInformationObject(SparsityPort)
+    ->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkPeridynamicStiffness::Proceed(double from, double to, double part)
+{
+  this->UpdateProgress(from + (to - from) * part);
+  return !this->GetAbortExecute();
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::Fill(tautline::PeridynamicOptions& options)
+{
+  options.horizon = this->Horizon;
+  options.kernel.shape = static_cast<tautline::KernelShape>(this->Kernel);
+  options.kernel.exponent = this->Exponent;
+  options.kernel.width = this->GaussianWidth;
+  options.kernel.table = this->KernelValues;
+  options.basis = static_cast<tautline::PeridynamicBasis>(this->Basis);
+  options.model =
+    this->Elastic ? tautline::PeridynamicModel::Elastic : tautline::PeridynamicModel::Scalar;
+  options.reading = static_cast<tautline::Reading>(this->Reading);
+  options.rules = static_cast<tautline::RuleSet>(this->Rules);
+  options.tolerance = this->Tolerance;
+  options.constrained = this->Constrained;
+  options.allowThinCollar = this->AllowThinCollar;
+  options.memoryLimit = this->MemoryLimit * MebiByte;
+  options.timeLimit = this->TimeLimit;
+  options.threads = this->Threads;
+  options.progress = [this](double part) { return this->Proceed(0.0, AssemblyShare, part); };
+}
+
+//------------------------------------------------------------------------------
+int vtkPeridynamicStiffness::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
+  vtkDataSet* output = vtkDataSet::GetData(outputVector, MeshPort);
+  vtkTable* table = vtkTable::GetData(outputVector, SpectrumPort);
+  vtkImageData* picture = vtkImageData::GetData(outputVector, SparsityPort);
+  this->Condition = this->SmallestEigenvalue = this->LargestEigenvalue = 0.0;
+  this->Summary.clear();
+  output->ShallowCopy(input);
+  table->Initialize();
+  picture->Initialize();
+  if (input->GetNumberOfCells() == 0)
+  {
+    return 1;
+  }
+  try
+  {
+    tautline::PeridynamicOptions options;
+    this->Fill(options);
+    bool onPoints;
+    vtkDataArray* region = nullptr;
+    vtkInformation* choice = this->GetInputArrayInformation(0);
+    // "Reference" is the default, not a demand.
+    const char* name = choice->Get(vtkDataObject::FIELD_NAME());
+    if (options.constrained &&
+      (!name || std::string(name) != "Reference" || input->GetCellData()->GetArray(name)))
+    {
+      region = tautline::chosenArray(choice, input, "collar", onPoints);
+    }
+    tautline::HorizonInput taken(input, region, this->CollarValue, this->Threads);
+    if (vtkDataArray* points =
+          tautline::chosenArray(this->GetInputArrayInformation(3), input, "given points", onPoints))
+    {
+      if (!onPoints)
+      {
+        throw tautline::Error("the given points are to be told by a point array");
+      }
+      taken.setGivenPoints(points);
+    }
+    const tautline::Index components = this->Elastic ? 2 : 1;
+    std::vector<double> given;
+    if (vtkDataArray* array = tautline::chosenArray(
+          this->GetInputArrayInformation(2), input, "given solution", onPoints);
+        array && this->Solve)
+    {
+      given = tautline::onFunctions(taken, options.basis, components, array, onPoints);
+    }
+    const tautline::PeridynamicSystem system =
+      tautline::assemblePeridynamics(taken.mesh(), options, given.empty() ? nullptr : &given);
+    tautline::Spectrum spectrum;
+    if (this->ComputeSpectrum)
+    {
+      tautline::LanczosOptions lanczos;
+      lanczos.tolerance = this->SpectrumTolerance;
+      lanczos.timeLimit = this->TimeLimit;
+      lanczos.threads = this->Threads;
+      lanczos.progress = [this](double part)
+      { return this->Proceed(AssemblyShare, SpectrumShare, part); };
+      spectrum = tautline::extremeEigenvalues(system.matrix, lanczos);
+    }
+    const tautline::PeridynamicResult result = { taken, options.basis, system };
+    tautline::addRowData(result, output);
+    if (this->ComputeSpectrum)
+    {
+      tautline::addRowVector(result, spectrum.smallestVector, "SmallestMode", nullptr, output);
+      tautline::addRowVector(result, spectrum.largestVector, "LargestMode", nullptr, output);
+    }
+    if (this->Solve)
+    {
+      this->SolveSystem(taken, system, given, output);
+    }
+    const char* shown = this->Solve ? "Solution" : "Neighbors";
+    vtkDataSetAttributes* data = this->Basis == PIECEWISE_LINEAR
+      ? static_cast<vtkDataSetAttributes*>(output->GetPointData())
+      : output->GetCellData();
+    data->SetActiveScalars(shown);
+    tautline::fillSpectrum(system, this->ComputeSpectrum ? &spectrum : nullptr, table);
+    if (this->SparsityPixels > 0)
+    {
+      tautline::drawSparsity(system.matrix, this->SparsityPixels, picture);
+    }
+    this->Report(system, this->ComputeSpectrum ? &spectrum : nullptr);
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    output->Initialize();
+    table->Initialize();
+    picture->Initialize();
+    return 0;
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::SolveSystem(const tautline::HorizonInput& input,
+  const tautline::PeridynamicSystem& system, const std::vector<double>& given, vtkDataSet* output)
+{
+  const auto basis = static_cast<tautline::PeridynamicBasis>(this->Basis);
+  const tautline::Index components = system.components;
+  bool onPoints = false;
+  vtkDataArray* array = tautline::chosenArray(this->GetInputArrayInformation(1),
+    vtkDataSet::SafeDownCast(this->GetInputDataObject(0, 0)), "source", onPoints);
+  std::vector<double> source;
+  if (array)
+  {
+    source = tautline::onMesh(input, components, array, onPoints);
+  }
+  else
+  {
+    source.assign(components * input.mesh().numberOfTriangles(), 0.0);
+    for (std::size_t i = 0; i < source.size(); i += components)
+    {
+      source[i] = this->UniformSource;
+    }
+  }
+  std::vector<double> load = tautline::sourceLoad(input.mesh(), system, basis, source, onPoints);
+  for (std::size_t i = 0; i < system.constraintLoad.size(); ++i)
+  {
+    load[i] -= system.constraintLoad[i];
+  }
+  tautline::LanczosOptions options;
+  options.maxIterations = std::max<tautline::Index>(1000, 4 * system.matrix.size);
+  options.timeLimit = this->TimeLimit;
+  options.threads = this->Threads;
+  options.progress = [this](double part) { return this->Proceed(SpectrumShare, 1.0, part); };
+  std::vector<double> solution;
+  const tautline::SolveReport report =
+    tautline::solveConjugateGradients(system.matrix, load, solution, 1e-10, options);
+  if (!report.converged)
+  {
+    vtkWarningMacro("The solution is not converged: its relative residual is " << report.residual);
+  }
+  tautline::addRowVector(
+    { input, basis, system }, solution, "Solution", given.empty() ? nullptr : &given, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::Report(
+  const tautline::PeridynamicSystem& system, const tautline::Spectrum* spectrum)
+{
+  std::ostringstream text;
+  text.precision(7);
+  text << system.matrix.size << " rows, " << system.matrix.nonzeros() << " entries.";
+  if (spectrum)
+  {
+    this->Condition = spectrum->condition;
+    this->SmallestEigenvalue = spectrum->smallest;
+    this->LargestEigenvalue = spectrum->largest;
+    text << "\nEigenvalues from " << spectrum->smallest << " to " << spectrum->largest << ".";
+    if (spectrum->definite)
+    {
+      text << "\nCondition number " << spectrum->condition << ".";
+    }
+    else
+    {
+      text << "\nNot positive definite"
+           << (this->Constrained ? "."
+                                 : ": nothing is constrained, so constants are in the null space.");
+    }
+    if (!spectrum->converged)
+    {
+      text << "\nThe eigenvalues are not converged: error bounds " << spectrum->smallestBound
+           << " and " << spectrum->largestBound << ".";
+      vtkWarningMacro("The eigenvalues are not converged: their error bounds are "
+        << spectrum->smallestBound << " and " << spectrum->largestBound);
+    }
+  }
+  if (system.collarDeficit > 0.0)
+  {
+    text << "\nThe collar is too thin by " << system.collarDeficit << ".";
+  }
+  this->Summary = text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Horizon: " << this->Horizon << "\n";
+  os << indent << "Kernel: " << this->Kernel << "\n";
+  os << indent << "Exponent: " << this->Exponent << "\n";
+  os << indent << "GaussianWidth: " << this->GaussianWidth << "\n";
+  os << indent << "KernelValues: " << this->KernelValues.size() << "\n";
+  os << indent << "Basis: " << this->Basis << "\n";
+  os << indent << "Elastic: " << this->Elastic << "\n";
+  os << indent << "Reading: " << this->Reading << "\n";
+  os << indent << "Rules: " << this->Rules << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "CollarValue: " << this->CollarValue << "\n";
+  os << indent << "Constrained: " << this->Constrained << "\n";
+  os << indent << "AllowThinCollar: " << this->AllowThinCollar << "\n";
+  os << indent << "ComputeSpectrum: " << this->ComputeSpectrum << "\n";
+  os << indent << "SpectrumTolerance: " << this->SpectrumTolerance << "\n";
+  os << indent << "Solve: " << this->Solve << "\n";
+  os << indent << "UniformSource: " << this->UniformSource << "\n";
+  os << indent << "SparsityPixels: " << this->SparsityPixels << "\n";
+  os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
+  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
+  os << indent << "Threads: " << this->Threads << "\n";
+  os << indent << "Summary: " << this->Summary << "\n";
+}

@@ -1,0 +1,355 @@
+/**
+ * @class vtkPeridynamicStiffness
+ * @brief The stiffness matrix of a nonlocal (peridynamic) model: its condition number, its rows, its solution.
+ *
+ * Assembles the bond-based model of dissertation chapter 4 on a planar triangle mesh with a collar:
+ *
+ *     a(u, w) = s int w(x) int_{|x - y| < delta} (u(x) - u(y)) k(|x - y|) dy dx,   k(r) = r^-p,  s = 1 / delta^(4-p)
+ *
+ * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel. The solution is
+ * given in the collar, the cells whose region is CollarValue. Two readings of the integrals:
+ * - EXACT: geometry and singularity of the inner integral are exact; converges; symmetric.
+ * - DISSERTATION: the rules of section 4.3. With Rules at TABLES it reproduces Tables 4.1 to 4.3.
+ *
+ * Extreme eigenvalues are by the Lanczos method, with error bounds; nothing is factorised.
+ *
+ * @par Input:
+ * Any vtkDataSet of triangles in a plane, all of one orientation. vtkHorizonCollar adds a collar;
+ * vtkDomainSource's square has one.
+ *
+ * @par Input arrays (SetInputArrayToProcess):
+ * - 0, region: cell array with one component; cells where it is CollarValue are the collar.
+ * - 1, source b: on points or cells, one component (elastic: two or three). None: UniformSource.
+ * - 2, given g: in the collar; on points, or with discontinuous bases on cells. None: 0.
+ * - 3, given points: point array, not 0 where the continuous linear basis is given. None: the points of collar cells.
+ *
+ * @par Output port 0 `Mesh`:
+ * The input with arrays on the points (continuous linear basis) or cells (others; the discontinuous linear one has a
+ * component per corner): `Unknown` (1 or 0), `Neighbors` (unknown functions a row couples with),
+ * `RowSum` (of the unknown part: what of the diagonal goes to the collar), `Diagonal`; `SmallestMode` and
+ * `LargestMode`, eigenvectors of norm 1, if ComputeSpectrum; `Solution` if Solve. Elastic vectors have three
+ * components per function, in space.
+ *
+ * @par Output port 1 `Spectrum`:
+ * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`, `Largest`, `SmallestBound`,
+ * `LargestBound` (absolute error bounds), `Definite`, `Converged`, `Iterations`, `Rows`, `Nonzeros`,
+ * `Asymmetry` (of the dissertation's reading: norm of the part that is dropped, relative), `CollarDeficit`,
+ * `IntegratedPairs`, `Memory` (bytes, estimated).
+ *
+ * @par Output port 2 `Sparsity`:
+ * vtkImageData with `Entries` per pixel, as Figure 4.2; empty unless SparsityPixels is above 0.
+ *
+ * @par Errors:
+ * Whatever tautline::assemblePeridynamics refuses, by name and with the remedy: no collar or too thin a one, an
+ * exponent at the singular limit, inverted or degenerate triangles, too little memory, time over.
+ *
+ * @par Example:
+ * @code
+ * vtkNew<vtkDomainSource> square;
+ * square->SetDomainByName("square");
+ * vtkNew<vtkPeridynamicStiffness> stiffness;
+ * stiffness->SetInputConnection(square->GetOutputPort());
+ * stiffness->SetHorizon(0.2);
+ * stiffness->Update();
+ * std::cout << stiffness->GetCondition() << "\n"; // 9.28
+ * @endcode
+ *
+ * @sa tautline::assemblePeridynamics (Filters/Kernel/Peridynamics.h), vtkHorizonCollar, vtkHorizonNeighbors
+ */
+
+#ifndef vtkPeridynamicStiffness_h
+#define vtkPeridynamicStiffness_h
+
+#include "TautlinePeridynamicsModule.h" // for export macro
+#include "vtkDataSetAlgorithm.h"
+
+#include <string> // for Summary
+#include <vector> // for KernelValues
+
+namespace tautline
+{
+class HorizonInput;
+struct PeridynamicOptions;
+struct PeridynamicSystem;
+struct Spectrum;
+}
+
+class TAUTLINEPERIDYNAMICS_EXPORT vtkPeridynamicStiffness : public vtkDataSetAlgorithm
+{
+public:
+  static vtkPeridynamicStiffness* New();
+  vtkTypeMacro(vtkPeridynamicStiffness, vtkDataSetAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The horizon delta, above 0, in the unit of the mesh. The default is 0.2.
+   */
+  vtkSetMacro(Horizon, double);
+  vtkGetMacro(Horizon, double);
+  ///@}
+
+  /**
+   * Shapes of the kernel k(r), 0 < r < delta.
+   */
+  enum Kernels
+  {
+    POWER = 0,    ///< r^-p
+    CONSTANT = 1, ///< 1
+    GAUSSIAN = 2, ///< exp(-(r / (GaussianWidth delta))^2)
+    CONICAL = 3,  ///< 1 - r / delta
+    TABLE = 4     ///< linear between the KernelValues, at equal distances from 0 to delta
+  };
+
+  ///@{
+  /**
+   * The kernel's shape. The default is POWER (0).
+   */
+  vtkSetClampMacro(Kernel, int, POWER, TABLE);
+  vtkGetMacro(Kernel, int);
+  ///@}
+
+  ///@{
+  /**
+   * Exponent p of the power, from 0 to below 4 (continuous linear basis) or 3 (others); elastic: 6 or 5. The
+   * kernel is integrable below 2 (4: elastic). The default is 1.
+   */
+  vtkSetMacro(Exponent, double);
+  vtkGetMacro(Exponent, double);
+  ///@}
+
+  ///@{
+  /**
+   * Width of the Gaussian in horizons, above 0. The default is 0.5.
+   */
+  vtkSetMacro(GaussianWidth, double);
+  vtkGetMacro(GaussianWidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * Values of the tabulated kernel: two or more, not negative, the first at r = 0, the last at delta.
+   */
+  void AddKernelValue(double value);
+  void ClearKernelValues();
+  ///@}
+
+  enum Bases
+  {
+    PIECEWISE_CONSTANT = 0,
+    PIECEWISE_LINEAR = 1,
+    DISCONTINUOUS_LINEAR = 2
+  };
+
+  ///@{
+  /**
+   * The basis functions. The default is PIECEWISE_LINEAR (1).
+   */
+  vtkSetClampMacro(Basis, int, PIECEWISE_CONSTANT, DISCONTINUOUS_LINEAR);
+  vtkGetMacro(Basis, int);
+  ///@}
+
+  ///@{
+  /**
+   * 0, the default: diffusion, (4.6). 1: linearised elasticity with the tensor kernel of (4.4).
+   */
+  vtkSetClampMacro(Elastic, bool, false, true);
+  vtkGetMacro(Elastic, bool);
+  vtkBooleanMacro(Elastic, bool);
+  ///@}
+
+  enum Readings
+  {
+    DISSERTATION = 0,
+    EXACT = 1
+  };
+
+  ///@{
+  /**
+   * How the integrals are read. The default is EXACT (1).
+   */
+  vtkSetClampMacro(Reading, int, DISSERTATION, EXACT);
+  vtkGetMacro(Reading, int);
+  ///@}
+
+  /**
+   * Points of the dissertation's rules: outer, inner.
+   */
+  enum RuleSets
+  {
+    TABLES = 0,  ///< 3 and 1 (linear), 3 and 3 (constant): what its tables were made with
+    LITERAL = 1, ///< 1 and 3: what its text says
+    ONE_ONE = 2,
+    THREE_THREE = 3,
+    THREE_ONE = 4
+  };
+
+  ///@{
+  /**
+   * The rules, in the dissertation's reading. The default is TABLES (0).
+   */
+  vtkSetClampMacro(Rules, int, TABLES, THREE_ONE);
+  vtkGetMacro(Rules, int);
+  ///@}
+
+  ///@{
+  /**
+   * Wanted relative error of the integral over each pair of triangles in exact reading, 1e-10 to 0.1. The default is 1e-5.
+   */
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Value of the region array in the collar. The default is 2, as vtkHorizonCollar and vtkDomainSource give it.
+   */
+  vtkSetMacro(CollarValue, double);
+  vtkGetMacro(CollarValue, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the solution is given in the collar. If not, every function is unknown, and constants are in the
+   * null space. The default is true.
+   */
+  vtkSetMacro(Constrained, bool);
+  vtkGetMacro(Constrained, bool);
+  vtkBooleanMacro(Constrained, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether a collar narrower than the horizon is accepted; what lies beyond the mesh then does not count. The default is
+   * false.
+   */
+  vtkSetMacro(AllowThinCollar, bool);
+  vtkGetMacro(AllowThinCollar, bool);
+  vtkBooleanMacro(AllowThinCollar, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether to find the extreme eigenvalues. The default is true.
+   */
+  vtkSetMacro(ComputeSpectrum, bool);
+  vtkGetMacro(ComputeSpectrum, bool);
+  vtkBooleanMacro(ComputeSpectrum, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Wanted relative error of the eigenvalues, 1e-14 to 0.1. The default is 1e-8.
+   */
+  vtkSetClampMacro(SpectrumTolerance, double, 1e-14, 0.1);
+  vtkGetMacro(SpectrumTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether to solve a(u, w) = int b w with u = g in the collar. The default is false.
+   */
+  vtkSetMacro(Solve, bool);
+  vtkGetMacro(Solve, bool);
+  vtkBooleanMacro(Solve, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The source b where no array is given; elastic: of its first component, the other is 0. The default is 1.
+   */
+  vtkSetMacro(UniformSource, double);
+  vtkGetMacro(UniformSource, double);
+  ///@}
+
+  ///@{
+  /**
+   * Largest number of rows of the picture of the sparsity pattern, 0 for none, up to 4096. The default is 0.
+   */
+  vtkSetClampMacro(SparsityPixels, int, 0, 4096);
+  vtkGetMacro(SparsityPixels, int);
+  ///@}
+
+  ///@{
+  /**
+   * Memory the matrix may take, in MiB; 0, the default, is what the machine has free.
+   */
+  vtkSetClampMacro(MemoryLimit, double, 0.0, 1e12);
+  vtkGetMacro(MemoryLimit, double);
+  ///@}
+
+  ///@{
+  /**
+   * Seconds the assembly may take, then as many the eigenvalues; 0, the default, is no limit. The assembly ends
+   * with an error; the eigenvalues with the best so far and a warning.
+   */
+  vtkSetClampMacro(TimeLimit, double, 0.0, 1e9);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  ///@{
+  /**
+   * Number of threads; 0, the default, is all cores. The result does not depend on it.
+   */
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  ///@{
+  /**
+   * Results of the last execution: condition number (0: none, or not positive definite), extreme eigenvalues, all
+   * in words.
+   */
+  vtkGetMacro(Condition, double);
+  vtkGetMacro(SmallestEigenvalue, double);
+  vtkGetMacro(LargestEigenvalue, double);
+  const char* GetSummary() const { return this->Summary.c_str(); }
+  ///@}
+
+protected:
+  vtkPeridynamicStiffness();
+  ~vtkPeridynamicStiffness() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkPeridynamicStiffness(const vtkPeridynamicStiffness&) = delete;
+  void operator=(const vtkPeridynamicStiffness&) = delete;
+
+  void Fill(tautline::PeridynamicOptions& options);
+  void Report(const tautline::PeridynamicSystem& system, const tautline::Spectrum* spectrum);
+  void SolveSystem(const tautline::HorizonInput& input, const tautline::PeridynamicSystem& system,
+    const std::vector<double>& given, vtkDataSet* output);
+  bool Proceed(double from, double to, double part);
+
+  double Horizon = 0.2;
+  int Kernel = POWER;
+  double Exponent = 1.0;
+  double GaussianWidth = 0.5;
+  std::vector<double> KernelValues;
+  int Basis = PIECEWISE_LINEAR;
+  bool Elastic = false;
+  int Reading = EXACT;
+  int Rules = TABLES;
+  double Tolerance = 1e-5;
+  double CollarValue = 2.0;
+  bool Constrained = true;
+  bool AllowThinCollar = false;
+  bool ComputeSpectrum = true;
+  double SpectrumTolerance = 1e-8;
+  bool Solve = false;
+  double UniformSource = 1.0;
+  int SparsityPixels = 0;
+  double MemoryLimit = 0.0;
+  double TimeLimit = 0.0;
+  int Threads = 0;
+  double Condition = 0.0;
+  double SmallestEigenvalue = 0.0;
+  double LargestEigenvalue = 0.0;
+  std::string Summary;
+};
+
+#endif

@@ -1,0 +1,260 @@
+#include "vtkShapeRetrieval.h"
+
+#include "ShapeAdapter.h"
+#include "tautline/ShapeRetrieval.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataObjectTreeIterator.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <sstream>
+
+vtkStandardNewMacro(vtkShapeRetrieval);
+
+namespace
+{
+struct ShapeSet
+{
+  std::vector<std::string> names, labels;
+  std::vector<tautline::Silhouette> shapes;
+  std::vector<std::string> classes;     ///< in order of their first shape
+  std::vector<tautline::Index> numbers; ///< of the class of each shape
+};
+
+ShapeSet takeShapes(vtkMultiBlockDataSet* input, tautline::Foreground foreground)
+{
+  ShapeSet set;
+  vtkSmartPointer<vtkDataObjectTreeIterator> it;
+  it.TakeReference(input->NewTreeIterator());
+  it->VisitOnlyLeavesOn();
+  for (it->InitTraversal(); !it->IsDoneWithTraversal(); it->GoToNextItem())
+  {
+    vtkDataObject* block = it->GetCurrentDataObject();
+    std::string name = "shape " + std::to_string(set.names.size());
+    if (it->HasCurrentMetaData() && it->GetCurrentMetaData()->Has(vtkCompositeDataSet::NAME()))
+    {
+      name = it->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME());
+    }
+    vtkImageData* picture = vtkImageData::SafeDownCast(block);
+    if (!picture)
+    {
+      throw tautline::Error(name + " is not an image.");
+    }
+    vtkAbstractArray* label = picture->GetFieldData()->GetAbstractArray("Label");
+    try
+    {
+      const tautline::GreyImage image(picture);
+      tautline::SilhouetteOptions options;
+      options.foreground = foreground;
+      set.shapes.push_back(tautline::traceSilhouette(image.view(), options));
+    }
+    catch (const tautline::Error& error)
+    {
+      throw tautline::Error(name + ": " + error.what());
+    }
+    set.labels.push_back(label && label->GetNumberOfTuples() > 0
+        ? label->GetVariantValue(0).ToString()
+        : name.substr(0, name.find_first_of("0123456789")));
+    const auto found = std::find(set.classes.begin(), set.classes.end(), set.labels.back());
+    set.numbers.push_back(found - set.classes.begin());
+    if (found == set.classes.end())
+    {
+      set.classes.push_back(set.labels.back());
+    }
+    set.names.push_back(name);
+  }
+  return set;
+}
+
+template <class Array>
+Array* addColumn(vtkTable* table, const char* name, vtkIdType rows)
+{
+  vtkNew<Array> column;
+  column->SetName(name);
+  column->SetNumberOfValues(rows);
+  table->AddColumn(column);
+  return column; // the table keeps it
+}
+
+void fillTables(const ShapeSet& set, const tautline::Retrieval& result, vtkTable* distances,
+  vtkTable* ranking, vtkTable* statistics, vtkTable* confusion)
+{
+  const vtkIdType n = result.count;
+  auto* names = addColumn<vtkStringArray>(distances, "Name", n);
+  auto* labels = addColumn<vtkStringArray>(distances, "Label", n);
+  for (vtkIdType s = 0; s < n; ++s)
+  {
+    names->SetValue(s, set.names[s]);
+    labels->SetValue(s, set.labels[s]);
+  }
+  for (vtkIdType t = 0; t < n; ++t)
+  {
+    auto* column = addColumn<vtkDoubleArray>(distances, set.names[t].c_str(), n);
+    for (vtkIdType s = 0; s < n; ++s)
+    {
+      column->SetValue(s, result.distances[s * n + t]);
+    }
+  }
+
+  const tautline::Recognition& found = result.recognition;
+  const vtkIdType best = static_cast<vtkIdType>(found.hitsAt.size());
+  auto* query = addColumn<vtkStringArray>(ranking, "Query", n * best);
+  auto* queryLabel = addColumn<vtkStringArray>(ranking, "QueryLabel", n * best);
+  auto* rank = addColumn<vtkIntArray>(ranking, "Rank", n * best);
+  auto* match = addColumn<vtkStringArray>(ranking, "Match", n * best);
+  auto* matchLabel = addColumn<vtkStringArray>(ranking, "MatchLabel", n * best);
+  auto* distance = addColumn<vtkDoubleArray>(ranking, "Distance", n * best);
+  auto* correct = addColumn<vtkIntArray>(ranking, "Correct", n * best);
+  for (vtkIdType s = 0; s < n; ++s)
+  {
+    for (vtkIdType k = 0; k < best; ++k)
+    {
+      const vtkIdType row = s * best + k;
+      const tautline::Index t = result.ranking[s * (n - 1) + k];
+      query->SetValue(row, set.names[s]);
+      queryLabel->SetValue(row, set.labels[s]);
+      rank->SetValue(row, static_cast<int>(k + 1));
+      match->SetValue(row, set.names[t]);
+      matchLabel->SetValue(row, set.labels[t]);
+      distance->SetValue(row, result.distances[s * n + t]);
+      correct->SetValue(row, set.numbers[s] == set.numbers[t]);
+    }
+  }
+
+  auto* at = addColumn<vtkIntArray>(statistics, "Rank", best);
+  auto* hits = addColumn<vtkIntArray>(statistics, "Correct", best);
+  auto* rate = addColumn<vtkDoubleArray>(statistics, "Rate", best);
+  for (vtkIdType k = 0; k < best; ++k)
+  {
+    at->SetValue(k, static_cast<int>(k + 1));
+    hits->SetValue(k, static_cast<int>(found.hitsAt[k]));
+    rate->SetValue(k, 100.0 * static_cast<double>(found.hitsAt[k]) / static_cast<double>(n));
+  }
+  vtkNew<vtkDoubleArray> total;
+  total->SetName("RecognitionRate");
+  total->InsertNextValue(100.0 * found.rate);
+  statistics->GetFieldData()->AddArray(total);
+
+  auto* ofClass =
+    addColumn<vtkStringArray>(confusion, "Label", static_cast<vtkIdType>(set.classes.size()));
+  for (std::size_t c = 0; c < set.classes.size(); ++c)
+  {
+    ofClass->SetValue(static_cast<vtkIdType>(c), set.classes[c]);
+  }
+  for (std::size_t c = 0; c < set.classes.size(); ++c)
+  {
+    auto* column = addColumn<vtkDoubleArray>(
+      confusion, set.classes[c].c_str(), static_cast<vtkIdType>(set.classes.size()));
+    for (std::size_t row = 0; row < set.classes.size(); ++row)
+    {
+      column->SetValue(
+        static_cast<vtkIdType>(row), 100.0 * found.confusion[row * set.classes.size() + c]);
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+vtkShapeRetrieval::vtkShapeRetrieval()
+{
+  this->SetNumberOfOutputPorts(4);
+}
+
+//------------------------------------------------------------------------------
+int vtkShapeRetrieval::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkShapeRetrieval::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkShapeRetrieval::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkMultiBlockDataSet* input = vtkMultiBlockDataSet::GetData(inputVector[0]);
+  this->Summary.clear();
+  this->RecognitionRate = 0.0;
+  vtkTable* tables[4];
+  for (int port = 0; port < 4; ++port)
+  {
+    tables[port] = vtkTable::GetData(outputVector, port);
+  }
+  if (!input || input->GetNumberOfBlocks() == 0)
+  {
+    return 1;
+  }
+  try
+  {
+    const ShapeSet set = takeShapes(input, static_cast<tautline::Foreground>(this->Foreground));
+    tautline::RetrievalOptions options;
+    this->GetOptions(options.locations, options.match);
+    options.spacing = this->Spacing;
+    options.symmetric = this->Symmetric;
+    if (this->Setting != CUSTOM)
+    {
+      const auto progress = options.match.progress;
+      options = this->Setting == FELZENSZWALB ? tautline::RetrievalOptions::felzenszwalb()
+        : this->Setting == DISSERTATION       ? tautline::RetrievalOptions::dissertation()
+                                              : tautline::RetrievalOptions::highest();
+      options.match.progress = progress;
+      options.match.threads = this->Threads;
+      options.match.timeLimit = this->TimeLimit;
+    }
+    options.best = this->BestMatches;
+    const tautline::Retrieval result = tautline::retrieveShapes(set.shapes, set.numbers, options);
+    fillTables(set, result, tables[0], tables[1], tables[2], tables[3]);
+    this->RecognitionRate = 100.0 * result.recognition.rate;
+    std::ostringstream text;
+    text << result.count << " shapes of " << set.classes.size()
+         << " classes: " << result.recognition.hits << " of " << result.recognition.possible
+         << " best matches are of the query's class, " << this->RecognitionRate << " %.";
+    if (result.stop != tautline::MatchStop::Complete)
+    {
+      text << " Ended early: distances of -1 were not computed.";
+    }
+    this->Summary = text.str();
+  }
+  catch (const std::exception& error)
+  {
+    for (vtkTable* table : tables)
+    {
+      table->Initialize();
+    }
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkShapeRetrieval::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Setting: " << this->Setting << "\n";
+  os << indent << "Spacing: " << this->Spacing << "\n";
+  os << indent << "Symmetric: " << this->Symmetric << "\n";
+  os << indent << "BestMatches: " << this->BestMatches << "\n";
+  os << indent << "Summary: " << this->Summary << "\n";
+}

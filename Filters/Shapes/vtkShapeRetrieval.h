@@ -1,0 +1,115 @@
+/**
+ * @class vtkShapeRetrieval
+ * @brief "Shape Retrieval": matches each of a set of silhouettes with each other one, and ranks them.
+ *
+ * @par Input:
+ * vtkMultiBlockDataSet of images, as the silhouette-set reader gives them: the name of a block is the name of the
+ * shape, its field array `Label` (string or number) the class. Without labels the class is the name up to its first
+ * digit.
+ *
+ * @par Outputs, vtkTable:
+ * Port 0, Distances: `Name`, `Label` and a column per shape with the distance to it; -1 where the run ended before.
+ * Port 1, Ranking: a row for each of the best matches of each query: `Query`, `QueryLabel`, `Rank`, `Match`,
+ * `MatchLabel`, `Distance`, `Correct`.
+ * Port 2, Statistics: a row per rank, `Rank`, `Correct` (queries whose match at that rank is of their class), `Rate` in
+ * percent of the queries; the field array `RecognitionRate` (percent of all) is also GetRecognitionRate().
+ * Port 3, Confusion: `Label` and a column per class: the percentage of the best matches of a class's shapes that are of
+ * each class.
+ *
+ * The recognition rate is the number of best matches of the query's own class, as a part of those possible
+ * (dissertation section 5.3); the query itself does not count.
+ *
+ * @sa vtkSilhouetteSetReader, vtkShapeMatcher, tautline::retrieveShapes (Filters/Kernel/ShapeRetrieval.h)
+ */
+
+#ifndef vtkShapeRetrieval_h
+#define vtkShapeRetrieval_h
+
+#include "TautlineShapesModule.h" // for export macro
+#include "vtkShapeAlgorithm.h"
+
+#include <string> // for Summary
+
+class TAUTLINESHAPES_EXPORT vtkShapeRetrieval : public vtkShapeAlgorithm
+{
+public:
+  static vtkShapeRetrieval* New();
+  vtkTypeMacro(vtkShapeRetrieval, vtkShapeAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * Settings by name.
+   */
+  enum Settings
+  {
+    CUSTOM = 0,
+    DISSERTATION = 1,
+    FELZENSZWALB = 2,
+    HIGHEST = 3
+  };
+
+  ///@{
+  /**
+   * CUSTOM (0): the properties as they are. DISSERTATION (1): spacing 25, 30 x 30 grid, a = 4 b, theta = d_max / 3.
+   * FELZENSZWALB (2): the same without the distortion and the centre of mass. HIGHEST (3, the default): contour locations,
+   * denser vertices, directed edges, ordering, descriptors, a weight of turning, both directions. All but CUSTOM override
+   * the properties of the energy, the locations, the spacing, the rule and Symmetric.
+   */
+  vtkSetClampMacro(Setting, int, CUSTOM, HIGHEST);
+  vtkGetMacro(Setting, int);
+  ///@}
+
+  ///@{
+  /**
+   * Distance of vertices along the outlines, pixels, above 0. The default is 25.
+   */
+  vtkSetMacro(Spacing, double);
+  vtkGetMacro(Spacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the distance counts both directions, each by its number of triangles. Off by default.
+   */
+  vtkSetMacro(Symmetric, bool);
+  vtkGetMacro(Symmetric, bool);
+  vtkBooleanMacro(Symmetric, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Matches per query that count, at least 1. The default is 10.
+   */
+  vtkSetMacro(BestMatches, int);
+  vtkGetMacro(BestMatches, int);
+  ///@}
+
+  ///@{
+  /**
+   * Results of the last run: the rate in percent, and what was found, in words.
+   */
+  vtkGetMacro(RecognitionRate, double);
+  vtkGetMacro(Summary, std::string);
+  ///@}
+
+protected:
+  vtkShapeRetrieval();
+  ~vtkShapeRetrieval() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkShapeRetrieval(const vtkShapeRetrieval&) = delete;
+  void operator=(const vtkShapeRetrieval&) = delete;
+
+  int Setting = HIGHEST;
+  double Spacing = 25.0;
+  bool Symmetric = false;
+  int BestMatches = 10;
+  double RecognitionRate = 0.0;
+  std::string Summary;
+};
+
+#endif

@@ -1,0 +1,315 @@
+// The filters of nonlocal models: arrays, tables and pictures they make, input of every kind, errors in words.
+#include "Check.h"
+#include "HorizonMeshes.h"
+#include "VtkMeshes.h"
+
+#include "vtkDomainSource.h"
+#include "vtkHorizonCollar.h"
+#include "vtkHorizonNeighbors.h"
+#include "vtkPeridynamicStiffness.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
+
+using namespace tautline;
+
+namespace
+{
+vtkSmartPointer<vtkUnstructuredGrid> squareWithCollar(double h = 0.1, double collar = 0.2)
+{
+  vtkNew<vtkDomainSource> source;
+  source->SetDomainByName("square");
+  source->SetElementSize(h);
+  source->SetCollarWidth(collar);
+  source->Update();
+  return vtkUnstructuredGrid::SafeDownCast(source->GetOutputDataObject(0));
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> bareSquare(int n, bool slanted, int precision = VTK_DOUBLE)
+{
+  MeshData data = blockMesh(CellType::Triangle, n, n, 0);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      const Vec3 q = (1.0 / n) * p;
+      return slanted ? Vec3{ 1.0 + 0.6 * q[0], q[1], 2.0 + 0.8 * q[0] } : q;
+    });
+  return toGrid(data, precision);
+}
+
+/// Runs a filter; what it complains of.
+std::string errorOf(vtkAlgorithm* filter)
+{
+  std::string text;
+  vtkNew<vtkCallbackCommand> keep;
+  keep->SetClientData(&text);
+  keep->SetCallback([](vtkObject*, unsigned long, void* to, void* message)
+    { *static_cast<std::string*>(to) += static_cast<const char*>(message); });
+  vtkObject* const sources[] = { filter, filter->GetExecutive() };
+  for (vtkObject* source : sources)
+  {
+    source->AddObserver(vtkCommand::ErrorEvent, keep);
+  }
+  filter->Modified();
+  filter->Update();
+  for (vtkObject* source : sources)
+  {
+    source->RemoveObserver(keep);
+  }
+  return text;
+}
+
+double column(vtkAlgorithm* filter, const char* name)
+{
+  auto* table = vtkTable::SafeDownCast(filter->GetOutputDataObject(1));
+  return table->GetValueByName(0, name).ToDouble();
+}
+
+//------------------------------------------------------------------------------
+void testStiffness()
+{
+  const auto mesh = squareWithCollar();
+  vtkNew<vtkPeridynamicStiffness> filter;
+  filter->SetInputData(mesh);
+  filter->SetSparsityPixels(40);
+  filter->SetSolve(true);
+  filter->Update();
+  TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), 9.2827, 1e-3);
+  TAUTLINE_CHECK_EQUAL(column(filter, "Condition"), filter->GetCondition());
+  TAUTLINE_CHECK_EQUAL(column(filter, "Rows"), 81.0);
+  TAUTLINE_CHECK_EQUAL(column(filter, "Definite"), 1.0);
+  TAUTLINE_CHECK(
+    std::string(filter->GetSummary()).find("Condition number 9.28") != std::string::npos);
+
+  vtkPointData* points = filter->GetOutput()->GetPointData();
+  auto* unknown = vtkUnsignedCharArray::SafeDownCast(points->GetArray("Unknown"));
+  auto* neighbors = vtkIntArray::SafeDownCast(points->GetArray("Neighbors"));
+  auto* diagonal = vtkDoubleArray::SafeDownCast(points->GetArray("Diagonal"));
+  auto* sum = vtkDoubleArray::SafeDownCast(points->GetArray("RowSum"));
+  auto* solution = vtkDoubleArray::SafeDownCast(points->GetArray("Solution"));
+  auto* mode = vtkDoubleArray::SafeDownCast(points->GetArray("SmallestMode"));
+  TAUTLINE_CHECK(points->GetArray("LargestMode") != nullptr);
+  double entries = 0.0, square = 0.0, highest = 0.0;
+  for (vtkIdType i = 0; i < unknown->GetNumberOfTuples(); ++i)
+  {
+    double p[3];
+    mesh->GetPoint(i, p);
+    const bool inside = p[0] > 1e-6 && p[0] < 1 - 1e-6 && p[1] > 1e-6 && p[1] < 1 - 1e-6;
+    TAUTLINE_CHECK_EQUAL(unknown->GetValue(i) != 0, inside);
+    TAUTLINE_CHECK_EQUAL(diagonal->GetValue(i) > 0.0, inside);
+    TAUTLINE_CHECK_EQUAL(solution->GetValue(i) > 0.0, inside);
+    TAUTLINE_CHECK(sum->GetValue(i) > -1e-9);
+    entries += inside ? neighbors->GetValue(i) + 1 : 0;
+    square += mode->GetValue(i) * mode->GetValue(i);
+    highest = std::max(highest, solution->GetValue(i));
+  }
+  TAUTLINE_CHECK_EQUAL(entries, column(filter, "Nonzeros"));
+  TAUTLINE_CHECK_NEAR(square, 1.0, 1e-9);
+  // About that of the Laplacian with factor pi / 6: 0.0737 / (pi / 6) = 0.141, and more with a horizon.
+  TAUTLINE_CHECK(highest > 0.13 && highest < 0.25);
+  auto* picture = vtkImageData::SafeDownCast(filter->GetOutputDataObject(2));
+  TAUTLINE_CHECK_EQUAL(picture->GetNumberOfPoints(), 1600);
+  double pixels = 0.0;
+  for (vtkIdType i = 0; i < picture->GetNumberOfPoints(); ++i)
+  {
+    pixels += picture->GetPointData()->GetScalars()->GetTuple1(i);
+  }
+  TAUTLINE_CHECK_EQUAL(pixels, entries);
+
+  // Constants and discontinuous functions are on cells; the elastic model has vectors in space.
+  filter->SetBasis(vtkPeridynamicStiffness::PIECEWISE_CONSTANT);
+  filter->Update();
+  TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), 16.0772, 1e-3);
+  TAUTLINE_CHECK(filter->GetOutput()->GetCellData()->GetArray("Solution") != nullptr);
+  TAUTLINE_CHECK(filter->GetOutput()->GetPointData()->GetArray("Solution") == nullptr);
+  filter->SetBasis(vtkPeridynamicStiffness::DISCONTINUOUS_LINEAR);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(
+    filter->GetOutput()->GetCellData()->GetArray("Solution")->GetNumberOfComponents(), 3);
+  filter->SetBasis(vtkPeridynamicStiffness::PIECEWISE_LINEAR);
+  filter->ElasticOn();
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(
+    filter->GetOutput()->GetPointData()->GetArray("Solution")->GetNumberOfComponents(), 3);
+  TAUTLINE_CHECK_EQUAL(column(filter, "Rows"), 162.0);
+}
+
+//------------------------------------------------------------------------------
+/// u = 1 + x in the collar and no source: u = 1 + x everywhere.
+void testGiven()
+{
+  const auto mesh = squareWithCollar();
+  vtkNew<vtkDoubleArray> given, onCells;
+  given->SetName("g");
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    given->InsertNextValue(1.0 + mesh->GetPoint(i)[0]);
+  }
+  mesh->GetPointData()->AddArray(given);
+  onCells->SetName("cells");
+  onCells->SetNumberOfTuples(mesh->GetNumberOfCells());
+  onCells->Fill(0.0);
+  mesh->GetCellData()->AddArray(onCells);
+  vtkNew<vtkPeridynamicStiffness> filter;
+  filter->SetInputData(mesh);
+  filter->SetSolve(true);
+  filter->SetUniformSource(0.0);
+  filter->SetComputeSpectrum(false);
+  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "g");
+  filter->Update();
+  vtkDataArray* solution = filter->GetOutput()->GetPointData()->GetArray("Solution");
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    TAUTLINE_CHECK_NEAR(solution->GetTuple1(i), given->GetValue(i), 2e-4);
+  }
+  TAUTLINE_CHECK(filter->GetOutput()->GetPointData()->GetArray("SmallestMode") == nullptr);
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
+  filter->SetUniformSource(7.0);
+  filter->Update();
+  TAUTLINE_CHECK_NEAR(filter->GetOutput()->GetPointData()->GetArray("Solution")->GetTuple1(112),
+    given->GetValue(112), 2e-4);
+  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
+  TAUTLINE_CHECK(errorOf(filter).find("needs one on points") != std::string::npos);
+}
+
+//------------------------------------------------------------------------------
+/// A mesh in any plane, of any precision, of any class; and its collar.
+void testCollar()
+{
+  double first = 0.0;
+  for (const bool slanted : { false, true })
+  {
+    for (const int precision : { VTK_DOUBLE, VTK_FLOAT })
+    {
+      const auto bare = bareSquare(8, slanted, precision);
+      vtkNew<vtkHorizonCollar> collar;
+      collar->SetInputData(bare);
+      collar->SetWidth(0.25);
+      vtkNew<vtkPeridynamicStiffness> filter;
+      filter->SetInputConnection(collar->GetOutputPort());
+      filter->SetHorizon(0.25);
+      filter->Update();
+      first = first > 0.0 ? first : filter->GetCondition();
+      TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), first, 2e-4);
+      vtkUnstructuredGrid* made = collar->GetOutput();
+      vtkDataArray* reference = made->GetCellData()->GetArray("Reference");
+      for (vtkIdType cell = 0; cell < made->GetNumberOfCells(); ++cell)
+      {
+        TAUTLINE_CHECK_EQUAL(reference->GetTuple1(cell), cell < bare->GetNumberOfCells() ? 1 : 2);
+      }
+      for (vtkIdType i = 0; i < made->GetNumberOfPoints(); ++i)
+      {
+        double p[3];
+        made->GetPoint(i, p);
+        // In the plane of the input.
+        TAUTLINE_CHECK_NEAR(slanted ? 0.8 * (p[0] - 1.0) - 0.6 * (p[2] - 2.0) : p[2], 0.0, 1e-6);
+      }
+    }
+  }
+  vtkNew<vtkPeridynamicStiffness> filter;
+  MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
+  filter->SetInputData(toPolyData(data));
+  filter->SetHorizon(1.5);
+  filter->ConstrainedOff();
+  filter->Update();
+  TAUTLINE_CHECK(vtkPolyData::SafeDownCast(filter->GetOutput()) != nullptr);
+  TAUTLINE_CHECK_EQUAL(filter->GetCondition(), 0.0);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("null space") != std::string::npos);
+  vtkNew<vtkUnstructuredGrid> empty;
+  filter->SetInputData(empty);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetOutput()->GetNumberOfCells(), 0);
+}
+
+//------------------------------------------------------------------------------
+void testNeighbors()
+{
+  vtkNew<vtkHorizonNeighbors> filter;
+  filter->SetInputData(squareWithCollar());
+  filter->SetCenter(0.43, 0.51, 0.0);
+  filter->Update();
+  vtkCellData* cells = filter->GetOutput()->GetCellData();
+  double area = 0.0, chord = 0.0;
+  int seen[4] = {};
+  for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfCells(); ++i)
+  {
+    area += cells->GetArray("Area")->GetTuple1(i);
+    chord += cells->GetArray("ChordArea")->GetTuple1(i);
+    ++seen[static_cast<int>(cells->GetArray("Case")->GetTuple1(i))];
+  }
+  TAUTLINE_CHECK_RELATIVE(area, M_PI * 0.04, 1e-12);
+  TAUTLINE_CHECK(chord < area && chord > 0.9 * area);
+  TAUTLINE_CHECK(seen[1] > 5 && seen[2] > 5 && seen[3] > 5);
+  auto* circle = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
+  auto* pieces = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(2));
+  TAUTLINE_CHECK_EQUAL(circle->GetNumberOfLines(), 1);
+  TAUTLINE_CHECK_EQUAL(pieces->GetNumberOfCells(), seen[1] + 2 * seen[2] + seen[3]);
+  filter->SetHorizon(-1.0);
+  TAUTLINE_CHECK(errorOf(filter).find("horizon has to be above 0") != std::string::npos);
+}
+
+//------------------------------------------------------------------------------
+void testErrors()
+{
+  const auto check = [](vtkAlgorithm* filter, const char* text)
+  {
+    const std::string error = errorOf(filter);
+    if (!TAUTLINE_CHECK(error.find(text) != std::string::npos))
+    {
+      std::cerr << "  the error is: " << error << ", expected: " << text << "\n";
+    }
+    TAUTLINE_CHECK_EQUAL(
+      vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  };
+  vtkNew<vtkPeridynamicStiffness> filter;
+  filter->SetInputData(bareSquare(4, false));
+  check(filter, "add it with Horizon Collar");
+  filter->SetInputData(squareWithCollar());
+  filter->SetHorizon(0.3);
+  check(filter, "a collar of width 0.3 is needed");
+  filter->AllowThinCollarOn();
+  filter->Update();
+  TAUTLINE_CHECK_RELATIVE(column(filter, "CollarDeficit"), 0.1, 1e-9);
+  filter->AllowThinCollarOff();
+  filter->SetHorizon(0.2);
+  filter->SetExponent(4.0);
+  check(filter, "to below 4");
+  filter->SetExponent(1.0);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent");
+  check(filter, "no array 'absent'");
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Reference");
+  filter->SetMemoryLimit(0.01);
+  check(filter, "MiB are allowed");
+  filter->SetMemoryLimit(0.0);
+  filter->SetTimeLimit(1e-9);
+  check(filter, "time limit");
+  filter->SetTimeLimit(0.0);
+  filter->SetInputData(toGrid(blockMesh(CellType::Quadrilateral, 3, 3, 0)));
+  check(filter, "9 cells that are no triangles (quadrilateral): run Triangulate first");
+  filter->SetInputData(toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2)));
+  check(filter, "no triangles (tetrahedron)");
+  MeshData curved = blockMesh(CellType::Triangle, 4, 4, 0);
+  curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[0] * p[1] }; });
+  filter->SetInputData(toGrid(curved));
+  check(filter, "do not lie in a plane");
+  vtkNew<vtkHorizonCollar> collar;
+  collar->SetInputData(toGrid(curved));
+  check(collar, "do not lie in a plane");
+  collar->SetInputData(bareSquare(4, false));
+  collar->SetWidth(0.0);
+  check(collar, "above 0");
+}
+}
+
+int TestPeridynamicFilters(int, char*[])
+{
+  testStiffness();
+  testGiven();
+  testCollar();
+  testNeighbors();
+  testErrors();
+  return exitCode();
+}

@@ -1,0 +1,317 @@
+// The filters of the module Shapes: arrays and tables they promise, images of all kinds, errors, the reader.
+
+#include "Check.h"
+#include "Shapes.h"
+
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkExecutive.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkPNGWriter.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkShapeMatcher.h"
+#include "vtkShapeRetrieval.h"
+#include "vtkSilhouetteMesher.h"
+#include "vtkSilhouetteSetReader.h"
+#include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <filesystem>
+#include <fstream>
+
+using namespace tautline;
+
+namespace
+{
+vtkSmartPointer<vtkImageData> makeImage(
+  const Picture& picture, int components = 1, double spacing = 1.0)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(static_cast<int>(picture.width), static_cast<int>(picture.height), 1);
+  image->SetSpacing(spacing, spacing, 1.0);
+  image->SetOrigin(10.0, 20.0, 3.0);
+  vtkNew<vtkUnsignedCharArray> values;
+  values->SetName("Pixels");
+  values->SetNumberOfComponents(components);
+  values->SetNumberOfTuples(image->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    for (int c = 0; c < components; ++c)
+    {
+      // With an alpha channel the colours are constant: only the alpha shows the shape.
+      const bool alpha = c == components - 1 && components % 2 == 0;
+      values->SetComponent(
+        i, c, components % 2 == 0 && !alpha ? 77.0 : picture.values[static_cast<std::size_t>(i)]);
+    }
+  }
+  image->GetPointData()->SetScalars(values);
+  return image;
+}
+
+void testMesher()
+{
+  const Picture picture = blob(100, 50, 50, 25);
+  vtkNew<vtkSilhouetteMesher> mesher;
+  mesher->SetInputData(makeImage(picture, 1, 0.5));
+  mesher->SetSpacing(15);
+  mesher->Update();
+  auto* mesh = vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0));
+  const vtkIdType n = mesh->GetNumberOfPoints();
+  TAUTLINE_CHECK(n > 6 && mesh->GetNumberOfCells() == n - 2);
+  for (const char* name : { "BoundaryOrder", "EliminationOrder" })
+  {
+    vtkDataArray* array = mesh->GetPointData()->GetArray(name);
+    TAUTLINE_CHECK(
+      array && array->GetRange()[0] == 0 && array->GetRange()[1] == static_cast<double>(n - 1));
+  }
+  TAUTLINE_CHECK_EQUAL(
+    mesh->GetCellData()->GetArray("EliminationStep")->GetRange()[1], static_cast<double>(n - 3));
+  // In space: origin and spacing of the image.
+  const Silhouette shape = traceSilhouette(picture.view());
+  TAUTLINE_CHECK_NEAR(mesh->GetFieldData()->GetArray("CentreOfMass")->GetComponent(0, 0),
+    10.0 + 0.5 * shape.centre[0], 1e-9);
+  TAUTLINE_CHECK_NEAR(
+    mesh->GetFieldData()->GetArray("MaximumDistance")->GetTuple1(0), 0.5 * shape.maxDistance, 1e-9);
+  TAUTLINE_CHECK_NEAR(
+    mesh->GetFieldData()->GetArray("Area")->GetTuple1(0), 0.25 * shape.area, 1e-9);
+  TAUTLINE_CHECK_NEAR(mesh->GetPoint(0)[2], 3.0, 1e-12);
+  auto* outline = vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1));
+  TAUTLINE_CHECK_EQUAL(outline->GetNumberOfPoints(), static_cast<vtkIdType>(shape.outline.size()));
+  TAUTLINE_CHECK(mesher->GetSummary().find("triangles") != std::string::npos);
+  // Grey, grey with alpha, colour, colour with alpha: the same mesh.
+  for (int components : { 2, 3, 4 })
+  {
+    vtkNew<vtkSilhouetteMesher> other;
+    other->SetInputData(makeImage(picture, components, 0.5));
+    other->SetSpacing(15);
+    other->Update();
+    auto* same = vtkUnstructuredGrid::SafeDownCast(other->GetOutputDataObject(0));
+    TAUTLINE_CHECK_EQUAL(same->GetNumberOfPoints(), n);
+    for (vtkIdType i = 0; i < std::min(n, same->GetNumberOfPoints()); ++i)
+    {
+      TAUTLINE_CHECK_NEAR(same->GetPoint(i)[0], mesh->GetPoint(i)[0], 1e-9);
+    }
+  }
+}
+
+/// Values of cells are pixels, half a pixel off: as the GDAL reader of ParaView gives PNG files.
+void testCellPixels()
+{
+  const Picture picture = blob(80, 40, 40, 20);
+  auto points = makeImage(picture);
+  vtkNew<vtkImageData> cells;
+  cells->SetDimensions(81, 81, 1);
+  cells->SetOrigin(9.5, 19.5, 3.0);
+  cells->GetCellData()->SetScalars(points->GetPointData()->GetScalars());
+  vtkNew<vtkSilhouetteMesher> first, second;
+  first->SetInputData(points);
+  second->SetInputData(cells);
+  first->Update();
+  second->Update();
+  auto* a = vtkUnstructuredGrid::SafeDownCast(first->GetOutputDataObject(0));
+  auto* b = vtkUnstructuredGrid::SafeDownCast(second->GetOutputDataObject(0));
+  TAUTLINE_CHECK(a->GetNumberOfPoints() > 3 && a->GetNumberOfPoints() == b->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < std::min(a->GetNumberOfPoints(), b->GetNumberOfPoints()); ++i)
+  {
+    TAUTLINE_CHECK_NEAR(a->GetPoint(i)[1], b->GetPoint(i)[1], 1e-9);
+  }
+}
+
+std::string errorOf(vtkAlgorithm* algorithm)
+{
+  vtkNew<vtkTest::ErrorObserver> errors, executive;
+  algorithm->AddObserver(vtkCommand::ErrorEvent, errors);
+  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executive);
+  algorithm->Update();
+  return errors->GetErrorMessage();
+}
+
+void testMesherErrors()
+{
+  const auto with = [](vtkImageData* image, const char* part)
+  {
+    vtkNew<vtkSilhouetteMesher> mesher;
+    mesher->SetInputData(image);
+    TAUTLINE_CHECK(errorOf(mesher).find(part) != std::string::npos);
+    TAUTLINE_CHECK_EQUAL(
+      vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0))->GetNumberOfPoints(), 0);
+  };
+  with(makeImage(paint(9, 9, [](double, double) { return 1.0; })), "one value");
+  auto oblong = makeImage(disc(30, 15, 15, 9));
+  oblong->SetSpacing(1, 2, 1);
+  with(oblong, "not square");
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(4, 4, 4);
+  volume->AllocateScalars(VTK_FLOAT, 1);
+  with(volume, "slice");
+  vtkNew<vtkImageData> bare;
+  bare->SetDimensions(4, 4, 1);
+  with(bare, "no array");
+  vtkNew<vtkSilhouetteMesher> empty;
+  vtkNew<vtkImageData> none;
+  empty->SetInputData(none);
+  TAUTLINE_CHECK(errorOf(empty).empty());
+}
+
+void testMatcher()
+{
+  auto source = makeImage(blob(100, 50, 50, 25)), target = makeImage(blob(120, 60, 58, 30, 0.3));
+  vtkNew<vtkSilhouetteMesher> mesher;
+  mesher->SetInputData(source);
+  vtkNew<vtkShapeMatcher> fromImage, fromMesh;
+  fromImage->SetInputDataObject(0, source);
+  fromMesh->SetInputConnection(0, mesher->GetOutputPort());
+  for (vtkShapeMatcher* matcher : { fromImage.Get(), fromMesh.Get() })
+  {
+    matcher->SetTargetData(target);
+    matcher->SetGridSize(16, 16);
+    matcher->Update();
+  }
+  TAUTLINE_CHECK(fromImage->GetExact());
+  TAUTLINE_CHECK_RELATIVE(fromMesh->GetEnergy(), fromImage->GetEnergy(), 1e-5);
+  auto* mesh = vtkUnstructuredGrid::SafeDownCast(fromMesh->GetOutputDataObject(0));
+  auto* table = vtkTable::SafeDownCast(fromMesh->GetOutputDataObject(1));
+  auto* before = vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(mesh->GetNumberOfCells(), before->GetNumberOfCells());
+  vtkDataArray* displacement = mesh->GetPointData()->GetArray("Displacement");
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    // The vertices keep their order along the boundary: found again by their old place.
+    double x[3];
+    mesh->GetPoint(i, x);
+    const double old[3] = { x[0] - displacement->GetComponent(i, 0),
+      x[1] - displacement->GetComponent(i, 1), x[2] - displacement->GetComponent(i, 2) };
+    const vtkIdType id = before->FindPoint(old[0], old[1], old[2]);
+    TAUTLINE_CHECK(id >= 0 && std::abs(before->GetPoint(id)[0] - old[0]) < 1e-9);
+  }
+  double sum = 0.0;
+  for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
+  {
+    sum += mesh->GetCellData()->GetArray("Energy")->GetTuple1(t);
+  }
+  TAUTLINE_CHECK_RELATIVE(sum, fromMesh->GetEnergy(), 1e-9);
+  const auto value = [&](const char* name) { return table->GetValueByName(0, name).ToDouble(); };
+  TAUTLINE_CHECK_RELATIVE(
+    value("EdgeCost") + 12 * value("Deformation") + 3 * value("Distortion"), value("Energy"), 1e-9);
+  TAUTLINE_CHECK_EQUAL(value("Rank"), 1.0);
+  TAUTLINE_CHECK_EQUAL(value("Stop"), 0.0);
+
+  // Abort and time limit keep the best so far.
+  fromMesh->SetTimeLimit(1e-9);
+  fromMesh->Update();
+  TAUTLINE_CHECK(!fromMesh->GetExact() && mesh->GetNumberOfCells() == before->GetNumberOfCells());
+  TAUTLINE_CHECK(fromMesh->GetSummary().find("best so far") != std::string::npos);
+  // Wrong input is named.
+  vtkNew<vtkShapeMatcher> wrong;
+  wrong->SetInputDataObject(0, source);
+  wrong->SetTargetData(target);
+  wrong->SetGridSize(1, 1);
+  TAUTLINE_CHECK(errorOf(wrong).find("too small") != std::string::npos);
+  vtkNew<vtkShapeMatcher> weights;
+  weights->SetInputDataObject(0, source);
+  weights->SetTargetData(target);
+  weights->SetDistortionWeight(std::nan(""));
+  TAUTLINE_CHECK(errorOf(weights).find("distortion weight") != std::string::npos);
+  vtkNew<vtkUnstructuredGrid> loose;
+  loose->DeepCopy(before);
+  loose->GetPoints()->InsertNextPoint(0, 0, 3);
+  vtkNew<vtkShapeMatcher> stray;
+  stray->SetInputDataObject(0, loose);
+  stray->SetTargetData(target);
+  TAUTLINE_CHECK(errorOf(stray).find("points inside") != std::string::npos);
+}
+
+void writeImage(const std::filesystem::path& file, const Picture& picture)
+{
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputData(makeImage(picture));
+  writer->SetFileName(file.string().c_str());
+  writer->Write();
+}
+
+void testRetrieval(const std::string& output)
+{
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(output) / "silhouette-set";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "images");
+  std::ofstream list(folder / "labels.csv");
+  list << "file,class_id,class\n";
+  for (int k = 0; k < 3; ++k)
+  {
+    writeImage(
+      folder / "images" / ("blob" + std::to_string(k) + ".png"), blob(90, 45, 45, 20 + k, 0.4 * k));
+    writeImage(
+      folder / "images" / ("disc" + std::to_string(k) + ".png"), disc(90, 45, 45, 20 + 2 * k));
+    list << "blob" << k << ".png,1,lobed\ndisc" << k << ".png,2,\"round\"\n";
+  }
+  list.close();
+  vtkNew<vtkSilhouetteSetReader> reader;
+  reader->SetFileName((folder / "labels.csv").string().c_str());
+  TAUTLINE_CHECK_EQUAL(reader->CanReadFile(reader->GetFileName()), 1);
+  vtkNew<vtkShapeRetrieval> retrieval;
+  retrieval->SetInputConnection(reader->GetOutputPort());
+  retrieval->SetBestMatches(2);
+  retrieval->Update();
+  TAUTLINE_CHECK_NEAR(retrieval->GetRecognitionRate(), 100.0, 1e-12);
+  auto* blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(blocks->GetNumberOfBlocks(), 6u);
+  TAUTLINE_CHECK(std::string(blocks->GetMetaData(1u)->Get(vtkCompositeDataSet::NAME())) == "disc0");
+  auto* label = vtkStringArray::SafeDownCast(
+    vtkDataSet::SafeDownCast(blocks->GetBlock(1))->GetFieldData()->GetAbstractArray("Label"));
+  TAUTLINE_CHECK(label && label->GetValue(0) == "round");
+  auto* distances = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(distances->GetNumberOfRows(), 6);
+  TAUTLINE_CHECK_EQUAL(distances->GetNumberOfColumns(), 8);
+  TAUTLINE_CHECK_EQUAL(distances->GetValueByName(0, "blob0").ToDouble(), 0.0);
+  TAUTLINE_CHECK_EQUAL(
+    vtkTable::SafeDownCast(retrieval->GetOutputDataObject(1))->GetNumberOfRows(), 12);
+  auto* confusion = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(3));
+  TAUTLINE_CHECK_NEAR(confusion->GetValueByName(0, "lobed").ToDouble(), 100.0, 1e-9);
+  TAUTLINE_CHECK_NEAR(confusion->GetValueByName(0, "round").ToDouble(), 0.0, 1e-9);
+  // A folder needs no list: classes from the names.
+  reader->SetFileName((folder / "images").string().c_str());
+  retrieval->Update();
+  TAUTLINE_CHECK_NEAR(retrieval->GetRecognitionRate(), 100.0, 1e-12);
+
+  const auto refused = [&](const std::string& text, const char* part)
+  {
+    std::ofstream(folder / "bad.csv") << text;
+    vtkNew<vtkSilhouetteSetReader> bad;
+    bad->SetFileName((folder / "bad.csv").string().c_str());
+    TAUTLINE_CHECK(errorOf(bad).find(part) != std::string::npos);
+  };
+  refused("", "empty");
+  refused("name,class\na,b\n", "bad.csv:1: no column 'file'");
+  refused("file,class\nnone.png,b\n", "bad.csv:2: there is no file 'none.png'");
+  refused("file,class\nblob0.png\n", "bad.csv:2: 1 fields");
+  std::ofstream(folder / "images" / "text.png") << "no picture";
+  refused("file,class\ntext.png,b\n", "text.png");
+  vtkNew<vtkSilhouetteSetReader> missing;
+  missing->SetFileName("nowhere.csv");
+  TAUTLINE_CHECK(errorOf(missing).find("no such file") != std::string::npos);
+}
+}
+
+int TestShapeFilters(int, char* argv[])
+{
+  testMesher();
+  testCellPixels();
+  testMesherErrors();
+  testMatcher();
+  testRetrieval(argv[2]);
+  return exitCode();
+}

@@ -1,0 +1,56 @@
+"""The filters of nonlocal models as ParaView users have them: from the menus, with their outputs and errors."""
+
+import os
+
+from paraview import servermanager, simple
+
+simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
+
+
+
+def update(filter_):
+    filter_.UpdatePipeline()
+    filter_.UpdatePropertyInformation()
+
+
+source = MeshDomain(Domain="Square with Collar, Structured", ElementSize=0.1, CollarWidth=0.2)
+condition = PeridynamicCondition(Input=source)
+update(condition)
+assert abs(condition.Condition / 9.2827 - 1) < 1e-3, condition.Condition
+assert "Condition number" in condition.Summary
+assert {"Unknown", "Neighbors", "RowSum", "Diagonal", "SmallestMode", "LargestMode"} <= set(condition.PointData.keys())
+table = servermanager.Fetch(condition, idx=1)
+assert table.GetNumberOfRows() == 1 and table.GetValueByName(0, "Rows").ToInt() == 81
+
+condition.Basis = "Piecewise Constant"
+condition.Reading = "Dissertation"
+condition.SparsityPixels = 50
+condition.Solve = 1
+update(condition)
+assert abs(condition.Condition / 16.31 - 1) < 1e-3, condition.Condition
+assert "Solution" in condition.CellData.keys()
+image = servermanager.Fetch(condition, idx=2)
+assert image.GetDimensions() == (50, 50, 1)
+
+condition.Kernel = "Table"
+condition.KernelValues = [1, 0.5, 0]
+update(condition)
+assert condition.Condition > 1
+
+# without a collar: an error, an empty output; then with one
+wrench = MeshDomain(Domain="Rectangle, Structured", NumberOfCells=200)
+bare = PeridynamicCondition(Input=wrench, Horizon=0.3)
+bare.UpdatePipeline()
+assert bare.GetDataInformation().GetNumberOfCells() == 0
+collar = HorizonCollar(Input=wrench, Width=0.3)
+held = PeridynamicCondition(Input=collar, Horizon=0.3)
+update(held)
+assert held.Condition > 1 and "Reference" in collar.CellData.keys()
+
+horizon = HorizonNeighbors(Input=source, Center=[0.43, 0.51, 0], Horizon=0.2)
+horizon.UpdatePipeline()
+assert set(horizon.CellData.keys()) == {"Case", "CellId", "Area", "ChordArea", "Missed"}
+assert horizon.CellData["Case"].GetRange()[1] == 3
+simple.Show(horizon)
+simple.Show(condition)
+simple.Render()

@@ -1,0 +1,120 @@
+"""The verbs peridynamics and collar, their commands, and the studies of nonlocal models in the small size."""
+
+import csv
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import tautline as tl
+from tautline.studies import _horizon, names
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+OUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "peridynamics"
+OUT.mkdir(parents=True, exist_ok=True)
+
+
+def refused(text, verb, *arguments, **options):
+    try:
+        verb(*arguments, **options)
+    except tl.Error as error:
+        assert text in str(error), f"'{error}' does not say '{text}'"
+    else:
+        raise AssertionError(f"{verb.__name__} took {arguments} {options}")
+
+
+def square(n=10):
+    x, y = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
+    a = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    cells = np.stack([a, a + 1, a + n + 2, a, a + n + 2, a + n + 1], axis=1).reshape(-1, 3)
+    return tl.from_arrays(np.column_stack([x.ravel(), y.ravel()]), {"triangle": cells})
+
+
+def test_verb():
+    bare = square()
+    mesh = tl.collar(bare, 0.2)
+    assert mesh.GetNumberOfCells() > 300 and bare.GetNumberOfCells() == 200
+    result = tl.peridynamics(mesh, 0.2, sparsity=30, solve=True)
+    assert abs(result.condition / 9.2827 - 1) < 1e-3 and result.definite and result.converged
+    assert result.rows == 81 and result.nonzeros == result.sparsity.sum() == 2361
+    assert result.sparsity.shape == (30, 30) and (np.diag(result.sparsity) > 0).all()
+    assert result.solution.shape == (mesh.GetNumberOfPoints(),) and result.solution.max() > 0.1
+    neighbours = vtk_to_numpy(result.mesh.GetPointData().GetArray("Neighbors"))
+    assert neighbours.sum() == 2361 - 81
+    assert result.smallest_bound < 1e-8 * result.smallest and "Condition number 9.28" in result.summary
+    assert tl.peridynamics(mesh, threads=1).condition == tl.peridynamics(mesh, threads=2).condition
+
+    region = vtk_to_numpy(mesh.GetCellData().GetArray("Reference"))
+    again = tl.peridynamics(mesh, region=np.where(region == 2, 7.0, 0.0), collar_value=7)
+    assert again.condition == result.condition and again.mesh.GetCellData().GetArray("given region") is None
+    x = vtk_to_numpy(mesh.GetPoints().GetData())[:, 0]
+    linear = tl.peridynamics(mesh, solve=True, source=np.zeros(len(x)), given=x, spectrum=False)
+    assert np.abs(linear.solution - x).max() < 1e-4 and math.isnan(linear.condition)
+    vector = np.column_stack([x, 0 * x])
+    moved = tl.peridynamics(mesh, p=3, model="elastic", solve=True, source=0 * vector, given=vector)
+    assert moved.solution.shape == (len(x), 3) and np.abs(moved.solution[:, 0] - x).max() < 1e-4
+    assert abs(tl.peridynamics(mesh, basis="constant").condition / 16.0772 - 1) < 1e-3
+    for kernel, options in (("constant", {}), ("gaussian", {"width": 0.4}), ("conical", {}), ("table", {"values": [2, 1]})):
+        assert tl.peridynamics(mesh, kernel=kernel, **options).definite
+    literal = tl.peridynamics(mesh, 0.2, 2.5, reading="dissertation", rules="literal")
+    assert literal.asymmetry < 1e-12 and not literal.condition < 100, "far from 12, or indefinite"
+
+    refused("add it with Horizon Collar", tl.peridynamics, bare)
+    refused("has no collar", tl.peridynamics, mesh, region=None)
+    refused("a collar of width", tl.peridynamics, mesh, 0.5)
+    refused("to below 4", tl.peridynamics, mesh, p=4)
+    refused("to below 3", tl.peridynamics, mesh, p=3, basis="constant")
+    refused("basis is 'quadratic'", tl.peridynamics, mesh, basis="quadratic")
+    refused("no array 'absent'", tl.peridynamics, mesh, region="absent")
+    refused("above 0", tl.collar, bare, 0)
+    assert tl.peridynamics(mesh, 0.5, allow_thin_collar=True).collar_deficit > 0.2
+
+
+def test_commands():
+    tl.write(square(), OUT / "square.vtu")
+
+    def run(*arguments):
+        command = [sys.executable, "-m", "tautline", *map(str, arguments)]
+        return subprocess.run(command, capture_output=True, text=True)
+
+    done = run("collar", OUT / "square.vtu", "--width", 0.2, "-o", OUT / "collar.vtu")
+    assert done.returncode == 0, done.stderr
+    done = run("peridynamics", OUT / "collar.vtu", "-p", 2.5, "--solve", "-o", OUT / "rows.vtu")
+    assert "Condition number 12.13" in done.stdout, done
+    assert tl.read(OUT / "rows.vtu").GetPointData().GetArray("Solution") is not None
+    assert "Condition number 9.28" in run("peridynamics", OUT / "square.vtu", "--collar").stdout
+    done = run("peridynamics", OUT / "square.vtu")
+    assert done.returncode == 1 and "Horizon Collar" in done.stderr
+    done = run("study", "list")
+    assert all(name in done.stdout for name in names()) and "peridynamics_tables" in names()
+    done = run("study", "absent")
+    assert done.returncode == 1 and "there is no study" in done.stderr
+
+
+def test_studies():
+    def rows(name):
+        done = subprocess.run(
+            [sys.executable, "-m", "tautline", "study", name, "--size", "small", "--out", str(OUT / name)],
+            capture_output=True, text=True,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        assert "Finding" in (OUT / name / f"{name}.txt").read_text()
+        with open(OUT / name / f"{name}.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    for row in rows("peridynamics_tables"):
+        key = int(row["aspect_ratio"]), int(row["n"]), float(row["delta"])
+        assert float(row["printed"]) == _horizon.TABLES[row["table"]][key]
+        if row["table"] == "4.3":
+            assert abs(float(row["a"]) / float(row["printed"]) - 1) < 0.005, row
+    found = {(r["n"], r["aspect_ratio"], r["delta"], r["basis"], r["p"], r["reading"]): float(r["condition"])
+             for r in rows("peridynamics_horizon")}  # fmt: skip
+    assert abs(found["20", "1", "0.2", "linear", "2.5", "exact"] / 21.3645 - 1) < 2e-3
+    kernel = [float(r["condition"]) for r in rows("peridynamics_kernel") if r["reading"] == "exact" and r["delta"] == "0.2"]
+    assert kernel == sorted(kernel), "cond grows with p"
+
+
+for test in (test_verb, test_commands, test_studies):
+    test()

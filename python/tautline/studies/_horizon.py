@@ -1,0 +1,157 @@
+"""What the studies of nonlocal models share: the dissertation's numbers, its meshes, tables and charts."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+import time
+from pathlib import Path
+from typing import Any, Sequence
+
+import numpy as np
+
+import tautline
+
+from .._errors import Error
+from .._tables import align
+
+#: Tables 4.1 to 4.3 as printed: (aspect ratio, n = 1 / h, delta) and the condition numbers.
+_KEYS = [(ar, n, delta) for ar in (1, 4) for n in (10, 20, 40) for delta in (0.2, 0.3, 0.4)]
+_PRINTED = {
+    "4.1": [16.33, 8.70, 5.65, 17.47, 9.06, 5.79, 18.09, 9.10, 5.83,
+            15.98, 8.00, 5.53, 17.55, 8.95, 5.70, 17.88, 8.29, 5.86],
+    "4.2": [10.60, 6.12, 4.00, 13.35, 7.20, 4.70, 15.31, 7.85, 4.98,
+            11.69, 7.36, 4.31, 14.43, 7.46, 4.89, 15.78, 8.17, 5.18],
+    "4.3": [11.27, 7.80, 6.07, 21.04, 13.92, 10.45, 36.12, 22.76, 16.61,
+            16.02, 13.24, 8.54, 29.81, 19.51, 17.01, 50.38, 31.41, 24.88],
+}  # fmt: skip
+TABLES = {name: dict(zip(_KEYS, values)) for name, values in _PRINTED.items()}
+#: Basis and exponent of each table. (The caption of 4.3 says p = 1, its text 2.5.)
+MODELS = {"4.1": ("constant", 1.0), "4.2": ("linear", 1.0), "4.3": ("linear", 2.5)}
+
+
+def square(n: int, aspect_ratio: float, delta: float, extra: int = 0, aligned: bool = True):
+    """The unit square of right triangles with a collar, and the points where the linear basis is given.
+
+    Aligned, the sides of the square are mesh lines and the collar has whole layers; otherwise the grid starts at
+    -delta, as the numbers of the dissertation's tables need it. `extra` layers are added. None if the
+    aspect ratio does not fit.
+    """
+    steps = (math.sqrt(aspect_ratio) / n, 1 / (n * math.sqrt(aspect_ratio)))
+    axes = []
+    for step in steps:
+        cells, inner = (1 + 2 * delta) / step, 1 / step
+        if not aligned and abs(cells - round(cells)) < 1e-6:
+            first, count = -delta - extra * step, round(cells) + 2 * extra
+        elif aligned and abs(inner - round(inner)) < 1e-6:
+            layers = math.ceil(delta / step - 1e-9) + extra
+            first, count = -layers * step, round(inner) + 2 * layers
+        else:
+            return None
+        axes.append(first + step * np.arange(count + 1))
+    x, y = np.meshgrid(*axes)
+    points = np.column_stack([x.ravel(), y.ravel()])
+    columns = len(axes[0])
+    corner = (np.arange(len(axes[1]) - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    right, above = corner + 1, corner + columns
+    cells = np.stack([corner, right, above + 1, corner, above + 1, above], axis=1).reshape(-1, 3)
+    inside = lambda p: ((p > 1e-9) & (p < 1 - 1e-9)).all(axis=1)  # noqa: E731
+    region = np.where(inside(points[cells].mean(axis=1)), 1, 2)
+    return tautline.from_arrays(points, {"triangle": cells}), region, np.where(inside(points), 0.0, 1.0)
+
+
+def solve(
+    n: int, aspect_ratio: float, delta: float, basis: str, p: float, reading: str, threads: int = 0,
+    aligned: bool = True, **more: Any,
+):  # fmt: skip
+    """The result of peridynamics() on such a square, or None where there is none."""
+    # The exact reading is of a collar that is wide enough: the grid of one cell of the tables is not.
+    off = not aligned and reading == "exact" and (aspect_ratio, n, delta) == (4, 10, 0.3)
+    made = square(n, aspect_ratio, delta, 1 if off else 0, aligned)
+    if made is None:
+        return None
+    mesh, region, given = made
+    return tautline.peridynamics(
+        mesh, delta, p, basis, reading=reading, region=region, given_points=given, allow_thin_collar=True,
+        threads=threads, **more,
+    )  # fmt: skip
+
+
+def condition(*arguments: Any, **options: Any) -> float:
+    """The condition number; nan where the matrix is indefinite or the mesh does not fit."""
+    result = solve(*arguments, **options)
+    return math.nan if result is None else result.condition
+
+
+class Report:
+    """Rows for a CSV file, charts and a text, written to one directory."""
+
+    def __init__(self, name: str, directory: str) -> None:
+        self.name, self.directory = name, Path(directory)
+        self.lines: list[str] = []
+        self.started = time.time()
+        try:
+            self.directory.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise Error(f"{directory}: cannot be made: {error.strerror}") from None
+
+    def say(self, text: str = "") -> None:
+        print(text, flush=True)
+        self.lines.append(text)
+
+    def table(self, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
+        self.say(align(rows, headings) + "\n")
+
+    def write_csv(self, file: str, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
+        with open(self.directory / file, "w", newline="", encoding="utf-8") as out:
+            writer = csv.writer(out, lineterminator="\n")
+            writer.writerow(headings)
+            writer.writerows(rows)
+
+    def chart(self, file: str, panels: Sequence[dict[str, Any]]) -> None:
+        """Panels side by side: dicts of title, x, y (labels), lines {label: (x, y[, style])}, scales."""
+        try:
+            from matplotlib.backends.backend_agg import FigureCanvasAgg
+            from matplotlib.figure import Figure
+        except ImportError:
+            self.say(f"{file} is not drawn: there is no matplotlib (Debian: python3-matplotlib)")
+            return
+        figure = Figure(figsize=(5.2 * len(panels), 4.2), layout="constrained")
+        FigureCanvasAgg(figure)
+        for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
+            colours: dict[str, str] = {}  # one for both readings
+            for label, (x, y, *style) in panel["lines"].items():
+                colour = colours.setdefault(label.split(", dissertation")[0], f"C{len(colours) % 10}")
+                own = {} if style and style[0].startswith("C") else {"color": colour}
+                axes.plot(x, y, *(style or ["o-"]), label=label, markersize=4, **own)
+            axes.set_title(panel["title"])
+            axes.set_xlabel(panel["x"])
+            axes.set_ylabel(panel.get("y", "condition number"))
+            axes.set_xscale(panel.get("xscale", "linear"))
+            axes.set_yscale(panel.get("yscale", "linear"))
+            axes.grid(True, which="major", alpha=0.3)
+            axes.legend(fontsize=8)
+        figure.savefig(self.directory / file, dpi=90)
+
+    def close(self) -> int:
+        self.say(f"{time.time() - self.started:.1f} s")
+        (self.directory / f"{self.name}.txt").write_text("\n".join(self.lines) + "\n", encoding="utf-8")
+        print("\n".join(str(path) for path in sorted(self.directory.glob(f"{self.name}*"))))
+        return 0
+
+
+def parse(name: str, text: str, arguments: Sequence[str]) -> argparse.Namespace:
+    """The options every study has."""
+    parser = argparse.ArgumentParser(prog=f"python3 -m tautline study {name}", description=text)
+    parser.add_argument("--size", choices=("small", "full"), default="full", help="small: seconds; the trends only")
+    parser.add_argument("--out", default=name, metavar="DIR", help="where the files go (default: ./NAME)")
+    parser.add_argument("--threads", type=int, default=0, help="0, the default, is all cores")
+    return parser.parse_args(arguments)
+
+
+def exponent(x: Sequence[float], y: Sequence[float]) -> float:
+    """The slope of log y over log x by least squares."""
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    good = np.isfinite(y) & (y > 0)
+    return float(np.polyfit(np.log(x[good]), np.log(y[good]), 1)[0]) if good.sum() > 1 else math.nan
