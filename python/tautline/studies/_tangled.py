@@ -17,7 +17,11 @@ LABELS = {"si": "SI", "size": "size", "untangle_beta": "untangling"}
 NOTE = (
     "Objectives: sum of 1 / SI over the elements valid at the start of an iteration, sum of the squared untangling "
     f"metric (3.3) with beta = {BETA:g} of the mean size. (The dissertation's sum of 1 / SI includes inverted "
-    "elements, whose terms are negative.) Steps may invert elements, as with the metrics without a barrier there."
+    "elements, whose terms are negative.) Steps may invert elements, as with the metrics without a barrier there.\n"
+    "The scalarizations combine the objectives' values on the whole mesh, as (3.11) to (3.13) are written. "
+    "Mesquite's default for patches evaluates an objective on the patch alone, where values are far below c, so that "
+    "the exponential sum is nearly the equal sum; which of the two the dissertation's figures come from, it does not "
+    "say."
 )
 #: A weight that leaves the untangling metric without effect: an optimizer is only given tangled meshes with it.
 _NEGLIGIBLE = 1e-30

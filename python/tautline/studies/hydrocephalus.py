@@ -64,13 +64,12 @@ def main(arguments: list[str]) -> int:
     report.finding("Table 3.7", "SI alone inverts more elements and untangles none",
                    si.last("inverted") > si.first("inverted"),
                    f"start {si.first('inverted'):g}, end {si.last('inverted'):g}, most {si.values['inverted'].max():g}")
-    report.finding(
-        "Table 3.7", "Untangling alone eliminates all (there after 33 iterations)", ends["untangle"] <= iterations, figures,
-    )
-    report.finding(
-        "Table 3.7", "The exponential sum eliminates all (there after 9)", ends["exponential-sum"] <= iterations, figures,
-    )
-    report.finding("Table 3.7", "The equal sum eliminates all (there after 12)", ends["equal-sum"] <= iterations, figures)
+    for name, sentence in (
+        ("untangle", "Untangling alone eliminates all (there after 33 iterations)"),
+        ("exponential-sum", "The exponential sum eliminates all (there after 9)"),
+        ("equal-sum", "The equal sum eliminates all (there after 12)"),
+    ):
+        report.finding("Table 3.7", sentence, ends[name] <= iterations, figures)
     report.finding("Table 3.7", "The exponential sum needs fewer iterations than untangling alone",
                    ends["exponential-sum"] < ends["untangle"], figures)
     report.finding("Table 3.7", "The exponential sum needs fewer iterations than the equal sum",
