@@ -118,7 +118,7 @@ enum class Preset : int
 struct OptimizeOptions
 {
   /// At least one.
-  std::vector<Objective> objectives = { Objective{} };
+  std::vector<Objective> objectives = std::vector<Objective>(1);
   ScalarizationOptions scalarization;
   Optimizer optimizer = Optimizer::Automatic;
   StoppingCriteria stopping;

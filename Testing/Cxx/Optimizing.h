@@ -1,0 +1,90 @@
+/**
+ * @file Optimizing.h
+ * @brief Meshes to be optimised, and what to ask of the result.
+ */
+#ifndef tautline_Optimizing_h
+#define tautline_Optimizing_h
+
+#include "Blocks.h"
+#include "Check.h"
+
+#include "tautline/Optimize.h"
+
+namespace tautline
+{
+/// Inner points moved at random; the boundary is a regular block's. All cells are valid.
+inline MeshData perturbedBlock(CellType type, Index n, double amplitude, unsigned seed = 7)
+{
+  const bool flat = topology(type).dimension == 2;
+  MeshData data = blockMesh(type, n, n, flat ? 0 : n);
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  Random random(seed);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Vec3 d = random.vector(-amplitude, amplitude);
+    if (!boundary[i])
+    {
+      data.setPoint(i, data.point(i) + Vec3{ d[0], d[1], flat ? 0.0 : d[2] });
+    }
+  }
+  return data;
+}
+
+inline Index invalid(const MeshData& like, const std::vector<double>& points)
+{
+  MeshData moved = like;
+  moved.points = points;
+  const std::vector<signed char> v = validityOf(moved);
+  return std::count_if(v.begin(), v.end(), [](signed char s) { return s != Valid; });
+}
+
+inline double sumOfSquares(const MeshData& like, const std::vector<double>& points, Metric metric)
+{
+  MeshData moved = like;
+  moved.points = points;
+  double sum = 0;
+  for (double q : valuesOf(moved, metric))
+  {
+    sum += q * q;
+  }
+  return sum;
+}
+
+/// Of the cells with a vertex that is not on the boundary.
+inline double worstMovable(const MeshData& like, const std::vector<double>& points)
+{
+  MeshData moved = like;
+  moved.points = points;
+  const std::vector<char> boundary = Mesh(like.view()).boundary().isBoundaryPoint;
+  const std::vector<double> q = valuesOf(moved, Metric::InverseMeanRatio);
+  double worst = 0;
+  for (Index c = 0; c < moved.numberOfCells(); ++c)
+  {
+    for (Index n = moved.offsets[c]; n < moved.offsets[c + 1]; ++n)
+    {
+      worst = boundary[moved.connectivity[n]] ? worst : std::max(worst, q[c]);
+    }
+  }
+  return worst;
+}
+
+inline Optimization run(const MeshData& data, const OptimizeOptions& options)
+{
+  return optimize(Mesh(data.view()), options);
+}
+
+/// A history whose objective never rises and is what the metric says of the points.
+inline void checkHistory(const MeshData& data, const Optimization& result)
+{
+  for (std::size_t i = 1; i < result.history.size(); ++i)
+  {
+    TAUTLINE_CHECK(result.history[i].objective <= result.history[i - 1].objective * (1 + 1e-12));
+    TAUTLINE_CHECK_EQUAL(result.history[i].iteration, static_cast<int>(i));
+  }
+  TAUTLINE_CHECK_EQUAL(result.iterations, static_cast<int>(result.history.size()) - 1);
+  TAUTLINE_CHECK_RELATIVE(sumOfSquares(data, result.points, Metric::InverseMeanRatio),
+    result.history.back().objective, 1e-10);
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, invalid(data, result.points));
+}
+}
+#endif
