@@ -14,7 +14,7 @@ from pathlib import Path
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 Row = tuple[str, float, str]
 
-# Mesh, its best known sum of squared inverse mean ratios (0: found by Newton's method), passes to 95 % of the
+# Mesh, its best known sum of squared inverse mean ratios (0: found by hundreds of sweeps), passes to 95 % of the
 # reduction, the largest worst value.
 SHAPES = [("disk3d_1m_p50", 1590299.9, 6, 3.45), ("disk3d_50k_p50", 82139.465, 6, None),
           ("disk2d_20k_p50", 20037.088, 5, None), ("disk2d-perturbed", 0, 5, None)]
