@@ -125,8 +125,12 @@ bool report(OptimizationProblem& problem, const StopWatch& watch, Optimization& 
 }
 
 //------------------------------------------------------------------------------
+/**
+ * @brief Sweeps to convergence.
+ * @param failed if not null, set where a sweep raised the objective, as those of several objectives can
+ */
 StopReason optimizeLocally(
-  OptimizationProblem& problem, const StopWatch& watch, Optimization& result)
+  OptimizationProblem& problem, const StopWatch& watch, Optimization& result, bool* failed)
 {
   const StoppingCriteria& stop = problem.options().stopping;
   SimplexMesh& simplices = problem.simplices();
@@ -157,6 +161,10 @@ StopReason optimizeLocally(
       // Blocks of one colour do not see each other's changes of a composite objective.
       std::copy(best.begin(), best.end(), simplices.coordinates());
       problem.store();
+      if (failed)
+      {
+        *failed = true;
+      }
       return StopReason::NoProgress;
     }
     std::copy_n(simplices.coordinates(), best.size(), best.begin());
@@ -430,10 +438,13 @@ StopReason optimizeGlobally(
   {
     const int before = result.history.back().iteration;
     MinimizeOptions options;
-    options.method = problem.options().optimizer;
+    // After sweeps, an iteration may lower little at first.
+    constexpr double afterSweeps = 0.1;
+    const bool alone = problem.options().optimizer >= Optimizer::ConjugateGradientFletcherReeves;
+    options.method = alone ? problem.options().optimizer : Optimizer::LimitedMemoryBFGS;
     options.maximumIterations = stop.maximumIterations - before;
     options.gradientNorm = stop.gradientNorm;
-    options.relativeChange = stop.relativeChange;
+    options.relativeChange = alone ? stop.relativeChange : afterSweeps * stop.relativeChange;
     options.threads = problem.options().threads;
     bool ended = false;
     options.observer = [&](int iteration, double, double gradientNorm, const double* now)
@@ -610,9 +621,18 @@ Optimization optimize(const Mesh& mesh, const OptimizeOptions& given)
     result.reason = StopReason::NoFreeVertices;
     return result;
   }
-  const bool local = options.optimizer <= Optimizer::LocalConjugateGradient;
-  result.reason =
-    local ? optimizeLocally(problem, watch, result) : optimizeGlobally(problem, watch, result);
+  if (options.optimizer <= Optimizer::LocalConjugateGradient)
+  {
+    const bool onlyLocal = options.optimizer != Optimizer::Automatic || options.limits ||
+      options.slideSurface || mesh.dimension() == Dimension::Surface;
+    bool failed = false;
+    result.reason = optimizeLocally(problem, watch, result, onlyLocal ? nullptr : &failed);
+    result.reason = failed ? optimizeGlobally(problem, watch, result) : result.reason;
+  }
+  else
+  {
+    result.reason = optimizeGlobally(problem, watch, result);
+  }
   const bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
   if (options.improveWorst > 0 && going)
   {

@@ -23,7 +23,8 @@ namespace tautline
 /// The algorithms. The numbers are stable: ParaView state files hold them.
 enum class Optimizer : int
 {
-  Automatic = 0,              ///< LocalNewton sweeps, then LimitedMemoryBFGS to converge
+  /// LocalNewton; should a sweep fail to lower several objectives, LimitedMemoryBFGS from there
+  Automatic = 0,
   LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each
   LocalConjugateGradient = 2, ///< sweeps over one-vertex patches, Polak-Ribiere+ steps in each
   ConjugateGradientFletcherReeves = 3, ///< all vertices at once
