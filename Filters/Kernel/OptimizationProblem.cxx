@@ -205,12 +205,12 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
 }
 
 //------------------------------------------------------------------------------
-OptimizationProblem::OptimizationProblem(
-  const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points)
+OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options,
+  std::vector<double>& points, std::chrono::steady_clock::time_point began)
   : TheMesh(mesh)
   , Options(options)
   , Points(points)
-  , Began(std::chrono::steady_clock::now())
+  , Began(began)
 {
   checkOptions(mesh, options);
   MeshView view = mesh.view();
@@ -350,14 +350,36 @@ void OptimizationProblem::leaveOut(const std::vector<signed char>& validity)
       continue;
     }
     this->Weights[i].assign(cells, 1.0);
+    this->LeftOut.clear();
     for (Index cell = 0; cell < cells; ++cell)
     {
+      if (out(cell) && validity[cell] != NonFinite)
+      {
+        this->LeftOut.push_back(cell);
+      }
       this->Weights[i][cell] = out(cell) ? 0.0
         : objective.elementWeights       ? objective.elementWeights[cell]
                                          : 1.0;
     }
     objective.elementWeights = this->Weights[i].data();
   }
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationProblem::someRepaired() const
+{
+  const MeshView& view = this->Moving->view();
+  return std::any_of(this->LeftOut.begin(), this->LeftOut.end(),
+    [&](Index cell)
+    {
+      const CellTopology& t = topology(cornerType(view.cellTypes[cell]));
+      Vec3 vertices[MaxNodes];
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        vertices[k] = pointOf(view, view.connectivity[view.offsets[cell] + k]);
+      }
+      return this->Moving->classifyCell(t, vertices) == Valid;
+    });
 }
 
 //------------------------------------------------------------------------------

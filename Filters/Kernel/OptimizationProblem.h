@@ -18,10 +18,11 @@ class OptimizationProblem
 public:
   /**
    * @param points where the optimization starts; moved in place
+   * @param began when the user began to wait
    * Throws Error on options that do not fit the mesh.
    */
-  OptimizationProblem(
-    const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points);
+  OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points,
+    std::chrono::steady_clock::time_point began);
 
   const Mesh& moving() const { return *this->Moving; }
   SimplexMesh& simplices() { return *this->Simplices; }
@@ -36,6 +37,8 @@ public:
 
   /// Writes the simplices' coordinates to the points.
   void store();
+  /// Whether an element that an objective leaves out because it was inverted is valid at the stored points.
+  bool someRepaired() const;
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);
   /// The worst value of the first objective's metric among the valid elements with a free vertex.
@@ -65,6 +68,7 @@ private:
     Terms; ///< of each objective; with the metric's sum only once it was asked for
   bool AllFast = false;
   std::vector<std::unique_ptr<ObjectiveSum>> Sums;
+  std::vector<Index> LeftOut; ///< cells that were not valid when the optimization began
   std::vector<std::vector<double>> Weights; ///< of each objective, if not all 1
   std::unique_ptr<Scalarizer> TheScalarizer;
   std::vector<double> Start; ///< coordinates of the simplex mesh at the start

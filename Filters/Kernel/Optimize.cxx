@@ -127,10 +127,11 @@ bool report(OptimizationProblem& problem, const StopWatch& watch, Optimization& 
 //------------------------------------------------------------------------------
 /**
  * @brief Sweeps to convergence.
- * @param failed if not null, set where a sweep raised the objective, as those of several objectives can
+ * @param failed set where a sweep raised the objective, as those of several objectives can
+ * @param repaired set where an element that was left out has become valid
  */
-StopReason optimizeLocally(
-  OptimizationProblem& problem, const StopWatch& watch, Optimization& result, bool* failed)
+StopReason optimizeLocally(OptimizationProblem& problem, const StopWatch& watch,
+  Optimization& result, bool& failed, bool& repaired)
 {
   const StoppingCriteria& stop = problem.options().stopping;
   SimplexMesh& simplices = problem.simplices();
@@ -161,17 +162,19 @@ StopReason optimizeLocally(
       // Blocks of one colour do not see each other's changes of a composite objective.
       std::copy(best.begin(), best.end(), simplices.coordinates());
       problem.store();
-      if (failed)
-      {
-        *failed = true;
-      }
+      failed = true;
       return StopReason::NoProgress;
     }
     std::copy_n(simplices.coordinates(), best.size(), best.begin());
-    firstGradient = iteration == 1 ? sweep.gradientNorm : firstGradient;
+    firstGradient = firstGradient > 0 ? firstGradient : sweep.gradientNorm;
     if (!report(problem, watch, result, now))
     {
       return StopReason::Aborted;
+    }
+    if (problem.someRepaired() && !watch.ends(result.history, reason))
+    {
+      repaired = true;
+      return StopReason::NoProgress;
     }
 
     // Convergence is only believed of a sweep over all vertices.
@@ -487,6 +490,74 @@ Index countInvalid(const Mesh& mesh, int threads)
   return std::count_if(validity.begin(), validity.end(),
     [](signed char v) { return v == Inverted || v == Degenerate; });
 }
+
+//------------------------------------------------------------------------------
+/// Optimises from result.points on; returns whether there is more to do, with elements that have become valid.
+bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options,
+  std::chrono::steady_clock::time_point began, Optimization& result)
+{
+  OptimizationProblem problem(mesh, options, result.points, began);
+  result.freeVertices = problem.simplices().freeVertices();
+  const StopWatch watch(problem);
+  const bool again = !result.history.empty();
+  IterationRecord first = problem.record(again ? result.history.back().iteration : 0);
+  problem.start(first);
+  first.objective =
+    problem.objectives() > 1 ? problem.scalarizer().value(first.objectives) : first.objectives[0];
+  if (again)
+  {
+    result.history.back().objective = first.objective;
+    result.history.back().objectives = first.objectives;
+  }
+  else if (!report(problem, watch, result, first))
+  {
+    result.reason = StopReason::Aborted;
+    return false;
+  }
+  if (result.freeVertices == 0)
+  {
+    result.reason = StopReason::NoFreeVertices;
+    return false;
+  }
+  bool failed = false, repaired = false;
+  if (options.optimizer <= Optimizer::LocalConjugateGradient)
+  {
+    const bool onlyLocal = options.optimizer != Optimizer::Automatic || options.limits ||
+      options.slideSurface || mesh.dimension() == Dimension::Surface;
+    result.reason = optimizeLocally(problem, watch, result, failed, repaired);
+    result.reason = failed && !onlyLocal ? optimizeGlobally(problem, watch, result) : result.reason;
+  }
+  else
+  {
+    result.reason = optimizeGlobally(problem, watch, result);
+  }
+  const bool going =
+    result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit && !repaired;
+  if (options.improveWorst > 0 && going)
+  {
+    improveWorst(problem, options.improveWorst,
+      [&](IterationRecord record)
+      {
+        record.iteration = result.history.back().iteration + 1;
+        return report(problem, watch, result, record);
+      });
+  }
+  problem.store();
+  result.iterations = result.history.back().iteration;
+  result.invertedAfter = countInvalid(problem.moving(), options.threads);
+  if (problem.surface() && mesh.dimension() == Dimension::Surface)
+  {
+    result.surfaceError =
+      problem.surface()->distance(mesh, problem.simplices(), result.points.data(), options.threads);
+  }
+  else if (problem.surface())
+  {
+    const SurfaceProjection now =
+      SurfaceProjection::ofBoundary(problem.moving(), problem.simplices());
+    result.surfaceError = problem.simplices().scale() * now.distanceTo(*problem.surface());
+  }
+  return repaired;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -603,59 +674,10 @@ Optimization optimize(const Mesh& mesh, const OptimizeOptions& given)
     }
   }
 
-  OptimizationProblem problem(mesh, options, result.points);
-  result.freeVertices = problem.simplices().freeVertices();
-  const StopWatch watch(problem);
-  const IterationRecord first = problem.record(0);
-  problem.start(first);
-  IterationRecord scalarized = first;
-  scalarized.objective =
-    problem.objectives() > 1 ? problem.scalarizer().value(first.objectives) : first.objectives[0];
-  if (!report(problem, watch, result, scalarized))
+  // Elements left out join the objective as soon as they are valid: another stage.
+  const auto began = std::chrono::steady_clock::now();
+  while (optimizeStage(mesh, options, began, result))
   {
-    result.reason = StopReason::Aborted;
-    return result;
-  }
-  if (result.freeVertices == 0)
-  {
-    result.reason = StopReason::NoFreeVertices;
-    return result;
-  }
-  if (options.optimizer <= Optimizer::LocalConjugateGradient)
-  {
-    const bool onlyLocal = options.optimizer != Optimizer::Automatic || options.limits ||
-      options.slideSurface || mesh.dimension() == Dimension::Surface;
-    bool failed = false;
-    result.reason = optimizeLocally(problem, watch, result, onlyLocal ? nullptr : &failed);
-    result.reason = failed ? optimizeGlobally(problem, watch, result) : result.reason;
-  }
-  else
-  {
-    result.reason = optimizeGlobally(problem, watch, result);
-  }
-  const bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
-  if (options.improveWorst > 0 && going)
-  {
-    improveWorst(problem, options.improveWorst,
-      [&](IterationRecord record)
-      {
-        record.iteration = result.history.back().iteration + 1;
-        return report(problem, watch, result, record);
-      });
-  }
-  problem.store();
-  result.iterations = result.history.back().iteration;
-  result.invertedAfter = countInvalid(problem.moving(), options.threads);
-  if (problem.surface() && mesh.dimension() == Dimension::Surface)
-  {
-    result.surfaceError =
-      problem.surface()->distance(mesh, problem.simplices(), result.points.data(), options.threads);
-  }
-  else if (problem.surface())
-  {
-    const SurfaceProjection now =
-      SurfaceProjection::ofBoundary(problem.moving(), problem.simplices());
-    result.surfaceError = problem.simplices().scale() * now.distanceTo(*problem.surface());
   }
   return result;
 }

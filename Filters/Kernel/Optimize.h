@@ -194,7 +194,8 @@ struct Optimization
 TAUTLINE_KERNEL_EXPORT void applyPreset(Preset preset, OptimizeOptions& options);
 
 /**
- * @brief Optimises. The result is never worse than the input in the scalarized objective, and unless
+ * @brief Optimises. Elements that are not valid at the start are left out of the objectives that cannot repair them, and
+ * join as soon as they are valid; the objective in the history rises by their share then. The result is never worse than the input in the scalarized objective, and unless
  * allowInversion no valid element becomes inverted. Throws Error on options that cannot be met and
  * names the remedy.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.

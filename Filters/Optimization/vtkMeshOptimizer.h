@@ -250,7 +250,7 @@ public:
   ///@{
   /**
    * The algorithm: local ones sweep over the points, others move all at once. AUTOMATIC, the default,
-   * sweeps by LOCAL_NEWTON and then converges by LIMITED_MEMORY_BFGS.
+   * is LOCAL_NEWTON; should a sweep fail to lower several objectives, LIMITED_MEMORY_BFGS goes on.
    */
   vtkSetClampMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);
   vtkGetMacro(Optimizer, int);

@@ -376,6 +376,20 @@ void testUntanglingObjectives()
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
   TAUTLINE_CHECK(!result.untangled);
 
+  // Beside it a shape metric: what was inverted ends as well-shaped as the rest.
+  options.objectives.resize(2);
+  options.objectives[1].metric = Metric::ConditioningScaleInvariant;
+  options.objectives[1].form = ObjectiveTemplate::SumOfSquaredReciprocals;
+  options.scalarization.method = Scalarization::EqualSum;
+  options.stopping.relativeChange = 1e-10;
+  result = run(data, options);
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
+  OptimizeOptions alone;
+  alone.objectives[0] = options.objectives[1];
+  alone.stopping.relativeChange = 1e-10;
+  const Optimization shape = run(blockMesh(CellType::Triangle, 6, 6, 0), alone);
+  TAUTLINE_CHECK_RELATIVE(result.history.back().worst[1], shape.history.back().worst[0], 1e-2);
+
   // Without such an objective the mesh is untangled first, or refused.
   options = OptimizeOptions();
   result = run(data, options);
