@@ -533,7 +533,13 @@ Orientation Mesh::orientation(const signed char* validity) const
       }
     });
 
-  std::vector<double> sizes(this->View.numberOfCells, 0.0); // of parts
+  // The signed size of a part tells, tangled or not; where it is lost to rounding (a vertex far out), the majority.
+  struct Part
+  {
+    double sum = 0, magnitude = 0;
+    Index majority = 0; // positive less inverted cells
+  };
+  std::vector<Part> parts(this->View.numberOfCells);
   for (const CellBlock& block : this->Blocks)
   {
     if (topology(block.type).dimension == dimension)
@@ -541,10 +547,14 @@ Orientation Mesh::orientation(const signed char* validity) const
       for (Index i = 0; i < block.count; ++i)
       {
         const Index cell = block.cell(i);
-        if (haveSigns && (validity[cell] == Valid || validity[cell] == Inverted))
+        if (haveSigns && validity[cell] >= Inverted) // flat ones, too: they may be long
         {
-          sizes[find(cell)] += signedSize(
+          const double size = signedSize(
             *this, topology(block.type), this->View.connectivity + this->View.offsets[cell]);
+          Part& part = parts[find(cell)];
+          part.sum += size;
+          part.magnitude += std::abs(size);
+          part.majority += validity[cell]; // 1, 0 or -1
         }
         result.parts += find(cell) == cell;
       }
@@ -552,9 +562,11 @@ Orientation Mesh::orientation(const signed char* validity) const
   }
   if (haveSigns)
   {
+    constexpr double rounding = 1e-9;
     const double sign = this->Mirrored ? -1 : 1;
-    result.reversedParts =
-      std::count_if(sizes.begin(), sizes.end(), [sign](double s) { return sign * s < 0; });
+    result.reversedParts = std::count_if(parts.begin(), parts.end(),
+      [=](const Part& p)
+      { return std::abs(p.sum) > rounding * p.magnitude ? sign * p.sum < 0 : p.majority < 0; });
   }
   if (result.disagreeing > 0 || (result.reversedParts > 0 && result.reversedParts < result.parts))
   {

@@ -173,6 +173,19 @@ void testSurfaceOrientation()
 }
 
 }
+//------------------------------------------------------------------------------
+/// A point so far out that signed sizes no longer add up to anything does not turn a mesh round.
+void testFarPoint()
+{
+  for (const Vec3& far : { Vec3{ 1e21, 3e20, 0 }, Vec3{ -7e20, 1e21, 0 }, Vec3{ 3e20, -1e21, 0 } })
+  {
+    MeshData data = blockMesh(CellType::Triangle, 6, 6, 0);
+    data.setPoint(3 * 7 + 3, far);
+    const Orientation o = orientationOf(Mesh(data.view()));
+    TAUTLINE_CHECK(o.negativeCells > 0);
+    TAUTLINE_CHECK_EQUAL(o.state, Orientation::Consistent);
+  }
+}
 
 int TestOrientation(int, char*[])
 {
@@ -182,6 +195,7 @@ int TestOrientation(int, char*[])
     testOrientation(type);
   }
   testMostlyInverted();
+  testFarPoint();
   testSurfaceOrientation();
   return exitCode();
 }
