@@ -446,12 +446,12 @@ namespace
 {
 /**
  * Signed area or volume of a cell with its faces cut into triangles about their centres, so that the sum
- * over a mesh whose cells agree depends on its boundary only, however tangled its inside.
+ * over a mesh whose cells agree depends on its boundary only, however tangled its inside. Seen from one origin for all
+ * cells, what an inner edge or face adds cancels to the last digit.
  */
-double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node)
+double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node, const Vec3& origin)
 {
   const MeshView& view = mesh.view();
-  const Vec3 origin = pointOf(view, node[0]);
   Vec3 p[MaxNodes];
   for (int k = 0; k < t.nodes; ++k)
   {
@@ -459,7 +459,12 @@ double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node)
   }
   if (t.dimension == 2)
   {
-    return 0.5 * dot(mesh.normal(), vectorArea(t, p));
+    Vec3 area = { 0, 0, 0 };
+    for (int k = 0; k < t.nodes; ++k)
+    {
+      area += cross(p[k], p[(k + 1) % t.nodes]);
+    }
+    return 0.5 * dot(mesh.normal(), area);
   }
   double sum = 0;
   for (int f = 0; f < t.faces; ++f)
@@ -540,6 +545,15 @@ Orientation Mesh::orientation(const signed char* validity) const
     Index majority = 0; // positive less inverted cells
   };
   std::vector<Part> parts(this->View.numberOfCells);
+  Vec3 origin = { 0, 0, 0 };
+  for (Index i = 0; i < this->View.numberOfPoints; ++i)
+  {
+    origin = pointOf(this->View, i);
+    if (std::isfinite(dot(origin, origin)))
+    {
+      break;
+    }
+  }
   for (const CellBlock& block : this->Blocks)
   {
     if (topology(block.type).dimension == dimension)
@@ -549,8 +563,8 @@ Orientation Mesh::orientation(const signed char* validity) const
         const Index cell = block.cell(i);
         if (haveSigns && validity[cell] >= Inverted) // flat ones, too: they may be long
         {
-          const double size = signedSize(
-            *this, topology(block.type), this->View.connectivity + this->View.offsets[cell]);
+          const double size = signedSize(*this, topology(block.type),
+            this->View.connectivity + this->View.offsets[cell], origin);
           Part& part = parts[find(cell)];
           part.sum += size;
           part.magnitude += std::abs(size);
