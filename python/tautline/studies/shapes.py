@@ -22,6 +22,14 @@ TITLES = {
     "dissertation": "with distortion and centre of mass",
     "highest": "highest rate",
 }
+#: How the weights of the setting with the highest rate were found, and what they reach on Kimia's set.
+CHOICE = (
+    "Highest rate: descriptor, rotation, ordering and b (a = 4 b) were chosen on the odd classes of Kimia's set alone "
+    "(97.1 % of their best matches are right); the queries of the even classes, ranked against all 99, reach 97.0 %, "
+    "against their own half 98.9 %, all 97.1 %. A limit of time ended the search; carried on, b = 6 has one hit in 550 "
+    "more on the odd classes, and was not taken over. Spacing, points, directed edges and the sum of both "
+    "directions had been chosen on queries of all classes."
+)
 _BASE = dict(setting="custom", spacing=25.0, locations="near grid", a=12.0, b=3.0, centre_tolerance=1 / 3)
 
 
@@ -237,6 +245,7 @@ def main(argv: list[str]) -> int:
         "Distortion and centre of mass raise the rate (dissertation: by 7.8 points): "
         + f"{'holds' if gain > 0 else 'does not hold'}, by {gain:.1f} points.",
     ]
+    findings.append(CHOICE)
     if options.sweep:
         swept = []
         for name, setting in _sweep(options.locations):
