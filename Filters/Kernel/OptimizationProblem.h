@@ -37,6 +37,12 @@ public:
 
   /// Writes the simplices' coordinates to the points.
   void store();
+  /// One objective in closed form, of every element.
+  bool isSimple() const
+  {
+    return this->AllFast && this->Resolved.size() == 1 && this->LeftOut.empty() &&
+      this->Resolved[0].metric == Metric::InverseMeanRatio;
+  }
   /// Whether an element that an objective leaves out because it was inverted is valid at the stored points.
   bool someRepaired() const;
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
