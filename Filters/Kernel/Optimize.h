@@ -112,8 +112,8 @@ enum class Preset : int
   LowInterpolationError =
     4, ///< shape (IMR) and SS of section 3.2.1 at once, by the objective product
   UntangleThenImprove = 5, ///< untangle(), then BestShape
-  PreserveShape = 6,       ///< mu_302-like shape against the elements of a reference mesh (targets)
-  WorstElement = 7         ///< BestShape, then the worst IMR without giving up the mean
+  PreserveShape = 6, ///< sum of squared IMR against the elements of a reference mesh (targets)
+  WorstElement = 7   ///< BestShape, then the worst IMR without giving up the mean
 };
 
 struct OptimizeOptions

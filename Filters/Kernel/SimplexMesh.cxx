@@ -141,7 +141,7 @@ constexpr int toFront2[3][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 } };
 }
 
 //------------------------------------------------------------------------------
-std::vector<char> boundaryPoints(const Mesh& mesh, int)
+std::vector<char> boundaryPoints(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
   std::vector<std::uint64_t> marks(view.numberOfPoints, 0);
@@ -185,11 +185,15 @@ std::vector<char> boundaryPoints(const Mesh& mesh, int)
   {
     boundary[p] = marks[p] != 0;
   }
+  if (std::find(boundary.begin(), boundary.end(), 1) == boundary.end())
+  {
+    return mesh.boundary().isBoundaryPoint;
+  }
   return boundary;
 }
 
 //------------------------------------------------------------------------------
-std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed, int threads)
+std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed)
 {
   const MeshView& view = mesh.view();
   std::vector<char> free(view.numberOfPoints, 0);
@@ -220,7 +224,7 @@ std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed, int t
   }
   else
   {
-    const std::vector<char> boundary = boundaryPoints(mesh, threads);
+    const std::vector<char> boundary = boundaryPoints(mesh);
     for (Index p = 0; p < view.numberOfPoints; ++p)
     {
       free[p] &= !boundary[p];
@@ -272,8 +276,8 @@ SimplexMesh::SimplexMesh(
   {
     this->Frame = { mesh.frame()[0], mesh.frame()[1], mesh.normal() };
   }
-  const std::vector<char> free = freePoints(mesh, fixed, threads);
-  this->number(mesh, free, threads);
+  const std::vector<char> free = freePoints(mesh, fixed);
+  this->number(mesh, free);
   std::vector<std::int32_t> vertexOf(mesh.view().numberOfPoints, -1);
   for (std::int32_t v = 0; v < this->vertices(); ++v)
   {
@@ -286,7 +290,7 @@ SimplexMesh::SimplexMesh(
 }
 
 //------------------------------------------------------------------------------
-void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free, int)
+void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free)
 {
   const MeshView& view = mesh.view();
   std::vector<char> used(view.numberOfPoints, 0);

@@ -48,7 +48,7 @@ public:
   SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads);
 
   int dimension() const { return this->Dim; }
-  /// 2D cells in space: see SurfacePatches.
+  /// 2D cells in space, whose vertices keep all three coordinates.
   bool surface() const { return this->Surface; }
   std::int32_t vertices() const { return static_cast<std::int32_t>(this->Point.size()); }
   std::int32_t freeVertices() const { return this->Free; }
@@ -100,7 +100,7 @@ public:
   void store(const double* coordinates, double* points, int threads) const;
 
 private:
-  void number(const Mesh& mesh, const std::vector<char>& free, int threads);
+  void number(const Mesh& mesh, const std::vector<char>& free);
   void cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets);
   void findPatches();
   template <class Visit>
@@ -129,11 +129,13 @@ private:
  * @brief One flag per point: on an edge (2D) or face (3D) that not exactly two cells share.
  *
  * Each facet has a random 64-bit number, and each point the exclusive or of those of its facets, which
- * vanishes where each occurs twice: no sorting. A boundary point is overlooked with probability 2^-64.
+ * vanishes where each occurs twice: no sorting. A boundary point is overlooked with probability 2^-64, or
+ * if its facets belong to an even number of cells. Where nothing seems to be boundary (every cell is there twice, or
+ * a closed surface), Mesh::boundary() decides.
  */
-TAUTLINE_KERNEL_EXPORT std::vector<char> boundaryPoints(const Mesh& mesh, int threads);
+TAUTLINE_KERNEL_EXPORT std::vector<char> boundaryPoints(const Mesh& mesh);
 
 /// The points optimization may move: see the constructor of SimplexMesh.
-std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed, int threads);
+std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed);
 }
 #endif

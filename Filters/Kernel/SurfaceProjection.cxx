@@ -61,7 +61,7 @@ SurfaceProjection::SurfaceProjection(const Mesh& mesh, const SimplexMesh& simpli
 SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexMesh& simplices)
 {
   const MeshView& view = mesh.view();
-  const std::vector<char> boundary = boundaryPoints(mesh, 1);
+  const std::vector<char> boundary = boundaryPoints(mesh);
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
 
   // Facets of boundary points only are few; those that occur once are the boundary.

@@ -42,21 +42,6 @@ vtkDataSet* withPoints(vtkDataSet* input)
   }
   return input;
 }
-
-/// Mesh::boundary() sorts all facets; a volume or planar mesh seldom needs that.
-std::vector<char> pointsOnBoundary(const Mesh& mesh, int threads)
-{
-  if (mesh.dimension() != Dimension::Surface)
-  {
-    std::vector<char> found = boundaryPoints(mesh, threads);
-    // Without any, every cell is there twice.
-    if (std::find(found.begin(), found.end(), 1) != found.end())
-    {
-      return found;
-    }
-  }
-  return mesh.boundary().isBoundaryPoint;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -110,7 +95,7 @@ void MovableMesh::fixWhatStays()
   std::vector<char> onBoundary;
   if (mesh.dimension() == Dimension::Volume && !this->Skip.empty())
   {
-    onBoundary = pointsOnBoundary(mesh, this->Threads);
+    onBoundary = boundaryPoints(mesh);
   }
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -152,7 +137,7 @@ void MovableMesh::fix(vtkDataArray* array, bool ofCells)
 //------------------------------------------------------------------------------
 void MovableMesh::fixBoundary()
 {
-  const std::vector<char> boundary = pointsOnBoundary(this->mesh(), this->Threads);
+  const std::vector<char> boundary = boundaryPoints(this->mesh());
   std::transform(this->Fixed.begin(), this->Fixed.end(), boundary.begin(), this->Fixed.begin(),
     [](unsigned char fixed, char on) { return fixed || on; });
 }

@@ -21,10 +21,23 @@ void testBoundary()
     const MeshData data = shuffled(blockMesh(type, 4, 4, topology(type).dimension == 2 ? 0 : 4), 3);
     const Mesh mesh(data.view());
     const std::vector<char> expected = mesh.boundary().isBoundaryPoint;
-    const std::vector<char> actual = boundaryPoints(mesh, 1);
+    const std::vector<char> actual = boundaryPoints(mesh);
     TAUTLINE_CHECK_EQUAL(
       std::equal(expected.begin(), expected.end(), actual.begin(), actual.end()), true);
     TAUTLINE_CHECK(std::count(actual.begin(), actual.end(), 0) > 0);
+
+    // With every cell there twice no facet has two cells only: nothing is inside.
+    MeshData doubled = data;
+    for (Index c = 0; c < data.numberOfCells(); ++c)
+    {
+      doubled.addCell(type,
+        std::vector<Index>(data.connectivity.begin() + data.offsets[c],
+          data.connectivity.begin() + data.offsets[c + 1]));
+    }
+    const Mesh twice(doubled.view());
+    const std::vector<char> all = boundaryPoints(twice);
+    TAUTLINE_CHECK_EQUAL(all == twice.boundary().isBoundaryPoint, true);
+    TAUTLINE_CHECK(std::count(all.begin(), all.end(), 1) > 0);
   }
 }
 
