@@ -1,0 +1,67 @@
+/**
+ * @file ConditionEstimate.h
+ * @brief Extreme eigenvalues and 2-norm condition numbers of A and of P^-1 A, and the elements that cause them.
+ */
+#ifndef tautline_ConditionEstimate_h
+#define tautline_ConditionEstimate_h
+
+#include "EllipticProblem.h"
+
+namespace tautline
+{
+/// How eigenvalues are found. The numbers are stable: ParaView state files hold them.
+enum class SpectrumMethod : int
+{
+  Automatic = 0,  ///< Accurate
+  RitzValues = 1, ///< of the Krylov solver (CG): cheap, from inside the spectrum, no error bound
+  Accurate =
+    2 ///< SLEPc to a tolerance: Krylov-Schur, or LOBPCG, shift-invert where a factorisation is affordable
+};
+
+struct ConditionOptions
+{
+  SpectrumMethod method = SpectrumMethod::Automatic;
+  /// None: the spectrum of A; else of P^-1 A.
+  Preconditioner preconditioner = Preconditioner::None;
+  double omega = 1.0;      ///< of SSOR
+  double tolerance = 1e-6; ///< relative, of each eigenvalue
+  int maximumIterations = 10000;
+  double maximumSeconds = 0.0; ///< 0: no limit
+  std::string petscOptions;
+  std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
+};
+
+struct ConditionEstimate
+{
+  double smallest = 0.0, largest = 0.0; ///< eigenvalues; 0 where not found
+  /// Relative error bounds from residuals; infinity where nothing is known (Ritz values).
+  double smallestError = 0.0, largestError = 0.0;
+  double condition = 0.0; ///< largest / smallest; 0 where the smallest is not positive
+  bool converged = false;
+  std::string method;  ///< "Krylov-Schur, shift-invert (Cholesky)", ...
+  std::string message; ///< what limits the accuracy, or why it failed; or ""
+  int iterations = 0;
+  double seconds = 0.0;
+};
+
+/// Collective over the ranks. Failures of PETSc or SLEPc are messages, not exceptions; bad options throw Error.
+TAUTLINE_KERNEL_EXPORT ConditionEstimate estimateCondition(
+  const EllipticSystem& system, const ConditionOptions& options);
+
+/// What each element adds to the largest eigenvalue and to the condition number.
+struct ElementContributions
+{
+  std::vector<double> largestEigenvalue; ///< of each cell's stiffness matrix; NaN for cells skipped
+  /**
+   * @brief x_e^T A_e x_e of the eigenvector of the largest eigenvalue, over the whole: the cell's share of it; sums to 1 over
+   * the cells of all ranks. Empty if the eigenvector was not wanted.
+   */
+  std::vector<double> share;
+  double bound = 0.0; ///< the largest eigenvalue is at most this: max over points of the cells' sum
+  double lowerBound = 0; ///< and at least this: the largest of one element matrix's free part
+};
+
+TAUTLINE_KERNEL_EXPORT ElementContributions elementContributions(
+  const EllipticSystem& system, bool shares, int threads = 0);
+}
+#endif

@@ -1,0 +1,68 @@
+/**
+ * @file PointNumbering.h
+ * @brief How the points of a mesh that is spread over MPI ranks are numbered together, and sums over ranks.
+ */
+#ifndef tautline_PointNumbering_h
+#define tautline_PointNumbering_h
+
+#include "Mesh.h"
+
+#include <memory>
+
+namespace tautline
+{
+/// A pointer to an MPI_Comm, so that users of the headers need no MPI; null: this process alone.
+using Communicator = const void*;
+
+/**
+ * @class tautline::PointNumbering
+ * @brief Each global point is owned by one rank, the lowest that has it; rows of a rank are contiguous.
+ *
+ * All methods are collective unless they are const accessors.
+ */
+class TAUTLINE_KERNEL_EXPORT PointNumbering
+{
+public:
+  /**
+   * @param globalIds one id per local point, the same on all ranks for the same point; any numbers from 0 on; null only
+   * on one rank
+   * @param used one flag per local point, nonzero = has a row (a point that is in a cell and is not eliminated); null: all.
+   * The ranks must agree on shared points.
+   */
+  PointNumbering(Communicator communicator, Index points, const Index* globalIds,
+    const unsigned char* used = nullptr);
+  ~PointNumbering();
+  PointNumbering(const PointNumbering&) = delete;
+  PointNumbering& operator=(const PointNumbering&) = delete;
+
+  Communicator communicator() const;
+  int ranks() const;
+  Index globalSize() const; ///< rows on all ranks
+  Index firstRow() const;   ///< of this rank's own
+  Index ownedRows() const;
+  const std::vector<Index>& rows() const; ///< the row of each local point, -1 without one
+  bool owned(Index point) const;
+
+  /// Replaces `components` values per local point by their sums over all ranks.
+  void sum(double* values, int components) const;
+  /// Nonzero flags become nonzero on every rank that has the point.
+  void either(unsigned char* flags) const;
+
+  double sum(double value) const;
+  double maximum(double value) const;
+  Index sum(Index value) const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> Impl;
+};
+
+/**
+ * @brief The points of edges (2D) or faces (3D) that exactly one cell on all ranks has; cells with skip flags (ghosts) do not
+ * count. On one rank what Mesh::boundary() says.
+ * @param globalIds as above; null on one rank
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<unsigned char> globalBoundaryPoints(
+  const Mesh& mesh, Communicator communicator, const Index* globalIds, const unsigned char* skip);
+}
+#endif

@@ -1,0 +1,136 @@
+/**
+ * @file Warp.h
+ * @brief Moves the interior points of a mesh after its boundary: FEMWARP, anisotropic FEMWARP, the hybrid algorithm of
+ * section 4.9, and the methods they are compared with.
+ *
+ * Example: the boundary has moved, the interior follows.
+ *
+ *     tautline::Warper warper(mesh, options);             // keeps what can be used again
+ *     tautline::Warping result = warper.warp(displacement); // 3 per point
+ */
+#ifndef tautline_Warp_h
+#define tautline_Warp_h
+
+#include "FiniteElements.h"
+#include "LinearSolver.h"
+#include "Optimize.h"
+
+#include <memory>
+
+namespace tautline
+{
+/// The numbers are stable: ParaView state files hold them.
+enum class WarpMethod : int
+{
+  Hybrid =
+    0, ///< anisotropic FEMWARP, then shape against the initial mesh and untangling (4.22)-(4.24)
+  Femwarp = 1,            ///< one harmonic solve (4.10)
+  AnisotropicFemwarp = 2, ///< with coefficients (4.11), (4.20)
+  SmallStepFemwarp = 3,   ///< FEMWARP in steps, the matrix of each from the mesh before it
+  FemwarpUntangling = 4,  ///< FEMWARP, then untangling
+  IterativeStiffening =
+    5, ///< linear elasticity, inverted elements stiffened until there are none (UBN's part)
+  JacobianStiffening =
+    6, ///< linear elasticity, small elements stiff (Stein, Tezduyar and Benson 2003)
+  Biharmonic = 7,
+  InverseDistance = 8,
+  RadialBasis = 9, ///< compactly supported, points chosen greedily
+  WeightedLaplacian =
+    10 ///< weighted Laplacian smoothing: each vertex an affine combination of its neighbours
+};
+
+/// Where the coefficients of AnisotropicFemwarp and Hybrid come from. The numbers are stable.
+enum class WarpCoefficients : int
+{
+  DisplacementSums = 0,    ///< (4.19), (4.21): sums of the absolute displacements along the axes
+  PrincipalDirections = 1, ///< a tensor along the principal directions of the motion
+  Manual = 2,              ///< `tensor`
+  PerCell = 3              ///< `tensors`
+};
+
+struct WarpOptions
+{
+  WarpMethod method = WarpMethod::Hybrid;
+  WarpCoefficients coefficients = WarpCoefficients::DisplacementSums;
+  SymmetricTensor tensor = IdentityTensor; ///< Manual; alpha, beta, gamma are its first three
+  const double* tensors = nullptr;         ///< PerCell: 6 per cell
+  /// One flag per point, nonzero = follows its given displacement; null: the points of the boundary.
+  const unsigned char* prescribed = nullptr;
+  /// Steps the motion is cut into: 0 as many as are needed for no element to invert; else so many.
+  int steps = 1;
+  int maximumSteps = 100; ///< with steps = 0 and for SmallStepFemwarp
+  /// Solver of the linear systems; Direct up to a size that depends on the dimension, else CG with BoomerAMG.
+  bool automaticSolver = true;
+  SolverOptions solver;
+  double tolerance = 1e-10;     ///< relative, of the solves
+  double poissonRatio = 0.3;    ///< of the elastic methods
+  double stiffeningPower = 1.0; ///< JacobianStiffening: chi
+  int maximumStiffenings = 50;  ///< IterativeStiffening
+  double stiffeningFactor =
+    2.0; ///< IterativeStiffening: by which inverted elements get stiffer each time
+  double distancePower = 3.0; ///< InverseDistance
+  double supportRadius = 0.0; ///< RadialBasis; 0: from the size of the mesh and the motion
+  double fitTolerance =
+    1e-3; ///< RadialBasis: of the greedy choice, relative to the largest displacement
+  OptimizeOptions optimization; ///< Hybrid's second step: stopping criteria; the objectives are set
+  double maximumSeconds = 0.0;  ///< 0: no limit
+  int threads = 0;
+  std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
+};
+
+/// One line of the history.
+struct WarpRecord
+{
+  double amount = 0.0;     ///< of the motion, 0 to 1
+  Index inverted = 0;      ///< inverted or degenerate elements
+  double worstShape = 0.0; ///< largest TMP shape (4.22) over the elements that are valid
+  double meanShape = 0.0;
+  double seconds = 0.0;
+  int iterations = 0; ///< of linear solvers and optimizers
+  std::string stage;  ///< "warp", "untangle", "optimize"
+};
+
+struct Warping
+{
+  std::vector<double> points; ///< 3 x numberOfPoints
+  std::vector<WarpRecord> history;
+  double amount = 1.0;                     ///< how far it came
+  SymmetricTensor tensor = IdentityTensor; ///< the coefficients used
+  Index invertedWarp = 0;                  ///< after the warp itself
+  Index invertedAfter = 0;                 ///< at the end
+  Index impossible =
+    0; ///< elements no interior position can make valid: the moved boundary itself is not
+  Index decoupled = 0;         ///< points that a coefficient of 0 leaves undetermined
+  double regularization = 0.0; ///< relative, used for them; 0: none
+  double assembleSeconds = 0, setupSeconds = 0, solveSeconds = 0, improveSeconds = 0;
+  bool aborted = false, timeLimit = false;
+  std::string message; ///< what the user should know, or ""
+};
+
+/**
+ * @class tautline::Warper
+ * @brief Keeps matrices, preconditioners and former solutions of a mesh for the next boundary position.
+ */
+class TAUTLINE_KERNEL_EXPORT Warper
+{
+public:
+  /// The mesh (consistently oriented, all elements valid) and the arrays of the options stay alive. Throws Error.
+  Warper(const Mesh& mesh, const WarpOptions& options);
+  ~Warper();
+
+  /**
+   * @brief Where the points are once the prescribed ones have moved by `displacement` (3 per point of the mesh; those of other points
+   * are not read). Throws Error for displacements that are not finite (how many, the first point).
+   */
+  Warping warp(const double* displacement);
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> Impl;
+};
+
+/// The TMP shape metric (4.22) of each element at new points against the mesh; NaN where inverted.
+TAUTLINE_KERNEL_EXPORT std::vector<double> shapeSimilarity(
+  const Mesh& mesh, const double* points, int threads = 0);
+}
+#endif
