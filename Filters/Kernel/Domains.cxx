@@ -28,8 +28,8 @@ const std::vector<DomainInfo> Domains = {
   { "gate", "Moving Gate", "Figure 4.30", DomainKind::Planar, 3000, true, 2.0 },
   { "bending-bar", "Bending Bar", "Figure 4.35", DomainKind::Planar, 3000, true, 1.0 },
   { "sphere", "Sphere in a Cube", "Figure 4.37", DomainKind::Solid, 20000, true, 1.0 },
-  { "box-in-box", "Box in a Box", "not of the dissertation; the inner box turns",
-    DomainKind::Solid, 12000, true, 0.97 },
+  { "box-in-box", "Box in a Box", "not of the dissertation; the inner box turns", DomainKind::Solid,
+    12000, true, 0.97 },
 };
 
 /// A bar of length L clamped at its left end, bent to an arc of angle phi.
