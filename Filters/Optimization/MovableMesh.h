@@ -6,6 +6,8 @@
 #ifndef tautline_MovableMesh_h
 #define tautline_MovableMesh_h
 
+#include "TautlineOptimizationModule.h" // for export macro
+
 #include "MeshAdapter.h"
 #include "tautline/Optimize.h"
 
@@ -34,7 +36,7 @@ struct BoundaryShape;
  * @brief A data set whose points can move. Its orientation is settled: reversed throughout is viewed as its
  * mirror image, mixed is refused.
  */
-class MovableMesh
+class TAUTLINEOPTIMIZATION_EXPORT MovableMesh
 {
 public:
   /**
@@ -98,29 +100,33 @@ struct InputBlock
  * @brief Gives a composite output the structure of the input and calls visit for each data set, or
  * once. Throws Error if reference and input do not have the same structure.
  */
-void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selected,
-  vtkDataObject* output, const std::function<void(const InputBlock&)>& visit);
+TAUTLINEOPTIMIZATION_EXPORT void forEachBlock(vtkDataObject* input, vtkDataObject* reference,
+  vtkDataObject* selected, vtkDataObject* output,
+  const std::function<void(const InputBlock&)>& visit);
 
 /// The number of data sets, at least 1.
-int countBlocks(vtkDataObject* input);
+TAUTLINEOPTIMIZATION_EXPORT int countBlocks(vtkDataObject* input);
 
 /// A copy of the input with marks on what is selected; null without a selection.
-vtkSmartPointer<vtkDataObject> markSelected(vtkDataObject* input, vtkSelection* selection);
+TAUTLINEOPTIMIZATION_EXPORT vtkSmartPointer<vtkDataObject> markSelected(
+  vtkDataObject* input, vtkSelection* selection);
 
 /// Marks the points that markSelected() found, and those of cells it found.
-void fixSelected(MovableMesh& mesh, vtkDataSet* selected);
+TAUTLINEOPTIMIZATION_EXPORT void fixSelected(MovableMesh& mesh, vtkDataSet* selected);
 
 /// A point or cell array named by an algorithm's input array choice; null if none is. Throws Error.
-vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* what);
+TAUTLINEOPTIMIZATION_EXPORT vtkDataArray* chosenArray(
+  vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* what);
 
 /// Sets what an input port takes: data sets and composite ones, or a selection of what stays.
-void declareInput(vtkInformation* info, bool selection, bool optional);
+TAUTLINEOPTIMIZATION_EXPORT void declareInput(vtkInformation* info, bool selection, bool optional);
 
 /// Makes the outputs: like the input on port 0, tables on the others.
-void provideOutputs(vtkDataObject* input, vtkInformationVector* outputs);
+TAUTLINEOPTIMIZATION_EXPORT void provideOutputs(
+  vtkDataObject* input, vtkInformationVector* outputs);
 
 /// Columns that grow by rows; the names of the first row decide.
-class TableRows
+class TAUTLINEOPTIMIZATION_EXPORT TableRows
 {
 public:
   void begin() { this->Next = 0; }
@@ -146,11 +152,12 @@ private:
  * (if there are several), `<name> mean`, `<name> worst`; `Inverted`, `N gradient`, `N moving`, `Time (s)`.
  * Row i is iteration i of the block; row 0 is the input. ParaView's charts leave out the last two.
  */
-void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
-  const std::vector<std::string>& names, const std::string& block);
+TAUTLINEOPTIMIZATION_EXPORT void addHistory(TableRows& rows,
+  const std::vector<IterationRecord>& history, const std::vector<std::string>& names,
+  const std::string& block);
 
 /// Reason, iterations, seconds, free points and inverted elements, in sentences.
-std::string summarize(
+TAUTLINEOPTIMIZATION_EXPORT std::string summarize(
   const Optimization& result, const MovableMesh& mesh, const std::string& block);
 }
 #endif

@@ -1,0 +1,115 @@
+/**
+ * @file WarpPointwise.h
+ * @brief The warping methods that are compared with FEMWARP and need no partial differential equation: inverse
+ * distance weighting, radial basis functions and weighted Laplacian smoothing. Internal: not installed.
+ *
+ * All three move the points by the affine motion that fits the prescribed displacements best (least squares) and
+ * treat only what is left of these; an affine motion comes out exactly, by whatever method. They work in lengths
+ * relative to the extent of the prescribed points, so that the unit of length does not matter.
+ */
+#ifndef tautline_WarpPointwise_h
+#define tautline_WarpPointwise_h
+
+#include "Warp.h"
+
+#include <chrono>
+
+namespace tautline
+{
+/**
+ * @brief Displacements of all points, 3 each, by one of the methods; bitwise the same for any number of threads.
+ *
+ * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is read, and returned
+ * as it is, where the flag is set. Without any prescribed point nothing moves. The result is empty when
+ * options.progress returned false or options.maximumSeconds were over. Throws Error for options out of range.
+ *
+ * Inverse distance weighting (Shepard): the mean of the prescribed displacements, weighted by the distance to the power
+ * -options.distancePower (above 0, at most 20). Far groups of points count by their expansion to second order, which
+ * differs from the sum over all points by less than 1e-4 of the largest displacement.
+ */
+std::vector<double> warpByInverseDistance(const Mesh& mesh,
+  const std::vector<unsigned char>& prescribed, const double* displacement,
+  const WarpOptions& options);
+
+/**
+ * @brief As above by radial basis functions: Wendland's C2 function with the radius options.supportRadius (0: chosen)
+ * around as many prescribed points as it takes for the others to be met within options.fitTolerance times the largest
+ * displacement; the point that is met worst comes next.
+ */
+std::vector<double> warpByRadialBasis(const Mesh& mesh,
+  const std::vector<unsigned char>& prescribed, const double* displacement,
+  const WarpOptions& options);
+
+/**
+ * @brief As above by the method of Shontz and Vavasis (2003): each point that is not prescribed is a convex combination of its
+ * neighbours in the initial mesh, of all such combinations the one with the largest product of weights; it stays
+ * that. Neighbours are the other points of the cells around. Points of parts without a prescribed point stay.
+ */
+std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
+  const std::vector<unsigned char>& prescribed, const double* displacement,
+  const WarpOptions& options);
+
+// --- what the three share ------------------------------------------------------------------------------
+
+/// The prescribed displacements, split into an affine motion and the rest.
+class PrescribedMotion
+{
+public:
+  PrescribedMotion(const Mesh& mesh, const std::vector<unsigned char>& prescribed,
+    const double* displacement, int threads);
+
+  const std::vector<Index>& prescribed() const { return this->Prescribed; } ///< ids, ascending
+  const std::vector<Index>& free() const { return this->Free; }             ///< ids, ascending
+  /// A point in units of scale(), from the middle of the prescribed ones.
+  Vec3 local(Index id) const;
+  double scale() const { return this->Scale; }
+  /// Largest norm of a prescribed displacement.
+  double largest() const { return this->Largest; }
+  /// What the affine motion leaves of the displacement of prescribed()[i].
+  const Vec3& rest(std::size_t i) const { return this->Rest[i]; }
+  /// Whether the affine motion is all there is, to rounding.
+  bool affine() const { return this->Affine; }
+
+  /// All displacements: the given ones, and affine motion plus rest(i) at free()[i].
+  std::vector<double> displacements(const std::vector<Vec3>& rest) const;
+
+private:
+  Vec3 given(Index id) const;
+  Vec3 affineAt(const Vec3& local) const;
+
+  const Mesh& Input;
+  const double* Displacement;
+  int Threads;
+  std::vector<Index> Prescribed, Free;
+  Vec3 Center = { 0, 0, 0 };
+  double Scale = 1;
+  double Largest = 0;
+  bool Affine = true;
+  std::array<Vec3, 4> Map = {}; ///< displacement at the centre, and its derivatives
+  std::vector<Vec3> Rest;
+};
+
+/// The time limit and the observer of options; told from the calling thread.
+class WarpClock
+{
+public:
+  explicit WarpClock(const WarpOptions& options)
+    : Options(options)
+    , Start(std::chrono::steady_clock::now())
+  {
+  }
+
+  /// False when it is time to stop.
+  bool proceed(double fraction) const
+  {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Start;
+    return (this->Options.maximumSeconds <= 0 || passed.count() < this->Options.maximumSeconds) &&
+      (!this->Options.progress || this->Options.progress(fraction));
+  }
+
+private:
+  const WarpOptions& Options;
+  std::chrono::steady_clock::time_point Start;
+};
+}
+#endif
