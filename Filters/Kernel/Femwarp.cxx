@@ -18,21 +18,22 @@ constexpr double coupled = 1e-12;
 
 bool isSingular(const SymmetricTensor& t, const Mesh& mesh)
 {
-  Eigen::Matrix3d c;
-  c << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
   if (mesh.dimension() == Dimension::Planar)
   {
-    Eigen::Matrix<double, 3, 2> frame;
-    for (int k = 0; k < 2; ++k)
+    const auto times = [&t](const Vec3& v)
     {
-      frame.col(k) = Eigen::Map<const Eigen::Vector3d>(mesh.frame()[k].data());
-    }
-    const Eigen::Matrix2d plane = frame.transpose() * c * frame;
-    const Eigen::Vector2d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(plane).eigenvalues();
-    return !(values[0] > singular * values[1]);
+      return Vec3{ t[0] * v[0] + t[3] * v[1] + t[5] * v[2], t[3] * v[0] + t[1] * v[1] + t[4] * v[2],
+        t[5] * v[0] + t[4] * v[1] + t[2] * v[2] };
+    };
+    const Vec3 &e = mesh.frame()[0], &f = mesh.frame()[1];
+    const double a = dot(e, times(e)), b = dot(e, times(f)), c = dot(f, times(f));
+    const double largest = 0.5 * (a + c + std::hypot(a - c, 2.0 * b));
+    return !(a * c - b * b > singular * largest * largest);
   }
-  const Eigen::Vector3d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(c).eigenvalues();
-  return !(values[0] > singular * values[2]);
+  Eigen::Matrix3d c;
+  c << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(c, Eigen::EigenvaluesOnly);
+  return !(solver.eigenvalues()[0] > singular * solver.eigenvalues()[2]);
 }
 
 double largestOf(const SymmetricTensor& t)
@@ -91,6 +92,7 @@ Femwarp::Femwarp(const Mesh& mesh, const WarpParts& parts, Operator kind,
 {
   this->Pde.tensor = tensor;
   this->Pde.tensors = tensors;
+  this->Singular = kind == Operator::Harmonic && (tensors || isSingular(tensor, mesh));
   this->partition(control);
 }
 
@@ -141,14 +143,15 @@ void Femwarp::partition(WarpControl& control)
   const SparseMatrix matrix = this->assemble(this->Regularization, control);
   const double before = control.elapsed();
   this->Held = this->Parts.held();
-  if (this->Regularization == 0 && this->Kind == Operator::Harmonic)
+  this->Decoupled = 0;
+  if (this->Regularization == 0 && this->Singular)
   {
     this->findDecoupled(matrix, control);
   }
   const int dimension = this->Input.dimension() == Dimension::Volume ? 3 : 2;
   const double* points = this->Input.view().points;
-  this->System = std::make_unique<WarpSystem>(
-    matrix, 1, this->Held, points, dimension, control.options());
+  this->System =
+    std::make_unique<WarpSystem>(matrix, 1, this->Held, points, dimension, control.options());
   this->Second.reset();
   if (this->Decoupled > 0)
   {
@@ -165,11 +168,6 @@ void Femwarp::partition(WarpControl& control)
 /// Points that no chain of couplings joins to a prescribed one.
 void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
 {
-  this->Decoupled = 0;
-  if (!this->Pde.tensors && !isSingular(this->Pde.tensor, this->Input))
-  {
-    return;
-  }
   AssemblyOptions options;
   options.threads = control.options().threads;
   const SparseMatrix isotropic = stiffnessMatrix(this->Input, DiffusionOperator(), options);
@@ -183,7 +181,7 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
   std::vector<double> scale(n);
   for (Index i = 0; i < n; ++i)
   {
-    scale[i] = coupled * size * isotropic.at(i, static_cast<Index>(i));
+    scale[i] = coupled * size * isotropic.at(i, i);
   }
   // From the prescribed points outward.
   std::vector<char> reached(n, 0);
@@ -262,7 +260,7 @@ std::vector<double> Femwarp::warp(const double* displacement, WarpControl& contr
   const double nothing =
     roundings * std::numeric_limits<double>::epsilon() * (most + slope * position);
 
-  // Regularise more and more until the motion is no larger than what the maximum principle would allow, about.
+  // A singular operator: regularise more and more until the motion is no larger than what the maximum principle would allow, about.
   constexpr double excess = 2.0, firstRegularization = 1e-10, factor = 100, last = 1e-1;
   std::vector<double> values(n);
   for (;;)
@@ -297,10 +295,9 @@ std::vector<double> Femwarp::warp(const double* displacement, WarpControl& contr
         }
       }
     }
-    const bool harmonic = this->Kind == Operator::Harmonic;
     control.result().decoupled = this->Decoupled;
     control.result().regularization = this->Regularization;
-    if (control.stopped() || !harmonic || (good && bounded) || this->Regularization >= last)
+    if (control.stopped() || !this->Singular || (good && bounded) || this->Regularization >= last)
     {
       if (!good && !control.stopped())
       {

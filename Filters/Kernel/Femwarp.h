@@ -32,7 +32,7 @@ SymmetricTensor principalDirections(
  *
  * Where C is singular some points may depend on no prescribed point: rows, chains of rows and whole layers of the matrix that
  * decouple. These points get the isotropic operator instead, with all others given; the others do not
- * notice. Where the motion is nonetheless unbounded or the solver fails, a part of the isotropic operator is added to
+ * notice. Where the motion with such a C is nonetheless unbounded or the solver fails, a part of the isotropic operator is added to
  * all, the least of 1e-10, 1e-8, ... that helps.
  */
 class Femwarp
@@ -62,6 +62,7 @@ private:
   DiffusionOperator Pde;
   std::vector<unsigned char> Held;   ///< given in the first solve: also points that decouple
   std::vector<unsigned char> Others; ///< given in the second: all but points that decouple
+  bool Singular = false;             ///< C may be
   Index Decoupled = 0;
   double Regularization = 0;
   std::unique_ptr<WarpSystem> System, Second;

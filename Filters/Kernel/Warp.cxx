@@ -58,7 +58,8 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options)
   {
     const SymmetricTensor& t = options.tensor;
     refuse(!semidefinite(t.data()) || !(std::max({ t[0], t[1], t[2] }) > 0),
-      "The coefficients must be finite and positive semidefinite, and not all 0: for example 1, 0, 0 "
+      "The coefficients must be finite and positive semidefinite, and not all 0: for example 1, 0, "
+      "0 "
       "for a motion along x.");
   }
   if (anisotropic && options.coefficients == WarpCoefficients::PerCell)
@@ -219,11 +220,13 @@ void Warper::Implementation::explain(WarpControl& control)
   if (result.decoupled > 0)
   {
     control.say(std::to_string(result.decoupled) +
-      " points depend on no prescribed point with these coefficients; they follow the points around them.");
+      " points depend on no prescribed point with these coefficients; they follow the points "
+      "around them.");
   }
   if (result.regularization > 0)
   {
-    control.say("With these coefficients the motion is not determined; the isotropic operator was added, times " +
+    control.say("With these coefficients the motion is not determined; the isotropic operator was "
+                "added, times " +
       std::to_string(result.regularization) + ".");
   }
   // Elements of prescribed points alone are what the boundary makes of them.

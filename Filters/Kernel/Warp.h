@@ -86,7 +86,7 @@ struct WarpOptions
   double untanglingBeta = 0.0;
   /// Hybrid's second step: optimizer and stopping criteria count, and c of the exponential sum; the rest is set.
   OptimizeOptions optimization = hybridOptimization();
-  double maximumSeconds = 0.0;  ///< 0: no limit
+  double maximumSeconds = 0.0; ///< 0: no limit
   int threads = 0;
   std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
 };

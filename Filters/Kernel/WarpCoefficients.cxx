@@ -43,8 +43,7 @@ SymmetricTensor displacementSums(
   const std::vector<unsigned char>& prescribed, const double* displacement)
 {
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
-  forEachPrescribed(
-    prescribed, displacement, [&sums](const auto& d) { sums += d.cwiseAbs(); });
+  forEachPrescribed(prescribed, displacement, [&sums](const auto& d) { sums += d.cwiseAbs(); });
   return normalize(sums) ? SymmetricTensor{ sums[0], sums[1], sums[2], 0, 0, 0 } : IdentityTensor;
 }
 
@@ -81,7 +80,15 @@ SymmetricTensor principalDirections(
     double sum = 0;
     forEachPrescribed(prescribed, displacement,
       [&](const auto& d)
-      { sum += (axes.middleCols(first, end - first).transpose() * d).norm() / largest; });
+      {
+        double length2 = 0;
+        for (int k = first; k < end; ++k)
+        {
+          const double along = axes.col(k).dot(d) / largest;
+          length2 += along * along;
+        }
+        sum += std::sqrt(length2);
+      });
     for (int k = first; k < end; ++k)
     {
       sums[k] = average[end - first] * sum;

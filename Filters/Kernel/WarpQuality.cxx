@@ -93,8 +93,7 @@ void forEachElement(const Mesh& mesh, const double* points, int threads, const V
 //------------------------------------------------------------------------------
 std::vector<double> shapeSimilarity(const Mesh& mesh, const double* points, int threads)
 {
-  std::vector<double> values(
-    mesh.view().numberOfCells, std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> values(mesh.view().numberOfCells, std::numeric_limits<double>::quiet_NaN());
   forEachElement(
     mesh, points, threads, [&values](Index, Index cell, double value) { values[cell] = value; });
   return values;

@@ -116,8 +116,8 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
 }
 
 //------------------------------------------------------------------------------
-WarpQuality WarpStep::record(const char* stage, double amount, int iterations,
-  const double* points, WarpControl& control) const
+WarpQuality WarpStep::record(const char* stage, double amount, int iterations, const double* points,
+  WarpControl& control) const
 {
   const WarpQuality quality = qualityOf(this->Initial, points, control.options().threads);
   WarpRecord record;
@@ -173,10 +173,8 @@ void WarpStep::improve(
   const bool hybrid = options.method == WarpMethod::Hybrid;
   const bool literal = hybrid && !options.untangleFirst;
   const bool moved = std::find(moving.begin(), moving.end(), 1) != moving.end();
-  const auto stage = [&](const char* name, int iterations)
-  {
-    result.invertedAfter =
-      this->record(name, amount, iterations, points.data(), control).inverted;
+  const auto stage = [&](const char* name, int iterations) {
+    result.invertedAfter = this->record(name, amount, iterations, points.data(), control).inverted;
   };
   if (literal && moved)
   {
@@ -194,8 +192,8 @@ void WarpStep::improve(
 }
 
 //------------------------------------------------------------------------------
-int WarpStep::untangle(const std::vector<unsigned char>& fixed, WarpControl& control,
-  std::vector<double>& points) const
+int WarpStep::untangle(
+  const std::vector<unsigned char>& fixed, WarpControl& control, std::vector<double>& points) const
 {
   MeshView view = this->Initial.view();
   view.points = points.data();
@@ -218,8 +216,8 @@ int WarpStep::untangle(const std::vector<unsigned char>& fixed, WarpControl& con
 }
 
 //------------------------------------------------------------------------------
-int WarpStep::optimize(const std::vector<unsigned char>& fixed, WarpControl& control,
-  std::vector<double>& points) const
+int WarpStep::optimize(
+  const std::vector<unsigned char>& fixed, WarpControl& control, std::vector<double>& points) const
 {
   MeshView view = this->Initial.view();
   view.points = points.data();

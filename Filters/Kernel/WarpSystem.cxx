@@ -51,7 +51,6 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
   const double* points, int dimension, const WarpOptions& options)
   : Options(options)
   , Block(block)
-  , Dimensions(dimension)
 {
   const Index n = static_cast<Index>(held.size());
   std::vector<std::int32_t> unknown(n * block, -1);

@@ -63,7 +63,7 @@ private:
   void makeSolver(KrylovMethod method);
 
   const WarpOptions& Options;
-  int Block, Dimensions;
+  int Block;
   std::vector<Index> Free;
   SparseMatrix Inner;         ///< A_I
   std::vector<Index> Starts;  ///< of the rows of A_B
