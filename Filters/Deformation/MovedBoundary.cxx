@@ -115,7 +115,8 @@ void requireElements(const MovableMesh& mesh)
   if (mesh.mesh().nonFinitePoints() > 0)
   {
     throw Error(text(mesh.mesh().nonFinitePoints()) +
-      " points have a coordinate that is NaN or infinite: repair them or leave them out (Threshold).");
+      " points have a coordinate that is NaN or infinite: repair them or leave them out "
+      "(Threshold).");
   }
   if (shapeless > 0)
   {
@@ -138,7 +139,8 @@ PointFlags boundaryOf(const Mesh& mesh)
   PointFlags flags(boundary.begin(), boundary.end());
   if (count(flags) == 0)
   {
-    throw Error("The mesh has no boundary (it is closed), so there is nothing its points could follow.");
+    throw Error(
+      "The mesh has no boundary (it is closed), so there is nothing its points could follow.");
   }
   return flags;
 }
@@ -157,7 +159,8 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
     case MovedPart::Numbered:
       if (choice.numbers.empty())
       {
-        throw Error("No boundary part is given: add the numbers of those that move; 1 is the largest.");
+        throw Error(
+          "No boundary part is given: add the numbers of those that move; 1 is the largest.");
       }
       return pointsOfParts(mesh, choice);
     case MovedPart::Values:
@@ -174,8 +177,9 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
     case MovedPart::Selection:
       if (!choice.selected)
       {
-        throw Error("Nothing is selected that could move: select points or cells and press Copy Active "
-                    "Selection, or choose another Moved Part.");
+        throw Error(
+          "Nothing is selected that could move: select points or cells and press Copy Active "
+          "Selection, or choose another Moved Part.");
       }
       markPoints(mesh, choice.selected, flags);
       break;
@@ -279,7 +283,8 @@ std::vector<double> tensorsOf(vtkDataArray* array)
   if (components != 1 && components != 3 && components != 6 && components != 9)
   {
     throw Error(std::string("The array '") + array->GetName() + "' has " + text(components) +
-      " components per cell: coefficients have 1 (isotropic), 3 (alpha, beta, gamma), 6 (xx yy zz xy yz "
+      " components per cell: coefficients have 1 (isotropic), 3 (alpha, beta, gamma), 6 (xx yy zz "
+      "xy yz "
       "xz) or 9.");
   }
   const vtkIdType cells = array->GetNumberOfTuples();

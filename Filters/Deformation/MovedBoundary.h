@@ -27,8 +27,8 @@ enum class MovedPart : int
 struct PartChoice
 {
   MovedPart part = MovedPart::Automatic;
-  std::vector<int> numbers;     ///< Numbered
-  std::vector<double> values;   ///< Values; empty: all but 0
+  std::vector<int> numbers;      ///< Numbered
+  std::vector<double> values;    ///< Values; empty: all but 0
   vtkDataArray* array = nullptr; ///< Values
   bool ofCells = false;
   vtkDataSet* selected = nullptr; ///< Selection: the mesh with the marks of markSelected(), or null

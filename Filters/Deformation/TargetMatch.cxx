@@ -113,7 +113,8 @@ public:
     if (wanted == Correspondence::SameMesh && points != this->View.numberOfPoints)
     {
       throw Error("The target has " + text(points) + " points and the mesh has " +
-        text(this->View.numberOfPoints) + ": it is not the same mesh. Choose another Correspondence.");
+        text(this->View.numberOfPoints) +
+        ": it is not the same mesh. Choose another Correspondence.");
     }
     if (wanted != Correspondence::SameBoundary && points == this->View.numberOfPoints)
     {
@@ -141,7 +142,8 @@ public:
       {
         throw Error("The target has " + text(points) + " points, of the mesh " +
           text(count(*this->Request.projected)) +
-          " points move, and its cells are not those of the boundary in the same order: choose another "
+          " points move, and its cells are not those of the boundary in the same order: choose "
+          "another "
           "Correspondence, or what moves.");
       }
       return ids;
@@ -180,7 +182,8 @@ private:
     if (unknown > 0)
     {
       throw Error("The target's array '" + std::string(ids->GetName()) + "' has " + text(unknown) +
-        " values that are no " + (own ? "values of the mesh's array of that name" : "point of the mesh") +
+        " values that are no " +
+        (own ? "values of the mesh's array of that name" : "point of the mesh") +
         ": choose another array, or None.");
     }
     return result;
@@ -197,7 +200,9 @@ private:
     if (this->Edges.empty())
     {
       forEachEdge(this->View,
-        [this](Index a, Index b) { this->Edges.insert({ std::min(a, b), std::max(a, b) }); });
+        [this](Index a, Index b) {
+          this->Edges.insert({ std::min(a, b), std::max(a, b) });
+        });
     }
     bool all = true;
     forEachEdge(this->target(),
@@ -305,7 +310,8 @@ vtkSmartPointer<vtkDataSet> surfaceOf(vtkDataSet* target, bool ofVolume)
   if (dimension < wanted)
   {
     throw Error(std::string("The target has no ") + (ofVolume ? "surface" : "curve") +
-      " the boundary could be moved to, and its points do not correspond to those of the mesh: give a " +
+      " the boundary could be moved to, and its points do not correspond to those of the mesh: "
+      "give a " +
       (ofVolume ? "surface" : "curve") + ", or point ids.");
   }
   vtkSmartPointer<vtkDataSet> result = target;
@@ -405,7 +411,8 @@ TargetPlaces placesOf(const TargetRequest& request)
   if (wrong > 0)
   {
     throw Error("The target has " + text(wrong) +
-      " points of the boundary with coordinates that are NaN or infinite: repair them, or leave them out "
+      " points of the boundary with coordinates that are NaN or infinite: repair them, or leave "
+      "them out "
       "(Correspondence: Point ids).");
   }
   if (!ids.empty())

@@ -27,8 +27,8 @@ enum class Correspondence : int
 
 struct TargetRequest
 {
-  vtkDataSet* mesh = nullptr;           ///< whose boundary moves
-  const Mesh* view = nullptr;           ///< the same to the kernel
+  vtkDataSet* mesh = nullptr; ///< whose boundary moves
+  const Mesh* view = nullptr; ///< the same to the kernel
   vtkDataSet* target = nullptr;
   Correspondence correspondence = Correspondence::Automatic;
   vtkDataArray* ids = nullptr; ///< of the target, or null
@@ -40,9 +40,9 @@ struct TargetRequest
 
 struct TargetPlaces
 {
-  std::vector<double> displacement;  ///< 3 per point, 0 where nothing is given
-  std::vector<unsigned char> given;  ///< one flag per point
-  std::string how;                   ///< a sentence: which correspondence, how many, how far
+  std::vector<double> displacement; ///< 3 per point, 0 where nothing is given
+  std::vector<unsigned char> given; ///< one flag per point
+  std::string how;                  ///< a sentence: which correspondence, how many, how far
 };
 
 /// Throws Error that says what does not fit.

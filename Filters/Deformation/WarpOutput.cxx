@@ -131,8 +131,8 @@ std::string describe(const Warping& result, const WarpFacts& facts, const Qualit
   }
   text << "\nShape against the mesh at rest: mean " << q.shape.mean << ", worst " << q.shape.maximum
        << " (0 is the same).\n"
-       << facts.movedPoints << " of " << facts.boundaryPoints
-       << " given points moved, by at most " << facts.largestDisplacement << ".";
+       << facts.movedPoints << " of " << facts.boundaryPoints << " given points moved, by at most "
+       << facts.largestDisplacement << ".";
   if (!facts.motion.empty())
   {
     text << "\nThe target corresponds " << facts.motion << ".";
@@ -173,8 +173,8 @@ void addWarpOutput(const MovableMesh& rest, const Warping& result, const WarpFac
   std::vector<double> values(view.numberOfCells);
   EvaluationOptions ideal, similar;
   ideal.threads = similar.threads = facts.threads;
-  q.before = measure(mesh, Metric::InverseMeanRatio, ideal, rest.validity().data(), rest.skipped(),
-    values.data());
+  q.before = measure(
+    mesh, Metric::InverseMeanRatio, ideal, rest.validity().data(), rest.skipped(), values.data());
   q.after =
     measure(moved, Metric::InverseMeanRatio, ideal, validity.data(), rest.skipped(), values.data());
   const Targets targets = referenceTargets(moved, mesh);

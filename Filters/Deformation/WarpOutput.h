@@ -13,8 +13,8 @@ namespace tautline
 /// What is known of a data set beside the result of the kernel.
 struct WarpFacts
 {
-  std::string method;  ///< its name
-  std::string motion;  ///< how the target corresponds, or ""
+  std::string method;        ///< its name
+  std::string motion;        ///< how the target corresponds, or ""
   bool coefficients = false; ///< whether the method has any
   double amount = 1.0;
   Index boundaryPoints = 0, movedPoints = 0;

@@ -7,6 +7,7 @@
 #include "vtkInformation.h"
 #include "vtkLinearTransform.h"
 #include "vtkMatrix4x4.h"
+#include "vtkPointData.h"
 #include "vtkSelection.h"
 
 #include <algorithm>
@@ -17,14 +18,14 @@ using namespace tautline;
 
 namespace
 {
+// Arrays to process. All are of the mesh: ParaView's pipeline takes those of one port at consecutive indices only.
 enum Arrays
 {
   DisplacementArray = 0,
-  TargetIdsArray = 1,
-  MovedArray = 2,
-  FixedArray = 3,
-  TensorArray = 4,
-  RegionArray = 5
+  MovedArray = 1,
+  FixedArray = 2,
+  TensorArray = 3,
+  RegionArray = 4
 };
 
 // Points of all time steps kept: 2^27 numbers, 1 GiB, of a data set.
@@ -85,6 +86,21 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
     throw Error("The target has no data set in the place of this one of the mesh.");
   }
   return only;
+}
+
+vtkDataArray* targetIds(vtkDataSet* target, const std::string& name)
+{
+  if (name.empty() || name == "None")
+  {
+    return nullptr;
+  }
+  vtkDataArray* array = target->GetPointData()->GetArray(name.c_str());
+  if (!array)
+  {
+    throw Error(
+      "The target has no point array '" + name + "' of point ids: choose another, or None.");
+  }
+  return array;
 }
 
 bool chosenOfCells(vtkAlgorithm* algorithm, int index)
@@ -265,8 +281,7 @@ void vtkMeshWarp::Session::visit(const InputBlock& block, vtkDataObject* target,
     facts.movedPoints += length > 0;
     facts.largestDisplacement = std::max(facts.largestDisplacement, length);
   }
-  facts.seconds =
-    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  facts.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   addWarpOutput(*kept.rest.mesh, result, facts, block, history, statistics, totals);
 }
 
@@ -281,8 +296,7 @@ WarpTask vtkMeshWarp::Session::task(const InputBlock& block, const RestingMesh& 
 
   PointFlags& stay = task.stay;
   stay.assign(rest.boundary.size(), 0);
-  markPoints(
-    mesh, chosenArray(self, FixedArray, block.input, "to tell what stays"), false, stay);
+  markPoints(mesh, chosenArray(self, FixedArray, block.input, "to tell what stays"), false, stay);
   markPoints(mesh, block.selected, stay);
   markGhosts(block.input, stay);
   task.prescribed = rest.boundary;
@@ -335,7 +349,8 @@ void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest
   {
     if (this->times.empty())
     {
-      throw Error("The input has no time steps its boundary could move over: choose another Motion.");
+      throw Error(
+        "The input has no time steps its boundary could move over: choose another Motion.");
     }
     task.displacement.assign(3 * view.numberOfPoints, 0.0);
     for (Index i = 0; i < view.numberOfPoints; ++i)
@@ -372,8 +387,7 @@ void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest
     request.view = &mesh;
     request.target = targetOf(block, target);
     request.correspondence = static_cast<tautline::Correspondence>(self->Correspondence);
-    const char* ids = self->GetInputArrayInformation(TargetIdsArray)->Get(vtkDataObject::FIELD_NAME());
-    request.ids = ids ? chosenArray(self, TargetIdsArray, request.target, "of the target") : nullptr;
+    request.ids = targetIds(request.target, self->TargetIds);
     request.projected = &moved;
     request.matched = automatic ? &rest.boundary : &moved;
     request.threads = self->Threads;
@@ -398,9 +412,7 @@ void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest
   motion.ownCenter = self->OwnCenter;
   std::copy_n(self->Center, 3, motion.center.begin());
   task.path = [motion, view, moved, amount = self->Amount](double part)
-  {
-    return displacements(motion, part * amount, view.numberOfPoints, view.points, moved.data());
-  };
+  { return displacements(motion, part * amount, view.numberOfPoints, view.points, moved.data()); };
   task.displacement = task.path(1.0);
 }
 
@@ -499,8 +511,8 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
   }
   const std::vector<double> atRest(view.points, view.points + 3 * view.numberOfPoints);
   const auto before = stepwise ? kept.frames.find(this->current - 1) : kept.frames.end();
-  if (std::all_of(task.displacement.begin(), task.displacement.end(),
-        [](double d) { return d == 0; }) &&
+  if (std::all_of(
+        task.displacement.begin(), task.displacement.end(), [](double d) { return d == 0; }) &&
     before == kept.frames.end())
   {
     result.points = atRest; // bitwise

@@ -34,7 +34,10 @@ struct RestingMesh
   /// Takes a data set, unless it is the one that is here. Throws Error if nothing can be warped.
   void take(vtkPointSet* input, int threads);
   /// What is warped.
-  const tautline::Mesh& warped() const { return this->elements ? *this->elements : this->mesh->mesh(); }
+  const tautline::Mesh& warped() const
+  {
+    return this->elements ? *this->elements : this->mesh->mesh();
+  }
 
 private:
   void takeElements(int threads);
@@ -44,8 +47,9 @@ private:
 struct WarpBlock
 {
   RestingMesh rest;
-  vtkSmartPointer<vtkPointSet> first;        ///< at the first time step
-  std::map<int, std::vector<double>> frames; ///< points at time steps, each warped from the one before
+  vtkSmartPointer<vtkPointSet> first; ///< at the first time step
+  std::map<int, std::vector<double>>
+    frames; ///< points at time steps, each warped from the one before
 };
 
 /// The motion of a data set as it is asked for.
@@ -55,8 +59,8 @@ struct WarpTask
   std::vector<double> displacement; ///< at the amount, from the mesh at rest
   /// The same after a part (0 to 1) of the way, where it is not straight; or empty.
   std::function<std::vector<double>(double)> path;
-  std::vector<double> tensors;      ///< or empty
-  std::string correspondence;       ///< or ""
+  std::vector<double> tensors; ///< or empty
+  std::string correspondence;  ///< or ""
 };
 
 struct vtkMeshWarp::Session

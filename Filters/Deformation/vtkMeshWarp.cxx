@@ -74,7 +74,8 @@ void requireOneProcess(vtkDataObject* input)
   if (most > 1)
   {
     throw tautline::Error("The mesh is spread over " + std::to_string(most) +
-      " processes, and the boundary of a part is not that of the mesh: gather it on one process first, "
+      " processes, and the boundary of a part is not that of the mesh: gather it on one process "
+      "first, "
       "in ParaView by Redistribute DataSet with Number Of Partitions 1.");
   }
 }
@@ -90,6 +91,17 @@ vtkMeshWarp::vtkMeshWarp()
 
 //------------------------------------------------------------------------------
 vtkMeshWarp::~vtkMeshWarp() = default;
+
+//------------------------------------------------------------------------------
+void vtkMeshWarp::SetTargetIds(const char* name)
+{
+  const std::string given = name ? name : "";
+  if (given != this->TargetIds)
+  {
+    this->TargetIds = given;
+    this->Modified();
+  }
+}
 
 //------------------------------------------------------------------------------
 void vtkMeshWarp::AddPart(int number)
@@ -281,8 +293,9 @@ int vtkMeshWarp::RequestData(
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorMacro("Not enough memory: choose conjugate gradients with BoomerAMG (Automatic Solver off), "
-                  "or warp the mesh in parts.");
+    vtkErrorMacro(
+      "Not enough memory: choose conjugate gradients with BoomerAMG (Automatic Solver off), "
+      "or warp the mesh in parts.");
     return this->Fail(output, request);
   }
   catch (const std::exception& error)
@@ -305,8 +318,7 @@ int vtkMeshWarp::RequestData(
   }
   if (session.sequence())
   {
-    output->GetInformation()->Set(
-      vtkDataObject::DATA_TIME_STEP(), session.times[session.wanted]);
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), session.times[session.wanted]);
   }
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));

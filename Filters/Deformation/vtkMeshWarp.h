@@ -17,9 +17,8 @@
  * or one for all of them; 2 (optional) a vtkSelection of what moves (MovedPart SELECTION); 3 (optional) a vtkSelection of
  * points that stay, or cells whose points stay.
  *
- * Arrays (SetInputArrayToProcess), by index: 0 displacements (points, 3 components); 1 of the target (port 1), numbers of
- * the mesh's points, or values of the mesh's point array of the same name (points); 2 what moves (points or cells, see
- * MovedPart); 3 points that stay (not 0); 4 tensors (cells; 1, 3, 6 or 9 components); 5 regions (cells).
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 displacements (points, 3 components); 1 what moves (points or
+ * cells, see MovedPart); 2 points that stay (not 0); 3 tensors (cells; 1, 3, 6 or 9 components); 4 regions (cells).
  *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (from the mesh at rest), and the cell arrays `TMP shape`
@@ -87,7 +86,8 @@ public:
     DISPLACEMENT = 0, ///< the array at index 0
     TARGET = 1,       ///< the data set at port 1
     TRANSFORM = 2,    ///< TransformKind, of MovedPart
-    TIME_STEPS = 3    ///< where the boundary of the input is at each time; the interior is that of the first
+    TIME_STEPS =
+      3 ///< where the boundary of the input is at each time; the interior is that of the first
   };
   ///@{
   /// How the boundary moves. The default is TRANSFORM.
@@ -108,9 +108,10 @@ public:
   {
     AUTOMATIC_MATCH = 0, ///< the first below that fits; point ids if an array is named
     SAME_MESH = 1,       ///< as many points as the mesh, in the same order
-    SAME_BOUNDARY = 2,   ///< the points that move: by number, or as Extract Surface or Feature Edges order them
-    POINT_IDS = 3,       ///< the array at index 1
-    CLOSEST_POINT = 4    ///< projection to the nearest point of the surface (curve)
+    SAME_BOUNDARY =
+      2, ///< the points that move: by number, or as Extract Surface or Feature Edges order them
+    POINT_IDS = 3,    ///< the array at index 1
+    CLOSEST_POINT = 4 ///< projection to the nearest point of the surface (curve)
   };
   ///@{
   /// Which point of the target belongs to which of the mesh. The default is AUTOMATIC_MATCH; the summary tells.
@@ -118,13 +119,23 @@ public:
   vtkGetMacro(Correspondence, int);
   ///@}
 
+  ///@{
+  /**
+   * A point array of the target: values of the mesh's point array of the same name, or numbers of the mesh's points. "" or "None",
+   * the default, is none.
+   */
+  void SetTargetIds(const char* name);
+  const char* GetTargetIds() const { return this->TargetIds.c_str(); }
+  ///@}
+
   enum MovedParts
   {
-    AUTOMATIC_PART = 0,   ///< INNER_BOUNDARIES; for a target with a place for each point WHOLE_BOUNDARY
+    AUTOMATIC_PART =
+      0, ///< INNER_BOUNDARIES; for a target with a place for each point WHOLE_BOUNDARY
     WHOLE_BOUNDARY = 1,
     INNER_BOUNDARIES = 2, ///< all but the outer boundary; all if there is nothing else
     NUMBERED_PARTS = 3,   ///< AddPart(), numbered by size; 1 is the largest
-    ARRAY_VALUES = 4,     ///< where the array at index 2 is not 0, or one of AddValue()
+    ARRAY_VALUES = 4,     ///< where the array at index 1 is not 0, or one of AddValue()
     SELECTION = 5         ///< points at port 2, or points of cells
   };
   ///@{
@@ -143,7 +154,7 @@ public:
   ///@}
 
   ///@{
-  /// Values of the array at index 2 that move; none: all but 0.
+  /// Values of the array at index 1 that move; none: all but 0.
   void AddValue(double value);
   void RemoveAllValues();
   ///@}
@@ -213,8 +224,9 @@ public:
 
   enum StartsFrom
   {
-    FIRST_STEP = 0,   ///< the result at a time does not depend on other times
-    PREVIOUS_STEP = 1 ///< each time step goes on from the one before; going back, from those kept or anew
+    FIRST_STEP = 0, ///< the result at a time does not depend on other times
+    PREVIOUS_STEP =
+      1 ///< each time step goes on from the one before; going back, from those kept or anew
   };
   ///@{
   /**
@@ -250,8 +262,8 @@ public:
     DISPLACEMENT_SUMS = 0,    ///< (4.19), (4.21)
     PRINCIPAL_DIRECTIONS = 1, ///< the same along the principal directions of the motion
     MANUAL = 2,               ///< SetTensor()
-    PER_CELL = 3,             ///< the array at index 4
-    PER_REGION = 4            ///< AddRegion() by the array at index 5, SetTensor() for all other regions
+    PER_CELL = 3,             ///< the array at index 3
+    PER_REGION = 4 ///< AddRegion() by the array at index 4, SetTensor() for all other regions
   };
   ///@{
   /// The coefficients of HYBRID and ANISOTROPIC_FEMWARP. The default is DISPLACEMENT_SUMS.
@@ -266,7 +278,7 @@ public:
   ///@}
 
   ///@{
-  /// alpha, beta and gamma (at least 0) of the cells where the array at index 5 is `region`.
+  /// alpha, beta and gamma (at least 0) of the cells where the array at index 4 is `region`.
   void AddRegion(double region, double alpha, double beta, double gamma);
   void RemoveAllRegions();
   ///@}
@@ -414,6 +426,7 @@ private:
   int Motion = TRANSFORM;
   double Amount = 1.0;
   int Correspondence = AUTOMATIC_MATCH;
+  std::string TargetIds;
   int MovedPart = AUTOMATIC_PART;
   std::vector<int> Parts;
   std::vector<double> Values;

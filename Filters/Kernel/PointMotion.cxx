@@ -18,11 +18,12 @@ using Matrix = Eigen::Matrix3d;
 using Path = std::function<Vector(const Vector&)>; ///< where a point is at the amount asked for
 
 constexpr double Degree = 3.14159265358979323846 / 180;
-constexpr double SmallAngle = 1e-7;  // the axis of a smaller turn is not known, nor needed
-constexpr double Flattened = 1e-12;  // volumes of less than this times that of a cube as long
-constexpr int MostPolarSteps = 100;  // it takes a dozen for the worst matrix let through
-constexpr double PolarChange = 1e-9; // of the last step but one; the error after the last is its square
-constexpr double SmallBend = 1e-4;   // sin(x) / x and (1 - cos(x)) / x by their series below
+constexpr double SmallAngle = 1e-7; // the axis of a smaller turn is not known, nor needed
+constexpr double Flattened = 1e-12; // volumes of less than this times that of a cube as long
+constexpr int MostPolarSteps = 100; // it takes a dozen for the worst matrix let through
+constexpr double PolarChange =
+  1e-9; // of the last step but one; the error after the last is its square
+constexpr double SmallBend = 1e-4; // sin(x) / x and (1 - cos(x)) / x by their series below
 
 Vector toVector(const Vec3& v)
 {
@@ -90,13 +91,15 @@ Path matrixPath(const PointMotion& motion, double amount, const Vector& middle)
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> whole(motion.matrix.data());
   if (!whole.allFinite() || whole.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
   {
-    throw Error("The transform is not affine, or not finite: choose one that moves, turns and scales.");
+    throw Error(
+      "The transform is not affine, or not finite: choose one that moves, turns and scales.");
   }
   const Matrix linear = whole.topLeftCorner<3, 3>();
   if (!(linear.determinant() > Flattened * std::pow(linear.norm(), 3)))
   {
-    throw Error("The transform mirrors or flattens what it moves, which no mesh can follow: scale by "
-                "positive factors.");
+    throw Error(
+      "The transform mirrors or flattens what it moves, which no mesh can follow: scale by "
+      "positive factors.");
   }
   const Matrix turn = rotationOf(linear);
   const Matrix stretch = turn.transpose() * linear;
@@ -126,7 +129,8 @@ Path bendingPath(const PointMotion& motion, double amount, Index n, const double
   const Vector across = wanted - axis.dot(wanted) * axis;
   if (across.norm() < Flattened)
   {
-    throw Error("The bar lies along the axis it is to be bent about: turn the axis or the direction.");
+    throw Error(
+      "The bar lies along the axis it is to be bent about: turn the axis or the direction.");
   }
   const Vector direction = across.normalized(), normal = axis.cross(direction);
   double first = std::numeric_limits<double>::infinity(), last = -first;
@@ -140,8 +144,9 @@ Path bendingPath(const PointMotion& motion, double amount, Index n, const double
   const double start = motion.ownCenter ? first : 0.0;
   if (!(last > start))
   {
-    throw Error("There is nothing to bend: no point lies further along the direction than where the "
-                "bar is held.");
+    throw Error(
+      "There is nothing to bend: no point lies further along the direction than where the "
+      "bar is held.");
   }
   const double curvature = amount * motion.angle * Degree / (last - start);
   return [=](const Vector& x) -> Vector

@@ -242,8 +242,7 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
 }
 
 //------------------------------------------------------------------------------
-void forEachLeaf(
-  vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit)
+void forEachLeaf(vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit)
 {
   auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
   if (auto* single = vtkDataSet::SafeDownCast(data))

@@ -92,8 +92,8 @@ struct InputBlock
   vtkDataSet* reference; ///< or null
   vtkDataSet* selected;  ///< the input with the array of markSelected(), or null
   vtkDataSet* output;
-  int number;       ///< counts through the data sets, from 0
-  std::string name; ///< "block 3", or "" if the input is a single data set
+  int number;             ///< counts through the data sets, from 0
+  std::string name;       ///< "block 3", or "" if the input is a single data set
   unsigned int flatIndex; ///< of composite data; 0 if the input is a single data set
 };
 

@@ -60,8 +60,8 @@ void testAffine()
     filter->SetInputData(grid);
     filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
     filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
-    filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
-    filter->SetInputArrayToProcess(5, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region");
+    filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
+    filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region");
     filter->SetTensor(2, 1, 4, 0.5, 0, 0.1);
     filter->AddRegion(0, 1, 5, 2);
     filter->AddRegion(2, 3, 1, 1);
@@ -135,9 +135,12 @@ void testPaths()
     check([&](const Vec3& p) { return p + amount * Vec3{ 0.5, -0.25, 0 }; });
     filter->SetTransformKind(vtkMeshWarp::SCALING);
     filter->SetScaleFactors(1.5, 0.75, 1);
-    check([&](const Vec3& p)
-      { return Vec3{ 2.5 + (1 + 0.5 * amount) * (p[0] - 2.5),
-          2.5 + (1 - 0.25 * amount) * (p[1] - 2.5), 0 }; });
+    check(
+      [&](const Vec3& p)
+      {
+        return Vec3{ 2.5 + (1 + 0.5 * amount) * (p[0] - 2.5),
+          2.5 + (1 - 0.25 * amount) * (p[1] - 2.5), 0 };
+      });
     // The same turn about a point outside by a matrix: the way is an arc about that point, not a chord.
     filter->SetTransformKind(vtkMeshWarp::MATRIX);
     vtkNew<vtkTransform> transform;
@@ -169,7 +172,8 @@ void testPaths()
     {
       Vec3 x = data.point(i);
       transform->TransformPoint(x.data(), x.data());
-      largest = std::max(largest, norm(x - data.point(i) - Vec3{ d[3 * i], d[3 * i + 1], d[3 * i + 2] }));
+      largest =
+        std::max(largest, norm(x - data.point(i) - Vec3{ d[3 * i], d[3 * i + 1], d[3 * i + 2] }));
     }
     TAUTLINE_CHECK(largest < 1e-12);
   }
@@ -198,7 +202,8 @@ void testBending()
       if (std::abs(p[1]) == 1 && amount == 0.5)
       {
         const double t = p[0] / radius, r = radius - p[1];
-        TAUTLINE_CHECK_NEAR(norm(q - Vec3{ r * std::sin(t), radius - r * std::cos(t), 0 }), 0, 1e-12);
+        TAUTLINE_CHECK_NEAR(
+          norm(q - Vec3{ r * std::sin(t), radius - r * std::cos(t), 0 }), 0, 1e-12);
       }
       TAUTLINE_CHECK(p[0] > 0 || norm(q - p) < 1e-14 || std::abs(p[1]) < 1);
       TAUTLINE_CHECK(amount > 1e-3 || norm(q - p) < 1e-4);
@@ -284,7 +289,8 @@ void testOutputs()
   double worst = 0;
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)
   {
-    TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Validity", cell), validity[cell]);
+    TAUTLINE_CHECK_EQUAL(
+      component(meshOf(filter)->GetCellData(), "Validity", cell), validity[cell]);
     TAUTLINE_CHECK_NEAR(
       component(meshOf(filter)->GetCellData(), "TMP shape", cell), shape[cell], 1e-12);
     worst = std::max(worst, shape[cell]);
@@ -301,7 +307,8 @@ void testOutputs()
   TAUTLINE_CHECK_EQUAL(value(statistics, "Elements"), data.numberOfCells());
   TAUTLINE_CHECK_EQUAL(
     value(statistics, "Boundary points"), std::count(boundary.begin(), boundary.end(), 1));
-  TAUTLINE_CHECK_EQUAL(value(statistics, "Moved points"), 6); // of the corners of a cube; two are on the axis
+  TAUTLINE_CHECK_EQUAL(
+    value(statistics, "Moved points"), 6); // of the corners of a cube; two are on the axis
   TAUTLINE_CHECK_NEAR(value(statistics, "Worst shape"), worst, 1e-12);
   const auto imr = valuesOf(after, Metric::InverseMeanRatio);
   TAUTLINE_CHECK_NEAR(
@@ -333,8 +340,8 @@ void testReuse()
   const std::vector<int> parts = partsOf(data, 7);
   const Index inner = std::find(parts.begin(), parts.end(), 0) - parts.begin();
   auto grid = toGrid(data);
-  grid->GetPointData()->AddArray(
-    arrayOf("stay", data.numberOfPoints(), 1, [inner](Index i, int) { return double(i == inner); }));
+  grid->GetPointData()->AddArray(arrayOf(
+    "stay", data.numberOfPoints(), 1, [inner](Index i, int) { return double(i == inner); }));
   vtkNew<vtkMeshWarp> filter;
   const Messages warnings(filter); // FEMWARP inverts some, which is not what is asked here
   filter->SetInputData(grid);
@@ -376,7 +383,7 @@ void testReuse()
   filter->SetMethod(vtkMeshWarp::FEMWARP);
   filter->SetInputData(grid);
   TAUTLINE_CHECK_EQUAL(run(), 0);
-  filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "stay");
+  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "stay");
   TAUTLINE_CHECK_EQUAL(run(), 0); // another point is given
   grid->GetPoints()->SetPoint(0, -1e-3, 0, 0);
   grid->GetPoints()->Modified();
@@ -415,8 +422,8 @@ void testParts()
     [&](Index i, int) { return double(data.point(i)[0] == double(n)); }));
   grid->GetPointData()->AddArray(arrayOf("inner", data.numberOfPoints(), 1,
     [&](Index i, int) { return double(parts[i] == 0 && data.point(i)[1] == 1); }));
-  grid->GetCellData()->AddArray(arrayOf(
-    "cells", data.numberOfCells(), 1, [](Index i, int) { return double(i == 0 ? 5 : 0); }));
+  grid->GetCellData()->AddArray(
+    arrayOf("cells", data.numberOfCells(), 1, [](Index i, int) { return double(i == 0 ? 5 : 0); }));
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
   filter->SetInputData(grid);
@@ -431,8 +438,7 @@ void testParts()
     for (Index i = 0; i < data.numberOfPoints(); ++i)
     {
       const Vec3 d = pointOf(meshOf(filter), i) - data.point(i);
-      const Vec3 expected =
-        which(i) ? Vec3{ 0.125, 0.0625, 0 } : Vec3{ 0, 0, 0 };
+      const Vec3 expected = which(i) ? Vec3{ 0.125, 0.0625, 0 } : Vec3{ 0, 0, 0 };
       wrong += parts[i] && norm(d - expected) > 1e-14;
     }
     TAUTLINE_CHECK_EQUAL(wrong, 0);
@@ -460,20 +466,22 @@ void testParts()
   TAUTLINE_CHECK(messages.has("No array is chosen that tells what moves"));
   messages.clear();
   const auto points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  filter->SetInputArrayToProcess(2, 0, 0, points, "marker");
+  filter->SetInputArrayToProcess(1, 0, 0, points, "marker");
   moves([&](Index i) { return parts[i] != 0; });
   filter->AddValue(2);
   moves([&](Index i) { return parts[i] == 2; });
   filter->RemoveAllValues();
-  filter->SetInputArrayToProcess(2, 0, 0, points, "right");
+  filter->SetInputArrayToProcess(1, 0, 0, points, "right");
   moves([&](Index i) { return data.point(i)[0] == double(n); });
-  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
-  moves([&](Index i)
-    { return std::find(&data.connectivity[0], &data.connectivity[3], i) != &data.connectivity[3]; });
-  filter->SetInputArrayToProcess(2, 0, 0, points, "inner");
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
+  moves(
+    [&](Index i) {
+      return std::find(&data.connectivity[0], &data.connectivity[3], i) != &data.connectivity[3];
+    });
+  filter->SetInputArrayToProcess(1, 0, 0, points, "inner");
   filter->Update();
   TAUTLINE_CHECK(messages.has("points chosen to move none is on the boundary"));
-  filter->SetInputArrayToProcess(2, 0, 0, points, "nothing");
+  filter->SetInputArrayToProcess(1, 0, 0, points, "nothing");
   filter->Update();
   TAUTLINE_CHECK(messages.has("There is no point array 'nothing'"));
   messages.clear();
@@ -485,14 +493,16 @@ void testParts()
   filter->SetInputData(2, select(vtkSelectionNode::POINT, { 3, 4, 30 }));
   moves([](Index i) { return i == 3 || i == 4 || i == 30; });
   filter->SetInputData(2, select(vtkSelectionNode::CELL, { 0 }));
-  moves([&](Index i)
-    { return std::find(&data.connectivity[0], &data.connectivity[3], i) != &data.connectivity[3]; });
+  moves(
+    [&](Index i) {
+      return std::find(&data.connectivity[0], &data.connectivity[3], i) != &data.connectivity[3];
+    });
 
   // What stays, stays: on the boundary and inside.
   filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
-  filter->SetInputArrayToProcess(3, 0, 0, points, "right");
+  filter->SetInputArrayToProcess(2, 0, 0, points, "right");
   moves([&](Index i) { return parts[i] != 0 && data.point(i)[0] < double(n); });
-  filter->SetInputArrayToProcess(3, 0, 0, points, "inner");
+  filter->SetInputArrayToProcess(2, 0, 0, points, "inner");
   filter->SetInputData(3, select(vtkSelectionNode::POINT, { 0 }));
   moves([&](Index i) { return parts[i] != 0 && i != 0; });
   for (Index i = 0; i < data.numberOfPoints(); ++i)

@@ -35,9 +35,9 @@ public:
   MeshData Data;
   std::vector<int> Parts;
   std::vector<double> Times = { 0, 1, 2, 3, 4 };
-  double Degrees = 12;   ///< per unit of time
-  bool Moves = true;     ///< or only its array of displacements does
-  bool Grows = false;    ///< from time 2 on it has another cell
+  double Degrees = 12; ///< per unit of time
+  bool Moves = true;   ///< or only its array of displacements does
+  bool Grows = false;  ///< from time 2 on it has another cell
   int Executions = 0;
 
 protected:
@@ -69,7 +69,7 @@ protected:
       const Vec3 turned = { 3.5 + std::cos(angle) * d[0] - std::sin(angle) * d[1],
         3.5 + std::sin(angle) * d[0] + std::cos(angle) * d[1], 0 };
       now.setPoint(i,
-        this->Parts[i] == 2       ? turned
+        this->Parts[i] == 2     ? turned
           : this->Parts[i] == 0 ? this->Data.point(i) + Vec3{ 0.2 * time, 0, 0 }
                                 : this->Data.point(i));
     }
@@ -161,8 +161,7 @@ void testTimeSteps()
           }
         }
         fresh->UpdateTimeStep(2.0);
-        TAUTLINE_CHECK(
-          withPointsOf(source->Data, meshOf(filter)).points ==
+        TAUTLINE_CHECK(withPointsOf(source->Data, meshOf(filter)).points ==
           withPointsOf(source->Data, meshOf(fresh)).points);
         // Another motion upstream does, too.
         source->Degrees = 5;
@@ -171,8 +170,7 @@ void testTimeSteps()
         filter->UpdateTimeStep(2.0);
         fresh->SetAmount(1);
         fresh->UpdateTimeStep(2.0);
-        TAUTLINE_CHECK(
-          withPointsOf(source->Data, meshOf(filter)).points ==
+        TAUTLINE_CHECK(withPointsOf(source->Data, meshOf(filter)).points ==
           withPointsOf(source->Data, meshOf(fresh)).points);
       }
     }
@@ -241,8 +239,8 @@ void testTargets()
     const bool flat = type == CellType::Triangle;
     const MeshData data = shuffled(holedBlock(type, 5), 11);
     auto grid = toGrid(data);
-    grid->GetPointData()->AddArray(
-      arrayOf("id", data.numberOfPoints(), 1, [](Index i, int) { return 1000.0 - 3.0 * double(i); }));
+    grid->GetPointData()->AddArray(arrayOf(
+      "id", data.numberOfPoints(), 1, [](Index i, int) { return 1000.0 - 3.0 * double(i); }));
     vtkNew<vtkTransform> transform;
     transform->Translate(0.25, 0.125, flat ? 0 : 0.5);
     transform->Scale(1.25, 0.75, 1);
@@ -316,19 +314,20 @@ void testTargets()
 
     // By ids: numbers of points, or values of the array of the same name.
     vtkPolyData* skin = surface->GetOutput();
-    filter->SetInputArrayToProcess(1, 1, 0, OnPoints, "vtkOriginalPointIds");
+    filter->SetTargetIds("vtkOriginalPointIds");
     check(moved(skin), "by point ids");
-    filter->SetInputArrayToProcess(1, 1, 0, OnPoints, "id");
+    filter->SetTargetIds("id");
     check(moved(skin), "by point ids");
     skin->GetPointData()->GetArray("id")->SetComponent(3, 0, -7);
     filter->SetInputData(1, moved(skin));
     filter->Update();
-    TAUTLINE_CHECK(messages.has("has 1 values that are no values of the mesh's array of that name"));
-    filter->SetInputArrayToProcess(1, 1, 0, OnPoints, "missing");
+    TAUTLINE_CHECK(
+      messages.has("has 1 values that are no values of the mesh's array of that name"));
+    filter->SetTargetIds("missing");
     filter->Update();
-    TAUTLINE_CHECK(messages.has("There is no point array 'missing' of the target"));
+    TAUTLINE_CHECK(messages.has("The target has no point array 'missing'"));
     messages.clear();
-    filter->SetInputArrayToProcess(1, 1, 0, OnPoints, "None");
+    filter->SetTargetIds("None");
     filter->SetCorrespondence(vtkMeshWarp::POINT_IDS);
     filter->Update();
     TAUTLINE_CHECK(messages.has("No array of point ids is chosen"));
@@ -400,7 +399,7 @@ void testProjection()
   planar->SetMotion(vtkMeshWarp::TARGET);
   planar->SetMethod(vtkMeshWarp::FEMWARP);
   planar->SetMovedPart(vtkMeshWarp::ARRAY_VALUES);
-  planar->SetInputArrayToProcess(2, 0, 0, OnPoints, "right");
+  planar->SetInputArrayToProcess(1, 0, 0, OnPoints, "right");
   planar->SetInputData(1, line->GetOutput());
   planar->Update();
   TAUTLINE_CHECK(others.empty());
@@ -500,7 +499,8 @@ void testRefusals()
   refused(grid, "No array of displacements is chosen");
   filter->SetInputArrayToProcess(0, 0, 0, OnPoints, "d");
   refused(grid, "There is no point array 'd' of displacements");
-  grid->GetPointData()->AddArray(arrayOf("d", data.numberOfPoints(), 1, [](Index, int) { return 0; }));
+  grid->GetPointData()->AddArray(
+    arrayOf("d", data.numberOfPoints(), 1, [](Index, int) { return 0; }));
   refused(grid, "The array 'd' has 1 components");
   auto d = arrayOf("d", data.numberOfPoints(), 3,
     [](Index i, int) { return i == 2 || i == 6 || i == 24 ? std::nan("") : 0.01; });
@@ -509,7 +509,8 @@ void testRefusals()
     d->SetValue(k, 0);
   }
   grid->GetPointData()->AddArray(d);
-  refused(grid, "The array 'd' is NaN or infinite at 2 of 16 points of the boundary, the first is point 2");
+  refused(grid,
+    "The array 'd' is NaN or infinite at 2 of 16 points of the boundary, the first is point 2");
   d->SetComponent(2, 0, 0.01);
   d->SetComponent(2, 1, 0.01);
   d->SetComponent(24, 0, 0.01);
@@ -527,10 +528,12 @@ void testRefusals()
   // Coefficients.
   filter->SetCoefficients(vtkMeshWarp::PER_CELL);
   refused(grid, "No array of coefficients is chosen");
-  filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
-  grid->GetCellData()->AddArray(arrayOf("c", data.numberOfCells(), 2, [](Index, int) { return 1; }));
+  filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
+  grid->GetCellData()->AddArray(
+    arrayOf("c", data.numberOfCells(), 2, [](Index, int) { return 1; }));
   refused(grid, "The array 'c' has 2 components");
-  grid->GetCellData()->AddArray(arrayOf("c", data.numberOfCells(), 3, [](Index, int) { return -1; }));
+  grid->GetCellData()->AddArray(
+    arrayOf("c", data.numberOfCells(), 3, [](Index, int) { return -1; }));
   refused(grid, "not positive semidefinite");
   filter->SetCoefficients(vtkMeshWarp::PER_REGION);
   refused(grid, "No array of regions is chosen");
@@ -557,11 +560,12 @@ void testImpossible()
   TAUTLINE_CHECK(messages.has(std::to_string(filter->GetInverted()) + " of "));
   const MeshData after = withPointsOf(data, meshOf(filter));
   const auto validity = validityOf(after);
-  TAUTLINE_CHECK_EQUAL(
-    filter->GetInverted(), data.numberOfCells() - std::count(validity.begin(), validity.end(), Valid));
+  TAUTLINE_CHECK_EQUAL(filter->GetInverted(),
+    data.numberOfCells() - std::count(validity.begin(), validity.end(), Valid));
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {
-    TAUTLINE_CHECK(parts[i] != 2 || norm(after.point(i) - data.point(i) - Vec3{ 3.5, 0, 0 }) < 1e-14);
+    TAUTLINE_CHECK(
+      parts[i] != 2 || norm(after.point(i) - data.point(i) - Vec3{ 3.5, 0, 0 }) < 1e-14);
     TAUTLINE_CHECK(std::isfinite(norm(after.point(i))));
   }
   TAUTLINE_CHECK(
@@ -585,7 +589,7 @@ void testOtherCells()
   grid->GetCellData()->AddArray(ghosts);
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  
+
   filter->SetInputData(grid);
   filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
   filter->SetTranslation(0, -0.5, 0);
@@ -637,7 +641,7 @@ void testOtherCells()
     each->SetTransformKind(vtkMeshWarp::ROTATION);
     each->SetAngle(30);
     each->SetCoefficients(vtkMeshWarp::PER_CELL);
-    each->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
+    each->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
     each->Update();
   }
   TAUTLINE_CHECK(more.empty());

@@ -38,7 +38,7 @@ SOLVERS = ("automatic", "conjugate gradients", "gmres", "minres", "bicgstab", "d
 PRECONDITIONERS = ("jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none")
 
 _MOST_THREADS = 1024
-_DISPLACEMENT, _TARGET_IDS, _MOVED, _FIXED, _TENSORS, _REGIONS = range(6)  # arrays of vtkMeshWarp
+_DISPLACEMENT, _MOVED, _FIXED, _TENSORS, _REGIONS = range(5)  # arrays of vtkMeshWarp
 _BY_ARRAY, _BY_TARGET, _BY_TRANSFORM = range(3)  # its motions
 _NUMBERED_PARTS, _ARRAY_VALUES = 3, 4  # its moved parts
 _MANUAL, _PER_CELL, _PER_REGION = 2, 3, 4  # its coefficients
@@ -63,8 +63,8 @@ class Warped:
 
     #: The mesh with other points, `Displacement`, `TMP shape` and `Validity`.
     mesh: vtkDataObject
-    #: Inverted or degenerate elements at the end and after the warp itself, and those that the moved boundary, not being
-    #: valid itself, makes impossible.
+    #: Inverted or degenerate elements at the end and after the warp itself, and those that the moved boundary, not
+    #: being valid itself, makes impossible.
     inverted: int
     inverted_after_warp: int
     impossible: int
@@ -123,13 +123,13 @@ def warp(
     amount: of the motion, along its path; 0 is the mesh itself, 1 the whole.
     correspondence: of points to those of the target: "automatic", "same mesh", "same boundary", "point ids" (of
         target_ids: the name of a point array of the target, or point numbers), "closest point".
-    moved: what a transform or projection moves, the rest of the boundary stays: "automatic" (the inner boundaries; all if there
-        are none), "whole boundary", "inner boundaries"; numbers of boundary parts, the largest is 1; or the name of an array (of
-        points or cells), or a value per point: not 0, or one of `values`.
+    moved: what a transform or projection moves, the rest of the boundary stays: "automatic" (the inner boundaries; all
+        if there are none), "whole boundary", "inner boundaries"; numbers of boundary parts, the largest is 1; or the
+        name of an array (of points or cells), or a value per point: not 0, or one of `values`.
     fixed: points that stay: truth values, one per point, or the name of a point array.
-    coefficients: of "hybrid" and "anisotropic femwarp": "displacement sums", "principal directions", 3 or 6 numbers (alpha
-        beta gamma, or xx yy zz xy yz xz), the name of a cell array of tensors, or a row of 1, 3, 6 or 9 per cell.
-    regions: (cell array, {value: (alpha, beta, gamma)}); cells of other values have the coefficients, if these are numbers.
+    coefficients: of "hybrid" and "anisotropic femwarp": "displacement sums", "principal directions", 3 or 6 numbers
+        (alpha beta gamma, or xx yy zz xy yz xz), the name of a cell array of tensors, or rows of 1, 3, 6 or 9 per cell.
+    regions: (cell array, {value: (alpha, beta, gamma)}); cells of other values have the coefficients, if numbers.
     solver, preconditioner: of the linear systems: "automatic", "conjugate gradients", "gmres", "minres", "bicgstab",
         "direct"; "jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none".
     time_limit: seconds; 0 is no limit.
@@ -227,8 +227,8 @@ def _set_array(
 
 def _set_target(filter_: Any, target: vtkDataObject, ids: Any) -> None:
     if ids is not None:
-        target, where, found = with_array(target, ids, _OWN + "point ids", points_only=True)
-        filter_.SetInputArrayToProcess(_TARGET_IDS, 1, 0, where, found)
+        target, _, found = with_array(target, ids, _OWN + "point ids", points_only=True)
+        filter_.SetTargetIds(found)
     filter_.SetInputDataObject(1, target)
 
 
@@ -255,7 +255,8 @@ def _set_transform(filter_: Any, transform: Any) -> None:
         return
     kinds = [name for name in _KINDS if name in transform]
     if len(kinds) != 1:
-        raise Error(f"transform has to have one of {', '.join(_KINDS)}; it has {', '.join(map(str, transform)) or 'none'}")
+        found = ", ".join(map(str, transform)) or "nothing"
+        raise Error(f"transform has to have one of {', '.join(_KINDS)}; it has {found}")
     kind = kinds[0]
     unknown = [name for name in transform if name not in (kind, *_ALLOWED[kind])]
     if unknown:
@@ -375,17 +376,17 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--axis", metavar="X,Y,Z", type=_numbers, help="to rotate or bend about (default: 0,0,1)")
     parser.add_argument("--direction", metavar="X,Y,Z", type=_numbers, help="along the bar to bend (default: 1,0,0)")
     parser.add_argument("--center", metavar="X,Y,Z", type=_numbers, help="(default: the middle of what moves)")
-    parser.add_argument("--moved", metavar="WHAT", help="automatic (the default), 'whole boundary', 'inner boundaries', "
-                        "numbers of boundary parts (1,3), or the name of an array")  # fmt: skip
-    parser.add_argument("--values", metavar="V[,V...]", type=_numbers, default=(), help="of that array (default: not 0)")
+    parser.add_argument("--moved", metavar="WHAT", help="automatic (the default), 'whole boundary', 'inner "
+                        "boundaries', numbers of boundary parts (1,3), or the name of an array")  # fmt: skip
+    parser.add_argument("--values", metavar="V,...", type=_numbers, default=(), help="of that array (default: not 0)")
     parser.add_argument("--correspondence", choices=CORRESPONDENCES, default="automatic")
     parser.add_argument("--target-ids", metavar="ARRAY", help="point array of the target with point ids")
     parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
     parser.add_argument("--method", choices=METHODS, default="hybrid")
     parser.add_argument("--amount", type=float, default=1.0, help="of the motion (default: 1)")
     parser.add_argument("--coefficients", metavar="WHAT", default="displacement sums",
-                        help="'displacement sums' (the default), 'principal directions', alpha,beta,gamma, six numbers of "
-                        "a tensor, or a cell array")  # fmt: skip
+                        help="'displacement sums' (the default), 'principal directions', alpha,beta,gamma, six numbers "
+                        "of a tensor, or a cell array")  # fmt: skip
     parser.add_argument("--steps", type=int, default=1, help="0: as many as are needed (default: 1)")
     parser.add_argument("--solver", choices=SOLVERS, default="automatic")
     parser.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")
