@@ -10,7 +10,7 @@ namespace tautline
 OptimizeOptions hybridOptimization()
 {
   OptimizeOptions options;
-  options.stopping.maximumIterations = 20;
+  options.stopping.maximumIterations = 50;
   options.stopping.relativeChange = 1e-3;
   return options;
 }
