@@ -65,7 +65,7 @@ struct WarpOptions
   /// Solver of the linear systems; Direct up to a size that depends on the dimension, else CG with BoomerAMG.
   bool automaticSolver = true;
   SolverOptions solver;
-  double tolerance = 1e-8;   ///< relative, of the solves; affine motions are exact whatever it is
+  double tolerance = 1e-10;  ///< relative, of the solves; affine motions are exact whatever it is
   double poissonRatio = 0.3; ///< of the elastic methods
   double stiffeningPower = 1.0; ///< JacobianStiffening: chi
   int maximumStiffenings = 50;  ///< IterativeStiffening

@@ -142,6 +142,8 @@ void testInvariances(CellType type)
     }
     TAUTLINE_CHECK(worst < 1e-10);
 
+    WarpOptions loose; // no error of a solver leads out of the plane
+    loose.tolerance = 1e-3;
     const auto inPlane = [&](const Vec3& p)
     {
       const Vec3 d = wave(p, size);
@@ -149,9 +151,11 @@ void testInvariances(CellType type)
     };
     problem.prescribe(inPlane);
     moves = problem.run(method.warp);
+    const std::vector<double> rough = problem.run(method.warp, loose);
     double outside = 0;
     for (Index i = 0; i < problem.data.numberOfPoints(); ++i)
     {
+      outside = std::max(outside, std::abs(dot(at(rough, i), normal)));
       TAUTLINE_CHECK(!problem.prescribed[i] || at(moves, i) == at(problem.displacement, i));
       outside = std::max(outside, std::abs(dot(at(moves, i), normal)));
     }
