@@ -144,8 +144,7 @@ void measure(Mat matrix, PC preconditioner, const PetscVector& y, const Candidat
   petsc(PCApply(preconditioner, r, z));
   petsc(VecDot(r, z, &square));
   const double residual = std::sqrt(std::max(square, 0.0) / mass);
-  const bool rounded =
-    residual <= RoundingTolerance * scale && candidate.gap > ClearGap * residual;
+  const bool rounded = residual <= RoundingTolerance * scale && candidate.gap > ClearGap * residual;
   end.bound = rounded ? residual * residual / candidate.gap : residual;
   end.found = std::isfinite(end.value) && std::isfinite(end.bound);
   petsc(VecScale(x, 1.0 / std::sqrt(std::max(mass, std::numeric_limits<double>::min()))));

@@ -306,7 +306,7 @@ void testEquations()
       const ElementContributions contributions = elementContributions(system, true);
       TAUTLINE_CHECK(contributions.bound >= largest && contributions.bound < 4 * largest);
       TAUTLINE_CHECK(
-        contributions.lowerBound <= largest && contributions.lowerBound > largest / 10);
+        contributions.lowerBound <= largest && contributions.lowerBound > largest / 20);
       double sum = 0.0, most = 0.0;
       for (std::size_t cell = 0; cell < contributions.share.size(); ++cell)
       {
