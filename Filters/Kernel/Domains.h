@@ -63,7 +63,7 @@ struct DomainInfo
 {
   const char* name;   ///< as in Python and on the command line
   const char* label;  ///< as in a menu
-  const char* source; ///< where the dissertation has it
+  const char* source; ///< where the dissertation has it, if it has
   DomainKind kind;
   Index cells; ///< number of cells unless another is asked for
   bool moving; ///< has a deformed boundary
@@ -97,7 +97,8 @@ TAUTLINE_KERNEL_EXPORT StructuredMesh structuredSquare(double h, double aspectRa
 
 /**
  * @brief Where a boundary point goes: its displacement at the end of the motion, times `amount`.
- * Motions that are not linear in amount (bending) are evaluated at that amount. Zero on fixed parts.
+ * Motions that are not linear in amount (bending, turning) are evaluated at that amount: the inner box turns by
+ * 180 degrees times amount. Zero on fixed parts.
  */
 TAUTLINE_KERNEL_EXPORT Vec3 domainDisplacement(
   const std::string& name, const Vec3& point, int marker, double amount);

@@ -352,6 +352,41 @@ SolidBoundary sphereInCube(double spacing)
   solid.holes.insert(solid.holes.end(), center.begin(), center.end());
   return solid;
 }
+
+/// The space between two concentric cubes with parallel faces.
+SolidBoundary boxInBox(double spacing)
+{
+  SolidBoundary solid;
+  const auto addCube = [&](double low, double high, int marker)
+  {
+    Pen pen(spacing);
+    pen.rectangle(low, low, high, high, marker);
+    const auto first = static_cast<Index>(solid.points.size() / 3);
+    SolidBoundary cube = extrude(pen.Result, high - low, spacing);
+    for (std::size_t i = 2; i < cube.points.size(); i += 3)
+    {
+      cube.points[i] += low;
+    }
+    solid.points.insert(solid.points.end(), cube.points.begin(), cube.points.end());
+    for (SolidFacet& facet : cube.facets)
+    {
+      facet.marker = marker;
+      for (std::vector<Index>& polygon : facet.polygons)
+      {
+        for (Index& point : polygon)
+        {
+          point += first;
+        }
+      }
+      solid.facets.push_back(facet);
+    }
+  };
+  constexpr double Middle = 0.5, Half = 0.15;
+  addCube(0, 1, Outer);
+  addCube(Middle - Half, Middle + Half, Inner);
+  solid.holes = { Middle, Middle, Middle };
+  return solid;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -373,6 +408,10 @@ SolidBoundary solidBoundary(const std::string& name, double spacing)
   if (name == "sphere")
   {
     return sphereInCube(spacing);
+  }
+  if (name == "box-in-box")
+  {
+    return boxInBox(spacing);
   }
   if (name == "disk3d")
   {

@@ -1,10 +1,18 @@
 /**
  * @file FiniteElements.h
- * @brief Stiffness matrices, load vectors and derived fields of linear finite elements: P1 on triangles and
- * tetrahedra, Q1 on quadrilaterals and hexahedra.
+ * @brief Stiffness matrices and load vectors of linear finite elements: P1 on triangles and tetrahedra, Q1 on
+ * quadrilaterals and hexahedra, and what fits to them on wedges and pyramids.
  *
  * Matrices are those of all points of the mesh, before any boundary condition: a point outside all cells has an
  * empty row. They come out the same, bitwise, for any number of threads, and exactly symmetric.
+ *
+ * Example: the matrix of -laplace u, and then that of -div(C grad u) without looking for its pattern again.
+ *
+ *     tautline::AssemblyPattern pattern(mesh);
+ *     tautline::SparseMatrix matrix = pattern.assemble(tautline::DiffusionOperator());
+ *     tautline::DiffusionOperator other;
+ *     other.tensor = { 2, 1, 1, 0, 0, 0 };
+ *     pattern.assemble(other, matrix);
  */
 #ifndef tautline_FiniteElements_h
 #define tautline_FiniteElements_h
@@ -25,7 +33,7 @@ struct DiffusionOperator
   /// C, in the coordinates of space; positive semidefinite. Triangles in space see its tangential part.
   SymmetricTensor tensor = IdentityTensor;
   const double* tensors = nullptr; ///< 6 per cell, instead of tensor; or null
-  double reaction = 0.0;           ///< a, at least 0
+  double reaction = 0.0;           ///< a; where it is negative the matrix may be indefinite
 };
 
 /// What a 2D elastic body is held by in the third direction.
@@ -52,19 +60,74 @@ struct AssemblyOptions
 };
 
 /**
- * @brief The matrix of a scalar operator, numberOfPoints square.
+ * @class tautline::AssemblyPattern
+ * @brief Where the entries of the matrices of a mesh are: found once, used for every assembly on that mesh.
  *
- * Throws Error for cells of other types (names and counts them), coordinates, tensors or a that are not finite.
- * Degenerate elements (Mesh::classifyCell) contribute nothing; inverted ones contribute by the absolute value of their
- * Jacobian's determinant. Ask Mesh::classifyCells() first where that matters.
+ * Elements with more than two nodes along an edge and cells of other types are refused. Where the Jacobian of an element
+ * vanishes (Mesh::degenerateTolerance()) it contributes nothing; inverted elements contribute by its absolute value. Ask
+ * Mesh::classifyCells() first where that matters.
  */
+class TAUTLINE_KERNEL_EXPORT AssemblyPattern
+{
+public:
+  /**
+   * @param mesh stays alive as long as the pattern
+   * @param options the flags are read here only
+   * Throws Error for cells of other types: which, how many, and what to do.
+   */
+  explicit AssemblyPattern(const Mesh& mesh, const AssemblyOptions& options = {});
+
+  /**
+   * @brief Fills a matrix; one that this pattern filled before keeps its memory. numberOfPoints square.
+   * @param points coordinates instead of those of the mesh, 3 per point; or null
+   * Throws Error for coordinates or coefficients that are not finite: the first cell that has them.
+   */
+  void assemble(
+    const DiffusionOperator& pde, SparseMatrix& matrix, const double* points = nullptr) const;
+
+  /**
+   * @brief The same for linear elasticity: unknown d p + k is component k of point p, d = elasticComponents(). The components of
+   * a planar mesh are along Mesh::frame(). Throws Error also for surfaces in space, and for E, nu or factors out of their range.
+   */
+  void assemble(
+    const ElasticOperator& pde, SparseMatrix& matrix, const double* points = nullptr) const;
+
+  template <class Operator>
+  SparseMatrix assemble(const Operator& pde, const double* points = nullptr) const
+  {
+    SparseMatrix matrix;
+    this->assemble(pde, matrix, points);
+    return matrix;
+  }
+
+  const Mesh& mesh() const { return *this->Input; }
+
+private:
+  void findUses(const unsigned char* skip);
+  void findColumns();
+  void expand(int components, SparseMatrix& matrix) const;
+  template <class Element>
+  void gather(const Element& element, SparseMatrix& matrix, const double* points) const;
+  int nodesOf(Index cell) const { return this->Nodes[this->Input->view().cellTypes[cell]]; }
+
+  const Mesh* Input;
+  int Threads;
+  int Stride = 0;                     // the most nodes a cell has
+  std::array<signed char, 256> Nodes; // of a cell by its VTK type
+  /// The cells at each point, in increasing order, each with the point's place in it: cell * MaxNodes + place.
+  std::vector<Index> UseOffsets;
+  std::vector<std::uint32_t> Uses;
+  /// Where the nodes of each use are in the row of its point; Stride per use.
+  std::vector<std::uint16_t> Slots;
+  std::vector<Index> Offsets; // rows of points
+  std::vector<std::int32_t> Columns;
+};
+
+/// The matrix of a scalar operator: AssemblyPattern for one time.
 TAUTLINE_KERNEL_EXPORT SparseMatrix stiffnessMatrix(
   const Mesh& mesh, const DiffusionOperator& pde, const AssemblyOptions& options = {});
 
-/**
- * @brief The matrix of linear elasticity; unknown d p + k is component k of point p, d = 2 for planar meshes (components
- * along Mesh::frame()) and 3 for volumes. Throws Error as above, and for surfaces in space.
- */
+/// The matrix of linear elasticity: AssemblyPattern for one time.
 TAUTLINE_KERNEL_EXPORT SparseMatrix stiffnessMatrix(
   const Mesh& mesh, const ElasticOperator& pde, const AssemblyOptions& options = {});
 

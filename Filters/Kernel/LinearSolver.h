@@ -95,6 +95,7 @@ struct LinearSolution
   double setupSeconds =
     0.0; ///< of the preconditioner or factorisation; 0 when it was there already
   double solveSeconds = 0.0;     ///< without set-up
+  double trueResidual = 0.0;     ///< |b - A x| / |b| in the end; 0 if b is 0
   std::vector<double> residuals; ///< norms as the method measures them; [0] is the initial one
   double ritzSmallest = 0.0, ritzLargest = 0.0; ///< of P^-1 A, if asked for and known; else 0
 };

@@ -49,7 +49,8 @@ double totalSize(vtkUnstructuredGrid* mesh)
 
 /// Sizes that follow from the shapes; curved ones are approached from inside.
 const std::map<std::string, double> ExactSize = { { "barrier2d", 7.72 }, { "barrier3d", 7.72 },
-  { "rectangle", 2.0 }, { "bar", 0.984 }, { "gate", 1.964 }, { "bending-bar", 0.972 } };
+  { "rectangle", 2.0 }, { "bar", 0.984 }, { "gate", 1.964 }, { "bending-bar", 0.972 },
+  { "box-in-box", 0.973 } };
 
 void checkDomain(int index)
 {
@@ -125,6 +126,15 @@ void checkMotion()
   const double phi = std::acos(-1.0) / 3.0, radius = 0.7 / phi;
   TAUTLINE_CHECK(std::abs(tip[0] + 0.7 - radius * std::sin(phi)) < 1e-14);
   TAUTLINE_CHECK(std::abs(tip[1] - radius * (1.0 - std::cos(phi))) < 1e-14);
+  // a turn along a circle, not a chord
+  for (const double amount : { 1.0 / 6.0, 0.5, 1.0 })
+  {
+    const tautline::Vec3 corner = { 0.65, 0.5, 0.35 };
+    const tautline::Vec3 turn = tautline::domainDisplacement("box-in-box", corner, 2, amount);
+    const double angle = std::acos(-1.0) * amount;
+    TAUTLINE_CHECK(std::abs(turn[0] + 0.15 - 0.15 * std::cos(angle)) < 1e-15);
+    TAUTLINE_CHECK(std::abs(turn[1] - 0.15 * std::sin(angle)) < 1e-15 && turn[2] == 0.0);
+  }
   TAUTLINE_CHECK(tautline::domainDisplacement("gate", { 0.94, 1.0, 0 }, 2, 1.0)[1] == 0.0);
   TAUTLINE_CHECK(
     std::abs(tautline::domainDisplacement("gate", { 1, 0.6, 0 }, 2, 1.0)[1] + 0.4) < 1e-15);

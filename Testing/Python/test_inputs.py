@@ -56,7 +56,7 @@ assert "cannot be written" in error(tl.write, cube, OUTPUT / "no" / "such" / "fo
 assert "not a int" in error(tl.write, 7, OUTPUT / "seven.mesh")
 assert "always text" in error(tl.write, cube, OUTPUT / "cube.mesh", binary=True)
 
-assert len(tl.domains()) == 16
+assert len(tl.domains()) == 17
 square = tl.domain("square", element_size=0.1, aspect_ratio=4, collar_width=0.2)
 assert square.GetNumberOfCells() == 392
 assert square.GetCellData().GetArray("Reference").GetRange() == (1, 2)

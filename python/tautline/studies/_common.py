@@ -339,7 +339,7 @@ class Report:
                 axis.set_ylim(top=1.05 * start)
                 axis.set_title("beyond the axis: " + ", ".join(beyond), fontsize=8)
         axes[0][0].legend(fontsize=8)
-        self._save(figure, file)
+        self.save(figure, file)
 
     def meshes(self, file: str, shown: Sequence[tuple[str, vtkDataSet]], columns: int = 4,
                window: Sequence[float] | None = None) -> None:
@@ -365,7 +365,7 @@ class Report:
                 axis.set(xlim=window[:2], ylim=window[2:])
             axis.set_aspect("equal")
             axis.set_title(f"{title}\n{np.count_nonzero(wrong)} inverted", fontsize=9)
-        self._save(figure, file)
+        self.save(figure, file)
 
     def bars(self, file: str, bins: Sequence[str], axis_label: str, label: str,
              panels: dict[str, dict[str, Sequence[float]]]) -> None:
@@ -382,7 +382,11 @@ class Report:
             )
             axis.grid(alpha=0.3, axis="y")
         axes[0][0].legend(fontsize=8)
-        self._save(figure, file)
+        self.save(figure, file)
+
+    def aligned(self, title: str, headings: Sequence[Any], rows: Sequence[Sequence[str]]) -> None:
+        """A table of texts, in the text only."""
+        self.parts.append(f"{title}\n{align(rows, [str(heading) for heading in headings])}")
 
     def finish(self) -> int:
         """Write and print everything."""
@@ -405,7 +409,8 @@ class Report:
             self.parts.append(missing)
         return pyplot is not None
 
-    def _save(self, figure: Any, file: str) -> None:
+    def save(self, figure: Any, file: str) -> None:
+        """A picture of one's own."""
         figure.tight_layout()
         figure.savefig(self.out / f"{file}.png", dpi=110, bbox_inches="tight")
         pyplot.close(figure)

@@ -37,6 +37,16 @@ def close_up(report: Report, initial: vtkDataSet, warped: vtkDataSet, runs: dict
     report.meshes("close_up", [("warped", start), *shown], columns=3, window=window)
 
 
+def warped_brain(small: bool) -> tuple[vtkDataSet, vtkDataSet, float]:
+    """The brain, the same warped until it has the wanted number of inverted elements, and how far it took."""
+    initial = tautline.domain("brain", 1_500 if small else CELLS)
+    ventricles = (of_points(initial, "BoundaryMarker") >= FIRST_VENTRICLE) & (of_points(initial, "Fixed") != 0)
+    shrunk = points_of(initial) + harmonic(initial, of_points(initial, "Displacement"))
+    aside = harmonic(initial, np.outer(ventricles, (1.0, 0.0, 0.0)))
+    mesh, shift = warp(initial, shrunk, aside, 5 if small else INVERTED, MOST)
+    return initial, scaled(mesh, PIXELS / LENGTH), shift
+
+
 def main(arguments: list[str]) -> int:
     given = options("hydrocephalus", __doc__, arguments)
     report = Report("hydrocephalus", "Hydrocephalus in the plane (section 3.5.1)", given.out)
@@ -45,16 +55,11 @@ def main(arguments: list[str]) -> int:
         "parametric domain `brain`: an outline with two ventricles that shrink, more in width than in height, as "
         "after treatment, and that are displaced sideways as far as it takes to invert elements."
     )
-    initial = tautline.domain("brain", 1_500 if given.small else CELLS)
-    ventricles = (of_points(initial, "BoundaryMarker") >= FIRST_VENTRICLE) & (of_points(initial, "Fixed") != 0)
-    shrunk = points_of(initial) + harmonic(initial, of_points(initial, "Displacement"))
-    aside = harmonic(initial, np.outer(ventricles, (1.0, 0.0, 0.0)))
-    mesh, shift = warp(initial, shrunk, aside, 5 if given.small else INVERTED, MOST)
+    initial, mesh, shift = warped_brain(given.small)
     motion = "shrinking the ventricles as the domain does and moving them aside by "
     motion += f"{shift:.3f} (the brain is {LENGTH:g} long)"
     iterations = 12 if given.small else ITERATIONS
     unit = f"the pixel of an image in which the brain is {PIXELS:g} long"
-    mesh = scaled(mesh, PIXELS / LENGTH)
     runs = experiment(report, mesh, motion, unit, iterations, STEPS, TABLE_3_7, given)
     close_up(report, initial, mesh, runs)
 

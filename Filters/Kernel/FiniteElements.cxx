@@ -1,0 +1,483 @@
+#include "FiniteElements.h"
+
+#include "ElementMatrices.h"
+#include "Parallel.h"
+
+#include <atomic>
+#include <limits>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+std::string counted(Index n, const CellTopology& t)
+{
+  return std::to_string(n) + " " + (n == 1 ? t.name : t.plural);
+}
+
+/// Throws if the mesh has cells there are no elements for.
+void requireElements(const Mesh& mesh)
+{
+  const MeshView& view = mesh.view();
+  const auto first = [&](auto wrong)
+  {
+    Index cell = 0;
+    while (!wrong(view.cellTypes[cell]))
+    {
+      ++cell;
+    }
+    return "the first is cell " + std::to_string(cell) + ", VTK cell type " +
+      std::to_string(static_cast<int>(view.cellTypes[cell]));
+  };
+  if (mesh.dimension() == Dimension::None)
+  {
+    throw Error("The mesh has no cells finite elements are made of: triangles, quadrilaterals, "
+                "tetrahedra, hexahedra, wedges or pyramids.");
+  }
+  if (mesh.unsupportedCells() > 0)
+  {
+    throw Error(std::to_string(mesh.unsupportedCells()) +
+      " cells are not triangles, quadrilaterals, tetrahedra, hexahedra, wedges or pyramids (" +
+      first([](int type) { return cornerType(type) == CellType::Unsupported; }) +
+      "). Extract the others, or run Tetrahedralize (volumes) or Triangulate (surfaces).");
+  }
+  if (mesh.higherOrderCells() > 0)
+  {
+    throw Error(std::to_string(mesh.higherOrderCells()) + " cells are of higher order (" +
+      first([](int type) { return isHigherOrder(type); }) +
+      "). The elements here are linear: run Tessellate first.");
+  }
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    if (mesh.dimension() == Dimension::Volume && t.dimension == 2)
+    {
+      throw Error("The mesh has " + counted(block.count, t) +
+        " beside its volume cells. Extract the volume cells: flat elements would stiffen them.");
+    }
+  }
+  constexpr Index maximumCells = Index(1) << 29; // uses are kept in 32 bits
+  if (view.numberOfCells >= maximumCells ||
+    view.numberOfPoints > std::numeric_limits<std::int32_t>::max())
+  {
+    throw Error("The mesh is too large for one process: distribute it over several ranks.");
+  }
+}
+
+constexpr int placeBits = 3; // MaxNodes places
+static_assert(1 << placeBits == MaxNodes, "a place in a cell takes placeBits");
+constexpr Index widestSlot = std::numeric_limits<std::uint16_t>::max();
+
+/// The lowest of the cells that several threads report.
+class FirstCell
+{
+public:
+  void report(Index cell)
+  {
+    Index least = this->Cell;
+    while (cell < least && !this->Cell.compare_exchange_weak(least, cell))
+    {
+    }
+  }
+  bool any() const { return this->Cell != none; }
+  std::string name() const { return "Cell " + std::to_string(this->Cell); }
+
+private:
+  static constexpr Index none = std::numeric_limits<Index>::max();
+  std::atomic<Index> Cell{ none };
+};
+
+bool isFinite(const SymmetricTensor& c)
+{
+  return std::all_of(c.begin(), c.end(), [](double x) { return std::isfinite(x); });
+}
+}
+
+//------------------------------------------------------------------------------
+AssemblyPattern::AssemblyPattern(const Mesh& mesh, const AssemblyOptions& options)
+  : Input(&mesh)
+  , Threads(options.threads)
+{
+  requireElements(mesh);
+  this->Nodes.fill(0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    this->Nodes[static_cast<int>(block.type)] = static_cast<signed char>(nodes);
+    this->Stride = std::max(this->Stride, nodes);
+  }
+  this->findUses(options.skip);
+  this->findColumns();
+}
+
+//------------------------------------------------------------------------------
+void AssemblyPattern::findUses(const unsigned char* skip)
+{
+  const MeshView& view = this->Input->view();
+  this->UseOffsets.assign(view.numberOfPoints + 1, 0);
+  const auto forEachUse = [&](const auto& visit)
+  {
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    {
+      const Index* node = view.connectivity + view.offsets[cell];
+      const int nodes = skip && skip[cell] ? 0 : this->nodesOf(cell);
+      for (int k = 0; k < nodes; ++k)
+      {
+        visit(node[k], (cell << placeBits) + k);
+      }
+    }
+  };
+  forEachUse([&](Index node, Index) { ++this->UseOffsets[node + 1]; });
+  std::partial_sum(this->UseOffsets.begin(), this->UseOffsets.end(), this->UseOffsets.begin());
+  this->Uses.resize(this->UseOffsets.back());
+  std::vector<Index> next(this->UseOffsets.begin(), this->UseOffsets.end() - 1);
+  forEachUse(
+    [&](Index node, Index use) { this->Uses[next[node]++] = static_cast<std::uint32_t>(use); });
+}
+
+//------------------------------------------------------------------------------
+void AssemblyPattern::findColumns()
+{
+  const MeshView& view = this->Input->view();
+  const Index points = view.numberOfPoints;
+  this->Offsets.assign(points + 1, 0);
+  this->Slots.resize(this->Uses.size() * this->Stride);
+  std::vector<std::vector<std::int32_t>> chunks(numberOfChunks(points));
+  // Each thread marks the points it meets with their place in the row at hand, and clears the marks after each row.
+#pragma omp parallel num_threads(resolveThreads(this->Threads)) if (chunks.size() > 1)
+  {
+    std::vector<std::int32_t> place(points, -1), row;
+#pragma omp for schedule(dynamic)
+    for (Index chunk = 0; chunk < static_cast<Index>(chunks.size()); ++chunk)
+    {
+      const Index end = std::min(points, (chunk + 1) * ChunkSize);
+      for (Index point = chunk * ChunkSize; point < end; ++point)
+      {
+        row.clear();
+        const Index firstUse = this->UseOffsets[point], lastUse = this->UseOffsets[point + 1];
+        const auto forEachNode = [&](const auto& visit)
+        {
+          for (Index use = firstUse; use < lastUse; ++use)
+          {
+            const Index cell = this->Uses[use] >> placeBits;
+            const Index* node = view.connectivity + view.offsets[cell];
+            const int nodes = this->nodesOf(cell);
+            for (int k = 0; k < nodes; ++k)
+            {
+              visit(use * this->Stride + k, static_cast<std::int32_t>(node[k]));
+            }
+          }
+        };
+        forEachNode(
+          [&](Index, std::int32_t node)
+          {
+            if (place[node] < 0)
+            {
+              place[node] = 0;
+              row.push_back(node);
+            }
+          });
+        std::sort(row.begin(), row.end());
+        for (std::size_t k = 0; k < row.size(); ++k)
+        {
+          place[row[k]] = static_cast<std::int32_t>(k);
+        }
+        forEachNode([&](Index slot, std::int32_t node)
+          { this->Slots[slot] = static_cast<std::uint16_t>(place[node]); });
+        for (std::int32_t node : row)
+        {
+          place[node] = -1;
+        }
+        chunks[chunk].insert(chunks[chunk].end(), row.begin(), row.end());
+        this->Offsets[point + 1] = static_cast<Index>(row.size());
+      }
+    }
+  }
+  std::partial_sum(this->Offsets.begin(), this->Offsets.end(), this->Offsets.begin());
+  this->Columns.resize(this->Offsets.back());
+  forEachChunk(points, this->Threads,
+    [&](Index chunk, Index begin, Index)
+    {
+      std::copy(
+        chunks[chunk].begin(), chunks[chunk].end(), this->Columns.begin() + this->Offsets[begin]);
+    });
+}
+
+//------------------------------------------------------------------------------
+void AssemblyPattern::expand(int components, SparseMatrix& matrix) const
+{
+  const Index points = this->Input->view().numberOfPoints;
+  if (components * points > std::numeric_limits<std::int32_t>::max())
+  {
+    throw Error("The mesh is too large for one process: distribute it over several ranks.");
+  }
+  matrix.size = components * points;
+  if (components == 1)
+  {
+    matrix.offsets = this->Offsets;
+    matrix.columns = this->Columns;
+  }
+  else
+  {
+    matrix.offsets.resize(matrix.size + 1);
+    matrix.columns.resize(components * components * this->Columns.size());
+    matrix.offsets[0] = 0;
+    forEachChunk(points, this->Threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index point = begin; point < end; ++point)
+        {
+          const Index first = this->Offsets[point], width = this->Offsets[point + 1] - first;
+          Index k = components * components * first;
+          for (int a = 0; a < components; ++a)
+          {
+            for (Index j = 0; j < width; ++j)
+            {
+              for (int b = 0; b < components; ++b)
+              {
+                matrix.columns[k++] = components * this->Columns[first + j] + b;
+              }
+            }
+            matrix.offsets[components * point + a + 1] = k;
+          }
+        }
+      });
+  }
+  matrix.values.assign(matrix.columns.size(), 0.0);
+}
+
+//------------------------------------------------------------------------------
+/**
+ * Cells are taken in batches: first the matrices of a batch, by cell; then every row adds what the batch has for it,
+ * in increasing order of cells. So no two threads write to one row, sums have one order, and memory stays small.
+ */
+template <class Element>
+void AssemblyPattern::gather(
+  const Element& element, SparseMatrix& matrix, const double* points) const
+{
+  constexpr int components = Element::Components;
+  constexpr Index leastCells = 1 << 15, mostBatches = 32;
+  this->expand(components, matrix);
+  MeshView view = this->Input->view();
+  view.points = points ? points : view.points;
+  const Index entries = components * components * this->Stride * this->Stride;
+  const Index batch = std::min(
+    view.numberOfCells, std::max(leastCells, (view.numberOfCells + mostBatches - 1) / mostBatches));
+  std::vector<double> buffer(batch * entries);
+  std::vector<std::int32_t> done(view.numberOfPoints, 0); // uses of each point
+  FirstCell wrong;
+  for (Index firstCell = 0; firstCell < view.numberOfCells; firstCell += batch)
+  {
+    const Index endCell = std::min(view.numberOfCells, firstCell + batch);
+    forEachChunk(endCell - firstCell, this->Threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          const Index cell = firstCell + i;
+          const Index* node = view.connectivity + view.offsets[cell];
+          const CellType type = static_cast<CellType>(view.cellTypes[cell]);
+          withElement(type,
+            [&](auto nodesOfCell, auto dimensionOfCell)
+            {
+              constexpr int nodes = decltype(nodesOfCell)::value;
+              constexpr int dimension = decltype(dimensionOfCell)::value;
+              Vec3 p[nodes];
+              for (int k = 0; k < nodes; ++k)
+              {
+                p[k] = pointOf(view, node[k]);
+              }
+              element.template compute<nodes, dimension>(cell, type, p, &buffer[i * entries]);
+            });
+        }
+      });
+    forEachChunk(view.numberOfPoints, this->Threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index point = begin; point < end; ++point)
+        {
+          const Index lastUse = this->UseOffsets[point + 1];
+          Index use = this->UseOffsets[point] + done[point];
+          if (use == lastUse || (this->Uses[use] >> placeBits) >= endCell)
+          {
+            continue;
+          }
+          const Index first = this->Offsets[point], width = this->Offsets[point + 1] - first;
+          double* row = &matrix.values[components * components * first];
+          for (; use < lastUse && (this->Uses[use] >> placeBits) < endCell; ++use)
+          {
+            const Index cell = this->Uses[use] >> placeBits;
+            const int nodes = this->nodesOf(cell), place = this->Uses[use] % MaxNodes;
+            const double* k =
+              &buffer[(cell - firstCell) * entries + place * components * components * nodes];
+            for (int j = 0; j < nodes; ++j)
+            {
+              Index slot = this->Slots[use * this->Stride + j];
+              if (width > widestSlot)
+              {
+                const auto column = this->Columns.begin() + first;
+                slot = std::lower_bound(
+                         column, column + width, view.connectivity[view.offsets[cell] + j]) -
+                  column;
+              }
+              for (int a = 0; a < components; ++a)
+              {
+                for (int b = 0; b < components; ++b)
+                {
+                  row[components * (width * a + slot) + b] += k[components * (nodes * a + j) + b];
+                }
+              }
+            }
+            // The diagonal has something of every entry of its row.
+            if (!std::isfinite(k[components * place]))
+            {
+              wrong.report(cell);
+            }
+          }
+          done[point] = static_cast<std::int32_t>(use - this->UseOffsets[point]);
+        }
+      });
+  }
+  if (wrong.any())
+  {
+    throw Error(wrong.name() +
+      " has a coordinate or a coefficient that is not finite, or so large that products overflow.");
+  }
+}
+
+//------------------------------------------------------------------------------
+void AssemblyPattern::assemble(
+  const DiffusionOperator& pde, SparseMatrix& matrix, const double* points) const
+{
+  if (!std::isfinite(pde.reaction) || (!pde.tensors && !isFinite(pde.tensor)))
+  {
+    throw Error("The coefficients of the differential operator are not finite.");
+  }
+  this->gather(DiffusionElement(pde), matrix, points);
+}
+
+//------------------------------------------------------------------------------
+void AssemblyPattern::assemble(
+  const ElasticOperator& pde, SparseMatrix& matrix, const double* points) const
+{
+  const bool planar = elasticComponents(*this->Input) == 2;
+  const double nu = pde.poissonRatio;
+  const double most = planar && pde.plane == PlaneState::Stress ? 1.0 : 0.5;
+  if (!(pde.youngsModulus > 0) || !std::isfinite(pde.youngsModulus))
+  {
+    throw Error("Young's modulus must be positive and finite.");
+  }
+  if (!(nu > -1 && nu < most))
+  {
+    throw Error("Poisson's ratio must be between -1 and " +
+      std::string(most < 1 ? "0.5: a body of 0.5 does not change its volume, which linear elements "
+                             "cannot follow."
+                           : "1."));
+  }
+  if (pde.stiffening)
+  {
+    for (Index cell = 0; cell < this->Input->view().numberOfCells; ++cell)
+    {
+      if (!(pde.stiffening[cell] > 0) || !std::isfinite(pde.stiffening[cell]))
+      {
+        throw Error("The stiffening factor of cell " + std::to_string(cell) +
+          " is not a positive, finite number.");
+      }
+    }
+  }
+  if (planar)
+  {
+    this->gather(ElasticElement<2>(pde, this->Input->frame()), matrix, points);
+  }
+  else
+  {
+    this->gather(ElasticElement<3>(pde, this->Input->frame()), matrix, points);
+  }
+}
+
+//------------------------------------------------------------------------------
+SparseMatrix stiffnessMatrix(
+  const Mesh& mesh, const DiffusionOperator& pde, const AssemblyOptions& options)
+{
+  return AssemblyPattern(mesh, options).assemble(pde);
+}
+
+//------------------------------------------------------------------------------
+SparseMatrix stiffnessMatrix(
+  const Mesh& mesh, const ElasticOperator& pde, const AssemblyOptions& options)
+{
+  return AssemblyPattern(mesh, options).assemble(pde);
+}
+
+//------------------------------------------------------------------------------
+int elasticComponents(const Mesh& mesh)
+{
+  if (mesh.dimension() == Dimension::Surface)
+  {
+    throw Error("Linear elasticity needs a planar mesh or a volume mesh; this is a surface in "
+                "space, a shell.");
+  }
+  return mesh.dimension() == Dimension::Planar ? 2 : 3;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> loadVector(
+  const Mesh& mesh, const double* f, int components, const AssemblyOptions& options)
+{
+  requireElements(mesh);
+  const MeshView& view = mesh.view();
+  std::vector<double> load(components * view.numberOfPoints, 0.0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const std::vector<ReferencePoint> rule = elementRule(block.type);
+    withElement(block.type,
+      [&](auto nodesOfCell, auto dimensionOfCell)
+      {
+        constexpr int nodes = decltype(nodesOfCell)::value;
+        constexpr int dimension = decltype(dimensionOfCell)::value;
+        for (Index i = 0; i < block.count; ++i)
+        {
+          const Index cell = block.cell(i);
+          if (options.skip && options.skip[cell])
+          {
+            continue;
+          }
+          const Index* node = view.connectivity + view.offsets[cell];
+          Vec3 p[nodes];
+          for (int k = 0; k < nodes; ++k)
+          {
+            p[k] = pointOf(view, node[k]);
+          }
+          double mass[nodes][nodes] = {};
+          for (const ReferencePoint& reference : rule)
+          {
+            ElementSample<nodes> s;
+            sampleElement<nodes, dimension>(reference, p, s);
+            for (int a = 0; a < nodes; ++a)
+            {
+              for (int b = 0; b < nodes; ++b)
+              {
+                // On a simplex the integrals of the products are known.
+                mass[a][b] += s.weight *
+                  (nodes == dimension + 1 ? (a == b ? 2.0 : 1.0) / (nodes * (nodes + 1))
+                                          : s.value[a] * s.value[b]);
+              }
+            }
+          }
+          for (int a = 0; a < nodes; ++a)
+          {
+            for (int b = 0; b < nodes; ++b)
+            {
+              for (int c = 0; c < components; ++c)
+              {
+                load[components * node[a] + c] += mass[a][b] * f[components * node[b] + c];
+              }
+            }
+          }
+        }
+      });
+  }
+  return load;
+}
+}

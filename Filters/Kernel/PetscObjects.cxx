@@ -1,0 +1,259 @@
+#include "PetscObjects.h"
+
+#include "Parallel.h"
+#include "PointNumbering.h"
+
+#include <sstream>
+
+namespace tautline
+{
+namespace
+{
+constexpr Index None = -1;
+
+/// The first row with something wrong: an entry that is not finite, or columns out of order or range.
+Index firstBadRow(const SparseMatrix& matrix)
+{
+  for (Index row = 0; row < matrix.size; ++row)
+  {
+    std::int64_t previous = -1;
+    for (Index k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k)
+    {
+      const bool good = matrix.columns[k] > previous && std::isfinite(matrix.values[k]);
+      previous = matrix.columns[k];
+      if (!good || previous >= matrix.size)
+      {
+        return row;
+      }
+    }
+  }
+  return None;
+}
+
+/// Options that something reads only when an inner solver is set up, or after the solve.
+bool readLater(const std::string& name, bool afterSetUp)
+{
+  for (const char* part : { "view", "converged_reason", "monitor" })
+  {
+    if (name.find(part) != std::string::npos)
+    {
+      return true;
+    }
+  }
+  for (const char* prefix : { "-sub_", "-mg_", "-mat_", "-redundant_", "-telescope_",
+         "-fieldsplit_", "-gamg_est_", "-pc_gamg_esteig_", "-ksp_", "-pc_" })
+  {
+    const bool solver = prefix == std::string("-ksp_") || prefix == std::string("-pc_");
+    if (!afterSetUp && !solver && name.rfind(prefix, 0) == 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+}
+
+//------------------------------------------------------------------------------
+PetscOptionSet::PetscOptionSet(const std::string& text)
+  : Text(text)
+{
+  petsc(PetscOptionsCreate(this->Database.out()));
+  std::istringstream words(text);
+  std::string word;
+  bool value = false;
+  while (words >> word)
+  {
+    PetscBool isKey = PETSC_FALSE;
+    petsc(PetscOptionsValidKey(word.c_str(), &isKey));
+    if (isKey)
+    {
+      this->Given.push_back(word);
+    }
+    else if (!value)
+    {
+      throw Error("PETSc options \"" + text + "\": \"" + word +
+        "\" is not the name of an option; write -name value -name value ...");
+    }
+    value = isKey == PETSC_TRUE;
+  }
+  this->read([&]() { petsc(PetscOptionsInsertString(this->Database, text.c_str())); });
+}
+
+bool PetscOptionSet::has(const std::string& name) const
+{
+  PetscBool found = PETSC_FALSE;
+  petsc(PetscOptionsHasName(this->Database, nullptr, name.c_str(), &found));
+  return found;
+}
+
+void PetscOptionSet::setDefault(const std::string& name, const std::string& value)
+{
+  if (!this->has(name))
+  {
+    petsc(PetscOptionsSetValue(this->Database, name.c_str(), value.c_str()));
+  }
+}
+
+void PetscOptionSet::rejectUnused(bool afterSetUp) const
+{
+  std::string unused;
+  for (const std::string& name : this->Given)
+  {
+    PetscBool used = PETSC_FALSE;
+    petsc(PetscOptionsUsed(this->Database, name.c_str() + 1, &used));
+    if (!used && !readLater(name, afterSetUp))
+    {
+      unused += (unused.empty() ? "" : ", ") + name;
+    }
+  }
+  if (!unused.empty())
+  {
+    throw Error("PETSc options \"" + this->Text + "\": unknown here, or without effect: " + unused +
+      ". Check the spelling, and that the method or preconditioner it belongs to is the one "
+      "chosen.");
+  }
+}
+
+void PetscOptionSet::rethrow(const PetscError& error) const
+{
+  if (this->Text.empty())
+  {
+    throw error;
+  }
+  throw Error("PETSc options \"" + this->Text + "\": " + error.what());
+}
+
+//------------------------------------------------------------------------------
+std::string chooseFactorization(PC preconditioner, const LinearSystem& system, int ranks,
+  PetscOptionSet& options, const std::string& prefix)
+{
+  const MatFactorType kind = system.symmetric ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU;
+  const char* type = ranks > 1 ? MATMPIAIJ : MATSEQAIJ;
+  petsc(PCSetType(preconditioner, system.symmetric ? PCCHOLESKY : PCLU));
+  // CHOLMOD is the fastest but takes no pivots but positive ones; MUMPS takes any matrix and any number of ranks.
+  for (const char* package :
+    { MATSOLVERCHOLMOD, MATSOLVERMUMPS, MATSOLVERSUPERLU_DIST, MATSOLVERPETSC })
+  {
+    const bool fits =
+      package != std::string(MATSOLVERCHOLMOD) || (system.positiveDefinite && ranks == 1);
+    PetscBool there = PETSC_FALSE, takesType = PETSC_FALSE;
+    petsc(MatSolverTypeGet(package, type, kind, &there, &takesType, nullptr));
+    if (fits && there && takesType)
+    {
+      petsc(PCFactorSetMatSolverType(preconditioner, package));
+      // Its warnings go to the console; that the matrix is not definite comes back as an error, too.
+      options.setDefault("-" + prefix + "mat_cholmod_print", "0");
+      return package;
+    }
+  }
+  throw Error(
+    "This PETSc has no direct solver for a matrix on several ranks: use an iterative method.");
+}
+
+//------------------------------------------------------------------------------
+PetscSystem::PetscSystem(const LinearSystem& system)
+  : System(system)
+{
+  this->check();
+  this->createMatrix();
+  petsc(MatSetOption(this->Matrix, MAT_SYMMETRIC, system.symmetric ? PETSC_TRUE : PETSC_FALSE));
+  petsc(MatSetOption(
+    this->Matrix, MAT_SPD, system.symmetric && system.positiveDefinite ? PETSC_TRUE : PETSC_FALSE));
+  if (system.coordinates && (system.blockSize == 2 || system.blockSize == 3))
+  {
+    this->attachRigidBodyModes();
+  }
+}
+
+void PetscSystem::check() const
+{
+  const SparseMatrix* matrix = this->System.matrix;
+  if (!matrix || (matrix->size == 0 && this->Ranks == 1))
+  {
+    throw Error("The linear system has no unknowns: nothing is free to be solved for.");
+  }
+  if (this->System.blockSize < 1 || matrix->size % this->System.blockSize != 0)
+  {
+    throw Error("The linear system has " + std::to_string(matrix->size) +
+      " unknowns, which is not a multiple of its block size " +
+      std::to_string(this->System.blockSize) + ".");
+  }
+  const auto entries = static_cast<std::size_t>(matrix->nonzeros());
+  if (matrix->offsets.size() != static_cast<std::size_t>(matrix->size) + 1 ||
+    matrix->offsets.back() != matrix->nonzeros() || matrix->values.size() != entries)
+  {
+    throw Error("The matrix of the linear system is not complete: its offsets, columns and values "
+                "differ in size.");
+  }
+  const Index bad = firstBadRow(*matrix);
+  if (bad != None)
+  {
+    throw Error("Row " + std::to_string(bad) +
+      " of the matrix has an entry that is not finite, or columns that are not in increasing "
+      "order.");
+  }
+}
+
+void PetscSystem::createMatrix()
+{
+  const SparseMatrix& source = *this->System.matrix;
+  petscInteger(source.nonzeros(), "entries");
+  const PetscInt size = petscInteger(source.size, "unknowns");
+  this->Offsets.assign(source.offsets.begin(), source.offsets.end());
+  // PETSc only reads what it is lent here; with 64-bit integers it cannot borrow the columns.
+  auto* columns = reinterpret_cast<PetscInt*>(const_cast<std::int32_t*>(source.columns.data()));
+  if (sizeof(PetscInt) != sizeof(std::int32_t))
+  {
+    this->Columns.assign(source.columns.begin(), source.columns.end());
+    columns = this->Columns.data();
+  }
+  petsc(MatCreateSeqAIJWithArrays(this->Communicator, size, size, this->Offsets.data(), columns,
+    const_cast<double*>(source.values.data()), this->Matrix.out()));
+  petsc(MatSetBlockSize(this->Matrix, this->System.blockSize));
+}
+
+void PetscSystem::attachRigidBodyModes()
+{
+  const int dimension = this->System.blockSize;
+  PetscVector coordinates = this->createVector();
+  petsc(VecSetBlockSize(coordinates, dimension));
+  std::vector<double> values(static_cast<std::size_t>(this->localSize()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    values[i] = this->System.coordinates[3 * (i / dimension) + i % dimension];
+  }
+  this->copyIn(values.data(), coordinates);
+  PetscNullSpace modes;
+  petsc(MatNullSpaceCreateRigidBody(coordinates, modes.out()));
+  petsc(MatSetNearNullSpace(this->Matrix, modes));
+}
+
+//------------------------------------------------------------------------------
+PetscVector PetscSystem::createVector() const
+{
+  PetscVector vector;
+  petsc(MatCreateVecs(this->Matrix, vector.out(), nullptr));
+  return vector;
+}
+
+void PetscSystem::add(const double* contributions, Vec rows) const
+{
+  this->copyIn(contributions, rows);
+}
+
+void PetscSystem::copyIn(const double* values, Vec rows) const
+{
+  double* target = nullptr;
+  petsc(VecGetArrayWrite(rows, &target));
+  std::copy_n(values, this->localSize(), target);
+  petsc(VecRestoreArrayWrite(rows, &target));
+}
+
+void PetscSystem::copyOut(Vec rows, double* values) const
+{
+  const double* source = nullptr;
+  petsc(VecGetArrayRead(rows, &source));
+  std::copy_n(source, this->localSize(), values);
+  petsc(VecRestoreArrayRead(rows, &source));
+}
+}

@@ -1,0 +1,132 @@
+/**
+ * @file PetscObjects.h
+ * @brief What a LinearSolver keeps: PETSc's matrix and solver and how this rank's unknowns map to them. Not a public header.
+ *
+ * Whoever uses these objects holds a PetscScope of their database.
+ */
+#ifndef tautline_PetscObjects_h
+#define tautline_PetscObjects_h
+
+#include "LinearSolver.h"
+#include "PetscSession.h"
+
+#include <chrono>
+
+namespace tautline
+{
+/// A matrix as PETSc sees it, and this rank's view of its vectors.
+class PetscSystem
+{
+public:
+  /// Throws Error as LinearSolver's constructor does; within a PetscScope.
+  explicit PetscSystem(const LinearSystem& system);
+
+  MPI_Comm communicator() const { return this->Communicator; }
+  int ranks() const { return this->Ranks; }
+  Mat matrix() const { return this->Matrix; }
+  /// Unknowns of this rank, shared ones too.
+  Index localSize() const { return this->System.matrix->size; }
+
+  /// A vector of rows, and back: contributions are added up, values copied to all who share them.
+  PetscVector createVector() const;
+  void add(const double* contributions, Vec rows) const;
+  void copyIn(const double* values, Vec rows) const;
+  void copyOut(Vec rows, double* values) const;
+
+private:
+  void check() const;
+  void createMatrix();
+  void attachRigidBodyModes();
+
+  LinearSystem System;
+  MPI_Comm Communicator = MPI_COMM_SELF;
+  int Ranks = 1;
+  std::vector<PetscInt> Offsets, Columns; // what PETSc cannot borrow
+  PetscMatrix Matrix;
+};
+
+/// The options of one solver: a database of its own, and which of them a user gave.
+class PetscOptionSet
+{
+public:
+  /// Throws Error for text that is not a list of options.
+  explicit PetscOptionSet(const std::string& text);
+  PetscOptions database() const { return this->Database; }
+  bool has(const std::string& name) const;
+  /// Sets one of ours, unless the user gave it.
+  void setDefault(const std::string& name, const std::string& value);
+  /**
+   * @brief Throws Error that names the options nothing has read. Before the set-up those that only an inner solver or a viewer
+   * reads are not yet missed.
+   */
+  void rejectUnused(bool afterSetUp) const;
+  /// Runs a call that reads options; an error then tells the text.
+  template <class Call>
+  void read(const Call& call) const
+  {
+    try
+    {
+      call();
+    }
+    catch (const PetscError& error)
+    {
+      this->rethrow(error);
+    }
+  }
+
+private:
+  [[noreturn]] void rethrow(const PetscError& error) const;
+
+  std::string Text;
+  PetscDatabase Database;
+  std::vector<std::string> Given;
+};
+
+/**
+ * @brief Makes a preconditioner a direct solver for a system; the name of the package.
+ * @param prefix of the preconditioner's options, "" or "st_"
+ */
+std::string chooseFactorization(PC preconditioner, const LinearSystem& system, int ranks,
+  PetscOptionSet& options, const std::string& prefix = "");
+
+struct LinearSolver::Implementation
+{
+  Implementation(const LinearSystem& system, const SolverOptions& options);
+
+  double setUp();
+  LinearSolution solve(const double* b, double* x);
+
+  LinearSystem System;
+  SolverOptions Options;
+  PetscOptionSet OptionSet;
+  PetscSystem Objects;
+  PetscSolver Solver;
+  bool Ready = false;                       // set up, or failed to
+  SolveReason Failure = SolveReason::Exact; // of the set-up; Exact: none
+  std::string FailureText;
+
+  // The convergence test that PETSc or its options chose; ours asks it first.
+  PetscErrorCode (*Test)(KSP, PetscInt, PetscReal, KSPConvergedReason*, void*) = nullptr;
+  void* TestContext = nullptr;
+  PetscErrorCode (*DestroyTest)(void*) = nullptr;
+
+  // The solve that is going on.
+  std::chrono::steady_clock::time_point Start;
+  std::vector<double> Residuals;
+  SolveReason Stopped = SolveReason::Exact; // TimeLimit or Aborted
+  std::exception_ptr Thrown;                // by the observer
+
+  ~Implementation();
+
+private:
+  void configure();
+  void applyTolerances();
+  void findEmptyRows();
+  void measure(Vec b, Vec x, LinearSolution& solution);
+  void ritzValues(LinearSolution& solution);
+  bool shouldStop(int iteration, double norm);
+  static PetscErrorCode test(
+    KSP solver, PetscInt iteration, PetscReal norm, KSPConvergedReason* reason, void* self);
+};
+}
+#endif

@@ -1,0 +1,173 @@
+#include "PetscSession.h"
+
+#include <slepcsys.h>
+
+#include <cstdlib>
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+std::recursive_mutex& sessionMutex()
+{
+  // Never destroyed: solvers may outlive static objects.
+  static auto* mutex = new std::recursive_mutex;
+  return *mutex;
+}
+
+/// What the error handler has collected; guarded by the mutex.
+std::string& collected()
+{
+  static auto* text = new std::string;
+  return *text;
+}
+
+bool mpiFinalized()
+{
+  int finalized = 0;
+  MPI_Finalized(&finalized);
+  return finalized != 0;
+}
+
+/// MPI that we started ends with the process: mpirun takes it for a crash otherwise.
+void finalizeMpi()
+{
+  if (!mpiFinalized())
+  {
+    MPI_Finalize();
+  }
+}
+
+/// Keeps the innermost message, which is the one that names the cause; prints nothing, ends nothing.
+PetscErrorCode collectError(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
+  PetscErrorType type, const char* message, void*)
+{
+  if (type == PETSC_ERROR_INITIAL || collected().empty())
+  {
+    const char* general = nullptr;
+    PetscErrorMessage(code, &general, nullptr);
+    collected() = std::string("PETSc: ") +
+      (message && *message ? message
+          : general        ? general
+                           : "error") +
+      " (" + (function ? function : "?") + ", error " + std::to_string(code) + ")";
+  }
+  return code;
+}
+
+void ensureMpi()
+{
+  if (mpiFinalized())
+  {
+    throw Error("MPI has been shut down: linear systems can no longer be solved in this process.");
+  }
+  int initialized = 0;
+  MPI_Initialized(&initialized);
+  if (!initialized)
+  {
+    int provided = 0;
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
+    {
+      throw Error("MPI cannot be started: linear systems cannot be solved in this process.");
+    }
+    std::atexit(finalizeMpi);
+  }
+}
+
+void ensurePetsc()
+{
+  ensureMpi();
+  PetscBool initialized = PETSC_FALSE;
+  PetscInitialized(&initialized);
+  if (initialized)
+  {
+    return;
+  }
+  // On a communicator of one rank nothing is collective: a filter may run on one rank alone. PETSc wants arguments of its
+  // own, or it reads .petscrc; those of the program are none of its business.
+  static char program[] = "tautline", noFiles[] = "-skip_petscrc",
+              noSignals[] = "-no_signal_handler";
+  static char* list[] = { program, noFiles, noSignals, nullptr };
+  static char** arguments = list;
+  static int count = 3;
+  PETSC_COMM_WORLD = MPI_COMM_SELF;
+  const PetscErrorCode code = PetscInitialize(&count, &arguments, nullptr, nullptr);
+  PETSC_COMM_WORLD = MPI_COMM_WORLD;
+  if (code != 0)
+  {
+    throw Error("PETSc cannot be initialised (error " + std::to_string(code) + ").");
+  }
+  // Other users of PETSc find what they would have got.
+  MPI_Comm_rank(MPI_COMM_WORLD, &PetscGlobalRank);
+  MPI_Comm_size(MPI_COMM_WORLD, &PetscGlobalSize);
+  PetscOptionsClearValue(nullptr, noFiles);
+  PetscOptionsClearValue(nullptr, noSignals);
+}
+}
+
+//------------------------------------------------------------------------------
+bool petscUsable()
+{
+  PetscBool initialized = PETSC_FALSE;
+  return !mpiFinalized() && PetscInitialized(&initialized) == 0 && initialized;
+}
+
+void ensureSlepc()
+{
+  PetscBool initialized = PETSC_FALSE;
+  petsc(SlepcInitialized(&initialized));
+  if (!initialized)
+  {
+    petsc(SlepcInitialize(nullptr, nullptr, nullptr, nullptr));
+  }
+}
+
+PetscScope::PetscScope(PetscOptions database)
+  : Lock(sessionMutex())
+{
+  ensurePetsc();
+  if (!database)
+  {
+    if (PetscOptionsCreate(&this->Own) != 0)
+    {
+      throw Error("PETSc has no memory for its options.");
+    }
+    database = this->Own;
+  }
+  std::swap(this->Outer, collected());
+  PetscPushErrorHandler(collectError, nullptr);
+  PetscOptionsPush(database);
+}
+
+PetscScope::~PetscScope()
+{
+  // Another user of PETSc may have ended it meanwhile, from a callback.
+  if (petscUsable())
+  {
+    PetscOptionsPop();
+    PetscPopErrorHandler();
+    if (this->Own)
+    {
+      PetscOptionsDestroy(&this->Own);
+    }
+  }
+  std::swap(this->Outer, collected());
+}
+
+const std::string& petscMessage()
+{
+  return collected();
+}
+
+PetscInt petscInteger(Index value, const char* what)
+{
+  if (value > static_cast<Index>(std::numeric_limits<PetscInt>::max()))
+  {
+    throw Error("The linear system has " + std::to_string(value) + " " + what +
+      ", more than this PETSc can number: use a smaller mesh, more ranks, or a PETSc with 64-bit "
+      "indices.");
+  }
+  return static_cast<PetscInt>(value);
+}
+}

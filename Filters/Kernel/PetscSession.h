@@ -1,0 +1,120 @@
+/**
+ * @file PetscSession.h
+ * @brief PETSc inside somebody else's process: initialised at first use, one thread at a time, with options and an error
+ * handler that leave those of other users alone. Not a public header.
+ */
+#ifndef tautline_PetscSession_h
+#define tautline_PetscSession_h
+
+#include "Types.h"
+
+#include <petscksp.h>
+
+#include <exception>
+#include <mutex>
+#include <utility>
+
+namespace tautline
+{
+/// A failed call of PETSc or SLEPc, with its text.
+class PetscError : public Error
+{
+public:
+  PetscError(PetscErrorCode code, const std::string& text)
+    : Error(text)
+    , Code(code)
+  {
+  }
+  PetscErrorCode code() const { return this->Code; }
+
+private:
+  PetscErrorCode Code;
+};
+
+/// MPI and PETSc are there and not yet shut down, so that objects can be destroyed.
+bool petscUsable();
+
+/// Initialises SLEPc if that has not been done; within a PetscScope.
+void ensureSlepc();
+
+/**
+ * @class tautline::PetscScope
+ * @brief Every use of PETSc happens within one.
+ *
+ * The first one of the process initialises PETSc (and MPI if nobody has), not collectively, without signal handler, without
+ * the program's arguments and without .petscrc. While a scope lives, no other thread of ours uses PETSc, options are looked up
+ * in `database` alone, and errors are collected rather than printed. Scopes nest.
+ */
+class PetscScope
+{
+public:
+  /// Throws Error when MPI has been shut down already. A null database: an empty one.
+  explicit PetscScope(PetscOptions database = nullptr);
+  ~PetscScope();
+  PetscScope(const PetscScope&) = delete;
+  PetscScope& operator=(const PetscScope&) = delete;
+
+private:
+  std::unique_lock<std::recursive_mutex> Lock;
+  PetscOptions Own = nullptr;
+  std::string Outer; // what was collected outside
+};
+
+/// What PETSc said of the last failed call in this scope.
+const std::string& petscMessage();
+
+/// Throws PetscError unless the code is 0.
+inline void petsc(PetscErrorCode code)
+{
+  if (code != 0)
+  {
+    throw PetscError(code, petscMessage());
+  }
+}
+
+/// Throws Error if the number does not fit PETSc's integers.
+PetscInt petscInteger(Index value, const char* what);
+
+/// Owns a PETSc object. Its destructor must run within a PetscScope; it does nothing once PETSc has gone.
+template <class Object, PetscErrorCode (*Destroy)(Object*)>
+class PetscHandle
+{
+public:
+  PetscHandle() = default;
+  ~PetscHandle() { this->reset(); }
+  PetscHandle(PetscHandle&& other) noexcept { std::swap(this->Held, other.Held); }
+  PetscHandle& operator=(PetscHandle&& other) noexcept
+  {
+    std::swap(this->Held, other.Held);
+    return *this;
+  }
+  PetscHandle(const PetscHandle&) = delete;
+  PetscHandle& operator=(const PetscHandle&) = delete;
+
+  operator Object() const { return this->Held; }
+  /// For the function that creates the object.
+  Object* out()
+  {
+    this->reset();
+    return &this->Held;
+  }
+  void reset()
+  {
+    if (this->Held && petscUsable())
+    {
+      Destroy(&this->Held);
+    }
+    this->Held = nullptr;
+  }
+
+private:
+  Object Held = nullptr;
+};
+
+using PetscMatrix = PetscHandle<Mat, MatDestroy>;
+using PetscVector = PetscHandle<Vec, VecDestroy>;
+using PetscSolver = PetscHandle<KSP, KSPDestroy>;
+using PetscNullSpace = PetscHandle<MatNullSpace, MatNullSpaceDestroy>;
+using PetscDatabase = PetscHandle<PetscOptions, PetscOptionsDestroy>;
+}
+#endif

@@ -1,0 +1,89 @@
+// Assembly of finite element matrices: seconds, the best of several turns, CPU time on one thread and wall time on one
+// and on two. Lines `key<tab>number`.
+//
+// usage: BenchmarkConditioning [CELLS [TURNS]]
+
+#include "Clocks.h"
+#include "KuhnMesh.h"
+
+#include "tautline/FiniteElements.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+using namespace tautline;
+
+namespace
+{
+struct Times
+{
+  double cpu = 1e300, wall = 1e300;
+};
+
+template <class Work>
+Times measure(int turns, const Work& work)
+{
+  Times best;
+  for (int turn = 0; turn < turns; ++turn)
+  {
+    const double cpu = processTime(), wall = wallTime();
+    work();
+    best.cpu = std::min(best.cpu, processTime() - cpu);
+    best.wall = std::min(best.wall, wallTime() - wall);
+  }
+  return best;
+}
+
+template <class Operator>
+void assembly(const char* name, const Mesh& mesh, const Operator& pde, int turns)
+{
+  double wall[2] = {};
+  for (int threads = 1; threads <= 2; ++threads)
+  {
+    AssemblyOptions options;
+    options.threads = threads;
+    SparseMatrix matrix;
+    const Times all = measure(turns, [&]() { matrix = stiffnessMatrix(mesh, pde, options); });
+    const AssemblyPattern pattern(mesh, options);
+    const Times again = measure(turns, [&]() { pattern.assemble(pde, matrix); });
+    wall[threads - 1] = all.wall;
+    if (threads == 1)
+    {
+      std::printf("assembly %s cpu\t%.6g\n", name, all.cpu);
+      std::printf("assembly %s again cpu\t%.6g\n", name, again.cpu);
+      std::printf("assembly %s again wall 1\t%.6g\n", name, again.wall);
+    }
+    else
+    {
+      std::printf("assembly %s again wall 2\t%.6g\n", name, again.wall);
+    }
+  }
+  std::printf("assembly %s wall 1\t%.6g\n", name, wall[0]);
+  std::printf("assembly %s wall 2\t%.6g\n", name, wall[1]);
+}
+}
+
+int main(int argc, char* argv[])
+{
+  const double cells = argc > 1 ? std::atof(argv[1]) : 1e6;
+  const int turns = argc > 2 ? std::atoi(argv[2]) : 5;
+  const Index flat = std::max<Index>(2, std::lround(std::sqrt(cells / 2)));
+  const Index solid = std::max<Index>(2, std::lround(std::cbrt(cells / 6)));
+  const MeshData triangles = movedBlock(CellType::Triangle, flat, 0.1);
+  const MeshData tetrahedra =
+    cutIntoTetrahedra(movedBlock(CellType::Hexahedron, solid, 0.1), solid);
+  const MeshData scattered = shuffled(triangles, 7);
+  const Mesh planar(triangles.view()), volume(tetrahedra.view()), random(scattered.view());
+  DiffusionOperator anisotropic;
+  anisotropic.tensor = { 2, 1, 1, 0.5, 0, 0 };
+  std::printf("triangles\t%lld\n", static_cast<long long>(planar.view().numberOfCells));
+  std::printf("tetrahedra\t%lld\n", static_cast<long long>(volume.view().numberOfCells));
+  assembly("triangles poisson", planar, DiffusionOperator(), turns);
+  assembly("triangles anisotropic", planar, anisotropic, turns);
+  assembly("triangles in random order poisson", random, DiffusionOperator(), turns);
+  assembly("triangles elasticity", planar, ElasticOperator(), turns);
+  assembly("tetrahedra poisson", volume, DiffusionOperator(), turns);
+  assembly("tetrahedra elasticity", volume, ElasticOperator(), turns);
+  return EXIT_SUCCESS;
+}

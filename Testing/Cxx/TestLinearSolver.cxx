@@ -1,0 +1,521 @@
+// Linear systems through PETSc: every method with every preconditioner against a direct solve, why a solve fails, options
+// and whose they are, limits, reuse, and whatever is refused.
+#include "Check.h"
+#include "Systems.h"
+
+#include "tautline/LinearSolver.h"
+
+#include <petscksp.h>
+
+#include <limits>
+#include <thread>
+
+using namespace tautline;
+
+namespace
+{
+constexpr KrylovMethod methods[] = { KrylovMethod::ConjugateGradient, KrylovMethod::GMRES,
+  KrylovMethod::MINRES, KrylovMethod::BiCGStab };
+constexpr Preconditioner preconditioners[] = { Preconditioner::Jacobi, Preconditioner::SSOR,
+  Preconditioner::ILU, Preconditioner::BoomerAMG, Preconditioner::ICC, Preconditioner::GAMG,
+  Preconditioner::None };
+
+LinearSystem systemOf(const SparseMatrix& matrix)
+{
+  LinearSystem system;
+  system.matrix = &matrix;
+  return system;
+}
+
+struct Result
+{
+  LinearSolution solution;
+  std::vector<double> x;
+};
+
+Result solved(
+  const LinearSystem& system, const SolverOptions& options, const std::vector<double>& b)
+{
+  Result result;
+  result.x.assign(b.size(), 0.0);
+  LinearSolver solver(system, options);
+  result.solution = solver.solve(b.data(), result.x.data());
+  return result;
+}
+
+Result directly(const SparseMatrix& a, const std::vector<double>& b)
+{
+  SolverOptions options;
+  options.method = KrylovMethod::Direct;
+  return solved(systemOf(a), options, b);
+}
+
+std::string nameOf(const SolverOptions& options)
+{
+  return std::string(tautline::nameOf(options.method)) + " + " +
+    tautline::nameOf(options.preconditioner);
+}
+
+//------------------------------------------------------------------------------
+void testAllPairs()
+{
+  const int n = 40;
+  for (const double scale : { 1e-8, 1.0, 1e8 })
+  {
+    const SparseMatrix a = laplacian(n, scale);
+    const std::vector<double> b = someVector(a.size);
+    const Result exact = directly(a, b);
+    TAUTLINE_CHECK(exact.solution.reason == SolveReason::Exact);
+    TAUTLINE_CHECK(relativeResidual(a, exact.x, b) < 1e-13);
+    for (const KrylovMethod method : methods)
+    {
+      for (const Preconditioner preconditioner : preconditioners)
+      {
+        SolverOptions options;
+        options.method = method;
+        options.preconditioner = preconditioner;
+        options.relativeTolerance = 1e-11;
+        options.absoluteTolerance = 0.0;
+        const Context context(nameOf(options));
+        const Result result = solved(systemOf(a), options, b);
+        TAUTLINE_CHECK(result.solution.reason == SolveReason::RelativeTolerance);
+        TAUTLINE_CHECK(relativeResidual(a, result.x, b) < 1e-8);
+        TAUTLINE_CHECK(relativeDifference(result.x, exact.x) < 1e-7);
+        const std::vector<double>& residuals = result.solution.residuals;
+        TAUTLINE_CHECK_EQUAL(static_cast<int>(residuals.size()), result.solution.iterations + 1);
+        TAUTLINE_CHECK(residuals.back() <= 1e-11 * residuals.front());
+        TAUTLINE_CHECK(result.solution.message.empty());
+      }
+    }
+  }
+  TAUTLINE_CHECK_EQUAL(combinationNumber(KrylovMethod::GMRES, Preconditioner::ILU), 10);
+  TAUTLINE_CHECK_EQUAL(
+    combinationNumber(KrylovMethod::ConjugateGradient, Preconditioner::Jacobi), 1);
+  TAUTLINE_CHECK_EQUAL(combinationNumber(KrylovMethod::BiCGStab, Preconditioner::BoomerAMG), 16);
+  TAUTLINE_CHECK_EQUAL(combinationNumber(KrylovMethod::Direct, Preconditioner::BoomerAMG), 0);
+  TAUTLINE_CHECK_EQUAL(combinationNumber(KrylovMethod::GMRES, Preconditioner::GAMG), 0);
+}
+
+/// Unsymmetric and symmetric indefinite matrices, directly and by the methods made for them.
+void testOtherMatrices()
+{
+  const int n = 20;
+  const SparseMatrix upwind = gridMatrix(n,
+    [](int i, int j) {
+      return i == j ? 4.0 : j == i + 1 ? -0.2 : j == i - 1 ? -1.8 : -1.0;
+    });
+  const std::vector<double> b = someVector(upwind.size);
+  LinearSystem system = systemOf(upwind);
+  system.symmetric = system.positiveDefinite = false;
+  SolverOptions options;
+  options.relativeTolerance = 1e-12;
+  for (const KrylovMethod method :
+    { KrylovMethod::Direct, KrylovMethod::GMRES, KrylovMethod::BiCGStab })
+  {
+    options.method = method;
+    options.preconditioner = Preconditioner::ILU;
+    const Context context(nameOf(options));
+    const Result result = solved(system, options, b);
+    TAUTLINE_CHECK(converged(result.solution.reason));
+    TAUTLINE_CHECK(relativeResidual(upwind, result.x, b) < 1e-9);
+    TAUTLINE_CHECK_RELATIVE(result.solution.trueResidual, relativeResidual(upwind, result.x, b),
+      method == KrylovMethod::Direct ? 1.0 : 1e-3);
+  }
+
+  // Eigenvalues from -2.05 on: CG notices; CHOLMOD does or solves it; MINRES and MUMPS do.
+  const SparseMatrix shifted = laplacian(n, 1.0, -2.1);
+  system = systemOf(shifted);
+  options.preconditioner = Preconditioner::None;
+  options.method = KrylovMethod::ConjugateGradient;
+  TAUTLINE_CHECK(solved(system, options, b).solution.reason == SolveReason::IndefiniteMatrix);
+  options.method = KrylovMethod::Direct;
+  const Result claimed = solved(system, options, b);
+  TAUTLINE_CHECK(claimed.solution.reason == SolveReason::IndefiniteMatrix ||
+    relativeResidual(shifted, claimed.x, b) < 1e-10);
+  system.positiveDefinite = false;
+  for (const KrylovMethod method : { KrylovMethod::MINRES, KrylovMethod::Direct })
+  {
+    options.method = method;
+    const Context context(nameOf(options));
+    const Result result = solved(system, options, b);
+    TAUTLINE_CHECK(converged(result.solution.reason));
+    TAUTLINE_CHECK(relativeResidual(shifted, result.x, b) < 1e-8);
+  }
+
+  // ILU of it is indefinite, which CG and MINRES cannot take.
+  options.preconditioner = Preconditioner::ILU;
+  for (const KrylovMethod method : { KrylovMethod::MINRES, KrylovMethod::ConjugateGradient })
+  {
+    options.method = method;
+    const Context context(nameOf(options));
+    const LinearSolution failed = solved(system, options, b).solution;
+    TAUTLINE_CHECK(!converged(failed.reason));
+    TAUTLINE_CHECK(
+      failed.reason == SolveReason::IndefinitePreconditioner || method == KrylovMethod::MINRES);
+  }
+}
+
+/// Singular matrices: an empty row, and the Neumann problem.
+void testSingular()
+{
+  const int n = 12;
+  const std::vector<double> b = someVector(n * n);
+  SparseMatrix empty = laplacian(n);
+  std::fill(
+    empty.values.begin() + empty.offsets[30], empty.values.begin() + empty.offsets[31], 0.0);
+  for (Index k = 0; k < empty.nonzeros(); ++k)
+  {
+    empty.values[k] = empty.columns[k] == 30 ? 0.0 : empty.values[k];
+  }
+  SparseMatrix neumann = gridMatrix(n,
+    [=](int i, int j)
+    {
+      const int neighbours = (i % n > 0) + (i % n < n - 1) + (i / n > 0) + (i / n < n - 1);
+      return i == j ? neighbours : -1.0;
+    });
+  for (const SparseMatrix* matrix : { &empty, &neumann })
+  {
+    for (const bool definite : { true, false })
+    {
+      LinearSystem system = systemOf(*matrix);
+      system.positiveDefinite = definite;
+      SolverOptions options;
+      options.method = KrylovMethod::Direct;
+      const Result result = solved(system, options, b);
+      TAUTLINE_CHECK(!converged(result.solution.reason));
+      TAUTLINE_CHECK(!result.solution.message.empty());
+      for (const double value : result.x)
+      {
+        TAUTLINE_CHECK(std::isfinite(value));
+      }
+    }
+  }
+  for (const Preconditioner preconditioner : preconditioners)
+  {
+    SolverOptions options;
+    options.preconditioner = preconditioner;
+    options.maximumIterations = 500;
+    const Context context(nameOf(options));
+    const Result result = solved(systemOf(empty), options, b);
+    TAUTLINE_CHECK(!converged(result.solution.reason));
+    TAUTLINE_CHECK(std::isfinite(result.x[0]));
+  }
+  SolverOptions options;
+  options.preconditioner = Preconditioner::ILU;
+  const LinearSolution pivot = solved(systemOf(empty), options, b).solution;
+  TAUTLINE_CHECK(pivot.reason == SolveReason::PreconditionerFailed);
+  TAUTLINE_CHECK(pivot.message.find("pivot") != std::string::npos);
+}
+
+//------------------------------------------------------------------------------
+void testOptions()
+{
+  const SparseMatrix a = laplacian(40);
+  const std::vector<double> b = someVector(a.size);
+  SolverOptions options;
+  options.preconditioner = Preconditioner::Jacobi;
+  const int loose = solved(systemOf(a), options, b).solution.iterations;
+  options.petscOptions = "-ksp_rtol 1e-12";
+  const Result tight = solved(systemOf(a), options, b);
+  TAUTLINE_CHECK(tight.solution.iterations > loose + 20);
+  TAUTLINE_CHECK(relativeResidual(a, tight.x, b) < 1e-10);
+
+  // The string wins over the members, whatever it asks for.
+  options.petscOptions = "-ksp_type gmres -pc_type lu -pc_factor_mat_solver_type mumps";
+  TAUTLINE_CHECK_EQUAL(solved(systemOf(a), options, b).solution.iterations, 1);
+  options.petscOptions = "-pc_type bjacobi -pc_bjacobi_blocks 4 -sub_pc_type icc";
+  TAUTLINE_CHECK(converged(solved(systemOf(a), options, b).solution.reason));
+  options.petscOptions = "-ksp_max_it 3";
+  TAUTLINE_CHECK(solved(systemOf(a), options, b).solution.reason == SolveReason::IterationLimit);
+
+  // Inner solvers and HYPRE read the same options.
+  options.preconditioner = Preconditioner::BoomerAMG;
+  options.petscOptions.clear();
+  const int usual = solved(systemOf(a), options, b).solution.iterations;
+  options.petscOptions =
+    "-pc_hypre_boomeramg_max_levels 2 -pc_hypre_boomeramg_relax_type_all Jacobi";
+  TAUTLINE_CHECK(solved(systemOf(a), options, b).solution.iterations != usual);
+  options.preconditioner = Preconditioner::GAMG;
+  options.petscOptions.clear();
+  const int chebyshev = solved(systemOf(a), options, b).solution.iterations;
+  options.petscOptions =
+    "-mg_levels_ksp_type richardson -mg_levels_ksp_max_it 1 -mg_levels_pc_type jacobi "
+    "-mg_levels_ksp_richardson_scale 0.3";
+  TAUTLINE_CHECK(solved(systemOf(a), options, b).solution.iterations > chebyshev);
+
+  struct Bad
+  {
+    const char* text;
+    const char* named;
+  };
+  for (const Bad& bad : { Bad{ "-ksp_rtoll 1e-3", "-ksp_rtoll" }, Bad{ "-ksp_rtol many", "many" },
+         Bad{ "ksp_rtol 1e-3", "ksp_rtol" }, Bad{ "-ksp_type fastest", "fastest" },
+         Bad{ "-pc_type magic", "magic" }, Bad{ "-ksp_rtol 1e-3 1e-4", "1e-4" },
+         Bad{ "-ksp_max_it 1.5", "1.5" }, Bad{ "-sub_pc_typ icc", "-sub_pc_typ" },
+         Bad{ "-foo", "-foo" },
+         Bad{ "-pc_hypre_boomeramg_max_levels 2", "-pc_hypre_boomeramg_max_levels" },
+         Bad{ "-mg_levels_ksp_max_it 3", "-mg_levels_ksp_max_it" } })
+  {
+    SolverOptions wrong;
+    wrong.preconditioner = Preconditioner::Jacobi;
+    wrong.petscOptions = bad.text;
+    const Context context(bad.text);
+    TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), bad.named);
+  }
+  const auto refuse = [&](const SolverOptions& wrong, const char* text)
+  { TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), text); };
+  SolverOptions wrong;
+  wrong.omega = 2.0;
+  refuse(wrong, "between 0 and 2");
+  wrong = {};
+  wrong.relativeTolerance = -1.0;
+  refuse(wrong, "tolerance");
+  wrong = {};
+  wrong.restart = 0;
+  refuse(wrong, "restart");
+  wrong = {};
+  wrong.method = static_cast<KrylovMethod>(17);
+  refuse(wrong, "number 17");
+  wrong = {};
+  wrong.preconditioner = static_cast<Preconditioner>(-2);
+  refuse(wrong, "number -2");
+}
+
+/// Restart, relaxation, limits, the observer, the initial guess and Ritz values.
+void testControls()
+{
+  const int n = 60;
+  const SparseMatrix a = laplacian(n);
+  const std::vector<double> b = someVector(a.size);
+  SolverOptions options;
+  options.method = KrylovMethod::GMRES;
+  options.preconditioner = Preconditioner::Jacobi;
+  int before = 100000;
+  for (const int restart : { 5, 20, 80 })
+  {
+    options.restart = restart;
+    const LinearSolution solution = solved(systemOf(a), options, b).solution;
+    TAUTLINE_CHECK(solution.iterations < before);
+    before = solution.iterations;
+  }
+  options.method = KrylovMethod::ConjugateGradient;
+  options.preconditioner = Preconditioner::SSOR;
+  const int plain = solved(systemOf(a), options, b).solution.iterations;
+  options.omega = 1.8;
+  TAUTLINE_CHECK(solved(systemOf(a), options, b).solution.iterations < 0.75 * plain);
+
+  options = {};
+  options.preconditioner = Preconditioner::None;
+  int calls = 0;
+  options.observer = [&](int iteration, double norm)
+  {
+    TAUTLINE_CHECK_EQUAL(iteration, calls);
+    TAUTLINE_CHECK(norm > 0);
+    ++calls;
+    return iteration < 7;
+  };
+  Result stopped = solved(systemOf(a), options, b);
+  TAUTLINE_CHECK(stopped.solution.reason == SolveReason::Aborted);
+  TAUTLINE_CHECK_EQUAL(stopped.solution.iterations, 7);
+  TAUTLINE_CHECK(relativeResidual(a, stopped.x, b) < 2.0);
+  options.observer = [](int, double) -> bool { throw std::runtime_error("from the observer"); };
+  TAUTLINE_CHECK_THROWS(solved(systemOf(a), options, b), "from the observer");
+  options.observer = [](int, double)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return true;
+  };
+  options.maximumSeconds = 0.03;
+  stopped = solved(systemOf(a), options, b);
+  TAUTLINE_CHECK(stopped.solution.reason == SolveReason::TimeLimit);
+  TAUTLINE_CHECK(stopped.solution.iterations >= 3 && stopped.solution.iterations <= 8);
+
+  // From the solution on there is nothing to do; tolerances may change between solves.
+  options = {};
+  options.preconditioner = Preconditioner::ILU;
+  options.relativeTolerance = 1e-12;
+  LinearSolver solver(systemOf(a), options);
+  TAUTLINE_CHECK(solver.setUp() > 0.0);
+  TAUTLINE_CHECK_EQUAL(solver.setUp(), 0.0);
+  std::vector<double> x(b.size(), 7.0);
+  const LinearSolution first = solver.solve(b.data(), x.data());
+  TAUTLINE_CHECK_EQUAL(first.setupSeconds, 0.0);
+  solver.options().initialGuess = true;
+  solver.options().relativeTolerance = 1e-5;
+  const LinearSolution again = solver.solve(b.data(), x.data());
+  TAUTLINE_CHECK_EQUAL(again.iterations, 0);
+  solver.options().initialGuess = false;
+  const LinearSolution loose = solver.solve(b.data(), x.data());
+  TAUTLINE_CHECK(loose.iterations > 5 && loose.iterations < first.iterations);
+
+  // Zero on the right-hand side: nothing to do; an infinite one: no number.
+  std::vector<double> zero(b.size(), 0.0);
+  const LinearSolution nothing = solver.solve(zero.data(), x.data());
+  TAUTLINE_CHECK(converged(nothing.reason) && nothing.iterations == 0 && x[3] == 0.0);
+  zero[5] = std::numeric_limits<double>::infinity();
+  TAUTLINE_CHECK(solver.solve(zero.data(), x.data()).reason == SolveReason::NotANumber);
+
+  options = {};
+  options.preconditioner = Preconditioner::None;
+  options.ritzValues = true;
+  options.relativeTolerance = 1e-10;
+  const LinearSolution ritz = solved(systemOf(a), options, b).solution;
+  TAUTLINE_CHECK_RELATIVE(ritz.ritzSmallest, laplacianEigenvalue(n, 1, 1), 1e-4);
+  TAUTLINE_CHECK_RELATIVE(ritz.ritzLargest, laplacianEigenvalue(n, n, n), 1e-4);
+}
+
+//------------------------------------------------------------------------------
+/// Another user of PETSc, with options, an error handler and a solver of its own, notices nothing.
+int strangersErrors = 0;
+PetscErrorCode strangersHandler(
+  MPI_Comm, int, const char*, const char*, PetscErrorCode code, PetscErrorType, const char*, void*)
+{
+  ++strangersErrors;
+  return code;
+}
+
+void testStranger()
+{
+  const SparseMatrix a = laplacian(30);
+  const std::vector<double> b = someVector(a.size);
+  SolverOptions options;
+  options.preconditioner = Preconditioner::Jacobi;
+  const Result alone = solved(systemOf(a), options, b);
+
+  PetscOptionsSetValue(nullptr, "-ksp_rtol", "0.5");
+  PetscOptionsSetValue(nullptr, "-pc_type", "none");
+  PetscOptionsSetValue(nullptr, "-mine", "7");
+  char* before = nullptr;
+  PetscOptionsGetAll(nullptr, &before);
+  PetscPushErrorHandler(strangersHandler, nullptr);
+  KSP stranger = nullptr;
+  KSPCreate(PETSC_COMM_SELF, &stranger);
+  KSPSetFromOptions(stranger);
+
+  const Result beside = solved(systemOf(a), options, b);
+  TAUTLINE_CHECK_EQUAL(beside.solution.iterations, alone.solution.iterations);
+  TAUTLINE_CHECK(beside.x == alone.x);
+  SolverOptions wrong = options;
+  wrong.petscOptions = "-ksp_type nonsense";
+  TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), "nonsense");
+  wrong.petscOptions = "-mine 3";
+  TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), "-mine");
+
+  char* after = nullptr;
+  PetscOptionsGetAll(nullptr, &after);
+  TAUTLINE_CHECK_EQUAL(std::string(after), std::string(before));
+  PetscFree(before);
+  PetscFree(after);
+  PetscReal tolerance = 0;
+  KSPGetTolerances(stranger, &tolerance, nullptr, nullptr, nullptr);
+  TAUTLINE_CHECK_EQUAL(tolerance, 0.5);
+  TAUTLINE_CHECK_EQUAL(strangersErrors, 0);
+  KSPSetType(stranger, "no such type");
+  TAUTLINE_CHECK(strangersErrors > 0);
+  KSPDestroy(&stranger);
+  PetscPopErrorHandler();
+  for (const char* name : { "-ksp_rtol", "-pc_type", "-mine" })
+  {
+    PetscOptionsClearValue(nullptr, name);
+  }
+}
+
+/// Solvers do not disturb each other, be they interleaved, in threads, or called from an observer.
+void testTogether()
+{
+  const SparseMatrix a = laplacian(30), c = laplacian(25, 2.0, 0.5);
+  const std::vector<double> b = someVector(a.size), d = someVector(c.size, 2);
+  SolverOptions jacobi, amg;
+  jacobi.preconditioner = Preconditioner::Jacobi;
+  jacobi.petscOptions = "-ksp_rtol 1e-9";
+  const Result one = solved(systemOf(a), jacobi, b), two = solved(systemOf(c), amg, d);
+
+  LinearSolver first(systemOf(a), jacobi), second(systemOf(c), amg);
+  std::vector<double> x(b.size()), y(d.size());
+  for (int k = 0; k < 2; ++k)
+  {
+    first.solve(b.data(), x.data());
+    second.solve(d.data(), y.data());
+    TAUTLINE_CHECK(x == one.x);
+    TAUTLINE_CHECK(y == two.x);
+  }
+  std::vector<std::thread> threads;
+  std::vector<std::vector<double>> results(4);
+  for (std::size_t t = 0; t < results.size(); ++t)
+  {
+    threads.emplace_back(
+      [&, t]()
+      {
+        for (int k = 0; k < 3; ++k)
+        {
+          results[t] = t % 2 ? solved(systemOf(a), jacobi, b).x : solved(systemOf(c), amg, d).x;
+        }
+      });
+  }
+  for (std::size_t t = 0; t < results.size(); ++t)
+  {
+    threads[t].join();
+    TAUTLINE_CHECK(results[t] == (t % 2 ? one.x : two.x));
+  }
+  SolverOptions nested = jacobi;
+  nested.observer = [&](int, double)
+  {
+    TAUTLINE_CHECK(solved(systemOf(c), amg, d).x == two.x);
+    return true;
+  };
+  nested.maximumIterations = 5;
+  nested.petscOptions.clear();
+  TAUTLINE_CHECK_EQUAL(solved(systemOf(a), nested, b).solution.iterations, 5);
+}
+
+void testRefused()
+{
+  const SparseMatrix none;
+  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(none), {}), "no unknowns");
+  TAUTLINE_CHECK_THROWS(LinearSolver(LinearSystem(), {}), "no unknowns");
+  SparseMatrix a = laplacian(5);
+  a.values[17] = std::numeric_limits<double>::quiet_NaN();
+  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), "not finite");
+  a = laplacian(5);
+  LinearSystem blocks = systemOf(a);
+  blocks.blockSize = 3;
+  TAUTLINE_CHECK_THROWS(LinearSolver(blocks, {}), "block size 3");
+  a.values.pop_back();
+  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), "not complete");
+
+  // One unknown.
+  SparseMatrix one;
+  one.size = 1;
+  one.offsets = { 0, 1 };
+  one.columns = { 0 };
+  one.values = { 4.0 };
+  const std::vector<double> b = { 2.0 };
+  for (const KrylovMethod method : { KrylovMethod::ConjugateGradient, KrylovMethod::GMRES,
+         KrylovMethod::MINRES, KrylovMethod::BiCGStab, KrylovMethod::Direct })
+  {
+    for (const Preconditioner preconditioner : preconditioners)
+    {
+      SolverOptions options;
+      options.method = method;
+      options.preconditioner = preconditioner;
+      const Context context(nameOf(options));
+      const Result result = solved(systemOf(one), options, b);
+      TAUTLINE_CHECK(converged(result.solution.reason));
+      TAUTLINE_CHECK_NEAR(result.x[0], 0.5, 1e-14);
+    }
+  }
+}
+}
+
+int TestLinearSolver(int, char*[])
+{
+  testAllPairs();
+  testOtherMatrices();
+  testSingular();
+  testOptions();
+  testControls();
+  testStranger();
+  testTogether();
+  testRefused();
+  return exitCode();
+}
