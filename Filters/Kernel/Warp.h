@@ -48,6 +48,9 @@ enum class WarpCoefficients : int
   PerCell = 3              ///< `tensors`
 };
 
+/// What Hybrid's second step starts from: at most 20 iterations, to a relative change of 1e-3.
+TAUTLINE_KERNEL_EXPORT OptimizeOptions hybridOptimization();
+
 struct WarpOptions
 {
   WarpMethod method = WarpMethod::Hybrid;
@@ -72,8 +75,18 @@ struct WarpOptions
   double supportRadius = 0.0; ///< RadialBasis; 0: from the size of the mesh and the motion
   double fitTolerance =
     1e-3; ///< RadialBasis: of the greedy choice, relative to the largest displacement
-  OptimizeOptions optimization; ///< Hybrid's second step: stopping criteria; the objectives are set
-  double maximumSeconds = 0.0;  ///< 0: no limit
+  /**
+   * @brief Hybrid's second step. On: untangle() what the warp inverted, then lower the exponential sum of F_1, the shape
+   * (4.22), and of the squared inverse mean ratios of the same T, a barrier that keeps every element valid where
+   * (4.24) has the untangling metric, which is 0 from there on. Off: (4.24) as it stands; what it leaves inverted is
+   * untangled afterwards.
+   */
+  bool untangleFirst = true;
+  /// beta of (4.24) with untangleFirst off, relative to the mean area or volume of the elements; at least 0.
+  double untanglingBeta = 0.0;
+  /// Hybrid's second step: optimizer and stopping criteria count, and c of the exponential sum; the rest is set.
+  OptimizeOptions optimization = hybridOptimization();
+  double maximumSeconds = 0.0; ///< 0: no limit
   int threads = 0;
   std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
 };
@@ -98,8 +111,8 @@ struct Warping
   SymmetricTensor tensor = IdentityTensor; ///< the coefficients used
   Index invertedWarp = 0;                  ///< after the warp itself
   Index invertedAfter = 0;                 ///< at the end
-  Index impossible =
-    0; ///< elements no interior position can make valid: the moved boundary itself is not
+  /// Inverted elements no interior position can make valid: the moved boundary itself is not.
+  Index impossible = 0;
   Index decoupled = 0;         ///< points that a coefficient of 0 leaves undetermined
   double regularization = 0.0; ///< relative, used for them; 0: none
   double assembleSeconds = 0, setupSeconds = 0, solveSeconds = 0, improveSeconds = 0;
@@ -124,12 +137,21 @@ public:
    */
   Warping warp(const double* displacement);
 
+  /**
+   * @brief The same where the boundary does not go straight: `motion(amount, displacement)` writes where the prescribed points
+   * are after a part of the motion, 0 < amount <= 1, as displacements from the mesh. Matters with more than one step.
+   */
+  Warping warp(const std::function<void(double amount, double* displacement)>& motion);
+
 private:
   struct Implementation;
   std::unique_ptr<Implementation> Impl;
 };
 
-/// The TMP shape metric (4.22) of each element at new points against the mesh; NaN where inverted.
+/**
+ * @brief The TMP shape metric (4.22) of each element at new points against the mesh, the mean over its corners; NaN where
+ * it is inverted or degenerate, or of a type that is not computed with.
+ */
 TAUTLINE_KERNEL_EXPORT std::vector<double> shapeSimilarity(
   const Mesh& mesh, const double* points, int threads = 0);
 }

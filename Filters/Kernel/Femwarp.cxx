@@ -1,0 +1,313 @@
+#include "Femwarp.h"
+
+#include "Parallel.h"
+
+#include <Eigen/Dense>
+
+#include <limits>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+/// Smallest over largest eigenvalue at which a tensor counts as singular.
+constexpr double singular = 1e-12;
+/// Couplings below this part of the isotropic operator's are none.
+constexpr double coupled = 1e-12;
+
+bool isSingular(const SymmetricTensor& t, const Mesh& mesh)
+{
+  if (mesh.dimension() == Dimension::Planar)
+  {
+    const auto times = [&t](const Vec3& v)
+    {
+      return Vec3{ t[0] * v[0] + t[3] * v[1] + t[5] * v[2], t[3] * v[0] + t[1] * v[1] + t[4] * v[2],
+        t[5] * v[0] + t[4] * v[1] + t[2] * v[2] };
+    };
+    const Vec3 &e = mesh.frame()[0], &f = mesh.frame()[1];
+    const double a = dot(e, times(e)), b = dot(e, times(f)), c = dot(f, times(f));
+    const double largest = 0.5 * (a + c + std::hypot(a - c, 2.0 * b));
+    return !(a * c - b * b > singular * largest * largest);
+  }
+  Eigen::Matrix3d c;
+  c << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(c, Eigen::EigenvaluesOnly);
+  return !(solver.eigenvalues()[0] > singular * solver.eigenvalues()[2]);
+}
+
+double largestOf(const SymmetricTensor& t)
+{
+  return *std::max_element(t.begin(), t.begin() + 3);
+}
+
+/// K M^-1 K: M is diagonal. Points outside all cells have empty rows.
+SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass)
+{
+  SparseMatrix result;
+  result.size = K.size;
+  result.offsets.reserve(K.size + 1);
+  std::vector<double> row(K.size, 0.0);
+  std::vector<char> there(K.size, 0);
+  std::vector<std::int32_t> columns;
+  for (Index i = 0; i < K.size; ++i)
+  {
+    columns.clear();
+    for (Index e = K.offsets[i]; e < K.offsets[i + 1]; ++e)
+    {
+      const std::int32_t j = K.columns[e];
+      const double scale = mass[j] > 0 ? K.values[e] / mass[j] : 0.0;
+      for (Index f = K.offsets[j]; f < K.offsets[j + 1]; ++f)
+      {
+        const std::int32_t k = K.columns[f];
+        if (!there[k])
+        {
+          there[k] = 1;
+          columns.push_back(k);
+        }
+        row[k] += scale * K.values[f];
+      }
+    }
+    std::sort(columns.begin(), columns.end());
+    for (std::int32_t k : columns)
+    {
+      result.columns.push_back(k);
+      result.values.push_back(row[k]);
+      row[k] = 0;
+      there[k] = 0;
+    }
+    result.offsets.push_back(result.nonzeros());
+  }
+  symmetrize(result); // of rounding
+  return result;
+}
+}
+
+//------------------------------------------------------------------------------
+Femwarp::Femwarp(const Mesh& mesh, const WarpParts& parts, Operator kind,
+  const SymmetricTensor& tensor, const double* tensors, WarpControl& control)
+  : Input(mesh)
+  , Parts(parts)
+  , Kind(kind)
+{
+  this->Pde.tensor = tensor;
+  this->Pde.tensors = tensors;
+  this->Singular = kind == Operator::Harmonic && (tensors || isSingular(tensor, mesh));
+  this->partition(control);
+}
+
+//------------------------------------------------------------------------------
+SparseMatrix Femwarp::assemble(double regularization, WarpControl& control) const
+{
+  const double before = control.elapsed();
+  AssemblyOptions options;
+  options.threads = control.options().threads;
+  DiffusionOperator pde = this->Pde;
+  std::vector<double> tensors;
+  if (regularization > 0)
+  {
+    if (pde.tensors)
+    {
+      tensors.assign(pde.tensors, pde.tensors + 6 * this->Input.view().numberOfCells);
+      for (std::size_t i = 0; i < tensors.size(); i += 6)
+      {
+        const double size = *std::max_element(&tensors[i], &tensors[i] + 3);
+        for (int k = 0; k < 3; ++k)
+        {
+          tensors[i + k] += regularization * (size > 0 ? size : 1.0);
+        }
+      }
+      pde.tensors = tensors.data();
+    }
+    else
+    {
+      const double size = largestOf(pde.tensor);
+      for (int k = 0; k < 3; ++k)
+      {
+        pde.tensor[k] += regularization * (size > 0 ? size : 1.0);
+      }
+    }
+  }
+  SparseMatrix matrix = stiffnessMatrix(this->Input, pde, options);
+  if (this->Kind == Operator::Biharmonic)
+  {
+    const std::vector<double> one(this->Input.view().numberOfPoints, 1.0);
+    matrix = squared(matrix, loadVector(this->Input, one.data(), 1, options));
+  }
+  control.result().assembleSeconds += control.elapsed() - before;
+  return matrix;
+}
+
+void Femwarp::partition(WarpControl& control)
+{
+  const SparseMatrix matrix = this->assemble(this->Regularization, control);
+  const double before = control.elapsed();
+  this->Held = this->Parts.held();
+  this->Decoupled = 0;
+  if (this->Regularization == 0 && this->Singular)
+  {
+    this->findDecoupled(matrix, control);
+  }
+  const int dimension = this->Input.dimension() == Dimension::Volume ? 3 : 2;
+  const double* points = this->Input.view().points;
+  this->System =
+    std::make_unique<WarpSystem>(matrix, 1, this->Held, points, dimension, control.options());
+  this->Second.reset();
+  if (this->Decoupled > 0)
+  {
+    AssemblyOptions options;
+    options.threads = control.options().threads;
+    this->Second =
+      std::make_unique<WarpSystem>(stiffnessMatrix(this->Input, DiffusionOperator(), options), 1,
+        this->Others, points, dimension, control.options());
+  }
+  control.result().assembleSeconds += control.elapsed() - before;
+}
+
+//------------------------------------------------------------------------------
+/// Points that no chain of couplings joins to a prescribed one.
+void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
+{
+  AssemblyOptions options;
+  options.threads = control.options().threads;
+  const SparseMatrix isotropic = stiffnessMatrix(this->Input, DiffusionOperator(), options);
+  const Index n = matrix.size;
+  double size = this->Pde.tensors ? 0.0 : largestOf(this->Pde.tensor);
+  for (Index i = 0; this->Pde.tensors && i < this->Input.view().numberOfCells; ++i)
+  {
+    const double* t = this->Pde.tensors + 6 * i;
+    size = std::max(size, *std::max_element(t, t + 3));
+  }
+  std::vector<double> scale(n);
+  for (Index i = 0; i < n; ++i)
+  {
+    scale[i] = coupled * size * isotropic.at(i, i);
+  }
+  // From the prescribed points outward.
+  std::vector<char> reached(n, 0);
+  std::vector<Index> front;
+  for (Index i = 0; i < n; ++i)
+  {
+    if (this->Held[i])
+    {
+      reached[i] = 1;
+      front.push_back(i);
+    }
+  }
+  while (!front.empty())
+  {
+    const Index i = front.back();
+    front.pop_back();
+    for (Index e = matrix.offsets[i]; e < matrix.offsets[i + 1]; ++e)
+    {
+      const Index j = matrix.columns[e];
+      if (!reached[j] && std::abs(matrix.values[e]) > std::min(scale[i], scale[j]))
+      {
+        reached[j] = 1;
+        front.push_back(j);
+      }
+    }
+  }
+  this->Others.assign(n, 1);
+  for (Index i = 0; i < n; ++i)
+  {
+    if (!reached[i])
+    {
+      this->Others[i] = 0;
+      this->Held[i] = 1;
+      ++this->Decoupled;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> Femwarp::warp(const double* displacement, WarpControl& control)
+{
+  const MeshView& view = this->Input.view();
+  const Index n = view.numberOfPoints;
+  const std::vector<AffineMotion> affine = this->Parts.affine(view.points, displacement);
+  const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
+
+  // What the affine motions leave; what is no more than their rounding is nothing.
+  std::vector<double> rest(3 * n, 0.0), result(3 * n, 0.0);
+  double most = 0, position = 0;
+  for (Index i = 0; i < n; ++i)
+  {
+    const Index part = this->Parts.part(i);
+    const Vec3 x = pointOf(view, i);
+    const Vec3 moved = part >= 0 ? affine[part].at(x) : Vec3{ 0, 0, 0 };
+    for (int c = 0; c < 3; ++c)
+    {
+      const double given = displacement[3 * i + c];
+      result[3 * i + c] = prescribed[i] ? given : moved[c];
+      if (prescribed[i] && part >= 0)
+      {
+        rest[3 * i + c] = given - moved[c];
+        most = std::max(most, std::abs(given));
+        position = std::max(position, std::abs(x[c] - affine[part].center[c]));
+      }
+    }
+  }
+  double slope = 0;
+  for (const AffineMotion& motion : affine)
+  {
+    for (const Vec3& column : motion.linear)
+    {
+      slope = std::max(slope, norm(column));
+    }
+  }
+  constexpr double roundings = 32;
+  const double nothing =
+    roundings * std::numeric_limits<double>::epsilon() * (most + slope * position);
+
+  // A singular operator: regularise more and more until the motion is no larger than what the maximum principle would allow, about.
+  constexpr double excess = 2.0, firstRegularization = 1e-10, factor = 100, last = 1e-1;
+  std::vector<double> values(n);
+  for (;;)
+  {
+    bool good = true, bounded = true;
+    std::string failure;
+    std::vector<double> moved = result;
+    for (int c = 0; c < 3 && !control.stopped(); ++c)
+    {
+      double largest = 0;
+      for (Index i = 0; i < n; ++i)
+      {
+        values[i] = rest[3 * i + c];
+        largest = std::max(largest, std::abs(values[i]));
+      }
+      if (!(largest > nothing))
+      {
+        continue;
+      }
+      good = this->System->solve(values, control) && good;
+      failure = failure.empty() ? this->System->failure() : failure;
+      if (this->Second && !control.stopped())
+      {
+        good = this->Second->solve(values, control) && good;
+      }
+      for (Index i = 0; i < n; ++i)
+      {
+        if (!this->Parts.held()[i])
+        {
+          bounded = bounded && std::abs(values[i]) <= excess * largest;
+          moved[3 * i + c] += values[i];
+        }
+      }
+    }
+    control.result().decoupled = this->Decoupled;
+    control.result().regularization = this->Regularization;
+    if (control.stopped() || !this->Singular || (good && bounded) || this->Regularization >= last)
+    {
+      if (!good && !control.stopped())
+      {
+        control.say("The linear solver did not converge: " + failure);
+      }
+      return moved;
+    }
+    this->Regularization =
+      this->Regularization > 0 ? factor * this->Regularization : firstRegularization;
+    this->partition(control);
+  }
+}
+}

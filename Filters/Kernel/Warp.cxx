@@ -1,0 +1,304 @@
+#include "Warp.h"
+
+#include "WarpStep.h"
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+bool usesFiniteElements(WarpMethod method)
+{
+  return method < WarpMethod::InverseDistance;
+}
+
+void checkOptions(const Mesh& mesh, const WarpOptions& options)
+{
+  const auto refuse = [](bool wrong, const char* text)
+  {
+    if (wrong)
+    {
+      throw Error(text);
+    }
+  };
+  refuse(options.method < WarpMethod::Hybrid || options.method > WarpMethod::WeightedLaplacian,
+    "There is no such method of warping: choose one of WarpMethod.");
+  refuse(options.coefficients < WarpCoefficients::DisplacementSums ||
+      options.coefficients > WarpCoefficients::PerCell,
+    "There is no such choice of coefficients: choose one of WarpCoefficients.");
+  refuse(options.steps < 0 || options.maximumSteps < 1,
+    "The number of steps must not be negative, and their limit at least 1.");
+  refuse(!(options.tolerance > 0 && options.tolerance < 1),
+    "The tolerance of the solves must lie between 0 and 1 (both exclusive).");
+  refuse(!(options.poissonRatio > -1 && options.poissonRatio < 0.5),
+    "Poisson's ratio must lie between -1 and 0.5 (both exclusive).");
+  refuse(!(options.stiffeningPower >= 0) || !std::isfinite(options.stiffeningPower) ||
+      !(options.stiffeningFactor > 1) || options.maximumStiffenings < 0,
+    "The power of the stiffening must not be negative, its factor must exceed 1, and the number of "
+    "rounds must not be negative.");
+  refuse(!(options.untanglingBeta >= 0) || !std::isfinite(options.untanglingBeta),
+    "Beta must not be negative.");
+  refuse(!(options.maximumSeconds >= 0), "The time limit must not be negative.");
+  const auto semidefinite = [](const double* t)
+  {
+    // Minors; rounding of a product of directions may leave them a little below 0.
+    constexpr double rounding = 1e-12;
+    const double size = std::max({ t[0], t[1], t[2] });
+    const double det = t[0] * (t[1] * t[2] - t[4] * t[4]) - t[3] * (t[3] * t[2] - t[4] * t[5]) +
+      t[5] * (t[3] * t[4] - t[1] * t[5]);
+    return std::all_of(t, t + 6, [](double x) { return std::isfinite(x); }) && size >= 0 &&
+      std::min({ t[0], t[1], t[2] }) >= 0 && t[0] * t[1] - t[3] * t[3] >= -rounding * size * size &&
+      t[1] * t[2] - t[4] * t[4] >= -rounding * size * size &&
+      t[0] * t[2] - t[5] * t[5] >= -rounding * size * size && det >= -rounding * size * size * size;
+  };
+  const bool anisotropic =
+    options.method == WarpMethod::Hybrid || options.method == WarpMethod::AnisotropicFemwarp;
+  if (anisotropic && options.coefficients == WarpCoefficients::Manual)
+  {
+    const SymmetricTensor& t = options.tensor;
+    refuse(!semidefinite(t.data()) || !(std::max({ t[0], t[1], t[2] }) > 0),
+      "The coefficients must be finite and positive semidefinite, and not all 0: for example 1, 0, "
+      "0 "
+      "for a motion along x.");
+  }
+  if (anisotropic && options.coefficients == WarpCoefficients::PerCell)
+  {
+    refuse(!options.tensors, "Coefficients per cell are asked for, but there are none.");
+    for (Index i = 0; i < mesh.view().numberOfCells; ++i)
+    {
+      if (!semidefinite(options.tensors + 6 * i))
+      {
+        throw Error("The coefficients of cell " + std::to_string(i) +
+          " are not finite or not positive semidefinite.");
+      }
+    }
+  }
+}
+
+void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& options)
+{
+  if (mesh.dimension() == Dimension::None)
+  {
+    throw Error("The mesh has no cells that can be warped: triangles, quadrilaterals, tetrahedra, "
+                "hexahedra, wedges or pyramids.");
+  }
+  if (mesh.dimension() == Dimension::Surface)
+  {
+    throw Error("Warping works on planar and volume meshes: this is a surface in space.");
+  }
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const bool known = block.type != CellType::Wedge && block.type != CellType::Pyramid;
+    if (!known && usesFiniteElements(options.method))
+    {
+      throw Error("There are " + std::to_string(block.count) + " " + topology(block.type).plural +
+        ". This method takes triangles, quadrilaterals, tetrahedra and hexahedra: triangulate "
+        "the mesh, or use inverse distance weighting, radial basis functions or weighted Laplacian "
+        "smoothing.");
+    }
+  }
+  std::vector<signed char> validity(mesh.view().numberOfCells);
+  mesh.classifyCells(validity.data(), options.threads);
+  const auto wrong = [](signed char v) { return v != Valid && v != NotMeasured; };
+  const Index count = std::count_if(validity.begin(), validity.end(), wrong);
+  if (count > 0)
+  {
+    const auto first = std::find_if(validity.begin(), validity.end(), wrong);
+    throw Error(std::to_string(count) +
+      " elements are inverted or degenerate before anything moves, the first is cell " +
+      std::to_string(first - validity.begin()) +
+      ". Untangle the mesh first, or reverse the order of its cells' points.");
+  }
+  if (parts.prescribedPoints() == 0)
+  {
+    throw Error("No point of the mesh has a prescribed displacement: select some of its boundary.");
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+struct Warper::Implementation
+{
+  Implementation(const Mesh& mesh, const WarpOptions& options)
+    : Input(mesh)
+    , Options(options)
+    , Parts(mesh, options.prescribed)
+    , First(mesh, mesh, Parts)
+  {
+    checkOptions(mesh, options);
+    checkMesh(mesh, this->Parts, options);
+  }
+
+  void checkDisplacement(const double* displacement) const;
+  Warping run(const WarpMotion& motion);
+  void explain(WarpControl& control);
+
+  const Mesh& Input;
+  const WarpOptions Options;
+  WarpParts Parts;
+  WarpStep First;
+};
+
+/// Finite, and in the plane of a planar mesh.
+void Warper::Implementation::checkDisplacement(const double* displacement) const
+{
+  const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
+  Index wrong = 0, first = 0;
+  double out = 0, largest = 0;
+  const bool planar = this->Input.dimension() == Dimension::Planar;
+  for (std::size_t i = 0; i < prescribed.size(); ++i)
+  {
+    const double* d = displacement + 3 * i;
+    if (!prescribed[i])
+    {
+      continue;
+    }
+    if (!std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]))
+    {
+      first = wrong++ == 0 ? static_cast<Index>(i) : first;
+      continue;
+    }
+    const Vec3 v = { d[0], d[1], d[2] };
+    largest = std::max(largest, norm(v));
+    out = planar ? std::max(out, std::abs(dot(v, this->Input.normal()))) : 0.0;
+  }
+  if (wrong > 0)
+  {
+    throw Error("The displacements of " + std::to_string(wrong) +
+      " prescribed points are NaN or infinite, the first is that of point " +
+      std::to_string(first) + ".");
+  }
+  constexpr double rounding = 1e-9;
+  if (out > rounding * largest)
+  {
+    throw Error("The mesh is planar, but the displacements lead out of its plane.");
+  }
+}
+
+//------------------------------------------------------------------------------
+Warping Warper::Implementation::run(const WarpMotion& motion)
+{
+  Warping result;
+  WarpControl control(this->Options, result);
+  if (this->Options.steps == 1 && this->Options.method != WarpMethod::SmallStepFemwarp)
+  {
+    std::vector<double> displacement(3 * this->Input.view().numberOfPoints, 0.0);
+    motion(1.0, displacement.data());
+    this->checkDisplacement(displacement.data());
+    control.goOn(0.0);
+    this->First.run(displacement.data(), 1.0, control, result.points);
+  }
+  else
+  {
+    const WarpMotion checked = [&](double amount, double* displacement)
+    {
+      motion(amount, displacement);
+      this->checkDisplacement(displacement);
+    };
+    warpInSteps(this->Input, this->Parts, checked, control);
+  }
+  this->explain(control);
+  return result;
+}
+
+//------------------------------------------------------------------------------
+/// What the user should know.
+void Warper::Implementation::explain(WarpControl& control)
+{
+  Warping& result = control.result();
+  const MeshView& view = this->Input.view();
+  if (this->Parts.freePoints() == 0)
+  {
+    control.say("There are no points between the prescribed ones: nothing had to be found.");
+  }
+  if (this->Parts.loose() > 0)
+  {
+    control.say(std::to_string(this->Parts.loose()) +
+      " parts of the mesh have no prescribed point and stay where they are.");
+  }
+  if (result.decoupled > 0)
+  {
+    control.say(std::to_string(result.decoupled) +
+      " points depend on no prescribed point with these coefficients; they follow the points "
+      "around them.");
+  }
+  if (result.regularization > 0)
+  {
+    control.say("With these coefficients the motion is not determined; the isotropic operator was "
+                "added, times " +
+      std::to_string(result.regularization) + ".");
+  }
+  // Elements of prescribed points alone are what the boundary makes of them.
+  Index held = 0, first = -1;
+  if (result.invertedAfter > 0)
+  {
+    for (const CellBlock& block : this->Input.blocks())
+    {
+      const CellTopology& t = topology(block.type);
+      for (Index i = 0; i < block.count; ++i)
+      {
+        const Index cell = block.cell(i);
+        const Index* node = view.connectivity + view.offsets[cell];
+        Vec3 p[MaxNodes];
+        bool all = true;
+        for (int k = 0; k < t.nodes; ++k)
+        {
+          std::copy_n(&result.points[3 * node[k]], 3, p[k].begin());
+          all = all && this->Parts.prescribed()[node[k]];
+        }
+        if (all && this->Input.classifyCell(t, p) != Valid)
+        {
+          first = held++ == 0 ? cell : first;
+        }
+      }
+    }
+  }
+  result.impossible = result.invertedAfter > 0 ? std::max(result.impossible, held) : 0;
+  if (held > 0)
+  {
+    control.say("The moved boundary itself inverts " + std::to_string(held) +
+      " elements, all of whose points are prescribed; the first is cell " + std::to_string(first) +
+      ".");
+  }
+  if (result.invertedAfter > 0)
+  {
+    control.say(std::to_string(result.invertedAfter) + " elements are inverted or degenerate.");
+  }
+  if (result.timeLimit)
+  {
+    control.say("The time limit was reached.");
+  }
+  if (result.aborted)
+  {
+    control.say("Stopped on request.");
+  }
+}
+
+//------------------------------------------------------------------------------
+Warper::Warper(const Mesh& mesh, const WarpOptions& options)
+  : Impl(std::make_unique<Implementation>(mesh, options))
+{
+}
+
+Warper::~Warper() = default;
+
+Warping Warper::warp(const double* displacement)
+{
+  const std::size_t size = 3 * this->Impl->Parts.prescribed().size();
+  return this->Impl->run(
+    [&](double amount, double* to)
+    {
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        to[i] = this->Impl->Parts.prescribed()[i / 3] ? amount * displacement[i] : 0.0;
+      }
+    });
+}
+
+Warping Warper::warp(const std::function<void(double, double*)>& motion)
+{
+  return this->Impl->run(motion);
+}
+
+}

@@ -1,0 +1,176 @@
+#include "WarpElastic.h"
+
+#include "Metrics.h"
+
+namespace tautline
+{
+ElasticWarp::ElasticWarp(const Mesh& mesh, const WarpParts& parts, WarpControl& control)
+  : Input(mesh)
+  , Parts(parts)
+  , Components(elasticComponents(mesh))
+{
+  const Index cells = mesh.view().numberOfCells;
+  this->Stiffening.assign(cells, 1.0);
+  if (control.options().method != WarpMethod::JacobianStiffening)
+  {
+    return;
+  }
+  std::vector<double> sizes(cells);
+  EvaluationOptions evaluation;
+  evaluation.threads = control.options().threads;
+  evaluateMetric(mesh, Metric::Size, evaluation, sizes.data());
+  double sum = 0;
+  Index count = 0;
+  for (double size : sizes)
+  {
+    sum += std::abs(size);
+    count += size != 0;
+  }
+  const double mean = sum / std::max<double>(1.0, static_cast<double>(count));
+  for (Index i = 0; i < cells; ++i)
+  {
+    if (sizes[i] != 0)
+    {
+      this->Stiffening[i] = std::pow(mean / std::abs(sizes[i]), control.options().stiffeningPower);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void ElasticWarp::assemble(WarpControl& control)
+{
+  const double before = control.elapsed();
+  ElasticOperator pde;
+  pde.poissonRatio = control.options().poissonRatio;
+  pde.stiffening = this->Stiffening.data();
+  AssemblyOptions options;
+  options.threads = control.options().threads;
+  this->System = std::make_unique<WarpSystem>(stiffnessMatrix(this->Input, pde, options),
+    this->Components, this->Parts.held(), this->Input.view().points,
+    this->Input.dimension() == Dimension::Volume ? 3 : 2, control.options());
+  this->Uniform = std::all_of(this->Stiffening.begin(), this->Stiffening.end(),
+    [&](double factor) { return factor == this->Stiffening.front(); });
+  control.result().assembleSeconds += control.elapsed() - before;
+}
+
+//------------------------------------------------------------------------------
+/// A body of one material follows affine motions exactly: they are taken off then, and only the rest is solved for.
+bool ElasticWarp::solve(
+  const double* displacement, WarpControl& control, std::vector<double>& moved)
+{
+  const MeshView& view = this->Input.view();
+  const Index n = view.numberOfPoints;
+  const int d = this->Components;
+  const std::array<Vec3, 3> space = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
+  const auto axis = [&](int k) { return d == 2 ? this->Input.frame()[k] : space[k]; };
+  std::vector<AffineMotion> affine(this->Parts.parts());
+  if (this->Uniform)
+  {
+    affine = this->Parts.affine(view.points, displacement);
+  }
+  std::vector<double> values(d * n, 0.0);
+  moved.assign(3 * n, 0.0);
+  for (Index i = 0; i < n; ++i)
+  {
+    const Index part = this->Parts.part(i);
+    const Vec3 common = part >= 0 ? affine[part].at(pointOf(view, i)) : Vec3{ 0, 0, 0 };
+    std::copy(common.begin(), common.end(), &moved[3 * i]);
+    if (this->Parts.prescribed()[i])
+    {
+      const Vec3 given = { displacement[3 * i], displacement[3 * i + 1], displacement[3 * i + 2] };
+      std::copy(given.begin(), given.end(), &moved[3 * i]);
+      for (int k = 0; k < d; ++k)
+      {
+        values[d * i + k] = dot(axis(k), given - common);
+      }
+    }
+  }
+  const bool good = this->System->solve(values, control);
+  for (Index i = 0; i < n; ++i)
+  {
+    for (int k = 0; k < d && !this->Parts.held()[i]; ++k)
+    {
+      const Vec3 part = values[d * i + k] * axis(k);
+      for (int c = 0; c < 3; ++c)
+      {
+        moved[3 * i + c] += part[c];
+      }
+    }
+  }
+  return good;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& control)
+{
+  const WarpOptions& options = control.options();
+  const MeshView& view = this->Input.view();
+  const bool iterative = options.method == WarpMethod::IterativeStiffening;
+  if (iterative && !this->Uniform)
+  {
+    // Each boundary position begins with a body of one material.
+    this->Stiffening.assign(view.numberOfCells, 1.0);
+    this->System.reset();
+  }
+  std::vector<double> best, moved, points(3 * view.numberOfPoints);
+  std::vector<signed char> validity(view.numberOfCells);
+  Index fewest = view.numberOfCells + 1;
+  for (int round = 0;; ++round)
+  {
+    if (!this->System)
+    {
+      this->assemble(control);
+    }
+    if (!this->solve(displacement, control, moved))
+    {
+      if (!control.stopped())
+      {
+        control.say("The linear solver did not converge: " + this->System->failure());
+      }
+      return best.empty() ? moved : best;
+    }
+    if (!iterative)
+    {
+      return moved;
+    }
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      points[i] = view.points[i] + moved[i];
+    }
+    MeshView now = view;
+    now.points = points.data();
+    Mesh mesh(now, options.threads);
+    mesh.setMirrored(this->Input.mirrored());
+    mesh.classifyCells(validity.data(), options.threads);
+    Index inverted = 0;
+    for (Index i = 0; i < view.numberOfCells; ++i)
+    {
+      if (validity[i] != Valid && validity[i] != NotMeasured)
+      {
+        ++inverted;
+        this->Stiffening[i] *= options.stiffeningFactor;
+      }
+    }
+    if (inverted < fewest)
+    {
+      fewest = inverted;
+      best = moved;
+    }
+    if (inverted == 0)
+    {
+      return best;
+    }
+    if (round == options.maximumStiffenings)
+    {
+      control.say("Stiffening ended after " + std::to_string(round) + " rounds with " +
+        std::to_string(fewest) + " inverted elements.");
+      return best;
+    }
+    if (!control.goOn(static_cast<double>(round + 1) / (options.maximumStiffenings + 1)))
+    {
+      return best;
+    }
+    this->System.reset();
+  }
+}
+}

@@ -1,0 +1,191 @@
+#include "WarpParts.h"
+
+#include <Eigen/Dense>
+
+#include <numeric>
+
+namespace tautline
+{
+WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed)
+{
+  const MeshView& view = mesh.view();
+  const Index n = view.numberOfPoints;
+  this->Prescribed.assign(n, 0);
+  if (prescribed)
+  {
+    std::transform(
+      prescribed, prescribed + n, this->Prescribed.begin(), [](unsigned char f) { return f != 0; });
+  }
+  else
+  {
+    const Boundary boundary = mesh.boundary();
+    std::copy(
+      boundary.isBoundaryPoint.begin(), boundary.isBoundaryPoint.end(), this->Prescribed.begin());
+  }
+
+  // Parts are numbered in the order of their smallest points.
+  std::vector<Index> parent(n);
+  std::iota(parent.begin(), parent.end(), Index(0));
+  const auto root = [&](Index i)
+  {
+    while (parent[i] != i)
+    {
+      i = parent[i] = parent[parent[i]];
+    }
+    return i;
+  };
+  std::vector<char> used(n, 0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      used[node[0]] = 1;
+      for (int k = 1; k < nodes; ++k)
+      {
+        used[node[k]] = 1;
+        const Index a = root(node[0]), b = root(node[k]);
+        parent[std::max(a, b)] = std::min(a, b);
+      }
+    }
+  }
+  this->Part.assign(n, -1);
+  for (Index i = 0; i < n; ++i)
+  {
+    if (used[i])
+    {
+      const Index r = root(i);
+      this->Part[i] = r == i ? this->Count++ : this->Part[r];
+    }
+  }
+
+  std::vector<char> hasPrescribed(this->Count, 0);
+  for (Index i = 0; i < n; ++i)
+  {
+    this->PrescribedPoints += this->Prescribed[i] && used[i];
+    if (this->Prescribed[i] && used[i])
+    {
+      hasPrescribed[this->Part[i]] = 1;
+    }
+  }
+  this->Loose = this->Count - std::accumulate(hasPrescribed.begin(), hasPrescribed.end(), Index(0));
+  this->Held.assign(n, 1);
+  for (Index i = 0; i < n; ++i)
+  {
+    this->Held[i] = this->Prescribed[i] || !used[i] || !hasPrescribed[this->Part[i]];
+    this->FreePoints += !this->Held[i];
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<char> WarpParts::moving(const double* displacement) const
+{
+  std::vector<char> moves(this->Count, 0);
+  for (std::size_t i = 0; i < this->Part.size(); ++i)
+  {
+    const double* d = displacement + 3 * i;
+    if (this->Prescribed[i] && this->Part[i] >= 0 && (d[0] != 0 || d[1] != 0 || d[2] != 0))
+    {
+      moves[this->Part[i]] = 1;
+    }
+  }
+  return moves;
+}
+
+//------------------------------------------------------------------------------
+std::vector<AffineMotion> WarpParts::affine(const double* points, const double* displacement) const
+{
+  // Directions in which the points extend by less than this part of their extent count as not spanned.
+  constexpr double flat = 1e-6;
+  using Matrix = Eigen::Matrix3d;
+  using Vector = Eigen::Vector3d;
+  struct Fit
+  {
+    Index count = 0;
+    Vector center = Vector::Zero();
+    Matrix inverse = Matrix::Zero();
+    Matrix linear = Matrix::Zero(); ///< its columns are derivatives
+    Vector offset = Vector::Zero();
+  };
+  std::vector<Fit> fits(this->Count);
+  const auto forEach = [&](const auto& visit)
+  {
+    for (std::size_t i = 0; i < this->Part.size(); ++i)
+    {
+      if (this->Prescribed[i] && this->Part[i] >= 0)
+      {
+        visit(fits[this->Part[i]], Eigen::Map<const Vector>(points + 3 * i),
+          Eigen::Map<const Vector>(displacement + 3 * i));
+      }
+    }
+  };
+  forEach(
+    [](Fit& fit, const auto& x, const auto&)
+    {
+      ++fit.count;
+      fit.center += x;
+    });
+  for (Fit& fit : fits)
+  {
+    fit.center /= std::max<double>(1.0, static_cast<double>(fit.count));
+  }
+  forEach([](Fit& fit, const auto& x, const auto&)
+    { fit.inverse += (x - fit.center) * (x - fit.center).transpose(); });
+  for (Fit& fit : fits)
+  {
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(fit.inverse);
+    Vector values = solver.eigenvalues();
+    for (int k = 0; k < 3; ++k)
+    {
+      const bool spanned = values[k] > flat * flat * values[2];
+      values[k] = spanned ? 1.0 / values[k] : 0.0;
+    }
+    fit.inverse = solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+  }
+
+  // The second round removes what rounding left of the first.
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round)
+  {
+    struct Sums
+    {
+      Vector mean = Vector::Zero();
+      Matrix moments = Matrix::Zero();
+    };
+    std::vector<Sums> sums(fits.size());
+    forEach(
+      [&](Fit& fit, const auto& x, const auto& d)
+      {
+        const Vector y = x - fit.center;
+        const Vector rest = d - fit.offset - fit.linear * y;
+        Sums& sum = sums[&fit - fits.data()];
+        sum.mean += rest;
+        sum.moments += rest * y.transpose();
+      });
+    for (std::size_t p = 0; p < fits.size(); ++p)
+    {
+      Fit& fit = fits[p];
+      fit.offset += sums[p].mean / std::max<double>(1.0, static_cast<double>(fit.count));
+      fit.linear += sums[p].moments * fit.inverse;
+    }
+  }
+
+  std::vector<AffineMotion> motions;
+  for (const Fit& fit : fits)
+  {
+    AffineMotion motion;
+    for (int c = 0; c < 3; ++c)
+    {
+      motion.center[c] = fit.center[c];
+      motion.offset[c] = fit.offset[c];
+      for (int k = 0; k < 3; ++k)
+      {
+        motion.linear[k][c] = fit.linear(c, k);
+      }
+    }
+    motions.push_back(motion);
+  }
+  return motions;
+}
+}

@@ -1,0 +1,60 @@
+/**
+ * @file WarpParts.h
+ * @brief The prescribed points of a mesh, its connected parts, and the affine motion of each. Internal: not
+ * installed.
+ */
+#ifndef tautline_WarpParts_h
+#define tautline_WarpParts_h
+
+#include "Mesh.h"
+
+namespace tautline
+{
+/// x -> offset + linear (x - center), a displacement.
+struct AffineMotion
+{
+  Vec3 center = { 0, 0, 0 };
+  Vec3 offset = { 0, 0, 0 };
+  std::array<Vec3, 3> linear = {}; ///< derivatives along x, y, z
+
+  Vec3 at(const Vec3& x) const
+  {
+    const Vec3 d = x - this->center;
+    return this->offset + d[0] * this->linear[0] + d[1] * this->linear[1] + d[2] * this->linear[2];
+  }
+};
+
+class WarpParts
+{
+public:
+  /// @param prescribed one flag per point, or null: the points of the boundary
+  WarpParts(const Mesh& mesh, const unsigned char* prescribed);
+
+  const std::vector<unsigned char>& prescribed() const { return this->Prescribed; }
+  /// The connected part of a point; -1 outside all cells.
+  Index part(Index point) const { return this->Part[point]; }
+  Index parts() const { return this->Count; }
+  /// Parts without a prescribed point: they stay.
+  Index loose() const { return this->Loose; }
+  Index prescribedPoints() const { return this->PrescribedPoints; }
+  Index freePoints() const { return this->FreePoints; }
+  /// 1 for points whose place is no unknown: prescribed, outside all cells, or in a part that is loose.
+  const std::vector<unsigned char>& held() const { return this->Held; }
+
+  /// Whether each part has a prescribed point that moves at all.
+  std::vector<char> moving(const double* displacement) const;
+
+  /**
+   * @brief For each part the affine motion that is closest to the prescribed displacements, by least squares; exact, to
+   * rounding, where they are affine. Directions the prescribed points do not span have no derivative.
+   * @param points of the mesh, 3 each
+   */
+  std::vector<AffineMotion> affine(const double* points, const double* displacement) const;
+
+private:
+  std::vector<unsigned char> Prescribed, Held;
+  std::vector<Index> Part;
+  Index Count = 0, Loose = 0, PrescribedPoints = 0, FreePoints = 0;
+};
+}
+#endif

@@ -1,0 +1,271 @@
+#include "WarpStep.h"
+
+#include "Targets.h"
+#include "Untangle.h"
+#include "WarpElastic.h"
+#include "WarpPointwise.h"
+
+namespace tautline
+{
+OptimizeOptions hybridOptimization()
+{
+  OptimizeOptions options;
+  options.stopping.maximumIterations = 20;
+  options.stopping.relativeChange = 1e-3;
+  return options;
+}
+
+//------------------------------------------------------------------------------
+WarpStep::WarpStep(const Mesh& from, const Mesh& initial, const WarpParts& parts)
+  : From(from)
+  , Initial(initial)
+  , Parts(parts)
+{
+}
+
+WarpStep::~WarpStep() = default;
+
+//------------------------------------------------------------------------------
+/// The displacements of all points by the method's own equations.
+void WarpStep::warp(const double* displacement, WarpControl& control, std::vector<double>& moved)
+{
+  const WarpOptions& options = control.options();
+  const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
+  switch (options.method)
+  {
+    case WarpMethod::InverseDistance:
+      moved = warpByInverseDistance(this->From, prescribed, displacement, options);
+      break;
+    case WarpMethod::RadialBasis:
+      moved = warpByRadialBasis(this->From, prescribed, displacement, options);
+      break;
+    case WarpMethod::WeightedLaplacian:
+      moved = warpByWeightedLaplacian(this->From, prescribed, displacement, options);
+      break;
+    case WarpMethod::IterativeStiffening:
+    case WarpMethod::JacobianStiffening:
+      if (!this->Elastic)
+      {
+        this->Elastic = std::make_unique<ElasticWarp>(this->From, this->Parts, control);
+      }
+      moved = this->Elastic->warp(displacement, control);
+      break;
+    default:
+    {
+      const bool anisotropic =
+        options.method == WarpMethod::AnisotropicFemwarp || options.method == WarpMethod::Hybrid;
+      SymmetricTensor tensor = IdentityTensor;
+      const double* tensors = nullptr;
+      if (anisotropic)
+      {
+        switch (options.coefficients)
+        {
+          case WarpCoefficients::DisplacementSums:
+            tensor = displacementSums(prescribed, displacement);
+            break;
+          case WarpCoefficients::PrincipalDirections:
+            tensor = principalDirections(prescribed, displacement);
+            break;
+          case WarpCoefficients::Manual:
+            tensor = options.tensor;
+            break;
+          case WarpCoefficients::PerCell:
+            tensors = options.tensors;
+            break;
+        }
+      }
+      // The same coefficients, to rounding: the same matrix.
+      constexpr double rounding = 1e-12;
+      bool same = this->Scalar != nullptr;
+      for (std::size_t k = 0; k < tensor.size(); ++k)
+      {
+        same = same && std::abs(tensor[k] - this->Tensor[k]) <= rounding;
+      }
+      if (!same)
+      {
+        const auto kind = options.method == WarpMethod::Biharmonic ? Femwarp::Operator::Biharmonic
+                                                                   : Femwarp::Operator::Harmonic;
+        this->Scalar =
+          std::make_unique<Femwarp>(this->From, this->Parts, kind, tensor, tensors, control);
+        this->Tensor = tensor;
+      }
+      control.result().tensor = this->Tensor;
+      moved = this->Scalar->warp(displacement, control);
+    }
+  }
+  if (moved.empty())
+  {
+    // Stopped before anything was known: only the prescribed points have moved.
+    control.goOn(1.0);
+    moved.assign(3 * prescribed.size(), 0.0);
+  }
+  // Parts that do not move stay, to the last bit, whatever the method.
+  const std::vector<char> moving = this->Parts.moving(displacement);
+  for (std::size_t i = 0; i < prescribed.size(); ++i)
+  {
+    const Index part = this->Parts.part(static_cast<Index>(i));
+    if (prescribed[i])
+    {
+      std::copy_n(displacement + 3 * i, 3, &moved[3 * i]);
+    }
+    else if (part < 0 || !moving[part])
+    {
+      std::fill_n(&moved[3 * i], 3, 0.0);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+WarpQuality WarpStep::record(const char* stage, double amount, int iterations, const double* points,
+  WarpControl& control) const
+{
+  const WarpQuality quality = qualityOf(this->Initial, points, control.options().threads);
+  WarpRecord record;
+  record.amount = amount;
+  record.inverted = quality.inverted;
+  record.worstShape = quality.worst;
+  record.meanShape = quality.mean;
+  record.seconds = control.elapsed();
+  record.iterations = iterations;
+  record.stage = stage;
+  control.result().history.push_back(record);
+  return quality;
+}
+
+Index WarpStep::run(
+  const double* displacement, double amount, WarpControl& control, std::vector<double>& points)
+{
+  const int before = control.iterations();
+  this->warp(displacement, control, points);
+  const double* from = this->From.view().points;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    points[i] += from[i];
+  }
+  Warping& result = control.result();
+  result.invertedWarp =
+    this->record("warp", amount, control.iterations() - before, points.data(), control).inverted;
+  result.invertedAfter = result.invertedWarp;
+  const WarpMethod method = control.options().method;
+  if ((method == WarpMethod::Hybrid || method == WarpMethod::FemwarpUntangling) &&
+    !control.stopped())
+  {
+    this->improve(displacement, amount, control, points);
+  }
+  return result.invertedAfter;
+}
+
+//------------------------------------------------------------------------------
+/// Step 2 of the hybrid algorithm, section 4.9.2, or untangling alone.
+void WarpStep::improve(
+  const double* displacement, double amount, WarpControl& control, std::vector<double>& points)
+{
+  const WarpOptions& options = control.options();
+  Warping& result = control.result();
+  const double start = control.elapsed();
+  const std::vector<char> moving = this->Parts.moving(displacement);
+  std::vector<unsigned char> fixed = this->Parts.held();
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+  {
+    const Index part = this->Parts.part(static_cast<Index>(i));
+    fixed[i] = fixed[i] || part < 0 || !moving[part];
+  }
+  const bool hybrid = options.method == WarpMethod::Hybrid;
+  const bool literal = hybrid && !options.untangleFirst;
+  const bool moved = std::find(moving.begin(), moving.end(), 1) != moving.end();
+  const auto stage = [&](const char* name, int iterations) {
+    result.invertedAfter = this->record(name, amount, iterations, points.data(), control).inverted;
+  };
+  if (literal && moved)
+  {
+    stage("optimize", this->optimize(fixed, control, points));
+  }
+  if (result.invertedAfter > 0 && !control.stopped())
+  {
+    stage("untangle", this->untangle(fixed, control, points));
+  }
+  if (hybrid && !literal && moved && !control.stopped())
+  {
+    stage("optimize", this->optimize(fixed, control, points));
+  }
+  result.improveSeconds += control.elapsed() - start;
+}
+
+//------------------------------------------------------------------------------
+int WarpStep::untangle(
+  const std::vector<unsigned char>& fixed, WarpControl& control, std::vector<double>& points) const
+{
+  MeshView view = this->Initial.view();
+  view.points = points.data();
+  Mesh mesh(view, control.options().threads);
+  mesh.setMirrored(this->Initial.mirrored());
+  UntangleOptions options;
+  options.fixed = fixed.data();
+  options.threads = control.options().threads;
+  options.maximumSeconds = control.secondsLeft();
+  options.observer = [&control](const IterationState& state)
+  { return control.goOn(0.3 + 0.4 * state.progress); };
+  Untangling done = tautline::untangle(mesh, options);
+  if (done.reason == StopReason::TimeLimit)
+  {
+    control.result().timeLimit = true;
+  }
+  points = std::move(done.points);
+  control.result().impossible = done.impossible;
+  return done.history.empty() ? 0 : done.history.back().iteration;
+}
+
+//------------------------------------------------------------------------------
+int WarpStep::optimize(
+  const std::vector<unsigned char>& fixed, WarpControl& control, std::vector<double>& points) const
+{
+  MeshView view = this->Initial.view();
+  view.points = points.data();
+  Mesh mesh(view, control.options().threads);
+  mesh.setMirrored(this->Initial.mirrored());
+  const Targets targets = referenceTargets(mesh, this->Initial);
+  const WarpOptions& options = control.options();
+  OptimizeOptions optimization = options.optimization;
+  optimization.fixed = fixed.data();
+  optimization.slidePlanes = optimization.slideLines = optimization.limits = nullptr;
+  optimization.slideSurface = nullptr;
+  optimization.untangleFirst = false;
+  optimization.threads = options.threads;
+  optimization.scalarization.method = Scalarization::ExponentialSum;
+  optimization.objectives.assign(2, Objective());
+  Objective &shape = optimization.objectives[0], &other = optimization.objectives[1];
+  shape.metric = Metric::ShapeSimilarity;
+  shape.form = ObjectiveTemplate::SumOfSquares;
+  shape.evaluation.targets = &targets;
+  other.form = ObjectiveTemplate::SumOfSquares;
+  if (options.untangleFirst)
+  {
+    other.metric = Metric::InverseMeanRatio;
+    other.evaluation.targets = &targets;
+  }
+  else
+  {
+    other.metric = Metric::UntangleBeta;
+    std::vector<double> sizes(view.numberOfCells);
+    evaluateMetric(this->Initial, Metric::Size, EvaluationOptions(), sizes.data());
+    double sum = 0;
+    for (double size : sizes)
+    {
+      sum += std::abs(size);
+    }
+    other.evaluation.parameters.beta =
+      options.untanglingBeta * sum / std::max<double>(1.0, static_cast<double>(sizes.size()));
+  }
+  StoppingCriteria& stop = optimization.stopping;
+  if (options.maximumSeconds > 0)
+  {
+    const double left = control.secondsLeft();
+    stop.maximumSeconds = stop.maximumSeconds > 0 ? std::min(left, stop.maximumSeconds) : left;
+  }
+  optimization.observer = [&control](const IterationState& state)
+  { return control.goOn(0.7 + 0.3 * state.progress); };
+  Optimization done = tautline::optimize(mesh, optimization);
+  points = std::move(done.points);
+  return done.iterations;
+}
+}

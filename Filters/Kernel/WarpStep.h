@@ -1,0 +1,73 @@
+/**
+ * @file WarpStep.h
+ * @brief One step of a motion: from a mesh and the displacements of its prescribed points to the points of all. Internal: not
+ * installed.
+ */
+#ifndef tautline_WarpStep_h
+#define tautline_WarpStep_h
+
+#include "Femwarp.h"
+
+namespace tautline
+{
+/// How the elements of a moved mesh look against the mesh (4.22).
+struct WarpQuality
+{
+  Index inverted = 0; ///< or degenerate, or beyond measure
+  double worst = 0, mean = 0;
+};
+
+WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads);
+
+class ElasticWarp;
+
+class WarpStep
+{
+public:
+  /**
+   * @param from where the step begins; the first step's is `initial`
+   * @param initial what the shape of elements is measured against
+   */
+  WarpStep(const Mesh& from, const Mesh& initial, const WarpParts& parts);
+  ~WarpStep();
+
+  /**
+   * @brief Writes the new points, and a record of each stage into the result.
+   * @param displacement from `from`
+   * @param amount of the whole motion, for the records
+   * @return inverted or degenerate elements
+   */
+  Index run(
+    const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
+
+private:
+  void warp(const double* displacement, WarpControl& control, std::vector<double>& moved);
+  void improve(
+    const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
+  int untangle(const std::vector<unsigned char>& fixed, WarpControl& control,
+    std::vector<double>& points) const;
+  int optimize(const std::vector<unsigned char>& fixed, WarpControl& control,
+    std::vector<double>& points) const;
+  WarpQuality record(const char* stage, double amount, int iterations, const double* points,
+    WarpControl& control) const;
+
+  const Mesh& From;
+  const Mesh& Initial;
+  const WarpParts& Parts;
+  std::unique_ptr<Femwarp> Scalar; ///< with the coefficients Tensor
+  SymmetricTensor Tensor = IdentityTensor;
+  std::unique_ptr<ElasticWarp> Elastic;
+};
+
+/// Where the prescribed points are after a part of the motion: (amount, displacements from the mesh).
+using WarpMotion = std::function<void(double, double*)>;
+
+/**
+ * @brief The motion in steps, each from the mesh the one before came to: as many as asked for, or as few as it takes for no
+ * element to invert. There a step that inverts elements is halved, and the next grows again; if steps become too small or too
+ * many, the result is the mesh of the last good one.
+ */
+void warpInSteps(
+  const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, WarpControl& control);
+}
+#endif

@@ -1,0 +1,106 @@
+#include "WarpStep.h"
+
+namespace tautline
+{
+namespace
+{
+/// A mesh whose points are those of a step's beginning.
+class MovedMesh
+{
+public:
+  MovedMesh(const Mesh& initial, const std::vector<double>& points, int threads)
+    : Points(points)
+    , View(initial.view())
+  {
+    this->View.points = this->Points.data();
+    this->Moved = std::make_unique<Mesh>(this->View, threads);
+    this->Moved->setMirrored(initial.mirrored());
+  }
+  const Mesh& mesh() const { return *this->Moved; }
+
+private:
+  std::vector<double> Points;
+  MeshView View;
+  std::unique_ptr<Mesh> Moved;
+};
+}
+
+//------------------------------------------------------------------------------
+void warpInSteps(
+  const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, WarpControl& control)
+{
+  const WarpOptions& options = control.options();
+  Warping& result = control.result();
+  const std::size_t size = 3 * static_cast<std::size_t>(mesh.view().numberOfPoints);
+  const bool automatic =
+    options.steps == 0 || (options.steps == 1 && options.method == WarpMethod::SmallStepFemwarp);
+  constexpr double longer = 2.0, shortest = 1e-4; // of the motion
+  const double fixedStep = automatic ? 1.0 : 1.0 / options.steps;
+
+  std::vector<double> points(mesh.view().points, mesh.view().points + size);
+  result.points = points;
+  result.amount = 0;
+  auto from = std::make_unique<MovedMesh>(mesh, points, options.threads);
+  double amount = 0, step = fixedStep;
+  int steps = 0;
+  while (amount < 1.0)
+  {
+    // The last step ends at 1, not a rounding before it.
+    const bool last = automatic ? amount + step >= 1.0 : steps + 1 == options.steps;
+    const double next = last ? 1.0 : amount + step;
+    if (!control.goOn(amount))
+    {
+      break;
+    }
+    std::vector<double> displacement(size, 0.0), to;
+    motion(next, displacement.data());
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      if (parts.prescribed()[i / 3])
+      {
+        displacement[i] += mesh.view().points[i] - points[i];
+      }
+    }
+    control.setRange(amount, next);
+    WarpStep one(from->mesh(), mesh, parts);
+    const Index inverted = one.run(displacement.data(), next, control, to);
+    control.setRange(0.0, 1.0);
+    const bool good = inverted == 0 || !automatic;
+    if (good && !control.stopped())
+    {
+      // The prescribed points exactly where they belong.
+      motion(next, displacement.data());
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        points[i] = parts.prescribed()[i / 3] ? mesh.view().points[i] + displacement[i] : to[i];
+      }
+      result.points = points;
+      result.amount = amount = next;
+      from = std::make_unique<MovedMesh>(mesh, points, options.threads);
+      ++steps;
+      step = automatic ? longer * step : step;
+      continue;
+    }
+    if (control.stopped() || (amount == 0 && !automatic))
+    {
+      break;
+    }
+    step = 0.5 * (next - amount);
+    if (step < shortest || steps >= options.maximumSteps)
+    {
+      break;
+    }
+  }
+  if (automatic && steps >= options.maximumSteps)
+  {
+    control.say("The limit of steps was reached.");
+  }
+  if (result.amount < 1.0)
+  {
+    result.invertedWarp = result.invertedAfter =
+      qualityOf(mesh, result.points.data(), options.threads).inverted;
+    control.say("The mesh could follow only a part of the motion, " +
+      std::to_string(result.amount) + " of it, without inverted elements.");
+  }
+}
+}

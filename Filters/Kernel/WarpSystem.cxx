@@ -1,0 +1,262 @@
+#include "WarpSystem.h"
+
+#include "Parallel.h"
+
+namespace tautline
+{
+namespace
+{
+/// Former solutions kept; each costs two vectors.
+constexpr std::size_t mostFormer = 12;
+/// Up to so many unknowns a factorisation is faster than multigrid, measured; then also for many right-hand sides.
+constexpr Index directPlanar = 400000, directVolume = 40000;
+
+/// Bitwise the same for any number of threads.
+double product(const std::vector<double>& a, const std::vector<double>& b, int threads)
+{
+  const Index n = static_cast<Index>(a.size());
+  std::vector<double> parts(numberOfChunks(n), 0.0);
+  forEachChunk(n, threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        parts[chunk] += a[i] * b[i];
+      }
+    });
+  double sum = 0;
+  for (double part : parts)
+  {
+    sum += part;
+  }
+  return sum;
+}
+
+/// y += s x
+void add(double s, const std::vector<double>& x, std::vector<double>& y, int threads)
+{
+  forEachChunk(static_cast<Index>(x.size()), threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        y[i] += s * x[i];
+      }
+    });
+}
+}
+
+//------------------------------------------------------------------------------
+WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<unsigned char>& held,
+  const double* points, int dimension, const WarpOptions& options)
+  : Options(options)
+  , Block(block)
+{
+  const Index n = static_cast<Index>(held.size());
+  std::vector<std::int32_t> unknown(n * block, -1);
+  for (Index p = 0; p < n; ++p)
+  {
+    if (!held[p])
+    {
+      for (int k = 0; k < block; ++k)
+      {
+        unknown[p * block + k] =
+          static_cast<std::int32_t>(static_cast<Index>(this->Free.size()) * block + k);
+      }
+      this->Free.push_back(p);
+      this->Coordinates.insert(this->Coordinates.end(), points + 3 * p, points + 3 * p + 3);
+    }
+  }
+  this->Inner.size = static_cast<Index>(this->Free.size()) * block;
+  this->Inner.offsets.reserve(this->Inner.size + 1);
+  this->Starts.assign(1, 0);
+  for (const Index p : this->Free)
+  {
+    for (Index row = p * block; row < (p + 1) * block; ++row)
+    {
+      for (Index e = all.offsets[row]; e < all.offsets[row + 1]; ++e)
+      {
+        const std::int32_t column = unknown[all.columns[e]];
+        if (column >= 0)
+        {
+          this->Inner.columns.push_back(column);
+          this->Inner.values.push_back(all.values[e]);
+        }
+        else if (all.values[e] != 0)
+        {
+          this->Columns.push_back(all.columns[e]);
+          this->Values.push_back(all.values[e]);
+        }
+      }
+      this->Inner.offsets.push_back(this->Inner.nonzeros());
+      this->Starts.push_back(static_cast<Index>(this->Columns.size()));
+    }
+  }
+  const Index direct = dimension == 2 ? directPlanar : directVolume;
+  this->Method = !options.automaticSolver ? options.solver.method
+    : this->Inner.size <= direct          ? KrylovMethod::Direct
+                                          : KrylovMethod::ConjugateGradient;
+}
+
+//------------------------------------------------------------------------------
+void WarpSystem::makeSolver(KrylovMethod method)
+{
+  SolverOptions options = this->Options.solver;
+  options.method = method;
+  options.initialGuess = false;
+  options.threads = this->Options.threads;
+  options.observer = nullptr;
+  if (this->Options.automaticSolver)
+  {
+    options.preconditioner = Preconditioner::BoomerAMG;
+  }
+  LinearSystem system;
+  system.matrix = &this->Inner;
+  system.blockSize = this->Block;
+  system.coordinates = this->Coordinates.data();
+  this->Solver = std::make_unique<LinearSolver>(system, options);
+  this->Method = method;
+}
+
+//------------------------------------------------------------------------------
+/// -A_B times the given values.
+std::vector<double> WarpSystem::rightHandSide(const std::vector<double>& values) const
+{
+  std::vector<double> right(this->Inner.size);
+  forEachChunk(this->Inner.size, this->Options.threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        double sum = 0;
+        for (Index e = this->Starts[i]; e < this->Starts[i + 1]; ++e)
+        {
+          sum -= this->Values[e] * values[this->Columns[e]];
+        }
+        right[i] = sum;
+      }
+    });
+  return right;
+}
+
+/// Moves what former right-hand sides span over to the solution; returns the norm of what is left.
+double WarpSystem::project(std::vector<double>& right, std::vector<double>& solution) const
+{
+  const int threads = this->Options.threads;
+  constexpr int rounds = 2; // the second makes up for the rounding of the first
+  for (int round = 0; round < rounds; ++round)
+  {
+    for (const Former& former : this->Basis)
+    {
+      const double part = product(former.right, right, threads);
+      add(-part, former.right, right, threads);
+      add(part, former.solution, solution, threads);
+    }
+  }
+  return std::sqrt(product(right, right, threads));
+}
+
+/// Adds a solution and the right-hand side it is exact for to the orthonormal basis.
+void WarpSystem::remember(const std::vector<double>& solution)
+{
+  const int threads = this->Options.threads;
+  Former former;
+  former.right.resize(this->Inner.size);
+  this->Inner.multiply(solution.data(), former.right.data(), threads);
+  const double before = std::sqrt(product(former.right, former.right, threads));
+  std::vector<double> spanned(this->Inner.size, 0.0);
+  const double length = this->project(former.right, spanned);
+  constexpr double nothingNew = 1e-6;
+  if (!(length > nothingNew * before) || !std::isfinite(length))
+  {
+    return;
+  }
+  former.solution = solution;
+  add(-1.0, spanned, former.solution, threads);
+  for (std::vector<double>* vector : { &former.right, &former.solution })
+  {
+    for (double& value : *vector)
+    {
+      value /= length;
+    }
+  }
+  this->Basis.push_back(std::move(former));
+  if (this->Basis.size() > mostFormer)
+  {
+    this->Basis.pop_front(); // the others stay orthonormal
+  }
+}
+
+//------------------------------------------------------------------------------
+bool WarpSystem::runSolver(const std::vector<double>& right, double tolerance,
+  std::vector<double>& solution, WarpControl& control)
+{
+  if (!this->Solver)
+  {
+    this->makeSolver(this->Method);
+  }
+  this->Solver->options().relativeTolerance = tolerance;
+  this->Solver->options().maximumSeconds = control.secondsLeft();
+  this->Solver->options().observer = [&control](int, double) { return control.goOn(0.5); };
+  control.result().setupSeconds += this->Solver->setUp();
+  solution.assign(this->Inner.size, 0.0);
+  const LinearSolution done = this->Solver->solve(right.data(), solution.data());
+  this->Solver->options().observer = nullptr;
+  control.result().setupSeconds += done.setupSeconds;
+  control.result().solveSeconds += done.solveSeconds;
+  control.addIterations(done.iterations);
+  this->Solved = true;
+  this->Failure = converged(done.reason) ? "" : describe(done.reason);
+  if (done.reason == SolveReason::TimeLimit)
+  {
+    control.result().timeLimit = true;
+  }
+  return converged(done.reason);
+}
+
+//------------------------------------------------------------------------------
+bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
+{
+  const int threads = this->Options.threads;
+  this->Failure.clear();
+  this->Solved = false;
+  std::vector<double> right = this->rightHandSide(values);
+  const double whole = std::sqrt(product(right, right, threads));
+  std::vector<double> x(this->Inner.size, 0.0);
+  bool good = true;
+  if (whole > 0)
+  {
+    const double rest = this->project(right, x);
+    const double tolerance = this->Options.tolerance;
+    if (rest > tolerance * whole)
+    {
+      // Where little is left to solve for, it need not be as exact.
+      constexpr double loosest = 1e-2;
+      std::vector<double> y;
+      good = this->runSolver(right, std::min(loosest, tolerance * whole / rest), y, control);
+      if (!good && !control.stopped() && this->Options.automaticSolver &&
+        this->Method != KrylovMethod::Direct)
+      {
+        this->makeSolver(KrylovMethod::Direct);
+        good = this->runSolver(right, tolerance, y, control);
+      }
+      const bool finite =
+        std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
+      if (finite)
+      {
+        add(1.0, y, x, threads);
+        this->remember(y);
+      }
+      good = good && finite;
+    }
+  }
+  for (std::size_t i = 0; i < this->Free.size(); ++i)
+  {
+    for (int k = 0; k < this->Block; ++k)
+    {
+      values[this->Free[i] * this->Block + k] = x[i * this->Block + k];
+    }
+  }
+  return good;
+}
+}

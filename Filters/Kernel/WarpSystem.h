@@ -1,0 +1,80 @@
+/**
+ * @file WarpSystem.h
+ * @brief The partition (4.8) of a matrix by points whose values are given and points whose values are wanted, and
+ * solutions of (4.10) for many given values. Internal: not installed.
+ */
+#ifndef tautline_WarpSystem_h
+#define tautline_WarpSystem_h
+
+#include "WarpControl.h"
+
+#include <deque>
+#include <memory>
+
+namespace tautline
+{
+/**
+ * @class tautline::WarpSystem
+ * @brief Keeps the matrix, its preconditioner or factorisation, and former solutions.
+ *
+ * A new solve starts from the projection of its right-hand side on the former ones (P. F. Fischer, "Projection
+ * techniques for iterative solution of Ax = b with successive right-hand sides", CMAME 163, 1998), and ends
+ * there where nothing is left: a boundary that turns, shifts or stretches as a whole needs no solve once it has done so.
+ */
+class WarpSystem
+{
+public:
+  /**
+   * @param all the matrix of all points, symmetric and positive semidefinite
+   * @param block unknowns per point
+   * @param held one flag per point: its values are given
+   * @param points 3 coordinates per point
+   * @param dimension of the mesh, for the choice of the solver
+   */
+  WarpSystem(const SparseMatrix& all, int block, const std::vector<unsigned char>& held,
+    const double* points, int dimension, const WarpOptions& options);
+
+  /**
+   * @brief Finds the values of the points that are not held from those that are; `values` has block x numberOfPoints.
+   * Adds times and iterations to the control's result.
+   * @return false if the solver failed: `values` are the best there is, and failure() tells
+   */
+  bool solve(std::vector<double>& values, WarpControl& control);
+
+  const std::string& failure() const { return this->Failure; }
+  Index unknowns() const { return this->Inner.size; }
+  const SparseMatrix& matrix() const { return this->Inner; }
+  /// Indices of the points that are not held.
+  const std::vector<Index>& freePoints() const { return this->Free; }
+  /// Whether the last solve needed the solver.
+  bool solved() const { return this->Solved; }
+
+private:
+  struct Former
+  {
+    std::vector<double> right, solution; ///< A solution = right; right has length 1
+  };
+
+  std::vector<double> rightHandSide(const std::vector<double>& values) const;
+  double project(std::vector<double>& right, std::vector<double>& solution) const;
+  void remember(const std::vector<double>& solution);
+  bool runSolver(const std::vector<double>& right, double tolerance, std::vector<double>& solution,
+    WarpControl& control);
+  void makeSolver(KrylovMethod method);
+
+  const WarpOptions& Options;
+  int Block;
+  std::vector<Index> Free;
+  SparseMatrix Inner;         ///< A_I
+  std::vector<Index> Starts;  ///< of the rows of A_B
+  std::vector<Index> Columns; ///< of A_B: unknowns of all points
+  std::vector<double> Values;
+  std::vector<double> Coordinates; ///< of the free points
+  std::unique_ptr<LinearSolver> Solver;
+  KrylovMethod Method = KrylovMethod::ConjugateGradient;
+  std::deque<Former> Basis;
+  std::string Failure;
+  bool Solved = false;
+};
+}
+#endif
