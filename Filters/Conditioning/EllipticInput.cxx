@@ -38,8 +38,7 @@ vtkDataArray* cellArray(vtkAlgorithm* algorithm, int index, vtkDataSet* data,
   {
     throw Error(subject + " has " + std::to_string(has) + " components; " +
       std::to_string(components.front()) +
-      (components.size() > 1 ? " or " + std::to_string(components.back()) : "") +
-      " are expected.");
+      (components.size() > 1 ? " or " + std::to_string(components.back()) : "") + " are expected.");
   }
   return array;
 }
@@ -168,8 +167,9 @@ void EllipticInput::settleOrientation(const Processes& processes, int threads)
   }
   if (processes.maximum(other) > 0)
   {
-    throw Error("The orientation of the mesh is mixed: on some processes its cells are reversed, on "
-                "others they are not. Make the orientation consistent first.");
+    throw Error(
+      "The orientation of the mesh is mixed: on some processes its cells are reversed, on "
+      "others they are not. Make the orientation consistent first.");
   }
   mesh.setMirrored(true);
   if (reversed)
@@ -192,7 +192,8 @@ void EllipticInput::settleDimension(const EllipticChoice& choice, const Processe
   }
   if (highest == static_cast<Index>(Dimension::Surface) && choice.pde == Pde::Elasticity)
   {
-    throw Error("The mesh is a surface in space; linear elasticity is for planar meshes and volumes.");
+    throw Error(
+      "The mesh is a surface in space; linear elasticity is for planar meshes and volumes.");
   }
 }
 

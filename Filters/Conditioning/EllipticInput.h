@@ -61,8 +61,7 @@ private:
   void readArrays(const EllipticChoice& choice, vtkAlgorithm* algorithm);
   void settleOrientation(const Processes& processes, int threads);
   void settleDimension(const EllipticChoice& choice, const Processes& processes);
-  void markFixed(
-    const EllipticChoice& choice, vtkAlgorithm* algorithm, const Processes& processes);
+  void markFixed(const EllipticChoice& choice, vtkAlgorithm* algorithm, const Processes& processes);
 
   LocalMesh& Local;
   std::unique_ptr<MeshAdapter> Adapter;

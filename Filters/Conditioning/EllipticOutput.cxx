@@ -9,6 +9,7 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 
 namespace tautline
@@ -44,8 +45,8 @@ Index addArray(vtkDataSet* output, bool ofCells, const std::string& name,
       array->SetValue(static_cast<vtkIdType>(i) + k, finite ? tuple[k] : 0.0);
     }
   }
-  vtkDataSetAttributes* data = ofCells ? static_cast<vtkDataSetAttributes*>(output->GetCellData())
-                                       : output->GetPointData();
+  vtkDataSetAttributes* data =
+    ofCells ? static_cast<vtkDataSetAttributes*>(output->GetCellData()) : output->GetPointData();
   data->AddArray(array);
   data->SetActiveScalars(name.c_str());
   return missing;
@@ -60,11 +61,22 @@ void addStress(vtkDataSet* output, const std::vector<double>& stresses)
   {
     const double* s = stresses.data() + i;
     const auto square = [](double x) { return x * x; };
-    mises.push_back(std::sqrt(
-      0.5 * (square(s[0] - s[1]) + square(s[1] - s[2]) + square(s[2] - s[0])) +
-      3.0 * (square(s[3]) + square(s[4]) + square(s[5]))));
+    mises.push_back(
+      std::sqrt(0.5 * (square(s[0] - s[1]) + square(s[1] - s[2]) + square(s[2] - s[0])) +
+        3.0 * (square(s[3]) + square(s[4]) + square(s[5]))));
   }
   addArray(output, true, "VonMises", mises, 1);
+}
+
+//------------------------------------------------------------------------------
+std::string sentence(std::string text)
+{
+  if (!text.empty())
+  {
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    text += text.back() == '.' ? "" : ".";
+  }
+  return text;
 }
 
 //------------------------------------------------------------------------------

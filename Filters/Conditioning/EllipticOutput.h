@@ -26,11 +26,13 @@ Index addArray(vtkDataSet* output, bool ofCells, const std::string& name,
 /// Adds the stress and its von Mises equivalent to the cells.
 void addStress(vtkDataSet* output, const std::vector<double>& stresses);
 
+/// "converged to ..." as a sentence: "Converged to ....".
+std::string sentence(std::string text);
+
 /**
  * @brief Adds a row per iteration: `Block` (if there is one), `Log10 residual` (relative to the first; 1e-16 of it at
  * least), `N residual`, the norm.
  */
-void addResiduals(
-  TableRows& rows, const std::vector<double>& residuals, const std::string& block);
+void addResiduals(TableRows& rows, const std::vector<double>& residuals, const std::string& block);
 }
 #endif

@@ -106,8 +106,8 @@ public:
       {
         this->FlatIndex = static_cast<int>(walk->GetCurrentFlatIndex());
         this->begin();
-        if (vtkDataSet* result = this->add(
-              walk->GetCurrentDataObject(), marked ? marked->GetDataSet(walk) : nullptr))
+        if (vtkDataSet* result =
+              this->add(walk->GetCurrentDataObject(), marked ? marked->GetDataSet(walk) : nullptr))
         {
           results->SetDataSet(walk, result);
         }

@@ -227,7 +227,8 @@ std::vector<double> valuesAt(
   {
     throw Error("No array is chosen " + purpose + ": choose one, or a constant or an expression.");
   }
-  const std::string subject = "The array '" + std::string(array->GetName()) + "' of the " + function.what;
+  const std::string subject =
+    "The array '" + std::string(array->GetName()) + "' of the " + function.what;
   const int has = array->GetNumberOfComponents();
   if (data->GetPointData()->GetArray(array->GetName()) != array)
   {

@@ -8,6 +8,7 @@
 #endif
 
 #include <new>
+#include <numeric>
 #include <string>
 
 namespace tautline
@@ -57,6 +58,33 @@ Index Processes::maximum(Index value) const
 }
 
 //------------------------------------------------------------------------------
+double Processes::sum(double value) const
+{
+  double result = value;
+  if (this->Count > 1)
+  {
+    this->Controller->AllReduce(&value, &result, 1, vtkCommunicator::SUM_OP);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> Processes::gather(const std::vector<double>& values) const
+{
+  if (this->Count < 2)
+  {
+    return values;
+  }
+  const auto mine = static_cast<vtkIdType>(values.size());
+  std::vector<vtkIdType> lengths(static_cast<std::size_t>(this->Count)), offsets(lengths.size());
+  this->Controller->AllGather(&mine, lengths.data(), 1);
+  std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
+  std::vector<double> all(static_cast<std::size_t>(offsets.back() + lengths.back()));
+  this->Controller->AllGatherV(values.data(), all.data(), mine, lengths.data(), offsets.data());
+  return all;
+}
+
+//------------------------------------------------------------------------------
 bool Processes::everywhere(bool value) const
 {
   return this->maximum(value ? 0 : 1) == 0;
@@ -81,7 +109,8 @@ void Processes::together(const std::function<void()>& work) const
     message = error.what();
   }
   // The first process that failed tells all others.
-  const auto teller = static_cast<int>(this->Count - this->maximum(failed ? this->Count - this->Rank : 0));
+  const auto teller =
+    static_cast<int>(this->Count - this->maximum(failed ? this->Count - this->Rank : 0));
   if (teller == this->Count)
   {
     return;

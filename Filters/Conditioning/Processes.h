@@ -8,6 +8,7 @@
 #include "tautline/PointNumbering.h"
 
 #include <functional>
+#include <vector>
 
 class vtkMultiProcessController;
 
@@ -31,8 +32,11 @@ public:
 
   Index sum(Index value) const;
   Index maximum(Index value) const;
+  double sum(double value) const;
   /// True if it is on every process.
   bool everywhere(bool value) const;
+  /// The values of all processes, one after the other.
+  std::vector<double> gather(const std::vector<double>& values) const;
 
   /**
    * @brief Does work that does not communicate. What it throws on any process is thrown on all, as Error, so that none

@@ -113,10 +113,8 @@ int vtkEllipticAlgorithm::RequestData(
     tautline::TableRows rows;
     vtkSmartPointer<vtkDataObject> selected;
     processes.together(
-      [&]()
-      {
-        selected =
-          tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
+      [&]() {
+        selected = tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
       });
     tautline::forEachMesh(input, selected, output, processes,
       [&](tautline::LocalMesh& mesh)
@@ -152,7 +150,9 @@ int vtkEllipticAlgorithm::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkEllipticAlgorithm::Reset() {}
+void vtkEllipticAlgorithm::Reset()
+{
+}
 
 //------------------------------------------------------------------------------
 void vtkEllipticAlgorithm::Say(const tautline::LocalMesh& mesh, const std::string& text)

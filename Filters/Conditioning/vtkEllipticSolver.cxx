@@ -100,12 +100,13 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
 
   const bool converged = tautline::converged(solved.reason);
   this->Converged = this->Converged && converged;
-  this->Reason = tautline::describe(solved.reason);
+  this->Reason = tautline::sentence(tautline::describe(solved.reason));
   this->Iterations += solved.iterations;
   this->SetupSeconds += solved.setupSeconds;
   this->SolveSeconds += solved.solveSeconds;
   std::ostringstream text;
-  text << this->Reason << (solved.message.empty() ? "" : " ") << solved.message << "\n"
+  text << this->Reason << (solved.message.empty() ? "" : " ") << tautline::sentence(solved.message)
+       << "\n"
        << system.unknowns() << " unknowns, " << solved.iterations << " iterations of "
        << tautline::nameOf(options.method);
   if (options.method != tautline::KrylovMethod::Direct)
