@@ -310,8 +310,11 @@ bool LinearSolver::Implementation::shouldStop(int iteration, double norm)
     this->Thrown = std::current_exception();
     aborted = true;
   }
-  const bool late =
-    this->Options.maximumSeconds > 0.0 && seconds(this->Start) > this->Options.maximumSeconds;
+  const bool limited = this->Options.maximumSeconds > 0.0;
+  bool late = limited && seconds(this->Start) > this->Options.maximumSeconds;
+  // The ranks stop together.
+  aborted = this->Options.observer && this->Objects.anywhere(aborted);
+  late = limited && this->Objects.anywhere(late);
   if (aborted || late)
   {
     this->Stopped = aborted ? SolveReason::Aborted : SolveReason::TimeLimit;
@@ -387,7 +390,7 @@ LinearSolution LinearSolver::Implementation::solve(const double* b, double* x)
     solution.message = this->FailureText;
     return solution;
   }
-  if (!finite(b, n) || !finite(x, n))
+  if (this->Objects.anywhere(!finite(b, n) || !finite(x, n)))
   {
     solution.reason = SolveReason::NotANumber;
     solution.message = "The right-hand side or the initial guess has an entry that is not finite.";
@@ -442,7 +445,7 @@ LinearSolution LinearSolver::Implementation::solve(const double* b, double* x)
   // What is not finite is of no use to anyone.
   std::vector<double> values(static_cast<std::size_t>(n));
   this->Objects.copyOut(unknowns, values.data());
-  if (finite(values.data(), n))
+  if (!this->Objects.anywhere(!finite(values.data(), n)))
   {
     std::copy(values.begin(), values.end(), x);
   }

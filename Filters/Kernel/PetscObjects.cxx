@@ -1,7 +1,7 @@
 #include "PetscObjects.h"
 
 #include "Parallel.h"
-#include "PointNumbering.h"
+#include "RankExchange.h"
 
 #include <sstream>
 
@@ -154,51 +154,91 @@ std::string chooseFactorization(PC preconditioner, const LinearSystem& system, i
 PetscSystem::PetscSystem(const LinearSystem& system)
   : System(system)
 {
-  this->check();
-  this->createMatrix();
+  if (system.numbering && system.numbering->ranks() > 1)
+  {
+    this->Comm = mpiOf(system.numbering->communicator());
+    this->Ranks = system.numbering->ranks();
+    const std::vector<Index>& rows = system.numbering->rows();
+    for (std::size_t point = 0; point < rows.size(); ++point)
+    {
+      if (rows[point] >= 0)
+      {
+        this->Points.push_back(static_cast<Index>(point));
+      }
+    }
+  }
+  throwTogether(this->Comm, this->complaint());
+  if (this->Ranks > 1)
+  {
+    this->distributeMatrix();
+  }
+  else
+  {
+    this->borrowMatrix();
+  }
   petsc(MatSetOption(this->Matrix, MAT_SYMMETRIC, system.symmetric ? PETSC_TRUE : PETSC_FALSE));
   petsc(MatSetOption(
     this->Matrix, MAT_SPD, system.symmetric && system.positiveDefinite ? PETSC_TRUE : PETSC_FALSE));
-  if (system.coordinates && (system.blockSize == 2 || system.blockSize == 3))
+  if (!this->anywhere(!system.coordinates && this->localSize() > 0) &&
+    (system.blockSize == 2 || system.blockSize == 3))
   {
     this->attachRigidBodyModes();
   }
 }
 
-void PetscSystem::check() const
+bool PetscSystem::anywhere(bool condition) const
+{
+  return this->Ranks > 1 ? onAnyRank(this->Comm, condition) : condition;
+}
+
+/// What is wrong with the system, or "".
+std::string PetscSystem::complaint() const
 {
   const SparseMatrix* matrix = this->System.matrix;
-  if (!matrix || (matrix->size == 0 && this->Ranks == 1))
+  const Index unknowns = this->Ranks > 1 ? this->System.numbering->globalSize()
+    : matrix                             ? matrix->size
+                                         : 0;
+  if (!matrix || unknowns == 0)
   {
-    throw Error("The linear system has no unknowns: nothing is free to be solved for.");
+    return "The linear system has no unknowns: nothing is free to be solved for.";
   }
-  if (this->System.blockSize < 1 || matrix->size % this->System.blockSize != 0)
+  const int block = this->System.blockSize;
+  if (block < 1 || matrix->size % block != 0)
   {
-    throw Error("The linear system has " + std::to_string(matrix->size) +
-      " unknowns, which is not a multiple of its block size " +
-      std::to_string(this->System.blockSize) + ".");
+    return "The linear system has " + std::to_string(matrix->size) +
+      " unknowns, which is not a multiple of its block size " + std::to_string(block) + ".";
+  }
+  const auto points = static_cast<Index>(this->Points.size());
+  if (this->Ranks > 1 && matrix->size != block * points)
+  {
+    return "The linear system has " + std::to_string(matrix->size) + " unknowns, but " +
+      std::to_string(points) + " points of this MPI rank are numbered.";
   }
   const auto entries = static_cast<std::size_t>(matrix->nonzeros());
   if (matrix->offsets.size() != static_cast<std::size_t>(matrix->size) + 1 ||
     matrix->offsets.back() != matrix->nonzeros() || matrix->values.size() != entries)
   {
-    throw Error("The matrix of the linear system is not complete: its offsets, columns and values "
-                "differ in size.");
+    return "The matrix of the linear system is not complete: its offsets, columns and values "
+           "differ in size.";
+  }
+  const Index most = std::numeric_limits<PetscInt>::max();
+  if (matrix->nonzeros() > most || unknowns > most / block)
+  {
+    return "The linear system is larger than this PETSc can number: use a smaller mesh, more MPI "
+           "ranks, or a PETSc with "
+           "64-bit indices.";
   }
   const Index bad = firstBadRow(*matrix);
-  if (bad != None)
-  {
-    throw Error("Row " + std::to_string(bad) +
+  return bad == None ? ""
+                     : "Row " + std::to_string(bad) +
       " of the matrix has an entry that is not finite, or columns that are not in increasing "
-      "order.");
-  }
+      "order.";
 }
 
-void PetscSystem::createMatrix()
+void PetscSystem::borrowMatrix()
 {
   const SparseMatrix& source = *this->System.matrix;
-  petscInteger(source.nonzeros(), "entries");
-  const PetscInt size = petscInteger(source.size, "unknowns");
+  const auto size = static_cast<PetscInt>(source.size);
   this->Offsets.assign(source.offsets.begin(), source.offsets.end());
   // PETSc only reads what it is lent here; with 64-bit integers it cannot borrow the columns.
   auto* columns = reinterpret_cast<PetscInt*>(const_cast<std::int32_t*>(source.columns.data()));
@@ -207,9 +247,39 @@ void PetscSystem::createMatrix()
     this->Columns.assign(source.columns.begin(), source.columns.end());
     columns = this->Columns.data();
   }
-  petsc(MatCreateSeqAIJWithArrays(this->Communicator, size, size, this->Offsets.data(), columns,
+  petsc(MatCreateSeqAIJWithArrays(this->Comm, size, size, this->Offsets.data(), columns,
     const_cast<double*>(source.values.data()), this->Matrix.out()));
   petsc(MatSetBlockSize(this->Matrix, this->System.blockSize));
+}
+
+void PetscSystem::distributeMatrix()
+{
+  const SparseMatrix& source = *this->System.matrix;
+  const PointNumbering& numbering = *this->System.numbering;
+  const int block = this->System.blockSize;
+  std::vector<PetscInt> rowOf(static_cast<std::size_t>(source.size));
+  for (std::size_t i = 0; i < rowOf.size(); ++i)
+  {
+    rowOf[i] = static_cast<PetscInt>(block * numbering.rows()[this->Points[i / block]] + i % block);
+  }
+  std::vector<PetscInt> rows(source.columns.size()), columns(source.columns.size());
+  for (Index row = 0; row < source.size; ++row)
+  {
+    for (Index k = source.offsets[row]; k < source.offsets[row + 1]; ++k)
+    {
+      rows[k] = rowOf[row];
+      columns[k] = rowOf[source.columns[k]];
+    }
+  }
+  const auto owned = static_cast<PetscInt>(block * numbering.ownedRows());
+  const auto all = static_cast<PetscInt>(block * numbering.globalSize());
+  petsc(MatCreate(this->Comm, this->Matrix.out()));
+  petsc(MatSetSizes(this->Matrix, owned, owned, all, all));
+  petsc(MatSetType(this->Matrix, MATMPIAIJ));
+  petsc(MatSetBlockSize(this->Matrix, block));
+  petsc(MatSetPreallocationCOO(
+    this->Matrix, static_cast<PetscCount>(rows.size()), rows.data(), columns.data()));
+  petsc(MatSetValuesCOO(this->Matrix, source.values.data(), ADD_VALUES));
 }
 
 void PetscSystem::attachRigidBodyModes()
@@ -238,14 +308,45 @@ PetscVector PetscSystem::createVector() const
 
 void PetscSystem::add(const double* contributions, Vec rows) const
 {
-  this->copyIn(contributions, rows);
+  if (this->Ranks == 1)
+  {
+    this->copyIn(contributions, rows);
+    return;
+  }
+  const PointNumbering& numbering = *this->System.numbering;
+  const auto block = static_cast<std::size_t>(this->System.blockSize);
+  std::vector<double> all(block * numbering.rows().size(), 0.0);
+  for (std::size_t i = 0; i < this->Points.size(); ++i)
+  {
+    std::copy_n(contributions + block * i, block, &all[block * this->Points[i]]);
+  }
+  numbering.sum(all.data(), this->System.blockSize);
+  std::vector<double> sums(block * this->Points.size());
+  for (std::size_t i = 0; i < this->Points.size(); ++i)
+  {
+    std::copy_n(&all[block * this->Points[i]], block, &sums[block * i]);
+  }
+  this->copyIn(sums.data(), rows);
 }
 
 void PetscSystem::copyIn(const double* values, Vec rows) const
 {
   double* target = nullptr;
   petsc(VecGetArrayWrite(rows, &target));
-  std::copy_n(values, this->localSize(), target);
+  if (this->Ranks == 1)
+  {
+    std::copy_n(values, this->localSize(), target);
+  }
+  // The rows a rank owns are in the order of its points.
+  const int block = this->System.blockSize;
+  for (std::size_t i = 0; i < this->Points.size(); ++i)
+  {
+    if (this->System.numbering->owned(this->Points[i]))
+    {
+      target = std::copy_n(values + block * i, block, target);
+    }
+  }
+  target = nullptr;
   petsc(VecRestoreArrayWrite(rows, &target));
 }
 
@@ -253,7 +354,31 @@ void PetscSystem::copyOut(Vec rows, double* values) const
 {
   const double* source = nullptr;
   petsc(VecGetArrayRead(rows, &source));
-  std::copy_n(source, this->localSize(), values);
+  if (this->Ranks == 1)
+  {
+    std::copy_n(source, this->localSize(), values);
+  }
+  else
+  {
+    // What others own counts as 0 in the sum over all who have the point.
+    const PointNumbering& numbering = *this->System.numbering;
+    const auto block = static_cast<std::size_t>(this->System.blockSize);
+    std::vector<double> all(block * numbering.rows().size(), 0.0);
+    const double* next = source;
+    for (const Index point : this->Points)
+    {
+      if (numbering.owned(point))
+      {
+        std::copy_n(next, block, &all[block * point]);
+        next += block;
+      }
+    }
+    numbering.sum(all.data(), this->System.blockSize);
+    for (std::size_t i = 0; i < this->Points.size(); ++i)
+    {
+      std::copy_n(&all[block * this->Points[i]], block, values + block * i);
+    }
+  }
   petsc(VecRestoreArrayRead(rows, &source));
 }
 }

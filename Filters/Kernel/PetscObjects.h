@@ -21,26 +21,30 @@ public:
   /// Throws Error as LinearSolver's constructor does; within a PetscScope.
   explicit PetscSystem(const LinearSystem& system);
 
-  MPI_Comm communicator() const { return this->Communicator; }
+  MPI_Comm communicator() const { return this->Comm; }
   int ranks() const { return this->Ranks; }
   Mat matrix() const { return this->Matrix; }
   /// Unknowns of this rank, shared ones too.
   Index localSize() const { return this->System.matrix->size; }
+  /// Whether a condition holds on some rank.
+  bool anywhere(bool condition) const;
 
-  /// A vector of rows, and back: contributions are added up, values copied to all who share them.
+  /// A vector of rows, and back: contributions are added up, values come from and go to all who share them.
   PetscVector createVector() const;
   void add(const double* contributions, Vec rows) const;
   void copyIn(const double* values, Vec rows) const;
   void copyOut(Vec rows, double* values) const;
 
 private:
-  void check() const;
-  void createMatrix();
+  std::string complaint() const;
+  void borrowMatrix();
+  void distributeMatrix();
   void attachRigidBodyModes();
 
   LinearSystem System;
-  MPI_Comm Communicator = MPI_COMM_SELF;
+  MPI_Comm Comm = MPI_COMM_SELF;
   int Ranks = 1;
+  std::vector<Index> Points; // of several ranks: this rank's points with a row, in increasing order
   std::vector<PetscInt> Offsets, Columns; // what PETSc cannot borrow
   PetscMatrix Matrix;
 };

@@ -3,7 +3,6 @@
 #include <slepcsys.h>
 
 #include <cstdlib>
-#include <limits>
 
 namespace tautline
 {
@@ -158,16 +157,5 @@ PetscScope::~PetscScope()
 const std::string& petscMessage()
 {
   return collected();
-}
-
-PetscInt petscInteger(Index value, const char* what)
-{
-  if (value > static_cast<Index>(std::numeric_limits<PetscInt>::max()))
-  {
-    throw Error("The linear system has " + std::to_string(value) + " " + what +
-      ", more than this PETSc can number: use a smaller mesh, more ranks, or a PETSc with 64-bit "
-      "indices.");
-  }
-  return static_cast<PetscInt>(value);
 }
 }

@@ -72,9 +72,6 @@ inline void petsc(PetscErrorCode code)
   }
 }
 
-/// Throws Error if the number does not fit PETSc's integers.
-PetscInt petscInteger(Index value, const char* what);
-
 /// Owns a PETSc object. Its destructor must run within a PetscScope; it does nothing once PETSc has gone.
 template <class Object, PetscErrorCode (*Destroy)(Object*)>
 class PetscHandle

@@ -28,6 +28,8 @@ public:
    * on one rank
    * @param used one flag per local point, nonzero = has a row (a point that is in a cell and is not eliminated); null: all.
    * The ranks must agree on shared points.
+   *
+   * Throws Error, on all ranks, for ids that are missing, negative or twice on one rank.
    */
   PointNumbering(Communicator communicator, Index points, const Index* globalIds,
     const unsigned char* used = nullptr);
@@ -43,9 +45,9 @@ public:
   const std::vector<Index>& rows() const; ///< the row of each local point, -1 without one
   bool owned(Index point) const;
 
-  /// Replaces `components` values per local point by their sums over all ranks.
+  /// Replaces `components` values per local point with a row by their sums over all ranks; others stay.
   void sum(double* values, int components) const;
-  /// Nonzero flags become nonzero on every rank that has the point.
+  /// Nonzero flags of points with a row become nonzero on every rank that has the point.
   void either(unsigned char* flags) const;
 
   double sum(double value) const;
@@ -58,8 +60,8 @@ private:
 };
 
 /**
- * @brief The points of edges (2D) or faces (3D) that exactly one cell on all ranks has; cells with skip flags (ghosts) do not
- * count. On one rank what Mesh::boundary() says.
+ * @brief The points of edges (2D) or faces (3D) that exactly one cell on all ranks has (or more than two); cells with skip
+ * flags (ghosts) do not count. On one rank what Mesh::boundary() says. Collective.
  * @param globalIds as above; null on one rank
  */
 TAUTLINE_KERNEL_EXPORT std::vector<unsigned char> globalBoundaryPoints(

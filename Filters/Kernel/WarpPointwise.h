@@ -12,8 +12,6 @@
 
 #include "Warp.h"
 
-#include <chrono>
-
 namespace tautline
 {
 /**
@@ -27,7 +25,7 @@ namespace tautline
  * -options.distancePower (above 0, at most 20). Far groups of points count by their expansion to second order, which
  * differs from the sum over all points by less than 1e-4 of the largest displacement.
  */
-std::vector<double> warpByInverseDistance(const Mesh& mesh,
+TAUTLINE_KERNEL_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
@@ -36,7 +34,7 @@ std::vector<double> warpByInverseDistance(const Mesh& mesh,
  * around as many prescribed points as it takes for the others to be met within options.fitTolerance times the largest
  * displacement; the point that is met worst comes next.
  */
-std::vector<double> warpByRadialBasis(const Mesh& mesh,
+TAUTLINE_KERNEL_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
@@ -45,14 +43,14 @@ std::vector<double> warpByRadialBasis(const Mesh& mesh,
  * neighbours in the initial mesh, of all such combinations the one with the largest product of weights; it stays
  * that. Neighbours are the other points of the cells around. Points of parts without a prescribed point stay.
  */
-std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
+TAUTLINE_KERNEL_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
 // --- what the three share ------------------------------------------------------------------------------
 
 /// The prescribed displacements, split into an affine motion and the rest.
-class PrescribedMotion
+class TAUTLINE_KERNEL_EXPORT PrescribedMotion
 {
 public:
   PrescribedMotion(const Mesh& mesh, const std::vector<unsigned char>& prescribed,
@@ -87,29 +85,6 @@ private:
   bool Affine = true;
   std::array<Vec3, 4> Map = {}; ///< displacement at the centre, and its derivatives
   std::vector<Vec3> Rest;
-};
-
-/// The time limit and the observer of options; told from the calling thread.
-class WarpClock
-{
-public:
-  explicit WarpClock(const WarpOptions& options)
-    : Options(options)
-    , Start(std::chrono::steady_clock::now())
-  {
-  }
-
-  /// False when it is time to stop.
-  bool proceed(double fraction) const
-  {
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Start;
-    return (this->Options.maximumSeconds <= 0 || passed.count() < this->Options.maximumSeconds) &&
-      (!this->Options.progress || this->Options.progress(fraction));
-  }
-
-private:
-  const WarpOptions& Options;
-  std::chrono::steady_clock::time_point Start;
 };
 }
 #endif

@@ -1,11 +1,348 @@
 #include "WarpPointwise.h"
 
+#include "PointTree.h"
+#include "WarpClock.h"
+
 namespace tautline
 {
+namespace
+{
+/// Radius of the functions where none is given, in extents of the prescribed points.
+constexpr double DefaultRadius = 2.0;
+/// Points are chosen among so many, spread evenly, and those of the others that are met worst.
+constexpr std::size_t FirstCandidates = 4000;
+constexpr std::size_t MoreCandidates = 1000; ///< each time
+/// No more points than this are chosen: their matrix is dense.
+constexpr std::size_t MostCenters = 3000;
+/// A candidate that is within this (squared) of what the chosen ones span adds nothing but rounding.
+constexpr double Independence = 1e-12;
+constexpr std::size_t LeafSize = 32;
+/// The clock is asked once for so many chosen points.
+constexpr std::size_t ClockInterval = 16;
+
+/// Wendland's C2 function of the distance over the radius.
+double wendland(double ratio)
+{
+  const double rest = std::max(0.0, 1.0 - ratio), square = rest * rest;
+  return square * square * (4.0 * ratio + 1.0);
+}
+
+/**
+ * @brief Chooses centres among candidates one by one, always where the residual is largest.
+ *
+ * Row i of the basis holds, for candidate i, the values of Newton's basis of the functions chosen: columns of a Cholesky
+ * factor that grows with the pivot. A choice costs one product with each row.
+ */
+class GreedyFit
+{
+public:
+  GreedyFit(double radius, int threads)
+    : Radius(radius)
+    , Threads(threads)
+  {
+  }
+
+  void add(const Vec3& point, const Vec3& value)
+  {
+    this->Points.push_back(point);
+    this->Residuals.push_back(value);
+    this->Powers.push_back(1.0);
+    this->Rows.emplace_back();
+  }
+
+  /// Brings the rows of the candidates added last up to the others.
+  void catchUp(std::size_t from)
+  {
+    const auto count = static_cast<Index>(this->Points.size());
+#pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(this->Threads))
+    for (auto i = static_cast<Index>(from); i < count; ++i)
+    {
+      for (std::size_t k = 0; k < this->Chosen.size(); ++k)
+      {
+        this->append(static_cast<std::size_t>(i), k);
+      }
+    }
+  }
+
+  /// Chooses until all residuals are at most `enough`. False: stopped by the clock.
+  bool choose(double enough, const WarpClock& clock)
+  {
+    while (this->Chosen.size() < MostCenters)
+    {
+      std::size_t best = this->Points.size();
+      double most = enough;
+      for (std::size_t i = 0; i < this->Points.size(); ++i)
+      {
+        const double size = norm(this->Residuals[i]);
+        if (size > most && this->Powers[i] > Independence)
+        {
+          most = size;
+          best = i;
+        }
+      }
+      if (best == this->Points.size())
+      {
+        return true;
+      }
+      if (this->Chosen.size() % ClockInterval == 0 &&
+        !clock.proceed(0.5 * static_cast<double>(this->Chosen.size()) / MostCenters))
+      {
+        return false;
+      }
+      const std::size_t k = this->Chosen.size();
+      const double pivot = std::sqrt(this->Powers[best]);
+      this->Chosen.push_back(best);
+      this->Pivots.push_back(pivot);
+      this->Weights.push_back((1 / pivot) * this->Residuals[best]);
+      const auto count = static_cast<Index>(this->Points.size());
+      // Its own row last: the others read it.
+#pragma omp parallel for schedule(static) num_threads(resolveThreads(this->Threads))
+      for (Index i = 0; i < count; ++i)
+      {
+        if (static_cast<std::size_t>(i) != best)
+        {
+          this->append(static_cast<std::size_t>(i), k);
+        }
+      }
+      this->append(best, k);
+    }
+    return true;
+  }
+
+  std::size_t chosen() const
+  {
+    return this->Chosen.size();
+  }
+  const Vec3& center(std::size_t k) const
+  {
+    return this->Points[this->Chosen[k]];
+  }
+
+  /// The coefficients of the functions: the transposed factor, solved backwards.
+  std::vector<Vec3> coefficients() const
+  {
+    std::vector<Vec3> result = this->Weights;
+    for (std::size_t k = result.size(); k-- > 0;)
+    {
+      const std::vector<double>& row = this->Rows[this->Chosen[k]];
+      result[k] = (1 / this->Pivots[k]) * result[k];
+      for (std::size_t j = 0; j < k; ++j)
+      {
+        result[j] -= row[j] * result[k];
+      }
+    }
+    return result;
+  }
+
+private:
+  /// The value of the basis function k at candidate i, and what it leaves there.
+  void append(std::size_t i, std::size_t k)
+  {
+    const std::size_t at = this->Chosen[k];
+    std::vector<double>& row = this->Rows[i];
+    const std::vector<double>& pivotRow = this->Rows[at];
+    double value = wendland(norm(this->Points[i] - this->Points[at]) / this->Radius);
+    double sums[8] = {};
+    std::size_t j = 0;
+    for (; j + 8 <= k; j += 8)
+    {
+      for (std::size_t l = 0; l < 8; ++l)
+      {
+        sums[l] += row[j + l] * pivotRow[j + l];
+      }
+    }
+    for (; j < k; ++j)
+    {
+      value -= row[j] * pivotRow[j];
+    }
+    for (const double sum : sums)
+    {
+      value -= sum;
+    }
+    value /= this->Pivots[k];
+    row.push_back(value);
+    this->Residuals[i] -= value * this->Weights[k];
+    this->Powers[i] -= value * value;
+  }
+
+  double Radius;
+  int Threads;
+  std::vector<Vec3> Points, Residuals;
+  std::vector<double> Powers; ///< squared distance of a candidate's function from the span
+  std::vector<std::vector<double>> Rows;
+  std::vector<std::size_t> Chosen; ///< candidates
+  std::vector<double> Pivots;
+  std::vector<Vec3> Weights; ///< of Newton's basis
+};
+
+/// The sum of the functions, evaluated by those within reach.
+class Interpolant
+{
+public:
+  Interpolant(const GreedyFit& fit, double radius)
+    : Radius(radius)
+    , Tree(centers(fit), LeafSize)
+  {
+    const std::vector<Vec3> coefficients = fit.coefficients();
+    for (const std::size_t k : this->Tree.order())
+    {
+      for (std::size_t c = 0; c < 3; ++c)
+      {
+        this->Centers[c].push_back(fit.center(k)[c]);
+        this->Coefficients[c].push_back(coefficients[k][c]);
+      }
+    }
+  }
+
+  Vec3 at(const Vec3& y) const
+  {
+    const std::vector<PointTree::Node>& nodes = this->Tree.nodes();
+    Vec3 sum = { 0, 0, 0 };
+    for (std::size_t n = 0; n < nodes.size();)
+    {
+      const PointTree::Node& node = nodes[n];
+      const double distance = norm(y - node.center);
+      const bool beyond = distance - node.radius >= this->Radius;
+      if (!beyond && !node.leaf && distance + node.radius > this->Radius)
+      {
+        ++n; // some may be within reach
+        continue;
+      }
+      if (!beyond)
+      {
+        this->add(node.begin, node.end, y, sum);
+      }
+      n = node.next;
+    }
+    return sum;
+  }
+
+private:
+  static std::vector<Vec3> centers(const GreedyFit& fit)
+  {
+    std::vector<Vec3> points(fit.chosen());
+    for (std::size_t k = 0; k < points.size(); ++k)
+    {
+      points[k] = fit.center(k);
+    }
+    return points;
+  }
+
+  void add(std::size_t begin, std::size_t end, const Vec3& y, Vec3& sum) const
+  {
+    const double *x0 = this->Centers[0].data(), *x1 = this->Centers[1].data(),
+                 *x2 = this->Centers[2].data(), *c0 = this->Coefficients[0].data(),
+                 *c1 = this->Coefficients[1].data(), *c2 = this->Coefficients[2].data();
+    const double inverse = 1 / this->Radius;
+    double s0 = 0, s1 = 0, s2 = 0;
+#pragma omp simd reduction(+ : s0, s1, s2)
+    for (std::size_t k = begin; k < end; ++k)
+    {
+      const double d0 = y[0] - x0[k], d1 = y[1] - x1[k], d2 = y[2] - x2[k];
+      const double f = wendland(inverse * std::sqrt(d0 * d0 + d1 * d1 + d2 * d2));
+      s0 += f * c0[k];
+      s1 += f * c1[k];
+      s2 += f * c2[k];
+    }
+    sum += { s0, s1, s2 };
+  }
+
+  double Radius;
+  PointTree Tree;
+  std::array<std::vector<double>, 3> Centers, Coefficients; ///< in the order of the tree
+};
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> warpByRadialBasis(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options)
 {
-  return warpByInverseDistance(mesh, prescribed, displacement, options);
+  if (!(options.supportRadius >= 0 && std::isfinite(options.supportRadius)))
+  {
+    throw Error("the support radius is " + std::to_string(options.supportRadius) +
+      "; it must be positive, or 0 for one that is chosen");
+  }
+  if (!(options.fitTolerance >= 0 && options.fitTolerance < 1))
+  {
+    throw Error("the tolerance of the fit is " + std::to_string(options.fitTolerance) +
+      "; it must be at least 0 and below 1");
+  }
+  const WarpClock clock(options);
+  const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);
+  if (motion.affine())
+  {
+    return motion.displacements({});
+  }
+  const double radius =
+    options.supportRadius > 0 ? options.supportRadius / motion.scale() : DefaultRadius;
+  const double enough = options.fitTolerance * motion.largest();
+
+  // Every so manieth prescribed point is a candidate, then those of the others that are met worst, until there are none.
+  const std::vector<Index>& all = motion.prescribed();
+  const std::size_t stride = (all.size() + FirstCandidates - 1) / FirstCandidates;
+  std::vector<char> isCandidate(all.size(), 0);
+  GreedyFit fit(radius, options.threads);
+  std::size_t candidates = 0;
+  const auto add = [&](std::size_t i)
+  {
+    isCandidate[i] = 1;
+    fit.add(motion.local(all[i]), motion.rest(i));
+    ++candidates;
+  };
+  for (std::size_t i = 0; i < all.size(); i += stride)
+  {
+    add(i);
+  }
+  std::vector<double> errors(all.size());
+  while (true)
+  {
+    if (!fit.choose(enough, clock))
+    {
+      return {};
+    }
+    if (candidates == all.size() || fit.chosen() >= MostCenters)
+    {
+      break;
+    }
+    const Interpolant interpolant(fit, radius);
+    forEachChunk(static_cast<Index>(all.size()), options.threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          errors[i] =
+            isCandidate[i] ? 0 : norm(motion.rest(i) - interpolant.at(motion.local(all[i])));
+        }
+      });
+    std::vector<std::size_t> missed;
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+      if (errors[i] > enough)
+      {
+        missed.push_back(i);
+      }
+    }
+    if (missed.empty())
+    {
+      break;
+    }
+    std::sort(missed.begin(), missed.end(),
+      [&](std::size_t a, std::size_t b)
+      { return errors[a] > errors[b] || (errors[a] == errors[b] && a < b); });
+    missed.resize(std::min(missed.size(), MoreCandidates));
+    const std::size_t from = candidates;
+    for (const std::size_t i : missed)
+    {
+      add(i);
+    }
+    fit.catchUp(from);
+  }
+
+  const Interpolant interpolant(fit, radius);
+  std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
+  const bool complete = forEachBatch(motion.free().size(), options.threads, clock, 0.5,
+    [&](std::size_t i) { rest[i] = interpolant.at(motion.local(motion.free()[i])); });
+  return complete ? motion.displacements(rest) : std::vector<double>();
 }
 }

@@ -1,11 +1,401 @@
 #include "WarpPointwise.h"
 
+#include "WarpClock.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+
+#include <numeric>
+
 namespace tautline
 {
+namespace
+{
+using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+constexpr int NewtonSteps = 50;
+/// Newton's method is done when the convex combination is this close to the point, in lengths of the longest edge.
+constexpr double WeightTolerance = 1e-14;
+/// Of the incomplete factorisation.
+constexpr double DropTolerance = 1e-3;
+constexpr int FillFactor = 6;
+/// Iterations of the linear solver between questions to the clock, and how often it starts anew.
+constexpr int RunLength = 300, MostRuns = 20;
+
+/// Parts of the mesh, joined by cells.
+class Parts
+{
+public:
+  explicit Parts(Index points)
+    : Parent(static_cast<std::size_t>(points))
+  {
+    std::iota(this->Parent.begin(), this->Parent.end(), Index{ 0 });
+  }
+  Index root(Index i)
+  {
+    while (this->Parent[i] != i)
+    {
+      i = this->Parent[i] = this->Parent[this->Parent[i]];
+    }
+    return i;
+  }
+  void join(Index a, Index b)
+  {
+    a = this->root(a);
+    b = this->root(b);
+    this->Parent[std::max(a, b)] = std::min(a, b);
+  }
+
+private:
+  std::vector<Index> Parent;
+};
+
+/// Neighbours of a point and its convex combination of them.
+struct WeightedNeighbors
+{
+  std::vector<Index> neighbors;
+  std::vector<double> weights;
+};
+
+/// Solution of a positive definite system of the leading rows, by elimination; the other components are 0.
+Vec3 solved(std::array<Vec3, 3> a, Vec3 b, int dimension)
+{
+  const auto n = static_cast<std::size_t>(dimension);
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    for (std::size_t i = k + 1; i < n; ++i)
+    {
+      const double factor = a[i][k] / a[k][k];
+      b[i] -= factor * b[k];
+      for (std::size_t j = k; j < n; ++j)
+      {
+        a[i][j] -= factor * a[k][j];
+      }
+    }
+  }
+  Vec3 x = { 0, 0, 0 };
+  for (std::size_t k = n; k-- > 0;)
+  {
+    double sum = b[k];
+    for (std::size_t j = k + 1; j < n; ++j)
+    {
+      sum -= a[k][j] * x[j];
+    }
+    x[k] = sum / a[k][k];
+  }
+  return x;
+}
+
+/**
+ * @brief The weights w > 0 with sum 1 and w . offsets = 0 that have the largest product.
+ *
+ * They are 1 / (n + l . offset): l, which has as many components as space, minimises -sum log(n + l . offset). Where the
+ * point is not inside the convex hull of its neighbours there is no minimum: all weights are the same then.
+ */
+void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vector<double>& weights)
+{
+  const auto n = static_cast<double>(offsets.size());
+  const auto functionAt = [&](const Vec3& l)
+  {
+    double sum = 0;
+    for (const Vec3& offset : offsets)
+    {
+      const double denominator = n + dot(l, offset);
+      if (denominator <= 0)
+      {
+        return std::numeric_limits<double>::infinity();
+      }
+      sum -= std::log(denominator / n);
+    }
+    return sum;
+  };
+  Vec3 l = { 0, 0, 0 };
+  double value = 0;
+  bool found = false;
+  for (int step = 0; step < NewtonSteps; ++step)
+  {
+    std::array<Vec3, 3> hessian = {};
+    Vec3 gradient = { 0, 0, 0 }; // negative
+    for (std::size_t j = 0; j < offsets.size(); ++j)
+    {
+      const double w = 1 / (n + dot(l, offsets[j]));
+      weights[j] = w;
+      gradient += w * offsets[j];
+      for (std::size_t a = 0; a < 3; ++a)
+      {
+        hessian[a] += (w * w * offsets[j][a]) * offsets[j];
+      }
+    }
+    found = norm(gradient) <= WeightTolerance;
+    const Vec3 direction = solved(hessian, gradient, dimension);
+    const double decrease = dot(gradient, direction);
+    if (found || !(decrease > 0) || !std::isfinite(decrease))
+    {
+      break;
+    }
+    // Halved until it lowers the function; at the bottom rounding decides and a full step is right.
+    constexpr double Armijo = 1e-4, Bottom = 1e-12, Shortest = 1e-10;
+    double length = 1;
+    double next = functionAt(l + direction);
+    while (length > Shortest && decrease > Bottom && !(next <= value - Armijo * length * decrease))
+    {
+      length *= 0.5;
+      next = functionAt(l + length * direction);
+    }
+    if (!std::isfinite(next) || length <= Shortest)
+    {
+      break;
+    }
+    l += length * direction;
+    value = next;
+  }
+  // What the last step left is rounding of the tolerance's size, or a point outside the hull.
+  constexpr double Nearly = 1e-10;
+  Vec3 left = { 0, 0, 0 };
+  for (std::size_t j = 0; j < offsets.size(); ++j)
+  {
+    left += weights[j] * offsets[j];
+  }
+  found = found || norm(left) <= Nearly;
+  double sum = 0;
+  for (double& w : weights)
+  {
+    w = found && std::isfinite(w) && w > 0 ? w : 1 / n;
+    sum += w;
+  }
+  for (double& w : weights)
+  {
+    w /= sum;
+  }
+}
+
+/// Neighbours and weights at the points of a mesh.
+class Combinations
+{
+public:
+  explicit Combinations(const Mesh& mesh)
+    : Input(mesh)
+    , Around(mesh.vertexCells())
+  {
+  }
+
+  WeightedNeighbors at(Index id) const
+  {
+    const MeshView& view = this->Input.view();
+    WeightedNeighbors result;
+    Vec3 normal = { 0, 0, 0 }; // of the cells around, if they are flat
+    for (Index c = this->Around.offsets[id]; c < this->Around.offsets[id + 1]; ++c)
+    {
+      const Index cell = this->Around.cells[c];
+      const CellTopology& t = topology(cornerType(view.cellTypes[cell]));
+      const Index* nodes = view.connectivity + view.offsets[cell];
+      result.neighbors.insert(result.neighbors.end(), nodes, nodes + t.nodes);
+      if (t.dimension == 2)
+      {
+        std::array<Vec3, 4> p = {};
+        for (int k = 0; k < t.nodes; ++k)
+        {
+          p[static_cast<std::size_t>(k)] = pointOf(view, nodes[k]);
+        }
+        normal += vectorArea(t, p.data());
+      }
+    }
+    std::sort(result.neighbors.begin(), result.neighbors.end());
+    result.neighbors.erase(
+      std::unique(result.neighbors.begin(), result.neighbors.end()), result.neighbors.end());
+    result.neighbors.erase(
+      std::remove(result.neighbors.begin(), result.neighbors.end(), id), result.neighbors.end());
+
+    std::vector<Vec3> offsets;
+    double longest = 0;
+    for (const Index neighbor : result.neighbors)
+    {
+      offsets.push_back(pointOf(view, neighbor) - pointOf(view, id));
+      longest = std::max(longest, norm(offsets.back()));
+    }
+    const bool volume = this->Input.dimension() == Dimension::Volume;
+    if (!volume)
+    {
+      this->flatten(normal, offsets);
+    }
+    for (Vec3& offset : offsets)
+    {
+      offset = (longest > 0 ? 1 / longest : 0.0) * offset;
+    }
+    result.weights.resize(offsets.size());
+    maximizeProduct(offsets, volume ? 3 : 2, result.weights);
+    return result;
+  }
+
+private:
+  /// Components of the offsets in the plane of the mesh, or in the tangent plane of a surface.
+  void flatten(Vec3 normal, std::vector<Vec3>& offsets) const
+  {
+    std::array<Vec3, 2> frame = this->Input.frame();
+    const double length = norm(normal);
+    if (this->Input.dimension() != Dimension::Planar && length > 0)
+    {
+      normal = (1 / length) * normal;
+      const auto least =
+        static_cast<std::size_t>(std::min_element(normal.begin(), normal.end(),
+                                   [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+          normal.begin());
+      Vec3 axis = { 0, 0, 0 };
+      axis[least] = 1;
+      frame[0] = cross(normal, axis);
+      frame[0] = (1 / norm(frame[0])) * frame[0];
+      frame[1] = cross(normal, frame[0]);
+    }
+    for (Vec3& offset : offsets)
+    {
+      offset = { dot(offset, frame[0]), dot(offset, frame[1]), 0 };
+    }
+  }
+
+  const Mesh& Input;
+  VertexCells Around;
+};
+
+/**
+ * @brief Solves the system, column by column, by stabilised biconjugate gradients; the matrix is diagonally dominant and
+ * an incomplete factorisation exists.
+ * @return false when the clock said stop
+ */
+bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
+  const WarpClock& clock, Eigen::MatrixXd& solution)
+{
+  Eigen::BiCGSTAB<Matrix, Eigen::IncompleteLUT<double>> solver;
+  solver.preconditioner().setDroptol(DropTolerance);
+  solver.preconditioner().setFillfactor(FillFactor);
+  solver.setTolerance(tolerance);
+  solver.setMaxIterations(RunLength);
+  solver.compute(matrix);
+  solution.setZero(right.rows(), right.cols());
+  for (Eigen::Index k = 0; k < right.cols(); ++k)
+  {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(right.rows());
+    int runs = 0;
+    do
+    {
+      if (!clock.proceed(0.5 + static_cast<double>(k) / 6))
+      {
+        return false;
+      }
+      if (++runs > MostRuns)
+      {
+        throw Error("the linear system of weighted Laplacian smoothing could not be solved to " +
+          std::to_string(tolerance) + "; raise the tolerance or choose another method");
+      }
+      const Eigen::VectorXd start = x;
+      x = solver.solveWithGuess(right.col(k), start);
+    } while (solver.info() != Eigen::Success);
+    solution.col(k) = x;
+  }
+  return true;
+}
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options)
 {
-  return warpByInverseDistance(mesh, prescribed, displacement, options);
+  const WarpClock clock(options);
+  const MeshView& view = mesh.view();
+  const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);
+
+  // Parts without a prescribed point stay where they are; the others' points are the unknowns.
+  Parts parts(view.numberOfPoints);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index* ids = view.connectivity + view.offsets[block.cell(i)];
+      for (int k = 1; k < nodes; ++k)
+      {
+        parts.join(ids[0], ids[k]);
+      }
+    }
+  }
+  std::vector<char> moves(static_cast<std::size_t>(view.numberOfPoints), 0);
+  for (const Index id : motion.prescribed())
+  {
+    moves[parts.root(id)] = 1;
+  }
+  std::vector<Index> unknowns;
+  std::vector<int> number(static_cast<std::size_t>(view.numberOfPoints), -1);
+  for (const Index id : motion.free())
+  {
+    if (moves[parts.root(id)])
+    {
+      number[id] = static_cast<int>(unknowns.size());
+      unknowns.push_back(id);
+    }
+  }
+
+  std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
+  const auto n = static_cast<Eigen::Index>(unknowns.size());
+  if (n > 0 && !motion.affine())
+  {
+    const Combinations combinations(mesh);
+    std::vector<WeightedNeighbors> rows(unknowns.size());
+    if (!forEachBatch(unknowns.size(), options.threads, clock, 0.0,
+          [&](std::size_t i) { rows[i] = combinations.at(unknowns[i]); }))
+    {
+      return {};
+    }
+    std::vector<Index> place(static_cast<std::size_t>(view.numberOfPoints), -1);
+    for (std::size_t i = 0; i < motion.prescribed().size(); ++i)
+    {
+      place[motion.prescribed()[i]] = static_cast<Index>(i);
+    }
+    // Each unknown minus its combination of unknowns is its combination of prescribed displacements.
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n, 3);
+    for (Eigen::Index i = 0; i < n; ++i)
+    {
+      const WeightedNeighbors& row = rows[static_cast<std::size_t>(i)];
+      entries.emplace_back(i, i, 1.0);
+      for (std::size_t j = 0; j < row.neighbors.size(); ++j)
+      {
+        const Index other = row.neighbors[j];
+        if (number[other] >= 0)
+        {
+          entries.emplace_back(i, number[other], -row.weights[j]);
+          continue;
+        }
+        const Vec3& d = motion.rest(static_cast<std::size_t>(place[other]));
+        for (std::size_t k = 0; k < 3; ++k)
+        {
+          right(i, static_cast<Eigen::Index>(k)) += row.weights[j] * d[k];
+        }
+      }
+    }
+    Matrix matrix(n, n);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    Eigen::MatrixXd solution;
+    if (!solve(matrix, right, options.tolerance, clock, solution))
+    {
+      return {};
+    }
+    for (std::size_t i = 0; i < rest.size(); ++i)
+    {
+      const int row = number[motion.free()[i]];
+      for (std::size_t k = 0; k < 3 && row >= 0; ++k)
+      {
+        rest[i][k] = solution(row, static_cast<Eigen::Index>(k));
+      }
+    }
+  }
+  std::vector<double> result = motion.displacements(rest);
+  for (const Index id : motion.free())
+  {
+    if (number[id] < 0)
+    {
+      std::fill_n(&result[3 * id], 3, 0.0);
+    }
+  }
+  return result;
 }
 }

@@ -1,0 +1,418 @@
+#include "FacetTable.h"
+#include "RankExchange.h"
+
+#include <unordered_map>
+
+namespace tautline
+{
+namespace
+{
+constexpr Index NoRow = -1;
+
+/// An item and the place in a list it came from.
+struct Entry
+{
+  Index id;
+  int rank;
+  std::size_t place;
+};
+
+/// A facet by the global ids of its points in increasing order, -1 in front; and how many cells have it.
+struct SharedFacet
+{
+  std::array<Index, MaxFaceNodes> ids;
+  int cells;
+};
+
+/// The items of a list of points, filed under ranks.
+template <class Item, class Get>
+RankLists<Item> filed(const RankOrder& order, const Get& get)
+{
+  RankLists<Item> lists;
+  lists.counts = order.counts;
+  lists.items.reserve(order.order.size());
+  for (const Index i : order.order)
+  {
+    lists.items.push_back(get(i));
+  }
+  return lists;
+}
+}
+
+//------------------------------------------------------------------------------
+struct PointNumbering::Implementation
+{
+  MPI_Comm Comm = MPI_COMM_SELF;
+  bool Alone = true; // no communicator: MPI is not called
+  int Rank = 0, Ranks = 1;
+  Index Points = 0, GlobalSize = 0, FirstRow = 0, OwnedRows = 0;
+  std::vector<Index> Rows;
+  std::vector<unsigned char> Owned;
+  /// Local points owned by other ranks, in order of owner; owned points that others have, in order of rank.
+  RankLists<Index> Lent, Borrowed;
+
+  void build(const Index* globalIds, const unsigned char* used);
+  std::vector<int> findOwners(const std::vector<Index>& ids, std::string& complaint) const;
+
+  /// Combines the values of shared points at their owners and hands the result to all who have them.
+  template <class Item, class Read, class Combine, class Write>
+  void combine(const Read& read, const Combine& add, const Write& write) const
+  {
+    RankLists<Item> toOwners;
+    toOwners.counts = this->Lent.counts;
+    for (const Index point : this->Lent.items)
+    {
+      toOwners.items.push_back(read(point));
+    }
+    const RankLists<Item> arrived = exchange(this->Comm, toOwners);
+    for (std::size_t i = 0; i < arrived.items.size(); ++i)
+    {
+      add(this->Borrowed.items[i], arrived.items[i]);
+    }
+    RankLists<Item> back;
+    back.counts = this->Borrowed.counts;
+    for (const Index point : this->Borrowed.items)
+    {
+      back.items.push_back(read(point));
+    }
+    const RankLists<Item> results = exchange(this->Comm, back);
+    for (std::size_t i = 0; i < results.items.size(); ++i)
+    {
+      write(this->Lent.items[i], results.items[i]);
+    }
+  }
+};
+
+/// The lowest rank that has each id, from a directory spread over the ranks.
+std::vector<int> PointNumbering::Implementation::findOwners(
+  const std::vector<Index>& ids, std::string& complaint) const
+{
+  std::vector<int> target(ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i)
+  {
+    target[i] = directoryRank(ids[i], this->Ranks);
+  }
+  const RankOrder order(target, this->Ranks);
+  const RankLists<Index> asked =
+    exchange(this->Comm, filed<Index>(order, [&](Index i) { return ids[i]; }));
+  std::vector<Entry> entries;
+  entries.reserve(asked.items.size());
+  for (int rank = 0; rank < this->Ranks; ++rank)
+  {
+    for (int k = 0; k < asked.counts[rank]; ++k)
+    {
+      entries.push_back({ asked.items[entries.size()], rank, entries.size() });
+    }
+  }
+  std::sort(entries.begin(), entries.end(),
+    [](const Entry& a, const Entry& b) { return a.id != b.id ? a.id < b.id : a.place < b.place; });
+  RankLists<int> answers;
+  answers.counts = asked.counts;
+  answers.items.resize(entries.size());
+  for (std::size_t i = 0, first = 0; i < entries.size(); ++i)
+  {
+    first = entries[i].id == entries[first].id ? first : i;
+    answers.items[entries[i].place] = entries[first].rank;
+    if (i > first && entries[i].rank == entries[i - 1].rank)
+    {
+      complaint = "Global point id " + std::to_string(entries[i].id) +
+        " occurs twice on one MPI rank: give each point an id of its own (filter Generate Global "
+        "Ids).";
+    }
+  }
+  const RankLists<int> owners = exchange(this->Comm, answers);
+  std::vector<int> result(ids.size());
+  for (std::size_t k = 0; k < order.order.size(); ++k)
+  {
+    result[order.order[k]] = owners.items[k];
+  }
+  return result;
+}
+
+void PointNumbering::Implementation::build(const Index* globalIds, const unsigned char* used)
+{
+  std::vector<Index> points, ids;
+  std::string complaint;
+  if (!globalIds && this->Points > 0 && this->Ranks > 1)
+  {
+    complaint =
+      "A mesh on several MPI ranks needs global point ids: use the filter Generate Global Ids.";
+  }
+  for (Index p = 0; p < this->Points; ++p)
+  {
+    if (!used || used[p])
+    {
+      const Index id = globalIds ? globalIds[p] : p;
+      if (id < 0)
+      {
+        complaint = "Global point id " + std::to_string(id) + " is negative.";
+      }
+      points.push_back(p);
+      ids.push_back(id);
+    }
+  }
+  this->Rows.assign(static_cast<std::size_t>(this->Points), NoRow);
+  this->Owned.assign(static_cast<std::size_t>(this->Points), 0);
+  std::vector<int> owners(points.size(), 0);
+  if (this->Ranks > 1)
+  {
+    throwTogether(this->Comm, complaint);
+    owners = this->findOwners(ids, complaint);
+    throwTogether(this->Comm, complaint);
+  }
+
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (owners[i] == this->Rank)
+    {
+      this->Rows[points[i]] = this->OwnedRows++;
+      this->Owned[points[i]] = 1;
+    }
+  }
+  this->GlobalSize = this->OwnedRows;
+  if (this->Ranks == 1)
+  {
+    return;
+  }
+  Index end = 0;
+  MPI_Scan(&this->OwnedRows, &end, 1, MPI_INT64_T, MPI_SUM, this->Comm);
+  MPI_Allreduce(&this->OwnedRows, &this->GlobalSize, 1, MPI_INT64_T, MPI_SUM, this->Comm);
+  this->FirstRow = end - this->OwnedRows;
+  std::unordered_map<Index, Index> pointOf;
+  pointOf.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (owners[i] == this->Rank)
+    {
+      this->Rows[points[i]] += this->FirstRow;
+      pointOf.emplace(ids[i], points[i]);
+    }
+  }
+
+  // Tell the owners what is shared with them; they answer with rows.
+  std::vector<std::size_t> shared;
+  std::vector<int> sharedOwner;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (owners[i] != this->Rank)
+    {
+      shared.push_back(i);
+      sharedOwner.push_back(owners[i]);
+    }
+  }
+  const RankOrder order(sharedOwner, this->Ranks);
+  this->Lent = filed<Index>(order, [&](Index k) { return points[shared[k]]; });
+  const RankLists<Index> asked =
+    exchange(this->Comm, filed<Index>(order, [&](Index k) { return ids[shared[k]]; }));
+  this->Borrowed.counts = asked.counts;
+  for (const Index id : asked.items)
+  {
+    this->Borrowed.items.push_back(pointOf.at(id));
+  }
+  this->combine<Index>([&](Index point) { return this->Rows[point]; }, [](Index, Index) {},
+    [&](Index point, Index row) { this->Rows[point] = row; });
+}
+
+//------------------------------------------------------------------------------
+PointNumbering::PointNumbering(
+  Communicator communicator, Index points, const Index* globalIds, const unsigned char* used)
+  : Impl(std::make_unique<Implementation>())
+{
+  this->Impl->Points = points;
+  if (communicator)
+  {
+    this->Impl->Alone = false;
+    this->Impl->Comm = mpiOf(communicator);
+    MPI_Comm_rank(this->Impl->Comm, &this->Impl->Rank);
+    MPI_Comm_size(this->Impl->Comm, &this->Impl->Ranks);
+  }
+  this->Impl->build(globalIds, used);
+}
+
+PointNumbering::~PointNumbering() = default;
+
+Communicator PointNumbering::communicator() const
+{
+  return this->Impl->Alone ? nullptr : &this->Impl->Comm;
+}
+
+int PointNumbering::ranks() const
+{
+  return this->Impl->Ranks;
+}
+
+Index PointNumbering::globalSize() const
+{
+  return this->Impl->GlobalSize;
+}
+
+Index PointNumbering::firstRow() const
+{
+  return this->Impl->FirstRow;
+}
+
+Index PointNumbering::ownedRows() const
+{
+  return this->Impl->OwnedRows;
+}
+
+const std::vector<Index>& PointNumbering::rows() const
+{
+  return this->Impl->Rows;
+}
+
+bool PointNumbering::owned(Index point) const
+{
+  return this->Impl->Owned[point] != 0;
+}
+
+void PointNumbering::sum(double* values, int components) const
+{
+  if (this->Impl->Ranks == 1)
+  {
+    return;
+  }
+  // One component after the other keeps the items of fixed size.
+  for (int c = 0; c < components; ++c)
+  {
+    const auto at = [=](Index point) -> double& { return values[components * point + c]; };
+    this->Impl->combine<double>([&](Index point) { return at(point); },
+      [&](Index point, double value) { at(point) += value; },
+      [&](Index point, double value) { at(point) = value; });
+  }
+}
+
+void PointNumbering::either(unsigned char* flags) const
+{
+  if (this->Impl->Ranks > 1)
+  {
+    this->Impl->combine<unsigned char>([&](Index point) { return flags[point]; },
+      [&](Index point, unsigned char flag) { flags[point] = flags[point] ? flags[point] : flag; },
+      [&](Index point, unsigned char flag) { flags[point] = flag; });
+  }
+}
+
+double PointNumbering::sum(double value) const
+{
+  double result = value;
+  if (this->Impl->Ranks > 1)
+  {
+    MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, MPI_SUM, this->Impl->Comm);
+  }
+  return result;
+}
+
+double PointNumbering::maximum(double value) const
+{
+  double result = value;
+  if (this->Impl->Ranks > 1)
+  {
+    MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, MPI_MAX, this->Impl->Comm);
+  }
+  return result;
+}
+
+Index PointNumbering::sum(Index value) const
+{
+  Index result = value;
+  if (this->Impl->Ranks > 1)
+  {
+    MPI_Allreduce(&value, &result, 1, MPI_INT64_T, MPI_SUM, this->Impl->Comm);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> globalBoundaryPoints(
+  const Mesh& mesh, Communicator communicator, const Index* globalIds, const unsigned char* skip)
+{
+  const Index points = mesh.view().numberOfPoints;
+  std::vector<unsigned char> flags(static_cast<std::size_t>(points), 0);
+  const PointNumbering all(communicator, points, globalIds);
+  const bool volume = mesh.dimension() == Dimension::Volume;
+  const bool volumeSomewhere = all.maximum(volume ? 1.0 : 0.0) > 0.0;
+  using Facet = std::array<Index, MaxFaceNodes>; // local points, -1 where there is none
+  const auto mark = [&](const Facet& facet)
+  {
+    for (const Index point : facet)
+    {
+      if (point >= 0)
+      {
+        flags[point] = 1;
+      }
+    }
+  };
+
+  // As Mesh::boundary() has it, what does not have two cells is boundary; other ranks may have the second one.
+  std::vector<Facet> facets;
+  std::vector<SharedFacet> shared;
+  std::vector<int> target;
+  if (volume == volumeSomewhere)
+  {
+    FacetTable(mesh).forEachFacet(
+      [&](Index smallest, const FacetUse* uses, Index count)
+      {
+        const auto counted = static_cast<int>(std::count_if(
+          uses, uses + count, [&](const FacetUse& use) { return !skip || !skip[use.cell]; }));
+        if (counted == 0 || counted == 2)
+        {
+          return;
+        }
+        const Facet facet = { smallest, uses->others[0], uses->others[1], uses->others[2] };
+        if (all.ranks() == 1)
+        {
+          mark(facet);
+          return;
+        }
+        SharedFacet item = { facet, counted };
+        for (Index& id : item.ids)
+        {
+          id = id < 0 ? id : globalIds[id];
+        }
+        std::sort(item.ids.begin(), item.ids.end());
+        facets.push_back(facet);
+        shared.push_back(item);
+        target.push_back(directoryRank(item.ids.back(), all.ranks()));
+      });
+  }
+  if (all.ranks() == 1)
+  {
+    return flags;
+  }
+
+  const MPI_Comm comm = mpiOf(communicator);
+  const RankOrder order(target, all.ranks());
+  const RankLists<SharedFacet> asked =
+    exchange(comm, filed<SharedFacet>(order, [&](Index i) { return shared[i]; }));
+  std::vector<std::size_t> sorted(asked.items.size());
+  std::iota(sorted.begin(), sorted.end(), std::size_t(0));
+  std::sort(sorted.begin(), sorted.end(),
+    [&](std::size_t a, std::size_t b) { return asked.items[a].ids < asked.items[b].ids; });
+  RankLists<int> answers;
+  answers.counts = asked.counts;
+  answers.items.resize(sorted.size());
+  for (std::size_t i = 0; i < sorted.size();)
+  {
+    int cells = 0;
+    std::size_t j = i;
+    for (; j < sorted.size() && asked.items[sorted[j]].ids == asked.items[sorted[i]].ids; ++j)
+    {
+      cells += asked.items[sorted[j]].cells;
+    }
+    for (; i < j; ++i)
+    {
+      answers.items[sorted[i]] = cells;
+    }
+  }
+  const RankLists<int> cells = exchange(comm, answers);
+  for (std::size_t k = 0; k < order.order.size(); ++k)
+  {
+    if (cells.items[k] != 2)
+    {
+      mark(facets[order.order[k]]);
+    }
+  }
+  all.either(flags.data());
+  return flags;
+}
+}
