@@ -143,16 +143,18 @@ private:
   std::vector<vtkDataArray*> Vectors;
 };
 
-/// VTK's message without the class and the address before it.
+/// What is wrong, from the parser's "... Msg: ERR201 - Undefined symbol: 'q'<tab>Expression: ..." or another message.
 std::string plain(std::string message)
 {
-  const std::size_t start = message.find("): ");
-  message = start == std::string::npos ? message : message.substr(start + 3);
-  while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
+  const auto after = [&message](const std::string& mark)
   {
-    message.pop_back();
-  }
-  std::replace(message.begin(), message.end(), '\t', ' ');
+    const std::size_t at = message.find(mark);
+    message = at == std::string::npos ? message : message.substr(at + mark.size());
+  };
+  after("): ");
+  after("Msg: ");
+  after(" - ");
+  message = message.substr(0, message.find_first_of("\t\n"));
   return message;
 }
 }

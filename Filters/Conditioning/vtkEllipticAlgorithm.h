@@ -76,7 +76,7 @@ public:
   ///@}
 
   ///@{
-  /// a of ELLIPTIC, at least 0. The default is 1.
+  /// a of ELLIPTIC. The default is 1. Where it is negative, the matrix may be indefinite: MINRES and GMRES take it.
   vtkSetMacro(Reaction, double);
   vtkGetMacro(Reaction, double);
   ///@}

@@ -107,12 +107,17 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
   std::ostringstream text;
   text << this->Reason << (solved.message.empty() ? "" : " ") << tautline::sentence(solved.message)
        << "\n"
-       << system.unknowns() << " unknowns, " << solved.iterations << " iterations of "
-       << tautline::nameOf(options.method);
-  if (options.method != tautline::KrylovMethod::Direct)
+       << system.unknowns() << " unknowns, ";
+  if (options.method == tautline::KrylovMethod::Direct)
   {
-    text << " with " << tautline::nameOf(options.preconditioner);
+    text << "a direct solve";
   }
+  else
+  {
+    text << solved.iterations << " iterations of " << tautline::nameOf(options.method) << " with "
+         << tautline::nameOf(options.preconditioner);
+  }
+  text.precision(3);
   text << ".\nSeconds: assembly " << system.assembleSeconds() << ", set-up " << solved.setupSeconds
        << ", solve " << solved.solveSeconds << ".";
   if (outside > 0)
