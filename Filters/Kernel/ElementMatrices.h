@@ -12,7 +12,10 @@
 
 namespace tautline
 {
-inline Vec3 apply(const SymmetricTensor& c, const Vec3& v)
+/// Throws Error if a mesh has cells there are no elements for: which, how many, and what to do.
+void requireElements(const Mesh& mesh);
+
+inline Vec3 applyTensor(const SymmetricTensor& c, const Vec3& v)
 {
   return { c[0] * v[0] + c[3] * v[1] + c[5] * v[2], c[3] * v[0] + c[1] * v[1] + c[4] * v[2],
     c[5] * v[0] + c[4] * v[1] + c[2] * v[2] };
@@ -133,7 +136,7 @@ private:
     const double scale = flat ? 0.0 : reference / det * (this->Isotropic ? c[0] : 1.0);
     for (int j = 1; j < Nodes; ++j)
     {
-      const Vec3 q = scale * (this->Isotropic ? h[j] : apply(c, h[j]));
+      const Vec3 q = scale * (this->Isotropic ? h[j] : applyTensor(c, h[j]));
       for (int i = 0; i < j; ++i)
       {
         k[Nodes * i + j] = dot(h[i], q);
@@ -163,7 +166,7 @@ private:
       for (int i = 0; i < Nodes; ++i)
       {
         const Vec3 q =
-          s.weight * apply(c, { s.gradient[0][i], s.gradient[1][i], s.gradient[2][i] });
+          s.weight * applyTensor(c, { s.gradient[0][i], s.gradient[1][i], s.gradient[2][i] });
         for (int j = 0; j < Nodes; ++j)
         {
           k[Nodes * i + j] +=

@@ -16,6 +16,7 @@
 #include "LinearSolver.h"
 #include "PointNumbering.h"
 
+#include <functional>
 #include <memory>
 
 namespace tautline
@@ -31,15 +32,16 @@ enum class Pde : int
 struct EllipticProblem
 {
   Pde pde = Pde::Poisson;
-  DiffusionOperator diffusion; ///< Elliptic; Poisson ignores it
-  ElasticOperator elastic;     ///< Elasticity
-  Vec3 source = { 1, 0,
-    0 }; ///< f, constant: the first component, or a vector in space for elasticity
-  const double* sources =
-    nullptr; ///< f at the points instead, 1 (elasticity: 3) per point; or null
+  /// Of Elliptic; Poisson ignores it. C must be positive definite in the plane of a planar mesh, in space otherwise.
+  DiffusionOperator diffusion;
+  ElasticOperator elastic; ///< Elasticity
+  /// f, constant: the first component, or a vector in space for elasticity (of a planar mesh in its plane).
+  Vec3 source = { 1, 0, 0 };
+  /// f at the points instead, 1 (elasticity: 3) per point, linear in between; or null.
+  const double* sources = nullptr;
   /// One flag per point, nonzero = its values are given; null: the boundary of the mesh (over all ranks).
   const unsigned char* fixed = nullptr;
-  /// Given values at the points, 1 (elasticity: 3) per point; null: 0.
+  /// Given values at the points, 1 (elasticity: 3) per point; null: 0. Only those of fixed points are read.
   const double* fixedValues = nullptr;
 };
 
@@ -53,8 +55,9 @@ struct MeshPart
 
 struct EllipticSolution
 {
-  int components = 1;         ///< 1, or 3 for elasticity
-  std::vector<double> values; ///< components per point; NaN at points outside all cells
+  int components = 1; ///< 1, or 3 for elasticity
+  std::vector<double>
+    values; ///< components per point; NaN at points outside all cells: no equation is about them
   /// Per cell, at its centre: gradient (3), or stress of elasticity (6, as SymmetricTensor); NaN for cells skipped.
   std::vector<double> gradients;
   LinearSolution linear;
@@ -68,32 +71,40 @@ class TAUTLINE_KERNEL_EXPORT EllipticSystem
 {
 public:
   /**
-   * @brief Assembles. Collective over the ranks. Throws Error that names the problem and the remedy: inverted or degenerate elements
-   * (how many, the first), no cells, cells of other types, no free point, a part without a fixed point where the operator
-   * is singular there (Poisson, a = 0, elasticity), f or given values that are not finite.
-   * @param mesh stays alive as long as the system; oriented consistently
+   * @brief Assembles. Collective over the ranks, which all throw if one does. Throws Error that names the problem and the remedy:
+   *
+   * - no cells, cells of other types, coordinates or coefficients that are not finite or out of range;
+   * - degenerate elements, or elements inverted against the rest (how many, the first). A mesh that is reversed throughout is taken;
+   * - f or given values that are not finite where they are needed, or that point out of the plane of a planar mesh;
+   * - no free point; parts of the mesh without a fixed point where the operator is singular there (Poisson, a = 0). Elastic parts
+   *   need two fixed points in the plane and three in space, not in one line; parts that touch in one point (or in space along
+   *   one edge) count as one, and that they may turn about it is not found. On several ranks only one fixed point is asked for.
+   *
+   * @param mesh stays alive as long as the system, and so do the arrays of problem and part
    */
   EllipticSystem(
     const Mesh& mesh, const EllipticProblem& problem, const MeshPart& part = {}, int threads = 0);
   ~EllipticSystem();
 
-  Index unknowns() const; ///< on all ranks
-  int blockSize() const;  ///< unknowns per point: 1, 2 or 3
-  double assembleSeconds() const;
-  /// This rank's contributions; unknown blockSize i + k is component k of point freePoints()[i].
+  Index unknowns() const;         ///< on all ranks
+  int blockSize() const;          ///< unknowns per point: 1, 2 or 3
+  double assembleSeconds() const; ///< wall time of the matrix and the right-hand side
+  /// This rank's contributions; unknown blockSize i + k is component k of point freePoints()[i]. On one rank the matrix.
   const SparseMatrix& matrix() const;
   const std::vector<double>& rightHandSide() const;
   const std::vector<Index>& freePoints() const;
   const Mesh& mesh() const;
   const EllipticProblem& problem() const;
-  const PointNumbering& numbering() const;
+  const MeshPart& part() const;
+  int threads() const;
+  const PointNumbering& numbering() const; ///< of the free points: entry i is freePoints()[i]
 
   /// What LinearSolver wants; valid as long as the system.
   LinearSystem linearSystem() const;
 
-  /// Solves, with a solver of its own.
+  /// Solves, with a solver of its own. A failure is a reason in `linear`, as in LinearSolver.
   EllipticSolution solve(const SolverOptions& options) const;
-  /// The fields of a solution of the linear system.
+  /// The fields of a solution of the linear system, one number per unknown of this rank.
   EllipticSolution fields(const std::vector<double>& unknowns) const;
 
 private:
@@ -102,8 +113,8 @@ private:
 };
 
 /**
- * @brief Norms of the difference between a solution and a known function, by quadrature of degree 4.
- * @param exact writes `components` values and their gradients (3 per component) at a place
+ * @brief Norms of the difference between a solution and a known function, by four Gauss points in each direction. Collective.
+ * @param exact writes `components` values and their gradients (3 per component; of a surface its tangential ones) at a place
  * @return { L2 norm of the error, L2 norm of the gradient's error }
  */
 TAUTLINE_KERNEL_EXPORT std::array<double, 2> errorNorms(const EllipticSystem& system,

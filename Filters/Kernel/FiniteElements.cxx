@@ -16,7 +16,36 @@ std::string counted(Index n, const CellTopology& t)
   return std::to_string(n) + " " + (n == 1 ? t.name : t.plural);
 }
 
-/// Throws if the mesh has cells there are no elements for.
+constexpr int placeBits = 3; // MaxNodes places
+static_assert(1 << placeBits == MaxNodes, "a place in a cell takes placeBits");
+constexpr Index widestSlot = std::numeric_limits<std::uint16_t>::max();
+
+/// The lowest of the cells that several threads report.
+class FirstCell
+{
+public:
+  void report(Index cell)
+  {
+    Index least = this->Cell;
+    while (cell < least && !this->Cell.compare_exchange_weak(least, cell))
+    {
+    }
+  }
+  bool any() const { return this->Cell != none; }
+  std::string name() const { return "Cell " + std::to_string(this->Cell); }
+
+private:
+  static constexpr Index none = std::numeric_limits<Index>::max();
+  std::atomic<Index> Cell{ none };
+};
+
+bool isFinite(const SymmetricTensor& c)
+{
+  return std::all_of(c.begin(), c.end(), [](double x) { return std::isfinite(x); });
+}
+}
+
+//------------------------------------------------------------------------------
 void requireElements(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
@@ -63,35 +92,6 @@ void requireElements(const Mesh& mesh)
   {
     throw Error("The mesh is too large for one process: distribute it over several ranks.");
   }
-}
-
-constexpr int placeBits = 3; // MaxNodes places
-static_assert(1 << placeBits == MaxNodes, "a place in a cell takes placeBits");
-constexpr Index widestSlot = std::numeric_limits<std::uint16_t>::max();
-
-/// The lowest of the cells that several threads report.
-class FirstCell
-{
-public:
-  void report(Index cell)
-  {
-    Index least = this->Cell;
-    while (cell < least && !this->Cell.compare_exchange_weak(least, cell))
-    {
-    }
-  }
-  bool any() const { return this->Cell != none; }
-  std::string name() const { return "Cell " + std::to_string(this->Cell); }
-
-private:
-  static constexpr Index none = std::numeric_limits<Index>::max();
-  std::atomic<Index> Cell{ none };
-};
-
-bool isFinite(const SymmetricTensor& c)
-{
-  return std::all_of(c.begin(), c.end(), [](double x) { return std::isfinite(x); });
-}
 }
 
 //------------------------------------------------------------------------------

@@ -1,0 +1,64 @@
+/**
+ * @file EllipticChecks.h
+ * @brief What a boundary value problem needs to have a solution, and the derivatives of that. Internal: not installed.
+ */
+#ifndef tautline_EllipticChecks_h
+#define tautline_EllipticChecks_h
+
+#include "EllipticProblem.h"
+
+namespace tautline
+{
+/// Looks at a mesh and a problem before anything is assembled; all ranks throw together.
+class EllipticChecks
+{
+public:
+  /// @param numbering of all points
+  EllipticChecks(const Mesh& mesh, const EllipticProblem& problem, const MeshPart& part,
+    const PointNumbering& numbering, int threads);
+
+  /// Does work on each rank; where it throws Error on one, all throw.
+  template <class Work>
+  void everywhere(const Work& work) const
+  {
+    std::string message;
+    try
+    {
+      work();
+    }
+    catch (const Error& error)
+    {
+      message = error.what();
+    }
+    this->throwTogether(message);
+  }
+
+  void requireCoefficients() const;
+  void requireValidElements() const;
+  /// Points of cells, on any rank.
+  std::vector<unsigned char> usedPoints() const;
+  void requireData(
+    const std::vector<unsigned char>& used, const std::vector<unsigned char>& fixed) const;
+  /// Every part of the mesh that has a free point has enough fixed ones.
+  void requireFixedParts(
+    const std::vector<unsigned char>& used, const std::vector<unsigned char>& fixed) const;
+  /// Unknowns per point of elasticity; a rank without cells asks the others.
+  int elasticUnknowns() const;
+
+private:
+  bool skipped(Index cell) const { return this->Part.skip && this->Part.skip[cell]; }
+  void throwTogether(const std::string& message) const;
+  void requireInPlane(
+    const double* vectors, const std::vector<unsigned char>& where, const char* name) const;
+
+  const Mesh& Input;
+  const EllipticProblem& Problem;
+  const MeshPart& Part;
+  const PointNumbering& Numbering;
+  int Threads;
+};
+
+/// Fills in gradients or stresses from the values.
+void differentiate(const EllipticSystem& system, EllipticSolution& solution);
+}
+#endif
