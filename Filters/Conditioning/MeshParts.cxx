@@ -118,7 +118,7 @@ public:
       auto* result = vtkDataSet::SafeDownCast(output);
       result->ShallowCopy(data);
       this->begin();
-      this->groups.back().pieces.push_back({ data, vtkDataSet::SafeDownCast(selected), result });
+      this->keep(data, selected, result);
     }
   }
 
@@ -139,11 +139,16 @@ private:
     this->Made.push_back(vtkSmartPointer<vtkDataSet>::Take(data->NewInstance()));
     vtkDataSet* result = this->Made.back();
     result->ShallowCopy(data);
-    if (data->GetNumberOfPoints() > 0)
-    {
-      this->groups.back().pieces.push_back({ data, vtkDataSet::SafeDownCast(selected), result });
-    }
+    this->keep(data, selected, result);
     return result;
+  }
+
+  void keep(vtkDataSet* input, vtkDataObject* selected, vtkDataSet* output)
+  {
+    if (input->GetNumberOfPoints() > 0)
+    {
+      this->groups.back().pieces.push_back({ input, vtkDataSet::SafeDownCast(selected), output });
+    }
   }
 
   int FlatIndex = 0;
@@ -345,30 +350,28 @@ void visitGroup(const Group& group, LocalMesh& mesh, const Processes& processes,
     ids = globalIdsOf(pieces, processes);
   }
   std::unique_ptr<Merged> merged;
-  if (pieces.size() == 1)
-  {
-    mesh.input = pieces[0].input;
-    mesh.selected = pieces[0].selected;
-    mesh.output = pieces[0].output;
-    mesh.globalIds = ids.empty() ? std::vector<Index>() : std::move(ids[0]);
-  }
-  else
-  {
-    processes.together(
-      [&]()
+  processes.together(
+    [&]()
+    {
+      if (pieces.size() == 1)
       {
-        mesh.input = vtkSmartPointer<vtkUnstructuredGrid>::New();
-        if (!pieces.empty())
-        {
-          merged = std::make_unique<Merged>(pieces, ids);
-          mesh.input = merged->Input;
-          mesh.selected = merged->Selected;
-          mesh.globalIds = merged->GlobalIds;
-        }
-        mesh.output = vtkSmartPointer<vtkUnstructuredGrid>::New();
-        mesh.output->ShallowCopy(mesh.input);
-      });
-  }
+        mesh.input = pieces[0].input;
+        mesh.selected = pieces[0].selected;
+        mesh.output = pieces[0].output;
+        mesh.globalIds = ids.empty() ? std::vector<Index>() : std::move(ids[0]);
+        return;
+      }
+      mesh.input = vtkSmartPointer<vtkUnstructuredGrid>::New();
+      if (!pieces.empty())
+      {
+        merged = std::make_unique<Merged>(pieces, ids);
+        mesh.input = merged->Input;
+        mesh.selected = merged->Selected;
+        mesh.globalIds = merged->GlobalIds;
+      }
+      mesh.output = vtkSmartPointer<vtkUnstructuredGrid>::New();
+      mesh.output->ShallowCopy(mesh.input);
+    });
   visit(mesh);
   if (merged)
   {
