@@ -31,8 +31,8 @@ bool isElliptic(const Mesh& mesh, const SymmetricTensor& c)
     return positiveDefinite(c[0], c[1], c[2], c[3], c[4], c[5]);
   }
   const auto& e = mesh.frame();
-  return positiveDefinite(
-    dot(e[0], applyTensor(c, e[0])), dot(e[1], applyTensor(c, e[1])), 1, dot(e[0], applyTensor(c, e[1])), 0, 0);
+  return positiveDefinite(dot(e[0], applyTensor(c, e[0])), dot(e[1], applyTensor(c, e[1])), 1,
+    dot(e[0], applyTensor(c, e[1])), 0, 0);
 }
 
 /// Parts of a mesh: points that cells connect.
