@@ -160,7 +160,7 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
   const tautline::ConditionEstimate found = tautline::estimateCondition(input.system(), options);
 
   const std::string name =
-    plain ? "A" : std::string("P^-1 A, ") + tautline::nameOf(options.preconditioner);
+    plain ? "A" : std::string("P^-1 A (") + tautline::nameOf(options.preconditioner) + ")";
   table.begin();
   if (!mesh.name.empty())
   {

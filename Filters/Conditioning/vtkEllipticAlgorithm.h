@@ -2,8 +2,8 @@
  * @class vtkEllipticAlgorithm
  * @brief What the filters that solve elliptic partial differential equations have in common: the problem.
  *
- * Abstract. The boundary value problem of dissertation section 2.2, discretised by linear finite elements (triangles and
- * tetrahedra; quadrilaterals and hexahedra with bilinear and trilinear ones) on the mesh at input port 0. Input port 1 (optional)
+ * Abstract. The boundary value problem of dissertation section 2.2, discretised by linear finite elements (triangles,
+ * quadrilaterals, tetrahedra, hexahedra, wedges and pyramids) on the mesh at input port 0. Input port 1 (optional)
  * is a vtkSelection of points, or of cells with their points, where the solution is given.
  *
  * Each block of a multiblock data set is a mesh of its own; the partitions of a partitioned data set are one
@@ -12,7 +12,7 @@
  * them, else by equal coordinates. Tables are those of process 0.
  *
  * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted and
- * degenerate elements, wedges, pyramids, polygons, polyhedra, cells of higher order, mixed orientation, parts without a point
+ * degenerate elements, polygons, polyhedra, cells of higher order, mixed orientation, parts without a point
  * where the solution is given, values and coefficients that are not finite.
  *
  * Arrays of SetInputArrayToProcess: 0 fixed points (of points or cells), 1 source, 2 given values (of

@@ -18,6 +18,8 @@ vtkStandardNewMacro(vtkSolverStudy);
 namespace
 {
 constexpr int StudyPort = 1;
+constexpr int WithModes = 24,
+              WithoutModes = 25;        // numbers of combinations, by what multigrid is told
 constexpr const char* FailedMark = "*"; // as in Tables 2.8 to 2.12
 constexpr const char* NotRunMark = "-";
 
@@ -36,7 +38,7 @@ const std::vector<tautline::SolverCombination>& allCombinations()
     list.push_back({ KrylovMethod::MINRES, Preconditioner::GAMG, true });
     list.push_back({ KrylovMethod::BiCGStab, Preconditioner::GAMG, true });
     list.push_back({ KrylovMethod::ConjugateGradient, Preconditioner::None, true });
-    list.push_back({ KrylovMethod::ConjugateGradient, Preconditioner::BoomerAMG, false });
+    list.push_back({ KrylovMethod::ConjugateGradient, Preconditioner::BoomerAMG, true });
     list.push_back({ KrylovMethod::ConjugateGradient, Preconditioner::GAMG, false });
     return list;
   }();
@@ -74,6 +76,8 @@ const char* vtkSolverStudy::GetCombinationName(int number)
     {
       list.push_back(tautline::nameOf(combination));
     }
+    list[WithModes - 1] += ", rigid body modes";
+    list[WithoutModes - 1] += ", no rigid body modes";
     return list;
   }();
   return number >= 1 && number <= static_cast<int>(names.size()) ? names[number - 1].c_str() : "";
@@ -150,16 +154,18 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
     const bool converged = row.run && tautline::converged(row.linear.reason);
     failed += row.run && !converged;
     skipped += !row.run;
-    const double total = row.linear.setupSeconds + row.linear.solveSeconds;
     table.begin();
     if (!mesh.name.empty())
     {
       table.addText("Block", mesh.name);
     }
-    table.addText("Combination", tautline::nameOf(row.combination));
+    table.addText("Combination", GetCombinationName(numbers[i]));
     table.add("N combination", numbers[i]);
-    table.add("Total time (s)", converged ? total : 0.0);
-    table.addText("Result", converged ? secondsText(total) : row.run ? FailedMark : NotRunMark);
+    table.add("Total time (s)", converged ? row.seconds : 0.0);
+    table.addText("Result",
+      converged   ? secondsText(row.seconds)
+        : row.run ? FailedMark
+                  : NotRunMark);
     table.add("Time set-up (s)", row.linear.setupSeconds);
     table.add("Time solve (s)", row.linear.solveSeconds);
     table.add("N iterations", row.linear.iterations);
@@ -172,13 +178,11 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
               : "There was no time left for it.");
   }
   this->Recommended = study.recommended >= 0
-    ? tautline::nameOf(study.rows[static_cast<std::size_t>(study.recommended)].combination)
+    ? GetCombinationName(numbers[static_cast<std::size_t>(study.recommended)])
     : "";
   this->Why = study.why;
   std::ostringstream text;
-  text << (this->Recommended.empty() ? "None converged."
-                                     : "Recommended: " + this->Recommended + ".")
-       << (study.why.empty() ? "" : " ") << study.why << "\n"
+  text << (this->Recommended.empty() ? "" : "Recommended: ") << study.why << "\n"
        << input.system().unknowns() << " unknowns; " << study.rows.size() << " combinations";
   if (failed > 0)
   {

@@ -126,7 +126,7 @@ def solve(
 ) -> Solved:
     """Solve an elliptic partial differential equation on a mesh by linear finite elements.
 
-    mesh: triangles, quadrilaterals, tetrahedra, hexahedra: a vtkDataSet, a file name or (points, cells). Not changed.
+    mesh: triangles, quadrilaterals, tetrahedra, hexahedra, wedges, pyramids: a vtkDataSet, a file name or (points, cells). Not changed.
     pde: "poisson", -laplace u = f; "elliptic", -alpha u_xx - beta u_yy - gamma u_zz + reaction u = f; "elasticity",
         linear, of the displacement u.
     solver: "cg", "gmres", "minres", "bicgstab", or "direct".
