@@ -40,11 +40,23 @@ struct ConditionEstimate
   bool converged = false;
   std::string method;  ///< "Krylov-Schur, shift-invert (Cholesky)", ...
   std::string message; ///< what limits the accuracy, or why it failed; or ""
-  int iterations = 0;
+  int iterations =
+    0; ///< steps of Lanczos, restarts of Krylov-Schur, iterations of CG or LOBPCG; of both ends
   double seconds = 0.0;
+  /// Eigenvectors, this rank's unknowns; empty where not found (Ritz values).
+  std::vector<double> smallestVector, largestVector;
 };
 
-/// Collective over the ranks. Failures of PETSc or SLEPc are messages, not exceptions; bad options throw Error.
+/**
+ * @brief Extreme eigenvalues of A or of P^-1 A, and their ratio. Collective over the ranks.
+ *
+ * Failures of PETSc or SLEPc, a matrix that is singular or not definite, a preconditioner that is not symmetric or not
+ * definite, the time limit and an abort are messages, not exceptions; what was found is kept. Bad options throw Error, and so
+ * does what LinearSolver refuses. Error bounds are those of the computed vectors: that no eigenvalue lies further out rests
+ * on the start vector, which is random, and for a factorised A on its number of negative pivots.
+ */
+TAUTLINE_KERNEL_EXPORT ConditionEstimate estimateCondition(
+  const LinearSystem& system, const ConditionOptions& options);
 TAUTLINE_KERNEL_EXPORT ConditionEstimate estimateCondition(
   const EllipticSystem& system, const ConditionOptions& options);
 

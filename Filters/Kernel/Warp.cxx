@@ -1,5 +1,7 @@
 #include "Warp.h"
 
+#include "WarpBoundary.h"
+#include "WarpPath.h"
 #include "WarpStep.h"
 
 #include <limits>
@@ -117,6 +119,13 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
 }
 }
 
+/// What no interior position can mend.
+struct BoundaryState
+{
+  Index inverted = 0, firstInverted = -1; ///< elements of prescribed points alone
+  WarpBoundary::Crossing crossing;
+};
+
 //------------------------------------------------------------------------------
 struct Warper::Implementation
 {
@@ -125,19 +134,27 @@ struct Warper::Implementation
     , Options(options)
     , Parts(mesh, options.prescribed)
     , First(mesh, mesh, Parts)
+    , MovedBoundary(mesh, Parts.prescribed())
   {
     checkOptions(mesh, options);
     checkMesh(mesh, this->Parts, options);
   }
 
+  bool inSteps() const
+  {
+    return this->Options.steps != 1 || this->Options.method == WarpMethod::SmallStepFemwarp;
+  }
   void checkDisplacement(const double* displacement) const;
-  Warping run(const WarpMotion& motion);
+  Warping run(const WarpMotion& motion, const WarpMotion& path);
+  void followMotion(const WarpMotion& motion, WarpControl& control);
+  BoundaryState examineBoundary(const double* points) const;
   void explain(WarpControl& control);
 
   const Mesh& Input;
   const WarpOptions Options;
   WarpParts Parts;
   WarpStep First;
+  WarpBoundary MovedBoundary;
 };
 
 /// Finite, and in the plane of a planar mesh.
@@ -177,29 +194,97 @@ void Warper::Implementation::checkDisplacement(const double* displacement) const
 }
 
 //------------------------------------------------------------------------------
-Warping Warper::Implementation::run(const WarpMotion& motion)
+Warping Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& path)
 {
   Warping result;
   WarpControl control(this->Options, result);
-  if (this->Options.steps == 1 && this->Options.method != WarpMethod::SmallStepFemwarp)
+  const WarpMotion checked = [&](double amount, double* displacement)
+  {
+    path(amount, displacement);
+    this->checkDisplacement(displacement);
+  };
+  if (this->inSteps())
+  {
+    // Small steps are what that method is about: one alone stands for as many as are needed.
+    warpInSteps(this->Input, this->Parts, checked,
+      this->Options.steps == 1 ? 0 : this->Options.steps, 1.0, control);
+  }
+  else
   {
     std::vector<double> displacement(3 * this->Input.view().numberOfPoints, 0.0);
     motion(1.0, displacement.data());
     this->checkDisplacement(displacement.data());
     control.goOn(0.0);
     this->First.run(displacement.data(), 1.0, control, result.points);
-  }
-  else
-  {
-    const WarpMotion checked = [&](double amount, double* displacement)
+    const bool untangles = this->Options.method == WarpMethod::Hybrid ||
+      this->Options.method == WarpMethod::FemwarpUntangling;
+    if (untangles && result.invertedAfter > 0 && !control.stopped())
     {
-      motion(amount, displacement);
-      this->checkDisplacement(displacement);
-    };
-    warpInSteps(this->Input, this->Parts, checked, control);
+      this->followMotion(checked, control);
+    }
   }
   this->explain(control);
   return result;
+}
+
+//------------------------------------------------------------------------------
+/// Where a single step left inverted elements that the boundary does not call for: in steps, each untangled.
+void Warper::Implementation::followMotion(const WarpMotion& path, WarpControl& control)
+{
+  Warping& result = control.result();
+  const BoundaryState boundary = this->examineBoundary(result.points.data());
+  if (boundary.inverted > 0 || boundary.crossing.pairs > 0 || result.impossible > 0)
+  {
+    return;
+  }
+  constexpr double first = 0.125;
+  const Warping before = result;
+  warpInSteps(this->Input, this->Parts, path, 0, first, control);
+  if (result.amount < 1.0)
+  {
+    // Not all the way: the mesh with the fewest inverted elements where the boundary should be.
+    std::vector<WarpRecord> history = std::move(result.history);
+    const bool aborted = result.aborted, timeLimit = result.timeLimit;
+    result = before;
+    result.history = std::move(history);
+    result.aborted = aborted;
+    result.timeLimit = timeLimit;
+  }
+}
+
+//------------------------------------------------------------------------------
+BoundaryState Warper::Implementation::examineBoundary(const double* points) const
+{
+  BoundaryState state;
+  const MeshView& view = this->Input.view();
+  for (const CellBlock& block : this->Input.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      const Index* node = view.connectivity + view.offsets[cell];
+      Vec3 p[MaxNodes];
+      bool all = true;
+      for (int k = 0; k < t.nodes && all; ++k)
+      {
+        std::copy_n(points + 3 * node[k], 3, p[k].begin());
+        all = this->Parts.prescribed()[node[k]] != 0;
+      }
+      if (all && this->Input.classifyCell(t, p) != Valid)
+      {
+        state.firstInverted = state.inverted++ == 0 ? cell : state.firstInverted;
+      }
+    }
+  }
+  state.crossing = this->MovedBoundary.crossings(points);
+  if (state.crossing.pairs > 0)
+  {
+    // Boundaries that touch from the start, such as cracks, may go on to.
+    state.crossing.pairs =
+      std::max(Index(0), state.crossing.pairs - this->MovedBoundary.crossings(view.points).pairs);
+  }
+  return state;
 }
 
 //------------------------------------------------------------------------------
@@ -207,7 +292,6 @@ Warping Warper::Implementation::run(const WarpMotion& motion)
 void Warper::Implementation::explain(WarpControl& control)
 {
   Warping& result = control.result();
-  const MeshView& view = this->Input.view();
   if (this->Parts.freePoints() == 0)
   {
     control.say("There are no points between the prescribed ones: nothing had to be found.");
@@ -229,37 +313,20 @@ void Warper::Implementation::explain(WarpControl& control)
                 "added, times " +
       std::to_string(result.regularization) + ".");
   }
-  // Elements of prescribed points alone are what the boundary makes of them.
-  Index held = 0, first = -1;
-  if (result.invertedAfter > 0)
+  const BoundaryState boundary = this->examineBoundary(result.points.data());
+  result.impossible = result.invertedAfter > 0 ? std::max(result.impossible, boundary.inverted) : 0;
+  result.crossings = boundary.crossing.pairs;
+  if (boundary.inverted > 0)
   {
-    for (const CellBlock& block : this->Input.blocks())
-    {
-      const CellTopology& t = topology(block.type);
-      for (Index i = 0; i < block.count; ++i)
-      {
-        const Index cell = block.cell(i);
-        const Index* node = view.connectivity + view.offsets[cell];
-        Vec3 p[MaxNodes];
-        bool all = true;
-        for (int k = 0; k < t.nodes; ++k)
-        {
-          std::copy_n(&result.points[3 * node[k]], 3, p[k].begin());
-          all = all && this->Parts.prescribed()[node[k]];
-        }
-        if (all && this->Input.classifyCell(t, p) != Valid)
-        {
-          first = held++ == 0 ? cell : first;
-        }
-      }
-    }
+    control.say("The moved boundary itself inverts " + std::to_string(boundary.inverted) +
+      " elements, all of whose points are prescribed; the first is cell " +
+      std::to_string(boundary.firstInverted) + ".");
   }
-  result.impossible = result.invertedAfter > 0 ? std::max(result.impossible, held) : 0;
-  if (held > 0)
+  if (boundary.crossing.pairs > 0)
   {
-    control.say("The moved boundary itself inverts " + std::to_string(held) +
-      " elements, all of whose points are prescribed; the first is cell " + std::to_string(first) +
-      ".");
+    control.say("The moved boundary intersects itself, at points " +
+      std::to_string(boundary.crossing.first[0]) + " and " +
+      std::to_string(boundary.crossing.first[1]) + " for example: move it less far.");
   }
   if (result.invertedAfter > 0)
   {
@@ -285,20 +352,22 @@ Warper::~Warper() = default;
 
 Warping Warper::warp(const double* displacement)
 {
+  this->Impl->checkDisplacement(displacement);
   const std::size_t size = 3 * this->Impl->Parts.prescribed().size();
-  return this->Impl->run(
+  std::unique_ptr<WarpPath> path; // only where it is needed
+  return this->Impl->run([=](double, double* to) { std::copy_n(displacement, size, to); },
     [&](double amount, double* to)
     {
-      for (std::size_t i = 0; i < size; ++i)
+      if (!path)
       {
-        to[i] = this->Impl->Parts.prescribed()[i / 3] ? amount * displacement[i] : 0.0;
+        path = std::make_unique<WarpPath>(this->Impl->Input, this->Impl->Parts, displacement);
       }
+      path->at(amount, to);
     });
 }
 
 Warping Warper::warp(const std::function<void(double, double*)>& motion)
 {
-  return this->Impl->run(motion);
+  return this->Impl->run(motion, motion);
 }
-
 }

@@ -48,7 +48,7 @@ enum class WarpCoefficients : int
   PerCell = 3              ///< `tensors`
 };
 
-/// What Hybrid's second step starts from: at most 20 iterations, to a relative change of 1e-3.
+/// What Hybrid's second step starts from: at most 50 iterations, to a relative change of 1e-3.
 TAUTLINE_KERNEL_EXPORT OptimizeOptions hybridOptimization();
 
 struct WarpOptions
@@ -65,8 +65,8 @@ struct WarpOptions
   /// Solver of the linear systems; Direct up to a size that depends on the dimension, else CG with BoomerAMG.
   bool automaticSolver = true;
   SolverOptions solver;
-  double tolerance = 1e-10;     ///< relative, of the solves
-  double poissonRatio = 0.3;    ///< of the elastic methods
+  double tolerance = 1e-10;  ///< relative, of the solves; affine motions are exact whatever it is
+  double poissonRatio = 0.3; ///< of the elastic methods
   double stiffeningPower = 1.0; ///< JacobianStiffening: chi
   int maximumStiffenings = 50;  ///< IterativeStiffening
   double stiffeningFactor =
@@ -113,6 +113,8 @@ struct Warping
   Index invertedAfter = 0;                 ///< at the end
   /// Inverted elements no interior position can make valid: the moved boundary itself is not.
   Index impossible = 0;
+  /// Pairs of edges, or of boundary triangles, of the moved boundary that cross and did not before.
+  Index crossings = 0;
   Index decoupled = 0;         ///< points that a coefficient of 0 leaves undetermined
   double regularization = 0.0; ///< relative, used for them; 0: none
   double assembleSeconds = 0, setupSeconds = 0, solveSeconds = 0, improveSeconds = 0;

@@ -7,7 +7,9 @@ namespace tautline
 {
 namespace
 {
-constexpr double LargestPower = 20.0;
+constexpr double LargestPower = 16.0;
+/// Squared distance below which points are at one place: beyond, the largest power is far from overflow.
+constexpr double Coincident = 1e-30;
 constexpr std::size_t LeafSize = 16;
 /// A group of points counts as a whole from a distance at which the third term of its expansion, for points all in
 /// one direction, is this part of the first. (The groups lie around their centres: what is left of it is far less.)
@@ -114,7 +116,7 @@ public:
       {
         const Vec3 d = y - this->Points[i];
         const double apart = dot(d, d);
-        if (apart == 0)
+        if (apart < Coincident)
         {
           return this->Values[i]; // the mean has a limit here
         }
@@ -190,7 +192,7 @@ std::vector<double> warpByInverseDistance(const Mesh& mesh,
   if (!(options.distancePower > 0 && options.distancePower <= LargestPower))
   {
     throw Error("the power of the distance is " + std::to_string(options.distancePower) +
-      "; it must be above 0 and at most 20");
+      "; it must be above 0 and at most 16");
   }
   const WarpClock clock(options);
   const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);

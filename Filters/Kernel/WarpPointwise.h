@@ -22,7 +22,7 @@ namespace tautline
  * options.progress returned false or options.maximumSeconds were over. Throws Error for options out of range.
  *
  * Inverse distance weighting (Shepard): the mean of the prescribed displacements, weighted by the distance to the power
- * -options.distancePower (above 0, at most 20). Far groups of points count by their expansion to second order, which
+ * -options.distancePower (above 0, at most 16). Far groups of points count by their expansion to second order, which
  * differs from the sum over all points by less than 1e-4 of the largest displacement.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mesh,
@@ -30,18 +30,20 @@ TAUTLINE_KERNEL_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mes
   const WarpOptions& options);
 
 /**
- * @brief As above by radial basis functions: Wendland's C2 function with the radius options.supportRadius (0: chosen)
- * around as many prescribed points as it takes for the others to be met within options.fitTolerance times the largest
- * displacement; the point that is met worst comes next.
+ * @brief As above by radial basis functions: Wendland's C2 function with the radius options.supportRadius (0: twice
+ * the extent of the prescribed points) around as many prescribed points, at most 3000, as it takes for the others to be
+ * met within options.fitTolerance times the largest displacement; the point that is met worst comes next.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
 /**
- * @brief As above by the method of Shontz and Vavasis (2003): each point that is not prescribed is a convex combination of its
- * neighbours in the initial mesh, of all such combinations the one with the largest product of weights; it stays
- * that. Neighbours are the other points of the cells around. Points of parts without a prescribed point stay.
+ * @brief As above by the method of Shontz and Vavasis (2003): each point that is not prescribed is a convex combination
+ * of its neighbours in the initial mesh, of all such combinations the one with the largest product of weights; it
+ * stays that. Neighbours are the other points of the cells around; where the point is not within their hull (surfaces:
+ * in the tangent plane), all count the same. Points of parts without a prescribed point stay. The linear system is solved
+ * to options.tolerance.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,

@@ -10,7 +10,7 @@ namespace tautline
 OptimizeOptions hybridOptimization()
 {
   OptimizeOptions options;
-  options.stopping.maximumIterations = 20;
+  options.stopping.maximumIterations = 50;
   options.stopping.relativeChange = 1e-3;
   return options;
 }
@@ -172,19 +172,20 @@ void WarpStep::improve(
   }
   const bool hybrid = options.method == WarpMethod::Hybrid;
   const bool literal = hybrid && !options.untangleFirst;
-  const bool moved = std::find(moving.begin(), moving.end(), 1) != moving.end();
+  const bool free = std::find(fixed.begin(), fixed.end(), 0) != fixed.end();
   const auto stage = [&](const char* name, int iterations) {
     result.invertedAfter = this->record(name, amount, iterations, points.data(), control).inverted;
   };
-  if (literal && moved)
+  if (literal && free)
   {
     stage("optimize", this->optimize(fixed, control, points));
   }
-  if (result.invertedAfter > 0 && !control.stopped())
+  if (result.invertedAfter > 0 && free && !control.stopped())
   {
     stage("untangle", this->untangle(fixed, control, points));
   }
-  if (hybrid && !literal && moved && !control.stopped())
+  const bool someValid = result.invertedAfter < this->Initial.view().numberOfCells;
+  if (hybrid && !literal && free && someValid && !control.stopped())
   {
     stage("optimize", this->optimize(fixed, control, points));
   }

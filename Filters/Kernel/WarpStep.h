@@ -63,11 +63,12 @@ private:
 using WarpMotion = std::function<void(double, double*)>;
 
 /**
- * @brief The motion in steps, each from the mesh the one before came to: as many as asked for, or as few as it takes for no
- * element to invert. There a step that inverts elements is halved, and the next grows again; if steps become too small or too
- * many, the result is the mesh of the last good one.
+ * @brief The motion in steps, each from the mesh the one before came to.
+ * @param steps so many of equal length; 0: as few as it takes for no element to invert. There a step that inverts elements is
+ * halved, and the next grows again; if steps become too small or too many, the result is the mesh of the last good one.
+ * @param first length of the first step with steps = 0
  */
-void warpInSteps(
-  const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, WarpControl& control);
+void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, int steps,
+  double first, WarpControl& control);
 }
 #endif

@@ -26,27 +26,25 @@ private:
 }
 
 //------------------------------------------------------------------------------
-void warpInSteps(
-  const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, WarpControl& control)
+void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, int steps,
+  double first, WarpControl& control)
 {
   const WarpOptions& options = control.options();
   Warping& result = control.result();
   const std::size_t size = 3 * static_cast<std::size_t>(mesh.view().numberOfPoints);
-  const bool automatic =
-    options.steps == 0 || (options.steps == 1 && options.method == WarpMethod::SmallStepFemwarp);
+  const bool automatic = steps == 0;
   constexpr double longer = 2.0, shortest = 1e-4; // of the motion
-  const double fixedStep = automatic ? 1.0 : 1.0 / options.steps;
 
   std::vector<double> points(mesh.view().points, mesh.view().points + size);
   result.points = points;
   result.amount = 0;
   auto from = std::make_unique<MovedMesh>(mesh, points, options.threads);
-  double amount = 0, step = fixedStep;
-  int steps = 0;
+  double amount = 0, step = automatic ? first : 1.0 / steps;
+  int done = 0;
   while (amount < 1.0)
   {
     // The last step ends at 1, not a rounding before it.
-    const bool last = automatic ? amount + step >= 1.0 : steps + 1 == options.steps;
+    const bool last = automatic ? amount + step >= 1.0 : done + 1 == steps;
     const double next = last ? 1.0 : amount + step;
     if (!control.goOn(amount))
     {
@@ -77,7 +75,7 @@ void warpInSteps(
       result.points = points;
       result.amount = amount = next;
       from = std::make_unique<MovedMesh>(mesh, points, options.threads);
-      ++steps;
+      ++done;
       step = automatic ? longer * step : step;
       continue;
     }
@@ -86,12 +84,12 @@ void warpInSteps(
       break;
     }
     step = 0.5 * (next - amount);
-    if (step < shortest || steps >= options.maximumSteps)
+    if (step < shortest || done >= options.maximumSteps)
     {
       break;
     }
   }
-  if (automatic && steps >= options.maximumSteps)
+  if (automatic && done >= options.maximumSteps)
   {
     control.say("The limit of steps was reached.");
   }

@@ -350,6 +350,10 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
     {
       place[motion.prescribed()[i]] = static_cast<Index>(i);
     }
+    // Components along and across the plane of a planar mesh: none of the solver's error leads out of it.
+    const std::array<Vec3, 3> frame = mesh.dimension() == Dimension::Planar
+      ? std::array<Vec3, 3>{ mesh.frame()[0], mesh.frame()[1], mesh.normal() }
+      : std::array<Vec3, 3>{ Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
     // Each unknown minus its combination of unknowns is its combination of prescribed displacements.
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n, 3);
@@ -368,7 +372,7 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
         const Vec3& d = motion.rest(static_cast<std::size_t>(place[other]));
         for (std::size_t k = 0; k < 3; ++k)
         {
-          right(i, static_cast<Eigen::Index>(k)) += row.weights[j] * d[k];
+          right(i, static_cast<Eigen::Index>(k)) += row.weights[j] * dot(d, frame[k]);
         }
       }
     }
@@ -384,7 +388,7 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
       const int row = number[motion.free()[i]];
       for (std::size_t k = 0; k < 3 && row >= 0; ++k)
       {
-        rest[i][k] = solution(row, static_cast<Eigen::Index>(k));
+        rest[i] += solution(row, static_cast<Eigen::Index>(k)) * frame[k];
       }
     }
   }

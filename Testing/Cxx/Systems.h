@@ -20,9 +20,9 @@ inline SparseMatrix gridMatrix(int n, const std::function<double(int, int)>& ent
   a.size = static_cast<Index>(n) * n;
   for (int i = 0; i < n * n; ++i)
   {
-    for (const int j : { i - n, i - 1, i, i + 1, i + n })
+    for (const int j : { i - n, i - 1, i, i + 1, i + n }) // n > 1: in increasing order
     {
-      const bool neighbour = j >= 0 && j < n * n && std::abs(i % n - j % n) <= 1;
+      const bool neighbour = j >= 0 && j < n * n && (i / n == j / n || i % n == j % n);
       if (neighbour)
       {
         a.columns.push_back(j);

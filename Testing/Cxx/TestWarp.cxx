@@ -1,18 +1,21 @@
-// Warping: the propositions of section 4.9.1, the degenerate limits, and what every method has to keep.
+// FEMWARP and its anisotropic forms: the propositions of section 4.9.1, the coefficients, the limits in which they
+// vanish, and what is kept for the next boundary position.
 
 #include "Warping.h"
+
+#include "tautline/FiniteElements.h"
 
 using namespace tautline;
 
 namespace
 {
-/// Right triangles as in (4.12): columns at x, rows at y; all with the same diagonal.
-MeshData rectangle(const std::vector<double>& x, const std::vector<double>& y)
-{
-  MeshData data = blockMesh(CellType::Triangle, Index(x.size()) - 1, Index(y.size()) - 1, 0);
-  data.transform([&](const Vec3& p) { return Vec3{ x[Index(p[0])], y[Index(p[1])], 0 }; });
-  return data;
-}
+constexpr WarpMethod allMethods[] = { WarpMethod::Hybrid, WarpMethod::Femwarp,
+  WarpMethod::AnisotropicFemwarp, WarpMethod::SmallStepFemwarp, WarpMethod::FemwarpUntangling,
+  WarpMethod::IterativeStiffening, WarpMethod::JacobianStiffening, WarpMethod::Biharmonic,
+  WarpMethod::InverseDistance, WarpMethod::RadialBasis, WarpMethod::WeightedLaplacian };
+
+constexpr CellType elementTypes[] = { CellType::Triangle, CellType::Quadrilateral,
+  CellType::Tetrahedron, CellType::Hexahedron };
 
 std::vector<double> spaced(Index n, double length, double growth)
 {
@@ -30,13 +33,12 @@ std::vector<double> spaced(Index n, double length, double growth)
   return at;
 }
 
-WarpOptions manual(double alpha, double beta, double gamma = 0)
+/// Right triangles as in (4.12), or quadrilaterals: columns at x, rows at y.
+MeshData rectangle(CellType type, const std::vector<double>& x, const std::vector<double>& y)
 {
-  WarpOptions options;
-  options.method = WarpMethod::AnisotropicFemwarp;
-  options.coefficients = WarpCoefficients::Manual;
-  options.tensor = { alpha, beta, gamma, 0, 0, 0 };
-  return options;
+  MeshData data = blockMesh(type, Index(x.size()) - 1, Index(y.size()) - 1, 0);
+  data.transform([&](const Vec3& p) { return Vec3{ x[Index(p[0])], y[Index(p[1])], 0 }; });
+  return data;
 }
 
 //------------------------------------------------------------------------------
@@ -45,8 +47,8 @@ void testPropositions()
 {
   for (const double growth : { 1.0, 1.3 })
   {
-    const std::vector<double> y = spaced(10, 1.0, growth);
-    const MeshData data = rectangle(spaced(16, 2.0, 1.0), y);
+    const MeshData data =
+      rectangle(CellType::Triangle, spaced(16, 2.0, 1.0), spaced(10, 1.0, growth));
     const auto motion = [](const Vec3& p) {
       return Vec3{ 0, p[1] > 0.999 ? -0.85 * std::pow(std::sin(1.5 * p[0]), 2) : 0.0, 0 };
     };
@@ -67,14 +69,370 @@ void testPropositions()
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
     TAUTLINE_CHECK_EQUAL(result.decoupled, 0);
     TAUTLINE_CHECK_EQUAL(result.regularization, 0.0);
+
     // The sums of the displacements find these coefficients, to the last bit.
     options.coefficients = WarpCoefficients::DisplacementSums;
     const Warping same = warped(data, motion, options);
     TAUTLINE_CHECK((same.tensor == SymmetricTensor{ 0, 1, 0, 0, 0, 0 }));
     TAUTLINE_CHECK(same.points == result.points);
     // FEMWARP inverts elements here, Figure 4.20.
-    options.method = WarpMethod::Femwarp;
-    TAUTLINE_CHECK(warped(data, motion, options).invertedAfter > 0);
+    TAUTLINE_CHECK(warped(data, motion, withMethod(WarpMethod::Femwarp)).invertedAfter > 0);
+  }
+
+  // One boundary point moves, and nothing but its column follows; along x, nothing but its row.
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    const MeshData data = rectangle(CellType::Triangle, spaced(12, 1.0, 1.1), spaced(12, 1.0, 1.2));
+    const Vec3 place = data.point(axis == 0 ? 5 * 13 + 12 : 12 * 13 + 5);
+    const auto motion = [&](const Vec3& p)
+    {
+      Vec3 d = { 0, 0, 0 };
+      d[axis] = norm(p - place) == 0 ? 0.01 : 0.0;
+      return d;
+    };
+    const Warping result = warped(data, motion, axis == 0 ? manual(1, 0) : manual(0, 1));
+    double others = 0, own = 1;
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      const Vec3 p = data.point(i);
+      const double moved = std::abs(result.points[3 * i + axis] - p[axis]);
+      const bool same = p[1 - axis] == place[1 - axis];
+      others = same ? others : std::max(others, moved);
+      own = same && p[axis] > 0 ? std::min(own, std::abs(moved - 0.01 * p[axis])) : own;
+    }
+    TAUTLINE_CHECK_NEAR(others, 0, 1e-14);
+    TAUTLINE_CHECK_NEAR(own, 0, 1e-14);
+  }
+
+  // In space: layers of a block of hexahedra, gamma = 1 alone.
+  const MeshData block = blockMesh(CellType::Hexahedron, 4, 3, 5);
+  const auto motion = [](const Vec3& p) {
+    return Vec3{ 0, 0, p[2] == 5 ? -2.0 * p[0] * (4 - p[0]) / 4 : 0.0 };
+  };
+  const Warping result = warped(block, motion, manual(0, 0, 1));
+  TAUTLINE_CHECK_EQUAL(result.decoupled, 0);
+  TAUTLINE_CHECK(distance(result.points, block.points) > 1);
+}
+
+//------------------------------------------------------------------------------
+/// Proposition 4 for every cell type, method and choice of coefficients, whatever tolerance and scale.
+void testAffine()
+{
+  const Columns linear = { Vec3{ 0.1, -0.3, 0.2 }, Vec3{ 0.4, 0.2, -0.1 }, Vec3{ -0.2, 0.3, 0.3 } };
+  for (const CellType type : elementTypes)
+  {
+    const bool flat = topology(type).dimension == 2;
+    for (const double scale : { 1.0, 1e-8, 1e8 })
+    {
+      MeshData data = perturbedBlock(type, 4, 0.15);
+      data.transform([&](const Vec3& p) { return scale * (p + Vec3{ 3, -5, flat ? 0.0 : 7 }); });
+      const auto motion = [&](const Vec3& p)
+      {
+        Vec3 d = linear * p + scale * Vec3{ 2, 1, 4 };
+        d[2] = flat ? 0.0 : d[2];
+        return d;
+      };
+      const auto check = [&](const WarpOptions& options)
+      {
+        const Warping result = warped(data, motion, options);
+        double worst = 0;
+        for (Index i = 0; i < data.numberOfPoints(); ++i)
+        {
+          const Vec3 p = data.point(i), q = p + motion(p);
+          for (int c = 0; c < 3; ++c)
+          {
+            worst = std::max(worst, std::abs(result.points[3 * i + c] - q[c]));
+          }
+        }
+        TAUTLINE_CHECK(worst <= 1e-12 * scale);
+        TAUTLINE_CHECK_EQUAL(result.amount, 1.0);
+        TAUTLINE_CHECK(result.message.empty());
+      };
+      std::vector<double> tensors;
+      Random random(5);
+      for (Index c = 0; c < data.numberOfCells(); ++c)
+      {
+        const Vec3 v = random.vector(-1, 1); // v v^T: singular
+        tensors.insert(tensors.end(),
+          { v[0] * v[0], v[1] * v[1], v[2] * v[2], v[0] * v[1], v[1] * v[2], v[0] * v[2] });
+      }
+      for (const WarpCoefficients choice :
+        { WarpCoefficients::DisplacementSums, WarpCoefficients::PrincipalDirections,
+          WarpCoefficients::Manual, WarpCoefficients::PerCell })
+      {
+        const Context context(std::string(topology(type).name) + " coefficients " +
+          std::to_string(int(choice)) + " scale " + std::to_string(scale));
+        WarpOptions options = manual(0, 1, 0);
+        options.coefficients = choice;
+        options.tensors = tensors.data();
+        options.tolerance = 0.5;
+        options.automaticSolver = scale != 1;
+        check(options);
+      }
+      for (const WarpMethod method : allMethods)
+      {
+        // Stiffening makes a body of many materials, which do not follow affine motions exactly.
+        if (method != WarpMethod::JacobianStiffening && method != WarpMethod::Hybrid)
+        {
+          const Context context(
+            std::string(topology(type).name) + " method " + std::to_string(int(method)));
+          check(withMethod(method));
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// (4.10): the rows of the interior, applied to the new points.
+void testEquation()
+{
+  for (const CellType type : elementTypes)
+  {
+    const bool flat = topology(type).dimension == 2;
+    const MeshData data = perturbedBlock(type, 6, 0.2);
+    const Mesh mesh(data.view());
+    const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
+    const auto motion = [&](const Vec3& p) {
+      return Vec3{ std::sin(p[1]), 0.3 * p[0] * p[1], flat ? 0.0 : std::cos(p[0] + p[2]) };
+    };
+    for (const bool direct : { true, false })
+    {
+      WarpOptions options = manual(2, 0.5, 1);
+      options.tensor[3] = 0.4;
+      options.automaticSolver = false;
+      options.solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient;
+      options.tolerance = 1e-12;
+      const Warping result = warped(data, motion, options);
+      DiffusionOperator pde;
+      pde.tensor = options.tensor;
+      const SparseMatrix matrix = stiffnessMatrix(mesh, pde);
+      for (int c = 0; c < 3; ++c)
+      {
+        std::vector<double> x(matrix.size), y(matrix.size);
+        for (Index i = 0; i < matrix.size; ++i)
+        {
+          x[i] = result.points[3 * i + c];
+        }
+        matrix.multiply(x.data(), y.data());
+        double worst = 0;
+        for (Index i = 0; i < matrix.size; ++i)
+        {
+          worst = boundary[i] ? worst : std::max(worst, std::abs(y[i]));
+        }
+        TAUTLINE_CHECK(worst <= 1e-10);
+      }
+      TAUTLINE_CHECK(result.tensor == options.tensor);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void testCoefficients()
+{
+  // Absolute sums, the largest 1: displacements that cancel count.
+  const MeshData data = perturbedBlock(CellType::Tetrahedron, 4, 0.2);
+  WarpOptions options = withMethod(WarpMethod::AnisotropicFemwarp);
+  const auto motion = [](const Vec3& p)
+  {
+    return Vec3{ p[0] == 4 ? 0.6
+        : p[0] == 0        ? -0.6
+                           : 0.0,
+      p[0] == 4     ? 0.1
+        : p[0] == 0 ? -0.1
+                    : 0.0,
+      0 };
+  };
+  const SymmetricTensor t = warped(data, motion, options).tensor;
+  TAUTLINE_CHECK_NEAR(t[0], 1, 0);
+  TAUTLINE_CHECK_NEAR(t[1], 1.0 / 6, 1e-14);
+  TAUTLINE_CHECK_EQUAL(t[2], 0.0);
+  // Along the diagonal of the motion, and nothing across.
+  options.coefficients = WarpCoefficients::PrincipalDirections;
+  const SymmetricTensor p = warped(data, motion, options).tensor;
+  TAUTLINE_CHECK_NEAR(p[0], 36.0 / 37, 1e-14);
+  TAUTLINE_CHECK_NEAR(p[1], 1.0 / 37, 1e-14);
+  TAUTLINE_CHECK_NEAR(p[3], 6.0 / 37, 1e-14);
+  TAUTLINE_CHECK_NEAR(std::abs(p[2]) + std::abs(p[4]) + std::abs(p[5]), 0, 1e-14);
+
+  // Motions along the axes get what the sums say, to rounding.
+  const auto axes = [](const Vec3& q)
+  {
+    return Vec3{ q[0] == 4 ? 0.3 : 0.0, q[0] == 0 ? 0.2 : 0.0,
+      q[2] == 0 ? 0.1 * (q[0] > 0 && q[0] < 4) : 0.0 };
+  };
+  const SymmetricTensor sums = warped(data, axes,
+    [&]
+    {
+      auto o = options;
+      o.coefficients = WarpCoefficients::DisplacementSums;
+      return o;
+    }())
+                                 .tensor;
+  const SymmetricTensor directions = warped(data, axes, options).tensor;
+  for (int k = 0; k < 6; ++k)
+  {
+    TAUTLINE_CHECK_NEAR(directions[k], sums[k], 1e-14);
+  }
+
+  // A mesh turned with its motion gives the result turned: also where directions are not unique.
+  const Columns turn = rotation({ 1, 2, -1 }, 0.7);
+  const Field motions[] = { motion, axes,
+    [](const Vec3& q) {
+      return Vec3{ 0, 0, q[2] == 4 ? 0.3 * std::sin(q[0]) : 0.0 };
+    },
+    [](const Vec3& q) {
+      return q[0] == 4 ? Vec3{ 0, 0.1 * (q[2] - 2), -0.1 * (q[1] - 2) } : Vec3{ 0, 0, 0 };
+    } };
+  for (const Field& field : motions)
+  {
+    MeshData turned = data;
+    turned.transform([&](const Vec3& q) { return turn * q; });
+    std::vector<double> d = displacements(data, field), moved(d.size());
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      const Vec3 v = turn * Vec3{ d[3 * i], d[3 * i + 1], d[3 * i + 2] };
+      std::copy(v.begin(), v.end(), &moved[3 * i]);
+    }
+    const Mesh mesh(data.view()), turnedMesh(turned.view());
+    MeshData straight = data;
+    straight.points = Warper(mesh, options).warp(d.data()).points;
+    straight.transform([&](const Vec3& q) { return turn * q; });
+    const Warping result = Warper(turnedMesh, options).warp(moved.data());
+    TAUTLINE_CHECK_NEAR(distance(result.points, straight.points), 0, 1e-8);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Points that no prescribed one determines.
+void testDecoupled()
+{
+  // Only columns up to the fifth have prescribed points; beta alone couples along columns.
+  for (const CellType type : { CellType::Triangle, CellType::Quadrilateral })
+  {
+    const MeshData data = rectangle(type, spaced(10, 1.0, 1.0), spaced(6, 1.0, 1.2));
+    std::vector<unsigned char> prescribed(data.numberOfPoints(), 0);
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      const Vec3 p = data.point(i);
+      prescribed[i] = (p[1] == 0 || p[1] > 0.999) && p[0] < 0.55;
+    }
+    WarpOptions options = manual(0, 1);
+    options.prescribed = prescribed.data();
+    const auto motion = [](const Vec3& p) {
+      return Vec3{ 0, p[1] > 0.5 ? -0.4 * p[0] * p[0] : 0.0, 0 };
+    };
+    const Warping result = warped(data, motion, options);
+    // Q1 couples columns with each other, and no column is alone.
+    TAUTLINE_CHECK_EQUAL(result.decoupled, type == CellType::Triangle ? 5 * 7 : 0);
+    double worst = 0, most = 0;
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      const Vec3 p = data.point(i);
+      const double y = p[1] * (1 - 0.4 * p[0] * p[0]);
+      worst = p[0] < 0.55 ? std::max(worst, std::abs(result.points[3 * i + 1] - y)) : worst;
+      most = std::max(most, std::abs(result.points[3 * i + 1] - p[1]));
+    }
+    if (type == CellType::Triangle)
+    {
+      TAUTLINE_CHECK_NEAR(
+        worst, 0, 1e-8); // Propositions 1 and 3, where there are prescribed points
+      TAUTLINE_CHECK(result.message.find("depend on no prescribed point") != std::string::npos);
+    }
+    TAUTLINE_CHECK(most < 0.4);
+    TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
+  }
+
+  // Unstructured meshes, a boundary that is prescribed in part or wholly, every degenerate limit.
+  for (const CellType type : elementTypes)
+  {
+    const bool flat = topology(type).dimension == 2;
+    const MeshData data = boxInBox(type, flat ? 12 : 6, 2);
+    const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+    for (int what = 0; what < 3; ++what)
+    {
+      std::vector<unsigned char> prescribed(data.numberOfPoints(), 0);
+      for (Index i = 0; i < data.numberOfPoints(); ++i)
+      {
+        const Vec3 p = data.point(i);
+        prescribed[i] = boundary[i] &&
+          (what == 0 || (what == 1 ? onInnerBox(p, flat) : onInnerBox(p, flat) && p[0] < 0.5));
+      }
+      for (int axis = 0; axis < (flat ? 2 : 3); ++axis)
+      {
+        const Context context(std::string(topology(type).name) + " prescribed " +
+          std::to_string(what) + " axis " + std::to_string(axis));
+        WarpOptions options = manual(axis == 0, axis == 1, axis == 2);
+        options.prescribed = prescribed.data();
+        const auto motion = [&](const Vec3& p)
+        {
+          Vec3 d = { 0, 0, 0 };
+          d[axis] = onInnerBox(p, flat) ? 0.1 * std::sin(9 * p[0] + 7 * p[1] + p[2]) : 0.0;
+          return d;
+        };
+        const Warping result = warped(data, motion, options);
+        TAUTLINE_CHECK(distance(result.points, data.points) < 0.5);
+        TAUTLINE_CHECK(result.regularization < 1);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Former solutions help; they do not change the result.
+void testReuse()
+{
+  for (const bool direct : { true, false })
+  {
+    const MeshData data = boxInBox(CellType::Tetrahedron, 8, 3);
+    const Mesh mesh(data.view());
+    WarpOptions options = withMethod(WarpMethod::Femwarp);
+    options.automaticSolver = false;
+    options.solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient;
+    options.tolerance = 1e-11;
+    Warper warper(mesh, options);
+    const auto shifted = [](double degrees)
+    {
+      return [=](const Vec3& p)
+      {
+        return turnedBox(degrees, false)(p) +
+          (onInnerBox(p, false) ? Vec3{ 0.02, 0.01, -0.03 } : Vec3{ 0, 0, 0 });
+      };
+    };
+    const auto wave = [](const Vec3& p)
+    {
+      return onInnerBox(p, false)
+        ? 0.03 * Vec3{ std::sin(9 * p[1]), std::cos(8 * p[2] + p[0]), p[0] * p[1] }
+        : Vec3{ 0, 0, 0 };
+    };
+    const std::pair<Field, int> positions[] = { { turnedBox(10, false), 2 },
+      { turnedBox(35, false), 0 }, { shifted(20), 1 }, { shifted(-50), 0 }, { wave, 3 },
+      { shifted(70), 0 } };
+    for (const auto& [motion, solves] : positions)
+    {
+      const Warping kept = warper.warp(displacements(data, motion).data());
+      const Warping fresh = Warper(mesh, options).warp(displacements(data, motion).data());
+      TAUTLINE_CHECK_NEAR(distance(kept.points, fresh.points), 0, 1e-9);
+      if (direct)
+      {
+        TAUTLINE_CHECK_EQUAL(kept.history[0].iterations, solves); // one for each solve
+      }
+      TAUTLINE_CHECK_EQUAL(kept.history[0].iterations == 0, solves == 0);
+    }
+    // More positions than are kept.
+    for (int k = 0; k < 20; ++k)
+    {
+      const auto motion = [k](const Vec3& p) {
+        return onInnerBox(p, false) ? Vec3{ 0.03 * std::sin((3 + k) * p[1]), 0, 0 }
+                                    : Vec3{ 0, 0, 0 };
+      };
+      const Warping kept = warper.warp(displacements(data, motion).data());
+      if (k == 19)
+      {
+        const Warping fresh = Warper(mesh, options).warp(displacements(data, motion).data());
+        TAUTLINE_CHECK_NEAR(distance(kept.points, fresh.points), 0, 1e-9);
+      }
+    }
   }
 }
 }
@@ -82,5 +440,10 @@ void testPropositions()
 int TestWarp(int, char*[])
 {
   testPropositions();
+  testAffine();
+  testEquation();
+  testCoefficients();
+  testDecoupled();
+  testReuse();
   return exitCode();
 }

@@ -142,6 +142,8 @@ void testInvariances(CellType type)
     }
     TAUTLINE_CHECK(worst < 1e-10);
 
+    WarpOptions loose; // no error of a solver leads out of the plane
+    loose.tolerance = 1e-3;
     const auto inPlane = [&](const Vec3& p)
     {
       const Vec3 d = wave(p, size);
@@ -149,9 +151,11 @@ void testInvariances(CellType type)
     };
     problem.prescribe(inPlane);
     moves = problem.run(method.warp);
+    const std::vector<double> rough = problem.run(method.warp, loose);
     double outside = 0;
     for (Index i = 0; i < problem.data.numberOfPoints(); ++i)
     {
+      outside = std::max(outside, std::abs(dot(at(rough, i), normal)));
       TAUTLINE_CHECK(!problem.prescribed[i] || at(moves, i) == at(problem.displacement, i));
       outside = std::max(outside, std::abs(dot(at(moves, i), normal)));
     }
@@ -187,7 +191,7 @@ void testInverseDistance()
   problem.prescribe([](const Vec3& p) { return wave(p, 14); });
   const Mesh mesh(problem.data.view());
   const PrescribedMotion motion(mesh, problem.prescribed, problem.displacement.data(), 0);
-  for (const double power : { 0.5, 1.0, 2.0, 2.5, 3.0, 4.0, 6.0, 20.0 })
+  for (const double power : { 0.5, 1.0, 2.0, 2.5, 3.0, 4.0, 6.0, 16.0 })
   {
     const Context context("power " + std::to_string(power));
     std::vector<Vec3> rest;
@@ -471,10 +475,10 @@ void testControl()
   Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, 6, 6, 6));
   problem.prescribe([](const Vec3& p) { return wave(p, 6); });
   WarpOptions wrong;
-  for (const double power : { 0.0, -1.0, 20.5, std::nan("") })
+  for (const double power : { 0.0, -1.0, 16.5, std::nan("") })
   {
     wrong.distancePower = power;
-    TAUTLINE_CHECK_THROWS(problem.run(warpByInverseDistance, wrong), "above 0 and at most 20");
+    TAUTLINE_CHECK_THROWS(problem.run(warpByInverseDistance, wrong), "above 0 and at most 16");
   }
   for (const double radius : { -1.0, std::nan(""), HUGE_VAL })
   {

@@ -1,0 +1,315 @@
+#include "SpectrumEnds.h"
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// A smallest eigenvalue below this times the largest is 0 but for rounding.
+constexpr double SingularTolerance = 1e-13;
+
+void check(const ConditionOptions& options)
+{
+  if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
+  {
+    throw Error("The tolerance of eigenvalues must be between 0 and 1, exclusive.");
+  }
+  if (options.maximumIterations < 1 || !(options.maximumSeconds >= 0.0))
+  {
+    throw Error(
+      "The iterations of an eigenvalue solver must be at least 1, its time limit at least 0.");
+  }
+}
+
+double relative(const SpectrumEnd& end)
+{
+  return end.value != 0.0 ? end.bound / std::abs(end.value)
+                          : std::numeric_limits<double>::infinity();
+}
+
+/// D^-1/2 A D^-1/2, which has the eigenvalues of D^-1 A; and D^-1/2. False if D is not positive.
+bool scaledByDiagonal(Mat matrix, PetscMatrix& scaled, PetscVector& roots)
+{
+  PetscReal least = 0.0;
+  petsc(MatCreateVecs(matrix, roots.out(), nullptr));
+  petsc(MatGetDiagonal(matrix, roots));
+  petsc(VecMin(roots, nullptr, &least));
+  if (!(least > 0.0))
+  {
+    return false;
+  }
+  petsc(VecSqrtAbs(roots));
+  petsc(VecReciprocal(roots));
+  petsc(MatDuplicate(matrix, MAT_COPY_VALUES, scaled.out()));
+  petsc(MatDiagonalScale(scaled, roots, roots));
+  return true;
+}
+
+std::vector<double> valuesOf(const PetscSystem& system, Vec vector)
+{
+  std::vector<double> values;
+  if (vector)
+  {
+    values.resize(static_cast<std::size_t>(system.localSize()));
+    system.copyOut(vector, values.data());
+  }
+  return values;
+}
+
+/// Puts the two ends together.
+void fill(const SpectrumEnds& ends, const PetscSystem& system, const ConditionOptions& options,
+  const SpectrumWatch& watch, ConditionEstimate& result)
+{
+  const SpectrumEnd &low = ends.smallest, &high = ends.largest;
+  result.smallest = low.found ? low.value : 0.0;
+  result.largest = high.found ? high.value : 0.0;
+  result.smallestError = low.found ? relative(low) : std::numeric_limits<double>::infinity();
+  result.largestError = high.found ? relative(high) : std::numeric_limits<double>::infinity();
+  result.iterations = low.iterations + high.iterations;
+  result.method = low.method == high.method || low.method.empty() ? high.method
+    : high.method.empty()                                         ? low.method
+                          : high.method + " (largest); " + low.method + " (smallest)";
+  result.message = low.message.empty() ? high.message : low.message;
+  result.smallestVector = valuesOf(system, low.vector);
+  result.largestVector = valuesOf(system, high.vector);
+  result.converged = low.found && high.found && result.smallestError <= options.tolerance &&
+    result.largestError <= options.tolerance;
+  const bool zero =
+    low.found && high.found && std::abs(low.value) <= std::max(SingularTolerance * high.value, 0.0);
+  if (zero)
+  {
+    result.converged = false;
+    result.message = "The matrix is singular to working precision: its smallest eigenvalue is 0 "
+                     "beside the largest.";
+  }
+  else if (low.found && low.value < 0.0)
+  {
+    result.message = "The matrix is not positive definite: its smallest eigenvalue is negative.";
+  }
+  else if (low.found && high.found)
+  {
+    result.condition = high.value / low.value;
+  }
+  if (watch.stopped())
+  {
+    result.converged = false;
+    result.message = watch.message();
+  }
+  else if (!result.converged && result.message.empty())
+  {
+    result.message = "The tolerance was not reached; the error bounds tell what was.";
+  }
+}
+
+/// The Ritz values of conjugate gradients: from inside the spectrum.
+void ritzValues(const LinearSystem& system, const ConditionOptions& options, SpectrumWatch& watch,
+  ConditionEstimate& result)
+{
+  SolverOptions solverOptions;
+  solverOptions.preconditioner = options.preconditioner;
+  solverOptions.omega = options.omega;
+  solverOptions.maximumIterations = options.maximumIterations;
+  solverOptions.maximumSeconds = options.maximumSeconds;
+  solverOptions.petscOptions = options.petscOptions;
+  solverOptions.ritzValues = true;
+  solverOptions.observer = [&](int iteration, double)
+  { return !watch.stop(iteration / (iteration + 100.0)); };
+  LinearSolver solver(system, solverOptions);
+  const PetscSystem& objects = solver.implementation().Objects;
+  // As a right-hand side, random numbers: they see the whole spectrum.
+  PetscVector start = objects.createVector();
+  fillStartVector(start);
+  std::vector<double> b = valuesOf(objects, start), x(b.size());
+  const LinearSolution solution = solver.solve(b.data(), x.data());
+  result.method = "Ritz values of CG";
+  result.iterations = solution.iterations;
+  result.smallest = solution.ritzSmallest;
+  result.largest = solution.ritzLargest;
+  result.smallestError = result.largestError = std::numeric_limits<double>::infinity();
+  result.condition = result.smallest > 0.0 ? result.largest / result.smallest : 0.0;
+  result.converged = false;
+  result.message = watch.stopped() ? watch.message()
+    : converged(solution.reason)
+    ? "Ritz values lie inside the spectrum: the condition number is at least this."
+    : "CG " + std::string(describe(solution.reason)) +
+      (solution.message.empty() ? "" : ": " + solution.message);
+}
+
+/// The spectrum of P^-1 A, whatever PETSc calls P.
+SpectrumEnds preconditionedEnds(const LinearSystem& system, const ConditionOptions& options,
+  Preconditioner preconditioner, const std::string& petscOptions, SpectrumWatch& watch)
+{
+  SolverOptions solverOptions;
+  solverOptions.preconditioner = preconditioner;
+  solverOptions.omega = options.omega;
+  solverOptions.petscOptions = petscOptions;
+  LinearSolver solver(system, solverOptions);
+  solver.setUp();
+  LinearSolver::Implementation& own = solver.implementation();
+  const PetscScope scope(own.OptionSet.database());
+  SpectrumEnds ends;
+  if (own.Failure != SolveReason::Exact)
+  {
+    ends.smallest.message = ends.largest.message = own.FailureText;
+    return ends;
+  }
+  PC pc = nullptr;
+  petsc(KSPGetPC(own.Solver, &pc));
+  PCFailedReason why = PC_NOERROR;
+  petsc(PCGetFailedReason(pc, &why));
+  if (why != PC_NOERROR)
+  {
+    ends.smallest.message = ends.largest.message =
+      "The preconditioner could not be built: a pivot is zero.";
+    return ends;
+  }
+  return lanczosEnds(own.Objects.matrix(), pc, options, watch);
+}
+
+/// The spectrum of A, or of D^-1 A.
+SpectrumEnds plainEnds(const LinearSystem& system, const PetscSystem& objects,
+  const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
+{
+  SpectrumEnds ends;
+  Mat matrix = objects.matrix();
+  PetscMatrix scaled;
+  PetscVector roots;
+  if (options.preconditioner == Preconditioner::Jacobi)
+  {
+    if (!scaledByDiagonal(matrix, scaled, roots))
+    {
+      ends.smallest.message = ends.largest.message =
+        "The preconditioner is not positive definite: a diagonal entry is not positive.";
+      return ends;
+    }
+    matrix = scaled;
+  }
+  ends = slepcEnds(matrix, system, objects.ranks(), options, optionSet, watch);
+  if (roots)
+  {
+    for (SpectrumEnd* end : { &ends.smallest, &ends.largest })
+    {
+      if (end->vector)
+      {
+        petsc(VecPointwiseMult(end->vector, end->vector, roots));
+      }
+    }
+  }
+  // What shift-invert or LOBPCG cannot do, a singular or an indefinite matrix, the Lanczos method can.
+  if ((!ends.smallest.found || !ends.largest.found) && !watch.stopped())
+  {
+    SpectrumEnds other = preconditionedEnds(system, options, options.preconditioner, "", watch);
+    for (const auto& [end, second] : { std::make_pair(&ends.smallest, &other.smallest),
+           std::make_pair(&ends.largest, &other.largest) })
+    {
+      if (!end->found)
+      {
+        *end = std::move(*second);
+      }
+    }
+  }
+  return ends;
+}
+}
+
+//------------------------------------------------------------------------------
+double SpectrumWatch::seconds() const
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+}
+
+void SpectrumWatch::stage(double begin, double end)
+{
+  this->Begin = begin;
+  this->End = end;
+}
+
+bool SpectrumWatch::stop(double fraction)
+{
+  bool aborted = this->Aborted;
+  try
+  {
+    aborted = aborted ||
+      (this->Options.progress &&
+        !this->Options.progress(this->Begin + fraction * (this->End - this->Begin)));
+  }
+  catch (...)
+  {
+    // No exception may pass through PETSc.
+    this->Thrown = std::current_exception();
+    aborted = true;
+  }
+  if (this->Options.progress)
+  {
+    this->Aborted = this->System.anywhere(aborted);
+  }
+  if (this->Options.maximumSeconds > 0.0)
+  {
+    this->Late = this->System.anywhere(this->seconds() > this->Options.maximumSeconds);
+  }
+  return this->stopped();
+}
+
+std::string SpectrumWatch::message() const
+{
+  return this->Aborted ? "Stopped by the user."
+    : this->Late       ? "The time limit was reached before the tolerance."
+                       : "";
+}
+
+void SpectrumWatch::rethrow() const
+{
+  if (this->Thrown)
+  {
+    std::rethrow_exception(this->Thrown);
+  }
+}
+
+//------------------------------------------------------------------------------
+ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionOptions& options)
+{
+  check(options);
+  if (!system.symmetric)
+  {
+    throw Error("Condition numbers are found for symmetric matrices only.");
+  }
+  const PetscScope scope;
+  PetscOptionSet optionSet(options.petscOptions);
+  const PetscScope own(optionSet.database());
+  const PetscSystem objects(system);
+  SpectrumWatch watch(objects, options);
+  ConditionEstimate result;
+  try
+  {
+    const bool plain = options.preconditioner == Preconditioner::None ||
+      (options.preconditioner == Preconditioner::Jacobi &&
+        options.petscOptions.find("-pc_") == std::string::npos);
+    if (options.method == SpectrumMethod::RitzValues)
+    {
+      ritzValues(system, options, watch, result);
+    }
+    else
+    {
+      const SpectrumEnds ends = plain
+        ? plainEnds(system, objects, options, optionSet, watch)
+        : preconditionedEnds(system, options, options.preconditioner, options.petscOptions, watch);
+      fill(ends, objects, options, watch, result);
+    }
+  }
+  catch (const PetscError& error)
+  {
+    result = ConditionEstimate();
+    result.smallestError = result.largestError = std::numeric_limits<double>::infinity();
+    result.message = error.what();
+  }
+  watch.rethrow();
+  result.seconds = watch.seconds();
+  return result;
+}
+
+ConditionEstimate estimateCondition(const EllipticSystem& system, const ConditionOptions& options)
+{
+  return estimateCondition(system.linearSystem(), options);
+}
+}

@@ -1,0 +1,198 @@
+#include "ElementMatrices.h"
+#include "Parallel.h"
+#include "SmallEigenvalues.h"
+#include "SpectrumEnds.h"
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+constexpr Index NotFree = -1;
+
+/// What the loop over the cells reads and writes.
+struct Work
+{
+  const EllipticSystem& System;
+  const double* Vector; // an eigenvector, one number per unknown; or null
+  int Threads;
+  std::vector<Index> FreeIndex; // of each point
+  ElementContributions& Result;
+  std::vector<double> LowerBound; // of each chunk
+
+  Work(
+    const EllipticSystem& system, const double* vector, int threads, ElementContributions& result)
+    : System(system)
+    , Vector(vector)
+    , Threads(threads)
+    , FreeIndex(static_cast<std::size_t>(system.mesh().view().numberOfPoints), NotFree)
+    , Result(result)
+    , LowerBound(static_cast<std::size_t>(numberOfChunks(system.mesh().view().numberOfCells)), 0.0)
+  {
+    for (std::size_t i = 0; i < system.freePoints().size(); ++i)
+    {
+      this->FreeIndex[system.freePoints()[i]] = static_cast<Index>(i);
+    }
+  }
+};
+
+/// One cell: its largest eigenvalue, that of its part among the free unknowns, its energy in the eigenvector.
+template <int Nodes, int Dimension, class Element>
+void visitCell(Work& work, const Element& element, Index cell, CellType type, double& lowerBound)
+{
+  constexpr int components = Element::Components, rows = Nodes * components;
+  const MeshView& view = work.System.mesh().view();
+  const Index* node = view.connectivity + view.offsets[cell];
+  Vec3 p[Nodes];
+  for (int k = 0; k < Nodes; ++k)
+  {
+    p[k] = pointOf(view, node[k]);
+  }
+  double matrix[rows * rows] = {}, copy[rows * rows];
+  element.template compute<Nodes, Dimension>(cell, type, p, matrix);
+  std::copy_n(matrix, rows * rows, copy);
+  const double largest = largestEigenvalue(copy, rows);
+  work.Result.largestEigenvalue[cell] = largest;
+
+  int freeRows[rows] = {}, count = 0;
+  double x[rows] = {}, energy = 0.0;
+  for (int i = 0; i < rows; ++i)
+  {
+    const Index free = work.FreeIndex[node[i / components]];
+    if (free != NotFree)
+    {
+      freeRows[count++] = i;
+      x[i] = work.Vector ? work.Vector[components * free + i % components] : 0.0;
+    }
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    for (int j = 0; j < count; ++j)
+    {
+      const double entry = matrix[rows * freeRows[i] + freeRows[j]];
+      copy[count * i + j] = entry;
+      energy += x[freeRows[i]] * entry * x[freeRows[j]];
+    }
+  }
+  if (work.Vector)
+  {
+    work.Result.share[cell] = energy;
+  }
+  // A part has no larger eigenvalue than the whole.
+  if (count > 0 && largest > lowerBound)
+  {
+    lowerBound = std::max(lowerBound, count == rows ? largest : largestEigenvalue(copy, count));
+  }
+}
+
+template <class Element>
+void visitCells(Work& work, const Element& element)
+{
+  const MeshView& view = work.System.mesh().view();
+  const unsigned char* skip = work.System.part().skip;
+  forEachChunk(view.numberOfCells, work.Threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index cell = begin; cell < end; ++cell)
+      {
+        if (skip && skip[cell])
+        {
+          continue;
+        }
+        const auto type = static_cast<CellType>(view.cellTypes[cell]);
+        withElement(type,
+          [&](auto nodes, auto dimension)
+          {
+            visitCell<decltype(nodes)::value, decltype(dimension)::value>(
+              work, element, cell, type, work.LowerBound[chunk]);
+          });
+      }
+    });
+}
+
+/// The eigenvector of the largest eigenvalue; empty if it is not found.
+std::vector<double> topEigenvector(const EllipticSystem& system)
+{
+  const PetscScope scope;
+  PetscOptionSet optionSet("");
+  const PetscScope own(optionSet.database());
+  const PetscSystem objects(system.linearSystem());
+  const ConditionOptions options;
+  SpectrumWatch watch(objects, options);
+  const SpectrumEnd end = slepcLargest(objects.matrix(), options, optionSet, watch);
+  std::vector<double> vector;
+  if (end.found)
+  {
+    vector.resize(static_cast<std::size_t>(objects.localSize()));
+    objects.copyOut(end.vector, vector.data());
+  }
+  return vector;
+}
+}
+
+//------------------------------------------------------------------------------
+ElementContributions elementContributions(const EllipticSystem& system, bool shares, int threads)
+{
+  const Mesh& mesh = system.mesh();
+  const MeshView& view = mesh.view();
+  const PointNumbering& numbering = system.numbering();
+  ElementContributions result;
+  const auto cells = static_cast<std::size_t>(view.numberOfCells);
+  result.largestEigenvalue.assign(cells, std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> vector = shares ? topEigenvector(system) : std::vector<double>();
+  // A rank without unknowns has an empty vector, too.
+  const bool found =
+    shares && numbering.maximum(vector.empty() && !system.freePoints().empty() ? 1.0 : 0.0) == 0.0;
+  result.share.assign(found ? cells : 0, 0.0);
+
+  // Ranks without free points read nothing of the vector, but write shares.
+  const double none = 0.0;
+  Work work(system, found ? (vector.empty() ? &none : vector.data()) : nullptr, threads, result);
+  const EllipticProblem& problem = system.problem();
+  if (problem.pde == Pde::Elasticity && system.blockSize() == 2)
+  {
+    visitCells(work, ElasticElement<2>(problem.elastic, mesh.frame()));
+  }
+  else if (problem.pde == Pde::Elasticity)
+  {
+    visitCells(work, ElasticElement<3>(problem.elastic, mesh.frame()));
+  }
+  else
+  {
+    visitCells(work,
+      DiffusionElement(problem.pde == Pde::Poisson ? DiffusionOperator() : problem.diffusion));
+  }
+
+  // x^T A x = sum x_e^T A_e x_e <= sum lambda_e |x_e|^2 = sum over points of |x_p|^2 times the sum of their cells' lambda_e.
+  std::vector<double> sums(system.freePoints().size(), 0.0);
+  double total = 0.0;
+  for (std::size_t cell = 0; cell < cells; ++cell)
+  {
+    const Index* node = view.connectivity + view.offsets[cell];
+    const double largest = result.largestEigenvalue[cell];
+    const Index nodes = std::isnan(largest) ? 0 : view.offsets[cell + 1] - view.offsets[cell];
+    for (Index k = 0; k < nodes; ++k)
+    {
+      const Index free = work.FreeIndex[node[k]];
+      if (free != NotFree)
+      {
+        sums[free] += largest;
+      }
+    }
+    total += found ? result.share[cell] : 0.0;
+  }
+  numbering.sum(sums.data(), 1);
+  result.bound =
+    numbering.maximum(sums.empty() ? 0.0 : *std::max_element(sums.begin(), sums.end()));
+  result.lowerBound = numbering.maximum(work.LowerBound.empty()
+      ? 0.0
+      : *std::max_element(work.LowerBound.begin(), work.LowerBound.end()));
+  total = numbering.sum(total);
+  for (double& share : result.share)
+  {
+    share = total > 0.0 ? share / total : 0.0;
+  }
+  return result;
+}
+}

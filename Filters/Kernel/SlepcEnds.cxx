@@ -1,0 +1,216 @@
+#include "SpectrumEnds.h"
+
+#include <slepceps.h>
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+using PetscEigensolver = PetscHandle<EPS, EPSDestroy>;
+
+/// Unknowns up to which a factorisation costs less than an iteration: of plane problems, with few neighbours, and of others.
+constexpr PetscInt PlanarFactorLimit = 400000, SpatialFactorLimit = 30000;
+/// Neighbours of a point, itself among them, that tell the one from the other.
+constexpr double PlanarNeighbours = 11.0;
+
+constexpr PetscInt LargestBasis = 40; // vectors Krylov-Schur keeps for the largest eigenvalue
+constexpr PetscInt Block = 4;         // vectors LOBPCG iterates with
+
+bool isFactorAffordable(Mat matrix, int blockSize)
+{
+  PetscInt rows = 0;
+  MatInfo info;
+  petsc(MatGetSize(matrix, &rows, nullptr));
+  petsc(MatGetInfo(matrix, MAT_GLOBAL_SUM, &info));
+  const double neighbours = info.nz_used / rows / blockSize;
+  return rows <= (neighbours <= PlanarNeighbours ? PlanarFactorLimit : SpatialFactorLimit);
+}
+
+/// Between restarts: our limits first, then SLEPc's own test.
+PetscErrorCode stopping(EPS solver, PetscInt iteration, PetscInt most, PetscInt found,
+  PetscInt wanted, EPSConvergedReason* reason, void* context)
+{
+  auto& watch = *static_cast<SpectrumWatch*>(context);
+  const PetscErrorCode code =
+    EPSStoppingBasic(solver, iteration, most, found, wanted, reason, nullptr);
+  if (code == 0 && *reason == EPS_CONVERGED_ITERATING &&
+    watch.stop(static_cast<double>(iteration) / (iteration + 20.0)))
+  {
+    *reason = EPS_CONVERGED_USER;
+  }
+  return code;
+}
+
+void create(Mat matrix, const ConditionOptions& options, SpectrumWatch& watch, PetscInt wanted,
+  PetscEigensolver& solver)
+{
+  MPI_Comm comm = MPI_COMM_NULL;
+  PetscVector start;
+  petsc(PetscObjectGetComm(reinterpret_cast<PetscObject>(matrix), &comm));
+  petsc(EPSCreate(comm, solver.out()));
+  petsc(EPSSetOperators(solver, matrix, nullptr));
+  petsc(EPSSetProblemType(solver, EPS_HEP));
+  petsc(EPSSetDimensions(solver, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc(EPSSetTolerances(solver, options.tolerance, options.maximumIterations));
+  petsc(EPSSetStoppingTestFunction(solver, stopping, &watch, nullptr));
+  petsc(MatCreateVecs(matrix, start.out(), nullptr));
+  fillStartVector(start);
+  Vec list[] = { start };
+  petsc(EPSSetInitialSpace(solver, 1, list));
+}
+
+/**
+ * @brief The eigenpair nearest to the end, with the bound from its residual. Of the smallest, the next eigenvalue has converged,
+ * too, and the distance to it counts (Kato-Temple); without that rounding would hide a small eigenvalue beside a large one.
+ */
+void collect(Mat matrix, EPS solver, bool smallest, SpectrumEnd& end)
+{
+  PetscInt found = 0, iterations = 0;
+  petsc(EPSGetConverged(solver, &found));
+  petsc(EPSGetIterationNumber(solver, &iterations));
+  end.iterations = static_cast<int>(iterations);
+  if (found == 0)
+  {
+    end.message = "Not converged after " + std::to_string(iterations) + " iterations.";
+    return;
+  }
+  PetscVector x, r;
+  petsc(MatCreateVecs(matrix, x.out(), r.out()));
+  PetscInt best = 0;
+  std::vector<double> values(static_cast<std::size_t>(found));
+  for (PetscInt i = 0; i < found; ++i)
+  {
+    petsc(EPSGetEigenvalue(solver, i, &values[i], nullptr));
+    best = (smallest ? values[i] < values[best] : values[i] > values[best]) ? i : best;
+  }
+  PetscReal length = 0.0;
+  petsc(EPSGetEigenvector(solver, best, x, nullptr));
+  petsc(VecNormalize(x, nullptr));
+  petsc(MatMult(matrix, x, r));
+  petsc(VecDot(x, r, &end.value));
+  petsc(VecAXPY(r, -end.value, x));
+  petsc(VecNorm(r, NORM_2, &length));
+  double gap = std::numeric_limits<double>::infinity();
+  for (PetscInt i = 0; i < found; ++i)
+  {
+    gap = i == best ? gap : std::min(gap, std::abs(values[i] - end.value));
+  }
+  end.bound = smallest && found > 1 && gap > length ? length * length / gap : length;
+  end.found = std::isfinite(end.value) && std::isfinite(end.bound);
+  end.vector = std::move(x);
+}
+
+/// Runs it; a failure of SLEPc, or of what it is built on, is a message.
+template <class Call>
+void attempt(SpectrumEnd& end, const Call& call)
+{
+  try
+  {
+    call();
+  }
+  catch (const PetscError& error)
+  {
+    end.message = error.what();
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+SpectrumEnd slepcLargest(
+  Mat matrix, const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
+{
+  ensureSlepc();
+  SpectrumEnd end;
+  end.method = "Krylov-Schur";
+  PetscInt rows = 0;
+  petsc(MatGetSize(matrix, &rows, nullptr));
+  attempt(end,
+    [&]()
+    {
+      PetscEigensolver solver;
+      create(matrix, options, watch, 1, solver);
+      petsc(EPSSetType(solver, EPSKRYLOVSCHUR));
+      petsc(EPSSetWhichEigenpairs(solver, EPS_LARGEST_REAL));
+      petsc(EPSSetDimensions(solver, 1, std::min(LargestBasis, rows), PETSC_DEFAULT));
+      optionSet.read([&]() { petsc(EPSSetFromOptions(solver)); });
+      petsc(EPSSolve(solver));
+      collect(matrix, solver, false, end);
+    });
+  return end;
+}
+
+SpectrumEnds slepcEnds(Mat matrix, const LinearSystem& system, int ranks,
+  const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
+{
+  SpectrumEnds ends;
+  PetscInt rows = 0;
+  petsc(MatGetSize(matrix, &rows, nullptr));
+  watch.stage(0.0, 0.4);
+  ends.largest = slepcLargest(matrix, options, optionSet, watch);
+
+  SpectrumEnd& low = ends.smallest;
+  const bool factorise = isFactorAffordable(matrix, system.blockSize);
+  PetscInt negative = 0;
+  watch.stage(0.4, 1.0);
+  attempt(low,
+    [&]()
+    {
+      PetscEigensolver solver;
+      ST transformation = nullptr;
+      KSP inner = nullptr;
+      PC pc = nullptr;
+      create(matrix, options, watch, std::min<PetscInt>(2, rows), solver);
+      petsc(EPSGetST(solver, &transformation));
+      if (factorise)
+      {
+        // MUMPS counts negative pivots (Sylvester): the smallest eigenvalue is the one nearest to 0 if there are none.
+        LinearSystem symmetric = system;
+        symmetric.symmetric = true;
+        symmetric.positiveDefinite = false;
+        petsc(EPSSetType(solver, EPSKRYLOVSCHUR));
+        petsc(STSetType(transformation, STSINVERT));
+        petsc(EPSSetTarget(solver, 0.0));
+        petsc(EPSSetWhichEigenpairs(solver, EPS_TARGET_MAGNITUDE));
+        petsc(STGetKSP(transformation, &inner));
+        petsc(KSPSetType(inner, KSPPREONLY));
+        petsc(KSPGetPC(inner, &pc));
+        const std::string package = chooseFactorization(pc, symmetric, ranks, optionSet, "st_");
+        optionSet.setDefault("-st_mat_mumps_icntl_13", "1"); // or several ranks do not count
+        low.method = "Krylov-Schur, shift-invert (Cholesky by " + package + ")";
+      }
+      else
+      {
+        petsc(EPSSetType(solver, EPSLOBPCG));
+        petsc(EPSLOBPCGSetBlockSize(solver, std::min(Block, rows)));
+        petsc(EPSSetWhichEigenpairs(solver, EPS_SMALLEST_REAL));
+        petsc(STSetType(transformation, STPRECOND));
+        petsc(STGetKSP(transformation, &inner));
+        petsc(KSPSetType(inner, KSPPREONLY));
+        petsc(KSPGetPC(inner, &pc));
+        petsc(PCSetType(pc, PCHYPRE));
+        petsc(PCHYPRESetType(pc, "boomeramg"));
+        low.method = "LOBPCG, preconditioned by BoomerAMG";
+      }
+      optionSet.read([&]() { petsc(EPSSetFromOptions(solver)); });
+      petsc(EPSSetUp(solver));
+      optionSet.rejectUnused(true);
+      petsc(EPSSolve(solver));
+      if (factorise)
+      {
+        Mat factor = nullptr;
+        petsc(PCFactorGetMatrix(pc, &factor));
+        petsc(MatGetInertia(factor, &negative, nullptr, nullptr));
+      }
+      collect(matrix, solver, true, low);
+    });
+  if (negative > 0)
+  {
+    low.found = false;
+    low.message = "The matrix is not positive definite: " + std::to_string(negative) +
+      " of its eigenvalues are negative.";
+  }
+  return ends;
+}
+}

@@ -1,0 +1,87 @@
+/**
+ * @file SpectrumEnds.h
+ * @brief Both ends of the spectrum of A, or of P^-1 A, of a matrix that PETSc holds. Not a public header.
+ */
+#ifndef tautline_SpectrumEnds_h
+#define tautline_SpectrumEnds_h
+
+#include "ConditionEstimate.h"
+#include "PetscObjects.h"
+
+namespace tautline
+{
+/// Limits that all methods keep; the ranks stop together.
+class SpectrumWatch
+{
+public:
+  SpectrumWatch(const PetscSystem& system, const ConditionOptions& options)
+    : System(system)
+    , Options(options)
+  {
+  }
+  /// Tells a fraction done of the present stage; whether to stop.
+  bool stop(double fraction);
+  /// The next stage takes the fractions from `begin` to `end`.
+  void stage(double begin, double end);
+  bool stopped() const { return this->Late || this->Aborted; }
+  double seconds() const;
+  /// Why it stopped, or "".
+  std::string message() const;
+  /// Throws what progress() threw.
+  void rethrow() const;
+
+private:
+  const PetscSystem& System;
+  const ConditionOptions& Options;
+  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+  double Begin = 0.0, End = 1.0;
+  bool Late = false, Aborted = false;
+  std::exception_ptr Thrown;
+};
+
+/// One end of a spectrum.
+struct SpectrumEnd
+{
+  bool found = false;
+  double value = 0.0;
+  double bound = 0.0; ///< on the absolute error, from the residual
+  int iterations = 0;
+  std::string method;
+  std::string message; ///< why it was not found, or not to the tolerance
+  PetscVector vector;  ///< of P^-1 A
+};
+
+struct SpectrumEnds
+{
+  SpectrumEnd smallest, largest;
+};
+
+/// Numbers from 0.25 to 1.25 that depend on the row alone: the lowest mode is never missed, whatever the ranks.
+void fillStartVector(Vec vector, std::uint64_t seed = 0);
+
+/**
+ * @brief Lanczos' method for P^-1 A in the inner product of P, without reorthogonalisation, in two passes: the second gathers
+ * the vectors of the ends once the first knows their weights. Needs five vectors however many the steps.
+ *
+ * For an end, the tridiagonal matrix of the step at which it converged is taken, before rounding makes copies of it. With y
+ * gathered and x = P^-1 y, the value is the Rayleigh quotient x^T A x / x^T y; an eigenvalue is within the norm of
+ * A x - theta y, in the inner product of P^-1, of it: rounding in the recurrence does not matter.
+ *
+ * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 10.1 to 10.3; C. C. Paige, J. Inst. Maths Applics
+ * 18 (1976), on what rounding does; bounds: B. N. Parlett, The Symmetric Eigenvalue Problem, sections 10.6 and 15.9.
+ */
+SpectrumEnds lanczosEnds(
+  Mat matrix, PC preconditioner, const ConditionOptions& options, SpectrumWatch& watch);
+
+/**
+ * @brief The ends of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest by Krylov-Schur on the inverse
+ * where a factorisation is affordable, else by LOBPCG with BoomerAMG as the preconditioner.
+ */
+SpectrumEnds slepcEnds(Mat matrix, const LinearSystem& system, int ranks,
+  const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch);
+
+/// The largest alone.
+SpectrumEnd slepcLargest(
+  Mat matrix, const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch);
+}
+#endif

@@ -1,0 +1,362 @@
+// The methods beyond one harmonic solve: the hybrid algorithm, untangling, elasticity, the biharmonic equation, steps.
+
+#include "Warping.h"
+
+#include "tautline/FiniteElements.h"
+
+using namespace tautline;
+
+namespace
+{
+/// No inverted element, the boundary where it belongs, and a history that says so.
+void checkValid(const MeshData& data, const Field& motion, const Warping& result)
+{
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
+  TAUTLINE_CHECK_EQUAL(invalid(data, result.points), 0);
+  TAUTLINE_CHECK_EQUAL(result.impossible, 0);
+  TAUTLINE_CHECK_EQUAL(result.amount, 1.0);
+  TAUTLINE_CHECK(result.message.empty());
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Vec3 p = data.point(i), q = p + motion(p);
+    TAUTLINE_CHECK(!boundary[i] || std::equal(q.begin(), q.end(), &result.points[3 * i]));
+  }
+  TAUTLINE_CHECK(!result.history.empty());
+  TAUTLINE_CHECK_EQUAL(result.history.back().inverted, 0);
+  TAUTLINE_CHECK_EQUAL(result.history.back().amount, 1.0);
+  double worst = 0, mean = 0;
+  for (double q : shapeSimilarity(Mesh(data.view()), result.points.data()))
+  {
+    worst = std::max(worst, q);
+    mean += q / double(data.numberOfCells());
+  }
+  TAUTLINE_CHECK_EQUAL(result.history.back().worstShape, worst);
+  TAUTLINE_CHECK_RELATIVE(result.history.back().meanShape, mean, 1e-12);
+}
+
+//------------------------------------------------------------------------------
+/// The inner box turned by up to half a turn, in the plane and in space, for every element type.
+void testTurnedBox()
+{
+  for (const CellType type :
+    { CellType::Tetrahedron, CellType::Triangle, CellType::Hexahedron, CellType::Quadrilateral })
+  {
+    const bool flat = topology(type).dimension == 2, simplex = topology(type).samples == 1;
+    const MeshData data = boxInBox(type, flat ? 20 : 11, flat ? 8 : 3, simplex ? 0.2 : 0.1);
+    for (const double degrees : { 30.0, 90.0, 120.0, 180.0 })
+    {
+      // A hexahedron or quadrilateral that winds round a corner of the box cannot be valid for long.
+      if (!simplex && degrees > 30)
+      {
+        continue;
+      }
+      const Context context(
+        std::string(topology(type).name) + " turned by " + std::to_string(degrees));
+      const Field motion = turnedBox(degrees, flat);
+      for (const WarpMethod method : { WarpMethod::Hybrid, WarpMethod::FemwarpUntangling })
+      {
+        const Warping result = warped(data, motion, withMethod(method));
+        checkValid(data, motion, result);
+        if (degrees > 30)
+        {
+          TAUTLINE_CHECK(result.history[0].inverted > 0);
+          TAUTLINE_CHECK_EQUAL(result.history[0].stage, std::string("warp"));
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Shape (4.22) is what the metric of the registry says, and 0 for similar elements.
+void testSimilarity()
+{
+  Random random(2);
+  for (const CellType type : allTypes)
+  {
+    const bool flat = topology(type).dimension == 2;
+    const MeshData data = movedBlock(type, 3, 0.1);
+    MeshData moved = data;
+    moved.transform(
+      [&](const Vec3& p)
+      {
+        const Vec3 d = random.vector(-0.1, 0.1);
+        return Vec3{ 1.5 * p[0] + d[0], 0.7 * p[1] + 0.3 * p[0] + d[1], flat ? 0.0 : p[2] + d[2] };
+      });
+    const Mesh mesh(data.view()), now(moved.view());
+    const Targets targets = referenceTargets(now, mesh);
+    EvaluationOptions options;
+    options.targets = &targets;
+    const std::vector<double> expected = valuesOf(now, Metric::ShapeSimilarity, options);
+    const std::vector<double> values = shapeSimilarity(mesh, moved.points.data());
+    const std::vector<signed char> validity = validityOf(now);
+    for (Index c = 0; c < data.numberOfCells(); ++c)
+    {
+      if (validity[c] == Valid)
+      {
+        TAUTLINE_CHECK_RELATIVE(values[c], expected[c], 1e-10);
+      }
+      TAUTLINE_CHECK_EQUAL(std::isnan(values[c]), validity[c] != Valid);
+    }
+    // Similar elements; reflected ones are inverted.
+    const Columns turn = flat ? rotation({ 0, 0, 1 }, 0.7) : rotation({ 1, 2, 3 }, 0.7);
+    moved.points = data.points;
+    moved.transform([&](const Vec3& p) { return turn * (2.5 * p); });
+    for (double q : shapeSimilarity(mesh, moved.points.data()))
+    {
+      TAUTLINE_CHECK_NEAR(q, 0, 1e-24);
+    }
+    moved.transform([&](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+    for (double q : shapeSimilarity(mesh, moved.points.data()))
+    {
+      TAUTLINE_CHECK(std::isnan(q));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// (4.24) as it stands, and what replaces it: both end valid, and the shape is better than untangling leaves it.
+void testSecondStep()
+{
+  const MeshData data = boxInBox(CellType::Triangle, 20, 8);
+  const Field motion = turnedBox(60, true);
+  const double untangled =
+    warped(data, motion, withMethod(WarpMethod::FemwarpUntangling)).history.back().worstShape;
+  for (const double beta : { -1.0, 0.0, 0.1 })
+  {
+    WarpOptions options;
+    options.untangleFirst = beta < 0;
+    options.untanglingBeta = std::max(0.0, beta);
+    const Warping result = warped(data, motion, options);
+    checkValid(data, motion, result);
+    TAUTLINE_CHECK(result.history.back().worstShape < untangled);
+    TAUTLINE_CHECK_EQUAL(result.history[1].stage, std::string(beta < 0 ? "untangle" : "optimize"));
+  }
+  // Nothing moves: nothing changes.
+  const Warping still = warped(
+    data,
+    [](const Vec3&) {
+      return Vec3{ 0, 0, 0 };
+    },
+    WarpOptions());
+  TAUTLINE_CHECK(still.points == data.points);
+}
+
+//------------------------------------------------------------------------------
+/// K M^-1 K x = 0 inside, with motions whose affine part vanishes by symmetry.
+void testBiharmonic()
+{
+  MeshData data = blockMesh(CellType::Triangle, 12, 12, 0);
+  data.transform([](const Vec3& p) { return (1.0 / 12) * p - Vec3{ 0.5, 0.5, 0 }; });
+  const Mesh mesh(data.view());
+  const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
+  const auto motion = [](const Vec3& p) { return Vec3{ 0.1 * p[0] * p[1], 0, 0 }; };
+  WarpOptions options = withMethod(WarpMethod::Biharmonic);
+  const Warping result = warped(data, motion, options);
+  const SparseMatrix K = stiffnessMatrix(mesh, DiffusionOperator());
+  const std::vector<double> one(K.size, 1.0);
+  const std::vector<double> mass = loadVector(mesh, one.data(), 1);
+  std::vector<double> u(K.size), w(K.size), r(K.size);
+  double most = 0;
+  for (Index i = 0; i < K.size; ++i)
+  {
+    u[i] = result.points[3 * i] - data.points[3 * i];
+    most = std::max(most, std::abs(u[i]));
+  }
+  K.multiply(u.data(), w.data());
+  for (Index i = 0; i < K.size; ++i)
+  {
+    w[i] /= mass[i];
+  }
+  K.multiply(w.data(), r.data());
+  for (Index i = 0; i < K.size; ++i)
+  {
+    TAUTLINE_CHECK(boundary[i] || std::abs(r[i]) < 1e-9);
+  }
+  // Clamped, it comes into the mesh farther than the harmonic motion does.
+  TAUTLINE_CHECK_NEAR(most, 0.025, 1e-12);
+  TAUTLINE_CHECK(
+    distance(result.points, warped(data, motion, withMethod(WarpMethod::Femwarp)).points) > 1e-4);
+}
+
+//------------------------------------------------------------------------------
+void testElasticity()
+{
+  const MeshData data = boxInBox(CellType::Triangle, 20, 8);
+  const Field turn = turnedBox(90, true);
+  WarpOptions options = withMethod(WarpMethod::IterativeStiffening);
+  options.maximumStiffenings = 0;
+  const Warping uniform = warped(data, turn, options);
+  TAUTLINE_CHECK(uniform.invertedAfter > 0);
+  TAUTLINE_CHECK(uniform.message.find("after 0 rounds") != std::string::npos);
+  options.maximumStiffenings = 100;
+  const Warping stiffened = warped(data, turn, options);
+  checkValid(data, turn, stiffened);
+
+  // No power: one material. Its rows applied to the displacements vanish inside.
+  options = withMethod(WarpMethod::JacobianStiffening);
+  options.stiffeningPower = 0;
+  const Warping same = warped(data, turn, options);
+  TAUTLINE_CHECK_NEAR(distance(same.points, uniform.points), 0, 1e-12);
+  for (const double nu : { 0.0, 0.4 })
+  {
+    options.poissonRatio = nu;
+    const Warping result = warped(data, turn, options);
+    ElasticOperator pde;
+    pde.poissonRatio = nu;
+    const Mesh mesh(data.view());
+    const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
+    const SparseMatrix K = stiffnessMatrix(mesh, pde);
+    std::vector<double> u(K.size), r(K.size);
+    for (Index i = 0; i < K.size; ++i)
+    {
+      u[i] = result.points[3 * (i / 2) + i % 2] - data.points[3 * (i / 2) + i % 2];
+    }
+    K.multiply(u.data(), r.data());
+    for (Index i = 0; i < K.size; ++i)
+    {
+      TAUTLINE_CHECK(boundary[i / 2] || std::abs(r[i]) < 1e-9);
+    }
+  }
+
+  // With it, small elements keep their shape better than large ones.
+  MeshData graded = boxInBox(CellType::Quadrilateral, 20, 8, 0.0);
+  graded.transform(
+    [](const Vec3& p)
+    {
+      // towards the inner box
+      const Vec3 q = p - Vec3{ 0.5, 0.5, 0 };
+      const double extent = std::max(std::abs(q[0]), std::abs(q[1]));
+      const double s = std::max(0.0, (extent - 0.2) / 0.3);
+      return Vec3{ 0.5, 0.5, 0 } + ((0.2 + 0.3 * s * (0.6 + 0.4 * s)) / extent) * q;
+    });
+  const Mesh mesh(graded.view());
+  EvaluationOptions evaluation;
+  const std::vector<double> size = valuesOf(mesh, Metric::Size, evaluation);
+  const double median = [&]
+  {
+    std::vector<double> sorted = size;
+    std::nth_element(sorted.begin(), sorted.begin() + Index(sorted.size() / 2), sorted.end());
+    return sorted[sorted.size() / 2];
+  }();
+  const auto distortion = [&](double power)
+  {
+    options.stiffeningPower = power;
+    const std::vector<double> q = shapeSimilarity(mesh,
+      warped(
+        graded,
+        [](const Vec3& p) {
+          return onInnerBox(p, true) ? Vec3{ 0, 0.04, 0 } : Vec3{ 0, 0, 0 };
+        },
+        options)
+        .points.data());
+    double sum = 0;
+    for (std::size_t i = 0; i < q.size(); ++i)
+    {
+      sum += size[i] < 0.8 * median ? q[i] : 0.0;
+    }
+    return sum;
+  };
+  const double without = distortion(0), with = distortion(1), more = distortion(2);
+  TAUTLINE_CHECK(with < 0.8 * without);
+  TAUTLINE_CHECK(more < with);
+}
+
+//------------------------------------------------------------------------------
+void testSteps()
+{
+  // Small steps follow farther than one; steps of automatic length stop in time.
+  const MeshData data = boxInBox(CellType::Triangle, 20, 8);
+  const Field motion = turnedBox(70, true);
+  TAUTLINE_CHECK(warped(data, motion, withMethod(WarpMethod::Femwarp)).invertedAfter > 0);
+  const Warping small = warped(data, motion, withMethod(WarpMethod::SmallStepFemwarp));
+  TAUTLINE_CHECK_EQUAL(small.invertedAfter, 0);
+  TAUTLINE_CHECK_EQUAL(invalid(data, small.points), 0);
+  TAUTLINE_CHECK(small.amount > 0.4 && small.amount <= 1);
+  TAUTLINE_CHECK_EQUAL(small.amount < 1,
+    small.message.find("could follow only a part of the motion") != std::string::npos);
+  WarpOptions few = withMethod(WarpMethod::SmallStepFemwarp);
+  few.maximumSteps = 2;
+  const Warping stopped = warped(data, motion, few);
+  TAUTLINE_CHECK(stopped.amount <= small.amount);
+  TAUTLINE_CHECK_EQUAL(stopped.invertedAfter, 0);
+
+  // The way is that of the turn, not the chord: the box keeps its size on it.
+  few.steps = 0;
+  few.method = WarpMethod::Femwarp;
+  few.maximumSteps = 100;
+  const Warping part = warped(data, turnedBox(150, true), few);
+  TAUTLINE_CHECK(part.amount > 0.1 && part.amount < 1);
+  const Mesh mesh(data.view());
+  const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
+  const Field expected = turnedBox(150 * part.amount, true);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Vec3 p = data.point(i), q = p + expected(p);
+    TAUTLINE_CHECK(!boundary[i] ||
+      std::abs(part.points[3 * i] - q[0]) + std::abs(part.points[3 * i + 1] - q[1]) < 1e-12);
+  }
+  // A motion that is given as a function of the amount is taken as it is.
+  const Warping given = Warper(mesh, few).warp(
+    [&](double amount, double* to)
+    {
+      const std::vector<double> d = displacements(data, turnedBox(150 * amount, true));
+      std::copy(d.begin(), d.end(), to);
+    });
+  TAUTLINE_CHECK_NEAR(given.amount, part.amount, 1e-12);
+  TAUTLINE_CHECK_NEAR(distance(given.points, part.points), 0, 1e-9);
+
+  // Affine motions are exact in steps, too; and so is the end of the way.
+  for (const int steps : { 0, 3 })
+  {
+    few.steps = steps;
+    const auto affine = [](const Vec3& p) {
+      return Vec3{ 0.3 * p[0] + 0.2 * p[1] + 1, -0.4 * p[0] + 0.1 * p[1], 0 };
+    };
+    const Warping result = warped(data, affine, few);
+    TAUTLINE_CHECK_EQUAL(result.history.size(), std::size_t(std::max(1, steps)));
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      const Vec3 p = data.point(i), q = p + affine(p);
+      TAUTLINE_CHECK_NEAR(
+        std::hypot(result.points[3 * i] - q[0], result.points[3 * i + 1] - q[1]), 0, 1e-12);
+    }
+  }
+  // The hybrid algorithm goes all the way.
+  few.method = WarpMethod::Hybrid;
+  few.steps = 0;
+  checkValid(data, turnedBox(150, true), warped(data, turnedBox(150, true), few));
+}
+
+//------------------------------------------------------------------------------
+void testThreads()
+{
+  const MeshData data = boxInBox(CellType::Tetrahedron, 10, 3);
+  for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
+  {
+    const Context context("method " + std::to_string(method));
+    WarpOptions options = withMethod(WarpMethod(method));
+    options.maximumStiffenings = 3;
+    options.threads = 1;
+    const Field motion = turnedBox(50, false);
+    const Warping one = warped(data, motion, options);
+    options.threads = 3;
+    const Warping three = warped(data, motion, options);
+    TAUTLINE_CHECK(one.points == three.points);
+    TAUTLINE_CHECK_EQUAL(one.history.size(), three.history.size());
+  }
+}
+}
+
+int TestWarpMethods(int, char*[])
+{
+  testTurnedBox();
+  testSimilarity();
+  testSecondStep();
+  testBiharmonic();
+  testElasticity();
+  testSteps();
+  testThreads();
+  return exitCode();
+}
