@@ -22,7 +22,8 @@ namespace
 constexpr int SpectrumPort = 1;
 constexpr int ListedElements = 5;
 constexpr double MostOfIt =
-  0.9; ///< a share of elements is named that has so much of the eigenvalue
+  0.9;                    ///< a share of elements is named that has so much of the eigenvalue
+constexpr int Digits = 4; ///< of numbers in sentences
 constexpr double Unknown = -1.0; ///< an error bound
 
 double knownOr(double bound)
@@ -179,6 +180,7 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
   table.addText("Message", found.message);
 
   std::ostringstream sentence;
+  sentence.precision(Digits);
   if (found.condition > 0)
   {
     sentence << "Condition number of " << name << ": " << found.condition << ", eigenvalues from "
@@ -190,7 +192,7 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
   }
   sentence << (found.message.empty() ? "" : " ") << found.message;
   text += (text.empty() ? "" : "\n") + sentence.str();
-  if (!found.converged)
+  if (!found.converged && (this->Method != RITZ_VALUES || found.condition <= 0))
   {
     this->Warn();
   }
@@ -216,6 +218,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   mesh.output->GetPointData()->SetActiveScalars(nullptr);
   tautline::addArray(mesh.output, true, "LargestEigenvalue", elements.largestEigenvalue, 1);
   std::ostringstream text;
+  text.precision(Digits);
   text << found << "\n"
        << system.unknowns() << " unknowns. The largest eigenvalue of A is between "
        << elements.lowerBound << " and " << elements.bound << " by those of the elements.";
