@@ -43,6 +43,13 @@ vtkDataArray* cellArray(vtkAlgorithm* algorithm, int index, vtkDataSet* data,
   return array;
 }
 
+/// The values, or null if there are none; not null only because this process has no points.
+const double* orNull(std::vector<double>& values, bool given)
+{
+  values.reserve(1);
+  return given ? values.data() : nullptr;
+}
+
 /// Flags points where a point array is not 0, or those of cells where a cell array is not.
 void flag(
   vtkDataArray* array, bool ofCells, const MeshView& view, std::vector<unsigned char>& flags)
@@ -95,8 +102,8 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
   problem.elastic.plane = choice.plane;
   problem.elastic.stiffening = this->Stiffening.empty() ? nullptr : this->Stiffening.data();
   problem.source = choice.source.constant;
-  problem.sources = this->Sources.empty() ? nullptr : this->Sources.data();
-  problem.fixedValues = this->Given.empty() ? nullptr : this->Given.data();
+  problem.sources = orNull(this->Sources, choice.source.kind != PointFunction::Constant);
+  problem.fixedValues = orNull(this->Given, !choice.given.isZero());
   this->System =
     std::make_unique<EllipticSystem>(this->Adapter->mesh(), problem, this->Part, threads);
 }
@@ -247,6 +254,7 @@ void EllipticInput::markFixed(
   // Selections and arrays of cells may know a point on one process only.
   PointNumbering(this->Part.communicator, view.numberOfPoints, this->Part.globalIds)
     .either(this->Fixed.data());
+  this->Fixed.reserve(1); // so that it is not null where there are no points
   this->Problem.fixed = this->Fixed.data();
 }
 }
