@@ -17,7 +17,6 @@ constexpr int TensorSize = 6;
 constexpr int FullTensorSize = 9;
 /// Components of a full tensor, row by row, in the order of SymmetricTensor.
 constexpr std::array<int, TensorSize> OfFullTensor = { 0, 4, 8, 1, 5, 2 };
-constexpr const char* SelectedArray = "vtkInsidedness"; // the name vtkExtractSelection gives it
 
 /// A chosen cell array, or null; Error if it is on points or has other numbers of components.
 vtkDataArray* cellArray(vtkAlgorithm* algorithm, int index, vtkDataSet* data,
