@@ -107,6 +107,9 @@ AssemblyPattern::AssemblyPattern(const Mesh& mesh, const AssemblyOptions& option
     this->Nodes[static_cast<int>(block.type)] = static_cast<signed char>(nodes);
     this->Stride = std::max(this->Stride, nodes);
   }
+  const MeshView& view = mesh.view();
+  const Index size = view.offsets[view.numberOfCells] - view.offsets[0];
+  this->Uniform = mesh.blocks().size() == 1 && size == this->Stride * view.numberOfCells;
   this->findUses(options.skip);
   this->findColumns();
 }
@@ -115,12 +118,20 @@ AssemblyPattern::AssemblyPattern(const Mesh& mesh, const AssemblyOptions& option
 void AssemblyPattern::findUses(const unsigned char* skip)
 {
   const MeshView& view = this->Input->view();
-  this->UseOffsets.assign(view.numberOfPoints + 1, 0);
-  const auto forEachUse = [&](const auto& visit)
+  const Index points = view.numberOfPoints;
+  // Each part of the cells counts for itself and later fills in from where the parts before it end: so the uses of a point
+  // are in order of cells, however many parts there are.
+  constexpr Index mostParts = 8; // each takes four bytes per point
+  const Index parts = std::max<Index>(1,
+    std::min({ mostParts, static_cast<Index>(resolveThreads(this->Threads)),
+      numberOfChunks(view.numberOfCells) }));
+  std::vector<std::vector<std::uint32_t>> next(parts);
+  const auto forEachUse = [&](Index part, const auto& visit)
   {
-    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    const Index end = view.numberOfCells * (part + 1) / parts;
+    for (Index cell = view.numberOfCells * part / parts; cell < end; ++cell)
     {
-      const Index* node = view.connectivity + view.offsets[cell];
+      const Index* node = view.connectivity + this->firstNode(cell);
       const int nodes = skip && skip[cell] ? 0 : this->nodesOf(cell);
       for (int k = 0; k < nodes; ++k)
       {
@@ -128,12 +139,34 @@ void AssemblyPattern::findUses(const unsigned char* skip)
       }
     }
   };
-  forEachUse([&](Index node, Index) { ++this->UseOffsets[node + 1]; });
-  std::partial_sum(this->UseOffsets.begin(), this->UseOffsets.end(), this->UseOffsets.begin());
+  const int threads = static_cast<int>(parts);
+#pragma omp parallel for num_threads(threads) if (parts > 1)
+  for (Index part = 0; part < parts; ++part)
+  {
+    next[part].assign(points, 0);
+    forEachUse(part, [&](Index node, Index) { ++next[part][node]; });
+  }
+  this->UseOffsets.assign(points + 1, 0);
+  for (Index point = 0; point < points; ++point)
+  {
+    Index sum = 0;
+    for (auto& counts : next)
+    {
+      const Index count = counts[point];
+      counts[point] = static_cast<std::uint32_t>(sum);
+      sum += count;
+    }
+    this->UseOffsets[point + 1] = this->UseOffsets[point] + sum;
+  }
   this->Uses.resize(this->UseOffsets.back());
-  std::vector<Index> next(this->UseOffsets.begin(), this->UseOffsets.end() - 1);
-  forEachUse(
-    [&](Index node, Index use) { this->Uses[next[node]++] = static_cast<std::uint32_t>(use); });
+#pragma omp parallel for num_threads(threads) if (parts > 1)
+  for (Index part = 0; part < parts; ++part)
+  {
+    forEachUse(part,
+      [&](Index node, Index use) {
+        this->Uses[this->UseOffsets[node] + next[part][node]++] = static_cast<std::uint32_t>(use);
+      });
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -161,7 +194,7 @@ void AssemblyPattern::findColumns()
           for (Index use = firstUse; use < lastUse; ++use)
           {
             const Index cell = this->Uses[use] >> placeBits;
-            const Index* node = view.connectivity + view.offsets[cell];
+            const Index* node = view.connectivity + this->firstNode(cell);
             const int nodes = this->nodesOf(cell);
             for (int k = 0; k < nodes; ++k)
             {
@@ -257,13 +290,14 @@ void AssemblyPattern::gather(
   const Element& element, SparseMatrix& matrix, const double* points) const
 {
   constexpr int components = Element::Components;
-  constexpr Index leastCells = 1 << 15, mostBatches = 32;
   this->expand(components, matrix);
   MeshView view = this->Input->view();
   view.points = points ? points : view.points;
   const Index entries = components * components * this->Stride * this->Stride;
+  // The buffer takes no more than the matrix itself, unless that is small. Few batches, since each looks at all rows.
+  constexpr Index least = 1 << 15;
   const Index batch = std::min(
-    view.numberOfCells, std::max(leastCells, (view.numberOfCells + mostBatches - 1) / mostBatches));
+    view.numberOfCells, std::max(least, static_cast<Index>(matrix.values.size()) / entries));
   std::vector<double> buffer(batch * entries);
   std::vector<std::int32_t> done(view.numberOfPoints, 0); // uses of each point
   FirstCell wrong;
@@ -276,7 +310,7 @@ void AssemblyPattern::gather(
         for (Index i = begin; i < end; ++i)
         {
           const Index cell = firstCell + i;
-          const Index* node = view.connectivity + view.offsets[cell];
+          const Index* node = view.connectivity + this->firstNode(cell);
           const CellType type = static_cast<CellType>(view.cellTypes[cell]);
           withElement(type,
             [&](auto nodesOfCell, auto dimensionOfCell)
@@ -318,7 +352,7 @@ void AssemblyPattern::gather(
               {
                 const auto column = this->Columns.begin() + first;
                 slot = std::lower_bound(
-                         column, column + width, view.connectivity[view.offsets[cell] + j]) -
+                         column, column + width, view.connectivity[this->firstNode(cell) + j]) -
                   column;
               }
               for (int a = 0; a < components; ++a)

@@ -108,11 +108,20 @@ private:
   void expand(int components, SparseMatrix& matrix) const;
   template <class Element>
   void gather(const Element& element, SparseMatrix& matrix, const double* points) const;
-  int nodesOf(Index cell) const { return this->Nodes[this->Input->view().cellTypes[cell]]; }
+  int nodesOf(Index cell) const
+  {
+    return this->Uniform ? this->Stride : this->Nodes[this->Input->view().cellTypes[cell]];
+  }
+  Index firstNode(Index cell) const
+  {
+    const Index* offsets = this->Input->view().offsets;
+    return this->Uniform ? offsets[0] + this->Stride * cell : offsets[cell];
+  }
 
   const Mesh* Input;
   int Threads;
   int Stride = 0;                     // the most nodes a cell has
+  bool Uniform = false;               // all cells have so many, without gaps
   std::array<signed char, 256> Nodes; // of a cell by its VTK type
   /// The cells at each point, in increasing order, each with the point's place in it: cell * MaxNodes + place.
   std::vector<Index> UseOffsets;

@@ -140,13 +140,9 @@ struct Warper::Implementation
     checkMesh(mesh, this->Parts, options);
   }
 
-  bool inSteps() const
-  {
-    return this->Options.steps != 1 || this->Options.method == WarpMethod::SmallStepFemwarp;
-  }
   void checkDisplacement(const double* displacement) const;
   Warping run(const WarpMotion& motion, const WarpMotion& path);
-  void followMotion(const WarpMotion& motion, WarpControl& control);
+  void followMotion(const WarpMotion& path, const double* displacement, WarpControl& control);
   BoundaryState examineBoundary(const double* points) const;
   void explain(WarpControl& control);
 
@@ -203,24 +199,24 @@ Warping Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& 
     path(amount, displacement);
     this->checkDisplacement(displacement);
   };
-  if (this->inSteps())
+  const WarpMethod method = this->Options.method;
+  const bool untangles = method == WarpMethod::Hybrid || method == WarpMethod::FemwarpUntangling;
+  const bool small = method == WarpMethod::SmallStepFemwarp && this->Options.steps == 1;
+  if (this->Options.steps > 1 || small || (this->Options.steps == 0 && !untangles))
   {
-    // Small steps are what that method is about: one alone stands for as many as are needed.
-    warpInSteps(this->Input, this->Parts, checked,
-      this->Options.steps == 1 ? 0 : this->Options.steps, 1.0, control);
+    warpInSteps(this->Input, this->Parts, checked, small ? 0 : this->Options.steps, false, control);
   }
   else
   {
+    // Methods that untangle are to manage it in one step.
     std::vector<double> displacement(3 * this->Input.view().numberOfPoints, 0.0);
     motion(1.0, displacement.data());
     this->checkDisplacement(displacement.data());
     control.goOn(0.0);
     this->First.run(displacement.data(), 1.0, control, result.points);
-    const bool untangles = this->Options.method == WarpMethod::Hybrid ||
-      this->Options.method == WarpMethod::FemwarpUntangling;
     if (untangles && result.invertedAfter > 0 && !control.stopped())
     {
-      this->followMotion(checked, control);
+      this->followMotion(checked, displacement.data(), control);
     }
   }
   this->explain(control);
@@ -229,20 +225,31 @@ Warping Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& 
 
 //------------------------------------------------------------------------------
 /// Where a single step left inverted elements that the boundary does not call for: in steps, each untangled.
-void Warper::Implementation::followMotion(const WarpMotion& path, WarpControl& control)
+void Warper::Implementation::followMotion(
+  const WarpMotion& path, const double* displacement, WarpControl& control)
 {
   Warping& result = control.result();
-  const BoundaryState boundary = this->examineBoundary(result.points.data());
-  if (boundary.inverted > 0 || boundary.crossing.pairs > 0 || result.impossible > 0)
+  const bool wholeWay = this->Options.steps == 1;
+  if (wholeWay)
   {
-    return;
+    const BoundaryState boundary = this->examineBoundary(result.points.data());
+    if (boundary.inverted > 0 || boundary.crossing.pairs > 0 || result.impossible > 0)
+    {
+      return;
+    }
   }
-  constexpr double first = 0.125;
   const Warping before = result;
-  warpInSteps(this->Input, this->Parts, path, 0, first, control);
-  if (result.amount < 1.0)
+  result.impossible = 0;
+  warpInSteps(this->Input, this->Parts, path, 0, true, control);
+  if (result.amount == 1.0 && !control.stopped())
   {
-    // Not all the way: the mesh with the fewest inverted elements where the boundary should be.
+    result.invertedWarp = before.invertedWarp;
+    result.tensor = before.tensor;
+    this->First.improve(displacement, 1.0, control, result.points);
+  }
+  else if (result.amount < 1.0 && wholeWay)
+  {
+    // The mesh with the fewest inverted elements where the boundary should be.
     std::vector<WarpRecord> history = std::move(result.history);
     const bool aborted = result.aborted, timeLimit = result.timeLimit;
     result = before;

@@ -30,8 +30,6 @@ namespace tautline
 {
 namespace
 {
-constexpr const char* SelectedArray = "vtkInsidedness"; // the name vtkExtractSelection gives it
-
 vtkDataSet* withPoints(vtkDataSet* input)
 {
   if (!vtkPointSet::SafeDownCast(input))
@@ -209,7 +207,7 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
   if (!composite)
   {
     visit({ vtkDataSet::SafeDownCast(input), vtkDataSet::SafeDownCast(reference),
-      vtkDataSet::SafeDownCast(selected), vtkDataSet::SafeDownCast(output), 0, "" });
+      vtkDataSet::SafeDownCast(selected), vtkDataSet::SafeDownCast(output), 0, "", 0 });
     return;
   }
   auto* blocks = vtkCompositeDataSet::SafeDownCast(input);
@@ -226,14 +224,15 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
     {
       continue;
     }
-    const std::string name = "block " + std::to_string(walk->GetCurrentFlatIndex());
+    const unsigned int index = walk->GetCurrentFlatIndex();
+    const std::string name = "block " + std::to_string(index);
     const auto at = [&walk](vtkCompositeDataSet* set)
     { return set ? vtkDataSet::SafeDownCast(set->GetDataSet(walk)) : nullptr; };
     auto result = vtkSmartPointer<vtkDataSet>::Take(block->NewInstance());
     results->SetDataSet(walk, result);
     try
     {
-      visit({ block, at(references), at(selections), result, number++, name });
+      visit({ block, at(references), at(selections), result, number++, name, index });
     }
     catch (const Error& error)
     {
@@ -243,19 +242,43 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
 }
 
 //------------------------------------------------------------------------------
-int countBlocks(vtkDataObject* input)
+void forEachLeaf(vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit)
 {
-  auto* blocks = vtkCompositeDataSet::SafeDownCast(input);
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
+  if (auto* single = vtkDataSet::SafeDownCast(data))
+  {
+    visit(0, single);
+  }
   if (!blocks)
   {
-    return 1;
+    return;
   }
   auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
-  int count = 0;
   for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem())
   {
-    count += vtkDataSet::SafeDownCast(walk->GetCurrentDataObject()) != nullptr;
+    if (auto* leaf = vtkDataSet::SafeDownCast(walk->GetCurrentDataObject()))
+    {
+      visit(walk->GetCurrentFlatIndex(), leaf);
+    }
   }
+}
+
+//------------------------------------------------------------------------------
+vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data)
+{
+  const bool composite = vtkCompositeDataSet::SafeDownCast(data);
+  vtkDataSet* found = nullptr;
+  forEachLeaf(data,
+    [&](unsigned int index, vtkDataSet* leaf)
+    { found = !composite || index == block.flatIndex ? leaf : found; });
+  return found;
+}
+
+//------------------------------------------------------------------------------
+int countBlocks(vtkDataObject* input)
+{
+  int count = 0;
+  forEachLeaf(input, [&count](unsigned int, vtkDataSet*) { ++count; });
   return std::max(count, 1);
 }
 

@@ -92,8 +92,9 @@ struct InputBlock
   vtkDataSet* reference; ///< or null
   vtkDataSet* selected;  ///< the input with the array of markSelected(), or null
   vtkDataSet* output;
-  int number;       ///< counts through the data sets, from 0
-  std::string name; ///< "block 3", or "" if the input is a single data set
+  int number;             ///< counts through the data sets, from 0
+  std::string name;       ///< "block 3", or "" if the input is a single data set
+  unsigned int flatIndex; ///< of composite data; 0 if the input is a single data set
 };
 
 /**
@@ -106,6 +107,16 @@ TAUTLINEOPTIMIZATION_EXPORT void forEachBlock(vtkDataObject* input, vtkDataObjec
 
 /// The number of data sets, at least 1.
 TAUTLINEOPTIMIZATION_EXPORT int countBlocks(vtkDataObject* input);
+
+/// Calls visit(flat index, data set) for the data sets of composite data, or with 0 for a single one.
+TAUTLINEOPTIMIZATION_EXPORT void forEachLeaf(
+  vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit);
+
+/// The data set of `data` that belongs to a block of the input: at its place, or `data` itself; null: none.
+TAUTLINEOPTIMIZATION_EXPORT vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data);
+
+/// The array of marks, of points or cells, in what markSelected() returns.
+constexpr const char* SelectedArray = "vtkInsidedness"; // the name vtkExtractSelection gives it
 
 /// A copy of the input with marks on what is selected; null without a selection.
 TAUTLINEOPTIMIZATION_EXPORT vtkSmartPointer<vtkDataObject> markSelected(

@@ -1,12 +1,12 @@
 // Assembly of finite element matrices: seconds, the best of several turns, CPU time on one thread and wall time on one
-// and on two. Lines `key<tab>number`.
+// and on two; and what BoomerAMG takes for its set-up on the same matrix. Lines `key<tab>number`.
 //
 // usage: BenchmarkConditioning [CELLS [TURNS]]
 
 #include "Clocks.h"
 #include "KuhnMesh.h"
 
-#include "tautline/FiniteElements.h"
+#include "tautline/EllipticProblem.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -62,6 +62,25 @@ void assembly(const char* name, const Mesh& mesh, const Operator& pde, int turns
   std::printf("assembly %s wall 1\t%.6g\n", name, wall[0]);
   std::printf("assembly %s wall 2\t%.6g\n", name, wall[1]);
 }
+
+/// CPU seconds of BoomerAMG's set-up on the matrix of the free points.
+void multigrid(const char* name, const Mesh& mesh, Pde pde, int turns)
+{
+  EllipticProblem problem;
+  problem.pde = pde;
+  const EllipticSystem system(mesh, problem, {}, 1);
+  const Times all = measure(turns, [&]() { const EllipticSystem again(mesh, problem, {}, 1); });
+  double best = 1e300;
+  for (int turn = 0; turn < turns; ++turn)
+  {
+    LinearSolver solver(system.linearSystem(), {});
+    const double before = processTime();
+    solver.setUp();
+    best = std::min(best, processTime() - before);
+  }
+  std::printf("multigrid %s cpu\t%.6g\n", name, best);
+  std::printf("system %s cpu\t%.6g\n", name, all.cpu);
+}
 }
 
 int main(int argc, char* argv[])
@@ -85,5 +104,7 @@ int main(int argc, char* argv[])
   assembly("triangles elasticity", planar, ElasticOperator(), turns);
   assembly("tetrahedra poisson", volume, DiffusionOperator(), turns);
   assembly("tetrahedra elasticity", volume, ElasticOperator(), turns);
+  multigrid("triangles poisson", planar, Pde::Poisson, turns);
+  multigrid("tetrahedra poisson", volume, Pde::Poisson, turns);
   return EXIT_SUCCESS;
 }

@@ -3,8 +3,8 @@
 Every time is the best of several turns, and every ratio is between times of one run. Single-thread times
 are CPU time; those of the thread speed-up are wall time. Prints tables; writes benchmark.json (times in
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
-elements and optimization.json and .csv of the optimizer (see optimization.py) to the output directory,
-by default DIR/benchmark.
+elements, optimization.json and .csv of the optimizer (see optimization.py), and deformation.json and .csv of warping
+(see deformation.py) to the output directory, by default DIR/benchmark.
 """
 
 import argparse
@@ -14,6 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import deformation
 import optimization
 
 KERNEL, FILTER, MEMORY = "kernel", "filter", ("memory-tautline", "memory-verdict")
@@ -160,20 +161,32 @@ def run_optimization(build: Path, output: Path, repeats: int, quick: bool, huge:
     save(output, "optimization", times, table)
 
 
+def run_deformation(build: Path, output: Path, repeats: int, quick: bool) -> None:
+    times, rows = deformation.run(build / "bin" / "BenchmarkDeformation", repeats, quick)
+    show_table(rows)
+    head, table = "", {}
+    for what, number, _ in rows:
+        head = head if what.startswith(" ") else what.split(":")[0]
+        table[f"{head}: {what.strip()}" if what.startswith(" ") else what] = number
+    save(output, "deformation", times, table)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parser.add_argument("--only", choices=("quality", "optimization"), help="one part; both otherwise")
+    parser.add_argument("--only", choices=("quality", "optimization", "deformation"), help="one part; both otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
-    parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer 3")
-    parser.add_argument("--quick", action="store_true", help="optimization: tiny meshes only")
+    parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
+    parser.add_argument("--quick", action="store_true", help="optimization, deformation: tiny meshes only")
     parser.add_argument("--huge", action="store_true", help="optimization: also 10,000,000 tetrahedra")
     parser.add_argument("--output", type=Path, help="where the results go")
     options = parser.parse_args()
     output = options.output or options.build / "benchmark"
-    if options.only != "optimization":
+    if options.only in (None, "quality"):
         run_quality(options.build, output, options.size, options.repeats or 9)
-    if options.only != "quality":
+    if options.only in (None, "deformation"):
+        run_deformation(options.build, output, options.repeats or 3, options.quick)
+    if options.only in (None, "optimization"):
         run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
     return 0
 

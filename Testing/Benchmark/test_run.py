@@ -47,6 +47,18 @@ def check_optimization(output: Path) -> None:
         assert measured[f"sweeps disk2d-perturbed: {method} sweeps"] == 10, measured
 
 
+def check_deformation(output: Path) -> None:
+    measured, ratios = read(output, "deformation")
+    left = [key for key in measured if key.endswith("inverted left")]
+    assert len(left) == 22 and measured["stages: elements"] > 3000, measured
+    for key in left:
+        crosses = key.replace("inverted left", "boundary crossings")
+        assert measured[key] == 0 or measured.get(crosses, 0) > 0, (key, measured)
+    # No new solve for a part that turns on, or a motion that grows.
+    for motion in ("turned on", "wave, larger"):
+        assert measured[f"stages: {motion} iterations"] == 0, measured
+
+
 def main(build: Path, output: Path) -> int:
     subprocess.run(["cmake", "--build", str(build), "--target", "benchmarks"], check=True)
     script = Path(__file__).with_name("run.py")
@@ -55,6 +67,7 @@ def main(build: Path, output: Path) -> int:
 
     check_quality(output)
     check_optimization(output)
+    check_deformation(output)
     return 0
 
 

@@ -34,6 +34,11 @@ except ImportError:  # built without the modules of readers and domains
     pass
 
 try:
+    from ._deformation import Warped, warp  # noqa: E402
+except ImportError:  # built without the module of deformation
+    pass
+
+try:
     from ._shapes import Match, Retrieved, SilhouetteMesh, match, read_silhouettes, retrieval, silhouette  # noqa: E402
 except ImportError:  # built without the module of shapes
     pass

@@ -3,10 +3,12 @@
 #include <vtkDataSet.h>
 #include <vtkElementQuality.h>
 #include <vtkMeshOptimizer.h>
+#include <vtkMeshWarp.h>
 #include <vtkNew.h>
 
 #include <cstdlib>
 #include <iostream>
+#include <string>
 
 int main()
 {
@@ -24,5 +26,16 @@ int main()
   optimizer->SetInputConnection(quality->GetOutputPort());
   optimizer->Update();
   std::cout << optimizer->GetSummary() << "\n";
+
+  vtkNew<vtkMeshWarp> warp;
+  warp->SetInputConnection(optimizer->GetOutputPort());
+  warp->SetTransformKind(vtkMeshWarp::ROTATION);
+  warp->SetAngle(30);
+  warp->Update();
+  std::cout << warp->GetSummary() << "\n";
+  if (warp->GetInverted() != 0 || std::string(warp->GetSummary()).empty())
+  {
+    return EXIT_FAILURE;
+  }
   return cells > 0 && optimizer->GetStopReason() >= 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,0 +1,65 @@
+/**
+ * @file MovedBoundary.h
+ * @brief Which points of a mesh move, which stay, by how much; and tensors per cell. From arrays and selections.
+ */
+#ifndef tautline_MovedBoundary_h
+#define tautline_MovedBoundary_h
+
+#include "MovableMesh.h"
+
+#include <array>
+
+namespace tautline
+{
+using PointFlags = std::vector<unsigned char>; ///< one per point
+
+/// The numbers of vtkMeshWarp::MovedParts.
+enum class MovedPart : int
+{
+  Automatic = 0,
+  Whole = 1,
+  Inner = 2,
+  Numbered = 3,
+  Values = 4,
+  Selection = 5
+};
+
+struct PartChoice
+{
+  MovedPart part = MovedPart::Automatic;
+  std::vector<int> numbers;      ///< Numbered
+  std::vector<double> values;    ///< Values; empty: all but 0
+  vtkDataArray* array = nullptr; ///< Values
+  bool ofCells = false;
+  vtkDataSet* selected = nullptr; ///< Selection: the mesh with the marks of markSelected(), or null
+};
+
+/**
+ * @brief Throws Error for what no warp can start from: inverted elements, coordinates that are not finite, cells without a
+ * shape to keep (polygons, polyhedra), no boundary.
+ */
+void requireElements(const MovableMesh& mesh);
+
+/// Points on the boundary.
+PointFlags boundaryOf(const Mesh& mesh);
+
+/// Points of the boundary that are chosen. Throws Error if there is none.
+PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartChoice& choice);
+
+/// Marks points, or the points of cells, where the array is not 0.
+void markPoints(const Mesh& mesh, vtkDataArray* array, bool ofCells, PointFlags& flags);
+/// Marks what markSelected() found.
+void markPoints(const Mesh& mesh, vtkDataSet* selected, PointFlags& flags);
+/// Marks the points of ghost cells.
+void markGhosts(vtkDataSet* input, PointFlags& flags);
+
+/// 3 per point, 0 where the flags are 0. Throws Error for other numbers of components, and values that are not finite.
+std::vector<double> displacementsOf(vtkDataArray* array, const PointFlags& flags);
+
+/// 6 per cell of 1, 3, 6 or 9 components.
+std::vector<double> tensorsOf(vtkDataArray* array);
+/// 6 per cell, by regions: value, alpha, beta, gamma.
+std::vector<double> tensorsOf(vtkDataArray* regions,
+  const std::vector<std::array<double, 4>>& coefficients, const double* otherwise);
+}
+#endif

@@ -1,0 +1,425 @@
+#include "TargetMatch.h"
+
+#include "MeshAdapter.h"
+#include "tautline/BoundaryParts.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellType.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetSurfaceFilter.h"
+#include "vtkFeatureEdges.h"
+#include "vtkGenericCell.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStaticCellLocator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace tautline
+{
+namespace
+{
+using Flags = std::vector<unsigned char>;
+constexpr const char* OriginalIds = "vtkOriginalPointIds"; // as vtkDataSetSurfaceFilter names them
+constexpr Index None = -1;
+
+Index count(const Flags& flags)
+{
+  return static_cast<Index>(flags.size()) - std::count(flags.begin(), flags.end(), 0);
+}
+
+std::string text(Index n)
+{
+  return std::to_string(n);
+}
+
+/// Calls visit(a, b) for the edges of all cells of a view; of lines and polygons too.
+template <class Visit>
+void forEachEdge(const MeshView& view, const Visit& visit)
+{
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const Index* node = view.connectivity + view.offsets[cell];
+    const Index size = view.offsets[cell + 1] - view.offsets[cell];
+    const int code = view.cellTypes[cell];
+    const CellType type = cornerType(code);
+    if (type != CellType::Unsupported)
+    {
+      const CellTopology& t = topology(type);
+      for (int e = 0; e < t.edges; ++e)
+      {
+        visit(node[t.edgeNodes[e][0]], node[t.edgeNodes[e][1]]);
+      }
+    }
+    else if (code == VTK_LINE || code == VTK_POLY_LINE || code == VTK_POLYGON)
+    {
+      for (Index i = 0; i + 1 < size; ++i)
+      {
+        visit(node[i], node[i + 1]);
+      }
+      if (code == VTK_POLYGON && size > 2)
+      {
+        visit(node[size - 1], node[0]);
+      }
+    }
+  }
+}
+
+struct EdgeHash
+{
+  std::size_t operator()(const std::pair<Index, Index>& e) const
+  {
+    return static_cast<std::size_t>(e.first) * 0x9E3779B97F4A7C15ULL ^
+      static_cast<std::size_t>(e.second);
+  }
+};
+
+bool sameCells(const MeshView& a, const MeshView& b)
+{
+  return a.numberOfCells == b.numberOfCells &&
+    std::equal(a.offsets, a.offsets + a.numberOfCells + 1, b.offsets) &&
+    std::equal(a.connectivity, a.connectivity + a.offsets[a.numberOfCells], b.connectivity);
+}
+
+/// Finds out which point of the mesh each point of the target is.
+class Matcher
+{
+public:
+  explicit Matcher(const TargetRequest& request)
+    : Request(request)
+    , View(request.view->view())
+    , Adapter(request.target, request.threads)
+  {
+  }
+
+  /// For each point of the target a point of the mesh, or None; empty if there is no correspondence.
+  std::vector<Index> match(std::string& how)
+  {
+    const Correspondence wanted = this->Request.correspondence;
+    if (wanted == Correspondence::PointIds ||
+      (wanted == Correspondence::Automatic && this->Request.ids))
+    {
+      how = "by point ids";
+      return this->byIds();
+    }
+    const Index points = this->Request.target->GetNumberOfPoints();
+    if (wanted == Correspondence::SameMesh && points != this->View.numberOfPoints)
+    {
+      throw Error("The target has " + text(points) + " points and the mesh has " +
+        text(this->View.numberOfPoints) +
+        ": it is not the same mesh. Choose another Correspondence.");
+    }
+    if (wanted != Correspondence::SameBoundary && points == this->View.numberOfPoints)
+    {
+      std::vector<Index> ids(points);
+      for (Index i = 0; i < points; ++i)
+      {
+        ids[i] = i;
+      }
+      if (wanted == Correspondence::SameMesh || this->fits(ids))
+      {
+        how = "as the same mesh, point by point";
+        return ids;
+      }
+    }
+    if (wanted == Correspondence::SameBoundary || wanted == Correspondence::Automatic)
+    {
+      std::vector<Index> ids = this->bySurface();
+      how = "as the boundary extracted from the mesh";
+      if (ids.empty())
+      {
+        ids = this->byOrder();
+        how = "by the order of the points that move";
+      }
+      if (wanted == Correspondence::SameBoundary && ids.empty())
+      {
+        throw Error("The target has " + text(points) + " points, of the mesh " +
+          text(count(*this->Request.projected)) +
+          " points move, and its cells are not those of the boundary in the same order: choose "
+          "another "
+          "Correspondence, or what moves.");
+      }
+      return ids;
+    }
+    return {};
+  }
+
+private:
+  const MeshView& target() const { return this->Adapter.mesh().view(); }
+
+  std::vector<Index> byIds() const
+  {
+    vtkDataArray* ids = this->Request.ids;
+    if (!ids)
+    {
+      throw Error("No array of point ids is chosen: choose one of the target's point arrays.");
+    }
+    std::unordered_map<double, Index> numbers;
+    vtkDataArray* own = this->Request.mesh->GetPointData()->GetArray(ids->GetName());
+    for (Index i = 0; own && i < this->View.numberOfPoints; ++i)
+    {
+      numbers[own->GetComponent(i, 0)] = i;
+    }
+    std::vector<Index> result(ids->GetNumberOfTuples(), None);
+    Index unknown = 0;
+    for (Index i = 0; i < static_cast<Index>(result.size()); ++i)
+    {
+      const double id = ids->GetComponent(i, 0);
+      const auto found = numbers.find(id);
+      if (own ? found != numbers.end() : id >= 0 && id < double(this->View.numberOfPoints))
+      {
+        result[i] = own ? found->second : static_cast<Index>(id);
+      }
+      unknown += result[i] == None;
+    }
+    if (unknown > 0)
+    {
+      throw Error("The target's array '" + std::string(ids->GetName()) + "' has " + text(unknown) +
+        " values that are no " +
+        (own ? "values of the mesh's array of that name" : "point of the mesh") +
+        ": choose another array, or None.");
+    }
+    return result;
+  }
+
+  /// Whether each edge of the target is one of the mesh, once its points are numbered so.
+  bool fits(const std::vector<Index>& ids)
+  {
+    if (this->target().numberOfPoints == this->View.numberOfPoints &&
+      sameCells(this->target(), this->View))
+    {
+      return true;
+    }
+    if (this->Edges.empty())
+    {
+      forEachEdge(this->View,
+        [this](Index a, Index b) {
+          this->Edges.insert({ std::min(a, b), std::max(a, b) });
+        });
+    }
+    bool all = true;
+    forEachEdge(this->target(),
+      [&](Index a, Index b)
+      {
+        const auto edge = std::minmax(ids[a], ids[b]);
+        all = all && this->Edges.count({ edge.first, edge.second }) > 0;
+      });
+    return all;
+  }
+
+  /// The points that move, in increasing order.
+  std::vector<Index> byOrder()
+  {
+    const Flags& moved = *this->Request.projected;
+    if (count(moved) != this->target().numberOfPoints)
+    {
+      return {};
+    }
+    std::vector<Index> ids;
+    for (Index i = 0; i < this->View.numberOfPoints; ++i)
+    {
+      if (moved[i])
+      {
+        ids.push_back(i);
+      }
+    }
+    return this->fits(ids) ? ids : std::vector<Index>();
+  }
+
+  /// As ParaView's Extract Surface and Feature Edges number the points of the mesh at rest.
+  std::vector<Index> bySurface()
+  {
+    vtkNew<vtkDataSetSurfaceFilter> surface;
+    surface->SetInputData(this->Request.mesh);
+    surface->PassThroughPointIdsOn();
+    surface->Update();
+    vtkPolyData* skin = surface->GetOutput();
+    vtkDataArray* original = skin->GetPointData()->GetArray(OriginalIds);
+    if (this->isTarget(skin) && original)
+    {
+      std::vector<Index> ids(skin->GetNumberOfPoints());
+      for (Index i = 0; i < static_cast<Index>(ids.size()); ++i)
+      {
+        ids[i] = static_cast<Index>(original->GetComponent(i, 0));
+      }
+      return ids;
+    }
+    vtkNew<vtkFeatureEdges> edges;
+    edges->SetInputData(skin);
+    edges->FeatureEdgesOff();
+    edges->NonManifoldEdgesOff();
+    edges->ColoringOff();
+    edges->Update();
+    return this->isTarget(edges->GetOutput()) ? this->byPlace(edges->GetOutput())
+                                              : std::vector<Index>();
+  }
+
+  bool isTarget(vtkPolyData* made) const
+  {
+    return made->GetNumberOfPoints() == this->target().numberOfPoints &&
+      made->GetNumberOfCells() > 0 &&
+      sameCells(MeshAdapter(made, this->Request.threads).mesh().view(), this->target());
+  }
+
+  /// The points of the mesh where those of a part of it are.
+  std::vector<Index> byPlace(vtkPolyData* made) const
+  {
+    std::map<Vec3, Index> places;
+    Vec3 x;
+    for (Index i = 0; i < this->View.numberOfPoints; ++i)
+    {
+      this->Request.mesh->GetPoint(i, x.data());
+      places.emplace(x, i);
+    }
+    std::vector<Index> ids;
+    for (vtkIdType i = 0; i < made->GetNumberOfPoints(); ++i)
+    {
+      made->GetPoint(i, x.data());
+      const auto found = places.find(x);
+      if (found == places.end())
+      {
+        return {};
+      }
+      ids.push_back(found->second);
+    }
+    return ids;
+  }
+
+  const TargetRequest& Request;
+  const MeshView& View;
+  MeshAdapter Adapter;
+  std::unordered_set<std::pair<Index, Index>, EdgeHash> Edges;
+};
+
+/// What the boundary of a mesh can lie on: the target, or its boundary if it has as many dimensions as the mesh.
+vtkSmartPointer<vtkDataSet> surfaceOf(vtkDataSet* target, bool ofVolume)
+{
+  const int wanted = ofVolume ? 2 : 1;
+  int dimension = -1;
+  for (vtkIdType i = 0; i < target->GetNumberOfCells(); ++i)
+  {
+    dimension = std::max(dimension, target->GetCell(i)->GetCellDimension());
+  }
+  if (dimension < wanted)
+  {
+    throw Error(std::string("The target has no ") + (ofVolume ? "surface" : "curve") +
+      " the boundary could be moved to, and its points do not correspond to those of the mesh: "
+      "give a " +
+      (ofVolume ? "surface" : "curve") + ", or point ids.");
+  }
+  vtkSmartPointer<vtkDataSet> result = target;
+  if (dimension > wanted)
+  {
+    vtkNew<vtkDataSetSurfaceFilter> surface;
+    surface->SetInputData(target);
+    surface->Update();
+    result = surface->GetOutput();
+  }
+  if (dimension > wanted && !ofVolume)
+  {
+    vtkNew<vtkFeatureEdges> edges;
+    edges->SetInputData(result);
+    edges->FeatureEdgesOff();
+    edges->NonManifoldEdgesOff();
+    edges->ColoringOff();
+    edges->Update();
+    result = edges->GetOutput();
+  }
+  return result;
+}
+
+void project(const TargetRequest& request, TargetPlaces& places)
+{
+  const MeshView& view = request.view->view();
+  const bool ofVolume = request.view->dimension() == Dimension::Volume;
+  const auto surface = surfaceOf(request.target, ofVolume);
+  vtkNew<vtkStaticCellLocator> locator;
+  locator->SetDataSet(surface);
+  locator->BuildLocator();
+  vtkNew<vtkGenericCell> cell;
+  double farthest = 0;
+  for (Index i = 0; i < view.numberOfPoints; ++i)
+  {
+    if (!(*request.projected)[i])
+    {
+      continue;
+    }
+    double closest[3], squared = -1;
+    vtkIdType id = None;
+    int part = 0;
+    locator->FindClosestPoint(view.points + 3 * i, closest, cell, id, part, squared);
+    if (id < 0)
+    {
+      throw Error("No point of the target is closest to point " + text(i) +
+        " of the mesh: are the target's coordinates finite?");
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      places.displacement[3 * i + k] = closest[k] - view.points[3 * i + k];
+    }
+    places.given[i] = 1;
+    farthest = std::max(farthest, std::sqrt(squared));
+  }
+  places.how = "by projection: " + text(count(places.given)) +
+    " points to the closest point of the target, the farthest of them " + std::to_string(farthest) +
+    " away";
+}
+}
+
+//------------------------------------------------------------------------------
+TargetPlaces placesOf(const TargetRequest& request)
+{
+  const Index points = request.view->view().numberOfPoints;
+  TargetPlaces places;
+  places.displacement.assign(3 * points, 0.0);
+  places.given.assign(points, 0);
+  if (request.target->GetNumberOfPoints() == 0)
+  {
+    throw Error("The target is empty: choose another one.");
+  }
+  std::vector<Index> ids;
+  if (request.correspondence != Correspondence::ClosestPoint)
+  {
+    ids = Matcher(request).match(places.how);
+  }
+  if (ids.empty())
+  {
+    project(request, places);
+  }
+  Index wrong = 0;
+  for (Index i = 0; i < static_cast<Index>(ids.size()); ++i)
+  {
+    const Index point = ids[i];
+    if (point == None || !(*request.matched)[point])
+    {
+      continue;
+    }
+    Vec3 x;
+    request.target->GetPoint(i, x.data());
+    const Vec3 d = x - pointOf(request.view->view(), point);
+    wrong += !std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]);
+    std::copy(d.begin(), d.end(), &places.displacement[3 * point]);
+    places.given[point] = 1;
+  }
+  if (wrong > 0)
+  {
+    throw Error("The target has " + text(wrong) +
+      " points of the boundary with coordinates that are NaN or infinite: repair them, or leave "
+      "them out "
+      "(Correspondence: Point ids).");
+  }
+  if (!ids.empty())
+  {
+    places.how += ": " + text(count(places.given)) + " of " + text(count(*request.matched)) +
+      " points of the boundary";
+  }
+  return places;
+}
+}

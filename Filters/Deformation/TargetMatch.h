@@ -1,0 +1,51 @@
+/**
+ * @file TargetMatch.h
+ * @brief Which place of a target data set belongs to which point of a mesh.
+ */
+#ifndef tautline_TargetMatch_h
+#define tautline_TargetMatch_h
+
+#include "tautline/Mesh.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataSet;
+
+namespace tautline
+{
+/// The numbers of vtkMeshWarp::Correspondences.
+enum class Correspondence : int
+{
+  Automatic = 0,
+  SameMesh = 1,
+  SameBoundary = 2,
+  PointIds = 3,
+  ClosestPoint = 4
+};
+
+struct TargetRequest
+{
+  vtkDataSet* mesh = nullptr; ///< whose boundary moves
+  const Mesh* view = nullptr; ///< the same to the kernel
+  vtkDataSet* target = nullptr;
+  Correspondence correspondence = Correspondence::Automatic;
+  vtkDataArray* ids = nullptr; ///< of the target, or null
+  /// One flag per point of the mesh: those that move; by projection or SameBoundary, and otherwise.
+  const std::vector<unsigned char>* projected = nullptr;
+  const std::vector<unsigned char>* matched = nullptr;
+  int threads = 0;
+};
+
+struct TargetPlaces
+{
+  std::vector<double> displacement; ///< 3 per point, 0 where nothing is given
+  std::vector<unsigned char> given; ///< one flag per point
+  std::string how;                  ///< a sentence: which correspondence, how many, how far
+};
+
+/// Throws Error that says what does not fit.
+TargetPlaces placesOf(const TargetRequest& request);
+}
+#endif

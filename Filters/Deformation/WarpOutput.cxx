@@ -1,0 +1,209 @@
+#include "WarpOutput.h"
+
+#include "tautline/Statistics.h"
+#include "tautline/Targets.h"
+
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkSignedCharArray.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+namespace tautline
+{
+namespace
+{
+constexpr const char* ShapeArray = "TMP shape";
+
+/// A metric over the valid elements; the values of all cells go to `values`.
+MetricStatistics measure(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
+  const signed char* validity, const unsigned char* skip, double* values)
+{
+  const MetricInfo& info = metricInfo(metric);
+  evaluateMetric(mesh, metric, options, values);
+  const CellValues data = { mesh.view().numberOfCells, values, validity, mesh.view().cellTypes,
+    skip };
+  return summarize(
+    info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data), false);
+}
+
+template <class Array, class Values>
+void addCellArray(vtkDataSet* output, const char* name, const Values& values)
+{
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  output->GetCellData()->AddArray(array);
+}
+
+void addHistory(const Warping& result, const std::string& block, TableRows& rows)
+{
+  for (const WarpRecord& record : result.history)
+  {
+    rows.begin();
+    if (!block.empty())
+    {
+      rows.addText("Block", block);
+    }
+    rows.add("Amount", record.amount);
+    rows.add("Inverted", static_cast<double>(record.inverted));
+    rows.add("Worst shape", record.worstShape);
+    rows.add("Mean shape", record.meanShape);
+    rows.addText("Stage", record.stage);
+    rows.add("N iterations", record.iterations);
+    rows.add("Time (s)", record.seconds);
+  }
+}
+
+struct Qualities
+{
+  MetricStatistics shape, before, after;
+  Index elements = 0, inverted = 0;
+};
+
+void addStatistics(const Warping& result, const WarpFacts& facts, const Qualities& q,
+  const std::string& block, TableRows& rows)
+{
+  rows.begin();
+  if (!block.empty())
+  {
+    rows.addText("Block", block);
+  }
+  rows.add("Elements", static_cast<double>(q.elements));
+  rows.add("Boundary points", static_cast<double>(facts.boundaryPoints));
+  rows.add("Moved points", static_cast<double>(facts.movedPoints));
+  rows.add("Largest displacement", facts.largestDisplacement);
+  rows.add("Amount", facts.amount * result.amount);
+  rows.add("Inverted after warp", static_cast<double>(result.invertedWarp));
+  rows.add("Inverted", static_cast<double>(q.inverted));
+  rows.add("Impossible", static_cast<double>(result.impossible));
+  rows.add("Worst shape", q.shape.maximum);
+  rows.add("Mean shape", q.shape.mean);
+  rows.add("Worst IMR before", q.before.maximum);
+  rows.add("Mean IMR before", q.before.mean);
+  rows.add("Worst IMR", q.after.maximum);
+  rows.add("Mean IMR", q.after.mean);
+  constexpr std::array<const char*, 6> names = { "Cxx", "Cyy", "Czz", "Cxy", "Cyz", "Cxz" };
+  for (std::size_t i = 0; i < names.size(); ++i)
+  {
+    rows.add(names[i], result.tensor[i]);
+  }
+  rows.add("Decoupled", static_cast<double>(result.decoupled));
+  rows.add("Regularization", result.regularization);
+  rows.add("Reused", facts.reused);
+  rows.add("Assemble (s)", result.assembleSeconds);
+  rows.add("Set-up (s)", result.setupSeconds);
+  rows.add("Solve (s)", result.solveSeconds);
+  rows.add("Improve (s)", result.improveSeconds);
+  rows.add("Total (s)", facts.seconds);
+}
+
+std::string describe(const Warping& result, const WarpFacts& facts, const Qualities& q)
+{
+  std::ostringstream text;
+  text << facts.method << ": ";
+  if (q.inverted == 0)
+  {
+    text << "all " << q.elements << " elements are valid";
+  }
+  else
+  {
+    text << q.inverted << " of " << q.elements << " elements are inverted or degenerate";
+  }
+  if (result.invertedWarp > 0 && result.invertedWarp != q.inverted)
+  {
+    text << "; after the warp itself " << result.invertedWarp << " were not";
+  }
+  text << ".";
+  if (result.impossible > 0)
+  {
+    text << "\n"
+         << result.impossible
+         << " of them cannot be valid wherever the interior goes: the moved boundary is not valid "
+            "itself. This is the best mesh found.";
+  }
+  text << "\nShape against the mesh at rest: mean " << q.shape.mean << ", worst " << q.shape.maximum
+       << " (0 is the same).\n"
+       << facts.movedPoints << " of " << facts.boundaryPoints << " given points moved, by at most "
+       << facts.largestDisplacement << ".";
+  if (!facts.motion.empty())
+  {
+    text << "\nThe target corresponds " << facts.motion << ".";
+  }
+  if (facts.coefficients)
+  {
+    text << "\nCoefficients xx yy zz xy yz xz:";
+    for (double c : result.tensor)
+    {
+      text << " " << c;
+    }
+    text << ".";
+  }
+  if (result.amount < 1)
+  {
+    text << "\nIt came to " << 100 * result.amount << " % of the motion.";
+  }
+  text << "\nSeconds: assemble " << result.assembleSeconds << ", set-up " << result.setupSeconds
+       << ", solve " << result.solveSeconds << ", improve " << result.improveSeconds << ", in all "
+       << facts.seconds << (facts.reused ? "; the matrices were those of the run before." : ".");
+  return text.str();
+}
+}
+
+//------------------------------------------------------------------------------
+void addWarpOutput(const MovableMesh& rest, const Warping& result, const WarpFacts& facts,
+  const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals)
+{
+  const Mesh& mesh = rest.mesh();
+  const std::string note = rest.move(vtkPointSet::SafeDownCast(block.output), result.points);
+  const std::vector<signed char> validity = rest.validityAt(result.points);
+  MeshView view = mesh.view();
+  view.points = result.points.data();
+  Mesh moved(view, facts.threads);
+  moved.setMirrored(mesh.mirrored());
+
+  Qualities q;
+  std::vector<double> values(view.numberOfCells);
+  EvaluationOptions ideal, similar;
+  ideal.threads = similar.threads = facts.threads;
+  q.before = measure(
+    mesh, Metric::InverseMeanRatio, ideal, rest.validity().data(), rest.skipped(), values.data());
+  q.after =
+    measure(moved, Metric::InverseMeanRatio, ideal, validity.data(), rest.skipped(), values.data());
+  const Targets targets = referenceTargets(moved, mesh);
+  similar.targets = &targets;
+  q.shape = measure(
+    moved, Metric::ShapeSimilarity, similar, validity.data(), rest.skipped(), values.data());
+  const ValidityCounts counts = countValidity(validity.data(), rest.skipped(), view.numberOfCells);
+  q.inverted = counts.inverted + counts.degenerate;
+  q.elements = q.inverted + counts.valid;
+  addCellArray<vtkDoubleArray>(block.output, ShapeArray, values);
+  addCellArray<vtkSignedCharArray>(block.output, "Validity", validity);
+  // Without active point scalars, views colour by the shape.
+  block.output->GetPointData()->SetActiveScalars(nullptr);
+  block.output->GetCellData()->SetActiveScalars(ShapeArray);
+
+  addHistory(result, block.name, history);
+  addStatistics(result, facts, q, block.name, statistics);
+  std::ostringstream text;
+  text << (totals.summary.empty() ? "" : "\n")
+       << (block.name.empty() ? "" : "In " + block.name + ": ") << describe(result, facts, q);
+  for (const std::string& sentence : { result.message, note, rest.notice() })
+  {
+    text << (sentence.empty() ? "" : "\n") << sentence;
+  }
+  totals.summary += text.str();
+  totals.invertedAfterWarp += result.invertedWarp;
+  totals.inverted += q.inverted;
+  totals.impossible += result.impossible;
+  totals.worstShape = std::max(totals.worstShape, q.shape.maximum);
+  totals.reused += facts.reused;
+}
+}

@@ -1,0 +1,43 @@
+/**
+ * @file WarpOutput.h
+ * @brief What Warp Mesh says of a result: arrays, rows of tables, sentences.
+ */
+#ifndef tautline_WarpOutput_h
+#define tautline_WarpOutput_h
+
+#include "MovedBoundary.h"
+#include "tautline/Warp.h"
+
+namespace tautline
+{
+/// What is known of a data set beside the result of the kernel.
+struct WarpFacts
+{
+  std::string method;        ///< its name
+  std::string motion;        ///< how the target corresponds, or ""
+  bool coefficients = false; ///< whether the method has any
+  double amount = 1.0;
+  Index boundaryPoints = 0, movedPoints = 0;
+  double largestDisplacement = 0.0; ///< of what is given, at the amount
+  bool reused = false;
+  double seconds = 0.0; ///< all of it
+  int threads = 0;
+};
+
+/// What the filter adds up over data sets.
+struct WarpTotals
+{
+  Index invertedAfterWarp = 0, inverted = 0, impossible = 0;
+  double worstShape = 0.0;
+  int reused = 0;
+  std::string summary;
+};
+
+/**
+ * @brief Gives the output the new points and the arrays `Displacement`, `TMP shape` (the active scalars) and `Validity`, adds rows to
+ * the tables and to the totals.
+ */
+void addWarpOutput(const MovableMesh& rest, const Warping& result, const WarpFacts& facts,
+  const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals);
+}
+#endif

@@ -1,0 +1,475 @@
+/**
+ * @class vtkMeshWarp
+ * @brief Moves the interior of a mesh after its boundary has moved.
+ *
+ * The boundary moves by a displacement array, to a second data set, by a transform of a part of it, or as it does over
+ * the time steps of the input. The interior follows by anisotropic FEMWARP and the optimization of shape and
+ * validity (HYBRID, dissertation section 4.9) or by one of the methods this is compared with. The connectivity stays. An
+ * affine motion of the whole boundary comes out exactly, by every method that solves a linear system.
+ *
+ * Takes data sets with explicit points, or blocks of these (one after the other, each with its own boundary): triangles,
+ * quadrilaterals, tetrahedra and hexahedra (pointwise methods: wedges and pyramids, too). The elements must be valid to
+ * begin with. A mesh reversed throughout is treated as its mirror image; surfaces in space, mixed orientation, image data
+ * (implicit points), polygons, polyhedra and cells of higher order are refused.
+ *
+ * @par Input ports:
+ * 0 the mesh; 1 (optional) where its boundary goes (TARGET): a data set, or for a mesh of blocks one of the same blocks
+ * or one for all of them; 2 (optional) a vtkSelection of what moves (MovedPart SELECTION); 3 (optional) a vtkSelection of
+ * points that stay, or cells whose points stay.
+ *
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 displacements (points, 3 components); 1 what moves (points or
+ * cells, see MovedPart); 2 points that stay (not 0); 3 tensors (cells; 1, 3, 6 or 9 components); 4 regions (cells).
+ *
+ * @par Output port 0 `Mesh`:
+ * The input with new points, the point array `Displacement` (from the mesh at rest), and the cell arrays `TMP shape`
+ * (similarity to the element at rest (4.22), 0 is the same shape) and `Validity` (see vtkElementQuality). Points in single
+ * precision stay so unless a valid element would not be valid when rounded.
+ *
+ * @par Output port 1 `History`:
+ * A vtkTable with a row per stage of the work: `Amount`, `Inverted`, `Worst shape`, `Mean shape`, `Stage` (text), `N
+ * iterations`, `Time (s)`; of composite data sets also `Block`.
+ *
+ * @par Output port 2 `Statistics`:
+ * A vtkTable with a row per data set: `Block` (composite data sets), `Elements`, `Boundary points`, `Moved points`,
+ * `Largest displacement`, `Amount`, `Inverted after warp`, `Inverted`, `Impossible` (elements no place of the interior
+ * makes valid), `Worst shape`, `Mean shape`, `Worst IMR before`, `Mean IMR before`, `Worst IMR`, `Mean IMR`
+ * (inverse mean ratio), `Cxx` ... `Cxz` (the coefficients), `Decoupled`, `Regularization`, `Reused` (1: matrices of the run before),
+ * `Assemble (s)`, `Set-up (s)`, `Solve (s)`, `Improve (s)`, `Total (s)`.
+ *
+ * @par Again and again:
+ * Matrices and factorisations are kept as long as the mesh, the points that are given and the options of the method are
+ * the same: animating Amount, or a target over time, pays for them once.
+ *
+ * @par Several processes:
+ * A mesh spread over processes is refused, as the boundary of a part is not that of the mesh: gather it on one process
+ * first (in ParaView, Redistribute DataSet with one partition). Blocks may be on different processes. Points of ghost
+ * cells stay.
+ *
+ * @par Example:
+ * @code
+ * vtkNew<vtkMeshWarp> warp;
+ * warp->SetInputConnection(reader->GetOutputPort());
+ * warp->SetMotion(vtkMeshWarp::TRANSFORM);
+ * warp->SetTransformKind(vtkMeshWarp::ROTATION);
+ * warp->SetAngle(60); // the inner boundaries, about their middle
+ * warp->Update();
+ * std::cout << warp->GetSummary();
+ * @endcode
+ *
+ * @sa vtkMeshUntangler, vtkMeshOptimizer, tautline/Warp.h, tautline/PointMotion.h
+ */
+
+#ifndef vtkMeshWarp_h
+#define vtkMeshWarp_h
+
+#include "TautlineDeformationModule.h" // for export macro
+#include "vtkDataObjectAlgorithm.h"
+#include "vtkSmartPointer.h" // for Transform
+
+#include <array>  // for RegionCoefficients
+#include <memory> // for Session
+#include <string> // for Summary
+#include <vector> // for lists
+
+class vtkLinearTransform;
+class vtkTable;
+
+class TAUTLINEDEFORMATION_EXPORT vtkMeshWarp : public vtkDataObjectAlgorithm
+{
+public:
+  static vtkMeshWarp* New();
+  vtkTypeMacro(vtkMeshWarp, vtkDataObjectAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Motions
+  {
+    DISPLACEMENT = 0, ///< the array at index 0
+    TARGET = 1,       ///< the data set at port 1
+    TRANSFORM = 2,    ///< TransformKind, of MovedPart
+    TIME_STEPS =
+      3 ///< where the boundary of the input is at each time; the interior is that of the first
+  };
+  ///@{
+  /// How the boundary moves. The default is TRANSFORM.
+  vtkSetClampMacro(Motion, int, DISPLACEMENT, TIME_STEPS);
+  vtkGetMacro(Motion, int);
+  ///@}
+
+  ///@{
+  /**
+   * How much of the motion, along its path: 0 is the input (bitwise), 1 all; more goes on beyond it. At least 0. The
+   * default is 1.
+   */
+  vtkSetClampMacro(Amount, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(Amount, double);
+  ///@}
+
+  enum Correspondences
+  {
+    AUTOMATIC_MATCH = 0, ///< the first below that fits; point ids if an array is named
+    SAME_MESH = 1,       ///< as many points as the mesh, in the same order
+    SAME_BOUNDARY =
+      2, ///< the points that move: by number, or as Extract Surface or Feature Edges order them
+    POINT_IDS = 3,    ///< the array at index 1
+    CLOSEST_POINT = 4 ///< projection to the nearest point of the surface (curve)
+  };
+  ///@{
+  /// Which point of the target belongs to which of the mesh. The default is AUTOMATIC_MATCH; the summary tells.
+  vtkSetClampMacro(Correspondence, int, AUTOMATIC_MATCH, CLOSEST_POINT);
+  vtkGetMacro(Correspondence, int);
+  ///@}
+
+  ///@{
+  /**
+   * A point array of the target: values of the mesh's point array of the same name, or numbers of the mesh's points. "" or "None",
+   * the default, is none.
+   */
+  void SetTargetIds(const char* name);
+  const char* GetTargetIds() const { return this->TargetIds.c_str(); }
+  ///@}
+
+  enum MovedParts
+  {
+    AUTOMATIC_PART =
+      0, ///< INNER_BOUNDARIES; for a target with a place for each point WHOLE_BOUNDARY
+    WHOLE_BOUNDARY = 1,
+    INNER_BOUNDARIES = 2, ///< all but the outer boundary; all if there is nothing else
+    NUMBERED_PARTS = 3,   ///< AddPart(), numbered by size; 1 is the largest
+    ARRAY_VALUES = 4,     ///< where the array at index 1 is not 0, or one of AddValue()
+    SELECTION = 5         ///< points at port 2, or points of cells
+  };
+  ///@{
+  /**
+   * Which part of the boundary moves, by a transform or to a target; the rest of it stays. Of values and selections
+   * the points on the boundary count. The default is AUTOMATIC_PART.
+   */
+  vtkSetClampMacro(MovedPart, int, AUTOMATIC_PART, SELECTION);
+  vtkGetMacro(MovedPart, int);
+  ///@}
+
+  ///@{
+  /// Connected parts of the boundary, from 1, by the size of the box around them, the largest first.
+  void AddPart(int number);
+  void RemoveAllParts();
+  ///@}
+
+  ///@{
+  /// Values of the array at index 1 that move; none: all but 0.
+  void AddValue(double value);
+  void RemoveAllValues();
+  ///@}
+
+  enum TransformKinds
+  {
+    MATRIX = 0,      ///< SetTransform(); turns and shifts along a screw
+    TRANSLATION = 1, ///< SetTranslation()
+    ROTATION = 2,    ///< SetAngle(), SetAxis(), centre; along an arc
+    SCALING = 3,     ///< SetScaleFactors(), centre
+    BENDING = 4      ///< SetAngle(), SetAxis(), SetDirection(), centre: see tautline::MotionKind
+  };
+  ///@{
+  /// The default is MATRIX.
+  vtkSetClampMacro(TransformKind, int, MATRIX, BENDING);
+  vtkGetMacro(TransformKind, int);
+  ///@}
+
+  ///@{
+  /// An affine transform without reflection; null, the default, is the identity.
+  void SetTransform(vtkLinearTransform* transform);
+  vtkLinearTransform* GetTransform();
+  ///@}
+
+  ///@{
+  /// The default is 0 0 0.
+  vtkSetVector3Macro(Translation, double);
+  vtkGetVector3Macro(Translation, double);
+  ///@}
+
+  ///@{
+  /// Degrees; may go beyond a full turn. The default is 0.
+  vtkSetMacro(Angle, double);
+  vtkGetMacro(Angle, double);
+  ///@}
+
+  ///@{
+  /// Of rotation and bending; the default is 0 0 1.
+  vtkSetVector3Macro(Axis, double);
+  vtkGetVector3Macro(Axis, double);
+  ///@}
+
+  ///@{
+  /// Along x, y and z, above 0. The default is 1 1 1.
+  vtkSetVector3Macro(ScaleFactors, double);
+  vtkGetVector3Macro(ScaleFactors, double);
+  ///@}
+
+  ///@{
+  /// Along the bar to bend, from the end that is held. The default is 1 0 0.
+  vtkSetVector3Macro(Direction, double);
+  vtkGetVector3Macro(Direction, double);
+  ///@}
+
+  ///@{
+  /// Whether the centre is the middle of the box around the points that move, not Center. The default is on.
+  vtkSetMacro(OwnCenter, bool);
+  vtkGetMacro(OwnCenter, bool);
+  vtkBooleanMacro(OwnCenter, bool);
+  ///@}
+
+  ///@{
+  /// The default is 0 0 0.
+  vtkSetVector3Macro(Center, double);
+  vtkGetVector3Macro(Center, double);
+  ///@}
+
+  enum StartsFrom
+  {
+    FIRST_STEP = 0, ///< the result at a time does not depend on other times
+    PREVIOUS_STEP =
+      1 ///< each time step goes on from the one before; going back, from those kept or anew
+  };
+  ///@{
+  /**
+   * From which mesh a time step is warped, if the input or the target has several. Either way the result at a time is the same
+   * in whatever order times are asked for. The default is FIRST_STEP.
+   */
+  vtkSetClampMacro(StartFrom, int, FIRST_STEP, PREVIOUS_STEP);
+  vtkGetMacro(StartFrom, int);
+  ///@}
+
+  enum Methods
+  {
+    HYBRID = 0,
+    FEMWARP = 1,
+    ANISOTROPIC_FEMWARP = 2,
+    SMALL_STEP_FEMWARP = 3,
+    FEMWARP_UNTANGLING = 4,
+    ITERATIVE_STIFFENING = 5,
+    JACOBIAN_STIFFENING = 6,
+    BIHARMONIC = 7,
+    INVERSE_DISTANCE = 8,
+    RADIAL_BASIS = 9,
+    WEIGHTED_LAPLACIAN = 10
+  };
+  ///@{
+  /// How the interior follows, see tautline::WarpMethod. The default is HYBRID.
+  vtkSetClampMacro(Method, int, HYBRID, WEIGHTED_LAPLACIAN);
+  vtkGetMacro(Method, int);
+  ///@}
+
+  enum CoefficientChoices
+  {
+    DISPLACEMENT_SUMS = 0,    ///< (4.19), (4.21)
+    PRINCIPAL_DIRECTIONS = 1, ///< the same along the principal directions of the motion
+    MANUAL = 2,               ///< SetTensor()
+    PER_CELL = 3,             ///< the array at index 3
+    PER_REGION = 4 ///< AddRegion() by the array at index 4, SetTensor() for all other regions
+  };
+  ///@{
+  /// The coefficients of HYBRID and ANISOTROPIC_FEMWARP. The default is DISPLACEMENT_SUMS.
+  vtkSetClampMacro(Coefficients, int, DISPLACEMENT_SUMS, PER_REGION);
+  vtkGetMacro(Coefficients, int);
+  ///@}
+
+  ///@{
+  /// xx yy zz xy yz xz, positive semidefinite; the default is the identity.
+  vtkSetVector6Macro(Tensor, double);
+  vtkGetVector6Macro(Tensor, double);
+  ///@}
+
+  ///@{
+  /// alpha, beta and gamma (at least 0) of the cells where the array at index 4 is `region`.
+  void AddRegion(double region, double alpha, double beta, double gamma);
+  void RemoveAllRegions();
+  ///@}
+
+  ///@{
+  /**
+   * Steps the motion is cut into: 0 (and 1 of SMALL_STEP_FEMWARP) is as many as are needed for no element to invert, up to
+   * MaximumSteps. Steps of a transform follow its path. The defaults are 1 and 100.
+   */
+  vtkSetClampMacro(Steps, int, 0, 10000);
+  vtkGetMacro(Steps, int);
+  vtkSetClampMacro(MaximumSteps, int, 1, 10000);
+  vtkGetMacro(MaximumSteps, int);
+  ///@}
+
+  ///@{
+  /**
+   * Let the size of the mesh decide on the solver (on, the default), or take Solver and Preconditioner: the numbers of
+   * tautline::KrylovMethod (0 conjugate gradients, ..., 4 direct) and tautline::Preconditioner (0 Jacobi, 1 SSOR, 2 ILU,
+   * 3 BoomerAMG, ...); the defaults are 0 and 3.
+   */
+  vtkSetMacro(AutomaticSolver, bool);
+  vtkGetMacro(AutomaticSolver, bool);
+  vtkBooleanMacro(AutomaticSolver, bool);
+  vtkSetClampMacro(Solver, int, 0, 4);
+  vtkGetMacro(Solver, int);
+  vtkSetClampMacro(Preconditioner, int, 0, 6);
+  vtkGetMacro(Preconditioner, int);
+  ///@}
+
+  ///@{
+  /// Of the residual, relative; 0 to 1. The default is 1e-10.
+  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /// Of the elastic methods; -1 to 0.5 (exclusive). The default is 0.3.
+  vtkSetMacro(PoissonRatio, double);
+  vtkGetMacro(PoissonRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * JACOBIAN_STIFFENING: power of the element's size its stiffness falls by; at least 0, the default is 1.
+   * ITERATIVE_STIFFENING: by what factor (above 1, default 2) inverted elements get stiffer, how often at most (default 50).
+   */
+  vtkSetClampMacro(StiffeningPower, double, 0.0, 10.0);
+  vtkGetMacro(StiffeningPower, double);
+  vtkSetClampMacro(StiffeningFactor, double, 1.0, 1e6);
+  vtkGetMacro(StiffeningFactor, double);
+  vtkSetClampMacro(MaximumStiffenings, int, 0, 10000);
+  vtkGetMacro(MaximumStiffenings, int);
+  ///@}
+
+  ///@{
+  /// INVERSE_DISTANCE: the power of the distance, above 0 to 20. The default is 3.
+  vtkSetMacro(DistancePower, double);
+  vtkGetMacro(DistancePower, double);
+  ///@}
+
+  ///@{
+  /**
+   * RADIAL_BASIS: the radius of the functions (0, the default: chosen) and how well the boundary is met, relative to the
+   * largest displacement (default 1e-3).
+   */
+  vtkSetClampMacro(SupportRadius, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(SupportRadius, double);
+  vtkSetClampMacro(FitTolerance, double, 0.0, 1.0);
+  vtkGetMacro(FitTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * HYBRID: whether to untangle before the optimization of shape, which then keeps every element valid; else (4.24) as it
+   * stands, with this beta (relative to the mean element, at least 0) in its untangling metric. The defaults are on and 0.
+   */
+  vtkSetMacro(UntangleFirst, bool);
+  vtkGetMacro(UntangleFirst, bool);
+  vtkBooleanMacro(UntangleFirst, bool);
+  vtkSetClampMacro(UntanglingBeta, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(UntanglingBeta, double);
+  ///@}
+
+  ///@{
+  /// HYBRID: most iterations of the optimization of shape. The default is 20.
+  vtkSetClampMacro(MaximumIterations, int, 0, 1000000);
+  vtkGetMacro(MaximumIterations, int);
+  ///@}
+
+  ///@{
+  /// Seconds per data set and time step; 0 is no limit. The default is 600.
+  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  ///@{
+  /// Number of threads; 0 is all cores. The result does not depend on it. The default is 0.
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  ///@{
+  /// The outputs other than the mesh.
+  vtkTable* GetHistory();
+  vtkTable* GetStatistics();
+  ///@}
+
+  ///@{
+  /// The result of the last execution, of all blocks together; the names are those of the statistics.
+  const char* GetSummary() const { return this->Summary.c_str(); }
+  vtkIdType GetInvertedAfterWarp() const { return this->InvertedAfterWarp; }
+  vtkIdType GetInverted() const { return this->Inverted; }
+  vtkIdType GetImpossible() const { return this->Impossible; }
+  double GetWorstShape() const { return this->WorstShape; }
+  /// How many blocks took up matrices of the run before.
+  int GetReused() const { return this->Reused; }
+  ///@}
+
+  /// Includes that of the transform.
+  vtkMTimeType GetMTime() override;
+
+protected:
+  vtkMeshWarp();
+  ~vtkMeshWarp() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+private:
+  vtkMeshWarp(const vtkMeshWarp&) = delete;
+  void operator=(const vtkMeshWarp&) = delete;
+
+  struct Session; ///< what is kept between executions, and what one execution needs
+  int Fail(vtkDataObject* output, vtkInformation* request);
+
+  int Motion = TRANSFORM;
+  double Amount = 1.0;
+  int Correspondence = AUTOMATIC_MATCH;
+  std::string TargetIds;
+  int MovedPart = AUTOMATIC_PART;
+  std::vector<int> Parts;
+  std::vector<double> Values;
+  int TransformKind = MATRIX;
+  vtkSmartPointer<vtkLinearTransform> Transform;
+  double Translation[3] = { 0, 0, 0 };
+  double Angle = 0.0;
+  double Axis[3] = { 0, 0, 1 };
+  double ScaleFactors[3] = { 1, 1, 1 };
+  double Direction[3] = { 1, 0, 0 };
+  bool OwnCenter = true;
+  double Center[3] = { 0, 0, 0 };
+  int StartFrom = FIRST_STEP;
+  int Method = HYBRID;
+  int Coefficients = DISPLACEMENT_SUMS;
+  double Tensor[6] = { 1, 1, 1, 0, 0, 0 };
+  std::vector<std::array<double, 4>> Regions; ///< value, alpha, beta, gamma
+  int Steps = 1;
+  int MaximumSteps = 100;
+  bool AutomaticSolver = true;
+  int Solver = 0;
+  int Preconditioner = 3;
+  double Tolerance = 1e-10;
+  double PoissonRatio = 0.3;
+  double StiffeningPower = 1.0;
+  double StiffeningFactor = 2.0;
+  int MaximumStiffenings = 50;
+  double DistancePower = 3.0;
+  double SupportRadius = 0.0;
+  double FitTolerance = 1e-3;
+  bool UntangleFirst = true;
+  double UntanglingBeta = 0.0;
+  int MaximumIterations = 20;
+  double TimeLimit = 600.0;
+  int Threads = 0;
+
+  std::unique_ptr<Session> Kept;
+  std::string Summary;
+  vtkIdType InvertedAfterWarp = 0;
+  vtkIdType Inverted = 0;
+  vtkIdType Impossible = 0;
+  double WorstShape = 0.0;
+  int Reused = 0;
+};
+
+#endif

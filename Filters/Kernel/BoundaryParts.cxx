@@ -1,0 +1,120 @@
+#include "BoundaryParts.h"
+
+#include "FacetTable.h"
+
+#include <limits>
+#include <map>
+
+namespace tautline
+{
+namespace
+{
+/// Disjoint sets of points; the root is the smallest member.
+class Groups
+{
+public:
+  explicit Groups(Index n)
+    : Parent(n)
+  {
+    std::iota(this->Parent.begin(), this->Parent.end(), Index(0));
+  }
+  Index root(Index i)
+  {
+    while (this->Parent[i] != i)
+    {
+      i = this->Parent[i] = this->Parent[this->Parent[i]];
+    }
+    return i;
+  }
+  void join(Index i, Index j)
+  {
+    i = this->root(i);
+    j = this->root(j);
+    this->Parent[std::max(i, j)] = std::min(i, j);
+  }
+
+private:
+  std::vector<Index> Parent;
+};
+
+struct Box
+{
+  Vec3 low = { std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+    std::numeric_limits<double>::infinity() };
+  Vec3 high = { -low[0], -low[1], -low[2] };
+  void add(const Vec3& p)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      this->low[k] = std::min(this->low[k], p[k]);
+      this->high[k] = std::max(this->high[k], p[k]);
+    }
+  }
+  double diagonal() const { return norm(this->high - this->low); }
+};
+
+struct Part
+{
+  Index root;
+  double size;
+};
+}
+
+//------------------------------------------------------------------------------
+BoundaryParts boundaryParts(const Mesh& mesh)
+{
+  const MeshView& view = mesh.view();
+  BoundaryParts result;
+  result.part.assign(view.numberOfPoints, 0);
+  Groups facets(view.numberOfPoints), pieces(view.numberOfPoints);
+  std::vector<char> onBoundary(view.numberOfPoints, 0);
+  FacetTable table(mesh);
+  table.forEachFacet(
+    [&](Index first, const FacetUse* use, Index count)
+    {
+      for (Index other : use->others)
+      {
+        if (other >= 0)
+        {
+          pieces.join(first, other);
+        }
+        if (other >= 0 && count == 1)
+        {
+          facets.join(first, other);
+          onBoundary[first] = onBoundary[other] = 1;
+        }
+      }
+    });
+
+  std::map<Index, Box> boxes;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (onBoundary[p])
+    {
+      boxes[facets.root(p)].add(pointOf(view, p));
+    }
+  }
+  std::vector<Part> parts;
+  for (const auto& [root, box] : boxes)
+  {
+    parts.push_back({ root, box.diagonal() });
+  }
+  std::stable_sort(
+    parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.size > b.size; });
+
+  std::map<Index, int> number;
+  std::map<Index, bool> seen; // pieces of the mesh whose largest part has been met
+  for (const Part& part : parts)
+  {
+    number[part.root] = ++result.parts;
+    bool& met = seen[pieces.root(part.root)];
+    result.outer.push_back(!met);
+    met = true;
+  }
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    result.part[p] = onBoundary[p] ? number[facets.root(p)] : 0;
+  }
+  return result;
+}
+}

@@ -1,0 +1,61 @@
+/**
+ * @file PointMotion.h
+ * @brief Motions of points along their true paths: an arc for a rotation, a screw for a rigid motion, ever smaller
+ * radii for a bend. For parts of a boundary that a mesh is to follow (Warp.h).
+ *
+ * Example: the points marked, a third of the way round an axis through their middle.
+ *
+ *     tautline::PointMotion motion;
+ *     motion.kind = tautline::MotionKind::Rotation;
+ *     motion.angle = 90; // degrees
+ *     std::vector<double> d = tautline::displacements(motion, 1.0 / 3, n, xyz, marks);
+ */
+#ifndef tautline_PointMotion_h
+#define tautline_PointMotion_h
+
+#include "TautlineKernelExport.h"
+#include "Types.h"
+
+#include <vector>
+
+namespace tautline
+{
+/// The numbers are stable: ParaView state files hold them.
+enum class MotionKind : int
+{
+  /// Any affine map without reflection: stretch about the centre of the points, then turn and shift along a screw.
+  Matrix = 0,
+  Translation = 1,
+  Rotation = 2, ///< by `angle` about `axis` through the centre
+  Scaling = 3,  ///< by `factors` along the coordinate axes, from the centre
+  /**
+   * @brief A bar along `direction` becomes an arc of `angle` about `axis`; the line through the centre keeps its length. It
+   * is held where the points begin (ownCenter), or at the centre, and before that nothing moves.
+   */
+  Bending = 4
+};
+
+struct PointMotion
+{
+  MotionKind kind = MotionKind::Matrix;
+  std::array<double, 16> matrix = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }; ///< by rows
+  Vec3 translation = { 0, 0, 0 };
+  double angle = 0.0; ///< degrees; any, also beyond a full turn
+  Vec3 axis = { 0, 0, 1 };
+  Vec3 factors = { 1, 1, 1 };
+  Vec3 direction = { 1, 0, 0 }; ///< of a bar to bend; what is along the axis does not count
+  bool ownCenter = true;        ///< the middle of the box around the points moved, not `center`
+  Vec3 center = { 0, 0, 0 };
+};
+
+/**
+ * @brief By how much the points marked with a value other than 0 move, 3 per point; 0 for the others.
+ * @param amount 0 is where they are, 1 the whole motion; more goes on
+ *
+ * Throws Error for numbers that are not finite, an axis or a direction of length 0, factors that are not positive, and
+ * matrices that mirror, flatten or are not affine.
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<double> displacements(const PointMotion& motion, double amount,
+  Index numberOfPoints, const double* points, const unsigned char* moved);
+}
+#endif

@@ -1,0 +1,225 @@
+// Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms and the study of solvers
+// are those of the whole mesh in one process; what one rank refuses all refuse. Runs on however many ranks it is started on.
+#include "Blocks.h"
+#include "Check.h"
+
+#include "tautline/SolverStudy.h"
+
+#include <mpi.h>
+
+#include <limits>
+
+using namespace tautline;
+
+namespace
+{
+/// This rank's cells of a mesh, and ghosts: cells of other ranks, which do not count.
+struct Share
+{
+  MeshData data;
+  std::vector<Index> points, cells; // ids in the whole mesh
+  std::vector<unsigned char> skip;
+  MeshPart part;
+
+  Share(MPI_Comm& comm, const MeshData& whole, bool scattered, bool lastIsEmpty = false)
+  {
+    int rank = 0, ranks = 1;
+    MPI_Comm_rank(comm, &rank);
+    MPI_Comm_size(comm, &ranks);
+    const int takers = lastIsEmpty ? std::max(1, ranks - 1) : ranks;
+    std::vector<Index> local(whole.numberOfPoints(), -1);
+    for (Index cell = 0; cell < whole.numberOfCells(); ++cell)
+    {
+      // Bands of cells by their order in x; every seventh cell is also a ghost of the next rank.
+      const Index first = whole.offsets[cell], end = whole.offsets[cell + 1];
+      const double x = whole.points[3 * whole.connectivity[first]];
+      const int band = std::min(takers - 1, static_cast<int>(x / blockSize * takers));
+      const int owner = scattered ? static_cast<int>(cell % takers) : band;
+      const bool ghost = cell % 7 == 0 && (owner + 1) % takers == rank && takers > 1;
+      if (owner != rank && !ghost)
+      {
+        continue;
+      }
+      std::vector<Index> nodes;
+      for (Index k = first; k < end; ++k)
+      {
+        const Index node = whole.connectivity[k];
+        if (local[node] < 0)
+        {
+          local[node] = this->data.addPoint(whole.point(node));
+          this->points.push_back(node);
+        }
+        nodes.push_back(local[node]);
+      }
+      this->data.addCell(static_cast<int>(whole.types[cell]), nodes);
+      this->cells.push_back(cell);
+      this->skip.push_back(owner != rank);
+    }
+    this->part.communicator = &comm;
+    this->part.globalIds = this->points.data();
+    this->part.skip = this->skip.data();
+  }
+
+  /// This rank's part of a field of the whole mesh.
+  std::vector<double> pointField(const std::vector<double>& whole, int components) const
+  {
+    std::vector<double> field;
+    for (Index point : this->points)
+    {
+      for (int k = 0; k < components; ++k)
+      {
+        field.push_back(whole[components * point + k]);
+      }
+    }
+    return field;
+  }
+
+  static constexpr double blockSize = 5;
+};
+
+//------------------------------------------------------------------------------
+void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool lastIsEmpty)
+{
+  const Context context(std::string(topology(type).plural) + ", problem " +
+    std::to_string(static_cast<int>(pde)) + (scattered ? ", scattered" : ", bands"));
+  const MeshData whole = shuffled(movedBlock(type, 5, 0.1), 3);
+  const Share share(comm, whole, scattered, lastIsEmpty);
+  const int given = pde == Pde::Elasticity ? 3 : 1;
+  Random random(5);
+  std::vector<double> sources, values;
+  for (Index i = 0; i < whole.numberOfPoints(); ++i)
+  {
+    for (int k = 0; k < given; ++k)
+    {
+      const bool inPlane = k < topology(type).dimension;
+      sources.push_back(inPlane ? random.uniform(-1, 1) : 0.0);
+      values.push_back(inPlane ? random.uniform(-1, 1) : 0.0);
+    }
+  }
+  EllipticProblem problem;
+  problem.pde = pde;
+  problem.diffusion.tensor = { 2, 1, 3, 0.2, 0, 0 };
+  problem.diffusion.reaction = 1;
+  problem.sources = sources.data();
+  problem.fixedValues = values.data();
+  const Mesh mesh(whole.view());
+  const EllipticSystem alone(mesh, problem);
+  const std::vector<double> mySources = share.pointField(sources, given),
+                            myValues = share.pointField(values, given);
+  problem.sources = mySources.data();
+  problem.fixedValues = myValues.data();
+  const Mesh myMesh(share.data.view());
+  const EllipticSystem together(myMesh, problem, share.part);
+  TAUTLINE_CHECK_EQUAL(together.unknowns(), alone.unknowns());
+
+  SolverOptions options;
+  options.relativeTolerance = 1e-12;
+  options.preconditioner = Preconditioner::Jacobi;
+  const EllipticSolution expected = alone.solve(options), solution = together.solve(options);
+  TAUTLINE_CHECK(converged(expected.linear.reason) && converged(solution.linear.reason));
+  TAUTLINE_CHECK_EQUAL(solution.components, given);
+  for (std::size_t i = 0; i < share.points.size(); ++i)
+  {
+    for (int k = 0; k < given; ++k)
+    {
+      TAUTLINE_CHECK_NEAR(
+        solution.values[given * i + k], expected.values[given * share.points[i] + k], 1e-9);
+    }
+  }
+  const int size = given == 1 ? 3 : 6;
+  for (std::size_t i = 0; i < share.cells.size(); ++i)
+  {
+    for (int k = 0; k < size; ++k)
+    {
+      const double derivative = solution.gradients[size * i + k];
+      TAUTLINE_CHECK(share.skip[i]
+          ? std::isnan(derivative)
+          : std::abs(derivative - expected.gradients[size * share.cells[i] + k]) < 1e-8);
+    }
+  }
+  const auto zero = [](const Vec3&, double*, double*) {};
+  const std::array<double, 2> norms = errorNorms(together, solution, zero),
+                              wholeNorms = errorNorms(alone, expected, zero);
+  TAUTLINE_CHECK_RELATIVE(norms[0], wholeNorms[0], 1e-9);
+  TAUTLINE_CHECK_RELATIVE(norms[1], wholeNorms[1], 1e-9);
+
+  SolverStudyOptions study;
+  study.combinations = { { KrylovMethod::ConjugateGradient, Preconditioner::Jacobi, false },
+    { KrylovMethod::GMRES, Preconditioner::BoomerAMG, false },
+    { KrylovMethod::MINRES, Preconditioner::GAMG, true } };
+  const SolverStudy here = studySolvers(together, study), there = studySolvers(alone, study);
+  TAUTLINE_CHECK_EQUAL(here.rows[0].linear.iterations, there.rows[0].linear.iterations);
+  TAUTLINE_CHECK_RELATIVE(here.rows[0].condition, there.rows[0].condition, 1e-6);
+  for (const SolverStudyRow& row : here.rows)
+  {
+    TAUTLINE_CHECK(converged(row.linear.reason) && row.trueResidual < 1e-3);
+  }
+}
+
+//------------------------------------------------------------------------------
+void testRefusals(MPI_Comm comm)
+{
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &ranks);
+  const auto refused = [&](const MeshData& whole, EllipticProblem problem, const std::string& text)
+  {
+    const Share share(comm, whole, false);
+    const Mesh mesh(share.data.view());
+    // One rank names it; the others say that one does.
+    int named = 0;
+    try
+    {
+      const EllipticSystem system(mesh, problem, share.part);
+      TAUTLINE_CHECK(!"refused");
+    }
+    catch (const Error& error)
+    {
+      const std::string message = error.what();
+      named = message.find(text) != std::string::npos;
+      TAUTLINE_CHECK(named || message.find("Another rank") != std::string::npos);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &named, 1, MPI_INT, MPI_SUM, comm);
+    TAUTLINE_CHECK(named > 0);
+  };
+  const MeshData good = blockMesh(CellType::Triangle, 5, 5, 0);
+  MeshData data = good;
+  std::swap(data.connectivity[0], data.connectivity[1]);
+  refused(data, {}, "inverted against the rest");
+  data = good;
+  data.addCell(3, { 0, 1 });
+  refused(data, {}, "1 cells are not triangles");
+  refused(MeshData(), {}, "no cells");
+  EllipticProblem problem;
+  problem.source[0] = std::numeric_limits<double>::quiet_NaN();
+  refused(good, problem, "source f");
+  problem = {};
+  problem.pde = Pde::Elasticity;
+  problem.source = { 0, 0, 1 };
+  refused(good, problem, "out of the plane");
+  // Nothing fixed: no part of any rank is held. One point fixed on one rank holds them all.
+  std::vector<unsigned char> fixed(good.numberOfPoints(), 0);
+  problem = {};
+  problem.fixed = fixed.data();
+  refused(good, problem, "without a fixed point");
+  const Share share(comm, good, true);
+  const Mesh mesh(share.data.view());
+  fixed[0] = rank == ranks - 1;
+  const EllipticSystem held(mesh, problem, share.part);
+  TAUTLINE_CHECK_EQUAL(held.unknowns(), good.numberOfPoints() - 1);
+}
+}
+
+//------------------------------------------------------------------------------
+int TestEllipticRanks(int, char*[])
+{
+  MPI_Init(nullptr, nullptr);
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  testSolutions(comm, CellType::Triangle, Pde::Poisson, false, false);
+  testSolutions(comm, CellType::Quadrilateral, Pde::Elasticity, true, false);
+  testSolutions(comm, CellType::Tetrahedron, Pde::Elliptic, true, true);
+  testSolutions(comm, CellType::Hexahedron, Pde::Elasticity, false, true);
+  testRefusals(comm);
+  MPI_Finalize();
+  return exitCode();
+}
