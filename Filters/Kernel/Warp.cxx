@@ -4,7 +4,7 @@
 #include "WarpPath.h"
 #include "WarpStep.h"
 
-#include <limits>
+#include <sstream>
 
 namespace tautline
 {
@@ -13,6 +13,12 @@ namespace
 bool usesFiniteElements(WarpMethod method)
 {
   return method < WarpMethod::InverseDistance;
+}
+
+/// "1 element", "2 elements"
+std::string counted(Index count, const char* what)
+{
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 void checkOptions(const Mesh& mesh, const WarpOptions& options)
@@ -107,8 +113,8 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
   if (count > 0)
   {
     const auto first = std::find_if(validity.begin(), validity.end(), wrong);
-    throw Error(std::to_string(count) +
-      " elements are inverted or degenerate before anything moves, the first is cell " +
+    throw Error(counted(count, "element") + (count == 1 ? " is" : " are") +
+      " inverted or degenerate before anything moves, the first is cell " +
       std::to_string(first - validity.begin()) +
       ". Untangle the mesh first, or reverse the order of its cells' points.");
   }
@@ -305,28 +311,30 @@ void Warper::Implementation::explain(WarpControl& control)
   }
   if (this->Parts.loose() > 0)
   {
-    control.say(std::to_string(this->Parts.loose()) +
-      " parts of the mesh have no prescribed point and stay where they are.");
+    control.say("Without a prescribed point " + counted(this->Parts.loose(), "part") +
+      " of the mesh stayed in place.");
   }
   if (result.decoupled > 0)
   {
-    control.say(std::to_string(result.decoupled) +
-      " points depend on no prescribed point with these coefficients; they follow the points "
-      "around them.");
+    control.say("With these coefficients no prescribed point determines " +
+      counted(result.decoupled, "point") + " of the mesh, which followed the points around.");
   }
   if (result.regularization > 0)
   {
-    control.say("With these coefficients the motion is not determined; the isotropic operator was "
-                "added, times " +
-      std::to_string(result.regularization) + ".");
+    std::ostringstream text;
+    text << result.regularization;
+    control.say(
+      "With these coefficients the motion was not bounded; the isotropic operator was added, "
+      "times " +
+      text.str() + ".");
   }
   const BoundaryState boundary = this->examineBoundary(result.points.data());
   result.impossible = result.invertedAfter > 0 ? std::max(result.impossible, boundary.inverted) : 0;
   result.crossings = boundary.crossing.pairs;
   if (boundary.inverted > 0)
   {
-    control.say("The moved boundary itself inverts " + std::to_string(boundary.inverted) +
-      " elements, all of whose points are prescribed; the first is cell " +
+    control.say("The moved boundary itself inverts " + counted(boundary.inverted, "element") +
+      ", all of whose points are prescribed; the first is cell " +
       std::to_string(boundary.firstInverted) + ".");
   }
   if (boundary.crossing.pairs > 0)
@@ -337,7 +345,8 @@ void Warper::Implementation::explain(WarpControl& control)
   }
   if (result.invertedAfter > 0)
   {
-    control.say(std::to_string(result.invertedAfter) + " elements are inverted or degenerate.");
+    control.say(counted(result.invertedAfter, "element") +
+      (result.invertedAfter == 1 ? " is" : " are") + " inverted or degenerate.");
   }
   if (result.timeLimit)
   {

@@ -31,16 +31,20 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
 {
   const WarpOptions& options = control.options();
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
+  // The methods that know nothing of the control have its clock and its observer.
+  WarpOptions pointwise = options;
+  pointwise.maximumSeconds = control.secondsLeft();
+  pointwise.progress = [&control](double fraction) { return control.goOn(fraction); };
   switch (options.method)
   {
     case WarpMethod::InverseDistance:
-      moved = warpByInverseDistance(this->From, prescribed, displacement, options);
+      moved = warpByInverseDistance(this->From, prescribed, displacement, pointwise);
       break;
     case WarpMethod::RadialBasis:
-      moved = warpByRadialBasis(this->From, prescribed, displacement, options);
+      moved = warpByRadialBasis(this->From, prescribed, displacement, pointwise);
       break;
     case WarpMethod::WeightedLaplacian:
-      moved = warpByWeightedLaplacian(this->From, prescribed, displacement, options);
+      moved = warpByWeightedLaplacian(this->From, prescribed, displacement, pointwise);
       break;
     case WarpMethod::IterativeStiffening:
     case WarpMethod::JacobianStiffening:
