@@ -4,7 +4,7 @@
 #include "WarpPath.h"
 #include "WarpStep.h"
 
-#include <limits>
+#include <sstream>
 
 namespace tautline
 {
@@ -13,6 +13,12 @@ namespace
 bool usesFiniteElements(WarpMethod method)
 {
   return method < WarpMethod::InverseDistance;
+}
+
+/// "1 element", "2 elements"
+std::string counted(Index count, const char* what)
+{
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 void checkOptions(const Mesh& mesh, const WarpOptions& options)
@@ -107,8 +113,8 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
   if (count > 0)
   {
     const auto first = std::find_if(validity.begin(), validity.end(), wrong);
-    throw Error(std::to_string(count) +
-      " elements are inverted or degenerate before anything moves, the first is cell " +
+    throw Error(counted(count, "element") + (count == 1 ? " is" : " are") +
+      " inverted or degenerate before anything moves, the first is cell " +
       std::to_string(first - validity.begin()) +
       ". Untangle the mesh first, or reverse the order of its cells' points.");
   }
@@ -140,13 +146,9 @@ struct Warper::Implementation
     checkMesh(mesh, this->Parts, options);
   }
 
-  bool inSteps() const
-  {
-    return this->Options.steps != 1 || this->Options.method == WarpMethod::SmallStepFemwarp;
-  }
   void checkDisplacement(const double* displacement) const;
   Warping run(const WarpMotion& motion, const WarpMotion& path);
-  void followMotion(const WarpMotion& motion, WarpControl& control);
+  void followMotion(const WarpMotion& path, const double* displacement, WarpControl& control);
   BoundaryState examineBoundary(const double* points) const;
   void explain(WarpControl& control);
 
@@ -203,24 +205,24 @@ Warping Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& 
     path(amount, displacement);
     this->checkDisplacement(displacement);
   };
-  if (this->inSteps())
+  const WarpMethod method = this->Options.method;
+  const bool untangles = method == WarpMethod::Hybrid || method == WarpMethod::FemwarpUntangling;
+  const bool small = method == WarpMethod::SmallStepFemwarp && this->Options.steps == 1;
+  if (this->Options.steps > 1 || small || (this->Options.steps == 0 && !untangles))
   {
-    // Small steps are what that method is about: one alone stands for as many as are needed.
-    warpInSteps(this->Input, this->Parts, checked,
-      this->Options.steps == 1 ? 0 : this->Options.steps, 1.0, control);
+    warpInSteps(this->Input, this->Parts, checked, small ? 0 : this->Options.steps, false, control);
   }
   else
   {
+    // Methods that untangle are to manage it in one step.
     std::vector<double> displacement(3 * this->Input.view().numberOfPoints, 0.0);
     motion(1.0, displacement.data());
     this->checkDisplacement(displacement.data());
     control.goOn(0.0);
     this->First.run(displacement.data(), 1.0, control, result.points);
-    const bool untangles = this->Options.method == WarpMethod::Hybrid ||
-      this->Options.method == WarpMethod::FemwarpUntangling;
     if (untangles && result.invertedAfter > 0 && !control.stopped())
     {
-      this->followMotion(checked, control);
+      this->followMotion(checked, displacement.data(), control);
     }
   }
   this->explain(control);
@@ -229,20 +231,31 @@ Warping Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& 
 
 //------------------------------------------------------------------------------
 /// Where a single step left inverted elements that the boundary does not call for: in steps, each untangled.
-void Warper::Implementation::followMotion(const WarpMotion& path, WarpControl& control)
+void Warper::Implementation::followMotion(
+  const WarpMotion& path, const double* displacement, WarpControl& control)
 {
   Warping& result = control.result();
-  const BoundaryState boundary = this->examineBoundary(result.points.data());
-  if (boundary.inverted > 0 || boundary.crossing.pairs > 0 || result.impossible > 0)
+  const bool wholeWay = this->Options.steps == 1;
+  if (wholeWay)
   {
-    return;
+    const BoundaryState boundary = this->examineBoundary(result.points.data());
+    if (boundary.inverted > 0 || boundary.crossing.pairs > 0 || result.impossible > 0)
+    {
+      return;
+    }
   }
-  constexpr double first = 0.125;
   const Warping before = result;
-  warpInSteps(this->Input, this->Parts, path, 0, first, control);
-  if (result.amount < 1.0)
+  result.impossible = 0;
+  warpInSteps(this->Input, this->Parts, path, 0, true, control);
+  if (result.amount == 1.0 && !control.stopped())
   {
-    // Not all the way: the mesh with the fewest inverted elements where the boundary should be.
+    result.invertedWarp = before.invertedWarp;
+    result.tensor = before.tensor;
+    this->First.improve(displacement, 1.0, control, result.points);
+  }
+  else if (result.amount < 1.0 && wholeWay)
+  {
+    // The mesh with the fewest inverted elements where the boundary should be.
     std::vector<WarpRecord> history = std::move(result.history);
     const bool aborted = result.aborted, timeLimit = result.timeLimit;
     result = before;
@@ -298,28 +311,30 @@ void Warper::Implementation::explain(WarpControl& control)
   }
   if (this->Parts.loose() > 0)
   {
-    control.say(std::to_string(this->Parts.loose()) +
-      " parts of the mesh have no prescribed point and stay where they are.");
+    control.say("Without a prescribed point " + counted(this->Parts.loose(), "part") +
+      " of the mesh stayed in place.");
   }
   if (result.decoupled > 0)
   {
-    control.say(std::to_string(result.decoupled) +
-      " points depend on no prescribed point with these coefficients; they follow the points "
-      "around them.");
+    control.say("With these coefficients no prescribed point determines " +
+      counted(result.decoupled, "point") + " of the mesh, which followed the points around.");
   }
   if (result.regularization > 0)
   {
-    control.say("With these coefficients the motion is not determined; the isotropic operator was "
-                "added, times " +
-      std::to_string(result.regularization) + ".");
+    std::ostringstream text;
+    text << result.regularization;
+    control.say(
+      "With these coefficients the motion was not bounded; the isotropic operator was added, "
+      "times " +
+      text.str() + ".");
   }
   const BoundaryState boundary = this->examineBoundary(result.points.data());
   result.impossible = result.invertedAfter > 0 ? std::max(result.impossible, boundary.inverted) : 0;
   result.crossings = boundary.crossing.pairs;
   if (boundary.inverted > 0)
   {
-    control.say("The moved boundary itself inverts " + std::to_string(boundary.inverted) +
-      " elements, all of whose points are prescribed; the first is cell " +
+    control.say("The moved boundary itself inverts " + counted(boundary.inverted, "element") +
+      ", all of whose points are prescribed; the first is cell " +
       std::to_string(boundary.firstInverted) + ".");
   }
   if (boundary.crossing.pairs > 0)
@@ -330,7 +345,8 @@ void Warper::Implementation::explain(WarpControl& control)
   }
   if (result.invertedAfter > 0)
   {
-    control.say(std::to_string(result.invertedAfter) + " elements are inverted or degenerate.");
+    control.say(counted(result.invertedAfter, "element") +
+      (result.invertedAfter == 1 ? " is" : " are") + " inverted or degenerate.");
   }
   if (result.timeLimit)
   {

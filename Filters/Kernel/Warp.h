@@ -59,12 +59,20 @@ struct WarpOptions
   const double* tensors = nullptr;         ///< PerCell: 6 per cell
   /// One flag per point, nonzero = follows its given displacement; null: the points of the boundary.
   const unsigned char* prescribed = nullptr;
-  /// Steps the motion is cut into: 0 as many as are needed for no element to invert; else so many.
+  /**
+   * @brief Steps the motion is cut into, each from the mesh of the one before. 0: as many as are needed for no element to
+   * invert; steps that invert one are halved, and grow again. The result is then valid and may have come only a part of the
+   * way, see Warping::amount. SmallStepFemwarp takes 1 for 0. On the way each connected piece of prescribed points turns and
+   * stretches as its displacements together say, if they are those of one affine map, about; else it goes straight.
+   *
+   * Hybrid and FemwarpUntangling try one step first, with 0 as with 1; if untangling fails there, though the moved boundary does
+   * not cross itself, they follow the motion in short steps.
+   */
   int steps = 1;
-  int maximumSteps = 100; ///< with steps = 0 and for SmallStepFemwarp
-  /// Solver of the linear systems; Direct up to a size that depends on the dimension, else CG with BoomerAMG.
+  int maximumSteps = 100; ///< where their number is free
+  /// Direct up to 600,000 unknowns (planar) or 20,000 (volume), else CG with BoomerAMG; off: `solver`.
   bool automaticSolver = true;
-  SolverOptions solver;
+  SolverOptions solver;      ///< its tolerance is `tolerance`
   double tolerance = 1e-10;  ///< relative, of the solves; affine motions are exact whatever it is
   double poissonRatio = 0.3; ///< of the elastic methods
   double stiffeningPower = 1.0; ///< JacobianStiffening: chi
@@ -86,8 +94,8 @@ struct WarpOptions
   double untanglingBeta = 0.0;
   /// Hybrid's second step: optimizer and stopping criteria count, and c of the exponential sum; the rest is set.
   OptimizeOptions optimization = hybridOptimization();
-  double maximumSeconds = 0.0; ///< 0: no limit
-  int threads = 0;
+  double maximumSeconds = 0.0;          ///< 0: no limit
+  int threads = 0;                      ///< 0: all cores. The result does not depend on it.
   std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
 };
 
@@ -108,15 +116,20 @@ struct Warping
   std::vector<double> points; ///< 3 x numberOfPoints
   std::vector<WarpRecord> history;
   double amount = 1.0;                     ///< how far it came
-  SymmetricTensor tensor = IdentityTensor; ///< the coefficients used
+  SymmetricTensor tensor = IdentityTensor; ///< the coefficients used, unless PerCell
   Index invertedWarp = 0;                  ///< after the warp itself
   Index invertedAfter = 0;                 ///< at the end
   /// Inverted elements no interior position can make valid: the moved boundary itself is not.
   Index impossible = 0;
   /// Pairs of edges, or of boundary triangles, of the moved boundary that cross and did not before.
   Index crossings = 0;
-  Index decoupled = 0;         ///< points that a coefficient of 0 leaves undetermined
-  double regularization = 0.0; ///< relative, used for them; 0: none
+  /**
+   * @brief Points that a coefficient of 0 cuts off from all prescribed ones. They follow the points around them by the
+   * isotropic operator, which changes nothing for the others.
+   */
+  Index decoupled = 0;
+  /// The isotropic operator's part added to a singular one, relative to its largest coefficient, for a bounded motion; 0: none.
+  double regularization = 0.0;
   double assembleSeconds = 0, setupSeconds = 0, solveSeconds = 0, improveSeconds = 0;
   bool aborted = false, timeLimit = false;
   std::string message; ///< what the user should know, or ""

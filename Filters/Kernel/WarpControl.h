@@ -52,8 +52,10 @@ public:
     {
       this->Result.timeLimit = true;
     }
-    const double told = this->From + (this->To - this->From) * std::clamp(fraction, 0.0, 1.0);
-    if (!this->stopped() && this->Options.progress && !this->Options.progress(told))
+    // What is tried again in another way does not start again for who watches.
+    const double now = this->From + (this->To - this->From) * std::clamp(fraction, 0.0, 1.0);
+    this->Told = std::max(this->Told, now);
+    if (!this->stopped() && this->Options.progress && !this->Options.progress(this->Told))
     {
       this->Result.aborted = true;
     }
@@ -79,7 +81,7 @@ private:
   const WarpOptions& Options;
   Warping& Result;
   std::chrono::steady_clock::time_point Start;
-  double From = 0, To = 1;
+  double From = 0, To = 1, Told = 0;
   int Iterations = 0;
 };
 }

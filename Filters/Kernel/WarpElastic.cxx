@@ -115,6 +115,7 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
   std::vector<double> best, moved, points(3 * view.numberOfPoints);
   std::vector<signed char> validity(view.numberOfCells);
   Index fewest = view.numberOfCells + 1;
+  constexpr double stiffest = 1e12; // as good as rigid, and the matrix can still be solved
   for (int round = 0;; ++round)
   {
     if (!this->System)
@@ -148,7 +149,7 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
       if (validity[i] != Valid && validity[i] != NotMeasured)
       {
         ++inverted;
-        this->Stiffening[i] *= options.stiffeningFactor;
+        this->Stiffening[i] = std::min(stiffest, options.stiffeningFactor * this->Stiffening[i]);
       }
     }
     if (inverted < fewest)

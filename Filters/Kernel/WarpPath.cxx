@@ -83,6 +83,7 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
     double count = 0;
     Vector center = Vector::Zero(), shift = Vector::Zero();
     Matrix before = Matrix::Zero(), between = Matrix::Zero();
+    double moved = 0; ///< sum of squares
   };
   std::vector<Sums> sums(this->Pieces.size());
   const auto forEach = [&](const auto& visit)
@@ -114,6 +115,7 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
       const Vector a = x - s.center, b = d - s.shift;
       s.before += a * a.transpose();
       s.between += b * a.transpose();
+      s.moved += b.squaredNorm();
     });
   for (std::size_t p = 0; p < sums.size(); ++p)
   {
@@ -141,7 +143,15 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
     {
       continue; // a line: its turn is not known
     }
-    Matrix map = Matrix::Identity() + s.between * inverse;
+    // What the map leaves of the displacements: much of it, and the turn is none of the piece's.
+    constexpr double affineEnough = 0.05;
+    const Matrix linear = s.between * inverse;
+    const double rest = s.moved - (linear * s.between.transpose()).trace();
+    if (rest > affineEnough * affineEnough * s.moved)
+    {
+      continue;
+    }
+    Matrix map = Matrix::Identity() + linear;
     if (spanned == 2)
     {
       // The normal of a plane follows the plane.

@@ -13,7 +13,8 @@ namespace tautline
  * @class tautline::WarpPath
  * @brief Lets each connected piece of prescribed points turn, stretch and shift as the affine map does that fits its
  * displacements best, and what this leaves of them go straight. A piece that turns does so rigidly, where straight ways would
- * shrink it: half a turn would take it through a point. Where the map mirrors, all go straight.
+ * shrink it: half a turn would take it through a point. Where the map mirrors, or leaves more than 5 % of the displacements
+ * (root mean square, without the shift), all go straight.
  */
 class WarpPath
 {

@@ -31,16 +31,20 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
 {
   const WarpOptions& options = control.options();
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
+  // The methods that know nothing of the control have its clock and its observer.
+  WarpOptions pointwise = options;
+  pointwise.maximumSeconds = control.secondsLeft();
+  pointwise.progress = [&control](double fraction) { return control.goOn(fraction); };
   switch (options.method)
   {
     case WarpMethod::InverseDistance:
-      moved = warpByInverseDistance(this->From, prescribed, displacement, options);
+      moved = warpByInverseDistance(this->From, prescribed, displacement, pointwise);
       break;
     case WarpMethod::RadialBasis:
-      moved = warpByRadialBasis(this->From, prescribed, displacement, options);
+      moved = warpByRadialBasis(this->From, prescribed, displacement, pointwise);
       break;
     case WarpMethod::WeightedLaplacian:
-      moved = warpByWeightedLaplacian(this->From, prescribed, displacement, options);
+      moved = warpByWeightedLaplacian(this->From, prescribed, displacement, pointwise);
       break;
     case WarpMethod::IterativeStiffening:
     case WarpMethod::JacobianStiffening:
@@ -52,8 +56,8 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
       break;
     default:
     {
-      const bool anisotropic =
-        options.method == WarpMethod::AnisotropicFemwarp || options.method == WarpMethod::Hybrid;
+      const bool anisotropic = !this->Following &&
+        (options.method == WarpMethod::AnisotropicFemwarp || options.method == WarpMethod::Hybrid);
       SymmetricTensor tensor = IdentityTensor;
       const double* tensors = nullptr;
       if (anisotropic)
@@ -170,22 +174,27 @@ void WarpStep::improve(
     const Index part = this->Parts.part(static_cast<Index>(i));
     fixed[i] = fixed[i] || part < 0 || !moving[part];
   }
-  const bool hybrid = options.method == WarpMethod::Hybrid;
-  const bool literal = hybrid && !options.untangleFirst;
-  const bool free = std::find(fixed.begin(), fixed.end(), 0) != fixed.end();
+  if (std::find(fixed.begin(), fixed.end(), 0) == fixed.end())
+  {
+    return;
+  }
   const auto stage = [&](const char* name, int iterations) {
     result.invertedAfter = this->record(name, amount, iterations, points.data(), control).inverted;
   };
-  if (literal && free)
+  const bool literal = options.method == WarpMethod::Hybrid && !options.untangleFirst;
+  if (literal && !this->Following)
   {
     stage("optimize", this->optimize(fixed, control, points));
   }
-  if (result.invertedAfter > 0 && free && !control.stopped())
+  if (result.invertedAfter > 0 && !control.stopped())
   {
     stage("untangle", this->untangle(fixed, control, points));
   }
-  const bool someValid = result.invertedAfter < this->Initial.view().numberOfCells;
-  if (hybrid && !literal && free && someValid && !control.stopped())
+  // Following, the next step needs a mesh that is good, else the shape is to be that of the beginning.
+  const bool optimizes = this->Following ? result.invertedAfter == 0
+                                         : options.method == WarpMethod::Hybrid && !literal &&
+      result.invertedAfter < this->Initial.view().numberOfCells;
+  if (optimizes && !control.stopped())
   {
     stage("optimize", this->optimize(fixed, control, points));
   }
@@ -201,6 +210,7 @@ int WarpStep::untangle(
   Mesh mesh(view, control.options().threads);
   mesh.setMirrored(this->Initial.mirrored());
   UntangleOptions options;
+  options.effort = this->Following ? Effort::Local : Effort::Normal;
   options.fixed = fixed.data();
   options.threads = control.options().threads;
   options.maximumSeconds = control.secondsLeft();
@@ -239,7 +249,16 @@ int WarpStep::optimize(
   shape.form = ObjectiveTemplate::SumOfSquares;
   shape.evaluation.targets = &targets;
   other.form = ObjectiveTemplate::SumOfSquares;
-  if (options.untangleFirst)
+  if (this->Following)
+  {
+    constexpr int few = 10;
+    shape.metric = Metric::InverseMeanRatio;
+    optimization.objectives.resize(1);
+    optimization.stopping = StoppingCriteria();
+    optimization.stopping.maximumIterations = few;
+    optimization.optimizer = Optimizer::Automatic;
+  }
+  else if (options.untangleFirst)
   {
     other.metric = Metric::InverseMeanRatio;
     other.evaluation.targets = &targets;

@@ -32,6 +32,12 @@ public:
   ~WarpStep();
 
   /**
+   * @brief Makes it one of many steps of an untangling method: isotropic FEMWARP, local untangling, a little smoothing by shape
+   * against `initial`; what is left to do at the end of the way is improve()'s.
+   */
+  void setFollowing(bool following) { this->Following = following; }
+
+  /**
    * @brief Writes the new points, and a record of each stage into the result.
    * @param displacement from `from`
    * @param amount of the whole motion, for the records
@@ -40,10 +46,12 @@ public:
   Index run(
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
 
-private:
-  void warp(const double* displacement, WarpControl& control, std::vector<double>& moved);
+  /// The second step of the methods that have one, on points that are where `displacement` wants them.
   void improve(
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
+
+private:
+  void warp(const double* displacement, WarpControl& control, std::vector<double>& moved);
   int untangle(const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;
   int optimize(const std::vector<unsigned char>& fixed, WarpControl& control,
@@ -57,6 +65,7 @@ private:
   std::unique_ptr<Femwarp> Scalar; ///< with the coefficients Tensor
   SymmetricTensor Tensor = IdentityTensor;
   std::unique_ptr<ElasticWarp> Elastic;
+  bool Following = false;
 };
 
 /// Where the prescribed points are after a part of the motion: (amount, displacements from the mesh).
@@ -66,9 +75,9 @@ using WarpMotion = std::function<void(double, double*)>;
  * @brief The motion in steps, each from the mesh the one before came to.
  * @param steps so many of equal length; 0: as few as it takes for no element to invert. There a step that inverts elements is
  * halved, and the next grows again; if steps become too small or too many, the result is the mesh of the last good one.
- * @param first length of the first step with steps = 0
+ * @param following see WarpStep::setFollowing(); the first of such steps is short
  */
 void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, int steps,
-  double first, WarpControl& control);
+  bool following, WarpControl& control);
 }
 #endif

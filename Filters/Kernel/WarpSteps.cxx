@@ -27,19 +27,19 @@ private:
 
 //------------------------------------------------------------------------------
 void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, int steps,
-  double first, WarpControl& control)
+  bool following, WarpControl& control)
 {
   const WarpOptions& options = control.options();
   Warping& result = control.result();
   const std::size_t size = 3 * static_cast<std::size_t>(mesh.view().numberOfPoints);
   const bool automatic = steps == 0;
-  constexpr double longer = 2.0, shortest = 1e-4; // of the motion
+  constexpr double longer = 2.0, shortest = 1e-4, cautious = 0.125; // of the motion
 
   std::vector<double> points(mesh.view().points, mesh.view().points + size);
   result.points = points;
   result.amount = 0;
   auto from = std::make_unique<MovedMesh>(mesh, points, options.threads);
-  double amount = 0, step = automatic ? first : 1.0 / steps;
+  double amount = 0, step = !automatic ? 1.0 / steps : following ? cautious : 1.0;
   int done = 0;
   while (amount < 1.0)
   {
@@ -61,6 +61,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
     }
     control.setRange(amount, next);
     WarpStep one(from->mesh(), mesh, parts);
+    one.setFollowing(following);
     const Index inverted = one.run(displacement.data(), next, control, to);
     control.setRange(0.0, 1.0);
     const bool good = inverted == 0 || !automatic;
@@ -77,21 +78,20 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
       from = std::make_unique<MovedMesh>(mesh, points, options.threads);
       ++done;
       step = automatic ? longer * step : step;
-      continue;
     }
-    if (control.stopped() || (amount == 0 && !automatic))
+    else
+    {
+      step = 0.5 * (next - amount);
+    }
+    if (control.stopped() || step < shortest)
     {
       break;
     }
-    step = 0.5 * (next - amount);
-    if (step < shortest || done >= options.maximumSteps)
+    if (automatic && done >= options.maximumSteps && amount < 1.0)
     {
+      control.say("The limit of steps was reached.");
       break;
     }
-  }
-  if (automatic && done >= options.maximumSteps)
-  {
-    control.say("The limit of steps was reached.");
   }
   if (result.amount < 1.0)
   {

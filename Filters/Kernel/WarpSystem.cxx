@@ -11,6 +11,8 @@ constexpr std::size_t mostFormer = 12;
 /// Up to so many unknowns a factorisation pays, measured: its first solve takes no more than a few tenths of a second longer than
 /// multigrid, or about as long, and each further one a tenth.
 constexpr Index directPlanar = 600000, directVolume = 20000;
+/// Where CG fails, a factorisation is tried that is this much larger at most.
+constexpr Index largestFactor = 10;
 
 /// Bitwise the same for any number of threads.
 double product(const std::vector<double>& a, const std::vector<double>& b, int threads)
@@ -93,10 +95,10 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
       this->Starts.push_back(static_cast<Index>(this->Columns.size()));
     }
   }
-  const Index direct = dimension == 2 ? directPlanar : directVolume;
-  this->Method = !options.automaticSolver ? options.solver.method
-    : this->Inner.size <= direct          ? KrylovMethod::Direct
-                                          : KrylovMethod::ConjugateGradient;
+  this->DirectLimit = dimension == 2 ? directPlanar : directVolume;
+  this->Method = !options.automaticSolver   ? options.solver.method
+    : this->Inner.size <= this->DirectLimit ? KrylovMethod::Direct
+                                            : KrylovMethod::ConjugateGradient;
 }
 
 //------------------------------------------------------------------------------
@@ -241,7 +243,8 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
       std::vector<double> y;
       good = this->runSolver(right, std::min(loosest, tolerance * whole / rest), y, control);
       if (!good && !control.stopped() && this->Options.automaticSolver &&
-        this->Method != KrylovMethod::Direct)
+        this->Method != KrylovMethod::Direct &&
+        this->Inner.size <= largestFactor * this->DirectLimit)
       {
         this->makeSolver(KrylovMethod::Direct);
         good = this->runSolver(right, tolerance, y, control);

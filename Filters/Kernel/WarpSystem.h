@@ -72,6 +72,7 @@ private:
   std::vector<double> Coordinates; ///< of the free points
   std::unique_ptr<LinearSolver> Solver;
   KrylovMethod Method = KrylovMethod::ConjugateGradient;
+  Index DirectLimit = 0; ///< unknowns
   std::deque<Former> Basis;
   std::string Failure;
   bool Solved = false;

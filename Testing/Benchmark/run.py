@@ -3,8 +3,8 @@
 Every time is the best of several turns, and every ratio is between times of one run. Single-thread times
 are CPU time; those of the thread speed-up are wall time. Prints tables; writes benchmark.json (times in
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
-elements and optimization.json and .csv of the optimizer (see optimization.py) to the output directory,
-by default DIR/benchmark.
+elements, optimization.json and .csv of the optimizer (see optimization.py), and deformation.json and .csv of warping
+(see deformation.py) to the output directory, by default DIR/benchmark.
 """
 
 import argparse
@@ -14,6 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import deformation
 import optimization
 
 KERNEL, FILTER, MEMORY = "kernel", "filter", ("memory-tautline", "memory-verdict")
@@ -87,6 +88,31 @@ def speedups(t: dict[str, float]) -> list[tuple[str, float]]:
     return [(f"two threads over one, {name}", t[f"{name} wall 1"] / t[f"{name} wall 2"]) for name in names]
 
 
+def conditioning(program: Path, cells: int, repeats: int) -> dict[str, float]:
+    """Seconds of assembly and of BoomerAMG's set-up on meshes of about so many cells."""
+    output = subprocess.run([str(program), str(cells), str(repeats)], check=True, capture_output=True, text=True).stdout
+    return {key: float(number) for key, number in (line.split("\t") for line in output.splitlines())}
+
+
+def conditioning_ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
+    """Assembly against what the solver does next, by threads, and in elements per second."""
+    rows = []
+    for kind in ("triangles poisson", "triangles in random order poisson", "tetrahedra poisson"):
+        rows.append((f"assembly / BoomerAMG's set-up, {kind}",
+                     t[f"assembly {kind} cpu"] / t[f"multigrid {kind} cpu"], "<= 0.5"))
+        rows.append((f"mesh to linear system / BoomerAMG's set-up, {kind}",
+                     t[f"system {kind} cpu"] / t[f"multigrid {kind} cpu"], ""))
+    for key in t:
+        if key.startswith("assembly") and key.endswith(" wall 1") and " again " not in key:
+            kind = key.removeprefix("assembly ").removesuffix(" wall 1")
+            cells = t[kind.split()[0]]
+            rows.append((f"assembly, {kind} [million elements / s]", cells / t[f"assembly {kind} cpu"] / 1e6, ""))
+            rows.append((f"two threads over one, assembly, {kind}", t[key] / t[key.replace(" 1", " 2")], ">= 1.5"))
+            again = f"assembly {kind} again cpu"
+            rows.append((f"assembly with known pattern / all, {kind}", t[again] / t[f"assembly {kind} cpu"], ""))
+    return rows
+
+
 def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None:
     print(f"{times['elements tetrahedra']:.0f} tetrahedra, {times['elements hexahedra']:.0f} hexahedra; one thread\n")
     print(f"{'ns per element':34}{'value':>10}{'gradient':>10}{'/ floor':>10}{'/ plain':>10}")
@@ -109,11 +135,11 @@ def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None
     for key, value in times.items():
         if key.startswith("peridynamics") and key.endswith("cpu"):
             print(f"{key:44}{value:10.3f} s")
-    print(f"\n{'ratio':54}{'':>10}{'aim':>10}")
+    print(f"\n{'ratio':70}{'':>10}{'aim':>10}")
     for what, number, aim in summary:
-        print(f"{what:54}{number:10.2f}{aim:>10}")
+        print(f"{what:70}{number:10.2f}{aim:>10}")
     for key in ("difference from the plain loop", "difference from vtkMeshQuality"):
-        print(f"{key:54}{times[key]:10.0e}")
+        print(f"{key:70}{times[key]:10.0e}")
 
 
 def show_table(rows: list[tuple[str, float, str]]) -> None:
@@ -143,7 +169,9 @@ def run_quality(build: Path, output: Path, size: int, repeats: int) -> None:
     elements = min(40, max(5, 2 * size // 3))  # 1 / h of the nonlocal matrices
     nonlocal_times = peridynamics(build / "bin" / "BenchmarkPeridynamics", elements, min(repeats, 3))
     times |= nonlocal_times
-    summary = ratios(times) + shape_ratios(times)
+    elliptic = conditioning(build / "bin" / "BenchmarkConditioning", 6 * size**3, min(repeats, 5))
+    times |= elliptic
+    summary = ratios(times) + shape_ratios(times) + conditioning_ratios(elliptic)
     summary += [(key, number, ">= 1.7" if "two threads" in key else "") for key, number in speedups(nonlocal_times)]
     show(times, summary)
     save(output, "benchmark", times, {what.strip(): number for what, number, _ in summary})
@@ -160,20 +188,32 @@ def run_optimization(build: Path, output: Path, repeats: int, quick: bool, huge:
     save(output, "optimization", times, table)
 
 
+def run_deformation(build: Path, output: Path, repeats: int, quick: bool) -> None:
+    times, rows = deformation.run(build / "bin" / "BenchmarkDeformation", repeats, quick)
+    show_table(rows)
+    head, table = "", {}
+    for what, number, _ in rows:
+        head = head if what.startswith(" ") else what.split(":")[0]
+        table[f"{head}: {what.strip()}" if what.startswith(" ") else what] = number
+    save(output, "deformation", times, table)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parser.add_argument("--only", choices=("quality", "optimization"), help="one part; both otherwise")
+    parser.add_argument("--only", choices=("quality", "optimization", "deformation"), help="one part; both otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
-    parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer 3")
-    parser.add_argument("--quick", action="store_true", help="optimization: tiny meshes only")
+    parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
+    parser.add_argument("--quick", action="store_true", help="optimization, deformation: tiny meshes only")
     parser.add_argument("--huge", action="store_true", help="optimization: also 10,000,000 tetrahedra")
     parser.add_argument("--output", type=Path, help="where the results go")
     options = parser.parse_args()
     output = options.output or options.build / "benchmark"
-    if options.only != "optimization":
+    if options.only in (None, "quality"):
         run_quality(options.build, output, options.size, options.repeats or 9)
-    if options.only != "quality":
+    if options.only in (None, "deformation"):
+        run_deformation(options.build, output, options.repeats or 3, options.quick)
+    if options.only in (None, "optimization"):
         run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
     return 0
 

@@ -27,6 +27,8 @@ def check_quality(output: Path) -> None:
     # The one thing about the numbers that is the same on every machine: they time the same quantity.
     assert measured["difference from the plain loop"] < 1e-12, measured
     assert measured["difference from vtkMeshQuality"] < 1e-12, measured
+    assert measured["tetrahedra"] == 6 * 4**3, measured
+    assert ratios["assembly / BoomerAMG's set-up, triangles poisson"] > 0, ratios
 
 
 def check_optimization(output: Path) -> None:
@@ -47,6 +49,18 @@ def check_optimization(output: Path) -> None:
         assert measured[f"sweeps disk2d-perturbed: {method} sweeps"] == 10, measured
 
 
+def check_deformation(output: Path) -> None:
+    measured, ratios = read(output, "deformation")
+    left = [key for key in measured if key.endswith("inverted left")]
+    assert len(left) == 22 and measured["stages: elements"] > 3000, measured
+    for key in left:
+        crosses = key.replace("inverted left", "boundary crossings")
+        assert measured[key] == 0 or measured.get(crosses, 0) > 0, (key, measured)
+    # No new solve for a part that turns on, or a motion that grows.
+    for motion in ("turned on", "wave, larger"):
+        assert measured[f"stages: {motion} iterations"] == 0, measured
+
+
 def main(build: Path, output: Path) -> int:
     subprocess.run(["cmake", "--build", str(build), "--target", "benchmarks"], check=True)
     script = Path(__file__).with_name("run.py")
@@ -55,6 +69,7 @@ def main(build: Path, output: Path) -> int:
 
     check_quality(output)
     check_optimization(output)
+    check_deformation(output)
     return 0
 
 

@@ -178,7 +178,7 @@ void testParts()
       result.points.begin() + Index(own), result.points.end(), three.points.begin() + Index(own)));
     TAUTLINE_CHECK(distance(result.points, three.points) > 0.2);
     TAUTLINE_CHECK(
-      result.message.find("1 parts of the mesh have no prescribed point") != std::string::npos);
+      result.message.find("Without a prescribed point 1 part of the mesh") != std::string::npos);
     // The part that moves does not care for the others.
     const Warping alone = warped(one, motion, withMethod(WarpMethod(method)));
     double worst = 0;

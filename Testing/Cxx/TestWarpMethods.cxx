@@ -133,6 +133,42 @@ void testSecondStep()
     TAUTLINE_CHECK(result.history.back().worstShape < untangled);
     TAUTLINE_CHECK_EQUAL(result.history[1].stage, std::string(beta < 0 ? "untangle" : "optimize"));
   }
+  // The unit of length does not matter.
+  const Warping unit = warped(data, motion, WarpOptions());
+  for (const double scale : { 0x1p-27, 0x1p27, 1e-8, 1e8 })
+  {
+    // Powers of two round alike; others lead the optimizer to another place where it hardly changes any more.
+    const double close = scale == 0x1p-27 || scale == 0x1p27 ? 1e-12 : 0.02;
+    MeshData scaled = data;
+    scaled.transform([scale](const Vec3& p) { return scale * p; });
+    Warping result = warped(
+      scaled, [&](const Vec3& p) { return scale * motion((1 / scale) * p); }, WarpOptions());
+    TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
+    for (double& x : result.points)
+    {
+      x /= scale;
+    }
+    TAUTLINE_CHECK_NEAR(distance(result.points, unit.points), 0, close);
+    TAUTLINE_CHECK_RELATIVE(result.history.back().meanShape, unit.history.back().meanShape, close);
+  }
+
+  // Triangles beside quadrilaterals.
+  MeshData mixed;
+  const MeshData quads = boxInBox(CellType::Quadrilateral, 20, 8);
+  mixed.points = quads.points;
+  for (Index c = 0; c < quads.numberOfCells(); ++c)
+  {
+    const Index* q = &quads.connectivity[4 * c];
+    if (quads.point(q[0])[0] < 0.5)
+    {
+      mixed.addCell(CellType::Quadrilateral, std::vector<Index>{ q[0], q[1], q[2], q[3] });
+      continue;
+    }
+    mixed.addCell(CellType::Triangle, std::vector<Index>{ q[0], q[1], q[2] });
+    mixed.addCell(CellType::Triangle, std::vector<Index>{ q[0], q[2], q[3] });
+  }
+  checkValid(mixed, turnedBox(40, true), warped(mixed, turnedBox(40, true), WarpOptions()));
+
   // Nothing moves: nothing changes.
   const Warping still = warped(
     data,
@@ -346,6 +382,51 @@ void testThreads()
     TAUTLINE_CHECK(one.points == three.points);
     TAUTLINE_CHECK_EQUAL(one.history.size(), three.history.size());
   }
+  WarpOptions options = withMethod(WarpMethod::AnisotropicFemwarp);
+  options.automaticSolver = false; // CG with BoomerAMG
+  const Warping one = warped(data, turnedBox(50, false), options);
+  options.threads = 3;
+  TAUTLINE_CHECK(one.points == warped(data, turnedBox(50, false), options).points);
+}
+
+//------------------------------------------------------------------------------
+/// A mesh whose cells are all listed the other way round gives the mirror image.
+void testMirrored()
+{
+  for (const CellType type : { CellType::Triangle, CellType::Tetrahedron })
+  {
+    const bool flat = type == CellType::Triangle;
+    const MeshData data = boxInBox(type, flat ? 16 : 9, flat ? 6 : 3);
+    MeshData image = data;
+    image.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+    std::vector<double> d = displacements(data, turnedBox(70, flat)), mirrored = d;
+    for (std::size_t i = 0; i < d.size(); i += 3)
+    {
+      mirrored[i] = -d[i];
+    }
+    const Mesh mesh(data.view());
+    Mesh imageMesh(image.view());
+    imageMesh.setMirrored(true);
+    for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
+    {
+      const Context context("method " + std::to_string(method));
+      const Warping straight = Warper(mesh, withMethod(WarpMethod(method))).warp(d.data());
+      const Warping result =
+        Warper(imageMesh, withMethod(WarpMethod(method))).warp(mirrored.data());
+      TAUTLINE_CHECK_EQUAL(result.history[0].inverted, straight.history[0].inverted);
+      TAUTLINE_CHECK_EQUAL(result.invertedAfter == 0, straight.invertedAfter == 0);
+      double worst = 0;
+      for (std::size_t i = 0; i < d.size(); ++i)
+      {
+        worst = std::max(
+          worst, std::abs(result.points[i] - (i % 3 == 0 ? -1.0 : 1.0) * straight.points[i]));
+      }
+      // Untangling takes vertices in an order of its own.
+      const bool untangles =
+        method == int(WarpMethod::Hybrid) || method == int(WarpMethod::FemwarpUntangling);
+      TAUTLINE_CHECK(untangles || worst < 1e-9);
+    }
+  }
 }
 }
 
@@ -358,5 +439,6 @@ int TestWarpMethods(int, char*[])
   testElasticity();
   testSteps();
   testThreads();
+  testMirrored();
   return exitCode();
 }

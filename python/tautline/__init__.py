@@ -44,6 +44,11 @@ except ImportError:  # built without the module of shapes
     pass
 
 try:
+    from ._conditioning import Conditioned, Solved, Study, condition, solve, solver_combinations, solver_study  # noqa: E402
+except ImportError:  # built without the module of linear systems
+    pass
+
+try:
     from ._peridynamics import Peridynamics, collar, peridynamics  # noqa: E402
 except ImportError:  # built without the module of nonlocal models
     pass

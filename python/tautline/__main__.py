@@ -176,7 +176,7 @@ def _parser() -> argparse.ArgumentParser:
     made.add_argument("arguments", nargs=argparse.REMAINDER)
     made.set_defaults(run=_study_run)
 
-    for module in ("_optimization", "_deformation", "_shapes", "_peridynamics", "_inputs"):
+    for module in ("_optimization", "_deformation", "_shapes", "_conditioning", "_peridynamics", "_inputs"):
         try:
             import_module(f"tautline.{module}").add_commands(verbs)
         except ImportError:  # built without the modules it needs

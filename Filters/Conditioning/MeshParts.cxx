@@ -1,0 +1,420 @@
+#include "MeshParts.h"
+
+#include "vtkAppendFilter.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkIdList.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
+
+#if VTK_MODULE_ENABLE_VTK_FiltersParallelDIY2
+#include "vtkGenerateGlobalIds.h"
+#endif
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace tautline
+{
+namespace
+{
+/// A partition as the pipeline has it.
+struct Piece
+{
+  vtkDataSet* input;
+  vtkDataSet* selected;
+  vtkDataSet* output;
+};
+
+/// The partitions of a mesh on this process.
+struct Group
+{
+  std::string name;
+  std::vector<Piece> pieces;
+};
+
+//------------------------------------------------------------------------------
+/// Walks through a data object; outputs are made and put into the output's structure.
+class Collector
+{
+public:
+  std::vector<Group> groups;
+
+  void collect(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* output)
+  {
+    if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(input))
+    {
+      auto* marked = vtkMultiBlockDataSet::SafeDownCast(selected);
+      auto* results = vtkMultiBlockDataSet::SafeDownCast(output);
+      for (unsigned int i = 0; i < blocks->GetNumberOfBlocks(); ++i)
+      {
+        ++this->FlatIndex;
+        vtkDataObject* block = blocks->GetBlock(i);
+        vtkDataObject* mark = marked ? marked->GetBlock(i) : nullptr;
+        if (vtkCompositeDataSet::SafeDownCast(block))
+        {
+          this->collect(block, mark, results->GetBlock(i));
+          continue;
+        }
+        this->begin();
+        if (vtkDataSet* result = this->add(block, mark))
+        {
+          results->SetBlock(i, result);
+        }
+      }
+    }
+    else if (auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(input))
+    {
+      auto* marked = vtkPartitionedDataSetCollection::SafeDownCast(selected);
+      auto* results = vtkPartitionedDataSetCollection::SafeDownCast(output);
+      for (unsigned int i = 0; i < collection->GetNumberOfPartitionedDataSets(); ++i)
+      {
+        ++this->FlatIndex;
+        this->collect(collection->GetPartitionedDataSet(i),
+          marked ? marked->GetPartitionedDataSet(i) : nullptr, results->GetPartitionedDataSet(i));
+      }
+    }
+    else if (auto* parts = vtkPartitionedDataSet::SafeDownCast(input))
+    {
+      this->begin();
+      auto* marked = vtkPartitionedDataSet::SafeDownCast(selected);
+      auto* results = vtkPartitionedDataSet::SafeDownCast(output);
+      for (unsigned int i = 0; i < parts->GetNumberOfPartitions(); ++i)
+      {
+        ++this->FlatIndex;
+        vtkDataObject* part = parts->GetPartitionAsDataObject(i);
+        vtkDataObject* mark = marked ? marked->GetPartitionAsDataObject(i) : nullptr;
+        if (vtkDataSet* result = this->add(part, mark))
+        {
+          results->SetPartition(i, result);
+        }
+      }
+    }
+    else if (auto* others = vtkCompositeDataSet::SafeDownCast(input))
+    {
+      auto* marked = vtkCompositeDataSet::SafeDownCast(selected);
+      auto* results = vtkCompositeDataSet::SafeDownCast(output);
+      auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(others->NewIterator());
+      for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem())
+      {
+        this->FlatIndex = static_cast<int>(walk->GetCurrentFlatIndex());
+        this->begin();
+        if (vtkDataSet* result =
+              this->add(walk->GetCurrentDataObject(), marked ? marked->GetDataSet(walk) : nullptr))
+        {
+          results->SetDataSet(walk, result);
+        }
+      }
+    }
+    else if (auto* data = vtkDataSet::SafeDownCast(input))
+    {
+      auto* result = vtkDataSet::SafeDownCast(output);
+      result->ShallowCopy(data);
+      this->begin();
+      this->keep(data, selected, result);
+    }
+  }
+
+private:
+  void begin()
+  {
+    this->groups.push_back(
+      { this->FlatIndex > 0 ? "block " + std::to_string(this->FlatIndex) : "", {} });
+  }
+
+  vtkDataSet* add(vtkDataObject* input, vtkDataObject* selected)
+  {
+    auto* data = vtkDataSet::SafeDownCast(input);
+    if (!data)
+    {
+      return nullptr;
+    }
+    this->Made.push_back(vtkSmartPointer<vtkDataSet>::Take(data->NewInstance()));
+    vtkDataSet* result = this->Made.back();
+    result->ShallowCopy(data);
+    this->keep(data, selected, result);
+    return result;
+  }
+
+  void keep(vtkDataSet* input, vtkDataObject* selected, vtkDataSet* output)
+  {
+    if (input->GetNumberOfPoints() > 0)
+    {
+      this->groups.back().pieces.push_back({ input, vtkDataSet::SafeDownCast(selected), output });
+    }
+  }
+
+  int FlatIndex = 0;
+  std::vector<vtkSmartPointer<vtkDataSet>> Made;
+};
+
+//------------------------------------------------------------------------------
+/// Global point ids of each piece, from the input or by coordinates. Collective.
+std::vector<std::vector<Index>> globalIdsOf(
+  const std::vector<Piece>& pieces, const Processes& processes)
+{
+  std::vector<vtkDataArray*> given;
+  for (const Piece& piece : pieces)
+  {
+    given.push_back(piece.input->GetPointData()->GetGlobalIds());
+  }
+  vtkNew<vtkPartitionedDataSet> bare;
+  if (!processes.everywhere(std::find(given.begin(), given.end(), nullptr) == given.end()))
+  {
+#if VTK_MODULE_ENABLE_VTK_FiltersParallelDIY2
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+    {
+      auto copy = vtkSmartPointer<vtkDataSet>::Take(pieces[i].input->NewInstance());
+      copy->CopyStructure(pieces[i].input);
+      bare->SetPartition(static_cast<unsigned int>(i), copy);
+    }
+    vtkNew<vtkGenerateGlobalIds> generate;
+    generate->SetInputDataObject(bare);
+    generate->Update();
+    bare->ShallowCopy(generate->GetOutputDataObject(0));
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+    {
+      vtkDataSet* part = bare->GetPartition(static_cast<unsigned int>(i));
+      given[i] = part ? part->GetPointData()->GetGlobalIds() : nullptr;
+    }
+#else
+    throw Error("The points of the parts of the mesh have no global ids, and this VTK cannot find "
+                "which are the same: build it with the module FiltersParallelDIY2.");
+#endif
+  }
+  std::vector<std::vector<Index>> ids(pieces.size());
+  processes.together(
+    [&]()
+    {
+      for (std::size_t i = 0; i < pieces.size(); ++i)
+      {
+        if (!given[i] || given[i]->GetNumberOfTuples() != pieces[i].input->GetNumberOfPoints())
+        {
+          throw Error("The points of the parts of the mesh could not be given global ids.");
+        }
+        for (vtkIdType k = 0; k < given[i]->GetNumberOfTuples(); ++k)
+        {
+          ids[i].push_back(static_cast<Index>(given[i]->GetComponent(k, 0)));
+        }
+        std::vector<Index> sorted = ids[i];
+        std::sort(sorted.begin(), sorted.end());
+        const auto distinct = std::unique(sorted.begin(), sorted.end()) - sorted.begin();
+        const auto repeated = static_cast<Index>(sorted.size()) - distinct;
+        if (repeated > 0 || (!sorted.empty() && sorted.front() < 0))
+        {
+          throw Error(std::to_string(repeated) +
+            " points are at the place of another one, or have its global id, and cannot be told "
+            "from points of other parts: run Clean to Grid first, or solve in one process.");
+        }
+      }
+    });
+  return ids;
+}
+
+//------------------------------------------------------------------------------
+/// Several pieces put together, each global point once.
+class Merged
+{
+public:
+  Merged(const std::vector<Piece>& pieces, const std::vector<std::vector<Index>>& ids)
+  {
+    std::unordered_map<Index, Index> known;
+    for (const auto& ofPiece : ids)
+    {
+      for (Index id : ofPiece)
+      {
+        const auto found = known.emplace(id, static_cast<Index>(this->GlobalIds.size()));
+        if (found.second)
+        {
+          this->GlobalIds.push_back(id);
+        }
+        this->PointOf.push_back(found.first->second);
+      }
+    }
+    std::vector<vtkDataSet*> inputs, marked;
+    for (const Piece& piece : pieces)
+    {
+      inputs.push_back(piece.input);
+      marked.push_back(piece.selected);
+    }
+    this->Input = this->merge(inputs);
+    if (std::find(marked.begin(), marked.end(), nullptr) == marked.end())
+    {
+      this->Selected = this->merge(marked);
+    }
+  }
+
+  vtkSmartPointer<vtkUnstructuredGrid> Input, Selected;
+  std::vector<Index> GlobalIds;
+
+  /// Hands what is new in the result to the outputs of the pieces.
+  void scatter(vtkDataSet* result, const std::vector<Piece>& pieces) const
+  {
+    vtkIdType firstPoint = 0, firstCell = 0;
+    for (const Piece& piece : pieces)
+    {
+      const vtkIdType points = piece.input->GetNumberOfPoints();
+      const vtkIdType cells = piece.input->GetNumberOfCells();
+      copyNew(result->GetPointData(), this->Input->GetPointData(), piece.output->GetPointData(),
+        points, [&](vtkIdType k) { return this->PointOf[firstPoint + k]; });
+      copyNew(result->GetCellData(), this->Input->GetCellData(), piece.output->GetCellData(), cells,
+        [&](vtkIdType k) { return firstCell + k; });
+      firstPoint += points;
+      firstCell += cells;
+    }
+  }
+
+private:
+  std::vector<Index> PointOf; ///< of the points of all pieces, one piece after the other
+
+  vtkSmartPointer<vtkUnstructuredGrid> merge(const std::vector<vtkDataSet*>& pieces) const
+  {
+    vtkNew<vtkAppendFilter> append;
+    for (vtkDataSet* piece : pieces)
+    {
+      append->AddInputData(piece);
+    }
+    append->Update();
+    vtkUnstructuredGrid* all = append->GetOutput();
+    auto merged = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    const auto count = static_cast<vtkIdType>(this->GlobalIds.size());
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->SetNumberOfPoints(count);
+    merged->GetPointData()->CopyAllOn();
+    merged->GetPointData()->CopyAllocate(all->GetPointData(), count);
+    for (vtkIdType k = all->GetNumberOfPoints() - 1; k >= 0; --k) // the first piece decides
+    {
+      points->SetPoint(this->PointOf[k], all->GetPoint(k));
+      merged->GetPointData()->CopyData(all->GetPointData(), k, this->PointOf[k]);
+    }
+    merged->SetPoints(points);
+    merged->Allocate(all->GetNumberOfCells());
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < all->GetNumberOfCells(); ++cell)
+    {
+      all->GetCellPoints(cell, ids);
+      for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
+      {
+        ids->SetId(k, this->PointOf[ids->GetId(k)]);
+      }
+      // Polyhedra, which no method here takes, would need their faces.
+      const int type = all->GetCellType(cell);
+      merged->InsertNextCell(type == VTK_POLYHEDRON ? VTK_CONVEX_POINT_SET : type, ids);
+    }
+    merged->GetCellData()->ShallowCopy(all->GetCellData());
+    return merged;
+  }
+
+  static void copyNew(vtkDataSetAttributes* result, vtkDataSetAttributes* before,
+    vtkDataSetAttributes* output, vtkIdType count, const std::function<vtkIdType(vtkIdType)>& from)
+  {
+    for (int i = 0; i < result->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* array = result->GetArray(i);
+      if (!array || before->GetArray(array->GetName()) == array)
+      {
+        continue;
+      }
+      auto copy = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+      copy->SetName(array->GetName());
+      copy->SetNumberOfComponents(array->GetNumberOfComponents());
+      copy->CopyComponentNames(array);
+      copy->SetNumberOfTuples(count);
+      for (vtkIdType k = 0; k < count; ++k)
+      {
+        copy->SetTuple(k, from(k), array);
+      }
+      output->AddArray(copy);
+    }
+    vtkDataArray* active = result->GetScalars();
+    output->SetActiveScalars(active ? active->GetName() : nullptr);
+  }
+};
+
+//------------------------------------------------------------------------------
+void visitGroup(const Group& group, LocalMesh& mesh, const Processes& processes,
+  const std::function<void(LocalMesh&)>& visit)
+{
+  const std::vector<Piece>& pieces = group.pieces;
+  std::vector<std::vector<Index>> ids;
+  if (processes.maximum(static_cast<Index>(pieces.size())) > 1 || processes.count() > 1)
+  {
+    ids = globalIdsOf(pieces, processes);
+  }
+  std::unique_ptr<Merged> merged;
+  processes.together(
+    [&]()
+    {
+      if (pieces.size() == 1)
+      {
+        mesh.input = pieces[0].input;
+        mesh.selected = pieces[0].selected;
+        mesh.output = pieces[0].output;
+        mesh.globalIds = ids.empty() ? std::vector<Index>() : std::move(ids[0]);
+        return;
+      }
+      mesh.input = vtkSmartPointer<vtkUnstructuredGrid>::New();
+      if (!pieces.empty())
+      {
+        merged = std::make_unique<Merged>(pieces, ids);
+        mesh.input = merged->Input;
+        mesh.selected = merged->Selected;
+        mesh.globalIds = merged->GlobalIds;
+      }
+      mesh.output = vtkSmartPointer<vtkUnstructuredGrid>::New();
+      mesh.output->ShallowCopy(mesh.input);
+    });
+  visit(mesh);
+  if (merged)
+  {
+    merged->scatter(mesh.output, pieces);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* output,
+  const Processes& processes, const std::function<void(LocalMesh&)>& visit)
+{
+  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(input))
+  {
+    vtkCompositeDataSet::SafeDownCast(output)->CopyStructure(blocks);
+  }
+  Collector collector;
+  collector.collect(input, selected, output);
+  std::vector<Group>& groups = collector.groups;
+  groups.resize(static_cast<std::size_t>(processes.maximum(static_cast<Index>(groups.size()))));
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    Index cells = 0;
+    for (const Piece& piece : groups[g].pieces)
+    {
+      cells += piece.input->GetNumberOfCells();
+    }
+    if (processes.maximum(cells) == 0)
+    {
+      continue;
+    }
+    LocalMesh mesh;
+    mesh.name = groups[g].name;
+    mesh.number = static_cast<int>(g);
+    mesh.meshes = static_cast<int>(groups.size());
+    try
+    {
+      visitGroup(groups[g], mesh, processes, visit);
+    }
+    catch (const Error& error)
+    {
+      throw Error((mesh.name.empty() ? "" : "In " + mesh.name + ": ") + error.what());
+    }
+  }
+}
+}

@@ -1,0 +1,48 @@
+/**
+ * @file MeshParts.h
+ * @brief The meshes in a data object, each as this process has it: with its ghost cells, its global point ids, and its
+ * partitions put together.
+ */
+#ifndef tautline_MeshParts_h
+#define tautline_MeshParts_h
+
+#include "Processes.h"
+
+#include "vtkSmartPointer.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkDataObject;
+class vtkDataSet;
+
+namespace tautline
+{
+/// A mesh to solve on, or this process' part of it, which may be empty.
+struct LocalMesh
+{
+  std::string name;                     ///< "block 3", or "" if there is one mesh only
+  int number = 0;                       ///< counts through the meshes
+  int meshes = 1;                       ///< how many there are
+  vtkSmartPointer<vtkDataSet> input;    ///< never null
+  vtkSmartPointer<vtkDataSet> selected; ///< the same with the marks of markSelected(), or null
+  vtkSmartPointer<vtkDataSet> output;   ///< a shallow copy of the input, gets the results
+  std::vector<Index> globalIds; ///< of the points, without repetition; empty with one process
+};
+
+/**
+ * @brief Calls visit for each mesh with a cell on any process; the others are passed on as they are. Collective.
+ *
+ * A data set is a mesh, and so is each block of a multiblock data set. The partitions of a partitioned or multipiece
+ * data set are one mesh, on all processes together. Points on several processes or partitions are recognised by
+ * the global point ids of the input, or else by equal coordinates. Throws Error if points of one partition
+ * cannot be told apart.
+ *
+ * @param selected what markSelected() returned
+ * @param output of the class of the input; gets its structure
+ */
+void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* output,
+  const Processes& processes, const std::function<void(LocalMesh&)>& visit);
+}
+#endif

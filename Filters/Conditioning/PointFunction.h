@@ -1,0 +1,51 @@
+/**
+ * @file PointFunction.h
+ * @brief A function on the points of a data set: a constant, a point array, or an expression.
+ */
+#ifndef tautline_PointFunction_h
+#define tautline_PointFunction_h
+
+#include "tautline/Types.h"
+
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataSet;
+
+namespace tautline
+{
+struct PointFunction
+{
+  /// The numbers are stable: ParaView state files hold them.
+  enum Kinds
+  {
+    Constant = 0,
+    Array = 1,
+    Expression = 2
+  };
+  std::string what; ///< "source", for messages
+  int kind = Constant;
+  Vec3 constant = { 0, 0, 0 };
+  int arrayIndex = 0; ///< of SetInputArrayToProcess
+  std::string expression;
+
+  bool isZero() const { return this->kind == Constant && this->constant == Vec3{ 0, 0, 0 }; }
+};
+
+/**
+ * @brief The values at all points, `components` (1 or 3) each; of vectors with two components the third is 0. Throws Error
+ * for an array that is missing, of cells or of other components, and for values that are not finite.
+ */
+std::vector<double> valuesAt(
+  const PointFunction& function, vtkAlgorithm* algorithm, vtkDataSet* data, int components);
+
+/**
+ * @brief The values of an expression of x, y, z, of the point arrays by name (vectors also by component: v_X, v_Y, v_Z)
+ * and, for vectors, of iHat, jHat, kHat; names with other characters than letters, digits and _ go in double quotes. Throws Error
+ * that quotes the expression if it is empty, not understood, not of so many components or not finite somewhere.
+ */
+std::vector<double> evaluate(
+  const std::string& expression, const std::string& what, vtkDataSet* data, int components);
+}
+#endif

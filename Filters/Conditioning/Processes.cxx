@@ -1,0 +1,128 @@
+#include "Processes.h"
+
+#include "vtkMultiProcessController.h"
+
+#if VTK_MODULE_ENABLE_VTK_ParallelMPI
+#include "vtkMPI.h"
+#include "vtkMPICommunicator.h"
+#endif
+
+#include <new>
+#include <numeric>
+#include <string>
+
+namespace tautline
+{
+//------------------------------------------------------------------------------
+Processes::Processes()
+{
+  this->Controller = vtkMultiProcessController::GetGlobalController();
+  if (!this->Controller || this->Controller->GetNumberOfProcesses() < 2)
+  {
+    return;
+  }
+#if VTK_MODULE_ENABLE_VTK_ParallelMPI
+  auto* mpi = vtkMPICommunicator::SafeDownCast(this->Controller->GetCommunicator());
+  if (mpi && mpi->GetMPIComm())
+  {
+    this->Rank = this->Controller->GetLocalProcessId();
+    this->Count = this->Controller->GetNumberOfProcesses();
+    this->Comm = mpi->GetMPIComm()->GetHandle();
+    return;
+  }
+#endif
+  throw Error("There are " + std::to_string(this->Controller->GetNumberOfProcesses()) +
+    " processes which cannot solve together: they need MPI, and a VTK built with it.");
+}
+
+//------------------------------------------------------------------------------
+Index Processes::sum(Index value) const
+{
+  vtkIdType mine = value, result = value;
+  if (this->Count > 1)
+  {
+    this->Controller->AllReduce(&mine, &result, 1, vtkCommunicator::SUM_OP);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+Index Processes::maximum(Index value) const
+{
+  vtkIdType mine = value, result = value;
+  if (this->Count > 1)
+  {
+    this->Controller->AllReduce(&mine, &result, 1, vtkCommunicator::MAX_OP);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+double Processes::sum(double value) const
+{
+  double result = value;
+  if (this->Count > 1)
+  {
+    this->Controller->AllReduce(&value, &result, 1, vtkCommunicator::SUM_OP);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> Processes::gather(const std::vector<double>& values) const
+{
+  if (this->Count < 2)
+  {
+    return values;
+  }
+  const auto mine = static_cast<vtkIdType>(values.size());
+  std::vector<vtkIdType> lengths(static_cast<std::size_t>(this->Count)), offsets(lengths.size());
+  this->Controller->AllGather(&mine, lengths.data(), 1);
+  std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
+  std::vector<double> all(static_cast<std::size_t>(offsets.back() + lengths.back()));
+  this->Controller->AllGatherV(values.data(), all.data(), mine, lengths.data(), offsets.data());
+  return all;
+}
+
+//------------------------------------------------------------------------------
+bool Processes::everywhere(bool value) const
+{
+  return this->maximum(value ? 0 : 1) == 0;
+}
+
+//------------------------------------------------------------------------------
+void Processes::together(const std::function<void()>& work) const
+{
+  std::string message;
+  bool failed = true;
+  try
+  {
+    work();
+    failed = false;
+  }
+  catch (const std::bad_alloc&)
+  {
+    message = "Not enough memory.";
+  }
+  catch (const std::exception& error)
+  {
+    message = error.what();
+  }
+  // The first process that failed tells all others.
+  const auto teller =
+    static_cast<int>(this->Count - this->maximum(failed ? this->Count - this->Rank : 0));
+  if (teller == this->Count)
+  {
+    return;
+  }
+  if (this->Count > 1)
+  {
+    auto length = static_cast<vtkIdType>(message.size());
+    this->Controller->Broadcast(&length, 1, teller);
+    message.resize(static_cast<std::size_t>(length));
+    this->Controller->Broadcast(&message[0], length, teller);
+    message = "In process " + std::to_string(teller) + ": " + message;
+  }
+  throw Error(message);
+}
+}

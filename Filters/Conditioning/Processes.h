@@ -1,0 +1,53 @@
+/**
+ * @file Processes.h
+ * @brief The processes of a parallel ParaView server (MPI ranks) that each have a part of the data.
+ */
+#ifndef tautline_Processes_h
+#define tautline_Processes_h
+
+#include "tautline/PointNumbering.h"
+
+#include <functional>
+#include <vector>
+
+class vtkMultiProcessController;
+
+namespace tautline
+{
+/**
+ * @class tautline::Processes
+ * @brief The processes of VTK's global controller; one if there is none. All methods except the first three
+ * are collective.
+ */
+class Processes
+{
+public:
+  /// Throws Error if there are several processes that do not talk by MPI, or if Tautline cannot.
+  Processes();
+
+  int rank() const { return this->Rank; }
+  int count() const { return this->Count; }
+  /// Of MPI; null with one process. Valid as long as the controller.
+  Communicator communicator() const { return this->Comm; }
+
+  Index sum(Index value) const;
+  Index maximum(Index value) const;
+  double sum(double value) const;
+  /// True if it is on every process.
+  bool everywhere(bool value) const;
+  /// The values of all processes, one after the other.
+  std::vector<double> gather(const std::vector<double>& values) const;
+
+  /**
+   * @brief Does work that does not communicate. What it throws on any process is thrown on all, as Error, so that none
+   * waits for another that has given up.
+   */
+  void together(const std::function<void()>& work) const;
+
+private:
+  vtkMultiProcessController* Controller = nullptr;
+  int Rank = 0, Count = 1;
+  Communicator Comm = nullptr;
+};
+}
+#endif

@@ -1,0 +1,105 @@
+/**
+ * @class vtkConditionEstimator
+ * @brief Condition number of the linear system of an elliptic problem on a mesh, and which elements cause it.
+ *
+ * The problem and the inputs are those of vtkEllipticAlgorithm. The extreme eigenvalues of the matrix A of the free
+ * unknowns and, unless Preconditioner is NONE, of P^-1 A are found: a Krylov method needs the more iterations the
+ * larger the condition number of P^-1 A is.
+ *
+ * @par Output port 0 `Mesh`:
+ * The input with the cell arrays `LargestEigenvalue`, of the stiffness matrix of each element, and, if ComputeShares is
+ * on, `Share`: the part of the largest eigenvalue of A that is due to the element, x_e^T A_e x_e of its eigenvector x over the
+ * whole. Shares add up to 1; elements that hurt have large ones. Both are 0 for cells that are not solved on.
+ *
+ * @par Output port 1 `Spectrum`:
+ * A vtkTable with a row for A and one for P^-1 A (per block): `Matrix`, `Smallest`, `Largest`, `Condition` (0: not
+ * positive definite, or not found), `SmallestError`, `LargestError` (relative bounds; -1: not known), `Converged`,
+ * `Iterations`, `Seconds`, `Method`, `Message`; of composite data sets also `Block`.
+ *
+ * @sa vtkSolverStudy, vtkEllipticSolver, tautline/ConditionEstimate.h
+ */
+
+#ifndef vtkConditionEstimator_h
+#define vtkConditionEstimator_h
+
+#include "vtkEllipticAlgorithm.h"
+
+class TAUTLINECONDITIONING_EXPORT vtkConditionEstimator : public vtkEllipticAlgorithm
+{
+public:
+  static vtkConditionEstimator* New();
+  vtkTypeMacro(vtkConditionEstimator, vtkEllipticAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Numbers of the methods; those of tautline::SpectrumMethod.
+  enum Methods
+  {
+    AUTOMATIC = 0,
+    RITZ_VALUES = 1,
+    ACCURATE = 2
+  };
+  ///@{
+  /// RITZ_VALUES of a Krylov method: cheap, without error bounds. ACCURATE: to Tolerance. AUTOMATIC, the default, is ACCURATE.
+  vtkSetClampMacro(Method, int, AUTOMATIC, ACCURATE);
+  vtkGetMacro(Method, int);
+  ///@}
+
+  ///@{
+  /// P, see vtkEllipticSolver::Preconditioners. The default is BoomerAMG (3); 6, none, leaves P^-1 A out.
+  vtkSetClampMacro(Preconditioner, int, 0, 6);
+  vtkGetMacro(Preconditioner, int);
+  ///@}
+
+  ///@{
+  /// Wanted relative error of the eigenvalues, above 0 and below 1. The default is 1e-6.
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /// At least 1. The default is 10000.
+  vtkSetMacro(MaximumIterations, int);
+  vtkGetMacro(MaximumIterations, int);
+  ///@}
+
+  ///@{
+  /// Whether to find the share of each element. On.
+  vtkSetMacro(ComputeShares, bool);
+  vtkGetMacro(ComputeShares, bool);
+  vtkBooleanMacro(ComputeShares, bool);
+  ///@}
+
+  /// The output other than the mesh.
+  vtkTable* GetSpectrum();
+
+  ///@{
+  /// Condition numbers of A and of P^-1 A of the last execution (of blocks, the largest); 0: not known.
+  double GetCondition() const { return this->Condition; }
+  double GetPreconditionedCondition() const { return this->PreconditionedCondition; }
+  ///@}
+
+protected:
+  vtkConditionEstimator();
+  ~vtkConditionEstimator() override;
+
+  void Reset() override;
+  void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
+    const tautline::Processes& processes, tautline::TableRows& table) override;
+
+private:
+  vtkConditionEstimator(const vtkConditionEstimator&) = delete;
+  void operator=(const vtkConditionEstimator&) = delete;
+
+  double Estimate(const tautline::EllipticInput& input, int preconditioner,
+    const tautline::LocalMesh& mesh, tautline::TableRows& table, std::string& text);
+
+  int Method = AUTOMATIC;
+  int Preconditioner = 3;
+  double Tolerance = 1e-6;
+  int MaximumIterations = 10000;
+  bool ComputeShares = true;
+  double Condition = 0.0;
+  double PreconditionedCondition = 0.0;
+};
+
+#endif

@@ -1,0 +1,279 @@
+/**
+ * @class vtkEllipticAlgorithm
+ * @brief What the filters that solve elliptic partial differential equations have in common: the problem.
+ *
+ * Abstract. The boundary value problem of dissertation section 2.2, discretised by linear finite elements (triangles,
+ * quadrilaterals, tetrahedra, hexahedra, wedges and pyramids) on the mesh at input port 0. Input port 1 (optional)
+ * is a vtkSelection of points, or of cells with their points, where the solution is given.
+ *
+ * Each block of a multiblock data set is a mesh of its own; the partitions of a partitioned data set are one
+ * mesh. With several MPI processes (pvserver, pvbatch) the parts of all processes are one mesh, which they solve
+ * together; ghost cells are left out. Points on several processes are known by their global ids if the mesh has
+ * them, else by equal coordinates. Tables are those of process 0.
+ *
+ * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted and
+ * degenerate elements, polygons, polyhedra, cells of higher order, mixed orientation, parts without a point
+ * where the solution is given, values and coefficients that are not finite.
+ *
+ * Arrays of SetInputArrayToProcess: 0 fixed points (of points or cells), 1 source, 2 given values (of
+ * points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.
+ *
+ * Expressions know x, y, z and the point arrays by name, as ParaView's Calculator: sin(x)*exp(-y), "my array"/2,
+ * if(x<0.5, 1, 2); vectors are written 2*iHat - x*jHat.
+ *
+ * @sa vtkEllipticSolver, vtkConditionEstimator, vtkSolverStudy, tautline/EllipticProblem.h
+ */
+
+#ifndef vtkEllipticAlgorithm_h
+#define vtkEllipticAlgorithm_h
+
+#include "TautlineConditioningModule.h" // for export macro
+#include "vtkDataObjectAlgorithm.h"
+
+#include <string> // for expressions
+
+class vtkTable;
+
+namespace tautline
+{
+class EllipticInput;
+class Processes;
+class TableRows;
+struct EllipticChoice;
+struct LocalMesh;
+}
+
+class TAUTLINECONDITIONING_EXPORT vtkEllipticAlgorithm : public vtkDataObjectAlgorithm
+{
+public:
+  vtkTypeMacro(vtkEllipticAlgorithm, vtkDataObjectAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Numbers of the equations; those of tautline::Pde.
+  enum Equations
+  {
+    POISSON = 0,
+    ELLIPTIC = 1,
+    ELASTICITY = 2
+  };
+  ///@{
+  /**
+   * POISSON, -laplace u = f (the default); ELLIPTIC, -alpha u_xx - beta u_yy - gamma u_zz + a u = f; ELASTICITY,
+   * -div(lambda (div u) I + 2 mu eps(u)) = f.
+   */
+  vtkSetClampMacro(Equation, int, POISSON, ELASTICITY);
+  vtkGetMacro(Equation, int);
+  ///@}
+
+  ///@{
+  /// Coefficients of ELLIPTIC: at least 0. The default is 1 each; gamma is for volumes. Array 3 goes before them.
+  vtkSetMacro(Alpha, double);
+  vtkGetMacro(Alpha, double);
+  vtkSetMacro(Beta, double);
+  vtkGetMacro(Beta, double);
+  vtkSetMacro(Gamma, double);
+  vtkGetMacro(Gamma, double);
+  ///@}
+
+  ///@{
+  /// a of ELLIPTIC. The default is 1. Where it is negative, the matrix may be indefinite: MINRES and GMRES take it.
+  vtkSetMacro(Reaction, double);
+  vtkGetMacro(Reaction, double);
+  ///@}
+
+  ///@{
+  /// E of ELASTICITY, above 0, in the unit of stress. The default is 1. Array 4 has factors of it.
+  vtkSetMacro(YoungsModulus, double);
+  vtkGetMacro(YoungsModulus, double);
+  ///@}
+
+  ///@{
+  /// nu of ELASTICITY, between -1 and 0.5. The default is 0.3.
+  vtkSetMacro(PoissonRatio, double);
+  vtkGetMacro(PoissonRatio, double);
+  ///@}
+
+  /// What holds a planar body in the third direction.
+  enum PlaneStates
+  {
+    PLANE_STRAIN = 0,
+    PLANE_STRESS = 1
+  };
+  ///@{
+  /// PLANE_STRAIN, a slice of a long body (the default), or PLANE_STRESS, a thin sheet. Planar meshes only.
+  vtkSetClampMacro(PlaneState, int, PLANE_STRAIN, PLANE_STRESS);
+  vtkGetMacro(PlaneState, int);
+  ///@}
+
+  /// How a function is told.
+  enum FunctionTypes
+  {
+    CONSTANT = 0,
+    ARRAY = 1,
+    EXPRESSION = 2
+  };
+  ///@{
+  /// f: CONSTANT (the default), ARRAY (array 1) or EXPRESSION.
+  vtkSetClampMacro(SourceType, int, CONSTANT, EXPRESSION);
+  vtkGetMacro(SourceType, int);
+  ///@}
+
+  ///@{
+  /// The constant f; the default is 1.
+  vtkSetMacro(SourceValue, double);
+  vtkGetMacro(SourceValue, double);
+  ///@}
+
+  ///@{
+  /// The constant f of ELASTICITY, a force per volume; the default is (1, 0, 0).
+  vtkSetVector3Macro(BodyForce, double);
+  vtkGetVector3Macro(BodyForce, double);
+  ///@}
+
+  ///@{
+  /// f as an expression; of ELASTICITY a vector, such as "-9.81*jHat + 0*iHat".
+  vtkSetMacro(SourceExpression, std::string);
+  vtkGetMacro(SourceExpression, std::string);
+  ///@}
+
+  /// Which points of the boundary are fixed: there the solution is given.
+  enum FixedParts
+  {
+    WHOLE_BOUNDARY = 0,
+    PART_OF_BOUNDARY = 1,
+    ONLY_CHOSEN = 2
+  };
+  ///@{
+  /**
+   * WHOLE_BOUNDARY (the default), PART_OF_BOUNDARY, where FixedWhere is not 0, or ONLY_CHOSEN. In any case points are fixed where
+   * array 0 is not 0 (of cells: the points of such cells), and those selected at input port 1. On the rest
+   * of the boundary the natural condition holds: no flux, no traction.
+   */
+  vtkSetClampMacro(FixedPart, int, WHOLE_BOUNDARY, ONLY_CHOSEN);
+  vtkGetMacro(FixedPart, int);
+  ///@}
+
+  ///@{
+  /// An expression that tells the part of the boundary, such as "x < 0.01".
+  vtkSetMacro(FixedWhere, std::string);
+  vtkGetMacro(FixedWhere, std::string);
+  ///@}
+
+  ///@{
+  /// The solution at fixed points: CONSTANT (the default), ARRAY (array 2) or EXPRESSION.
+  vtkSetClampMacro(GivenType, int, CONSTANT, EXPRESSION);
+  vtkGetMacro(GivenType, int);
+  ///@}
+
+  ///@{
+  /// The constant solution at fixed points; the default is 0.
+  vtkSetMacro(GivenValue, double);
+  vtkGetMacro(GivenValue, double);
+  ///@}
+
+  ///@{
+  /// The constant displacement of fixed points; the default is (0, 0, 0).
+  vtkSetVector3Macro(GivenDisplacement, double);
+  vtkGetVector3Macro(GivenDisplacement, double);
+  ///@}
+
+  ///@{
+  /// The solution at fixed points as an expression.
+  vtkSetMacro(GivenExpression, std::string);
+  vtkGetMacro(GivenExpression, std::string);
+  ///@}
+
+  ///@{
+  /// Relaxation of SSOR, above 0 and below 2. The default is 1.
+  vtkSetMacro(Omega, double);
+  vtkGetMacro(Omega, double);
+  ///@}
+
+  ///@{
+  /**
+   * Options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5". They go before other properties, and those of
+   * other users of PETSc in the process are neither read nor changed. One that PETSc does not know is an error.
+   */
+  vtkSetMacro(PETScOptions, std::string);
+  vtkGetMacro(PETScOptions, std::string);
+  ///@}
+
+  ///@{
+  /// Seconds after which the best so far is returned; 0 is no limit. The default is 600.
+  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  ///@{
+  /// Number of threads of the assembly; 0, the default, is all cores. The result does not depend on it.
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  /// The last result in words.
+  const char* GetSummary() const { return this->Summary.c_str(); }
+  /// Unknowns of the last system, on all processes, of all blocks together.
+  vtkIdType GetUnknowns() const { return this->Unknowns; }
+  /// Seconds the last assembly took, of all blocks together.
+  double GetAssemblySeconds() const { return this->AssemblySeconds; }
+
+protected:
+  vtkEllipticAlgorithm();
+  ~vtkEllipticAlgorithm() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+  /// Forgets the results of the last execution.
+  virtual void Reset();
+  /// Does its work on a mesh; all processes call it. Throws tautline::Error.
+  virtual void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
+    const tautline::Processes& processes, tautline::TableRows& table) = 0;
+
+  /// Adds a paragraph to the summary, which begins with the block's name.
+  void Say(const tautline::LocalMesh& mesh, const std::string& text);
+  /// Tells that something did not succeed; becomes a warning with the summary.
+  void Warn() { this->Failed = true; }
+  /// Reports a fraction of the work on a mesh. @return false to stop
+  bool Report(const tautline::LocalMesh& mesh, double fraction);
+
+  double Omega = 1.0;
+  std::string PETScOptions;
+  double TimeLimit = 600.0;
+  int Threads = 0;
+  int Equation = POISSON;
+
+private:
+  vtkEllipticAlgorithm(const vtkEllipticAlgorithm&) = delete;
+  void operator=(const vtkEllipticAlgorithm&) = delete;
+
+  tautline::EllipticChoice GetChoice() const;
+
+  double Alpha = 1.0;
+  double Beta = 1.0;
+  double Gamma = 1.0;
+  double Reaction = 1.0;
+  double YoungsModulus = 1.0;
+  double PoissonRatio = 0.3;
+  int PlaneState = PLANE_STRAIN;
+  int SourceType = CONSTANT;
+  double SourceValue = 1.0;
+  double BodyForce[3] = { 1.0, 0.0, 0.0 };
+  std::string SourceExpression;
+  int FixedPart = WHOLE_BOUNDARY;
+  std::string FixedWhere;
+  int GivenType = CONSTANT;
+  double GivenValue = 0.0;
+  double GivenDisplacement[3] = { 0.0, 0.0, 0.0 };
+  std::string GivenExpression;
+  std::string Summary;
+  bool Failed = false;
+  vtkIdType Unknowns = 0;
+  double AssemblySeconds = 0.0;
+};
+
+#endif

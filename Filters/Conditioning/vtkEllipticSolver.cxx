@@ -1,0 +1,147 @@
+#include "vtkEllipticSolver.h"
+
+#include "EllipticInput.h"
+#include "EllipticOutput.h"
+#include "MovableMesh.h"
+
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <sstream>
+
+vtkStandardNewMacro(vtkEllipticSolver);
+
+namespace
+{
+constexpr int HistoryPort = 1;
+
+/// How far a Krylov method is, by the digits it has gained.
+double fractionOf(double first, double residual, double tolerance)
+{
+  if (!(first > 0 && residual > 0 && tolerance > 0 && tolerance < 1))
+  {
+    return 0.0;
+  }
+  return std::clamp(std::log(residual / first) / std::log(tolerance), 0.0, 1.0);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkEllipticSolver::vtkEllipticSolver() = default;
+
+//------------------------------------------------------------------------------
+vtkEllipticSolver::~vtkEllipticSolver() = default;
+
+//------------------------------------------------------------------------------
+vtkTable* vtkEllipticSolver::GetHistory()
+{
+  return vtkTable::SafeDownCast(this->GetOutputDataObject(HistoryPort));
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticSolver::Reset()
+{
+  this->Converged = true;
+  this->Reason.clear();
+  this->Iterations = 0;
+  this->SetupSeconds = this->SolveSeconds = 0.0;
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
+  const tautline::Processes&, tautline::TableRows& table)
+{
+  const tautline::EllipticSystem& system = input.system();
+  tautline::SolverOptions options;
+  options.method = static_cast<tautline::KrylovMethod>(this->Solver);
+  options.preconditioner = static_cast<tautline::Preconditioner>(this->Preconditioner);
+  options.relativeTolerance = this->RelativeTolerance;
+  options.absoluteTolerance = this->AbsoluteTolerance;
+  options.maximumIterations = this->MaximumIterations;
+  options.restart = this->Restart;
+  options.omega = this->Omega;
+  options.maximumSeconds = this->TimeLimit;
+  options.petscOptions = this->PETScOptions;
+  options.threads = this->Threads;
+  double first = 0.0;
+  options.observer = [&](int iteration, double residual)
+  {
+    first = iteration == 0 ? residual : first;
+    return this->Report(mesh, fractionOf(first, residual, this->RelativeTolerance));
+  };
+
+  tautline::LinearSystem linear = system.linearSystem();
+  linear.coordinates = this->RigidBodyModes ? linear.coordinates : nullptr;
+  tautline::LinearSolver solver(linear, options);
+  std::vector<double> x(system.freePoints().size() * system.blockSize(), 0.0);
+  const tautline::LinearSolution solved = solver.solve(system.rightHandSide().data(), x.data());
+  const tautline::EllipticSolution solution = system.fields(x);
+
+  const bool elastic = this->Equation == ELASTICITY;
+  const std::string name = !this->SolutionName.empty() ? this->SolutionName
+    : elastic                                          ? "Displacement"
+                                                       : "Solution";
+  if (this->ComputeGradient && elastic)
+  {
+    tautline::addStress(mesh.output, solution.gradients);
+  }
+  else if (this->ComputeGradient)
+  {
+    tautline::addArray(mesh.output, true, "Gradient", solution.gradients, 3);
+  }
+  const tautline::Index outside =
+    tautline::addArray(mesh.output, false, name, solution.values, solution.components);
+  mesh.output->GetCellData()->SetActiveScalars(nullptr); // the solution is looked at first
+  tautline::addResiduals(table, solved.residuals, mesh.name);
+
+  const bool converged = tautline::converged(solved.reason);
+  this->Converged = this->Converged && converged;
+  this->Reason = tautline::sentence(tautline::describe(solved.reason));
+  this->Iterations += solved.iterations;
+  this->SetupSeconds += solved.setupSeconds;
+  this->SolveSeconds += solved.solveSeconds;
+  std::ostringstream text;
+  text << this->Reason << (solved.message.empty() ? "" : " ") << tautline::sentence(solved.message)
+       << "\n"
+       << system.unknowns() << " unknowns, ";
+  if (options.method == tautline::KrylovMethod::Direct)
+  {
+    text << "a direct solve";
+  }
+  else
+  {
+    text << solved.iterations << " iterations of " << tautline::nameOf(options.method) << " with "
+         << tautline::nameOf(options.preconditioner);
+  }
+  text.precision(3);
+  text << ".\nSeconds: assembly " << system.assembleSeconds() << ", set-up " << solved.setupSeconds
+       << ", solve " << solved.solveSeconds << ".";
+  if (outside > 0)
+  {
+    text << "\n" << outside << " points are in no element; their solution is 0.";
+  }
+  this->Say(mesh, text.str());
+  if (!converged)
+  {
+    this->Warn();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticSolver::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Solver: " << this->Solver << "\n";
+  os << indent << "Preconditioner: " << this->Preconditioner << "\n";
+  os << indent << "RelativeTolerance: " << this->RelativeTolerance << "\n";
+  os << indent << "AbsoluteTolerance: " << this->AbsoluteTolerance << "\n";
+  os << indent << "MaximumIterations: " << this->MaximumIterations << "\n";
+  os << indent << "Restart: " << this->Restart << "\n";
+  os << indent << "RigidBodyModes: " << this->RigidBodyModes << "\n";
+  os << indent << "SolutionName: " << this->SolutionName << "\n";
+  os << indent << "ComputeGradient: " << this->ComputeGradient << "\n";
+}

@@ -1,0 +1,616 @@
+// Solve PDE: known solutions by every way a problem can be described, blocks and partitions, what it refuses.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "vtkEllipticSolver.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkMultiPieceDataSet.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkTable.h"
+
+#include <limits>
+
+using namespace tautline;
+
+namespace
+{
+constexpr double Tight = 1e-12; // relative tolerance of the solver
+constexpr int Points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+constexpr int Cells = vtkDataObject::FIELD_ASSOCIATION_CELLS;
+
+MeshData block(CellType type, Index n)
+{
+  return blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
+}
+
+MeshData scaled(MeshData data, double factor)
+{
+  for (double& x : data.points)
+  {
+    x *= factor;
+  }
+  return data;
+}
+
+vtkDataSet* solved(vtkEllipticSolver* filter)
+{
+  filter->SetRelativeTolerance(Tight);
+  filter->Update();
+  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+std::vector<double> values(vtkDataSet* data, const char* name = "Solution", bool ofCells = false)
+{
+  vtkDataArray* array =
+    ofCells ? data->GetCellData()->GetArray(name) : data->GetPointData()->GetArray(name);
+  std::vector<double> result;
+  for (vtkIdType i = 0; TAUTLINE_CHECK(array) && i < array->GetNumberOfTuples(); ++i)
+  {
+    for (int k = 0; k < array->GetNumberOfComponents(); ++k)
+    {
+      result.push_back(array->GetComponent(i, k));
+    }
+  }
+  return result;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b)
+{
+  double largest = a.size() == b.size() && !a.empty() ? 0.0 : 1e300;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+  }
+  return largest;
+}
+
+vtkSmartPointer<vtkDoubleArray> arrayOf(
+  const char* name, vtkIdType tuples, const std::vector<double>& tuple)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(static_cast<int>(tuple.size()));
+  for (vtkIdType i = 0; i < tuples; ++i)
+  {
+    array->InsertNextTuple(tuple.data());
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+/// A linear function is its own solution, whatever the cells, the precision and the size of the mesh.
+void testLinear()
+{
+  for (CellType type : allTypes)
+  {
+    for (double scale : { 1.0, 1e-8, 1e8 })
+    {
+      const Context context(std::string(topology(type).name) + " " + std::to_string(scale));
+      vtkNew<vtkEllipticSolver> filter;
+      Messages messages(filter);
+      filter->SetInputData(toGrid(scaled(block(type, 5), scale)));
+      filter->SetSourceValue(0);
+      filter->SetGivenType(vtkEllipticAlgorithm::EXPRESSION);
+      filter->SetGivenExpression("(2*x - 3*y)/" + std::to_string(scale) + " + 1");
+      if (scale < 1)
+      {
+        filter->SetGivenExpression("(2*x - 3*y)*1e8 + 1");
+      }
+      vtkDataSet* mesh = solved(filter);
+      for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+      {
+        const double* p = mesh->GetPoint(i);
+        TAUTLINE_CHECK_NEAR(
+          component(mesh->GetPointData(), "Solution", i), (2 * p[0] - 3 * p[1]) / scale + 1, 1e-9);
+      }
+      for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
+      {
+        TAUTLINE_CHECK_NEAR(component(mesh->GetCellData(), "Gradient", i, 0) * scale, 2, 1e-8);
+        TAUTLINE_CHECK_NEAR(component(mesh->GetCellData(), "Gradient", i, 1) * scale, -3, 1e-8);
+        TAUTLINE_CHECK_NEAR(component(mesh->GetCellData(), "Gradient", i, 2) * scale, 0, 1e-8);
+      }
+      TAUTLINE_CHECK(filter->GetConverged() && messages.empty());
+      TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(),
+        topology(type).dimension == 2 ? 16
+          : type == CellType::Pyramid ? 64 + 125
+                                      : 64);
+      TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), filter->GetIterations() + 1);
+      TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Log10 residual").ToDouble(), 0);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// u = L x - x^2 / 2 on a strip held on the left: the nodes are exact. Told in all ways.
+void testWays()
+{
+  constexpr Index n = 6;
+  const MeshData data = block(CellType::Quadrilateral, n);
+  auto grid = toGrid(data);
+  const vtkIdType points = data.numberOfPoints(), cells = data.numberOfCells();
+  vtkNew<vtkDoubleArray> left, leftCells;
+  left->SetName("left");
+  leftCells->SetName("leftCells");
+  std::vector<double> expected;
+  for (Index i = 0; i < points; ++i)
+  {
+    const double x = data.point(i)[0];
+    left->InsertNextValue(x < 0.5);
+    expected.push_back(n * x - 0.5 * x * x);
+  }
+  grid->GetPointData()->AddArray(left);
+  grid->GetPointData()->AddArray(arrayOf("one", points, { 1 }));
+  grid->GetPointData()->AddArray(arrayOf("my source", points, { 1, 2, 3 }));
+
+  vtkNew<vtkEllipticSolver> filter;
+  Messages messages(filter);
+  filter->SetInputData(grid);
+  filter->SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY);
+  filter->SetFixedWhere("x < 0.5");
+  TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
+  filter->SetSourceType(vtkEllipticAlgorithm::EXPRESSION);
+  for (const char* f :
+    { "one", "2*one - 1", "if(x < 100, one, y)", "\"my source_X\"", "mag(\"my source\")^2/14" })
+  {
+    const Context context(f);
+    filter->SetSourceExpression(f);
+    TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
+  }
+  filter->SetSourceType(vtkEllipticAlgorithm::ARRAY);
+  filter->SetInputArrayToProcess(1, 0, 0, Points, "one");
+  TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
+  filter->SetFixedPart(vtkEllipticAlgorithm::ONLY_CHOSEN);
+  filter->SetInputArrayToProcess(0, 0, 0, Points, "left");
+  TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
+  filter->SetInputArrayToProcess(0, 0, 0, Points, "None");
+
+  // The same points by a selection.
+  vtkNew<vtkIdTypeArray> ids;
+  for (Index i = 0; i < points; i += n + 1)
+  {
+    ids->InsertNextValue(i);
+  }
+  vtkNew<vtkSelectionNode> node;
+  node->SetContentType(vtkSelectionNode::INDICES);
+  node->SetFieldType(vtkSelectionNode::POINT);
+  node->SetSelectionList(ids);
+  vtkNew<vtkSelection> selection;
+  selection->AddNode(node);
+  filter->SetInputData(1, selection);
+  TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
+  filter->RemoveAllInputConnections(1);
+
+  // Cells hold all their points: the first column of cells is left out of the strip.
+  for (Index i = 0; i < cells; ++i)
+  {
+    leftCells->InsertNextValue(i % n == 0);
+  }
+  grid->GetCellData()->AddArray(leftCells);
+  filter->SetInputArrayToProcess(0, 0, 0, Cells, "leftCells");
+  filter->SetGivenType(vtkEllipticAlgorithm::ARRAY);
+  filter->SetInputArrayToProcess(2, 0, 0, Points, "one");
+  const std::vector<double> held = values(solved(filter));
+  for (Index i = 0; i < points; ++i)
+  {
+    const double x = std::max(0.0, data.point(i)[0] - 1);
+    TAUTLINE_CHECK_NEAR(held[i], 1 + (n - 1) * x - 0.5 * x * x, 1e-9);
+  }
+  TAUTLINE_CHECK(messages.empty());
+}
+
+//------------------------------------------------------------------------------
+/// Coefficients, constant and as arrays.
+void testCoefficients()
+{
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    auto grid = toGrid(block(type, 4));
+    const vtkIdType cells = grid->GetNumberOfCells();
+    vtkNew<vtkEllipticSolver> filter;
+    filter->SetInputData(grid);
+    filter->SetEquation(vtkEllipticAlgorithm::ELLIPTIC);
+    filter->SetAlpha(2);
+    filter->SetBeta(3);
+    filter->SetGamma(5);
+    filter->SetReaction(0.5);
+    const std::vector<double> expected = values(solved(filter));
+    grid->GetCellData()->AddArray(arrayOf("six", cells, { 2, 3, 5, 0, 0, 0 }));
+    grid->GetCellData()->AddArray(arrayOf("nine", cells, { 2, 0, 0, 0, 3, 0, 0, 0, 5 }));
+    filter->SetAlpha(7);
+    for (const char* name : { "six", "nine" })
+    {
+      filter->SetInputArrayToProcess(3, 0, 0, Cells, name);
+      TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-12);
+    }
+    // With a alone, u = f / a within; with a of 0 and a tensor of 1 it is Poisson's equation.
+    vtkNew<vtkEllipticSolver> poisson;
+    poisson->SetInputData(grid);
+    filter->SetInputArrayToProcess(3, 0, 0, Cells, "None");
+    filter->SetAlpha(1);
+    filter->SetBeta(1);
+    filter->SetGamma(1);
+    filter->SetReaction(0);
+    TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), values(solved(poisson))), 0, 1e-12);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// A uniform strain has a known stress.
+void testElasticity()
+{
+  constexpr double E = 200, nu = 0.25, strain = 0.01;
+  const double lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), mu = E / (2 * (1 + nu));
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    const bool flat = topology(type).dimension == 2;
+    for (int plane : { vtkEllipticAlgorithm::PLANE_STRAIN, vtkEllipticAlgorithm::PLANE_STRESS })
+    {
+      auto grid = toGrid(block(type, 4));
+      grid->GetCellData()->AddArray(arrayOf("four", grid->GetNumberOfCells(), { 4 }));
+      vtkNew<vtkEllipticSolver> filter;
+      Messages messages(filter);
+      filter->SetInputData(grid);
+      filter->SetEquation(vtkEllipticAlgorithm::ELASTICITY);
+      filter->SetYoungsModulus(E / 4);
+      filter->SetInputArrayToProcess(4, 0, 0, Cells, "four");
+      filter->SetPoissonRatio(nu);
+      filter->SetPlaneState(plane);
+      filter->SetBodyForce(0, 0, 0);
+      filter->SetGivenType(vtkEllipticAlgorithm::EXPRESSION);
+      filter->SetGivenExpression("0.01*x*iHat + 0.01*x*jHat");
+      vtkDataSet* mesh = solved(filter);
+      const bool stress = flat && plane == vtkEllipticAlgorithm::PLANE_STRESS;
+      // eps_xx = strain, eps_xy = strain / 2, and in plane stress eps_zz such that tau_zz = 0
+      const double zz = stress ? -nu / (1 - nu) * strain : 0;
+      const std::array<double, 6> tau = { lambda * (strain + zz) + 2 * mu * strain,
+        lambda * (strain + zz), lambda * (strain + zz) + 2 * mu * zz, mu * strain, 0, 0 };
+      const double mises = std::sqrt(0.5 *
+          (std::pow(tau[0] - tau[1], 2) + std::pow(tau[1] - tau[2], 2) +
+            std::pow(tau[2] - tau[0], 2)) +
+        3 * tau[3] * tau[3]);
+      for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
+      {
+        for (int k = 0; k < 6; ++k)
+        {
+          TAUTLINE_CHECK_NEAR(component(mesh->GetCellData(), "Stress", i, k), tau[k], 1e-8);
+        }
+        TAUTLINE_CHECK_NEAR(component(mesh->GetCellData(), "VonMises", i), mises, 1e-8);
+      }
+      for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+      {
+        const double x = mesh->GetPoint(i)[0];
+        TAUTLINE_CHECK_NEAR(
+          component(mesh->GetPointData(), "Displacement", i, 1), strain * x, 1e-10);
+      }
+      TAUTLINE_CHECK_EQUAL(
+        std::string(mesh->GetCellData()->GetArray("Stress")->GetComponentName(5)), "XZ");
+      TAUTLINE_CHECK(messages.empty());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Every solver finds the same; the result does not depend on threads, nor on filters before it.
+void testSolvers()
+{
+  auto grid = toGrid(block(CellType::Triangle, 12));
+  vtkNew<vtkEllipticSolver> filter;
+  Messages messages(filter);
+  filter->SetInputData(grid);
+  filter->SetSolver(vtkEllipticSolver::DIRECT);
+  const std::vector<double> expected = values(solved(filter));
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("a direct solve") != std::string::npos);
+  for (int solver = vtkEllipticSolver::CG; solver < vtkEllipticSolver::DIRECT; ++solver)
+  {
+    for (int p = vtkEllipticSolver::JACOBI; p <= vtkEllipticSolver::NONE; ++p)
+    {
+      const Context context(std::to_string(solver) + " " + std::to_string(p));
+      filter->SetSolver(solver);
+      filter->SetPreconditioner(p);
+      TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-7);
+      TAUTLINE_CHECK(filter->GetConverged());
+    }
+  }
+  filter->SetSolver(vtkEllipticSolver::CG);
+  filter->SetPreconditioner(vtkEllipticSolver::AMG);
+  filter->SetThreads(1);
+  const std::vector<double> one = values(solved(filter));
+  filter->SetThreads(3);
+  TAUTLINE_CHECK(values(solved(filter)) == one);
+  filter->SetPETScOptions("-ksp_max_it 1");
+  solved(filter);
+  TAUTLINE_CHECK(!filter->GetConverged() && messages.has("limit of iterations"));
+  TAUTLINE_CHECK_EQUAL(filter->GetIterations(), 1);
+  messages.clear();
+  filter->SetPETScOptions("");
+
+  // Two in a pipeline: the second has the solution of the first as its source.
+  vtkNew<vtkEllipticSolver> second;
+  second->SetInputConnection(filter->GetOutputPort());
+  second->SetSourceType(vtkEllipticAlgorithm::ARRAY);
+  second->SetInputArrayToProcess(1, 0, 0, Points, "Solution");
+  second->SetSolutionName("again");
+  second->SetComputeGradient(false);
+  vtkDataSet* mesh = solved(second);
+  TAUTLINE_CHECK(values(mesh) == one);
+  TAUTLINE_CHECK(values(mesh, "again") != one);
+  TAUTLINE_CHECK(messages.empty());
+}
+
+//------------------------------------------------------------------------------
+/// Blocks are meshes of their own; partitions are one mesh.
+void testBlocks()
+{
+  const MeshData data = block(CellType::Quadrilateral, 6);
+  vtkNew<vtkEllipticSolver> whole;
+  whole->SetInputData(toGrid(data));
+  vtkDataSet* mesh = solved(whole);
+  const std::vector<double> expected = values(mesh), gradient = values(mesh, "Gradient", true);
+
+  // The lower and the upper half, with a line of points in both.
+  std::array<MeshData, 2> halves;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const double y = data.point(i)[1];
+    for (int h = 0; h < 2; ++h)
+    {
+      if (h == 0 ? y <= 3 : y >= 3)
+      {
+        halves[h].addPoint(data.point(i));
+      }
+    }
+  }
+  const Index lower = halves[0].numberOfPoints(), shift = lower - 7;
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    const int h = cell < data.numberOfCells() / 2 ? 0 : 1;
+    const Index* p = data.connectivity.data() + data.offsets[cell];
+    const Index s = h * shift;
+    halves[h].addCell(CellType::Quadrilateral, { p[0] - s, p[1] - s, p[2] - s, p[3] - s });
+  }
+  vtkNew<vtkPartitionedDataSet> parts;
+  parts->SetPartition(0, toGrid(halves[0]));
+  parts->SetPartition(1, toGrid(halves[1]));
+  vtkNew<vtkPartitionedDataSetCollection> collection;
+  collection->SetPartitionedDataSet(0, parts);
+  vtkNew<vtkMultiPieceDataSet> pieces;
+  pieces->SetPartition(0, parts->GetPartition(0));
+  pieces->SetPartition(1, parts->GetPartition(1));
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, toGrid(data));
+  blocks->SetBlock(2, pieces);
+  vtkNew<vtkEllipticSolver> filter;
+  Messages messages(filter);
+  filter->SetRelativeTolerance(Tight);
+  for (vtkDataObject* input : { static_cast<vtkDataObject*>(parts),
+         static_cast<vtkDataObject*>(collection), static_cast<vtkDataObject*>(blocks) })
+  {
+    const Context context(input->GetClassName());
+    filter->SetInputDataObject(input);
+    filter->Update();
+    vtkDataObject* output = filter->GetOutputDataObject(0);
+    if (auto* solvedBlocks = vtkMultiBlockDataSet::SafeDownCast(output))
+    {
+      TAUTLINE_CHECK_NEAR(
+        distance(values(vtkDataSet::SafeDownCast(solvedBlocks->GetBlock(0))), expected), 0, 1e-10);
+      output = solvedBlocks->GetBlock(2);
+      TAUTLINE_CHECK(std::string(filter->GetSummary()).find("In block 3: ") != std::string::npos);
+      TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), 50);
+      TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
+    }
+    if (auto* found = vtkPartitionedDataSetCollection::SafeDownCast(output))
+    {
+      output = found->GetPartitionedDataSet(0);
+    }
+    auto* found = vtkPartitionedDataSet::SafeDownCast(output);
+    for (int h = 0; TAUTLINE_CHECK(found) && h < 2; ++h)
+    {
+      const auto part = values(found->GetPartition(h));
+      const std::vector<double> same(expected.begin() + h * shift,
+        expected.begin() + h * shift + static_cast<Index>(part.size()));
+      TAUTLINE_CHECK_NEAR(distance(part, same), 0, 1e-10);
+      const auto cells = values(found->GetPartition(h), "Gradient", true);
+      const std::vector<double> sameCells(
+        gradient.begin() + h * 54, gradient.begin() + (h + 1) * 54);
+      TAUTLINE_CHECK_NEAR(distance(cells, sameCells), 0, 1e-10);
+    }
+    TAUTLINE_CHECK(messages.empty());
+  }
+  halves[1].setPoint(8, halves[1].point(9)); // two points at one place
+  parts->SetPartition(1, toGrid(halves[1]));
+  filter->SetInputDataObject(parts);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("1 points are at the place of another one"));
+
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(7, 7, 1);
+  whole->SetInputData(image);
+  TAUTLINE_CHECK_NEAR(distance(values(solved(whole)), expected), 0, 1e-10);
+  whole->SetInputData(toPolyData(data, VTK_FLOAT));
+  TAUTLINE_CHECK_NEAR(distance(values(solved(whole)), expected), 0, 1e-10);
+  vtkNew<vtkUnstructuredGrid> nothing;
+  whole->SetInputData(nothing);
+  whole->Update();
+  TAUTLINE_CHECK_EQUAL(whole->GetUnknowns(), 0);
+  whole->SetInputData(toGrid(shuffled(data, 3)));
+  TAUTLINE_CHECK_EQUAL(values(solved(whole)).size(), expected.size());
+}
+
+//------------------------------------------------------------------------------
+void refuses(vtkEllipticSolver* filter, const std::string& text)
+{
+  const Context context(text);
+  Messages messages(filter);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has(text));
+  auto* mesh = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(mesh->GetNumberOfPoints(), 0);
+}
+
+void testRefusals()
+{
+  const MeshData data = block(CellType::Triangle, 4);
+  const vtkIdType points = data.numberOfPoints();
+  auto grid = toGrid(data);
+  grid->GetPointData()->AddArray(
+    arrayOf("nan", points, { std::numeric_limits<double>::quiet_NaN() }));
+  grid->GetPointData()->AddArray(arrayOf("vector", points, { 1, 2, 3 }));
+  grid->GetCellData()->AddArray(arrayOf("onCells", data.numberOfCells(), { 1 }));
+  vtkNew<vtkEllipticSolver> filter;
+  filter->SetInputData(grid);
+  filter->SetSourceType(vtkEllipticAlgorithm::ARRAY);
+  refuses(filter, "No array is chosen to take the source from");
+  filter->SetInputArrayToProcess(1, 0, 0, Points, "absent");
+  refuses(filter, "There is no point array 'absent' to take the source from");
+  filter->SetInputArrayToProcess(1, 0, 0, Points, "nan");
+  refuses(filter, "The array 'nan' of the source is not finite at point 0, (0, 0, 0)");
+  filter->SetInputArrayToProcess(1, 0, 0, Points, "vector");
+  refuses(filter, "has 3 components; one is expected");
+  filter->SetInputArrayToProcess(1, 0, 0, Cells, "onCells");
+  refuses(filter, "is on cells; one on points is needed");
+  filter->SetSourceType(vtkEllipticAlgorithm::EXPRESSION);
+  refuses(filter, "The expression of the source is empty");
+  const std::array<std::array<const char*, 2>, 6> wrong = { {
+    { "sin(x", "Mismatched brackets" },
+    { "q + 1", "Undefined symbol: 'q'" },
+    { "1/x", "The expression '1/x' of the source is not finite at point 0, (0, 0, 0)" },
+    { "sqrt(-1)", "is not finite at point 0" },
+    { "x*iHat", "is a vector; a number is expected" },
+    { "nan", "is not finite at point 0" },
+  } };
+  for (const auto& pair : wrong)
+  {
+    filter->SetSourceExpression(pair[0]);
+    refuses(filter, pair[1]);
+  }
+  filter->SetEquation(vtkEllipticAlgorithm::ELASTICITY);
+  filter->SetSourceExpression("x");
+  refuses(filter, "is a number; a vector is expected");
+  filter->SetPoissonRatio(0.5);
+  filter->SetSourceType(vtkEllipticAlgorithm::CONSTANT);
+  refuses(filter, "Poisson");
+  filter->SetEquation(vtkEllipticAlgorithm::POISSON);
+  filter->SetPETScOptions("-nonsense 3");
+  refuses(filter, "-nonsense");
+  filter->SetPETScOptions("-pc_type nonsense");
+  refuses(filter, "nonsense");
+  filter->SetPETScOptions("");
+  filter->SetFixedPart(vtkEllipticAlgorithm::ONLY_CHOSEN);
+  refuses(filter, "without a fixed point");
+  filter->SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY);
+  refuses(filter, "The expression of the fixed part of the boundary is empty");
+  filter->SetFixedPart(vtkEllipticAlgorithm::WHOLE_BOUNDARY);
+  filter->SetSourceValue(std::numeric_limits<double>::infinity());
+  refuses(filter, "not a finite number");
+  filter->SetSourceValue(1);
+  filter->SetEquation(vtkEllipticAlgorithm::ELLIPTIC);
+  filter->SetInputArrayToProcess(3, 0, 0, Cells, "onCells");
+  refuses(filter, "has 1 components; 6 or 9 are expected");
+  filter->SetInputArrayToProcess(3, 0, 0, Points, "vector");
+  refuses(filter, "is on points; one on cells is needed");
+  filter->SetEquation(vtkEllipticAlgorithm::POISSON);
+  filter->SetOmega(2.5);
+  filter->SetPreconditioner(vtkEllipticSolver::SSOR);
+  refuses(filter, "between 0 and 2");
+  filter->SetOmega(1);
+
+  MeshData inverted = data;
+  inverted.setPoint(6, { 3.2, 3.1, 0 });
+  filter->SetInputData(toGrid(inverted));
+  refuses(filter, "inverted");
+  MeshData mixed = data;
+  std::swap(mixed.connectivity[1], mixed.connectivity[2]);
+  filter->SetInputData(toGrid(mixed));
+  refuses(filter, "orientation of the mesh is mixed");
+  filter->SetInputData(toGrid(block(CellType::Triangle, 1)));
+  refuses(filter, "free");
+  MeshData notFinite = data;
+  notFinite.setPoint(6, { std::numeric_limits<double>::quiet_NaN(), 0, 0 });
+  filter->SetInputData(toGrid(notFinite));
+  refuses(filter, "finite");
+  vtkNew<vtkUnstructuredGrid> lines;
+  lines->SetPoints(toPoints(data));
+  const vtkIdType ends[] = { 0, 1 };
+  lines->InsertNextCell(VTK_LINE, 2, ends);
+  filter->SetInputData(lines);
+  refuses(filter, "The mesh has no cells finite elements are made of");
+  const vtkIdType corners[] = { 0, 1, 6, 7, 5 };
+  auto polygon = toGrid(data);
+  polygon->InsertNextCell(VTK_POLYGON, 5, corners);
+  filter->SetInputData(polygon);
+  refuses(filter, "1 cells are not triangles");
+  // and after all that it works
+  filter->SetInputData(grid);
+  TAUTLINE_CHECK_EQUAL(values(solved(filter)).size(), std::size_t(points));
+}
+
+//------------------------------------------------------------------------------
+void testNotices()
+{
+  MeshData data = block(CellType::Triangle, 4);
+  vtkNew<vtkEllipticSolver> filter;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(data));
+  const std::vector<double> expected = values(solved(filter));
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    std::swap(data.connectivity[3 * cell], data.connectivity[3 * cell + 1]);
+  }
+  data.addPoint({ 9, 9, 0 }); // in no element
+  filter->SetInputData(toGrid(data));
+  std::vector<double> found = values(solved(filter));
+  TAUTLINE_CHECK_EQUAL(found.back(), 0);
+  found.pop_back();
+  TAUTLINE_CHECK_NEAR(distance(found, expected), 0, 1e-12);
+  const std::string summary = filter->GetSummary();
+  TAUTLINE_CHECK(summary.find("reversed") != std::string::npos);
+  TAUTLINE_CHECK(summary.find("1 points are in no element") != std::string::npos);
+  TAUTLINE_CHECK(messages.empty());
+
+  // Stopping early keeps what there is, with a warning.
+  filter->SetInputData(toGrid(block(CellType::Triangle, 60)));
+  filter->SetPreconditioner(vtkEllipticSolver::NONE);
+  filter->SetTimeLimit(1e-9);
+  solved(filter);
+  TAUTLINE_CHECK(messages.has("time limit"));
+  filter->SetTimeLimit(0);
+  messages.clear();
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback(
+    [](vtkObject* caller, unsigned long, void*, void*)
+    {
+      auto* algorithm = vtkAlgorithm::SafeDownCast(caller);
+      algorithm->SetAbortExecute(algorithm->GetProgress() > 0.1 ? 1 : 0);
+    });
+  const unsigned long tag = filter->AddObserver(vtkCommand::ProgressEvent, stop);
+  vtkDataSet* mesh = solved(filter);
+  TAUTLINE_CHECK(messages.has("topped by the user"));
+  TAUTLINE_CHECK(filter->GetIterations() > 0 && !filter->GetConverged());
+  const std::vector<double> best = values(mesh);
+  TAUTLINE_CHECK(*std::max_element(best.begin(), best.end()) > 0);
+  filter->RemoveObserver(tag);
+  filter->SetAbortExecute(0);
+}
+}
+
+int TestEllipticSolver(int, char*[])
+{
+  testLinear();
+  testWays();
+  testCoefficients();
+  testElasticity();
+  testSolvers();
+  testBlocks();
+  testRefusals();
+  testNotices();
+  return exitCode();
+}

@@ -1,0 +1,165 @@
+"""parallel_solve.py FILE: for pvbatch on any number of MPI ranks. Solves on a cube whose parts are on all ranks (of more than
+two, the last has nothing) and writes what it finds to FILE as JSON. test_parallel_solve.py compares."""
+
+import json
+import os
+import sys
+
+import numpy as np
+from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
+
+# Runs on every rank: a cube of N^3 cubes of six tetrahedra each, in slabs; with a layer of ghost cells, with global ids.
+SLABS = """
+import builtins
+import itertools
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkCellArray
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+N, GHOSTS, IDS = {n}, {ghosts}, {ids}
+controller = vtkMultiProcessController.GetGlobalController()
+rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
+parts = ranks - 1 if ranks > 2 else ranks
+low, high = N * rank // parts, N * (rank + 1) // parts
+if rank < parts:
+    first, last = builtins.max(low - GHOSTS, 0), builtins.min(high + GHOSTS, N)
+    grid = output.VTKObject
+    k, j, i = np.meshgrid(np.arange(first, last + 1), np.arange(N + 1), np.arange(N + 1), indexing="ij")
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(np.stack([i, j, k], -1).reshape(-1, 3) / N, deep=True))
+    grid.SetPoints(points)
+    steps = (1, N + 1, (N + 1) ** 2)
+    ck, cj, ci = (a.ravel() for a in np.meshgrid(np.arange(last - first), np.arange(N), np.arange(N), indexing="ij"))
+    tetrahedra = []
+    for order in itertools.permutations(range(3)):
+        corners = list(itertools.accumulate((steps[a] for a in order), initial=ci + cj * steps[1] + ck * steps[2]))
+        if np.linalg.det(np.eye(3)[list(order)]) < 0:
+            corners[1], corners[2] = corners[2], corners[1]
+        tetrahedra.append(np.stack(corners, -1))
+    nodes = np.concatenate(tetrahedra).astype(np.int64)
+    cells = vtkCellArray()
+    offsets = np.arange(0, nodes.size + 1, 4, dtype=np.int64)
+    cells.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(nodes.ravel(), deep=True))
+    grid.SetCells(VTK_TETRA, cells)
+    layer = np.tile(ck + first, 6)
+    ghost = numpy_to_vtk(((layer < low) | (layer >= high)).astype(np.uint8), deep=True)
+    ghost.SetName("vtkGhostType")
+    left = numpy_to_vtk((layer == 0).astype(float), deep=True)
+    left.SetName("lowest layer")
+    grid.GetCellData().AddArray(left)
+    if GHOSTS:
+        grid.GetCellData().AddArray(ghost)
+    if IDS:
+        numbers = (i + j * steps[1] + k * steps[2]).ravel().astype(np.int64)
+        ids = numpy_to_vtkIdTypeArray(numbers, deep=True)
+        ids.SetName("numbers")
+        grid.GetPointData().SetGlobalIds(ids)
+"""
+RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
+TIGHT = 1e-11
+results = {}
+
+
+def cube(n=8, ghosts=0, ids=0):
+    return simple.ProgrammableSource(
+        OutputDataSetType="vtkUnstructuredGrid", Script=SLABS.format(n=n, ghosts=ghosts, ids=ids)
+    )
+
+
+def update(filter_):
+    filter_.UpdatePipeline()
+    filter_.UpdatePropertyInformation()
+    return filter_
+
+
+# Runs on every rank: writes points and arrays of its part to a file.
+DUMP = """
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+data = self.GetInputDataObject(0, 0)
+arrays = {{"points": np.zeros((0, 3))}}
+if data.GetNumberOfPoints() > 0:
+    arrays["points"] = vtk_to_numpy(data.GetPoints().GetData())
+    for fields in (data.GetPointData(), data.GetCellData()):
+        for k in range(fields.GetNumberOfArrays()):
+            arrays[fields.GetArrayName(k)] = vtk_to_numpy(fields.GetArray(k))
+np.savez("{file}." + str(vtkMultiProcessController.GetGlobalController().GetLocalProcessId()), **arrays)
+"""
+
+
+def parts(filter_):
+    """The arrays of each rank that has a part."""
+    simple.ProgrammableFilter(filter_, Script=DUMP.format(file=sys.argv[1])).UpdatePipeline()
+    found = (np.load(f"{sys.argv[1]}.{rank}.npz") for rank in range(RANKS))
+    return [arrays for arrays in found if len(arrays["points"])]
+
+
+def field(filter_, name):
+    """The values at all points of the cube, in an order that does not depend on the ranks, which must agree."""
+    shared = {}
+    for arrays in parts(filter_):
+        for point, value in zip(np.round(arrays["points"] * 1e6).astype(np.int64).tolist(), arrays[name].tolist()):
+            assert shared.setdefault(tuple(point), value) == value, f"{name} differs between ranks at {point}"
+    return [value for _, value in sorted(shared.items())]
+
+
+def total(filter_, name):
+    """The sum of a cell array over the cells that are not ghosts."""
+    found = []  # no sum() of Python here: ParaView's scripts replace it by a collective one
+    for arrays in parts(filter_):
+        own = arrays["vtkGhostType"] == 0 if "vtkGhostType" in arrays else slice(None)
+        found.append(arrays[name][own].sum())
+    return np.sum(found).item()
+
+
+for ghosts, ids in ((0, 0), (1, 0), (0, 1), (1, 1)):
+    mesh = cube(ghosts=ghosts, ids=ids)
+    solved = update(SolvePDE(mesh, SourceType="Expression", SourceExpression="x*y + z", RelativeTolerance=TIGHT))
+    results[f"poisson {ghosts} {ids}"] = field(solved, "Solution")
+    results[f"unknowns {ghosts} {ids}"] = solved.Unknowns
+elastic = SolvePDE(
+    cube(ghosts=1), Equation="Linear Elasticity", BodyForce=[0, 0, -1], Preconditioner="GAMG",
+    FixedPart="Part of the Boundary", FixedWhere="x < 0.01", RelativeTolerance=TIGHT,
+)  # fmt: skip
+results["elastic"] = field(update(elastic), "Displacement")
+held = SolvePDE(
+    cube(ids=1), FixedPart="Chosen Points Only", FixedPoints=["CELLS", "lowest layer"], GivenType="Expression",
+    GivenExpression="x", Solver="MINRES", Preconditioner="ILU(0)", RelativeTolerance=TIGHT,
+)  # fmt: skip
+results["held"] = field(update(held), "Solution")
+image = simple.Wavelet(WholeExtent=[0, 9, 0, 6, 0, 7])
+hexahedra = SolvePDE(image, SourceType="Array", SourceArray=["POINTS", "RTData"], RelativeTolerance=TIGHT)
+update(hexahedra)
+results["image"] = [hexahedra.Unknowns, *hexahedra.PointData["Solution"].GetRange()]
+history = servermanager.Fetch(hexahedra, idx=1)
+results["history"] = history.GetNumberOfRows() == hexahedra.Iterations + 1
+
+study = update(SolverStudy(cube(), Combinations=["1: CG + Jacobi", "15: MINRES + BoomerAMG", "17: Direct"]))
+table = servermanager.Fetch(study, idx=1)
+results["study"] = [table.GetValueByName(i, "N converged").ToDouble() for i in range(table.GetNumberOfRows())]
+estimate = update(ConditionEstimator(cube(ghosts=1), Preconditioner="Jacobi"))
+results["condition"] = [estimate.Condition, estimate.PreconditionedCondition]
+results["shares"] = total(estimate, "Share")
+
+# What goes wrong on one rank goes wrong on all, and none waits.
+for options in (
+    {"SourceType": "Expression", "SourceExpression": "1/(z - 1)"},  # on the uppermost part only
+    {"PETScOptions": "-nonsense 1"},
+    {"FixedPart": "Part of the Boundary", "FixedWhere": "x > 2"},
+):
+    wrong = update(SolvePDE(cube(), **options))
+    results[f"refused {options}"] = wrong.GetDataInformation().GetNumberOfCells()
+late = update(SolvePDE(cube(), Preconditioner="None", TimeLimit=1e-9))
+results["late"] = "time limit" in late.Summary
+
+results["ranks"] = RANKS
+with open(sys.argv[1], "w", encoding="utf-8") as out:
+    json.dump(results, out)

@@ -1,0 +1,56 @@
+"""test_parallel_solve.py PVBATCH: pvbatch on 1, 2 and 4 MPI ranks finds the same solutions. Skipped (77) without mpirun."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+MPIRUN = shutil.which("mpirun")
+if not MPIRUN:
+    print("there is no mpirun")
+    sys.exit(77)
+HERE, OUT = Path(__file__).parent, Path(os.environ["TAUTLINE_TEST_DIR"])
+# As root, too, and wherever processes may not read each other's memory.
+ENVIRONMENT = dict(os.environ, OMPI_MCA_btl_vader_single_copy_mechanism="none", OMP_NUM_THREADS="1")
+CLOSE = 1e-8
+SECONDS = 100
+
+
+def run(ranks: int) -> dict:
+    file = OUT / f"parallel_solve_{ranks}.json"
+    file.unlink(missing_ok=True)
+    command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "-np", str(ranks), sys.argv[1]]
+    done = subprocess.run([*command, str(HERE / "parallel_solve.py"), str(file)], env=ENVIRONMENT, timeout=SECONDS,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
+    assert file.exists(), done.stdout
+    # Each rank says what is wrong with the three problems that are refused.
+    for text in ("is not finite at point", "-nonsense", "without a fixed point"):
+        assert done.stdout.count(text) >= ranks, done.stdout
+    return json.loads(file.read_text())
+
+
+def close(a, b, tolerance=CLOSE) -> bool:
+    a, b = np.asarray(a), np.asarray(b)
+    return a.shape == b.shape and np.abs(a - b).max() <= tolerance * np.abs(b).max()
+
+
+one = run(1)
+assert one["unknowns 0 0"] == 343 and one["ranks"] == 1
+assert max(one["poisson 0 0"]) > 0.01 and len(one["poisson 0 0"]) == 729 and len(one["elastic"]) == 729
+for ranks in (1, 2, 4):
+    found = one if ranks == 1 else run(ranks)
+    assert found["ranks"] == ranks
+    for key in ("0 0", "1 0", "0 1", "1 1"):
+        assert found[f"unknowns {key}"] == 343, key
+        assert close(found[f"poisson {key}"], one["poisson 0 0"]), (ranks, key)
+    for key in ("elastic", "held", "image"):
+        assert close(found[key], one[key]), (ranks, key)
+    assert close(found["condition"], one["condition"], 1e-4), found["condition"]
+    assert abs(found["shares"] - 1) < 1e-6, found["shares"]
+    assert found["study"] == [1, 1, 1] and found["history"] and found["late"]
+    assert all(value == 0 for key, value in found.items() if key.startswith("refused"))
+    print(ranks, "ranks:", found["condition"], found["image"])
