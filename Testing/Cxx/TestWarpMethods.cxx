@@ -180,6 +180,29 @@ void testSecondStep()
 }
 
 //------------------------------------------------------------------------------
+/// Objectives without a barrier, one of which would rather have some elements inverted, do not get that by small steps.
+void testNoBarrier()
+{
+  const MeshData data = boxInBox(CellType::Tetrahedron, 10, 3);
+  MeshData moved = data;
+  moved.points =
+    warped(data, turnedBox(90, false), withMethod(WarpMethod::FemwarpUntangling)).points;
+  const Mesh mesh(data.view()), now(moved.view());
+  const Targets targets = referenceTargets(now, mesh);
+  OptimizeOptions options;
+  options.objectives.resize(2);
+  options.objectives[0].metric = Metric::ShapeSimilarity;
+  options.objectives[0].evaluation.targets = &targets;
+  options.objectives[1].metric = Metric::UntangleBeta;
+  options.stopping.maximumIterations = 40;
+  options.stopping.relativeChange = 0;
+  const Optimization result = optimize(now, options);
+  TAUTLINE_CHECK_EQUAL(result.invertedBefore, 0);
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
+  TAUTLINE_CHECK(result.history.back().objective < 0.5 * result.history[0].objective);
+}
+
+//------------------------------------------------------------------------------
 /// K M^-1 K x = 0 inside, with motions whose affine part vanishes by symmetry.
 void testBiharmonic()
 {
@@ -435,6 +458,7 @@ int TestWarpMethods(int, char*[])
   testTurnedBox();
   testSimilarity();
   testSecondStep();
+  testNoBarrier();
   testBiharmonic();
   testElasticity();
   testSteps();
