@@ -370,8 +370,20 @@ int EllipticChecks::elasticUnknowns() const
   this->everywhere(
     [&]() { own = this->Input.view().numberOfCells > 0 ? elasticComponents(this->Input) : 0; });
   const int all = static_cast<int>(this->Numbering.maximum(own));
-  this->throwTogether(own > 0 && own != all
-      ? "The mesh is planar on one rank and not on another: distribute it differently."
+  // Parts that are each planar must have one plane, and the same axes in it.
+  constexpr double tolerance = 1e-6, nothing = -10;
+  double apart = 0;
+  for (int k = 0; all == 2 && k < 6; ++k)
+  {
+    const double x = this->Input.frame()[k / 3][k % 3];
+    const double most = this->Numbering.maximum(own == 2 ? x : nothing),
+                 least = -this->Numbering.maximum(own == 2 ? -x : nothing);
+    apart = std::max(apart, most - least);
+  }
+  this->throwTogether((own > 0 && own != all) || apart > tolerance
+      ? "The parts of the mesh on the ranks are not in one plane: linear elasticity needs a planar "
+        "mesh or a volume mesh, and this is a surface in space. A planar mesh in an oblique plane: "
+        "turn it into the xy plane first."
       : "");
   return all;
 }

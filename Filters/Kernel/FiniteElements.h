@@ -46,8 +46,9 @@ enum class PlaneState : int
 /// Linear elasticity (2.4): -div(lambda (div u) I + 2 mu eps(u)).
 struct ElasticOperator
 {
-  double youngsModulus = 1.0;            ///< E > 0
-  double poissonRatio = 0.3;             ///< nu, -1 to 0.5 (exclusive)
+  double youngsModulus = 1.0; ///< E > 0
+  /// nu, -1 to 0.5 (plane stress: 1), exclusive. Near 0.5 linear elements lock: they are too stiff.
+  double poissonRatio = 0.3;
   const double* stiffening = nullptr;    ///< factors of E, one per cell, positive; or null
   PlaneState plane = PlaneState::Strain; ///< planar meshes only
 };

@@ -104,13 +104,13 @@ LinearSystem Study::systemFor(const SolverCombination& combination)
 }
 
 //------------------------------------------------------------------------------
-/// Finds out in which combinations PETSc's options have an effect, before any time is spent.
+/// Finds out in which combinations PETSc's options have an effect, and whether all options are good, before any time is spent.
 void Study::checkOptions()
 {
   const auto& combinations = this->Options.combinations;
-  this->TakesOptions.assign(combinations.size(), false);
+  this->TakesOptions.assign(combinations.size(), this->Options.solver.petscOptions.empty());
   std::string message;
-  for (std::size_t i = 0; i < combinations.size(); ++i)
+  for (std::size_t i = 0; i < combinations.size() && (i == 0 || !this->TakesOptions[i]); ++i)
   {
     SolverOptions options = this->Options.solver;
     options.method = combinations[i].method;
@@ -127,8 +127,7 @@ void Study::checkOptions()
       LinearSolver(this->systemFor(combinations[i]), options); // another error goes on
     }
   }
-  if (!combinations.empty() &&
-    std::count(this->TakesOptions.begin(), this->TakesOptions.end(), true) == 0)
+  if (std::count(this->TakesOptions.begin(), this->TakesOptions.end(), true) == 0)
   {
     throw Error(message);
   }
@@ -311,6 +310,10 @@ std::string Study::outlook(const SolverStudyRow& best) const
       " and its memory as " + (flat ? "N log N" : "N^1.33") +
       ", so that on finer meshes CG + BoomerAMG will overtake it.";
   }
+  if (isMultigrid(c.preconditioner) && this->System.blockSize() > 1 && !c.nearNullSpace)
+  {
+    return " Multigrid does not know the rigid body modes here: its iterations grow with the mesh.";
+  }
   if (isMultigrid(c.preconditioner))
   {
     return " Its iterations hardly depend on the number N of unknowns, so that its time grows "
@@ -422,6 +425,14 @@ void Study::recommend()
       why += ".";
     }
     why += this->outlook(best);
+    // The tolerance is of the preconditioned residual, which may be much smaller.
+    constexpr double factor = 10;
+    if (best.trueResidual > factor * this->Options.solver.relativeTolerance)
+    {
+      why += " What remains of the equations is " + digits(best.trueResidual) +
+        " of the right-hand side: the tolerance is of the preconditioned residual. Make it smaller "
+        "if the solution is to be more accurate.";
+    }
   }
   else
   {

@@ -88,6 +88,31 @@ def speedups(t: dict[str, float]) -> list[tuple[str, float]]:
     return [(f"two threads over one, {name}", t[f"{name} wall 1"] / t[f"{name} wall 2"]) for name in names]
 
 
+def conditioning(program: Path, cells: int, repeats: int) -> dict[str, float]:
+    """Seconds of assembly and of BoomerAMG's set-up on meshes of about so many cells."""
+    output = subprocess.run([str(program), str(cells), str(repeats)], check=True, capture_output=True, text=True).stdout
+    return {key: float(number) for key, number in (line.split("\t") for line in output.splitlines())}
+
+
+def conditioning_ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
+    """Assembly against what the solver does next, by threads, and in elements per second."""
+    rows = []
+    for kind in ("triangles poisson", "triangles in random order poisson", "tetrahedra poisson"):
+        rows.append((f"assembly / BoomerAMG's set-up, {kind}",
+                     t[f"assembly {kind} cpu"] / t[f"multigrid {kind} cpu"], "<= 0.5"))
+        rows.append((f"mesh to linear system / BoomerAMG's set-up, {kind}",
+                     t[f"system {kind} cpu"] / t[f"multigrid {kind} cpu"], ""))
+    for key in t:
+        if key.startswith("assembly") and key.endswith(" wall 1") and " again " not in key:
+            kind = key.removeprefix("assembly ").removesuffix(" wall 1")
+            cells = t[kind.split()[0]]
+            rows.append((f"assembly, {kind} [million elements / s]", cells / t[f"assembly {kind} cpu"] / 1e6, ""))
+            rows.append((f"two threads over one, assembly, {kind}", t[key] / t[key.replace(" 1", " 2")], ">= 1.5"))
+            again = f"assembly {kind} again cpu"
+            rows.append((f"assembly with known pattern / all, {kind}", t[again] / t[f"assembly {kind} cpu"], ""))
+    return rows
+
+
 def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None:
     print(f"{times['elements tetrahedra']:.0f} tetrahedra, {times['elements hexahedra']:.0f} hexahedra; one thread\n")
     print(f"{'ns per element':34}{'value':>10}{'gradient':>10}{'/ floor':>10}{'/ plain':>10}")
@@ -110,11 +135,11 @@ def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None
     for key, value in times.items():
         if key.startswith("peridynamics") and key.endswith("cpu"):
             print(f"{key:44}{value:10.3f} s")
-    print(f"\n{'ratio':54}{'':>10}{'aim':>10}")
+    print(f"\n{'ratio':70}{'':>10}{'aim':>10}")
     for what, number, aim in summary:
-        print(f"{what:54}{number:10.2f}{aim:>10}")
+        print(f"{what:70}{number:10.2f}{aim:>10}")
     for key in ("difference from the plain loop", "difference from vtkMeshQuality"):
-        print(f"{key:54}{times[key]:10.0e}")
+        print(f"{key:70}{times[key]:10.0e}")
 
 
 def show_table(rows: list[tuple[str, float, str]]) -> None:
@@ -144,7 +169,9 @@ def run_quality(build: Path, output: Path, size: int, repeats: int) -> None:
     elements = min(40, max(5, 2 * size // 3))  # 1 / h of the nonlocal matrices
     nonlocal_times = peridynamics(build / "bin" / "BenchmarkPeridynamics", elements, min(repeats, 3))
     times |= nonlocal_times
-    summary = ratios(times) + shape_ratios(times)
+    elliptic = conditioning(build / "bin" / "BenchmarkConditioning", 6 * size**3, min(repeats, 5))
+    times |= elliptic
+    summary = ratios(times) + shape_ratios(times) + conditioning_ratios(elliptic)
     summary += [(key, number, ">= 1.7" if "two threads" in key else "") for key, number in speedups(nonlocal_times)]
     show(times, summary)
     save(output, "benchmark", times, {what.strip(): number for what, number, _ in summary})

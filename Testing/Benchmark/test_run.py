@@ -27,6 +27,8 @@ def check_quality(output: Path) -> None:
     # The one thing about the numbers that is the same on every machine: they time the same quantity.
     assert measured["difference from the plain loop"] < 1e-12, measured
     assert measured["difference from vtkMeshQuality"] < 1e-12, measured
+    assert measured["tetrahedra"] == 6 * 4**3, measured
+    assert ratios["assembly / BoomerAMG's set-up, triangles poisson"] > 0, ratios
 
 
 def check_optimization(output: Path) -> None:

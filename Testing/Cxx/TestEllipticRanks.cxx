@@ -197,6 +197,11 @@ void testRefusals(MPI_Comm comm)
   problem.pde = Pde::Elasticity;
   problem.source = { 0, 0, 1 };
   refused(good, problem, "out of the plane");
+  // Bent where one rank's part ends: each part is flat, the mesh is not.
+  problem.source = { 0, 0, 0 };
+  data = good;
+  data.transform([](const Vec3& p) { return p[0] > 3 ? Vec3{ 3, p[1], p[0] - 3 } : p; });
+  refused(data, problem, "surface in space");
   // Nothing fixed: no part of any rank is held. One point fixed on one rank holds them all.
   std::vector<unsigned char> fixed(good.numberOfPoints(), 0);
   problem = {};

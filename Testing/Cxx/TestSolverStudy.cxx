@@ -88,6 +88,17 @@ void testPoisson()
   TAUTLINE_CHECK(study.why.rfind(nameOf(best.combination), 0) == 0); // begins with it
   TAUTLINE_CHECK(contains(study.why, "The next, ") && contains(study.why, "grows about as N"));
   TAUTLINE_CHECK(!contains(study.why, "bad shape") && !contains(study.why, "converge"));
+  TAUTLINE_CHECK(!contains(study.why, "What remains"));
+
+  // The tolerance is of the preconditioned residual; the study says what the true one is.
+  options = {};
+  const MeshData large = movedBlock(CellType::Triangle, 120, 0.1);
+  const Mesh fine(large.view());
+  options.combinations = { { KrylovMethod::GMRES, Preconditioner::BoomerAMG, false } };
+  options.conditions = false;
+  const SolverStudy rough = studySolvers(EllipticSystem(fine, {}), options);
+  TAUTLINE_CHECK(rough.rows[0].trueResidual > 1e-4);
+  TAUTLINE_CHECK(contains(rough.why, "What remains of the equations is "));
 }
 
 //------------------------------------------------------------------------------
@@ -119,6 +130,9 @@ void testElasticity()
     TAUTLINE_CHECK_EQUAL(study.rows[i].condition, 0.0);
   }
   TAUTLINE_CHECK(contains(study.why, "rigid body modes"));
+  options.combinations.resize(1);
+  const SolverStudy blind = studySolvers(system, options);
+  TAUTLINE_CHECK(contains(blind.why, "does not know the rigid body modes"));
 }
 
 //------------------------------------------------------------------------------
@@ -148,6 +162,7 @@ void testFailuresAndWarnings()
   options.solver.maximumIterations = 12;
   options.combinations = dissertationCombinations();
   study = studySolvers(system, options);
+  TAUTLINE_CHECK(!contains(study.why, "nearly singular"));
   TAUTLINE_CHECK(study.recommended >= 4 && contains(study.why, "did not converge"));
 }
 
