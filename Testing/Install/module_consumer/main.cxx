@@ -43,5 +43,6 @@ int main()
   solver->SetInputConnection(quality->GetOutputPort());
   solver->Update();
   std::cout << solver->GetSummary() << "\n";
-  return cells > 0 && solver->GetConverged() && optimizer->GetStopReason() >= 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return cells > 0 && solver->GetConverged() && optimizer->GetStopReason() >= 0 ? EXIT_SUCCESS
+                                                                                : EXIT_FAILURE;
 }
