@@ -140,6 +140,12 @@ const char* nameOf(Preconditioner preconditioner)
   return names[static_cast<int>(preconditioner)];
 }
 
+const char* fastMultigridOptions()
+{
+  return "-pc_hypre_boomeramg_coarsen_type HMIS -pc_hypre_boomeramg_interp_type ext+i "
+         "-pc_hypre_boomeramg_agg_nl 1 -pc_hypre_boomeramg_P_max 4";
+}
+
 bool converged(SolveReason reason)
 {
   return static_cast<int>(reason) <= static_cast<int>(SolveReason::OtherConvergence);
@@ -196,9 +202,18 @@ LinearSolver::Implementation::Implementation(
 
 LinearSolver::Implementation::~Implementation()
 {
-  if (this->DestroyTest && petscUsable())
+  if (this->DestroyTest && petscUsable() && this->Generation == petscGeneration())
   {
     this->DestroyTest(this->TestContext);
+  }
+}
+
+void LinearSolver::Implementation::requireAlive() const
+{
+  if (!petscUsable() || this->Generation != petscGeneration())
+  {
+    throw Error("Somebody else in this process has shut down PETSc since this linear solver was "
+                "made: make a new one.");
   }
 }
 
@@ -501,6 +516,7 @@ LinearSolver::LinearSolver(const LinearSystem& system, const SolverOptions& opti
 
 LinearSolver::~LinearSolver()
 {
+  // Once PETSc has gone, nothing is left to destroy, and it must not be initialised for that.
   if (petscUsable())
   {
     const PetscScope scope;
@@ -510,12 +526,14 @@ LinearSolver::~LinearSolver()
 
 double LinearSolver::setUp()
 {
+  this->Impl->requireAlive();
   const PetscScope scope(this->Impl->OptionSet.database());
   return this->Impl->setUp();
 }
 
 LinearSolution LinearSolver::solve(const double* b, double* x)
 {
+  this->Impl->requireAlive();
   const PetscScope scope(this->Impl->OptionSet.database());
   return this->Impl->solve(b, x);
 }
