@@ -57,11 +57,12 @@ std::vector<double> valuesOf(const PetscSystem& system, Vec vector)
   return values;
 }
 
-/// Puts the two ends together.
-void fill(const SpectrumEnds& ends, const PetscSystem& system, const ConditionOptions& options,
+/// Puts the two ends together. Rounding moves eigenvalues by about the last digit of the largest, whatever residuals say.
+void fill(SpectrumEnds& ends, const PetscSystem& system, const ConditionOptions& options,
   const SpectrumWatch& watch, ConditionEstimate& result)
 {
-  const SpectrumEnd &low = ends.smallest, &high = ends.largest;
+  SpectrumEnd &low = ends.smallest, &high = ends.largest;
+  low.bound = std::max(low.bound, std::numeric_limits<double>::epsilon() * std::abs(high.value));
   result.smallest = low.found ? low.value : 0.0;
   result.largest = high.found ? high.value : 0.0;
   result.smallestError = low.found ? relative(low) : std::numeric_limits<double>::infinity();
@@ -291,7 +292,7 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
     }
     else
     {
-      const SpectrumEnds ends = plain
+      SpectrumEnds ends = plain
         ? plainEnds(system, objects, options, optionSet, watch)
         : preconditionedEnds(system, options, options.preconditioner, options.petscOptions, watch);
       fill(ends, objects, options, watch, result);

@@ -24,7 +24,7 @@ struct ConditionOptions
   /// None: the spectrum of A; else of P^-1 A.
   Preconditioner preconditioner = Preconditioner::None;
   double omega = 1.0;      ///< of SSOR
-  double tolerance = 1e-6; ///< relative, of each eigenvalue
+  double tolerance = 1e-4; ///< relative, of each eigenvalue; multigrid takes ten times longer to 1e-6
   int maximumIterations = 10000;
   double maximumSeconds = 0.0; ///< 0: no limit
   std::string petscOptions;
@@ -34,7 +34,8 @@ struct ConditionOptions
 struct ConditionEstimate
 {
   double smallest = 0.0, largest = 0.0; ///< eigenvalues; 0 where not found
-  /// Relative error bounds from residuals; infinity where nothing is known (Ritz values).
+  /// Relative errors: bounds from residuals or, where eigenvalues crowd, an estimate from the last half of the iterations;
+  /// infinity where nothing is known (Ritz values).
   double smallestError = 0.0, largestError = 0.0;
   double condition = 0.0; ///< largest / smallest; 0 where the smallest is not positive
   bool converged = false;
@@ -52,8 +53,8 @@ struct ConditionEstimate
  *
  * Failures of PETSc or SLEPc, a matrix that is singular or not definite, a preconditioner that is not symmetric or not
  * definite, the time limit and an abort are messages, not exceptions; what was found is kept. Bad options throw Error, and so
- * does what LinearSolver refuses. Error bounds are those of the computed vectors: that no eigenvalue lies further out rests
- * on the start vector, which is random, and for a factorised A on its number of negative pivots.
+ * does what LinearSolver refuses. Errors are those of the computed vectors: that no eigenvalue lies further out rests on the
+ * start vector, which is random, and for a factorised A on its number of negative pivots.
  */
 TAUTLINE_KERNEL_EXPORT ConditionEstimate estimateCondition(
   const LinearSystem& system, const ConditionOptions& options);

@@ -8,8 +8,6 @@ namespace
 {
 /// An eigenvalue below this times the largest is zero but for rounding.
 constexpr double ZeroTolerance = 1e-13;
-/// A residual below this times the largest eigenvalue is due to rounding, if gaps are this many times larger.
-constexpr double RoundingTolerance = 1e-12, ClearGap = 100.0;
 /// How unsymmetric the action of a preconditioner may be.
 constexpr double SymmetryTolerance = 1e-7;
 constexpr Index FirstCheck = 8;
@@ -87,48 +85,45 @@ private:
 };
 
 /**
- * What the first pass finds of an end. Its bound is the residual: the better one of Kato and Temple relies on the distance to the
- * next Ritz value, which is too large as long as close eigenvalues have not come apart.
+ * What the first pass finds of an end. An eigenvalue lies within the residual r of the value. Where eigenvalues crowd, r is far
+ * larger than the error; r^2 over the distance to the next Ritz value (Kato-Temple) is far smaller as long as close eigenvalues
+ * have not come apart. So that is believed only together with how far the value moved since half of the steps: convergence is
+ * at least quadratic in their number (Kaniel-Paige), so that no more than a third of it is left.
  */
 struct Candidate
 {
   RitzPair pair;
-  double gap = 0.0;
-  bool converged = false, confirmed = false;
+  double estimate = 0.0; ///< of the error, as described
+  bool converged = false;
+  std::vector<std::pair<Index, double>> history; ///< steps and values
 };
 
-double gapOf(const Tridiagonal& t, bool smallest, double value)
+void update(
+  Candidate& end, const Tridiagonal& t, bool smallest, double beta, double tolerance, double scale)
 {
-  const auto n = static_cast<Index>(t.diagonal.size());
-  return n > 1 ? std::abs(t.eigenvalue(smallest ? 1 : n - 2) - value) : 0.0;
-}
-
-/// Looks at an end; a value that has converged must not move until the next look.
-void update(Candidate& end, const Tridiagonal& t, bool smallest, double beta, double tolerance,
-  double scale, bool last)
-{
-  if (end.confirmed)
+  if (end.converged)
   {
     return;
   }
-  RitzPair pair = ritzPair(t, smallest, beta);
-  pair.bound = beta * std::abs(pair.vector.back());
-  if (end.converged &&
-    std::abs(pair.value - end.pair.value) <=
-      std::max(tolerance * std::abs(pair.value), ZeroTolerance * scale))
+  const auto steps = static_cast<Index>(t.diagonal.size());
+  end.pair = ritzPair(t, smallest, beta);
+  const double residual = beta * std::abs(end.pair.vector.back());
+  end.estimate = residual;
+  for (const auto& [before, value] : end.history)
   {
-    end.confirmed = true;
-    return;
+    if (2 * before <= steps)
+    {
+      end.estimate = std::max(end.pair.bound, std::abs(end.pair.value - value));
+    }
   }
-  end.pair = pair;
-  end.gap = gapOf(t, smallest, pair.value);
-  end.converged = pair.bound <= std::max(tolerance * std::abs(pair.value), ZeroTolerance * scale);
-  end.confirmed = end.converged && last;
+  end.history.emplace_back(steps, end.pair.value);
+  end.converged = std::min(residual, end.estimate) <=
+    std::max(tolerance * std::abs(end.pair.value), ZeroTolerance * scale);
 }
 
 /// The value and its bound from the gathered y = P x.
-void measure(Mat matrix, PC preconditioner, const PetscVector& y, const Candidate& candidate,
-  double scale, SpectrumEnd& end)
+void measure(
+  Mat matrix, PC preconditioner, const PetscVector& y, const Candidate& candidate, SpectrumEnd& end)
 {
   PetscVector x, r, z;
   petsc(VecDuplicate(y, x.out()));
@@ -144,8 +139,7 @@ void measure(Mat matrix, PC preconditioner, const PetscVector& y, const Candidat
   petsc(PCApply(preconditioner, r, z));
   petsc(VecDot(r, z, &square));
   const double residual = std::sqrt(std::max(square, 0.0) / mass);
-  const bool rounded = residual <= RoundingTolerance * scale && candidate.gap > ClearGap * residual;
-  end.bound = rounded ? residual * residual / candidate.gap : residual;
+  end.bound = std::min(residual, candidate.estimate + std::abs(end.value - candidate.pair.value));
   end.found = std::isfinite(end.value) && std::isfinite(end.bound);
   petsc(VecScale(x, 1.0 / std::sqrt(std::max(mass, std::numeric_limits<double>::min()))));
   end.vector = std::move(x);
@@ -230,10 +224,10 @@ SpectrumEnds lanczosEnds(
     if (steps >= nextCheck || last)
     {
       const double beta = invariant ? 0.0 : recurrence.beta();
-      update(high, t, false, beta, options.tolerance, scale, last);
-      update(low, t, true, beta, options.tolerance, scale, last);
+      update(high, t, false, beta, options.tolerance, scale);
+      update(low, t, true, beta, options.tolerance, scale);
       nextCheck = steps + std::max<Index>(4, steps / 10);
-      if (last || (low.confirmed && high.confirmed))
+      if (last || (low.converged && high.converged))
       {
         break;
       }
@@ -271,14 +265,14 @@ SpectrumEnds lanczosEnds(
       recurrence.step();
     }
   }
-  measure(matrix, preconditioner, yLow, low, scale, ends.smallest);
-  measure(matrix, preconditioner, yHigh, high, scale, ends.largest);
+  measure(matrix, preconditioner, yLow, low, ends.smallest);
+  measure(matrix, preconditioner, yHigh, high, ends.largest);
   ends.smallest.iterations = static_cast<int>(low.pair.vector.size());
   ends.largest.iterations = static_cast<int>(high.pair.vector.size());
   for (const auto& [end, candidate] :
     { std::make_pair(&ends.smallest, &low), std::make_pair(&ends.largest, &high) })
   {
-    if (!candidate->confirmed && !watch.stopped())
+    if (!candidate->converged && !watch.stopped())
     {
       end->message = "Not converged after " + std::to_string(steps) + " steps of Lanczos.";
     }

@@ -140,6 +140,12 @@ const char* nameOf(Preconditioner preconditioner)
   return names[static_cast<int>(preconditioner)];
 }
 
+const char* fastMultigridOptions()
+{
+  return "-pc_hypre_boomeramg_coarsen_type HMIS -pc_hypre_boomeramg_interp_type ext+i "
+         "-pc_hypre_boomeramg_agg_nl 1 -pc_hypre_boomeramg_P_max 4";
+}
+
 bool converged(SolveReason reason)
 {
   return static_cast<int>(reason) <= static_cast<int>(SolveReason::OtherConvergence);

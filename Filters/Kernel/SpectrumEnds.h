@@ -65,7 +65,8 @@ void fillStartVector(Vec vector, std::uint64_t seed = 0);
  *
  * For an end, the tridiagonal matrix of the step at which it converged is taken, before rounding makes copies of it. With y
  * gathered and x = P^-1 y, the value is the Rayleigh quotient x^T A x / x^T y; an eigenvalue is within the norm of
- * A x - theta y, in the inner product of P^-1, of it: rounding in the recurrence does not matter.
+ * A x - theta y, in the inner product of P^-1, of it: rounding in the recurrence does not matter. Where that is far too
+ * large, because eigenvalues crowd, the error is estimated from the last half of the steps.
  *
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 10.1 to 10.3; C. C. Paige, J. Inst. Maths Applics
  * 18 (1976), on what rounding does; bounds: B. N. Parlett, The Symmetric Eigenvalue Problem, sections 10.6 and 15.9.

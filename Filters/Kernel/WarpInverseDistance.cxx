@@ -7,9 +7,9 @@ namespace tautline
 {
 namespace
 {
-constexpr double LargestPower = 16.0;
+constexpr double LargestPower = 20.0;
 /// Squared distance below which points are at one place: beyond, the largest power is far from overflow.
-constexpr double Coincident = 1e-30;
+constexpr double Coincident = 1e-28;
 constexpr std::size_t LeafSize = 16;
 /// A group of points counts as a whole from a distance at which the third term of its expansion, for points all in
 /// one direction, is this part of the first. (The groups lie around their centres: what is left of it is far less.)
@@ -192,7 +192,7 @@ std::vector<double> warpByInverseDistance(const Mesh& mesh,
   if (!(options.distancePower > 0 && options.distancePower <= LargestPower))
   {
     throw Error("the power of the distance is " + std::to_string(options.distancePower) +
-      "; it must be above 0 and at most 16");
+      "; it must be above 0 and at most 20");
   }
   const WarpClock clock(options);
   const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);

@@ -22,7 +22,7 @@ namespace tautline
  * options.progress returned false or options.maximumSeconds were over. Throws Error for options out of range.
  *
  * Inverse distance weighting (Shepard): the mean of the prescribed displacements, weighted by the distance to the power
- * -options.distancePower (above 0, at most 16). Far groups of points count by their expansion to second order, which
+ * -options.distancePower (above 0, at most 20). Far groups of points count by their expansion to second order, which
  * differs from the sum over all points by less than 1e-4 of the largest displacement.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mesh,

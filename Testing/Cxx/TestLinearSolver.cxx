@@ -468,6 +468,43 @@ void testTogether()
   TAUTLINE_CHECK_EQUAL(solved(systemOf(a), nested, b).solution.iterations, 5);
 }
 
+/// The cheap multigrid options: as accurate, and cheaper on a cube.
+void testFastMultigrid()
+{
+  const int n = 28;
+  SparseMatrix a;
+  a.size = n * n * n;
+  for (int i = 0; i < a.size; ++i)
+  {
+    const int x = i % n, y = i / n % n, z = i / n / n;
+    for (const int k : { -n * n, -n, -1, 0, 1, n, n * n })
+    {
+      const int along = std::abs(k) == 1 ? x : std::abs(k) == n ? y : z;
+      if (k == 0 || (along + (k > 0) > 0 && along + (k > 0) < n))
+      {
+        a.columns.push_back(i + k);
+        a.values.push_back(k == 0 ? 6.0 : -1.0);
+      }
+    }
+    a.offsets.push_back(a.nonzeros());
+  }
+  const std::vector<double> b = someVector(a.size);
+  SolverOptions usual, fast;
+  fast.petscOptions = fastMultigridOptions();
+  double usualSeconds = 1e300, fastSeconds = 1e300;
+  for (int turn = 0; turn < 3; ++turn)
+  {
+    const LinearSolution one = solved(systemOf(a), usual, b).solution;
+    const LinearSolution two = solved(systemOf(a), fast, b).solution;
+    TAUTLINE_CHECK(converged(one.reason) && converged(two.reason));
+    TAUTLINE_CHECK(two.trueResidual < 1e-4);
+    TAUTLINE_CHECK(two.iterations <= 3 * one.iterations);
+    usualSeconds = std::min(usualSeconds, one.setupSeconds + one.solveSeconds);
+    fastSeconds = std::min(fastSeconds, two.setupSeconds + two.solveSeconds);
+  }
+  TAUTLINE_CHECK(fastSeconds < 0.7 * usualSeconds);
+}
+
 void testRefused()
 {
   const SparseMatrix none;
@@ -516,6 +553,7 @@ int TestLinearSolver(int, char*[])
   testControls();
   testStranger();
   testTogether();
+  testFastMultigrid();
   testRefused();
   return exitCode();
 }

@@ -1,6 +1,7 @@
 // FEMWARP and its anisotropic forms: the propositions of section 4.9.1, the coefficients, the limits in which they
 // vanish, and what is kept for the next boundary position.
 
+#include "../Benchmark/KuhnMesh.h"
 #include "Warping.h"
 
 #include "tautline/FiniteElements.h"
@@ -104,14 +105,25 @@ void testPropositions()
     TAUTLINE_CHECK_NEAR(own, 0, 1e-14);
   }
 
-  // In space: layers of a block of hexahedra, gamma = 1 alone.
-  const MeshData block = blockMesh(CellType::Hexahedron, 4, 3, 5);
-  const auto motion = [](const Vec3& p) {
-    return Vec3{ 0, 0, p[2] == 5 ? -2.0 * p[0] * (4 - p[0]) / 4 : 0.0 };
+  // In space: cubes cut into six tetrahedra round a diagonal, each of which has one edge along z.
+  constexpr Index n = 6;
+  const std::vector<double> z = spaced(n, 1.0, 1.4);
+  MeshData cubes = cutIntoTetrahedra(blockMesh(CellType::Hexahedron, n, n, n), n);
+  cubes.transform([&](const Vec3& p) { return Vec3{ p[0] / n, p[1] / n, z[Index(p[2])] }; });
+  const auto top = [](const Vec3& p) {
+    return Vec3{ 0, 0, p[2] > 0.999 ? -2.4 * p[0] * (1 - p[0]) * p[1] : 0.0 };
   };
-  const Warping result = warped(block, motion, manual(0, 0, 1));
+  const Warping result = warped(cubes, top, manual(0, 0, 1));
   TAUTLINE_CHECK_EQUAL(result.decoupled, 0);
-  TAUTLINE_CHECK(distance(result.points, block.points) > 1);
+  TAUTLINE_CHECK_EQUAL(result.regularization, 0.0);
+  for (Index i = 0; i < cubes.numberOfPoints(); ++i)
+  {
+    const Vec3 p = cubes.point(i);
+    const bool boundary = p[0] == 0 || p[1] == 0 || p[0] == 1 || p[1] == 1;
+    const double gamma = 1 + top({ p[0], p[1], 1 })[2];
+    TAUTLINE_CHECK_NEAR(result.points[3 * i + 2],
+      (boundary ? 1.0 : gamma) * p[2] + (boundary && p[2] > 0.999 ? gamma - 1 : 0.0), 1e-12);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -304,6 +316,55 @@ void testCoefficients()
 }
 
 //------------------------------------------------------------------------------
+/// The same tensor in every cell is one tensor; a stiff region keeps its shape.
+void testPerCell()
+{
+  const MeshData data = boxInBox(CellType::Triangle, 16, 4);
+  const Field motion = [](const Vec3& p) {
+    return onInnerBox(p, true) ? Vec3{ 0.1, 0.06, 0 } : Vec3{ 0, 0, 0 };
+  };
+  WarpOptions one = manual(2, 0.5);
+  one.tensor[3] = 0.3;
+  std::vector<double> tensors;
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    tensors.insert(tensors.end(), one.tensor.begin(), one.tensor.end());
+  }
+  WarpOptions each = one;
+  each.coefficients = WarpCoefficients::PerCell;
+  each.tensors = tensors.data();
+  TAUTLINE_CHECK_NEAR(
+    distance(warped(data, motion, one).points, warped(data, motion, each).points), 0, 1e-12);
+
+  const auto distortion = [&](double stiffness)
+  {
+    std::vector<char> inside(data.numberOfCells());
+    for (Index c = 0; c < data.numberOfCells(); ++c)
+    {
+      Vec3 center = { 0, 0, 0 };
+      for (Index k = 0; k < 3; ++k)
+      {
+        center += (1.0 / 3) * data.point(data.connectivity[3 * c + k]);
+      }
+      inside[c] = std::abs(center[0] - 0.5) < 0.25 && std::abs(center[1] - 0.5) < 0.25;
+      const double value = inside[c] ? stiffness : 1.0;
+      const double tensor[6] = { value, value, value, 0, 0, 0 };
+      std::copy_n(tensor, 6, &tensors[6 * c]);
+    }
+    const Warping result = warped(data, motion, each);
+    const std::vector<double> q = shapeSimilarity(Mesh(data.view()), result.points.data());
+    double sum = 0;
+    for (Index c = 0; c < data.numberOfCells(); ++c)
+    {
+      sum += inside[c] ? q[c] : 0.0;
+    }
+    return sum;
+  };
+  const double same = distortion(1), stiff = distortion(100);
+  TAUTLINE_CHECK(stiff < 0.01 * same);
+}
+
+//------------------------------------------------------------------------------
 /// Points that no prescribed one determines.
 void testDecoupled()
 {
@@ -444,6 +505,7 @@ int TestWarp(int, char*[])
   testAffine();
   testEquation();
   testCoefficients();
+  testPerCell();
   testDecoupled();
   testReuse();
   return exitCode();

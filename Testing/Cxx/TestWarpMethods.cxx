@@ -133,6 +133,42 @@ void testSecondStep()
     TAUTLINE_CHECK(result.history.back().worstShape < untangled);
     TAUTLINE_CHECK_EQUAL(result.history[1].stage, std::string(beta < 0 ? "untangle" : "optimize"));
   }
+  // The unit of length does not matter.
+  const Warping unit = warped(data, motion, WarpOptions());
+  for (const double scale : { 0x1p-27, 0x1p27, 1e-8, 1e8 })
+  {
+    // Powers of two round alike; others lead the optimizer to another place where it hardly changes any more.
+    const double close = scale == 0x1p-27 || scale == 0x1p27 ? 1e-12 : 0.02;
+    MeshData scaled = data;
+    scaled.transform([scale](const Vec3& p) { return scale * p; });
+    Warping result = warped(
+      scaled, [&](const Vec3& p) { return scale * motion((1 / scale) * p); }, WarpOptions());
+    TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
+    for (double& x : result.points)
+    {
+      x /= scale;
+    }
+    TAUTLINE_CHECK_NEAR(distance(result.points, unit.points), 0, close);
+    TAUTLINE_CHECK_RELATIVE(result.history.back().meanShape, unit.history.back().meanShape, close);
+  }
+
+  // Triangles beside quadrilaterals.
+  MeshData mixed;
+  const MeshData quads = boxInBox(CellType::Quadrilateral, 20, 8);
+  mixed.points = quads.points;
+  for (Index c = 0; c < quads.numberOfCells(); ++c)
+  {
+    const Index* q = &quads.connectivity[4 * c];
+    if (quads.point(q[0])[0] < 0.5)
+    {
+      mixed.addCell(CellType::Quadrilateral, std::vector<Index>{ q[0], q[1], q[2], q[3] });
+      continue;
+    }
+    mixed.addCell(CellType::Triangle, std::vector<Index>{ q[0], q[1], q[2] });
+    mixed.addCell(CellType::Triangle, std::vector<Index>{ q[0], q[2], q[3] });
+  }
+  checkValid(mixed, turnedBox(40, true), warped(mixed, turnedBox(40, true), WarpOptions()));
+
   // Nothing moves: nothing changes.
   const Warping still = warped(
     data,

@@ -191,7 +191,7 @@ void testInverseDistance()
   problem.prescribe([](const Vec3& p) { return wave(p, 14); });
   const Mesh mesh(problem.data.view());
   const PrescribedMotion motion(mesh, problem.prescribed, problem.displacement.data(), 0);
-  for (const double power : { 0.5, 1.0, 2.0, 2.5, 3.0, 4.0, 6.0, 16.0 })
+  for (const double power : { 0.5, 1.0, 2.0, 2.5, 3.0, 4.0, 6.0, 20.0 })
   {
     const Context context("power " + std::to_string(power));
     std::vector<Vec3> rest;
@@ -475,10 +475,10 @@ void testControl()
   Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, 6, 6, 6));
   problem.prescribe([](const Vec3& p) { return wave(p, 6); });
   WarpOptions wrong;
-  for (const double power : { 0.0, -1.0, 16.5, std::nan("") })
+  for (const double power : { 0.0, -1.0, 20.5, std::nan("") })
   {
     wrong.distancePower = power;
-    TAUTLINE_CHECK_THROWS(problem.run(warpByInverseDistance, wrong), "above 0 and at most 16");
+    TAUTLINE_CHECK_THROWS(problem.run(warpByInverseDistance, wrong), "above 0 and at most 20");
   }
   for (const double radius : { -1.0, std::nan(""), HUGE_VAL })
   {

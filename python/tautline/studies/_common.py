@@ -252,14 +252,15 @@ def scaled(mesh: vtkDataSet, factor: float) -> vtkDataSet:
 # --- reports --------------------------------------------------------------------------------------------
 
 
-def parser(name: str, text: str | None, cells: int = 0) -> argparse.ArgumentParser:
-    """The options every study has."""
+def parser(name: str, text: str | None, cells: int = 0, threads: bool = True) -> argparse.ArgumentParser:
+    """The options every study has; without threads, those that always use one."""
     made = argparse.ArgumentParser(prog=f"python3 -m tautline study {name}", description=(text or "").split("\n")[0])
     made.add_argument("--small", action="store_true", help="a small mesh, for a look or a test: seconds")
     made.add_argument(
         "--out", type=Path, default=Path(f"study-{name}"), metavar="DIR", help="where files go (%(default)s)",
     )
-    made.add_argument("--threads", type=int, default=1, help="0 is all cores (%(default)s, for comparable times)")
+    if threads:
+        made.add_argument("--threads", type=int, default=1, help="0 is all cores (%(default)s, for comparable times)")
     if cells:
         made.add_argument("--cells", type=int, default=0, help=f"about how many (default: {cells:,})")
     return made
@@ -367,6 +368,68 @@ class Report:
             axis.set_title(f"{title}\n{np.count_nonzero(wrong)} inverted", fontsize=9)
         self.save(figure, file)
 
+    def lines(self, file: str, panels: Sequence[tuple[str, str, str, dict[str, tuple]]], columns: int = 2) -> None:
+        """A picture of curves; a panel is (title, label of x, label of y, {label of a curve: (x, y)})."""
+        if not self._pictures():
+            return
+        columns = min(columns, len(panels))
+        rows = -(-len(panels) // columns)
+        figure, axes = pyplot.subplots(rows, columns, figsize=(5.6 * columns, 4.2 * rows), squeeze=False)
+        for axis in axes.flat[len(panels):]:
+            axis.set_axis_off()
+        for axis, (title, x_label, y_label, curves) in zip(axes.flat, panels):
+            for number, (label, (x, y)) in enumerate(curves.items()):
+                # Ten colours; beyond, they come back dashed.
+                axis.plot(x, y, "-" if number < 10 else "--", marker="osv^D<>*xp"[number % 10], markersize=4,
+                          linewidth=1.2, label=label)
+            axis.set(title=title, xlabel=x_label, ylabel=y_label)
+            axis.set_ylim(bottom=0)
+            axis.grid(alpha=0.3)
+            axis.legend(fontsize=7)
+        self.save(figure, file)
+
+    def grid(self, file: str, title: str, rows: Sequence[str], columns: Sequence[str],
+             values: Sequence[Sequence[float]]) -> None:
+        """A picture of a table of counts, darker where there are more; 0 stays white."""
+        if not self._pictures():
+            return
+        figure, axis = pyplot.subplots(figsize=(1.6 + 0.95 * len(columns), 1.2 + 0.32 * len(rows)))
+        shade = np.log1p(np.array(values, float))
+        axis.imshow(np.ma.masked_equal(shade, 0), cmap="Reds", aspect="auto", vmin=0, vmax=max(1.0, 1.3 * shade.max()))
+        for i, row in enumerate(values):
+            for j, value in enumerate(row):
+                axis.text(j, i, _short(value), ha="center", va="center", fontsize=8)
+        axis.set_title(title, fontsize=10)
+        axis.set_xticks(range(len(columns)), columns, fontsize=8)
+        axis.set_yticks(range(len(rows)), rows, fontsize=8)
+        self.save(figure, file)
+
+    def polygons(self, file: str, titles: Sequence[str], drawings: Sequence[tuple[Sequence[np.ndarray], np.ndarray]],
+                 windows: Sequence[Sequence[float] | None], columns: int, colors: tuple[str, str]) -> None:
+        """A picture of panels of polygons, marked ones filled; a window is xmin xmax ymin ymax."""
+        if not self._pictures():
+            return
+        rows = -(-len(drawings) // columns)
+        # Rows as high as what they show.
+        frames = [window or _frame(pieces) for (pieces, _), window in zip(drawings, windows)]
+        ratios = [(top - bottom) / (right - left) for left, right, bottom, top in frames]
+        heights = [4.2 * max(ratios[r * columns : (r + 1) * columns]) + 0.5 for r in range(rows)]
+        figure, axes = pyplot.subplots(rows, columns, figsize=(4.2 * columns, sum(heights)), squeeze=False,
+                                       gridspec_kw={"height_ratios": heights})
+        plain, filled = colors
+        for axis in axes.flat[len(drawings):]:
+            axis.set_axis_off()
+        for axis, title, (pieces, marked), frame in zip(axes.flat, titles, drawings, frames):
+            axis.set_axis_off()
+            axis.add_collection(PolyCollection(pieces, facecolors="none", edgecolors=plain, linewidths=0.3))
+            if marked.any():
+                wrong = [piece for piece, mark in zip(pieces, marked) if mark]
+                axis.add_collection(PolyCollection(wrong, facecolors=filled + "80", edgecolors=filled, linewidths=0.8))
+            axis.set(xlim=frame[:2], ylim=frame[2:])
+            axis.set_aspect("equal")
+            axis.set_title(title, fontsize=9)
+        self.save(figure, file)
+
     def bars(self, file: str, bins: Sequence[str], axis_label: str, label: str,
              panels: dict[str, dict[str, Sequence[float]]]) -> None:
         """A picture of distributions, logarithmic: a panel has a row of bars for each of its series."""
@@ -388,10 +451,10 @@ class Report:
         """A table of texts, in the text only."""
         self.parts.append(f"{title}\n{align(rows, [str(heading) for heading in headings])}")
 
-    def finish(self) -> int:
-        """Write and print everything."""
+    def finish(self, heading: str = "Findings of the dissertation") -> int:
+        """Write and print everything; the heading is that of the findings."""
         holding = sum(holds for _, _, holds, _ in self.findings)
-        lines = [f"Findings of the dissertation: {holding} of {len(self.findings)} hold"]
+        lines = [f"{heading}: {holding} of {len(self.findings)} hold"]
         for source, sentence, holds, figures in self.findings:
             lines.append(f"- {'HOLDS' if holds else 'DOES NOT HOLD'} ({source}): {sentence}\n    ours: {figures}")
         self.parts.append("\n".join(lines))
@@ -414,6 +477,14 @@ class Report:
         figure.tight_layout()
         figure.savefig(self.out / f"{file}.png", dpi=110, bbox_inches="tight")
         pyplot.close(figure)
+
+
+def _frame(pieces: Sequence[np.ndarray]) -> tuple[float, float, float, float]:
+    """xmin xmax ymin ymax of polygons, and a margin."""
+    points = np.concatenate(pieces)
+    (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+    margin = 0.02 * max(right - left, top - bottom)
+    return left - margin, right + margin, bottom - margin, top + margin
 
 
 def _missing(value: Any) -> bool:

@@ -13,17 +13,15 @@ import tautline
 from tautline._errors import Error
 
 from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, parser
-from ._common import cells_of, points_of, sizes_of, with_points
+from ._common import points_of, sizes_of, with_points
 from ._tangled import NOTE, by_unit, counts, diverged, tangled_methods, untangle
 
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")
 MULTI = ("exponential-sum", "objective-product", "equal-sum")
 ABOUT = (
-    "Only the boundary's motion is given; the vertices inside follow harmonically (linear finite elements on the "
-    "initial mesh, solved by conjugate gradients), which is what one step of FEMWARP does."
+    "Only the boundary's motion is given; the vertices inside follow by one step of FEMWARP."
 )
 UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)  # mean sizes of the elements
-_TOLERANCE = 1e-10  # of the residual of the harmonic extension
 _BISECTIONS = 60
 
 
@@ -33,38 +31,8 @@ def of_points(mesh: vtkDataSet, name: str) -> np.ndarray:
 
 
 def harmonic(mesh: vtkDataSet, given: np.ndarray) -> np.ndarray:
-    """A motion of the boundary's points (n x 3), extended to the others by Laplace's equation on the mesh."""
-    fixed = of_points(mesh, "Fixed") != 0
-    p, cells = points_of(mesh), cells_of(mesh)
-    sizes = np.abs(sizes_of(mesh))
-    corners = cells.shape[1]
-    # Gradients of the hat functions: rows of the inverse of the edge matrix.
-    edges = (p[cells[:, 1:]] - p[cells[:, :1]])[:, :, : corners - 1]
-    inner = np.linalg.inv(edges).transpose(0, 2, 1)
-    gradients = np.concatenate([-inner.sum(axis=1, keepdims=True), inner], axis=1)
-    local = np.einsum("eik,ejk,e->eij", gradients, gradients, sizes)
-    rows, columns = np.repeat(cells, corners, axis=1).ravel(), np.tile(cells, corners).ravel()
-    entries = local.ravel()
-
-    def times(x: np.ndarray) -> np.ndarray:
-        return np.column_stack([np.bincount(rows, entries * x[columns, k], len(p)) for k in range(x.shape[1])])
-
-    diagonal = np.bincount(rows[rows == columns], entries[rows == columns], len(p))
-    x = np.where(fixed[:, None], given, 0.0)
-    residual = np.where(fixed[:, None], 0.0, -times(x))
-    first = np.linalg.norm(residual)
-    direction = z = residual / diagonal[:, None]
-    rho = np.sum(residual * z)
-    for _ in range(10 * len(p)):
-        if np.linalg.norm(residual) <= _TOLERANCE * first:
-            return x
-        product = np.where(fixed[:, None], 0.0, times(direction))
-        step = rho / np.sum(direction * product)
-        x, residual = x + step * direction, residual - step * product
-        z = residual / diagonal[:, None]
-        rho, before = np.sum(residual * z), rho
-        direction = z + (rho / before) * direction
-    raise Error("the harmonic extension of the boundary's motion did not converge")
+    """A motion of the boundary's points (n x 3), extended to the others by FEMWARP."""
+    return points_of(tautline.warp(mesh, given, method="femwarp").mesh) - points_of(mesh)
 
 
 def warp(

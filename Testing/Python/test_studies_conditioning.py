@@ -1,0 +1,104 @@
+"""The studies of linear solvers and condition numbers in small: their files, and what the numbers say."""
+
+import contextlib
+import csv
+import io
+import math
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import tautline as tl
+from tautline import __main__ as command_line
+from tautline.studies import _solver_tables, _solvers
+
+OUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "studies_conditioning"
+# Per study: its options, findings, pictures, and rows of its tables.
+STUDIES = {
+    "solver_metrics": (["--domain", "wrench"], 13, ("poisson_wrench", "elasticity_wrench"),
+                       {"poisson_wrench_iterations": 4, "elliptic_wrench_seconds": 4}),
+    "solver_perturbation": (["--domain", "hinge", "--pde", "poisson"], 2, ("pi_poisson_hinge",),
+                            {"poisson_hinge_iterations": 5, "pi_poisson_hinge": 16}),
+    "solver_restart": ([], 2, ("figure_2_3",), {"iterations": 5, "seconds": 5}),
+    "solver_orders": (["--pde", "poisson"], 3, ("figure_2_5", "figure_2_6"),
+                      {"poisson_wrench": 16, "poisson_orders_iterations": 16}),
+    "conditioning": ([], 9, (), {"table_3_8": 5, "table_3_9": 6, "table_3_10": 6}),
+}
+
+
+def rows_of(study, table):
+    with open(OUT / study / f"{table}.csv", encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def check_files(study):
+    options, findings, pictures, tables = STUDIES[study]
+    told = io.StringIO()
+    with contextlib.redirect_stdout(told):
+        assert command_line.main(["study", study, "--small", "--out", str(OUT / study), *options]) == 0
+    assert (OUT / study / f"{study}.txt").read_text(encoding="utf-8") in told.getvalue()
+    for table, count in tables.items():
+        assert len(rows_of(study, table)) == count, f"{study}/{table}: {len(rows_of(study, table))} rows"
+    assert len(rows_of(study, "findings")) == findings, f"{study}: {len(rows_of(study, 'findings'))} findings"
+    if _solvers.pyplot is not None:
+        for picture in pictures:
+            assert (OUT / study / f"{picture}.png").stat().st_size > 5000, picture
+
+
+def test_tables():
+    """The dissertation's numbers, against marginal facts its text states."""
+    wrench = _solver_tables.BY_METRIC["poisson", "wrench"]["imr"]
+    assert 1 - wrench[0][12] / wrench[0][1] > 0.97  # "97% faster"
+    failures = sum(v is None for row in _solver_tables.BY_METRIC["poisson", "hinge"].values() for v in row[1])
+    assert failures == 10
+    for name, table in (("3.8", _solver_tables.TABLE_3_8), ("3.10", _solver_tables.TABLE_3_10)):
+        for largest, smallest, condition, _ in table.values():
+            assert largest is None or abs(largest / smallest / condition - 1) < 0.015, name
+
+
+def test_metrics():
+    """Iterations are those of the verb on the same mesh; those of multigrid are few."""
+    row = {r["metric"]: r for r in rows_of("solver_metrics", "poisson_wrench_iterations")}["imr"]
+    assert all(row[f"{n} converged"] == "yes" for n in _solver_tables.COMBINATIONS)
+    assert all(int(row[f"{n} iterations"]) <= 6 for n in _solvers.AMG)
+    assert min(int(row[f"{n} iterations"]) for n in _solvers.JACOBI) > 30
+    mesh = _solvers.smoothed(_solvers.initial_mesh("wrench", _solvers.SMALL), "imr", 1)
+    solved = tl.solve(mesh, solver="cg", preconditioner="ssor", threads=1)
+    assert solved.iterations == int(row["5 iterations"])
+    elastic = {r["metric"]: r for r in rows_of("solver_metrics", "elasticity_wrench_iterations")}["imr"]
+    assert int(elastic["19 iterations"]) < int(elastic["9 iterations"])
+
+
+def test_conditioning():
+    """Where CG converged, eigenvalues and condition numbers belong together, and iterations to them."""
+    for table in ("table_3_8", "table_3_9", "table_3_10"):
+        for row in rows_of("conditioning", table):
+            largest, smallest, condition, iterations = (
+                float(row[key] or "nan") for key in ("largest", "smallest", "condition", "iterations"))
+            if math.isnan(largest):
+                continue
+            assert 0 < smallest < 1 < largest < 4, row
+            assert abs(largest / smallest / condition - 1) < 1e-6, row
+            assert iterations < 3 + 0.5 * math.sqrt(condition) * math.log(2 / 1e-7), row
+
+
+def test_arguments():
+    assert _solvers.vertices("500K") == 500_000 and _solvers.vertices("1234") == 1234
+    sizes, values = np.array([10.0, 100.0, 1000.0]), np.array([2.0, 20.0, 200.0])
+    assert abs(_solvers.order(sizes, values) - 1) < 1e-12
+    for wrong in ("0", "x", "-5"):
+        try:
+            _solvers.vertices(wrong)
+        except Exception as error:
+            assert wrong in str(error)
+        else:
+            raise AssertionError(wrong)
+
+
+if __name__ == "__main__":
+    shutil.rmtree(OUT, ignore_errors=True)
+    for study in STUDIES:
+        check_files(study)
+    for test in (test_tables, test_metrics, test_conditioning, test_arguments):
+        test()

@@ -1,0 +1,167 @@
+"""FEMWARP, anisotropic FEMWARP and the hybrid algorithm on six moving domains: section 4.10, Figures 4.24 to 4.39."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import tautline
+
+from ._common import Report
+from ._deformed import EXAMPLES, Example, Moving, Warped, bin_names, deform, distribution, less, parse, strip
+
+AMOUNTS = (0.25, 0.5, 0.75, 1.0, 1.25)
+SMALL_AMOUNTS = (0.5, 1.0)
+FAR = 1.5  # times the dissertation's largest motion
+RUNS = ("femwarp", "anisotropic", "hybrid", "ubn")
+STEPS = "hybrid-steps"  # at FAR times the motion
+SMALL_CELLS = (800, 3000)  # triangles, tetrahedra
+SMALL_EXAMPLES = ("cylinder", "bar", "sphere")
+ISOTROPIC = {"coefficients": (1, 1, 1)}  # of the first step of the hybrid algorithm: it is FEMWARP
+STARTS = ("FEMWARP", "anisotropic")
+TRIALS = (1, 2, 3, 4, 6, 8, 12, 16, 20, 30, 50)  # iterations of (4.24)
+
+
+def untangled_after(moving: Moving, displacement: np.ndarray, repeats: int, **more) -> tuple[float, float]:
+    """Iterations of (4.24) until no element is inverted, and CPU seconds of that run; NaN: more than the last trial."""
+    for iterations in TRIALS:
+        options = {"method": "hybrid", "untangle_first": False, "maximum_iterations": iterations, "threads": 1, **more}
+        history = tautline.warp(moving.mesh, displacement, **options).history
+        if history["inverted"][history["stage"].index("optimize")] == 0:
+            more["maximum_iterations"] = iterations
+            run = deform(moving.mesh, displacement, "hybrid-literal", repeats=repeats, **more)
+            return float(iterations), run.seconds
+    return math.nan, math.nan
+
+
+def sweep(report: Report, example: Example, moving: Moving, amounts: tuple, repeats: int) -> dict[str, np.ndarray]:
+    """Inverted elements after FEMWARP and anisotropic FEMWARP, and what it takes to untangle each, by amount."""
+    rows = []
+    for amount in amounts:
+        displacement = moving.at(amount)
+        counts = [deform(moving.mesh, displacement, m).inverted for m in ("femwarp", "anisotropic")]
+        literal = [untangled_after(moving, displacement, repeats, **more) for more in (ISOTROPIC, {})]
+        ours = [deform(moving.mesh, displacement, "hybrid", repeats=repeats, **more) for more in (ISOTROPIC, {})]
+        rows.append([amount, *counts, *(n for n, _ in literal), *(s for _, s in literal), *(w.seconds for w in ours),
+                     *(float(w.inverted) for w in ours)])
+    headings = ["amount"] + [f"{quantity}{start}" for quantity in ("", "iterations ", "s ", "own s ", "left ")
+                             for start in STARTS]
+    report.table(
+        f"sweep_{example.domain}",
+        f"{example.title}: inverted elements, iterations of (4.24) until there are none and CPU seconds then, CPU "
+        "seconds with our own second step and elements it leaves inverted",
+        headings, rows,
+    )
+    return dict(zip(headings, np.array(rows, float).T))
+
+
+def quality(report: Report, example: Example, runs: dict[str, Warped]) -> None:
+    """The distribution of TMP shape over the elements: Figures 4.25, 4.28, 4.31, 4.34, 4.36, 4.38."""
+    rows = [[name, *distribution(w), float(np.mean(w.shapes)), w.worst] for name, w in runs.items()]
+    report.table(f"quality_{example.domain}",
+                 f"{example.title}: elements by TMP shape (4.22), 0 is the initial shape; mean and worst of all",
+                 ["method", *bin_names(), "mean", "worst"], rows)
+
+
+def findings(report: Report, example: Example, swept: dict[str, np.ndarray], runs: dict[str, Warped],
+             cells: int) -> None:
+    source = example.section
+    fem, anisotropic, hybrid, ubn = (runs[f"{name}, amount 1"] for name in RUNS)
+    title = example.title
+    report.finding(source, f"{title}: FEMWARP inverts elements (there {example.femwarp})", fem.inverted > 0,
+                   f"{fem.inverted} of {cells}")
+    there = "fewer" if example.anisotropic is None else f"{example.anisotropic} instead of {example.femwarp}"
+    if example.fewer is not None:
+        there += f", up to {example.fewer:g} % less"
+    gains = {a: less(n, f) for a, f, n in zip(swept["amount"], swept["FEMWARP"], swept["anisotropic"]) if f > 0}
+    report.finding(source, f"{title}: anisotropic FEMWARP inverts far fewer (there {there})",
+                   anisotropic.inverted <= 0.5 * fem.inverted and min(gains.values(), default=0) >= 0,
+                   f"{anisotropic.inverted} instead of {fem.inverted} at amount 1; less by " +
+                   ", ".join(f"{gain:.1f} % at {amount:g}" for amount, gain in gains.items()))
+    alpha = ":".join(f"{c:g}" for c in example.coefficients)
+    ours = anisotropic.coefficients[: len(example.coefficients)]
+    report.text(f"{title}: coefficients there {alpha}, by (4.19) here " + ":".join(f"{c:.3g}" for c in ours) + ".")
+    far = runs[f"{STEPS}, amount {FAR:g}"]
+    came = f", as far as {far.reached:.4g} of it" if far.reached < 1 else ""
+    once = runs[f"hybrid, amount {FAR:g}"].inverted
+    report.finding(source, f"{title}: the hybrid algorithm leaves none (ours: at {FAR:g} times the motion neither)",
+                   hybrid.inverted == far.inverted == 0,
+                   f"{hybrid.inverted} at amount 1; at {FAR:g} {once} in one step, {far.inverted} in as many as it "
+                   f"takes{came}")
+    report.finding(source, f"{title}: its worst element is better than FEMWARP's (there by {example.than_femwarp:g} %)",
+                   hybrid.worst < fem.worst,
+                   f"{less(hybrid.worst, fem.worst):.1f} %: {hybrid.worst:.4g} against {fem.worst:.4g}")
+    against = f"{less(hybrid.worst, ubn.worst):.1f} %: {hybrid.worst:.4g} against {ubn.worst:.4g}"
+    if example.than_ubn is None:
+        report.finding(source, f"{title}: UBN's stiffening finds no mesh without inverted elements",
+                       ubn.inverted > 0, f"{ubn.inverted} inverted; the hybrid's worst element is better by {against}")
+    else:
+        report.finding(source, f"{title}: its worst element is better than UBN's (there by {example.than_ubn:g} %)",
+                       hybrid.worst < ubn.worst, against)
+    if example.faster is not None:
+        faster(report, example, swept)
+
+
+def faster(report: Report, example: Example, swept: dict[str, np.ndarray]) -> None:
+    """What it takes to untangle from either start, at the amounts at which FEMWARP inverts elements."""
+    at = np.flatnonzero(swept["FEMWARP"] > 0)
+    slow, fast = (np.nan_to_num(swept[f"iterations {start}"][at], nan=np.inf) for start in STARTS)
+    seconds = [less(swept["s anisotropic"][i], swept["s FEMWARP"][i]) for i in at]
+
+    def text(iterations: float) -> str:
+        return f"over {TRIALS[-1]}" if math.isinf(iterations) else f"{iterations:.0f}"
+
+    said = [f"{text(f)} instead of {text(s)} iterations at {a:g}" + (f" ({p:.0f} % less time)" if p == p else "")
+            for f, s, a, p in zip(fast, slow, swept["amount"][at], seconds)]
+    report.finding(example.section, f"{example.title}: (4.24) needs fewer iterations and less time to untangle it "
+                   f"(there by up to {example.faster:g} %)", np.all(fast <= slow) and np.any(fast < slow),
+                   ", ".join(said))
+
+
+def pictures(report: Report, example: Example, moving: Moving, runs: dict[str, Warped]) -> None:
+    names = {"femwarp": "FEMWARP", "anisotropic": "anisotropic FEMWARP"}
+    rows = {
+        a: [(f"{label}, amount {a:g}", runs[f"{n}, amount {a:g}"]) for n, label in {**names, last: "hybrid"}.items()]
+        for a, last in ((1.0, "hybrid"), (FAR, STEPS))
+    }
+    whole, near, far = ([(title, moving.mesh)] + rows[a] for title, a in (
+        ("before", 1.0), ("before, at the same place", 1.0), ("before", FAR)))
+    strip(report, f"strip_{example.domain}", [whole, near, far], [None, example.window, None])
+
+
+def main(arguments: list[str]) -> int:
+    given = parse("deformation", __doc__, arguments)
+    report = Report("deformation", "Six moving domains (section 4.10)", given.out)
+    report.text(
+        "The domains have the shapes of the dissertation's, which gives no dimensions, and meshes of their own; "
+        "amount 1 is its largest motion as the figures show it. Coefficients come out of (4.19) and (4.21). TMP shape "
+        "is (4.22) against the initial element; worst and mean are over all elements, inverted ones too. The second "
+        "step is tried twice: (4.24) to the letter, as in the dissertation, for as many iterations as it takes until "
+        f"nothing is inverted (at most {TRIALS[-1]}), and ours, which untangles first. UBN is its iterative stiffening "
+        f"only, as there. Times are CPU seconds of warp and second step, the quickest of {given.repeats}."
+    )
+    amounts = SMALL_AMOUNTS if given.small else AMOUNTS
+    inverted, iterations = [], []
+    for example in [e for e in EXAMPLES if not given.small or e.domain in SMALL_EXAMPLES]:
+        solid = example.domain == "sphere"
+        moving = Moving(example.domain, SMALL_CELLS[solid] if given.small else 0)
+        swept = sweep(report, example, moving, amounts, given.repeats)
+        runs = {
+            f"{name}, amount {a:g}": deform(moving.mesh, moving.at(a), name)
+            for a, names in ((1.0, RUNS), (FAR, (*RUNS, STEPS)))
+            for name in names
+        }
+        quality(report, example, runs)
+        findings(report, example, swept, runs, moving.mesh.GetNumberOfCells())
+        pictures(report, example, moving, runs)
+        labels = {"FEMWARP": "FEMWARP", "anisotropic": "anisotropic FEMWARP"}
+        inverted.append((f"{example.title} ({example.section})", "amount of the motion", "inverted elements",
+                         {label: (swept["amount"], swept[key]) for key, label in labels.items()}))
+        iterations.append((f"{example.title} ({example.section})", "amount of the motion",
+                           "iterations of (4.24) until untangled",
+                           {f"after {label}": (swept["amount"], swept[f"iterations {key}"])
+                            for key, label in labels.items()}))
+    report.lines("inverted", inverted, columns=3)
+    report.lines("iterations", iterations, columns=3)
+    return report.finish()
