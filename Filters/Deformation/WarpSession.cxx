@@ -7,6 +7,7 @@
 #include "vtkInformation.h"
 #include "vtkLinearTransform.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkSelection.h"
 
@@ -88,6 +89,18 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
   return only;
 }
 
+vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input)
+{
+  const char* name =
+    algorithm->GetInputArrayInformation(DisplacementArray)->Get(vtkDataObject::FIELD_NAME());
+  if (name && *name && std::string(name) != "Automatic")
+  {
+    return chosenArray(algorithm, DisplacementArray, input, "of displacements");
+  }
+  vtkDataArray* named = input->GetPointData()->GetArray("Displacement");
+  return named ? named : input->GetPointData()->GetVectors();
+}
+
 vtkDataArray* targetIds(vtkDataSet* target, const std::string& name)
 {
   if (name.empty() || name == "None")
@@ -101,6 +114,17 @@ vtkDataArray* targetIds(vtkDataSet* target, const std::string& name)
       "The target has no point array '" + name + "' of point ids: choose another, or None.");
   }
   return array;
+}
+
+int leastOfAll(int own)
+{
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  int least = own;
+  if (controller && controller->GetNumberOfProcesses() > 1)
+  {
+    controller->AllReduce(&own, &least, 1, vtkCommunicator::MIN_OP);
+  }
+  return least;
 }
 
 bool chosenOfCells(vtkAlgorithm* algorithm, int index)
@@ -203,15 +227,10 @@ void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
   this->upstream = upstreamTime;
   this->own = this->Self->GetMTime();
 
-  const bool begun = !this->blocks.empty() &&
+  this->begun = this->begun && !changed &&
     std::all_of(this->blocks.begin(), this->blocks.end(),
       [](const auto& entry) { return entry.second.first != nullptr; });
-  if (!begun)
-  {
-    this->current = 0;
-    return;
-  }
-  this->current = this->wanted;
+  this->current = this->begun ? this->wanted : 0;
   for (const auto& [number, kept] : this->blocks)
   {
     if (this->Self->StartFrom == PREVIOUS_STEP)
@@ -221,6 +240,8 @@ void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
       this->current = std::min(this->current, last + 1);
     }
   }
+  // All processes take the same time steps, as what is upstream may need them all.
+  this->current = leastOfAll(this->current);
 }
 
 //------------------------------------------------------------------------------
@@ -340,8 +361,7 @@ void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest
   };
   if (self->Motion == DISPLACEMENT)
   {
-    task.displacement = displacementsOf(
-      chosenArray(self, DisplacementArray, block.input, "of displacements"), rest.boundary);
+    task.displacement = displacementsOf(displacementArray(self, block.input), rest.boundary);
     scaleByAmount();
     return;
   }

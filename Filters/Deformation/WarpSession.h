@@ -73,7 +73,8 @@ struct vtkMeshWarp::Session
   std::map<int, WarpBlock> blocks; ///< by number
   // Time steps one after the other, if the motion is one over time.
   std::vector<double> times;
-  bool looping = false;
+  bool looping = false; ///< another pass of the same execution
+  bool begun = false;   ///< the first time step is known (or this process has nothing of it)
   int wanted = 0, current = 0;
   vtkMTimeType upstream = 0, own = 0;
   // One execution.

@@ -76,7 +76,7 @@ void requireOneProcess(vtkDataObject* input)
     throw tautline::Error("The mesh is spread over " + std::to_string(most) +
       " processes, and the boundary of a part is not that of the mesh: gather it on one process "
       "first, "
-      "in ParaView by Redistribute DataSet with Number Of Partitions 1.");
+      "in ParaView by Aggregate Dataset.");
   }
 }
 }
@@ -281,7 +281,10 @@ int vtkMeshWarp::RequestData(
   tautline::WarpTotals totals;
   try
   {
-    requireOneProcess(input);
+    if (!session.looping) // as some processes may have failed and loop no more
+    {
+      requireOneProcess(input);
+    }
     const auto moved = tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
     const auto fixed = tautline::markSelected(input, vtkSelection::GetData(inputVector[FixedPort]));
     session.numberOfBlocks = tautline::countBlocks(input);
@@ -303,6 +306,7 @@ int vtkMeshWarp::RequestData(
     vtkErrorMacro(<< error.what());
     return this->Fail(output, request);
   }
+  session.begun = session.sequence();
   // Time steps before the one wanted, which the result needs: again, with the next of them.
   if (session.sequence() && session.current < session.wanted)
   {
@@ -340,7 +344,7 @@ int vtkMeshWarp::Fail(vtkDataObject* output, vtkInformation* request)
 {
   request->Remove(Pipeline::CONTINUE_EXECUTING());
   output->Initialize();
-  this->Kept->looping = false;
+  this->Kept->looping = this->Kept->begun = false;
   this->Kept->blocks.clear();
   this->Summary.clear();
   this->InvertedAfterWarp = this->Inverted = this->Impossible = 0;

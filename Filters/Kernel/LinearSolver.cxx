@@ -202,9 +202,18 @@ LinearSolver::Implementation::Implementation(
 
 LinearSolver::Implementation::~Implementation()
 {
-  if (this->DestroyTest && petscUsable())
+  if (this->DestroyTest && petscUsable() && this->Generation == petscGeneration())
   {
     this->DestroyTest(this->TestContext);
+  }
+}
+
+void LinearSolver::Implementation::requireAlive() const
+{
+  if (!petscUsable() || this->Generation != petscGeneration())
+  {
+    throw Error("Somebody else in this process has shut down PETSc since this linear solver was "
+                "made: make a new one.");
   }
 }
 
@@ -507,6 +516,7 @@ LinearSolver::LinearSolver(const LinearSystem& system, const SolverOptions& opti
 
 LinearSolver::~LinearSolver()
 {
+  // Once PETSc has gone, nothing is left to destroy, and it must not be initialised for that.
   if (petscUsable())
   {
     const PetscScope scope;
@@ -516,12 +526,14 @@ LinearSolver::~LinearSolver()
 
 double LinearSolver::setUp()
 {
+  this->Impl->requireAlive();
   const PetscScope scope(this->Impl->OptionSet.database());
   return this->Impl->setUp();
 }
 
 LinearSolution LinearSolver::solve(const double* b, double* x)
 {
+  this->Impl->requireAlive();
   const PetscScope scope(this->Impl->OptionSet.database());
   return this->Impl->solve(b, x);
 }

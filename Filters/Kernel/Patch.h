@@ -144,6 +144,30 @@ void invariants(const PatchPacket<Dim>& p, const double* d, Packet& N, Packet& D
   D = p.D0 - dn;
 }
 
+/**
+ * @brief Whether the simplices that are valid at `from` are so at `to` with room to spare. Where an objective has no barrier, steps
+ * that each stop short of inversion would end there.
+ */
+template <int Dim>
+bool staysValid(const Patch<Dim>& patch, const double* from, const double* to)
+{
+  constexpr double room = 1e-10; // of the determinant of the ideal shape; degenerate is 1e-13
+  const auto size = [](Packet N) { return Dim == 2 ? N : N * sqrt(N); };
+  for (int i = 0; i < patch.count; ++i)
+  {
+    Packet N0, D0, N, D;
+    invariants(patch.packets[i], from, N0, D0);
+    invariants(patch.packets[i], to, N, D);
+    // Those that have less from the start may not lose more.
+    const Mask lost = (D0 > 0.0) & ~(D > room * size(N)) & ~(D * size(N0) >= D0 * size(N));
+    if (any(lost & (patch.packets[i].C > 0.0)))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// The edge coefficients at the first vertex of each patch simplex, of its other edges, and the determinants.
 template <int Dim>
 void loadTargets(

@@ -42,11 +42,13 @@ PatchMover<Dim>::PatchMover(SimplexMesh& simplices, const Mesh& mesh, double* po
   {
     this->Functions.push_back(this->makeFunction(term));
     this->NeedsCells = this->NeedsCells || this->Functions.back()->needsCells();
+    this->Guarded = this->Guarded || this->NeedsCells || term.sizeSquared > 0;
   }
   if (this->NeedsCells)
   {
     this->Cells = mesh.vertexCells();
   }
+  this->Guarded = this->Guarded && !options.allowInversion;
 }
 
 //------------------------------------------------------------------------------
@@ -541,7 +543,8 @@ bool PatchMover<Dim>::moveVertex(
       {
         to[c] = d[c] + t * direction[c];
       }
-      if (this->changeAt(scalarizer, w, to) <= sufficientDecrease * t * slope)
+      if (this->changeAt(scalarizer, w, to) <= sufficientDecrease * t * slope &&
+        (!this->Guarded || staysValid<Dim>(w.site.patch, d, to)))
       {
         found = true;
         break;

@@ -74,6 +74,7 @@ private:
   double* Points;
   LocalOptions Options;
   bool NeedsCells = false;
+  bool Guarded = false; ///< some objective may be without a barrier, and no element may invert
   VertexCells Cells;
   std::vector<std::unique_ptr<PatchFunction<Dim>>> Functions;
   std::vector<double> Values; ///< of the objectives when the sweep began

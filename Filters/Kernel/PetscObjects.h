@@ -97,11 +97,14 @@ struct LinearSolver::Implementation
 {
   Implementation(const LinearSystem& system, const SolverOptions& options);
 
+  /// Throws Error if PETSc has been shut down since: nothing of it may be touched.
+  void requireAlive() const;
   double setUp();
   LinearSolution solve(const double* b, double* x);
 
   LinearSystem System;
   SolverOptions Options;
+  int Generation = petscGeneration();
   PetscOptionSet OptionSet;
   PetscSystem Objects;
   PetscSolver Solver;

@@ -22,6 +22,17 @@ std::string& collected()
   return *text;
 }
 
+/// How often PETSc has been shut down, and whether we will be told of the next time.
+int generation = 0;
+bool watched = false;
+
+PetscErrorCode petscEnds()
+{
+  ++generation;
+  watched = false;
+  return 0;
+}
+
 bool mpiFinalized()
 {
   int finalized = 0;
@@ -112,6 +123,11 @@ bool petscUsable()
   return !mpiFinalized() && PetscInitialized(&initialized) == 0 && initialized;
 }
 
+int petscGeneration()
+{
+  return generation;
+}
+
 void ensureSlepc()
 {
   PetscBool initialized = PETSC_FALSE;
@@ -126,6 +142,11 @@ PetscScope::PetscScope(PetscOptions database)
   : Lock(sessionMutex())
 {
   ensurePetsc();
+  if (!watched)
+  {
+    watched = PetscRegisterFinalize(petscEnds) == 0;
+  }
+  this->Generation = generation;
   if (!database)
   {
     if (PetscOptionsCreate(&this->Own) != 0)
@@ -142,7 +163,7 @@ PetscScope::PetscScope(PetscOptions database)
 PetscScope::~PetscScope()
 {
   // Another user of PETSc may have ended it meanwhile, from a callback.
-  if (petscUsable())
+  if (petscUsable() && this->Generation == generation)
   {
     PetscOptionsPop();
     PetscPopErrorHandler();

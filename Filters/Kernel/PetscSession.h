@@ -34,6 +34,9 @@ private:
 /// MPI and PETSc are there and not yet shut down, so that objects can be destroyed.
 bool petscUsable();
 
+/// Counts how often PETSc has been shut down: what was made before is lost, memory and all.
+int petscGeneration();
+
 /// Initialises SLEPc if that has not been done; within a PetscScope.
 void ensureSlepc();
 
@@ -57,6 +60,7 @@ public:
 private:
   std::unique_lock<std::recursive_mutex> Lock;
   PetscOptions Own = nullptr;
+  int Generation = 0;
   std::string Outer; // what was collected outside
 };
 
@@ -79,10 +83,11 @@ class PetscHandle
 public:
   PetscHandle() = default;
   ~PetscHandle() { this->reset(); }
-  PetscHandle(PetscHandle&& other) noexcept { std::swap(this->Held, other.Held); }
+  PetscHandle(PetscHandle&& other) noexcept { *this = std::move(other); }
   PetscHandle& operator=(PetscHandle&& other) noexcept
   {
     std::swap(this->Held, other.Held);
+    std::swap(this->Generation, other.Generation);
     return *this;
   }
   PetscHandle(const PetscHandle&) = delete;
@@ -93,11 +98,12 @@ public:
   Object* out()
   {
     this->reset();
+    this->Generation = petscGeneration();
     return &this->Held;
   }
   void reset()
   {
-    if (this->Held && petscUsable())
+    if (this->Held && petscUsable() && this->Generation == petscGeneration())
     {
       Destroy(&this->Held);
     }
@@ -106,6 +112,7 @@ public:
 
 private:
   Object Held = nullptr;
+  int Generation = 0;
 };
 
 using PetscMatrix = PetscHandle<Mat, MatDestroy>;

@@ -3,8 +3,7 @@
 #include "Check.h"
 #include "Systems.h"
 
-#include "tautline/LinearSolver.h"
-#include "tautline/PointNumbering.h"
+#include "tautline/ConditionEstimate.h"
 
 #include <mpi.h>
 
@@ -359,6 +358,49 @@ void testSolutions(MPI_Comm comm)
   }
 }
 
+/// Condition numbers and contributions of elements: of the whole, whatever the parts.
+void testConditions(MPI_Comm comm)
+{
+  MPI_Comm self = MPI_COMM_SELF;
+  const Part whole(0, 1, false), part(rankOf(comm), ranksOf(comm), true);
+  const Mesh wholeMesh = whole.mesh(), mesh = part.mesh();
+  for (const Pde pde : { Pde::Poisson, Pde::Elasticity })
+  {
+    EllipticProblem problem;
+    problem.pde = pde;
+    MeshPart alone, shared;
+    alone.communicator = &self;
+    alone.globalIds = whole.ids.data();
+    shared.communicator = &comm;
+    shared.globalIds = part.ids.data();
+    const EllipticSystem expected(wholeMesh, problem, alone), system(mesh, problem, shared);
+    for (const Preconditioner preconditioner :
+      { Preconditioner::None, Preconditioner::Jacobi, Preconditioner::BoomerAMG })
+    {
+      const Context context(nameOf(preconditioner));
+      ConditionOptions options;
+      options.preconditioner = preconditioner;
+      const ConditionEstimate one = estimateCondition(expected, options),
+                              all = estimateCondition(system, options);
+      TAUTLINE_CHECK(one.converged && all.converged);
+      // Multigrid is another one on several ranks.
+      const bool same = preconditioner != Preconditioner::BoomerAMG;
+      TAUTLINE_CHECK_RELATIVE(all.condition, one.condition, same ? 3e-4 : 0.5);
+      TAUTLINE_CHECK(all.largestVector.size() == system.rightHandSide().size());
+    }
+    const ElementContributions one = elementContributions(expected, true),
+                               all = elementContributions(system, true);
+    TAUTLINE_CHECK_RELATIVE(all.bound, one.bound, 1e-12);
+    TAUTLINE_CHECK_RELATIVE(all.lowerBound, one.lowerBound, 1e-12);
+    double sum = 0.0;
+    for (const double share : all.share)
+    {
+      sum += share;
+    }
+    TAUTLINE_CHECK_NEAR(system.numbering().sum(sum), 1.0, 1e-12);
+  }
+}
+
 /// What one rank refuses, all refuse; what one rank stops, all stop.
 void testTogether(MPI_Comm comm)
 {
@@ -459,6 +501,7 @@ int TestPointNumbering(int, char*[])
   testNumbering(comm, true);
   testBoundary(comm);
   testSolutions(comm);
+  testConditions(comm);
   testTogether(comm);
   testEmptyRank(comm);
   // A rank on its own solves what it likes while the others do not.

@@ -14,7 +14,7 @@ void testRefused()
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const MeshData data = boxInBox(CellType::Triangle, 8, 2);
-  const WarpOptions options;
+  const WarpOptions options = withMethod(WarpMethod::Hybrid);
   TAUTLINE_CHECK_THROWS(warped(
                           data,
                           [=](const Vec3& p) {

@@ -103,7 +103,9 @@ assert "by projection: 48 points" in to.Summary, to.Summary
 
 # by an array, which is found by itself; the amount is animated, and matrices are kept
 array = WarpMesh(registrationName="Array", Input=to, Motion="Displacement array")  # noqa: F821
-assert list(array.Displacement) == ["POINTS", "Displacement"], array.Displacement[:]
+assert list(array.Displacement) == ["POINTS", "Automatic"], array.Displacement[:]
+assert moved(array)[0] == 48
+array.Displacement = ["POINTS", "Displacement"]
 view = simple.CreateView("RenderView")
 display = simple.Show(array, view)
 assert list(display.ColorArrayName) == ["CELLS", "TMP shape"], display.ColorArrayName[:]
