@@ -421,7 +421,7 @@ private:
   void operator=(const vtkMeshWarp&) = delete;
 
   struct Session; ///< what is kept between executions, and what one execution needs
-  int Fail(vtkDataObject* output, vtkInformation* request);
+  int Fail(vtkInformationVector* outputs, vtkInformation* request);
 
   int Motion = TRANSFORM;
   double Amount = 1.0;
