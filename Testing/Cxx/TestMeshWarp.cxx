@@ -142,6 +142,8 @@ void testOutputs()
   motion.axis = { 1, 1, 1 };
   motion.angle = 50;
   const auto d = displacements(motion, 1, data.numberOfPoints(), data.points.data(), hole.data());
+  TAUTLINE_CHECK_EQUAL(
+    filter->GetMaximumIterations(), hybridOptimization().stopping.maximumIterations);
   WarpOptions options;
   options.prescribed = prescribed.data();
   const Warping expected = Warper(rest, options).warp(d.data());

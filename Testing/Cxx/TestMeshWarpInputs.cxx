@@ -579,6 +579,7 @@ void testImpossible()
   filter->Update();
   TAUTLINE_CHECK(filter->GetInverted() > 0);
   TAUTLINE_CHECK(messages.has(std::to_string(filter->GetInverted()) + " of "));
+  TAUTLINE_CHECK(value(filter->GetStatistics(), "Crossings") > 0);
   const MeshData after = withPointsOf(data, meshOf(filter));
   const auto validity = validityOf(after);
   TAUTLINE_CHECK_EQUAL(filter->GetInverted(),
