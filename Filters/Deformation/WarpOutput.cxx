@@ -20,6 +20,7 @@ namespace tautline
 namespace
 {
 constexpr const char* ShapeArray = "TMP shape";
+constexpr double Rounding = 1e-13; // smaller values are those of the same shape
 
 /// A metric over the valid elements; the values of all cells go to `values`.
 MetricStatistics measure(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
@@ -181,6 +182,8 @@ void addWarpOutput(const MovableMesh& rest, const Warping& result, const WarpFac
   similar.targets = &targets;
   q.shape = measure(
     moved, Metric::ShapeSimilarity, similar, validity.data(), rest.skipped(), values.data());
+  std::replace_if(
+    values.begin(), values.end(), [](double shape) { return shape < Rounding; }, 0.0);
   const ValidityCounts counts = countValidity(validity.data(), rest.skipped(), view.numberOfCells);
   q.inverted = counts.inverted + counts.degenerate;
   q.elements = q.inverted + counts.valid;
@@ -203,6 +206,7 @@ void addWarpOutput(const MovableMesh& rest, const Warping& result, const WarpFac
   totals.invertedAfterWarp += result.invertedWarp;
   totals.inverted += q.inverted;
   totals.impossible += result.impossible;
+  totals.incomplete |= result.amount < 1;
   totals.worstShape = std::max(totals.worstShape, q.shape.maximum);
   totals.reused += facts.reused;
 }

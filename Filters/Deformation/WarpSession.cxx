@@ -1,5 +1,6 @@
 #include "WarpSession.h"
 
+#include "Processes.h"
 #include "TargetMatch.h"
 #include "tautline/PointMotion.h"
 
@@ -88,6 +89,18 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
   return only;
 }
 
+vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input)
+{
+  const char* name =
+    algorithm->GetInputArrayInformation(DisplacementArray)->Get(vtkDataObject::FIELD_NAME());
+  if (name && *name && std::string(name) != "Automatic")
+  {
+    return chosenArray(algorithm, DisplacementArray, input, "of displacements");
+  }
+  vtkDataArray* named = input->GetPointData()->GetArray("Displacement");
+  return named ? named : input->GetPointData()->GetVectors();
+}
+
 vtkDataArray* targetIds(vtkDataSet* target, const std::string& name)
 {
   if (name.empty() || name == "None")
@@ -101,6 +114,18 @@ vtkDataArray* targetIds(vtkDataSet* target, const std::string& name)
       "The target has no point array '" + name + "' of point ids: choose another, or None.");
   }
   return array;
+}
+
+bool allZero(const std::vector<double>& values)
+{
+  return std::all_of(values.begin(), values.end(), [](double d) { return d == 0; });
+}
+
+/// Whether nothing moves, not even on the way: full turns end where they began.
+bool staysAtRest(const WarpTask& task)
+{
+  constexpr double somewhere = 1.0 / 3;
+  return allZero(task.displacement) && (!task.path || allZero(task.path(somewhere)));
 }
 
 bool chosenOfCells(vtkAlgorithm* algorithm, int index)
@@ -203,15 +228,10 @@ void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
   this->upstream = upstreamTime;
   this->own = this->Self->GetMTime();
 
-  const bool begun = !this->blocks.empty() &&
+  this->begun = this->begun && !changed &&
     std::all_of(this->blocks.begin(), this->blocks.end(),
       [](const auto& entry) { return entry.second.first != nullptr; });
-  if (!begun)
-  {
-    this->current = 0;
-    return;
-  }
-  this->current = this->wanted;
+  this->current = this->begun ? this->wanted : 0;
   for (const auto& [number, kept] : this->blocks)
   {
     if (this->Self->StartFrom == PREVIOUS_STEP)
@@ -221,6 +241,8 @@ void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
       this->current = std::min(this->current, last + 1);
     }
   }
+  // All processes take the same time steps, as what is upstream may need them all.
+  this->current = leastOfAll(this->current);
 }
 
 //------------------------------------------------------------------------------
@@ -340,8 +362,7 @@ void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest
   };
   if (self->Motion == DISPLACEMENT)
   {
-    task.displacement = displacementsOf(
-      chosenArray(self, DisplacementArray, block.input, "of displacements"), rest.boundary);
+    task.displacement = displacementsOf(displacementArray(self, block.input), rest.boundary);
     scaleByAmount();
     return;
   }
@@ -506,14 +527,11 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
   reused = false;
   if (done != kept.frames.end())
   {
-    result.points = done->second;
-    return result;
+    return done->second;
   }
   const std::vector<double> atRest(view.points, view.points + 3 * view.numberOfPoints);
   const auto before = stepwise ? kept.frames.find(this->current - 1) : kept.frames.end();
-  if (std::all_of(
-        task.displacement.begin(), task.displacement.end(), [](double d) { return d == 0; }) &&
-    before == kept.frames.end())
+  if (staysAtRest(task) && before == kept.frames.end())
   {
     result.points = atRest; // bitwise
     result.history.resize(1);
@@ -527,7 +545,7 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
   else
   {
     auto previous = shallowCopy(rest.data);
-    previous->SetPoints(makePoints(before->second, nullptr));
+    previous->SetPoints(makePoints(before->second.points, nullptr));
     RestingMesh step;
     std::string note;
     try
@@ -541,7 +559,7 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
     WarpTask rise = task;
     for (std::size_t i = 0; note.empty() && i < rise.displacement.size(); ++i)
     {
-      rise.displacement[i] += atRest[i] - before->second[i];
+      rise.displacement[i] += atRest[i] - before->second.points[i];
     }
     RestingMesh& from = note.empty() ? step : rest;
     this->prepare(from, rise, blockNumber);
@@ -555,7 +573,7 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
   if (stepwise)
   {
     this->forget(kept);
-    kept.frames[this->current] = result.points;
+    kept.frames[this->current] = result;
   }
   return result;
 }

@@ -47,9 +47,8 @@ private:
 struct WarpBlock
 {
   RestingMesh rest;
-  vtkSmartPointer<vtkPointSet> first; ///< at the first time step
-  std::map<int, std::vector<double>>
-    frames; ///< points at time steps, each warped from the one before
+  vtkSmartPointer<vtkPointSet> first;      ///< at the first time step
+  std::map<int, tautline::Warping> frames; ///< at time steps, each warped from the one before
 };
 
 /// The motion of a data set as it is asked for.
@@ -73,7 +72,8 @@ struct vtkMeshWarp::Session
   std::map<int, WarpBlock> blocks; ///< by number
   // Time steps one after the other, if the motion is one over time.
   std::vector<double> times;
-  bool looping = false;
+  bool looping = false; ///< another pass of the same execution
+  bool begun = false;   ///< the first time step is known (or this process has nothing of it)
   int wanted = 0, current = 0;
   vtkMTimeType upstream = 0, own = 0;
   // One execution.

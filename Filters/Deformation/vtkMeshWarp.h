@@ -17,8 +17,8 @@
  * or one for all of them; 2 (optional) a vtkSelection of what moves (MovedPart SELECTION); 3 (optional) a vtkSelection of
  * points that stay, or cells whose points stay.
  *
- * Arrays of the mesh (SetInputArrayToProcess), by index: 0 displacements (points, 3 components); 1 what moves (points or
- * cells, see MovedPart); 2 points that stay (not 0); 3 tensors (cells; 1, 3, 6 or 9 components); 4 regions (cells).
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 displacements (points, 3 components; "Automatic", the default, is
+ * `Displacement` or the active vectors); 1 what moves (points or cells, see MovedPart); 2 points that stay (not 0); 3 tensors (cells; 1, 3, 6 or 9 components); 4 regions (cells).
  *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (from the mesh at rest), and the cell arrays `TMP shape`
@@ -42,7 +42,7 @@
  *
  * @par Several processes:
  * A mesh spread over processes is refused, as the boundary of a part is not that of the mesh: gather it on one process
- * first (in ParaView, Redistribute DataSet with one partition). Blocks may be on different processes. Points of ghost
+ * first (in ParaView, by Aggregate Dataset). Blocks may be on different processes. Points of ghost
  * cells stay.
  *
  * @par Example:

@@ -1,5 +1,6 @@
 #include "PointMotion.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -22,7 +23,8 @@ constexpr double SmallAngle = 1e-7; // the axis of a smaller turn is not known, 
 constexpr double Flattened = 1e-12; // volumes of less than this times that of a cube as long
 constexpr int MostPolarSteps = 100; // it takes a dozen for the worst matrix let through
 constexpr double PolarChange =
-  1e-9; // of the last step but one; the error after the last is its square
+  1e-9;                          // of the last step but one; the error after the last is its square
+constexpr double Planar = 1e-12; // how far off a plane points may be, relative to their extent
 constexpr double SmallBend = 1e-4; // sin(x) / x and (1 - cos(x)) / x by their series below
 
 Vector toVector(const Vec3& v)
@@ -85,8 +87,49 @@ void forEachMoved(Index n, const double* points, const unsigned char* moved, con
   }
 }
 
+/// The unit normal of a plane all points marked lie in; zero if there is none.
+Vector normalOf(Index n, const double* points, const unsigned char* moved, const Vector& middle)
+{
+  Matrix spread = Matrix::Zero();
+  forEachMoved(n, points, moved,
+    [&](Index, const Vector& x) { spread += (x - middle) * (x - middle).transpose(); });
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(spread);
+  const Vector normal = axes.eigenvectors().col(0);
+  double off = 0, extent = 0;
+  forEachMoved(n, points, moved,
+    [&](Index, const Vector& x)
+    {
+      off = std::max(off, std::abs(normal.dot(x - middle)));
+      extent = std::max(extent, (x - middle).norm());
+    });
+  return off <= Planar * extent ? normal : Vector(Vector::Zero());
+}
+
+/**
+ * @brief The same map of the plane with this normal, which stays a unit normal: what a box around a flat mesh does in the direction
+ * it has no size in (ParaView's scales by 0 there) is of no account.
+ */
+Matrix withinPlane(const Matrix& linear, const Vector& normal)
+{
+  if (normal.isZero())
+  {
+    return linear;
+  }
+  const Vector u = normal.unitOrthogonal(), v = normal.cross(u);
+  const Vector image = (linear * u).cross(linear * v);
+  const double area = image.norm();
+  const bool proper = linear.determinant() > Flattened * std::pow(linear.norm(), 3);
+  if (!(area > Flattened * linear.squaredNorm()) || (!proper && image.dot(normal) < 0))
+  {
+    return linear; // flattens the plane itself, or mirrors in it
+  }
+  return linear * (Matrix::Identity() - normal * normal.transpose()) +
+    image / area * normal.transpose();
+}
+
 /// x -> c(a) + R(a) (I + a (P - I)) (x - c), where the matrix is R P and the shift; c(a) goes along a screw.
-Path matrixPath(const PointMotion& motion, double amount, const Vector& middle)
+Path matrixPath(
+  const PointMotion& motion, double amount, const Vector& middle, const Vector& normal)
 {
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> whole(motion.matrix.data());
   if (!whole.allFinite() || whole.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
@@ -94,7 +137,7 @@ Path matrixPath(const PointMotion& motion, double amount, const Vector& middle)
     throw Error(
       "The transform is not affine, or not finite: choose one that moves, turns and scales.");
   }
-  const Matrix linear = whole.topLeftCorner<3, 3>();
+  const Matrix linear = withinPlane(whole.topLeftCorner<3, 3>(), normal);
   if (!(linear.determinant() > Flattened * std::pow(linear.norm(), 3)))
   {
     throw Error(
@@ -196,7 +239,7 @@ Path pathOf(const PointMotion& motion, double amount, Index n, const double* poi
     case MotionKind::Bending:
       return bendingPath(motion, amount, n, points, moved, center);
     default:
-      return matrixPath(motion, amount, middle);
+      return matrixPath(motion, amount, middle, normalOf(n, points, moved, middle));
   }
 }
 }

@@ -23,7 +23,10 @@ namespace tautline
 /// The numbers are stable: ParaView state files hold them.
 enum class MotionKind : int
 {
-  /// Any affine map without reflection: stretch about the centre of the points, then turn and shift along a screw.
+  /**
+   * @brief Any affine map without reflection: stretch about the centre of the points, then turn and shift along a screw. Of points in
+   * one plane, what it does across the plane does not count.
+   */
   Matrix = 0,
   Translation = 1,
   Rotation = 2, ///< by `angle` about `axis` through the centre

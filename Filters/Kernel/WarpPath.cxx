@@ -8,11 +8,9 @@ namespace tautline
 {
 WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displacement)
   : Input(mesh)
-  , Parts(parts)
   , Displacement(displacement, displacement + 3 * mesh.view().numberOfPoints)
 {
-  // Pieces: prescribed points joined by cells. Two pieces a cell reaches across are one only if it has a facet's worth of
-  // points in common with both; so only points of one facet are joined.
+  // Pieces: points joined by facets all of whose points are prescribed.
   const MeshView& view = mesh.view();
   const Index n = view.numberOfPoints;
   const std::vector<unsigned char>& prescribed = parts.prescribed();
@@ -190,7 +188,6 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
         piece.stretch[k][c] = stretch(c, k) - (c == k ? 1.0 : 0.0);
       }
     }
-    this->LargestAngle = std::max(this->LargestAngle, std::abs(piece.angle));
   }
 }
 

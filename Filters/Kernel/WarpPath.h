@@ -24,9 +24,6 @@ public:
   /// Displacements of the prescribed points after a part of the motion, 0 to 1; exact at 1. Others are 0.
   void at(double amount, double* displacement) const;
 
-  /// The largest angle a piece turns by, in radians.
-  double largestAngle() const { return this->LargestAngle; }
-
 private:
   struct Piece
   {
@@ -40,11 +37,9 @@ private:
   Vec3 place(const Piece& piece, double amount, const Vec3& x) const;
 
   const Mesh& Input;
-  const WarpParts& Parts;
   std::vector<double> Displacement;
   std::vector<Index> PieceOf; ///< per point, -1 where nothing is prescribed
   std::vector<Piece> Pieces;
-  double LargestAngle = 0;
 };
 }
 #endif

@@ -213,7 +213,6 @@ bool WarpSystem::runSolver(const std::vector<double>& right, double tolerance,
   control.result().setupSeconds += done.setupSeconds;
   control.result().solveSeconds += done.solveSeconds;
   control.addIterations(done.iterations);
-  this->Solved = true;
   this->Failure = converged(done.reason) ? "" : describe(done.reason);
   if (done.reason == SolveReason::TimeLimit)
   {
@@ -227,7 +226,6 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
 {
   const int threads = this->Options.threads;
   this->Failure.clear();
-  this->Solved = false;
   std::vector<double> right = this->rightHandSide(values);
   const double whole = std::sqrt(product(right, right, threads));
   std::vector<double> x(this->Inner.size, 0.0);

@@ -42,12 +42,6 @@ public:
   bool solve(std::vector<double>& values, WarpControl& control);
 
   const std::string& failure() const { return this->Failure; }
-  Index unknowns() const { return this->Inner.size; }
-  const SparseMatrix& matrix() const { return this->Inner; }
-  /// Indices of the points that are not held.
-  const std::vector<Index>& freePoints() const { return this->Free; }
-  /// Whether the last solve needed the solver.
-  bool solved() const { return this->Solved; }
 
 private:
   struct Former
@@ -64,7 +58,7 @@ private:
 
   const WarpOptions& Options;
   int Block;
-  std::vector<Index> Free;
+  std::vector<Index> Free;    ///< points that are not held
   SparseMatrix Inner;         ///< A_I
   std::vector<Index> Starts;  ///< of the rows of A_B
   std::vector<Index> Columns; ///< of A_B: unknowns of all points
@@ -75,7 +69,6 @@ private:
   Index DirectLimit = 0; ///< unknowns
   std::deque<Former> Basis;
   std::string Failure;
-  bool Solved = false;
 };
 }
 #endif

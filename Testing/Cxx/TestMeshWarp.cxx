@@ -155,8 +155,20 @@ void testPaths()
     check([&](const Vec3& p) { return p + amount * Vec3{ 0.25, 0, 0 }; });
   }
 
+  // Across a plane nothing counts: an interactive box around a flat mesh scales by 0 there.
+  for (double across : { 0.0, -1.0, 1e-9 })
+  {
+    vtkNew<vtkTransform> transform;
+    transform->RotateZ(40);
+    transform->Scale(1, 1, across);
+    filter->SetAmount(0.5);
+    filter->SetTransform(transform);
+    check([&](const Vec3& p) { return turned(p, { 0, 0, 0 }, 20); });
+  }
+
   // All kinds of matrices arrive where they should.
-  std::vector<unsigned char> all(data.numberOfPoints(), 1);
+  const MeshData solid = holedBlock(CellType::Tetrahedron, 3);
+  std::vector<unsigned char> all(solid.numberOfPoints(), 1);
   Random random(5);
   for (int round = 0; round < 50; ++round)
   {
@@ -166,14 +178,15 @@ void testPaths()
     transform->Scale(random.vector(0.1, 3).data());
     PointMotion motion;
     std::copy_n(transform->GetMatrix()->GetData(), 16, motion.matrix.begin());
-    const auto d = displacements(motion, 1, data.numberOfPoints(), data.points.data(), all.data());
+    const auto d =
+      displacements(motion, 1, solid.numberOfPoints(), solid.points.data(), all.data());
     double largest = 0;
-    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    for (Index i = 0; i < solid.numberOfPoints(); ++i)
     {
-      Vec3 x = data.point(i);
+      Vec3 x = solid.point(i);
       transform->TransformPoint(x.data(), x.data());
       largest =
-        std::max(largest, norm(x - data.point(i) - Vec3{ d[3 * i], d[3 * i + 1], d[3 * i + 2] }));
+        std::max(largest, norm(x - solid.point(i) - Vec3{ d[3 * i], d[3 * i + 1], d[3 * i + 2] }));
     }
     TAUTLINE_CHECK(largest < 1e-12);
   }
@@ -544,6 +557,63 @@ void testSimilarity()
   }
 }
 
+/// Steps of a transform follow its path; displacements that turn a part do so, too.
+void testSteps()
+{
+  const MeshData data = holedBlock(CellType::Triangle, 15);
+  const std::vector<int> parts = partsOf(data, 15);
+  vtkNew<vtkMeshWarp> filter;
+  Messages messages(filter);
+  auto grid = toGrid(data);
+  grid->GetPointData()->AddArray(arrayOf("d", data.numberOfPoints(), 3,
+    [&](Index i, int k) { return parts[i] == 2 && k < 2 ? 15 - 2 * data.point(i)[k] : 0.0; }));
+  filter->SetInputData(grid);
+  filter->SetMethod(vtkMeshWarp::SMALL_STEP_FEMWARP);
+  filter->SetSteps(20);
+  filter->SetTransformKind(vtkMeshWarp::ROTATION);
+  filter->SetAngle(180);
+  filter->Update();
+  const MeshData turned = withPointsOf(data, meshOf(filter));
+  const vtkIdType byArc = filter->GetInverted();
+  filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetInverted(), byArc);
+  TAUTLINE_CHECK(distance(turned, withPointsOf(data, meshOf(filter))) < 1e-10);
+
+  // Two turns in steps end where none does, for the boundary; what is between is wound up.
+  const MeshData wound = [&]
+  {
+    filter->SetMotion(vtkMeshWarp::TRANSFORM);
+    filter->SetSteps(100);
+    filter->SetAngle(720);
+    filter->Update();
+    return withPointsOf(data, meshOf(filter));
+  }();
+  double inside = 0, boundary = 0;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    double& largest = parts[i] ? boundary : inside;
+    largest = std::max(largest, norm(wound.point(i) - data.point(i)));
+  }
+  TAUTLINE_CHECK(boundary < 1e-12 && inside > 0.1);
+  filter->SetAngle(180);
+
+  // As many steps as it takes, and no further than it goes: a warning, and by how much in the tables.
+  filter->SetSteps(0);
+  messages.clear();
+  filter->Update();
+  const double amount = value(filter->GetStatistics(), "Amount");
+  TAUTLINE_CHECK_EQUAL(filter->GetInverted(), 0);
+  TAUTLINE_CHECK(amount > 0.1 && amount < 1);
+  TAUTLINE_CHECK(messages.has("% of the motion"));
+  filter->SetAmount(0.5 * amount);
+  messages.clear();
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_NEAR(value(filter->GetStatistics(), "Amount"), 0.5 * amount, 1e-12);
+}
+
 /// A mesh reversed throughout warps as its mirror image; blocks on their own.
 void testBlocks()
 {
@@ -599,6 +669,7 @@ int TestMeshWarp(int, char*[])
   testReuse();
   testParts();
   testSimilarity();
+  testSteps();
   testBlocks();
   return exitCode();
 }
