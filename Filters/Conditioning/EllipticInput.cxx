@@ -103,8 +103,12 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
   problem.source = choice.source.constant;
   problem.sources = orNull(this->Sources, choice.source.kind != PointFunction::Constant);
   problem.fixedValues = orNull(this->Given, !choice.given.isZero());
-  this->System =
-    std::make_unique<EllipticSystem>(this->Adapter->mesh(), problem, this->Part, threads);
+  processes.together(
+    [&]()
+    {
+      this->System =
+        std::make_unique<EllipticSystem>(this->Adapter->mesh(), problem, this->Part, threads);
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -192,7 +192,7 @@ std::vector<double> evaluate(
     }
     if (!evaluator.Message.empty())
     {
-      throw Error(evaluator.Message.find("Invalid") == std::string::npos
+      throw Error(evaluator.Message.find("mathematically wrong") == std::string::npos
           ? subject + " is not understood: " + plain(evaluator.Message)
           : subject + " is not finite at point " + std::to_string(i) + ", " + placeOf(data, i) +
             ".");

@@ -13,6 +13,12 @@
 
 namespace tautline
 {
+namespace
+{
+constexpr const char* Vague =
+  "Another rank"; // how the kernel's errors begin that another rank explains
+}
+
 //------------------------------------------------------------------------------
 Processes::Processes()
 {
@@ -108,20 +114,23 @@ void Processes::together(const std::function<void()>& work) const
   {
     message = error.what();
   }
-  // The first process that failed tells all others.
-  const auto teller =
-    static_cast<int>(this->Count - this->maximum(failed ? this->Count - this->Rank : 0));
-  if (teller == this->Count)
+  // The first process that knows what is wrong tells all others.
+  const bool vague = message.rfind(Vague, 0) == 0;
+  const Index priority = !failed ? 0 : vague ? 1 : 1 + this->Count - this->Rank;
+  const Index highest = this->maximum(priority);
+  if (highest == 0)
   {
     return;
   }
   if (this->Count > 1)
   {
+    const auto teller = static_cast<int>(highest > 1 ? 1 + this->Count - highest : 0);
     auto length = static_cast<vtkIdType>(message.size());
     this->Controller->Broadcast(&length, 1, teller);
     message.resize(static_cast<std::size_t>(length));
     this->Controller->Broadcast(&message[0], length, teller);
-    message = "In process " + std::to_string(teller) + ": " + message;
+    const bool everywhere = this->sum(static_cast<Index>(failed && !vague)) == this->Count;
+    message = (everywhere ? "" : "In process " + std::to_string(teller) + ": ") + message;
   }
   throw Error(message);
 }

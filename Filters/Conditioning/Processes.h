@@ -39,8 +39,8 @@ public:
   std::vector<double> gather(const std::vector<double>& values) const;
 
   /**
-   * @brief Does work that does not communicate. What it throws on any process is thrown on all, as Error, so that none
-   * waits for another that has given up.
+   * @brief Does work that does not communicate, or that throws on all processes if on any. What it throws on any process is
+   * thrown on all, as Error, so that none waits for another that has given up.
    */
   void together(const std::function<void()>& work) const;
 

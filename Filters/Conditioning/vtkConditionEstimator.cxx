@@ -215,6 +215,8 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
 
   const tautline::ElementContributions elements =
     tautline::elementContributions(system, this->ComputeShares, this->Threads);
+  // A process without elements has none; all go the same way.
+  const bool shares = processes.maximum(static_cast<tautline::Index>(elements.share.size())) > 0;
   mesh.output->GetPointData()->SetActiveScalars(nullptr);
   tautline::addArray(mesh.output, true, "LargestEigenvalue", elements.largestEigenvalue, 1);
   std::ostringstream text;
@@ -222,7 +224,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   text << found << "\n"
        << system.unknowns() << " unknowns. The largest eigenvalue of A is between "
        << elements.lowerBound << " and " << elements.bound << " by those of the elements.";
-  if (!elements.share.empty())
+  if (shares)
   {
     tautline::addArray(mesh.output, true, "Share", elements.share, 1);
     const auto [all, few] = concentration(elements.share, processes);
@@ -239,7 +241,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
     }
     text << " at (" << element.center[0] << ", " << element.center[1] << ", " << element.center[2]
          << "): ";
-    if (!elements.share.empty())
+    if (shares)
     {
       text << "share " << 100 * element.share << " %, ";
     }

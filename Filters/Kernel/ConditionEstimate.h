@@ -23,8 +23,9 @@ struct ConditionOptions
   SpectrumMethod method = SpectrumMethod::Automatic;
   /// None: the spectrum of A; else of P^-1 A.
   Preconditioner preconditioner = Preconditioner::None;
-  double omega = 1.0;      ///< of SSOR
-  double tolerance = 1e-4; ///< relative, of each eigenvalue; multigrid takes ten times longer to 1e-6
+  double omega = 1.0; ///< of SSOR
+  double tolerance =
+    1e-4; ///< relative, of each eigenvalue; multigrid takes ten times longer to 1e-6
   int maximumIterations = 10000;
   double maximumSeconds = 0.0; ///< 0: no limit
   std::string petscOptions;

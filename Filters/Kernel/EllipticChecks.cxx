@@ -181,14 +181,14 @@ void EllipticChecks::requireValidElements() const
   if (degenerate.count > 0)
   {
     throw Error(elements(degenerate.count, degenerate.first) +
-      " degenerate: no area or volume. Run Mesh Untangler, or remove them.");
+      " degenerate: no area or volume. Run Untangle Mesh, or remove them.");
   }
   // Reversed throughout is fine.
   const Kind& odd = inverted.count <= valid.count ? inverted : valid;
   if (inverted.count > 0 && valid.count > 0)
   {
     throw Error(elements(odd.count, odd.first) +
-      " inverted against the rest: a solution would mean nothing. Run Mesh Untangler first, or "
+      " inverted against the rest: a solution would mean nothing. Run Untangle Mesh first, or "
       "orient the cells alike if they are only listed in different senses.");
   }
 }

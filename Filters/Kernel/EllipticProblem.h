@@ -56,8 +56,8 @@ struct MeshPart
 struct EllipticSolution
 {
   int components = 1; ///< 1, or 3 for elasticity
-  std::vector<double>
-    values; ///< components per point; NaN at points outside all cells: no equation is about them
+  /// Components per point; NaN at points outside all cells: no equation is about them.
+  std::vector<double> values;
   /// Per cell, at its centre: gradient (3), or stress of elasticity (6, as SymmetricTensor); NaN for cells skipped.
   std::vector<double> gradients;
   LinearSolution linear;

@@ -380,7 +380,7 @@ std::string Study::warnings() const
     text += " The mesh has " + std::to_string(bad) + (bad == 1 ? " element" : " elements") +
       " of bad shape (inverse mean ratio above " + digits(badShape) + "; the worst" + where +
       " has " + digits(worstShape) +
-      "): they dominate the largest eigenvalue. Mesh Optimizer first would help every solver.";
+      "): they dominate the largest eigenvalue. Optimize Mesh first would help every solver.";
   }
   return text;
 }

@@ -184,9 +184,10 @@ void WarpStep::improve(
   const bool literal = options.method == WarpMethod::Hybrid && !options.untangleFirst;
   if (literal && !this->Following)
   {
-    stage("optimize", this->optimize(fixed, control, points));
+    stage("optimize", this->optimize(Aim::Shape, fixed, control, points));
   }
-  if (result.invertedAfter > 0 && !control.stopped())
+  const bool tangled = result.invertedAfter > 0;
+  if (tangled && !control.stopped())
   {
     stage("untangle", this->untangle(fixed, control, points));
   }
@@ -196,7 +197,18 @@ void WarpStep::improve(
       result.invertedAfter < this->Initial.view().numberOfCells;
   if (optimizes && !control.stopped())
   {
-    stage("optimize", this->optimize(fixed, control, points));
+    // The shape (4.22) goes with the fourth power of T. From elements that were valid in the nick of time its descent
+    // would end early: at 120 degrees of a box in a box with a worst value of 870 instead of 41.
+    int iterations = 0;
+    if (result.invertedAfter == 0 && (this->Following || tangled))
+    {
+      iterations = this->optimize(Aim::Barrier, fixed, control, points);
+    }
+    if (!this->Following && !control.stopped())
+    {
+      iterations += this->optimize(Aim::Shape, fixed, control, points);
+    }
+    stage("optimize", iterations);
   }
   result.improveSeconds += control.elapsed() - start;
 }
@@ -227,8 +239,8 @@ int WarpStep::untangle(
 }
 
 //------------------------------------------------------------------------------
-int WarpStep::optimize(
-  const std::vector<unsigned char>& fixed, WarpControl& control, std::vector<double>& points) const
+int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,
+  std::vector<double>& points) const
 {
   MeshView view = this->Initial.view();
   view.points = points.data();
@@ -249,13 +261,13 @@ int WarpStep::optimize(
   shape.form = ObjectiveTemplate::SumOfSquares;
   shape.evaluation.targets = &targets;
   other.form = ObjectiveTemplate::SumOfSquares;
-  if (this->Following)
+  if (aim == Aim::Barrier)
   {
-    constexpr int few = 10;
+    constexpr int few = 10, enough = 20;
     shape.metric = Metric::InverseMeanRatio;
     optimization.objectives.resize(1);
     optimization.stopping = StoppingCriteria();
-    optimization.stopping.maximumIterations = few;
+    optimization.stopping.maximumIterations = this->Following ? few : enough;
     optimization.optimizer = Optimizer::Automatic;
   }
   else if (options.untangleFirst)

@@ -54,7 +54,12 @@ private:
   void warp(const double* displacement, WarpControl& control, std::vector<double>& moved);
   int untangle(const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;
-  int optimize(const std::vector<unsigned char>& fixed, WarpControl& control,
+  enum class Aim
+  {
+    Barrier, ///< the squared inverse mean ratios of T alone
+    Shape    ///< the exponential sum, see WarpOptions::untangleFirst
+  };
+  int optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;
   WarpQuality record(const char* stage, double amount, int iterations, const double* points,
     WarpControl& control) const;

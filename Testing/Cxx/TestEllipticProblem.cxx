@@ -422,6 +422,41 @@ void testSystem()
 }
 
 //------------------------------------------------------------------------------
+/// With f = 1 solutions grow with the square of the size, gradients with the size.
+void testScales()
+{
+  SolverOptions options;
+  options.method = KrylovMethod::Direct;
+  for (CellType type : { CellType::Triangle, CellType::Hexahedron })
+  {
+    const MeshData data = movedBlock(type, 5, 0.1);
+    for (Pde pde : { Pde::Poisson, Pde::Elasticity })
+    {
+      EllipticProblem problem;
+      problem.pde = pde;
+      const Mesh mesh(data.view());
+      const EllipticSolution solution = EllipticSystem(mesh, problem).solve(options);
+      for (double scale : { 1e-8, 1e8 })
+      {
+        MeshData other = data;
+        other.transform([&](const Vec3& p) { return scale * p; });
+        const Mesh scaled(other.view());
+        const EllipticSolution there = EllipticSystem(scaled, problem).solve(options);
+        TAUTLINE_CHECK(converged(there.linear.reason));
+        for (std::size_t i = 0; i < solution.values.size(); ++i)
+        {
+          TAUTLINE_CHECK_NEAR(there.values[i] / (scale * scale), solution.values[i], 1e-9);
+        }
+        for (std::size_t i = 0; i < solution.gradients.size(); ++i)
+        {
+          TAUTLINE_CHECK_NEAR(there.gradients[i] / scale, solution.gradients[i], 1e-9);
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 /// Two squares, or cubes, that do not touch.
 MeshData twoParts(CellType type)
 {
@@ -568,6 +603,7 @@ int TestEllipticProblem(int, char*[])
   testLinearFields();
   testRing();
   testSystem();
+  testScales();
   testRefusals();
   return exitCode();
 }

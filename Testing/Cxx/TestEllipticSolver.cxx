@@ -479,8 +479,9 @@ void testRefusals()
   refuses(filter, "is on cells; one on points is needed");
   filter->SetSourceType(vtkEllipticAlgorithm::EXPRESSION);
   refuses(filter, "The expression of the source is empty");
-  const std::array<std::array<const char*, 2>, 6> wrong = { {
+  const std::array<std::array<const char*, 2>, 7> wrong = { {
     { "sin(x", "Mismatched brackets" },
+    { "x*", "is not understood" },
     { "q + 1", "Undefined symbol: 'q'" },
     { "1/x", "The expression '1/x' of the source is not finite at point 0, (0, 0, 0)" },
     { "sqrt(-1)", "is not finite at point 0" },

@@ -18,9 +18,9 @@ OUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "studies_deformation"
 # Per study: findings, pictures, and rows of its tables.
 STUDIES = {
     "rectangle_warp": (6, ("strip", "inverted"), {"inverted": 6, "propositions": 4}),
-    "deformation": (18, ("strip_cylinder", "strip_sphere", "inverted", "iterations"),
+    "deformation": (18, ("strip_cylinder", "strip_sphere", "inverted", "iterations", "seconds", "quality"),
                     {"sweep_cylinder": 2, "sweep_bar": 2, "sweep_sphere": 2, "quality_sphere": 9}),
-    "deformation_methods": (7, ("strip", "inverted"), {"inverted": 13, "worst": 13, "mean": 13, "reached": 13}),
+    "deformation_methods": (9, ("strip", "inverted"), {"inverted": 13, "worst": 13, "mean": 13, "reached": 13}),
     "box_rotation": (7, ("strip", "inverted"), {"inverted": 18, "imr_worst": 13, "imr_mean": 13, "seconds": 14}),
 }
 

@@ -2,6 +2,7 @@
 #include <vtkCellTypeSource.h>
 #include <vtkDataSet.h>
 #include <vtkElementQuality.h>
+#include <vtkEllipticSolver.h>
 #include <vtkMeshOptimizer.h>
 #include <vtkMeshWarp.h>
 #include <vtkNew.h>
@@ -37,5 +38,11 @@ int main()
   {
     return EXIT_FAILURE;
   }
-  return cells > 0 && optimizer->GetStopReason() >= 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+
+  vtkNew<vtkEllipticSolver> solver;
+  solver->SetInputConnection(quality->GetOutputPort());
+  solver->Update();
+  std::cout << solver->GetSummary() << "\n";
+  return cells > 0 && solver->GetConverged() && optimizer->GetStopReason() >= 0 ? EXIT_SUCCESS
+                                                                                : EXIT_FAILURE;
 }

@@ -383,6 +383,9 @@ class Report:
                 axis.plot(x, y, "-" if number < 10 else "--", marker="osv^D<>*xp"[number % 10], markersize=4,
                           linewidth=1.2, label=label)
             axis.set(title=title, xlabel=x_label, ylabel=y_label)
+            places = np.concatenate([np.asarray(x, float) for x, _ in curves.values()])
+            margin = 0.05 * np.ptp(places)
+            axis.set_xlim(places.min() - margin, places.max() + margin)  # of values that are missing, too
             axis.set_ylim(bottom=0)
             axis.grid(alpha=0.3)
             axis.legend(fontsize=7)
@@ -431,12 +434,16 @@ class Report:
         self.save(figure, file)
 
     def bars(self, file: str, bins: Sequence[str], axis_label: str, label: str,
-             panels: dict[str, dict[str, Sequence[float]]]) -> None:
+             panels: dict[str, dict[str, Sequence[float]]], columns: int = 3) -> None:
         """A picture of distributions, logarithmic: a panel has a row of bars for each of its series."""
         if not self._pictures():
             return
-        figure, axes = pyplot.subplots(1, len(panels), figsize=(6.4 * len(panels), 4.6), squeeze=False)
-        for axis, (title, series) in zip(axes[0], panels.items()):
+        columns = min(columns, len(panels))
+        rows = -(-len(panels) // columns)
+        figure, axes = pyplot.subplots(rows, columns, figsize=(6.4 * columns, 4.6 * rows), squeeze=False)
+        for axis in axes.flat[len(panels):]:
+            axis.set_axis_off()
+        for axis, (title, series) in zip(axes.flat, panels.items()):
             width = 0.8 / len(series)
             for number, (name, values) in enumerate(series.items()):
                 axis.bar(np.arange(len(bins)) + (number - 0.5 * (len(series) - 1)) * width, values, width, label=name)

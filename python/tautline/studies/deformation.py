@@ -15,6 +15,7 @@ AMOUNTS = (0.25, 0.5, 0.75, 1.0, 1.25)
 SMALL_AMOUNTS = (0.5, 1.0)
 FAR = 1.5  # times the dissertation's largest motion
 RUNS = ("femwarp", "anisotropic", "hybrid", "ubn")
+COMPARED = {"femwarp": "FEMWARP", "ubn": "UBN", "hybrid": "hybrid"}  # in Figures 4.25 to 4.38
 STEPS = "hybrid-steps"  # at FAR times the motion
 SMALL_CELLS = (800, 3000)  # triangles, tetrahedra
 SMALL_EXAMPLES = ("cylinder", "bar", "sphere")
@@ -142,7 +143,7 @@ def main(arguments: list[str]) -> int:
         f"only, as there. Times are CPU seconds of warp and second step, the quickest of {given.repeats}."
     )
     amounts = SMALL_AMOUNTS if given.small else AMOUNTS
-    inverted, iterations = [], []
+    inverted, iterations, seconds, qualities = [], [], [], {}
     for example in [e for e in EXAMPLES if not given.small or e.domain in SMALL_EXAMPLES]:
         solid = example.domain == "sphere"
         moving = Moving(example.domain, SMALL_CELLS[solid] if given.small else 0)
@@ -155,13 +156,21 @@ def main(arguments: list[str]) -> int:
         quality(report, example, runs)
         findings(report, example, swept, runs, moving.mesh.GetNumberOfCells())
         pictures(report, example, moving, runs)
+        qualities[f"{example.title} ({example.section}), amount 1"] = {
+            label: distribution(runs[f"{name}, amount 1"]) for name, label in COMPARED.items()}
         labels = {"FEMWARP": "FEMWARP", "anisotropic": "anisotropic FEMWARP"}
         inverted.append((f"{example.title} ({example.section})", "amount of the motion", "inverted elements",
                          {label: (swept["amount"], swept[key]) for key, label in labels.items()}))
         iterations.append((f"{example.title} ({example.section})", "amount of the motion",
-                           "iterations of (4.24) until untangled",
+                           f"iterations of (4.24) until untangled (none: over {TRIALS[-1]})",
                            {f"after {label}": (swept["amount"], swept[f"iterations {key}"])
                             for key, label in labels.items()}))
+        seconds.append((f"{example.title} ({example.section})", "amount of the motion", "CPU s of warp and second step",
+                        {f"{step}, {label}": (swept["amount"], swept[f"{quantity} {key}"])
+                         for quantity, step in (("s", "(4.24)"), ("own s", "ours"))
+                         for key, label in labels.items()}))
     report.lines("inverted", inverted, columns=3)
     report.lines("iterations", iterations, columns=3)
+    report.lines("seconds", seconds, columns=3)
+    report.bars("quality", bin_names(), "TMP shape (4.22)", "elements", qualities)
     return report.finish()

@@ -1,0 +1,138 @@
+// Solver Study, the filter: combinations by number, the table, the recommendation, limits.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "vtkSolverStudy.h"
+
+#include "vtkTable.h"
+
+#include <set>
+
+using namespace tautline;
+
+namespace
+{
+double number(vtkSolverStudy* filter, vtkIdType row, const char* column)
+{
+  return filter->GetStudy()->GetValueByName(row, column).ToDouble();
+}
+
+std::string text(vtkSolverStudy* filter, vtkIdType row, const char* column)
+{
+  return filter->GetStudy()->GetValueByName(row, column).ToString();
+}
+
+void testTable()
+{
+  vtkNew<vtkSolverStudy> filter;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(blockMesh(CellType::Triangle, 16, 16, 0)));
+  filter->Update();
+  vtkTable* table = filter->GetStudy();
+  TAUTLINE_CHECK_EQUAL(table->GetNumberOfRows(), 16);
+  double best = 1e300;
+  std::string fastest;
+  for (vtkIdType row = 0; row < 16; ++row)
+  {
+    const Context context(text(filter, row, "Combination"));
+    TAUTLINE_CHECK_EQUAL(number(filter, row, "N combination"), row + 1);
+    TAUTLINE_CHECK_EQUAL(number(filter, row, "N converged"), 1);
+    TAUTLINE_CHECK_EQUAL(
+      text(filter, row, "Combination"), vtkSolverStudy::GetCombinationName(int(row) + 1));
+    const double total = number(filter, row, "Total time (s)");
+    TAUTLINE_CHECK_NEAR(
+      total, number(filter, row, "Time set-up (s)") + number(filter, row, "Time solve (s)"), 1e-12);
+    TAUTLINE_CHECK(number(filter, row, "N true residual") < 1e-3);
+    TAUTLINE_CHECK(number(filter, row, "N condition") >= 1);
+    TAUTLINE_CHECK_EQUAL(text(filter, row, "Reason"), "Converged to the relative tolerance.");
+    if (total < best)
+    {
+      best = total;
+      fastest = text(filter, row, "Combination");
+    }
+  }
+  // Table 2.5: number 10 is GMRES with ILU(0).
+  TAUTLINE_CHECK_EQUAL(text(filter, 9, "Combination"), "GMRES + ILU(0)");
+  TAUTLINE_CHECK_EQUAL(std::string(filter->GetRecommended()), fastest);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("Recommended: ") == 0);
+  TAUTLINE_CHECK(std::string(filter->GetWhy()).find(" times as long") != std::string::npos);
+  TAUTLINE_CHECK_EQUAL(
+    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 512);
+  TAUTLINE_CHECK(messages.empty());
+}
+
+void testFailures()
+{
+  // Without iterations there is no solution: marked as in the dissertation's tables.
+  vtkNew<vtkSolverStudy> filter;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(blockMesh(CellType::Triangle, 16, 16, 0)));
+  filter->SetMaximumIterations(1);
+  filter->AddCombination(17);
+  filter->AddCombination(1);
+  filter->AddCombination(17); // counts once
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetStudy()->GetNumberOfRows(), 2);
+  TAUTLINE_CHECK_EQUAL(text(filter, 0, "Result").back(), 's');
+  TAUTLINE_CHECK_EQUAL(text(filter, 1, "Result"), "*");
+  TAUTLINE_CHECK_EQUAL(number(filter, 1, "Total time (s)"), 0);
+  TAUTLINE_CHECK(text(filter, 1, "Reason").find("limit of iterations") != std::string::npos);
+  TAUTLINE_CHECK_EQUAL(std::string(filter->GetRecommended()), "direct solver");
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("1 failed (*)") != std::string::npos);
+  TAUTLINE_CHECK(messages.empty());
+
+  filter->ClearCombinations();
+  filter->AddCombination(1);
+  filter->AddCombination(13);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(std::string(filter->GetRecommended()), "");
+  TAUTLINE_CHECK(messages.has("limit of iterations") || messages.has("converged"));
+  messages.clear();
+
+  filter->SetMaximumIterations(10000);
+  filter->SetTimeLimit(1e-9);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(text(filter, 1, "Result"), "-");
+  TAUTLINE_CHECK_EQUAL(number(filter, 1, "N converged"), 0);
+  filter->SetTimeLimit(0);
+  messages.clear();
+  filter->AddCombination(0);
+  filter->AddCombination(vtkSolverStudy::GetNumberOfCombinations() + 1);
+  TAUTLINE_CHECK(messages.has("There is no combination 0"));
+  TAUTLINE_CHECK(messages.has("There is no combination 26"));
+  messages.clear();
+  filter->SetPETScOptions("-nonsense");
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("-nonsense"));
+}
+
+void testNames()
+{
+  std::set<std::string> names;
+  for (int i = 1; i <= vtkSolverStudy::GetNumberOfCombinations(); ++i)
+  {
+    names.insert(vtkSolverStudy::GetCombinationName(i));
+  }
+  TAUTLINE_CHECK_EQUAL(names.size(), std::size_t(vtkSolverStudy::GetNumberOfCombinations()));
+  TAUTLINE_CHECK_EQUAL(std::string(vtkSolverStudy::GetCombinationName(0)), "");
+  // Elasticity: the rigid body modes are worth iterations.
+  vtkNew<vtkSolverStudy> filter;
+  filter->SetInputData(toGrid(blockMesh(CellType::Triangle, 24, 24, 0)));
+  filter->SetEquation(vtkEllipticAlgorithm::ELASTICITY);
+  for (int number : { 13, 24, 19, 25 })
+  {
+    filter->AddCombination(number);
+  }
+  filter->Update();
+  TAUTLINE_CHECK(number(filter, 1, "N iterations") < number(filter, 0, "N iterations"));
+  TAUTLINE_CHECK(number(filter, 2, "N iterations") < number(filter, 3, "N iterations"));
+}
+}
+
+int TestSolverStudyFilter(int, char*[])
+{
+  testTable();
+  testFailures();
+  testNames();
+  return exitCode();
+}

@@ -1,0 +1,166 @@
+"""The verbs solve, condition and solver_study, and their commands."""
+
+import csv
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import tautline as tl
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+OUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "conditioning"
+OUT.mkdir(parents=True, exist_ok=True)
+DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
+
+
+def refused(text, verb, *arguments, **options):
+    try:
+        verb(*arguments, **options)
+    except tl.Error as error:
+        assert text in str(error), f"'{error}' does not say '{text}'"
+    else:
+        raise AssertionError(f"{verb.__name__} took {arguments} {options}")
+
+
+def square(n=12):
+    x, y = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
+    a = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    cells = np.stack([a, a + 1, a + n + 2, a, a + n + 2, a + n + 1], axis=1).reshape(-1, 3)
+    return tl.from_arrays(np.column_stack([x.ravel(), y.ravel()]), {"triangle": cells})
+
+
+def coordinates(mesh):
+    return vtk_to_numpy(mesh.GetPoints().GetData())
+
+
+def test_solve():
+    mesh = square()
+    x, y, _ = coordinates(mesh).T
+    result = tl.solve(mesh)
+    assert abs(result.solution.max() - 0.0737) < 1e-3  # of -laplace u = 1 on the unit square
+    assert result.converged and result.unknowns == 121 and result.gradient.shape == (288, 3)
+    assert len(result.history["residual"]) == result.iterations + 1 and result.history["log10_residual"][0] == 0
+    assert result.history["log10_residual"][-1] <= -5 and "BoomerAMG" in result.summary
+    tight = {"relative_tolerance": 1e-12}
+    exact = tl.solve(mesh, solver="direct").solution
+    for solver in ("cg", "gmres", "minres", "bicgstab"):
+        for preconditioner in ("jacobi", "ssor", "ilu", "amg", "icc", "gamg", "none"):
+            found = tl.solve(mesh, "poisson", solver, preconditioner, **tight).solution
+            assert np.abs(found - exact).max() < 1e-8, (solver, preconditioner)
+
+    # One source in every way it can be told; the given solution, and where.
+    wanted = tl.solve(mesh, source="x*y", **tight).solution
+    for source in (x * y, (x * y).tolist()):
+        again = tl.solve(mesh, source=source, **tight)
+        assert np.abs(again.solution - wanted).max() < 1e-14
+        assert again.mesh.GetPointData().GetArray("given source") is None
+    named = tl.solve(result.mesh, source="Solution", solution_name="next", gradient=False)
+    assert named.mesh.GetPointData().GetArray("next") and named.gradient.size == 0
+    assert np.abs(named.solution - tl.solve(mesh, source=result.solution).solution).max() < 1e-14
+    linear = tl.solve(mesh, source=0, given="2*x - y", **tight)
+    assert np.abs(linear.solution - (2 * x - y)).max() < 1e-9
+    assert np.abs(linear.gradient - (2, -1, 0)).max() < 1e-8
+    bar = tl.solve(mesh, fixed="x < 0.01", **tight).solution
+    assert np.abs(bar - (x - x**2 / 2)).max() < 1e-2
+    assert np.abs(tl.solve(mesh, fixed=x < 0.01, **tight).solution - bar).max() < 1e-14
+    assert np.abs(tl.solve(mesh, fixed="x < 0.01", given=3.0, **tight).solution - 3 - bar).max() < 1e-9
+
+    elliptic = tl.solve(mesh, "elliptic", alpha=2, beta=3, reaction=100, **tight).solution
+    tensor = tl.solve(mesh, "elliptic", tensor=[(2, 3, 1, 0, 0, 0)] * 288, reaction=100, **tight).solution
+    assert np.abs(elliptic - tensor).max() < 1e-14 and 0 < elliptic.max() < 0.01
+    assert tl.solve(mesh, threads=1).solution.tolist() == tl.solve(mesh, threads=2).solution.tolist()
+
+
+def test_elasticity():
+    mesh = square()
+    x, y, _ = coordinates(mesh).T
+    for plane, stress in (("strain", (1.2, 0.4, 0.4)), ("stress", (16 / 15, 4 / 15, 0))):
+        result = tl.solve(mesh, "elasticity", source=0, given="x*iHat + 0*y*jHat", poisson_ratio=0.25, plane=plane,
+                          relative_tolerance=1e-12)  # fmt: skip
+        assert np.abs(result.solution - np.stack([x, 0 * x, 0 * x], 1)).max() < 1e-9
+        assert np.abs(result.gradient - (*stress, 0, 0, 0)).max() < 1e-8, result.gradient[0]
+    soft = tl.solve(mesh, "elasticity", source=(0, -1), preconditioner="gamg", fixed="x < 0.01", youngs_modulus=2)
+    stiff = tl.solve(mesh, "elasticity", source=(0, -1), preconditioner="gamg", fixed="x < 0.01", stiffness=[2.0] * 288)
+    assert np.abs(soft.solution - stiff.solution).max() < 1e-12 and soft.solution[:, 1].min() < -0.5
+    assert vtk_to_numpy(soft.mesh.GetCellData().GetArray("VonMises")).max() > 1
+
+
+def test_condition():
+    mesh = square()
+    result = tl.condition(mesh, preconditioner="jacobi")
+    known = math.tan(math.pi / 24) ** -2  # of the five-point matrix
+    assert abs(result.condition / known - 1) < 1e-6 and abs(result.preconditioned_condition / known - 1) < 1e-6
+    assert [row["matrix"] for row in result.spectrum] == ["A", "P^-1 A (Jacobi)"]
+    assert result.spectrum[0]["converged"] and 0 <= result.spectrum[0]["largest_error"] < 1e-5
+    assert abs(result.share.sum() - 1) < 1e-9 and result.largest_eigenvalue.shape == (288,)
+    ritz = tl.condition(mesh, preconditioner="none", method="ritz", shares=False)
+    assert math.isnan(ritz.preconditioned_condition) and math.isnan(ritz.spectrum[0]["largest_error"])
+    assert 0.9 * known < ritz.condition <= known * (1 + 1e-9) and ritz.share.size == 0
+    assert tl.condition(mesh, "elasticity").preconditioned_condition < tl.condition(mesh, "elasticity").condition
+    # A mesh with bad elements: few have most of the largest eigenvalue.
+    plate = tl.condition(DATA / "plate.vtu")
+    assert np.sort(plate.share)[-10:].sum() > 0.9 and "of 1913 elements have 90 %" in plate.summary
+
+
+def test_study():
+    study = tl.solver_study(square())
+    assert [row["number"] for row in study.rows] == list(range(1, 17)) and study.rows[9]["name"] == "GMRES + ILU(0)"
+    best = min(study.rows, key=lambda row: row["seconds"])
+    assert study.recommended == best["name"] and study.why.startswith(best["name"])
+    assert all(row["converged"] and row["result"].endswith(" s") and row["condition"] >= 1 for row in study.rows)
+    few = tl.solver_study(square(), "elasticity", [17, "CG + GAMG", 1], maximum_iterations=1)
+    assert [row["number"] for row in few.rows] == [17, 19, 1]
+    assert [row["result"] == "*" for row in few.rows] == [False, True, True] and math.isnan(few.rows[1]["seconds"])
+    assert few.recommended == tl.solver_combinations()[17] and len(tl.solver_combinations()) == 25
+
+
+def test_refusals():
+    mesh = square()
+    refused("there are 'poisson', 'elliptic', 'elasticity'", tl.solve, mesh, "heat")
+    refused("there are 'cg'", tl.solve, mesh, solver="lu")
+    refused("Undefined symbol: 'q'", tl.solve, mesh, source="q")
+    refused("of elasticity it is a vector", tl.solve, mesh, "elasticity", source=2.0)
+    refused("12 rows; there are 288 cells and 169 points", tl.solve, mesh, source=np.ones(12))
+    refused("without a fixed point", tl.solve, mesh, fixed="x > 5")
+    refused("-nonsense", tl.solve, mesh, petsc_options="-nonsense 1")
+    refused("-nonsense", tl.condition, mesh, petsc_options="-nonsense 1")
+    refused("must be a number from", tl.solve, mesh, time_limit=-1)
+    refused("there is no combination 99", tl.solver_study, mesh, combinations=[99])
+    tangled = DATA / "bracket-tangled.vtu"
+    for verb in (tl.solve, tl.condition, tl.solver_study):
+        refused("inverted", verb, tangled)
+    stopped = tl.solve(mesh, preconditioner="none", maximum_iterations=3)
+    assert not stopped.converged and stopped.iterations == 3 and "limit of iterations" in stopped.reason
+
+
+def shell(*arguments, code=0):
+    done = subprocess.run([sys.executable, "-m", "tautline", *map(str, arguments)], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True)  # fmt: skip
+    assert done.returncode == code, done.stdout
+    return done.stdout
+
+
+def test_commands():
+    plate = DATA / "plate.vtu"
+    out = shell("solve", plate, "--source", "x*y", "--fixed", "x < 0", "-o", OUT / "s.vtu", "--csv", OUT / "s.csv")
+    assert "Converged" in out and tl.read(OUT / "s.vtu").GetPointData().GetArray("Solution")
+    with open(OUT / "s.csv", encoding="utf-8") as rows:
+        assert [float(row["log10_residual"]) for row in csv.DictReader(rows)][0] == 0
+    out = shell("solve", plate, "--pde", "elasticity", "--source", "0,-1", "--plane", "stress", "--iterations", 1, code=1)
+    assert "limit of iterations" in out
+    out = shell("condition", plate, "--preconditioner", "ilu", "-o", OUT / "c.vtu", "--csv", OUT / "c.csv")
+    assert "P^-1 A (ILU(0))" in out and tl.read(OUT / "c.vtu").GetCellData().GetArray("Share")
+    out = shell("solver-study", plate, "--combinations", "1,13,17", "--csv", OUT / "t.csv")
+    assert "CG + BoomerAMG" in out and "Recommended: " in out
+    with open(OUT / "t.csv", encoding="utf-8") as rows:
+        assert [row["number"] for row in csv.DictReader(rows)] == ["1", "13", "17"]
+    assert "inverted" in shell("solve", DATA / "bracket-tangled.vtu", code=1)
+
+
+for name, test in list(globals().items()):
+    if name.startswith("test_"):
+        test()
+        print(name, flush=True)
