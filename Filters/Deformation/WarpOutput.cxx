@@ -206,6 +206,7 @@ void addWarpOutput(const MovableMesh& rest, const Warping& result, const WarpFac
   totals.invertedAfterWarp += result.invertedWarp;
   totals.inverted += q.inverted;
   totals.impossible += result.impossible;
+  totals.incomplete |= result.amount < 1;
   totals.worstShape = std::max(totals.worstShape, q.shape.maximum);
   totals.reused += facts.reused;
 }

@@ -28,6 +28,7 @@ struct WarpFacts
 struct WarpTotals
 {
   Index invertedAfterWarp = 0, inverted = 0, impossible = 0;
+  bool incomplete = false; ///< some did not come to the end of their motion
   double worstShape = 0.0;
   int reused = 0;
   std::string summary;

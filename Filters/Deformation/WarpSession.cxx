@@ -1,5 +1,6 @@
 #include "WarpSession.h"
 
+#include "Processes.h"
 #include "TargetMatch.h"
 #include "tautline/PointMotion.h"
 
@@ -7,7 +8,6 @@
 #include "vtkInformation.h"
 #include "vtkLinearTransform.h"
 #include "vtkMatrix4x4.h"
-#include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkSelection.h"
 
@@ -116,15 +116,16 @@ vtkDataArray* targetIds(vtkDataSet* target, const std::string& name)
   return array;
 }
 
-int leastOfAll(int own)
+bool allZero(const std::vector<double>& values)
 {
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  int least = own;
-  if (controller && controller->GetNumberOfProcesses() > 1)
-  {
-    controller->AllReduce(&own, &least, 1, vtkCommunicator::MIN_OP);
-  }
-  return least;
+  return std::all_of(values.begin(), values.end(), [](double d) { return d == 0; });
+}
+
+/// Whether nothing moves, not even on the way: full turns end where they began.
+bool staysAtRest(const WarpTask& task)
+{
+  constexpr double somewhere = 1.0 / 3;
+  return allZero(task.displacement) && (!task.path || allZero(task.path(somewhere)));
 }
 
 bool chosenOfCells(vtkAlgorithm* algorithm, int index)
@@ -526,14 +527,11 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
   reused = false;
   if (done != kept.frames.end())
   {
-    result.points = done->second;
-    return result;
+    return done->second;
   }
   const std::vector<double> atRest(view.points, view.points + 3 * view.numberOfPoints);
   const auto before = stepwise ? kept.frames.find(this->current - 1) : kept.frames.end();
-  if (std::all_of(
-        task.displacement.begin(), task.displacement.end(), [](double d) { return d == 0; }) &&
-    before == kept.frames.end())
+  if (staysAtRest(task) && before == kept.frames.end())
   {
     result.points = atRest; // bitwise
     result.history.resize(1);
@@ -547,7 +545,7 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
   else
   {
     auto previous = shallowCopy(rest.data);
-    previous->SetPoints(makePoints(before->second, nullptr));
+    previous->SetPoints(makePoints(before->second.points, nullptr));
     RestingMesh step;
     std::string note;
     try
@@ -561,7 +559,7 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
     WarpTask rise = task;
     for (std::size_t i = 0; note.empty() && i < rise.displacement.size(); ++i)
     {
-      rise.displacement[i] += atRest[i] - before->second[i];
+      rise.displacement[i] += atRest[i] - before->second.points[i];
     }
     RestingMesh& from = note.empty() ? step : rest;
     this->prepare(from, rise, blockNumber);
@@ -575,7 +573,7 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
   if (stepwise)
   {
     this->forget(kept);
-    kept.frames[this->current] = result.points;
+    kept.frames[this->current] = result;
   }
   return result;
 }

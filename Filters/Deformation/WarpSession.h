@@ -47,9 +47,8 @@ private:
 struct WarpBlock
 {
   RestingMesh rest;
-  vtkSmartPointer<vtkPointSet> first; ///< at the first time step
-  std::map<int, std::vector<double>>
-    frames; ///< points at time steps, each warped from the one before
+  vtkSmartPointer<vtkPointSet> first;      ///< at the first time step
+  std::map<int, tautline::Warping> frames; ///< at time steps, each warped from the one before
 };
 
 /// The motion of a data set as it is asked for.

@@ -1,13 +1,12 @@
 #include "vtkMeshWarp.h"
 
+#include "Processes.h"
 #include "WarpSession.h"
 
-#include "vtkCompositeDataSet.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLinearTransform.h"
-#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkSelection.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -44,40 +43,6 @@ std::vector<double> timeStepsOf(vtkInformationVector* input)
   }
   const double* steps = info->Get(Pipeline::TIME_STEPS());
   return std::vector<double>(steps, steps + info->Length(Pipeline::TIME_STEPS()));
-}
-
-/// Throws Error if a data set has cells on several processes. Called by all of them.
-void requireOneProcess(vtkDataObject* input)
-{
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  if (!controller || controller->GetNumberOfProcesses() < 2)
-  {
-    return;
-  }
-  std::vector<int> here;
-  tautline::forEachLeaf(input,
-    [&here](unsigned int index, vtkDataSet* data)
-    {
-      here.resize(std::max<std::size_t>(here.size(), index + 1));
-      here[index] = data->GetNumberOfCells() > 0;
-    });
-  const int own = static_cast<int>(here.size());
-  int size = own;
-  controller->AllReduce(&own, &size, 1, vtkCommunicator::MAX_OP);
-  here.resize(size, 0);
-  std::vector<int> processes(size, 0);
-  if (size > 0)
-  {
-    controller->AllReduce(here.data(), processes.data(), size, vtkCommunicator::SUM_OP);
-  }
-  const int most = size > 0 ? *std::max_element(processes.begin(), processes.end()) : 0;
-  if (most > 1)
-  {
-    throw tautline::Error("The mesh is spread over " + std::to_string(most) +
-      " processes, and the boundary of a part is not that of the mesh: gather it on one process "
-      "first, "
-      "in ParaView by Aggregate Dataset.");
-  }
 }
 }
 
@@ -279,12 +244,10 @@ int vtkMeshWarp::RequestData(
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   tautline::TableRows history, statistics;
   tautline::WarpTotals totals;
+  std::string failure;
   try
   {
-    if (!session.looping) // as some processes may have failed and loop no more
-    {
-      requireOneProcess(input);
-    }
+    tautline::requireOneProcess(input);
     const auto moved = tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
     const auto fixed = tautline::markSelected(input, vtkSelection::GetData(inputVector[FixedPort]));
     session.numberOfBlocks = tautline::countBlocks(input);
@@ -296,14 +259,20 @@ int vtkMeshWarp::RequestData(
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorMacro(
-      "Not enough memory: choose conjugate gradients with BoomerAMG (Automatic Solver off), "
-      "or warp the mesh in parts.");
-    return this->Fail(output, request);
+    failure =
+      "Not enough memory: choose conjugate gradients with BoomerAMG (Automatic Solver off), or "
+      "warp the mesh in parts.";
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
+    failure = error.what();
+  }
+  // Processes fail together: those that did would execute again alone, and wait for the others.
+  if (tautline::leastOfAll(failure.empty()) == 0)
+  {
+    vtkErrorMacro(<< (failure.empty()
+                      ? "Another process could not warp its data set, see its error."
+                      : failure));
     return this->Fail(output, request);
   }
   session.begun = session.sequence();
@@ -332,7 +301,7 @@ int vtkMeshWarp::RequestData(
   this->Impossible = totals.impossible;
   this->WorstShape = totals.worstShape;
   this->Reused = totals.reused;
-  if (totals.inverted > 0)
+  if (totals.inverted > 0 || totals.incomplete)
   {
     vtkWarningMacro(<< this->Summary);
   }

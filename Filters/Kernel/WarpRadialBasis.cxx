@@ -17,6 +17,8 @@ constexpr std::size_t MostCenters = 3000;
 /// A candidate that is within this (squared) of what the chosen ones span adds nothing but rounding.
 constexpr double Independence = 1e-12;
 constexpr std::size_t LeafSize = 32;
+/// Products from which a choice is worth starting threads.
+constexpr Index ParallelWork = 200000;
 /// The clock is asked once for so many chosen points.
 constexpr std::size_t ClockInterval = 16;
 
@@ -95,8 +97,9 @@ public:
       this->Pivots.push_back(pivot);
       this->Weights.push_back((1 / pivot) * this->Residuals[best]);
       const auto count = static_cast<Index>(this->Points.size());
+      const bool worthIt = count * static_cast<Index>(k) > ParallelWork;
       // Its own row last: the others read it.
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(this->Threads))
+#pragma omp parallel for schedule(static) num_threads(resolveThreads(this->Threads)) if (worthIt)
       for (Index i = 0; i < count; ++i)
       {
         if (static_cast<std::size_t>(i) != best)

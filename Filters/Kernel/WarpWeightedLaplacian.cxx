@@ -14,8 +14,9 @@ namespace
 using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr int NewtonSteps = 50;
-/// Newton's method is done when the convex combination is this close to the point, in lengths of the longest edge.
-constexpr double WeightTolerance = 1e-14;
+/// Newton's method is done at this (squared) decrement, which no affine map of the neighbours changes, and was
+/// successful at the second.
+constexpr double Enough = 1e-27, Acceptable = 1e-20;
 /// Of the incomplete factorisation.
 constexpr double DropTolerance = 1e-3;
 constexpr int FillFactor = 6;
@@ -111,7 +112,7 @@ void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vecto
   };
   Vec3 l = { 0, 0, 0 };
   double value = 0;
-  bool found = false;
+  double decrease = std::numeric_limits<double>::infinity();
   for (int step = 0; step < NewtonSteps; ++step)
   {
     std::array<Vec3, 3> hessian = {};
@@ -126,10 +127,9 @@ void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vecto
         hessian[a] += (w * w * offsets[j][a]) * offsets[j];
       }
     }
-    found = norm(gradient) <= WeightTolerance;
     const Vec3 direction = solved(hessian, gradient, dimension);
-    const double decrease = dot(gradient, direction);
-    if (found || !(decrease > 0) || !std::isfinite(decrease))
+    decrease = dot(gradient, direction);
+    if (!(decrease > Enough) || !std::isfinite(decrease))
     {
       break;
     }
@@ -149,14 +149,7 @@ void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vecto
     l += length * direction;
     value = next;
   }
-  // What the last step left is rounding of the tolerance's size, or a point outside the hull.
-  constexpr double Nearly = 1e-10;
-  Vec3 left = { 0, 0, 0 };
-  for (std::size_t j = 0; j < offsets.size(); ++j)
-  {
-    left += weights[j] * offsets[j];
-  }
-  found = found || norm(left) <= Nearly;
+  const bool found = decrease <= Acceptable;
   double sum = 0;
   for (double& w : weights)
   {

@@ -557,6 +557,63 @@ void testSimilarity()
   }
 }
 
+/// Steps of a transform follow its path; displacements that turn a part do so, too.
+void testSteps()
+{
+  const MeshData data = holedBlock(CellType::Triangle, 15);
+  const std::vector<int> parts = partsOf(data, 15);
+  vtkNew<vtkMeshWarp> filter;
+  Messages messages(filter);
+  auto grid = toGrid(data);
+  grid->GetPointData()->AddArray(arrayOf("d", data.numberOfPoints(), 3,
+    [&](Index i, int k) { return parts[i] == 2 && k < 2 ? 15 - 2 * data.point(i)[k] : 0.0; }));
+  filter->SetInputData(grid);
+  filter->SetMethod(vtkMeshWarp::SMALL_STEP_FEMWARP);
+  filter->SetSteps(20);
+  filter->SetTransformKind(vtkMeshWarp::ROTATION);
+  filter->SetAngle(180);
+  filter->Update();
+  const MeshData turned = withPointsOf(data, meshOf(filter));
+  const vtkIdType byArc = filter->GetInverted();
+  filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetInverted(), byArc);
+  TAUTLINE_CHECK(distance(turned, withPointsOf(data, meshOf(filter))) < 1e-10);
+
+  // Two turns in steps end where none does, for the boundary; what is between is wound up.
+  const MeshData wound = [&]
+  {
+    filter->SetMotion(vtkMeshWarp::TRANSFORM);
+    filter->SetSteps(100);
+    filter->SetAngle(720);
+    filter->Update();
+    return withPointsOf(data, meshOf(filter));
+  }();
+  double inside = 0, boundary = 0;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    double& largest = parts[i] ? boundary : inside;
+    largest = std::max(largest, norm(wound.point(i) - data.point(i)));
+  }
+  TAUTLINE_CHECK(boundary < 1e-12 && inside > 0.1);
+  filter->SetAngle(180);
+
+  // As many steps as it takes, and no further than it goes: a warning, and by how much in the tables.
+  filter->SetSteps(0);
+  messages.clear();
+  filter->Update();
+  const double amount = value(filter->GetStatistics(), "Amount");
+  TAUTLINE_CHECK_EQUAL(filter->GetInverted(), 0);
+  TAUTLINE_CHECK(amount > 0.1 && amount < 1);
+  TAUTLINE_CHECK(messages.has("% of the motion"));
+  filter->SetAmount(0.5 * amount);
+  messages.clear();
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_NEAR(value(filter->GetStatistics(), "Amount"), 0.5 * amount, 1e-12);
+}
+
 /// A mesh reversed throughout warps as its mirror image; blocks on their own.
 void testBlocks()
 {
@@ -612,6 +669,7 @@ int TestMeshWarp(int, char*[])
   testReuse();
   testParts();
   testSimilarity();
+  testSteps();
   testBlocks();
   return exitCode();
 }

@@ -45,6 +45,23 @@ void testRanks(int rank)
   auto* own = vtkPointSet::SafeDownCast(output->GetBlock(rank));
   TAUTLINE_CHECK_EQUAL(own->GetNumberOfCells(), data.numberOfCells());
   TAUTLINE_CHECK(distance(withPointsOf(data, own), data) > 0.1);
+
+  // If one cannot, none does.
+  MeshData tangled = data;
+  if (rank == 1)
+  {
+    std::swap(tangled.points[0], tangled.points[3]);
+  }
+  blocks->SetBlock(rank, toGrid(tangled));
+  blocks->Modified();
+  messages.clear();
+  filter->Update();
+  TAUTLINE_CHECK(messages.has(rank == 1 ? "Untangle Mesh" : "Another process could not warp"));
+  blocks->SetBlock(rank, toGrid(data));
+  blocks->Modified();
+  messages.clear();
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
 }
 }
 

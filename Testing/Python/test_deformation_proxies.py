@@ -121,6 +121,25 @@ for frame in range(5):
     assert reused == (frame > 0), (frame, reused)
 assert far[0] == 0 and all(abs(far[i] - i * far[4] / 4) < 1e-8 for i in range(5)) and far[4] > 0, far
 
+# files over time: the boundary of each, the interior of the first; the same forwards and backwards
+files = []
+turning = WarpMesh(Input=plate, TransformKind="Rotation", Method="FEMWARP")  # noqa: F821
+for step in range(4):
+    turning.Angle = 10 * step
+    files.append(str(Path(os.environ["TAUTLINE_TEST_DIR"], f"turning{step}.vtu")))
+    simple.SaveData(files[-1], proxy=turning, PointDataArrays=[], CellDataArrays=[], DataMode="Ascii")
+over = WarpMesh(Input=simple.OpenDataFile(files), Motion="Time steps of the input", Method="FEMWARP")  # noqa: F821
+assert list(simple.GetTimeKeeper().TimestepValues) == [0, 1, 2, 3]
+for start in ("First time step", "Previous time step"):
+    over.StartFrom = start
+    found = {}
+    for time in (0, 2, 3, 1, 2, 0, 3):
+        over.UpdatePipeline(time)
+        displacement = over.PointData["Displacement"].GetRange(-1)[1]
+        assert found.setdefault(time, displacement) == displacement, (start, time)
+    expected = [found[0] == 0, abs(found[2] - 0.3473) < 1e-3, found[1] < found[2] < found[3]]
+    assert all(expected), (start, found)
+
 expected = to.CellData["TMP shape"].GetRange()
 simple.SaveState(STATE)
 simple.ResetSession()
