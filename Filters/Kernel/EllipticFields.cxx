@@ -30,12 +30,16 @@ void interpolate(const ElementSample<Nodes>& sample, const EllipticSolution& sol
 
 /// Calls work(cell, nodes, sample) at the places of a rule in every cell that is not skipped, chunk by chunk.
 template <class Work>
-void forEachSample(const EllipticSystem& system, int pointsPerDirection, const Work& work)
+void forEachSample(
+  const EllipticSystem& system, int pointsPerDirection, bool ghosts, const Work& work)
 {
   const MeshView& view = system.mesh().view();
-  const unsigned char* skip = system.part().skip;
+  const bool volume = system.mesh().dimension() == Dimension::Volume;
   for (const CellBlock& block : system.mesh().blocks())
   {
+    // What is skipped is either a ghost or a face of a volume.
+    const bool face = volume && topology(block.type).dimension == 2;
+    const unsigned char* skip = ghosts && !face ? nullptr : system.part().skip;
     std::vector<ReferencePoint> rule = referenceRule(block.type, pointsPerDirection);
     withElement(block.type,
       [&](auto nodesOfCell, auto dimensionOfCell)
@@ -99,7 +103,7 @@ void differentiate(const EllipticSystem& system, EllipticSolution& solution)
   const int size = solution.components == 1 ? 3 : 6;
   solution.gradients.assign(
     size * system.mesh().view().numberOfCells, std::numeric_limits<double>::quiet_NaN());
-  forEachSample(system, 1,
+  forEachSample(system, 1, true,
     [&](Index cell, const Index* node, const Vec3*, const auto& sample)
     {
       Vec3 value;
@@ -124,7 +128,7 @@ std::array<double, 2> errorNorms(const EllipticSystem& system, const EllipticSol
   constexpr int gaussPoints = 4;
   // One sum per cell, so that their order is that of the cells.
   std::vector<std::array<double, 2>> squares(system.mesh().view().numberOfCells);
-  forEachSample(system, gaussPoints,
+  forEachSample(system, gaussPoints, false,
     [&](Index cell, const Index* node, const Vec3* p, const auto& sample)
     {
       Vec3 place = { 0, 0, 0 }, value;

@@ -122,9 +122,15 @@ def total(filter_, name):
 
 for ghosts, ids in ((0, 0), (1, 0), (0, 1), (1, 1)):
     mesh = cube(ghosts=ghosts, ids=ids)
-    solved = update(SolvePDE(mesh, SourceType="Expression", SourceExpression="x*y + z", RelativeTolerance=TIGHT))
+    solved = SolvePDE(
+        mesh, SourceType="Expression", SourceExpression="x*y + z", GivenType="Expression", GivenExpression="x + 2*y",
+        RelativeTolerance=TIGHT,
+    )  # fmt: skip
+    update(solved)
     results[f"poisson {ghosts} {ids}"] = field(solved, "Solution")
     results[f"unknowns {ghosts} {ids}"] = solved.Unknowns
+    gradients = [np.linalg.norm(arrays["Gradient"], axis=1).min() for arrays in parts(solved)]
+    results[f"flattest {ghosts} {ids}"] = np.min(gradients).item()  # ghost cells have their gradients, too
 elastic = SolvePDE(
     cube(ghosts=1), Equation="Linear Elasticity", BodyForce=[0, 0, -1], Preconditioner="GAMG",
     FixedPart="Part of the Boundary", FixedWhere="x < 0.01", RelativeTolerance=TIGHT,
