@@ -13,6 +13,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 vtkStandardNewMacro(vtkConditionEstimator);
@@ -90,6 +91,26 @@ std::vector<Contribution> largest(const tautline::ElementContributions& elements
     [](const Contribution& a, const Contribution& b) { return a.share > b.share; });
   all.resize(std::min<std::size_t>(all.size(), ListedElements));
   return all;
+}
+
+/// log10 of each positive value over the geometric mean of all on all processes; NaN for others.
+std::vector<double> excess(const std::vector<double>& values, const tautline::Processes& processes)
+{
+  double sum = 0.0, count = 0.0;
+  for (double value : values)
+  {
+    const bool counts = value > 0;
+    sum += counts ? std::log10(value) : 0.0;
+    count += counts;
+  }
+  const double mean = processes.sum(sum) / std::max(processes.sum(count), 1.0);
+  std::vector<double> result;
+  for (double value : values)
+  {
+    result.push_back(
+      value > 0 ? std::log10(value) - mean : std::numeric_limits<double>::quiet_NaN());
+  }
+  return result;
 }
 
 /// The number of elements on all processes, and of the fewest that have most of the eigenvalue together.
@@ -232,6 +253,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
          << few << " of " << all << " elements have " << 100 * MostOfIt
          << " % of the largest eigenvalue.";
   }
+  tautline::addArray(mesh.output, true, "Excess", excess(elements.largestEigenvalue, processes), 1);
   for (const Contribution& element : largest(elements, system.mesh(), processes))
   {
     text << "\nElement " << element.cell;

@@ -7,9 +7,10 @@
  * larger the condition number of P^-1 A is.
  *
  * @par Output port 0 `Mesh`:
- * The input with the cell arrays `LargestEigenvalue`, of the stiffness matrix of each element, and, if ComputeShares is
- * on, `Share`: the part of the largest eigenvalue of A that is due to the element, x_e^T A_e x_e of its eigenvector x over the
- * whole. Shares add up to 1; elements that hurt have large ones. Both are 0 for cells that are not solved on.
+ * The input with the cell arrays `LargestEigenvalue`, of the stiffness matrix of each element; `Excess`, its log10 over the
+ * geometric mean of all elements (1: ten times); and, if ComputeShares is on, `Share`: the part of the largest eigenvalue of A that
+ * is due to the element, x_e^T A_e x_e of its eigenvector x over the whole. Shares add up to 1; elements that hurt have large
+ * ones, often very few. All are 0 for cells that are not solved on.
  *
  * @par Output port 1 `Spectrum`:
  * A vtkTable with a row for A and one for P^-1 A (per block): `Matrix`, `Smallest`, `Largest`, `Condition` (0: not

@@ -142,13 +142,18 @@ struct Warping
 class TAUTLINE_KERNEL_EXPORT Warper
 {
 public:
-  /// The mesh (consistently oriented, all elements valid) and the arrays of the options stay alive. Throws Error.
+  /**
+   * @brief The mesh and the arrays of the options stay alive. Throws Error for surfaces in space, elements that are not valid
+   * (how many, the first), cells the method does not take (wedges and pyramids: the last three do), no prescribed point, and
+   * options out of range.
+   */
   Warper(const Mesh& mesh, const WarpOptions& options);
   ~Warper();
 
   /**
    * @brief Where the points are once the prescribed ones have moved by `displacement` (3 per point of the mesh; those of other points
-   * are not read). Throws Error for displacements that are not finite (how many, the first point).
+   * are not read). Throws Error for displacements that are not finite (how many, the first point), or lead out of the plane of a planar
+   * mesh.
    */
   Warping warp(const double* displacement);
 

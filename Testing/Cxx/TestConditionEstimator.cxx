@@ -110,7 +110,9 @@ void testCulprit()
   TAUTLINE_CHECK(summary.find("\nElement " + std::to_string(worst) + " at (") != std::string::npos);
   TAUTLINE_CHECK(summary.find(" of 128 elements have 90 %") != std::string::npos);
   TAUTLINE_CHECK_EQUAL(
-    std::string(meshOf(filter)->GetCellData()->GetScalars()->GetName()), "Share");
+    std::string(meshOf(filter)->GetCellData()->GetScalars()->GetName()), "Excess");
+  TAUTLINE_CHECK_NEAR(sumOf(meshOf(filter), "Excess"), 0, 1e-9);
+  TAUTLINE_CHECK(component(meshOf(filter)->GetCellData(), "Excess", worst) > 1);
 
   filter->SetComputeShares(false);
   filter->Update();

@@ -55,7 +55,7 @@ assert "limit of iterations" in solved.Summary and solved.GetDataInformation().G
 
 estimate = update(ConditionEstimator(Input=plate))
 assert abs(estimate.Condition / 1619.5 - 1) < 1e-3 and 1 < estimate.PreconditionedCondition < 2, estimate.Summary
-assert {"Share", "LargestEigenvalue"} <= set(estimate.CellData.keys())
+assert {"Excess", "Share", "LargestEigenvalue"} <= set(estimate.CellData.keys())
 assert servermanager.Fetch(estimate, idx=1).GetNumberOfRows() == 2
 
 study = update(SolverStudy(Input=plate))

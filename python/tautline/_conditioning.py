@@ -77,7 +77,7 @@ class Solved:
 class Conditioned:
     """What condition() found."""
 
-    #: The mesh with the cell arrays `LargestEigenvalue` and `Share`.
+    #: The mesh with the cell arrays `LargestEigenvalue`, `Excess` (its log10 over the geometric mean) and `Share`.
     mesh: vtkDataObject
     #: Condition numbers of A and of P^-1 A; nan where not known (of blocks, the largest).
     condition: float
