@@ -175,7 +175,7 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
       break;
     }
     case MovedPart::Selection:
-      if (!choice.selected)
+      if (!choice.selected && !choice.elsewhere)
       {
         throw Error(
           "Nothing is selected that could move: select points or cells and press Copy Active "
@@ -189,7 +189,7 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
   {
     flags[i] = flags[i] && boundary[i];
   }
-  if (count(flags) == 0)
+  if (count(flags) == 0 && !(chosen == 0 && choice.elsewhere))
   {
     throw Error("Of the " + text(chosen) +
       " points chosen to move none is on the boundary: choose others, or other values.");

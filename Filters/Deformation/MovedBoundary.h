@@ -33,6 +33,7 @@ struct PartChoice
   vtkDataArray* array = nullptr; ///< Values
   bool ofCells = false;
   vtkDataSet* selected = nullptr; ///< Selection: the mesh with the marks of markSelected(), or null
+  bool elsewhere = false; ///< Selection: other data sets have marks, so that this needs none
 };
 
 /**

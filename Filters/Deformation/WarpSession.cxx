@@ -402,6 +402,7 @@ void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest
   choice.numbers = self->Parts;
   choice.values = self->Values;
   choice.selected = counterpartOf(block, selected);
+  choice.elsewhere = selected && !block.name.empty();
   if (self->MovedPart == ARRAY_VALUES)
   {
     choice.array = chosenArray(self, MovedArray, block.input, "to tell what moves");

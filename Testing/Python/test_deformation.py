@@ -111,6 +111,15 @@ def test_arrays_and_targets():
     assert len(edge) > 5 and np.abs(points(back.mesh) - x)[edge].max() < 1e-12
     assert not tl.warp(turned, "Displacement", amount=0).displacement.any()
 
+    source = tl.vtkDomainSource()
+    source.SetDomainByName("rectangle")
+    source.SetNumberOfCells(800)
+    source.Update()
+    moving, boundary = source.GetOutput(0), source.GetOutputDataObject(1)
+    by_array, by_target = tl.warp(moving, "Displacement"), tl.warp(moving, target=boundary)
+    assert by_array.inverted == 0 and np.abs(by_array.displacement).max() > 0.1
+    assert np.abs(by_array.displacement - by_target.displacement).max() < 1e-5
+
     mesh = box_in_box()
     sphere = vtkSphereSource()
     sphere.SetCenter(3.5, 3.5, 3.5)

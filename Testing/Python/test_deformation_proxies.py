@@ -69,6 +69,15 @@ warp.FixedSelection = simple.IDSelectionSource(FieldType="POINT", IDs=[n for i i
 assert moved(warp)[0] == 0
 warp.FixedSelection = None
 
+# of blocks, the one that is selected
+blocks = simple.GroupDatasets(Input=[plate, plate])
+cells = [n for i in range(1913) for n in (1, 0, i)]
+part = WarpMesh(Input=blocks, TransformKind="Translation", Translation=[0, 0.1, 0], MovedPart="Selection")  # noqa: F821
+part.MovedSelection = simple.CompositeDataIDSelectionSource(FieldType="CELL", IDs=cells)
+part.UpdatePipeline()
+table = servermanager.Fetch(part, idx=2)
+assert [table.GetValueByName(row, "Moved points").ToInt() for row in range(2)] == [179, 0]
+
 # methods, coefficients and their rows
 warp.MovedPart = "Inner boundaries"
 for method in warp.GetProperty("Method").Available:
