@@ -1,6 +1,7 @@
 #include "PetscObjects.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace tautline
 {
@@ -130,14 +131,16 @@ int combinationNumber(KrylovMethod method, Preconditioner preconditioner)
 const char* nameOf(KrylovMethod method)
 {
   constexpr const char* names[] = { "CG", "GMRES", "MINRES", "Bi-CGSTAB", "direct" };
-  return names[static_cast<int>(method)];
+  const auto number = static_cast<std::size_t>(method);
+  return number < std::size(names) ? names[number] : "unknown";
 }
 
 const char* nameOf(Preconditioner preconditioner)
 {
   constexpr const char* names[] = { "Jacobi", "SSOR", "ILU(0)", "BoomerAMG", "ICC(0)", "GAMG",
     "none" };
-  return names[static_cast<int>(preconditioner)];
+  const auto number = static_cast<std::size_t>(preconditioner);
+  return number < std::size(names) ? names[number] : "unknown";
 }
 
 const char* fastMultigridOptions()
@@ -193,7 +196,7 @@ LinearSolver::Implementation::Implementation(
   : System(system)
   , Options(options)
   , OptionSet(options.petscOptions)
-  , Objects(system)
+  , Objects(system, this->OptionSet.changesMatrix())
 {
   check(options);
   const PetscScope own(this->OptionSet.database());

@@ -63,7 +63,7 @@ struct SolverOptions
   int maximumIterations = 10000;
   int restart = 30;            ///< m of GMRES(m)
   double omega = 1.0;          ///< of SSOR, 0 to 2 (exclusive)
-  double maximumSeconds = 0.0; ///< 0: no limit; honoured within one iteration
+  double maximumSeconds = 0.0; ///< 0: no limit; looked at between iterations, not in a set-up
   bool initialGuess = false;   ///< start from the x passed in rather than from 0
   bool ritzValues = false;     ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
   /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they win over the above.
@@ -154,6 +154,7 @@ public:
    */
   LinearSolution solve(const double* b, double* x);
 
+  /// Tolerances, limits, observer and initial guess may change between solves; the rest is read once.
   SolverOptions& options();
 
   struct Implementation; ///< PETSc's objects; in PetscObjects.h for the kernel itself

@@ -86,6 +86,12 @@ bool PetscOptionSet::has(const std::string& name) const
   return found;
 }
 
+bool PetscOptionSet::changesMatrix() const
+{
+  return this->Text.find("diagonal_scale") != std::string::npos ||
+    this->Text.find("in_place") != std::string::npos;
+}
+
 void PetscOptionSet::setDefault(const std::string& name, const std::string& value)
 {
   if (!this->has(name))
@@ -151,7 +157,7 @@ std::string chooseFactorization(PC preconditioner, const LinearSystem& system, i
 }
 
 //------------------------------------------------------------------------------
-PetscSystem::PetscSystem(const LinearSystem& system)
+PetscSystem::PetscSystem(const LinearSystem& system, bool copy)
   : System(system)
 {
   if (system.numbering && system.numbering->ranks() > 1)
@@ -174,7 +180,7 @@ PetscSystem::PetscSystem(const LinearSystem& system)
   }
   else
   {
-    this->borrowMatrix();
+    this->borrowMatrix(copy);
   }
   petsc(MatSetOption(this->Matrix, MAT_SYMMETRIC, system.symmetric ? PETSC_TRUE : PETSC_FALSE));
   petsc(MatSetOption(
@@ -235,7 +241,7 @@ std::string PetscSystem::complaint() const
       "order.";
 }
 
-void PetscSystem::borrowMatrix()
+void PetscSystem::borrowMatrix(bool copy)
 {
   const SparseMatrix& source = *this->System.matrix;
   const auto size = static_cast<PetscInt>(source.size);
@@ -249,6 +255,12 @@ void PetscSystem::borrowMatrix()
   }
   petsc(MatCreateSeqAIJWithArrays(this->Comm, size, size, this->Offsets.data(), columns,
     const_cast<double*>(source.values.data()), this->Matrix.out()));
+  if (copy)
+  {
+    PetscMatrix own;
+    petsc(MatDuplicate(this->Matrix, MAT_COPY_VALUES, own.out()));
+    this->Matrix = std::move(own);
+  }
   petsc(MatSetBlockSize(this->Matrix, this->System.blockSize));
 }
 

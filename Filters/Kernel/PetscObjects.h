@@ -18,8 +18,11 @@ namespace tautline
 class PetscSystem
 {
 public:
-  /// Throws Error as LinearSolver's constructor does; within a PetscScope.
-  explicit PetscSystem(const LinearSystem& system);
+  /**
+   * @brief Throws Error as LinearSolver's constructor does; within a PetscScope.
+   * @param copy on one rank: whether PETSc gets entries of its own, because it is going to change them
+   */
+  explicit PetscSystem(const LinearSystem& system, bool copy = false);
 
   MPI_Comm communicator() const { return this->Comm; }
   int ranks() const { return this->Ranks; }
@@ -37,7 +40,7 @@ public:
 
 private:
   std::string complaint() const;
-  void borrowMatrix();
+  void borrowMatrix(bool copy);
   void distributeMatrix();
   void attachRigidBodyModes();
 
@@ -57,6 +60,8 @@ public:
   explicit PetscOptionSet(const std::string& text);
   PetscOptions database() const { return this->Database; }
   bool has(const std::string& name) const;
+  /// Whether some option makes PETSc change the matrix it is given.
+  bool changesMatrix() const;
   /// Sets one of ours, unless the user gave it.
   void setDefault(const std::string& name, const std::string& value);
   /**

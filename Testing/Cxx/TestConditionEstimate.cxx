@@ -118,7 +118,7 @@ void checkEnds(const ConditionEstimate& estimate, double smallest, double larges
 //------------------------------------------------------------------------------
 void testKnownValues()
 {
-  for (const int n : { 2, 3, 30 })
+  for (const int n : { 1, 2, 3, 30 })
   {
     for (const double scale : { 1e-8, 1.0, 1e8 })
     {

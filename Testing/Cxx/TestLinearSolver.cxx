@@ -3,7 +3,7 @@
 #include "Check.h"
 #include "Systems.h"
 
-#include "tautline/LinearSolver.h"
+#include "tautline/EllipticProblem.h"
 
 #include <petscksp.h>
 
@@ -468,6 +468,69 @@ void testTogether()
   TAUTLINE_CHECK_EQUAL(solved(systemOf(a), nested, b).solution.iterations, 5);
 }
 
+/// What PETSc is lent stays as it is, even if an option has it scaled or overwritten.
+void testUnchanged()
+{
+  const SparseMatrix a = laplacian(15, 3.0), copy = a;
+  const std::vector<double> b = someVector(a.size);
+  for (const char* text : { "-ksp_diagonal_scale", "-pc_factor_in_place", "" })
+  {
+    SolverOptions options;
+    options.preconditioner = Preconditioner::ILU;
+    options.petscOptions = text;
+    const Context context(text);
+    solved(systemOf(a), options, b);
+    TAUTLINE_CHECK(a.values == copy.values && a.columns == copy.columns);
+  }
+  TAUTLINE_CHECK_EQUAL(std::string(nameOf(static_cast<KrylovMethod>(99))), std::string("unknown"));
+}
+
+/// A long elastic strip held at one end bends: rigid body modes are what smoothed aggregation needs to know of it.
+void testRigidBodyModes()
+{
+  const int columns = 120, rows = 8;
+  std::vector<double> points;
+  std::vector<Index> offsets = { 0 }, connectivity;
+  std::vector<unsigned char> types, fixed;
+  for (int p = 0; p < (columns + 1) * (rows + 1); ++p)
+  {
+    const int i = p % (columns + 1), j = p / (columns + 1);
+    points.insert(points.end(), { double(i), double(j), 0.0 });
+    fixed.push_back(i == 0);
+    if (i < columns && j < rows)
+    {
+      for (const Index node : { p, p + 1, p + columns + 2, p + columns + 1 })
+      {
+        connectivity.push_back(node);
+      }
+      offsets.push_back(static_cast<Index>(connectivity.size()));
+      types.push_back(static_cast<unsigned char>(CellType::Quadrilateral));
+    }
+  }
+  MeshView view;
+  view.numberOfPoints = static_cast<Index>(fixed.size());
+  view.points = points.data();
+  view.numberOfCells = static_cast<Index>(types.size());
+  view.cellTypes = types.data();
+  view.offsets = offsets.data();
+  view.connectivity = connectivity.data();
+  const Mesh mesh(view);
+  EllipticProblem problem;
+  problem.pde = Pde::Elasticity;
+  problem.source = { 0, 1, 0 };
+  problem.fixed = fixed.data();
+  const EllipticSystem elastic(mesh, problem);
+  LinearSystem system = elastic.linearSystem();
+  SolverOptions options;
+  options.preconditioner = Preconditioner::GAMG;
+  options.relativeTolerance = 1e-8;
+  const Result with = solved(system, options, elastic.rightHandSide());
+  system.coordinates = nullptr;
+  const Result without = solved(system, options, elastic.rightHandSide());
+  TAUTLINE_CHECK(converged(with.solution.reason) && converged(without.solution.reason));
+  TAUTLINE_CHECK(2 * with.solution.iterations < without.solution.iterations);
+}
+
 /// The cheap multigrid options: as accurate, and cheaper on a cube.
 void testFastMultigrid()
 {
@@ -553,6 +616,8 @@ int TestLinearSolver(int, char*[])
   testControls();
   testStranger();
   testTogether();
+  testUnchanged();
+  testRigidBodyModes();
   testFastMultigrid();
   testRefused();
   return exitCode();
