@@ -1,6 +1,7 @@
 /**
  * @file MovedBoundary.h
- * @brief Which points of a mesh move, which stay, by how much; and tensors per cell. From arrays and selections.
+ * @brief Which points of a mesh move, which stay, by how much; and tensors per cell. From arrays and
+ * selections.
  */
 #ifndef tautline_MovedBoundary_h
 #define tautline_MovedBoundary_h
@@ -35,8 +36,8 @@ struct PartChoice
 };
 
 /**
- * @brief Throws Error for what no warp can start from: inverted elements, coordinates that are not finite, cells without a
- * shape to keep (polygons, polyhedra), no boundary.
+ * @brief Throws Error for what no warp can start from: inverted elements, coordinates that are not finite,
+ * cells without a shape to keep (polygons, polyhedra), no boundary.
  */
 void requireElements(const MovableMesh& mesh);
 

@@ -27,7 +27,7 @@ enum class Correspondence : int
 
 struct TargetRequest
 {
-  vtkDataSet* mesh = nullptr; ///< whose boundary moves
+  vtkDataSet* mesh = nullptr; ///< whose boundary moves, with its arrays
   const Mesh* view = nullptr; ///< the same to the kernel
   vtkDataSet* target = nullptr;
   Correspondence correspondence = Correspondence::Automatic;

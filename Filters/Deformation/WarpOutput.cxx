@@ -85,6 +85,7 @@ void addStatistics(const Warping& result, const WarpFacts& facts, const Qualitie
   rows.add("Inverted after warp", static_cast<double>(result.invertedWarp));
   rows.add("Inverted", static_cast<double>(q.inverted));
   rows.add("Impossible", static_cast<double>(result.impossible));
+  rows.add("Crossings", static_cast<double>(result.crossings));
   rows.add("Worst shape", q.shape.maximum);
   rows.add("Mean shape", q.shape.mean);
   rows.add("Worst IMR before", q.before.maximum);
@@ -151,9 +152,10 @@ std::string describe(const Warping& result, const WarpFacts& facts, const Qualit
   {
     text << "\nIt came to " << 100 * result.amount << " % of the motion.";
   }
-  text << "\nSeconds: assemble " << result.assembleSeconds << ", set-up " << result.setupSeconds
-       << ", solve " << result.solveSeconds << ", improve " << result.improveSeconds << ", in all "
-       << facts.seconds << (facts.reused ? "; the matrices were those of the run before." : ".");
+  text << std::setprecision(2) << "\nSeconds: assemble " << result.assembleSeconds << ", set-up "
+       << result.setupSeconds << ", solve " << result.solveSeconds << ", improve "
+       << result.improveSeconds << ", in all " << facts.seconds
+       << (facts.reused ? "; the matrices were those of the run before." : ".");
   return text.str();
 }
 }

@@ -4,12 +4,14 @@
 #include "TargetMatch.h"
 #include "tautline/PointMotion.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
 #include "vtkLinearTransform.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
 #include "vtkSelection.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <chrono>
@@ -51,10 +53,15 @@ bool sameMesh(const MeshView& a, const MeshView& b)
     std::equal(a.connectivity, a.connectivity + a.offsets[a.numberOfCells], b.connectivity);
 }
 
-vtkSmartPointer<vtkPointSet> shallowCopy(vtkPointSet* input)
+/// Points, cells and which are ghosts; without other arrays, whose changes do not matter.
+vtkSmartPointer<vtkPointSet> structureOf(vtkPointSet* input)
 {
   auto copy = vtkSmartPointer<vtkPointSet>::Take(input->NewInstance());
-  copy->ShallowCopy(input);
+  copy->CopyStructure(input);
+  if (vtkUnsignedCharArray* ghosts = input->GetCellGhostArray())
+  {
+    copy->GetCellData()->AddArray(ghosts);
+  }
   return copy;
 }
 
@@ -138,16 +145,16 @@ bool chosenOfCells(vtkAlgorithm* algorithm, int index)
 //------------------------------------------------------------------------------
 void RestingMesh::take(vtkPointSet* input, int threads)
 {
+  // What was taken shares its arrays with its owner, who may have changed them in place.
   if (this->data && this->data->GetMTime() <= this->time &&
-    (input == this->data ||
-      sameMesh(MeshAdapter(input, threads).mesh().view(), this->mesh->mesh().view())) &&
-    input->HasAnyGhostCells() == this->data->HasAnyGhostCells())
+    input->HasAnyGhostCells() == this->data->HasAnyGhostCells() &&
+    sameMesh(MeshAdapter(input, threads).mesh().view(), this->mesh->mesh().view()))
   {
     return;
   }
   this->warper.reset();
   this->data = nullptr; // so that it is not taken for good if what follows throws
-  vtkSmartPointer<vtkPointSet> copy = shallowCopy(input);
+  vtkSmartPointer<vtkPointSet> copy = structureOf(input);
   this->mesh = std::make_unique<MovableMesh>(copy, threads);
   requireElements(*this->mesh);
   this->boundary = boundaryOf(this->mesh->mesh());
@@ -213,14 +220,16 @@ void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
   {
     return;
   }
-  const bool changed = upstreamTime > this->upstream;
+  const bool changed = upstreamTime != this->upstream;
   for (auto& [number, kept] : this->blocks)
   {
     if (changed)
     {
       kept.first = nullptr;
     }
-    if (changed || this->Self->GetMTime() > this->own)
+    const bool stopped = std::any_of(kept.frames.begin(), kept.frames.end(),
+      [](const auto& frame) { return frame.second.aborted; });
+    if (changed || stopped || this->Self->GetMTime() > this->own)
     {
       kept.frames.clear();
     }
@@ -264,7 +273,7 @@ void vtkMeshWarp::Session::visit(const InputBlock& block, vtkDataObject* target,
   const bool inSequence = this->sequence();
   if (inSequence && !kept.first)
   {
-    kept.first = shallowCopy(input);
+    kept.first = structureOf(input);
     kept.frames.clear();
   }
   const bool last = !inSequence || this->current == this->wanted;
@@ -404,7 +413,7 @@ void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest
   if (self->Motion == TARGET)
   {
     TargetRequest request;
-    request.mesh = rest.data;
+    request.mesh = block.input;
     request.view = &mesh;
     request.target = targetOf(block, target);
     request.correspondence = static_cast<tautline::Correspondence>(self->Correspondence);
@@ -452,15 +461,17 @@ std::vector<double> vtkMeshWarp::Session::options() const
 }
 
 //------------------------------------------------------------------------------
-WarpOptions vtkMeshWarp::Session::optionsFor(const WarpTask& task, int blockNumber)
+WarpOptions vtkMeshWarp::Session::optionsFor(const RestingMesh& rest, int blockNumber)
 {
   const vtkMeshWarp* self = this->Self;
   WarpOptions options;
   options.method = static_cast<WarpMethod>(self->Method);
   options.coefficients = static_cast<WarpCoefficients>(std::min<int>(self->Coefficients, PER_CELL));
   std::copy_n(self->Tensor, 6, options.tensor.begin());
-  options.tensors = task.tensors.empty() ? nullptr : task.tensors.data();
-  options.prescribed = task.prescribed.data();
+  options.tensors = rest.tensors.empty() ? nullptr
+    : rest.elements                      ? rest.elementTensors.data()
+                                         : rest.tensors.data();
+  options.prescribed = rest.prescribed.data();
   options.steps = self->Steps;
   options.maximumSteps = self->MaximumSteps;
   options.automaticSolver = self->AutomaticSolver;
@@ -502,17 +513,13 @@ bool vtkMeshWarp::Session::prepare(RestingMesh& rest, WarpTask& task, int blockN
   rest.options = values;
   rest.prescribed = task.prescribed;
   rest.tensors = task.tensors;
-  WarpOptions options = this->optionsFor(task, blockNumber);
-  options.prescribed = rest.prescribed.data(); // which live as long as the warper
-  options.tensors = rest.tensors.empty() ? nullptr : rest.tensors.data();
-  std::vector<double>& tensors = rest.elementTensors;
-  tensors.clear();
+  rest.elementTensors.clear();
   for (Index cell : rest.tensors.empty() ? std::vector<Index>() : rest.cells)
   {
-    tensors.insert(tensors.end(), &rest.tensors[6 * cell], &rest.tensors[6 * cell] + 6);
+    const double* tensor = &rest.tensors[6 * cell];
+    rest.elementTensors.insert(rest.elementTensors.end(), tensor, tensor + 6);
   }
-  options.tensors = tensors.empty() ? options.tensors : tensors.data();
-  rest.warper = std::make_unique<Warper>(rest.warped(), options);
+  rest.warper = std::make_unique<Warper>(rest.warped(), this->optionsFor(rest, blockNumber));
   return false;
 }
 
@@ -544,7 +551,7 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
   }
   else
   {
-    auto previous = shallowCopy(rest.data);
+    auto previous = structureOf(rest.data);
     previous->SetPoints(makePoints(before->second.points, nullptr));
     RestingMesh step;
     std::string note;

@@ -26,7 +26,7 @@ struct RestingMesh
   std::vector<unsigned char> types;
   std::vector<tautline::Index> offsets, connectivity, cells;
   std::unique_ptr<tautline::Mesh> elements;
-  // what the warper was made with
+  // What the warper was made with, and looks at.
   tautline::PointFlags prescribed;
   std::vector<double> tensors, options, elementTensors;
   std::unique_ptr<tautline::Warper> warper;
@@ -93,7 +93,7 @@ private:
   void move(const tautline::InputBlock& block, const RestingMesh& rest, vtkDataObject* target,
     vtkDataObject* selected, WarpTask& task) const;
   std::vector<double> options() const;
-  tautline::WarpOptions optionsFor(const WarpTask& task, int blockNumber);
+  tautline::WarpOptions optionsFor(const RestingMesh& rest, int blockNumber);
   bool prepare(RestingMesh& rest, WarpTask& task, int blockNumber);
   tautline::Warping warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused);
   tautline::Warping run(tautline::Warper& warper, const WarpTask& task) const;

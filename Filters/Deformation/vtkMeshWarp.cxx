@@ -273,7 +273,7 @@ int vtkMeshWarp::RequestData(
     vtkErrorMacro(<< (failure.empty()
                       ? "Another process could not warp its data set, see its error."
                       : failure));
-    return this->Fail(output, request);
+    return this->Fail(outputVector, request);
   }
   session.begun = session.sequence();
   // Time steps before the one wanted, which the result needs: again, with the next of them.
@@ -309,10 +309,13 @@ int vtkMeshWarp::RequestData(
 }
 
 //------------------------------------------------------------------------------
-int vtkMeshWarp::Fail(vtkDataObject* output, vtkInformation* request)
+int vtkMeshWarp::Fail(vtkInformationVector* outputs, vtkInformation* request)
 {
   request->Remove(Pipeline::CONTINUE_EXECUTING());
-  output->Initialize();
+  for (int port = 0; port < NumberOfOutputPorts; ++port)
+  {
+    vtkDataObject::GetData(outputs, port)->Initialize();
+  }
   this->Kept->looping = this->Kept->begun = false;
   this->Kept->blocks.clear();
   this->Summary.clear();

@@ -19,8 +19,9 @@ struct BoundaryParts
 };
 
 /**
- * @brief Parts are connected by the facets (edges of 2D cells, faces of 3D cells) that one cell uses. Of two of the same size the
- * one with the smallest point number is first. Cells of lower dimension than others do not count.
+ * @brief Parts are connected by the facets (edges of 2D cells, faces of 3D cells) that one cell uses. Of two of
+ * the same size the one with the smallest point number is first. Cells of lower dimension than others do not
+ * count.
  */
 TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryParts(const Mesh& mesh);
 }

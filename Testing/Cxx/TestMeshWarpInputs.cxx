@@ -222,6 +222,27 @@ void testTimeCosts()
   filter->UpdateTimeStep(4);
   TAUTLINE_CHECK(messages.empty());
 
+  // Another source, made before: its first step counts, not that of the one before.
+  auto older = movingMesh();
+  older->Degrees = -20;
+  auto newer = movingMesh();
+  vtkNew<vtkMeshWarp> switched, direct;
+  for (vtkMeshWarp* each : { switched.Get(), direct.Get() })
+  {
+    each->SetMotion(vtkMeshWarp::TIME_STEPS);
+    each->SetMethod(vtkMeshWarp::FEMWARP);
+  }
+  newer->Data.points[0] -= 0.25;
+  newer->Modified();
+  switched->SetInputConnection(newer->GetOutputPort());
+  switched->UpdateTimeStep(3);
+  switched->SetInputConnection(older->GetOutputPort());
+  direct->SetInputConnection(older->GetOutputPort());
+  switched->UpdateTimeStep(2);
+  direct->UpdateTimeStep(2);
+  TAUTLINE_CHECK(withPointsOf(older->Data, meshOf(switched)).points ==
+    withPointsOf(older->Data, meshOf(direct)).points);
+
   vtkNew<vtkMeshWarp> without;
   Messages others(without);
   without->SetInputData(toGrid(source->Data));
@@ -558,6 +579,7 @@ void testImpossible()
   filter->Update();
   TAUTLINE_CHECK(filter->GetInverted() > 0);
   TAUTLINE_CHECK(messages.has(std::to_string(filter->GetInverted()) + " of "));
+  TAUTLINE_CHECK(value(filter->GetStatistics(), "Crossings") > 0);
   const MeshData after = withPointsOf(data, meshOf(filter));
   const auto validity = validityOf(after);
   TAUTLINE_CHECK_EQUAL(filter->GetInverted(),

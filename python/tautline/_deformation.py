@@ -50,7 +50,8 @@ _ALLOWED = {
     "scale": ("center",),
     "bend": ("axis", "direction", "center"),
 }
-_COUNTS = ("elements", "boundary_points", "moved_points", "inverted_after_warp", "inverted", "impossible", "decoupled")
+_COUNTS = ("elements", "boundary_points", "moved_points", "inverted_after_warp", "inverted", "impossible",
+           "crossings", "decoupled")  # fmt: skip
 
 #: A transform: {"translate": (x, y, z)}, {"rotate": degrees, "axis": ..., "center": ...}, {"scale": factor or three,
 #: "center": ...}, {"bend": degrees, "axis": ..., "direction": ..., "center": ...}, a 4 x 4 matrix or a VTK transform.
@@ -72,7 +73,7 @@ class Warped:
     #: block.
     history: dict[str, Any]
     #: elements, boundary_points, moved_points, largest_displacement, amount, inverted_after_warp, inverted, impossible,
-    #: worst_shape, mean_shape, worst_imr_before, mean_imr_before, worst_imr, mean_imr, cxx to cxz, decoupled,
+    #: crossings, worst_shape, mean_shape, worst_imr_before, mean_imr_before, worst_imr, mean_imr, cxx to cxz, decoupled,
     #: regularization, reused, and assemble_, set_up_, solve_, improve_ and total_seconds. Of composite data
     #: a dict of these per block.
     statistics: dict[str, Any]
@@ -136,7 +137,7 @@ def warp(
     threads: 0 is all cores. The result does not depend on it.
     options: steps (1; 0: as needed), maximum_steps (100), tolerance (1e-10), poisson_ratio (0.3), stiffening_power (1),
         stiffening_factor (2), maximum_stiffenings (50), distance_power (3), support_radius (0: chosen), fit_tolerance
-        (1e-3), untangle_first (True), untangling_beta (0), maximum_iterations (20): those of vtkMeshWarp.
+        (1e-3), untangle_first (True), untangling_beta (0), maximum_iterations (50): those of vtkMeshWarp.
 
     Raises Error for wrong arguments and whatever the filter refuses; elements that remain inverted are no error: see
     inverted, impossible and summary of the result.
