@@ -12,6 +12,7 @@
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #if VTK_MODULE_ENABLE_VTK_FiltersParallelDIY2
@@ -310,7 +311,29 @@ private:
       merged->InsertNextCell(type == VTK_POLYHEDRON ? VTK_CONVEX_POINT_SET : type, ids);
     }
     merged->GetCellData()->ShallowCopy(all->GetCellData());
+    markGhosts(pieces, merged);
     return merged;
+  }
+
+  /// The ghosts of all pieces, though not all may have some.
+  static void markGhosts(const std::vector<vtkDataSet*>& pieces, vtkDataSet* merged)
+  {
+    vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    bool any = false;
+    for (vtkDataSet* piece : pieces)
+    {
+      vtkUnsignedCharArray* own = piece->GetCellGhostArray();
+      any = any || own;
+      for (vtkIdType cell = 0; cell < piece->GetNumberOfCells(); ++cell)
+      {
+        ghosts->InsertNextValue(own ? own->GetValue(cell) : 0);
+      }
+    }
+    if (any)
+    {
+      merged->GetCellData()->AddArray(ghosts);
+    }
   }
 
   static void copyNew(vtkDataSetAttributes* result, vtkDataSetAttributes* before,

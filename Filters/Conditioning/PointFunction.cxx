@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <sstream>
 
 namespace tautline
@@ -160,8 +161,8 @@ std::string plain(std::string message)
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> evaluate(
-  const std::string& expression, const std::string& what, vtkDataSet* data, int components)
+std::vector<double> evaluate(const std::string& expression, const std::string& what,
+  vtkDataSet* data, int components, bool finite)
 {
   const std::string subject = "The expression '" + expression + "' of the " + what;
   if (expression.find_first_not_of(" \t\n") == std::string::npos)
@@ -172,6 +173,8 @@ std::vector<double> evaluate(
   const vtkIdType count = data->GetNumberOfPoints();
   std::vector<double> values(static_cast<std::size_t>(components) * count);
   Evaluator evaluator(expression, data);
+  evaluator.Parser->SetReplaceInvalidValues(!finite);
+  evaluator.Parser->SetReplacementValue(std::numeric_limits<double>::quiet_NaN());
   for (vtkIdType i = 0; i < count; ++i)
   {
     evaluator.moveTo(i);
@@ -212,7 +215,7 @@ std::vector<double> valuesAt(
   }
   if (function.kind == PointFunction::Expression)
   {
-    return evaluate(function.expression, function.what, data, components);
+    return evaluate(function.expression, function.what, data, components, function.finite);
   }
   std::vector<double> values(static_cast<std::size_t>(components) * count);
   if (function.kind == PointFunction::Constant)
@@ -246,7 +249,7 @@ std::vector<double> valuesAt(
     for (int k = 0; k < std::min(has, components); ++k)
     {
       values[components * i + k] = array->GetComponent(i, k);
-      if (!std::isfinite(values[components * i + k]))
+      if (function.finite && !std::isfinite(values[components * i + k]))
       {
         throw Error(
           subject + " is not finite at point " + std::to_string(i) + ", " + placeOf(data, i) + ".");

@@ -30,12 +30,15 @@ struct PointFunction
   int arrayIndex = 0; ///< of SetInputArrayToProcess
   std::string expression;
 
+  /// Whether values that are not finite are an error here; else they are passed on.
+  bool finite = true;
+
   bool isZero() const { return this->kind == Constant && this->constant == Vec3{ 0, 0, 0 }; }
 };
 
 /**
  * @brief The values at all points, `components` (1 or 3) each; of vectors with two components the third is 0. Throws Error
- * for an array that is missing, of cells or of other components, and for values that are not finite.
+ * for an array that is missing, of cells or of other components.
  */
 std::vector<double> valuesAt(
   const PointFunction& function, vtkAlgorithm* algorithm, vtkDataSet* data, int components);
@@ -43,9 +46,10 @@ std::vector<double> valuesAt(
 /**
  * @brief The values of an expression of x, y, z, of the point arrays by name (vectors also by component: v_X, v_Y, v_Z)
  * and, for vectors, of iHat, jHat, kHat; names with other characters than letters, digits and _ go in double quotes. Throws Error
- * that quotes the expression if it is empty, not understood, not of so many components or not finite somewhere.
+ * that quotes the expression if it is empty, not understood, not of so many components or, unless that is allowed, not finite
+ * somewhere; else NaN stands there.
  */
-std::vector<double> evaluate(
-  const std::string& expression, const std::string& what, vtkDataSet* data, int components);
+std::vector<double> evaluate(const std::string& expression, const std::string& what,
+  vtkDataSet* data, int components, bool finite = true);
 }
 #endif

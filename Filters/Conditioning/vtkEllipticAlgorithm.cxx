@@ -88,6 +88,7 @@ tautline::EllipticChoice vtkEllipticAlgorithm::GetChoice() const
   choice.given = { "given solution", this->GivenType,
     elastic ? vector(this->GivenDisplacement) : tautline::Vec3{ this->GivenValue, 0, 0 },
     GivenArray, this->GivenExpression };
+  choice.given.finite = false; // only the values of fixed points count, which the system checks
   choice.fixedPart = this->FixedPart;
   choice.fixedWhere = this->FixedWhere;
   choice.fixedArray = FixedArray;

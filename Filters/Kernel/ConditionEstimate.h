@@ -14,8 +14,9 @@ enum class SpectrumMethod : int
 {
   Automatic = 0,  ///< Accurate
   RitzValues = 1, ///< of the Krylov solver (CG): cheap, from inside the spectrum, no error bound
-  Accurate =
-    2 ///< SLEPc to a tolerance: Krylov-Schur, or LOBPCG, shift-invert where a factorisation is affordable
+  /// To a tolerance: SLEPc for A and D^-1 A (Krylov-Schur, shift-invert where a factorisation is affordable, else LOBPCG), the
+  /// Lanczos method in the inner product of P for other P^-1 A.
+  Accurate = 2
 };
 
 struct ConditionOptions
@@ -24,10 +25,11 @@ struct ConditionOptions
   /// None: the spectrum of A; else of P^-1 A.
   Preconditioner preconditioner = Preconditioner::None;
   double omega = 1.0; ///< of SSOR
-  double tolerance =
-    1e-4; ///< relative, of each eigenvalue; multigrid takes ten times longer to 1e-6
+  /// Relative, of each eigenvalue; multigrid takes ten times longer to 1e-6.
+  double tolerance = 1e-4;
   int maximumIterations = 10000;
-  double maximumSeconds = 0.0; ///< 0: no limit
+  /// 0: no limit; looked at between iterations, not in a factorisation.
+  double maximumSeconds = 0.0;
   std::string petscOptions;
   std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
 };
@@ -45,7 +47,7 @@ struct ConditionEstimate
   int iterations =
     0; ///< steps of Lanczos, restarts of Krylov-Schur, iterations of CG or LOBPCG; of both ends
   double seconds = 0.0;
-  /// Eigenvectors, this rank's unknowns; empty where not found (Ritz values).
+  /// Eigenvectors, this rank's unknowns; empty where not found (Ritz values, or no time).
   std::vector<double> smallestVector, largestVector;
 };
 

@@ -11,6 +11,7 @@ constexpr double ZeroTolerance = 1e-13;
 /// How unsymmetric the action of a preconditioner may be.
 constexpr double SymmetryTolerance = 1e-7;
 constexpr Index FirstCheck = 8;
+constexpr Index ManySteps = 100; // half done, as far as progress tells
 
 /// The recurrence; v = P u holds throughout.
 class Recurrence
@@ -93,7 +94,7 @@ private:
 struct Candidate
 {
   RitzPair pair;
-  double estimate = 0.0; ///< of the error, as described
+  double residual = 0.0, estimate = 0.0; ///< of the error, as described
   bool converged = false;
   std::vector<std::pair<Index, double>> history; ///< steps and values
 };
@@ -107,8 +108,8 @@ void update(
   }
   const auto steps = static_cast<Index>(t.diagonal.size());
   end.pair = ritzPair(t, smallest, beta);
-  const double residual = beta * std::abs(end.pair.vector.back());
-  end.estimate = residual;
+  end.residual = beta * std::abs(end.pair.vector.back());
+  end.estimate = end.residual;
   for (const auto& [before, value] : end.history)
   {
     if (2 * before <= steps)
@@ -117,7 +118,7 @@ void update(
     }
   }
   end.history.emplace_back(steps, end.pair.value);
-  end.converged = std::min(residual, end.estimate) <=
+  end.converged = std::min(end.residual, end.estimate) <=
     std::max(tolerance * std::abs(end.pair.value), ZeroTolerance * scale);
 }
 
@@ -202,8 +203,6 @@ SpectrumEnds lanczosEnds(
   Recurrence recurrence(matrix, preconditioner);
   Tridiagonal t;
   Candidate low, high;
-  PetscInt rows = 0;
-  petsc(MatGetSize(matrix, &rows, nullptr));
   double scale = 0.0;
   Index steps = 0, nextCheck = FirstCheck;
   watch.stage(0.0, 0.5);
@@ -212,14 +211,14 @@ SpectrumEnds lanczosEnds(
     recurrence.step();
     if (recurrence.failed())
     {
-      return give("The preconditioner is not positive definite.");
+      return give("The preconditioner is not positive definite, or not finite.");
     }
     ++steps;
     t.diagonal.push_back(recurrence.alpha());
     scale = std::max({ scale, std::abs(recurrence.alpha()), recurrence.beta() });
     const bool invariant = recurrence.beta() <= ZeroTolerance * scale;
     const bool stop =
-      watch.stop(static_cast<double>(steps) / static_cast<double>(steps + nextCheck));
+      watch.stop(static_cast<double>(steps) / static_cast<double>(steps + ManySteps));
     const bool last = invariant || stop || steps == options.maximumIterations;
     if (steps >= nextCheck || last)
     {
@@ -234,21 +233,20 @@ SpectrumEnds lanczosEnds(
     }
     t.beside.push_back(recurrence.beta());
   }
-  if (steps == 0)
-  {
-    return give("No iteration was allowed.");
-  }
 
-  // Second pass.
+  // Second pass; without it, when time is up, there are the values but no vectors.
+  bool gathered = !watch.stopped();
   PetscVector yLow, yHigh;
-  petsc(MatCreateVecs(matrix, yLow.out(), nullptr));
-  petsc(MatCreateVecs(matrix, yHigh.out(), nullptr));
-  petsc(VecSet(yLow, 0.0));
-  petsc(VecSet(yHigh, 0.0));
+  if (gathered)
+  {
+    petsc(MatCreateVecs(matrix, yLow.out(), yHigh.out()));
+    petsc(VecSet(yLow, 0.0));
+    petsc(VecSet(yHigh, 0.0));
+    watch.stage(0.5, 1.0);
+    recurrence.restart();
+  }
   const std::size_t longest = std::max(low.pair.vector.size(), high.pair.vector.size());
-  watch.stage(0.5, 1.0);
-  recurrence.restart();
-  for (std::size_t k = 0; k < longest; ++k)
+  for (std::size_t k = 0; k < longest && gathered; ++k)
   {
     if (k < low.pair.vector.size())
     {
@@ -258,20 +256,27 @@ SpectrumEnds lanczosEnds(
     {
       petsc(VecAXPY(yHigh, high.pair.vector[k], recurrence.v()));
     }
-    // The first pass was in time; so that its result is not lost, the second is not stopped by the clock.
-    watch.stop(static_cast<double>(k) / static_cast<double>(longest));
-    if (k + 1 < longest)
+    gathered = !watch.stop(static_cast<double>(k) / static_cast<double>(longest));
+    if (k + 1 < longest && gathered)
     {
       recurrence.step();
     }
   }
-  measure(matrix, preconditioner, yLow, low, ends.smallest);
-  measure(matrix, preconditioner, yHigh, high, ends.largest);
-  ends.smallest.iterations = static_cast<int>(low.pair.vector.size());
-  ends.largest.iterations = static_cast<int>(high.pair.vector.size());
+  if (gathered)
+  {
+    measure(matrix, preconditioner, yLow, low, ends.smallest);
+    measure(matrix, preconditioner, yHigh, high, ends.largest);
+  }
   for (const auto& [end, candidate] :
     { std::make_pair(&ends.smallest, &low), std::make_pair(&ends.largest, &high) })
   {
+    end->iterations = static_cast<int>(candidate->pair.vector.size());
+    if (!gathered)
+    {
+      end->value = candidate->pair.value;
+      end->bound = std::min(candidate->residual, candidate->estimate);
+      end->found = std::isfinite(end->value) && std::isfinite(end->bound);
+    }
     if (!candidate->converged && !watch.stopped())
     {
       end->message = "Not converged after " + std::to_string(steps) + " steps of Lanczos.";

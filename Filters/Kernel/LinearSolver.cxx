@@ -10,6 +10,9 @@ namespace
 /// A direct solve must leave a residual below this, relative to b; a singular matrix does not.
 constexpr double DirectTolerance = 1e-6;
 
+/// A solution that leaves so much of the right-hand side is no better than 0. Some preconditioners hide that.
+constexpr double MisledResidual = 0.5;
+
 constexpr int TableMethods = 4, TablePreconditioners = 4; // of Table 2.5
 
 KSPType typeOf(KrylovMethod method)
@@ -184,6 +187,10 @@ const char* describe(SolveReason reason)
       return "not converged: the time limit was reached";
     case SolveReason::Aborted:
       return "stopped by the user";
+    case SolveReason::Misled:
+      return "failed: the residual of the system is not small, only the preconditioned one; try "
+             "another "
+             "preconditioner";
     case SolveReason::OtherFailure:
       break;
   }
@@ -485,6 +492,10 @@ void LinearSolver::Implementation::measure(Vec b, Vec x, LinearSolution& solutio
   solution.trueResidual = before > 0.0 && std::isfinite(after) ? after / before : 0.0;
   if (this->Options.method != KrylovMethod::Direct)
   {
+    const bool relative = solution.reason == SolveReason::RelativeTolerance;
+    const double misled = std::max(MisledResidual, this->Options.relativeTolerance);
+    solution.reason =
+      relative && solution.trueResidual > misled ? SolveReason::Misled : solution.reason;
     return;
   }
   // A factorisation does not notice that a matrix is singular; the residual does.

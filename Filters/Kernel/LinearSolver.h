@@ -90,7 +90,9 @@ enum class SolveReason : int
   PreconditionerFailed = 10, ///< zero pivot, or its set-up failed
   TimeLimit = 11,
   Aborted = 12,
-  OtherFailure = 13
+  OtherFailure = 13,
+  /// The preconditioned residual is small, that of the system is as large as the right-hand side: the preconditioner misleads.
+  Misled = 14
 };
 
 TAUTLINE_KERNEL_EXPORT bool converged(SolveReason reason);

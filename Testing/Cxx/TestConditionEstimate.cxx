@@ -406,13 +406,15 @@ void testTrouble()
     const Context context(nameOf(preconditioner));
     ConditionOptions limited;
     limited.preconditioner = preconditioner;
+    // The Lanczos method calls more often.
+    const int limit = preconditioner == Preconditioner::SSOR ? 200 : 3;
     int calls = 0;
     double before = 0.0;
     limited.progress = [&](double fraction)
     {
       TAUTLINE_CHECK(fraction >= before && fraction <= 1.0);
       before = fraction;
-      return ++calls < 3;
+      return ++calls < limit;
     };
     const SparseMatrix large = laplacian(120);
     const ConditionEstimate aborted = estimateCondition(systemOf(large), limited);

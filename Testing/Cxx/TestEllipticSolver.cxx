@@ -14,6 +14,7 @@
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
 #include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <limits>
 
@@ -186,6 +187,20 @@ void testWays()
   filter->SetInputData(1, selection);
   TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
   filter->RemoveAllInputConnections(1);
+
+  // Given values count at fixed points only: elsewhere they need not be finite.
+  vtkNew<vtkEllipticSolver> some;
+  Messages silent(some);
+  some->SetInputData(grid);
+  some->SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY);
+  some->SetFixedWhere("x < 0.5");
+  some->SetGivenType(vtkEllipticAlgorithm::EXPRESSION);
+  some->SetGivenExpression("0/(x - 3)");
+  TAUTLINE_CHECK_NEAR(distance(values(solved(some)), expected), 0, 1e-9);
+  TAUTLINE_CHECK(silent.empty());
+  some->SetGivenExpression("1/x");
+  some->Update();
+  TAUTLINE_CHECK(silent.has("not finite") || silent.has("not a finite"));
 
   // Cells hold all their points: the first column of cells is left out of the strip.
   for (Index i = 0; i < cells; ++i)
@@ -425,6 +440,32 @@ void testBlocks()
     }
     TAUTLINE_CHECK(messages.empty());
   }
+  // A ghost in one partition only: a square of the lower half, again.
+  MeshData more = halves[1];
+  const std::array<Index, 2> corners = { more.addPoint({ 0, 2, 0 }), more.addPoint({ 1, 2, 0 }) };
+  more.addCell(CellType::Quadrilateral, { corners[0], corners[1], 1, 0 });
+  auto withGhost = toGrid(more);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (Index cell = 0; cell < more.numberOfCells(); ++cell)
+  {
+    ghosts->InsertNextValue(cell + 1 == more.numberOfCells() ? 1 : 0);
+  }
+  withGhost->GetCellData()->AddArray(ghosts);
+  parts->SetPartition(1, withGhost);
+  parts->Modified();
+  filter->SetInputDataObject(parts);
+  filter->Update();
+  const auto upper =
+    values(vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPartition(1));
+  TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), 25);
+  for (Index i = 0; i < halves[1].numberOfPoints(); ++i)
+  {
+    TAUTLINE_CHECK_NEAR(upper[i], expected[shift + i], 1e-10);
+  }
+  TAUTLINE_CHECK_NEAR(upper[corners[1]], expected[2 * 7 + 1], 1e-10);
+  TAUTLINE_CHECK(messages.empty());
+
   halves[1].setPoint(8, halves[1].point(9)); // two points at one place
   parts->SetPartition(1, toGrid(halves[1]));
   filter->SetInputDataObject(parts);

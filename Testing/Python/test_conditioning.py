@@ -117,6 +117,14 @@ def test_study():
     assert few.recommended == tl.solver_combinations()[17] and len(tl.solver_combinations()) == 25
 
 
+def test_misled():
+    """An indefinite matrix: preconditioned residuals become small where nothing is solved. No solver may call that converged."""
+    study = tl.solver_study(DATA / "plate.vtu", "elliptic", range(1, 20), reaction=-100.0, maximum_iterations=500)
+    assert study.recommended == "direct solver"
+    assert all(row["true_residual"] < 1e-2 for row in study.rows if row["converged"])
+    assert sum("only the preconditioned one" in row["reason"] for row in study.rows) > 3
+
+
 def test_refusals():
     mesh = square()
     refused("there are 'poisson', 'elliptic', 'elasticity'", tl.solve, mesh, "heat")
