@@ -1,6 +1,5 @@
 #include "MovedBoundary.h"
 
-#include "tautline/BoundaryParts.h"
 #include "tautline/SimplexMesh.h"
 
 #include "vtkCellData.h"
@@ -69,9 +68,9 @@ bool hasNoInside(int type)
     type == VTK_LINE || type == VTK_POLY_LINE;
 }
 
-PointFlags pointsOfParts(const Mesh& mesh, const PartChoice& choice)
+PointFlags pointsOfParts(const PartChoice& choice)
 {
-  const BoundaryParts parts = boundaryParts(mesh);
+  const BoundaryParts& parts = choice.parts();
   std::vector<char> chosen(parts.parts + 1, 0);
   for (int number : choice.numbers)
   {
@@ -157,14 +156,14 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
     case MovedPart::Whole:
       return boundary;
     case MovedPart::Inner:
-      return pointsOfParts(mesh, choice);
+      return pointsOfParts(choice);
     case MovedPart::Numbered:
       if (choice.numbers.empty())
       {
         throw Error(
           "No boundary part is given: add the numbers of those that move; 1 is the largest.");
       }
-      return pointsOfParts(mesh, choice);
+      return pointsOfParts(choice);
     case MovedPart::Values:
     {
       if (!choice.array)
