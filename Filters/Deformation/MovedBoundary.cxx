@@ -8,6 +8,8 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -224,9 +226,9 @@ void markGhosts(vtkDataSet* input, PointFlags& flags)
       (vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL))
     {
       input->GetCellPoints(cell, points);
-      for (vtkIdType point : *points)
+      for (vtkIdType i = 0; i < points->GetNumberOfIds(); ++i)
       {
-        flags[point] = 1;
+        flags[points->GetId(i)] = 1;
       }
     }
   }
