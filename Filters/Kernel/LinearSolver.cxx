@@ -189,8 +189,7 @@ const char* describe(SolveReason reason)
       return "stopped by the user";
     case SolveReason::Misled:
       return "failed: the residual of the system is not small, only the preconditioned one; try "
-             "another "
-             "preconditioner";
+             "another preconditioner";
     case SolveReason::OtherFailure:
       break;
   }
