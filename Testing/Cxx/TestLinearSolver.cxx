@@ -262,6 +262,15 @@ void testOptions()
     const Context context(bad.text);
     TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), bad.named);
   }
+  // What only the set-up can miss is missed each time.
+  SolverOptions late;
+  late.preconditioner = Preconditioner::Jacobi;
+  late.petscOptions = "-sub_pc_type icc";
+  LinearSolver mistaken(systemOf(a), late);
+  std::vector<double> x(b.size());
+  TAUTLINE_CHECK_THROWS(mistaken.setUp(), "-sub_pc_type");
+  TAUTLINE_CHECK_THROWS(mistaken.solve(b.data(), x.data()), "-sub_pc_type");
+
   const auto refuse = [&](const SolverOptions& wrong, const char* text)
   { TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), text); };
   SolverOptions wrong;
