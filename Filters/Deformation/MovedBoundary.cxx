@@ -1,6 +1,5 @@
 #include "MovedBoundary.h"
 
-#include "tautline/BoundaryParts.h"
 #include "tautline/SimplexMesh.h"
 
 #include "vtkCellData.h"
@@ -8,6 +7,8 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -67,9 +68,9 @@ bool hasNoInside(int type)
     type == VTK_LINE || type == VTK_POLY_LINE;
 }
 
-PointFlags pointsOfParts(const Mesh& mesh, const PartChoice& choice)
+PointFlags pointsOfParts(const PartChoice& choice)
 {
-  const BoundaryParts parts = boundaryParts(mesh);
+  const BoundaryParts& parts = choice.parts();
   std::vector<char> chosen(parts.parts + 1, 0);
   for (int number : choice.numbers)
   {
@@ -155,14 +156,14 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
     case MovedPart::Whole:
       return boundary;
     case MovedPart::Inner:
-      return pointsOfParts(mesh, choice);
+      return pointsOfParts(choice);
     case MovedPart::Numbered:
       if (choice.numbers.empty())
       {
         throw Error(
           "No boundary part is given: add the numbers of those that move; 1 is the largest.");
       }
-      return pointsOfParts(mesh, choice);
+      return pointsOfParts(choice);
     case MovedPart::Values:
     {
       if (!choice.array)
@@ -224,9 +225,9 @@ void markGhosts(vtkDataSet* input, PointFlags& flags)
       (vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL))
     {
       input->GetCellPoints(cell, points);
-      for (vtkIdType point : *points)
+      for (vtkIdType i = 0; i < points->GetNumberOfIds(); ++i)
       {
-        flags[point] = 1;
+        flags[points->GetId(i)] = 1;
       }
     }
   }

@@ -7,8 +7,10 @@
 #define tautline_MovedBoundary_h
 
 #include "MovableMesh.h"
+#include "tautline/BoundaryParts.h"
 
 #include <array>
+#include <functional>
 
 namespace tautline
 {
@@ -27,6 +29,7 @@ enum class MovedPart : int
 
 struct PartChoice
 {
+  std::function<const BoundaryParts&()> parts; ///< of the mesh; asked for if they matter
   MovedPart part = MovedPart::Automatic;
   std::vector<int> numbers;      ///< Numbered
   std::vector<double> values;    ///< Values; empty: all but 0

@@ -158,9 +158,20 @@ void RestingMesh::take(vtkPointSet* input, int threads)
   this->mesh = std::make_unique<MovableMesh>(copy, threads);
   requireElements(*this->mesh);
   this->boundary = boundaryOf(this->mesh->mesh());
+  this->Parts.reset();
   this->takeElements(threads);
   this->data = copy;
   this->time = copy->GetMTime();
+}
+
+//------------------------------------------------------------------------------
+const BoundaryParts& RestingMesh::parts() const
+{
+  if (!this->Parts)
+  {
+    this->Parts = std::make_unique<BoundaryParts>(boundaryParts(this->mesh->mesh()));
+  }
+  return *this->Parts;
 }
 
 //------------------------------------------------------------------------------
@@ -398,6 +409,7 @@ void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest
   }
 
   PartChoice choice;
+  choice.parts = [&rest]() -> const BoundaryParts& { return rest.parts(); };
   choice.part = static_cast<tautline::MovedPart>(self->MovedPart);
   choice.numbers = self->Parts;
   choice.values = self->Values;

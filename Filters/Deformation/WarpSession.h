@@ -39,8 +39,13 @@ struct RestingMesh
     return this->elements ? *this->elements : this->mesh->mesh();
   }
 
+  /// Of its boundary; found when first asked for.
+  const tautline::BoundaryParts& parts() const;
+
 private:
   void takeElements(int threads);
+
+  mutable std::unique_ptr<tautline::BoundaryParts> Parts;
 };
 
 /// A data set of the input.

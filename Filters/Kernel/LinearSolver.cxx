@@ -189,8 +189,7 @@ const char* describe(SolveReason reason)
       return "stopped by the user";
     case SolveReason::Misled:
       return "failed: the residual of the system is not small, only the preconditioned one; try "
-             "another "
-             "preconditioner";
+             "another preconditioner";
     case SolveReason::OtherFailure:
       break;
   }
@@ -355,7 +354,6 @@ double LinearSolver::Implementation::setUp()
     return 0.0;
   }
   const auto start = std::chrono::steady_clock::now();
-  this->Ready = true;
   try
   {
     this->findEmptyRows();
@@ -368,10 +366,12 @@ double LinearSolver::Implementation::setUp()
       std::string(error.what()).find("not positive definite") != std::string::npos;
     this->Failure = indefinite ? SolveReason::IndefiniteMatrix : SolveReason::PreconditionerFailed;
     this->FailureText = error.what();
+    this->Ready = true;
     return seconds(start);
   }
   const double elapsed = seconds(start);
   this->OptionSet.rejectUnused(true);
+  this->Ready = true;
   return elapsed;
 }
 

@@ -1,6 +1,5 @@
 #include "PetscObjects.h"
 
-#include "Parallel.h"
 #include "RankExchange.h"
 
 #include <sstream>
@@ -41,10 +40,9 @@ bool readLater(const std::string& name, bool afterSetUp)
     }
   }
   for (const char* prefix : { "-sub_", "-mg_", "-mat_", "-redundant_", "-telescope_",
-         "-fieldsplit_", "-gamg_est_", "-pc_gamg_esteig_", "-ksp_", "-pc_" })
+         "-fieldsplit_", "-gamg_est_", "-pc_gamg_esteig_", "-esteig_" })
   {
-    const bool solver = prefix == std::string("-ksp_") || prefix == std::string("-pc_");
-    if (!afterSetUp && !solver && name.rfind(prefix, 0) == 0)
+    if (!afterSetUp && name.rfind(prefix, 0) == 0)
     {
       return true;
     }

@@ -262,6 +262,15 @@ void testOptions()
     const Context context(bad.text);
     TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), bad.named);
   }
+  // What only the set-up can miss is missed each time.
+  SolverOptions late;
+  late.preconditioner = Preconditioner::Jacobi;
+  late.petscOptions = "-sub_pc_type icc";
+  LinearSolver mistaken(systemOf(a), late);
+  std::vector<double> x(b.size());
+  TAUTLINE_CHECK_THROWS(mistaken.setUp(), "-sub_pc_type");
+  TAUTLINE_CHECK_THROWS(mistaken.solve(b.data(), x.data()), "-sub_pc_type");
+
   const auto refuse = [&](const SolverOptions& wrong, const char* text)
   { TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), text); };
   SolverOptions wrong;
@@ -348,6 +357,19 @@ void testControls()
   const LinearSolution loose = solver.solve(b.data(), x.data());
   TAUTLINE_CHECK(loose.iterations > 5 && loose.iterations < first.iterations);
 
+  // One set-up serves many right-hand sides.
+  SolverOptions multigrid;
+  multigrid.relativeTolerance = 1e-10;
+  LinearSolver reused(systemOf(a), multigrid);
+  for (unsigned k = 0; k < 3; ++k)
+  {
+    const std::vector<double> side = someVector(a.size, 10 + k);
+    const LinearSolution one = reused.solve(side.data(), x.data());
+    TAUTLINE_CHECK(k == 0 ? one.setupSeconds > 0.0 : one.setupSeconds == 0.0);
+    TAUTLINE_CHECK(relativeResidual(a, x, side) < 1e-8);
+    TAUTLINE_CHECK(x == solved(systemOf(a), multigrid, side).x);
+  }
+
   // Zero on the right-hand side: nothing to do; an infinite one: no number.
   std::vector<double> zero(b.size(), 0.0);
   const LinearSolution nothing = solver.solve(zero.data(), x.data());
@@ -362,6 +384,13 @@ void testControls()
   const LinearSolution ritz = solved(systemOf(a), options, b).solution;
   TAUTLINE_CHECK_RELATIVE(ritz.ritzSmallest, laplacianEigenvalue(n, 1, 1), 1e-4);
   TAUTLINE_CHECK_RELATIVE(ritz.ritzLargest, laplacianEigenvalue(n, n, n), 1e-4);
+  options.method = KrylovMethod::GMRES;
+  options.restart = 500;
+  const LinearSolution singular = solved(systemOf(a), options, b).solution;
+  TAUTLINE_CHECK_RELATIVE(singular.ritzSmallest, laplacianEigenvalue(n, 1, 1), 1e-2);
+  TAUTLINE_CHECK_RELATIVE(singular.ritzLargest, laplacianEigenvalue(n, n, n), 1e-2);
+  options.method = KrylovMethod::MINRES;
+  TAUTLINE_CHECK_EQUAL(solved(systemOf(a), options, b).solution.ritzLargest, 0.0);
 }
 
 //------------------------------------------------------------------------------
