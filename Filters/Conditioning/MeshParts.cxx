@@ -1,5 +1,7 @@
 #include "MeshParts.h"
 
+#include "MeshAdapter.h"
+
 #include "vtkAppendFilter.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -157,6 +159,109 @@ private:
 };
 
 //------------------------------------------------------------------------------
+/// Flags points that no other piece can have: inside of this one, and it has no ghost cells.
+std::vector<char> privatePoints(vtkDataSet* input, bool ghosts)
+{
+  std::vector<char> own(static_cast<std::size_t>(input->GetNumberOfPoints()), 0);
+  if (ghosts)
+  {
+    return own;
+  }
+  const MeshAdapter adapter(input);
+  const Mesh& mesh = adapter.mesh();
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; t.dimension == dimension && i < block.count; ++i)
+    {
+      const Index* node = mesh.view().connectivity + mesh.view().offsets[block.cell(i)];
+      std::for_each(node, node + t.nodes, [&own](Index point) { own[point] = 1; });
+    }
+  }
+  const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
+  std::transform(own.begin(), own.end(), boundary.begin(), own.begin(),
+    [](char inside, char on) { return static_cast<char>(inside && !on); });
+  return own;
+}
+
+/**
+ * Global ids by coordinates: those of points that several pieces may have from VTK, which takes long for each point; all others
+ * are numbered on. Collective.
+ */
+std::vector<std::vector<Index>> generateIds(
+  const std::vector<Piece>& pieces, const Processes& processes)
+{
+  std::vector<std::vector<Index>> ids(pieces.size());
+#if VTK_MODULE_ENABLE_VTK_FiltersParallelDIY2
+  const bool ghosts = !processes.everywhere(std::none_of(pieces.begin(), pieces.end(),
+    [](const Piece& piece) { return piece.input->GetCellGhostArray() != nullptr; }));
+  vtkNew<vtkPartitionedDataSet> candidates;
+  std::vector<std::vector<char>> own;
+  double privates = 0.0;
+  processes.together(
+    [&]()
+    {
+      for (std::size_t i = 0; i < pieces.size(); ++i)
+      {
+        vtkDataSet* input = pieces[i].input;
+        own.push_back(privatePoints(input, ghosts));
+        privates += static_cast<double>(std::count(own[i].begin(), own[i].end(), 1));
+        vtkNew<vtkPoints> points;
+        points->SetDataTypeToDouble();
+        for (vtkIdType k = 0; k < input->GetNumberOfPoints(); ++k)
+        {
+          if (!own[i][k])
+          {
+            points->InsertNextPoint(input->GetPoint(k));
+          }
+        }
+        vtkNew<vtkUnstructuredGrid> grid;
+        grid->SetPoints(points);
+        candidates->SetPartition(static_cast<unsigned int>(i), grid);
+      }
+    });
+  vtkNew<vtkGenerateGlobalIds> generate;
+  generate->SetInputDataObject(candidates);
+  generate->Update();
+  auto* generated = vtkPartitionedDataSet::SafeDownCast(generate->GetOutputDataObject(0));
+
+  Index highest = -1;
+  std::vector<vtkDataArray*> found;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    vtkDataSet* part = generated->GetPartition(static_cast<unsigned int>(i));
+    found.push_back(part ? part->GetPointData()->GetGlobalIds() : nullptr);
+    highest = found[i] && found[i]->GetNumberOfTuples() > 0
+      ? std::max(highest, static_cast<Index>(found[i]->GetRange(0)[1]))
+      : highest;
+  }
+  Index next = processes.maximum(highest) + 1;
+  const std::vector<double> counts = processes.gather({ privates });
+  for (int rank = 0; rank < processes.rank(); ++rank)
+  {
+    next += static_cast<Index>(counts[static_cast<std::size_t>(rank)]);
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    vtkIdType candidate = 0;
+    for (const char inside : own[i])
+    {
+      const bool known = found[i] && candidate < found[i]->GetNumberOfTuples();
+      ids[i].push_back(inside ? next++
+          : known             ? static_cast<Index>(found[i]->GetComponent(candidate++, 0))
+                              : -1);
+    }
+  }
+#else
+  (void)processes;
+  throw Error("The points of the parts of the mesh have no global ids, and this VTK cannot find "
+              "which are the same: build it with the module FiltersParallelDIY2.");
+#endif
+  return ids;
+}
+
+//------------------------------------------------------------------------------
 /// Global point ids of each piece, from the input or by coordinates. Collective.
 std::vector<std::vector<Index>> globalIdsOf(
   const std::vector<Piece>& pieces, const Processes& processes)
@@ -166,41 +271,19 @@ std::vector<std::vector<Index>> globalIdsOf(
   {
     given.push_back(piece.input->GetPointData()->GetGlobalIds());
   }
-  vtkNew<vtkPartitionedDataSet> bare;
-  if (!processes.everywhere(std::find(given.begin(), given.end(), nullptr) == given.end()))
-  {
-#if VTK_MODULE_ENABLE_VTK_FiltersParallelDIY2
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-    {
-      auto copy = vtkSmartPointer<vtkDataSet>::Take(pieces[i].input->NewInstance());
-      copy->CopyStructure(pieces[i].input);
-      bare->SetPartition(static_cast<unsigned int>(i), copy);
-    }
-    vtkNew<vtkGenerateGlobalIds> generate;
-    generate->SetInputDataObject(bare);
-    generate->Update();
-    bare->ShallowCopy(generate->GetOutputDataObject(0));
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-    {
-      vtkDataSet* part = bare->GetPartition(static_cast<unsigned int>(i));
-      given[i] = part ? part->GetPointData()->GetGlobalIds() : nullptr;
-    }
-#else
-    throw Error("The points of the parts of the mesh have no global ids, and this VTK cannot find "
-                "which are the same: build it with the module FiltersParallelDIY2.");
-#endif
-  }
   std::vector<std::vector<Index>> ids(pieces.size());
+  const bool known =
+    processes.everywhere(std::find(given.begin(), given.end(), nullptr) == given.end());
+  if (!known)
+  {
+    ids = generateIds(pieces, processes);
+  }
   processes.together(
     [&]()
     {
       for (std::size_t i = 0; i < pieces.size(); ++i)
       {
-        if (!given[i] || given[i]->GetNumberOfTuples() != pieces[i].input->GetNumberOfPoints())
-        {
-          throw Error("The points of the parts of the mesh could not be given global ids.");
-        }
-        for (vtkIdType k = 0; k < given[i]->GetNumberOfTuples(); ++k)
+        for (vtkIdType k = 0; known && k < given[i]->GetNumberOfTuples(); ++k)
         {
           ids[i].push_back(static_cast<Index>(given[i]->GetComponent(k, 0)));
         }

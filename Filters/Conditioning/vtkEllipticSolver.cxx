@@ -67,6 +67,13 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
   options.maximumSeconds = this->TimeLimit;
   options.petscOptions = this->PETScOptions;
   options.threads = this->Threads;
+  // The user's options go before, and an option without effect would be an error.
+  const std::string& own = this->PETScOptions;
+  if (this->FastMultigrid && this->Preconditioner == AMG && this->Solver != DIRECT &&
+    own.find("-pc_") == std::string::npos)
+  {
+    options.petscOptions = tautline::fastMultigridOptions() + (" " + own);
+  }
   double first = 0.0;
   options.observer = [&](int iteration, double residual)
   {
@@ -142,6 +149,7 @@ void vtkEllipticSolver::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumIterations: " << this->MaximumIterations << "\n";
   os << indent << "Restart: " << this->Restart << "\n";
   os << indent << "RigidBodyModes: " << this->RigidBodyModes << "\n";
+  os << indent << "FastMultigrid: " << this->FastMultigrid << "\n";
   os << indent << "SolutionName: " << this->SolutionName << "\n";
   os << indent << "ComputeGradient: " << this->ComputeGradient << "\n";
 }

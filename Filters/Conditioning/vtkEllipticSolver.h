@@ -103,6 +103,16 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Whether BoomerAMG coarsens aggressively and interpolates sparsely, tautline::fastMultigridOptions(). It takes more iterations
+   * and much less time, above all in volumes and on several processes. Off: PETSc's defaults, those of the dissertation. On.
+   */
+  vtkSetMacro(FastMultigrid, bool);
+  vtkGetMacro(FastMultigrid, bool);
+  vtkBooleanMacro(FastMultigrid, bool);
+  ///@}
+
+  ///@{
   /// Name of the solution; "" is `Solution`, or `Displacement` of ELASTICITY. The default is "".
   vtkSetMacro(SolutionName, std::string);
   vtkGetMacro(SolutionName, std::string);
@@ -149,6 +159,7 @@ private:
   int MaximumIterations = 10000;
   int Restart = 30;
   bool RigidBodyModes = true;
+  bool FastMultigrid = true;
   std::string SolutionName;
   bool ComputeGradient = true;
   bool Converged = false;

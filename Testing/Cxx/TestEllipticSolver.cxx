@@ -466,7 +466,7 @@ void testBlocks()
   TAUTLINE_CHECK_NEAR(upper[corners[1]], expected[2 * 7 + 1], 1e-10);
   TAUTLINE_CHECK(messages.empty());
 
-  halves[1].setPoint(8, halves[1].point(9)); // two points at one place
+  halves[1].setPoint(1, halves[1].point(2)); // two points at one place
   parts->SetPartition(1, toGrid(halves[1]));
   filter->SetInputDataObject(parts);
   filter->Update();

@@ -120,6 +120,7 @@ def solve(
     maximum_iterations: int = 10000,
     restart: int = 30,
     rigid_body_modes: bool = True,
+    fast_multigrid: bool = True,
     solution_name: str = "",
     gradient: bool = True,
     **problem: Any,
@@ -133,6 +134,7 @@ def solve(
     preconditioner: "jacobi", "ssor", "ilu", "amg" (BoomerAMG), "icc", "gamg" (smoothed aggregation), "none".
     relative_tolerance, absolute_tolerance: of the preconditioned residual. restart: m of GMRES(m).
     rigid_body_modes: whether multigrid is told them (elasticity).
+    fast_multigrid: whether "amg" coarsens aggressively: more iterations, less time. False: PETSc's defaults.
     solution_name: of the point array; "" is `Solution`, or `Displacement` of elasticity.
     gradient: whether to add the gradient or the stress of the cells.
 
@@ -161,6 +163,7 @@ def solve(
     filter_.SetPreconditioner(pick("preconditioner", preconditioner, PRECONDITIONERS))
     _set_tolerances(filter_, relative_tolerance, absolute_tolerance, maximum_iterations, restart)
     filter_.SetRigidBodyModes(bool(rigid_body_modes))
+    filter_.SetFastMultigrid(bool(fast_multigrid))
     filter_.SetSolutionName(solution_name)
     filter_.SetComputeGradient(bool(gradient))
     output = _execute(filter_, mesh, pde, problem)
