@@ -3,6 +3,7 @@
 #include "MeshAdapter.h"
 
 #include "vtkAppendFilter.h"
+#include "vtkBoundingBox.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataArray.h"
@@ -16,10 +17,6 @@
 #include "vtkPoints.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
-
-#if VTK_MODULE_ENABLE_VTK_FiltersParallelDIY2
-#include "vtkGenerateGlobalIds.h"
-#endif
 
 #include <algorithm>
 #include <unordered_map>
@@ -159,16 +156,12 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// Flags points that no other piece can have: inside of this one, and it has no ghost cells.
-std::vector<char> privatePoints(vtkDataSet* input, bool ghosts)
+/// Removes from the flagged points those inside of a mesh without ghosts, which no other piece can have.
+void dropInside(vtkDataSet* input, std::vector<char>& flags)
 {
-  std::vector<char> own(static_cast<std::size_t>(input->GetNumberOfPoints()), 0);
-  if (ghosts)
-  {
-    return own;
-  }
   const MeshAdapter adapter(input);
   const Mesh& mesh = adapter.mesh();
+  const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
   for (const CellBlock& block : mesh.blocks())
   {
@@ -176,88 +169,125 @@ std::vector<char> privatePoints(vtkDataSet* input, bool ghosts)
     for (Index i = 0; t.dimension == dimension && i < block.count; ++i)
     {
       const Index* node = mesh.view().connectivity + mesh.view().offsets[block.cell(i)];
-      std::for_each(node, node + t.nodes, [&own](Index point) { own[point] = 1; });
+      std::for_each(node, node + t.nodes,
+        [&](Index point) { flags[point] = static_cast<char>(flags[point] && boundary[point]); });
     }
   }
-  const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
-  std::transform(own.begin(), own.end(), boundary.begin(), own.begin(),
-    [](char inside, char on) { return static_cast<char>(inside && !on); });
-  return own;
 }
 
-/**
- * Global ids by coordinates: those of points that several pieces may have from VTK, which takes long for each point; all others
- * are numbered on. Collective.
- */
-std::vector<std::vector<Index>> generateIds(
-  const std::vector<Piece>& pieces, const Processes& processes)
+/// Where a piece is, and which it is.
+struct Box
 {
-  std::vector<std::vector<Index>> ids(pieces.size());
-#if VTK_MODULE_ENABLE_VTK_FiltersParallelDIY2
-  const bool ghosts = !processes.everywhere(std::none_of(pieces.begin(), pieces.end(),
-    [](const Piece& piece) { return piece.input->GetCellGhostArray() != nullptr; }));
-  vtkNew<vtkPartitionedDataSet> candidates;
-  std::vector<std::vector<char>> own;
-  double privates = 0.0;
+  int rank, piece;
+  vtkBoundingBox bounds;
+};
+
+/// Flags, for each piece, the points that other pieces may have, too. @param ghosts whether any piece has some. Collective.
+std::vector<std::vector<char>> sharedPoints(
+  const std::vector<Piece>& pieces, bool ghosts, const Processes& processes)
+{
+  constexpr std::size_t numbersPerBox = 8;
+  constexpr double few = 0.1; // of the points: then it does not pay to look for those inside
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    double bounds[6];
+    pieces[i].input->GetBounds(bounds);
+    numbers.insert(
+      numbers.end(), { static_cast<double>(processes.rank()), static_cast<double>(i) });
+    numbers.insert(numbers.end(), bounds, bounds + 6);
+  }
+  numbers = processes.gather(numbers);
+  std::vector<Box> boxes;
+  for (std::size_t k = 0; k + numbersPerBox <= numbers.size(); k += numbersPerBox)
+  {
+    boxes.push_back({ static_cast<int>(numbers[k]), static_cast<int>(numbers[k + 1]),
+      vtkBoundingBox(&numbers[k + 2]) });
+  }
+  std::vector<std::vector<char>> shared;
   processes.together(
     [&]()
     {
       for (std::size_t i = 0; i < pieces.size(); ++i)
       {
         vtkDataSet* input = pieces[i].input;
-        own.push_back(privatePoints(input, ghosts));
-        privates += static_cast<double>(std::count(own[i].begin(), own[i].end(), 1));
-        vtkNew<vtkPoints> points;
-        points->SetDataTypeToDouble();
+        std::vector<char> flags(static_cast<std::size_t>(input->GetNumberOfPoints()), 0);
         for (vtkIdType k = 0; k < input->GetNumberOfPoints(); ++k)
         {
-          if (!own[i][k])
-          {
-            points->InsertNextPoint(input->GetPoint(k));
-          }
+          double p[3];
+          input->GetPoint(k, p);
+          const bool finite = std::isfinite(p[0] + p[1] + p[2]);
+          flags[k] = finite &&
+            std::any_of(boxes.begin(), boxes.end(),
+              [&](const Box& box)
+              {
+                const bool same = box.rank == processes.rank() && box.piece == static_cast<int>(i);
+                return !same && box.bounds.ContainsPoint(p);
+              });
         }
-        vtkNew<vtkUnstructuredGrid> grid;
-        grid->SetPoints(points);
-        candidates->SetPartition(static_cast<unsigned int>(i), grid);
+        const auto count = static_cast<double>(std::count(flags.begin(), flags.end(), 1));
+        if (!ghosts && count > few * static_cast<double>(flags.size()))
+        {
+          dropInside(input, flags);
+        }
+        shared.push_back(std::move(flags));
       }
     });
-  vtkNew<vtkGenerateGlobalIds> generate;
-  generate->SetInputDataObject(candidates);
-  generate->Update();
-  auto* generated = vtkPartitionedDataSet::SafeDownCast(generate->GetOutputDataObject(0));
+  return shared;
+}
 
-  Index highest = -1;
-  std::vector<vtkDataArray*> found;
+/// Global ids by coordinates, which must be equal in all digits. Collective.
+std::vector<std::vector<Index>> generateIds(
+  const std::vector<Piece>& pieces, const Processes& processes)
+{
+  const bool ghosts = !processes.everywhere(std::none_of(pieces.begin(), pieces.end(),
+    [](const Piece& piece) { return piece.input->GetCellGhostArray() != nullptr; }));
+  const std::vector<std::vector<char>> shared = sharedPoints(pieces, ghosts, processes);
+  const auto place = [&pieces](std::size_t piece, std::size_t point)
+  {
+    Vec3 p;
+    pieces[piece].input->GetPoint(static_cast<vtkIdType>(point), p.data());
+    return p + Vec3{ 0, 0, 0 }; // -0 becomes 0
+  };
+  std::vector<double> coordinates;
+  double privates = 0.0;
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
-    vtkDataSet* part = generated->GetPartition(static_cast<unsigned int>(i));
-    found.push_back(part ? part->GetPointData()->GetGlobalIds() : nullptr);
-    highest = found[i] && found[i]->GetNumberOfTuples() > 0
-      ? std::max(highest, static_cast<Index>(found[i]->GetRange(0)[1]))
-      : highest;
+    for (std::size_t k = 0; k < shared[i].size(); ++k)
+    {
+      if (shared[i][k])
+      {
+        const Vec3 p = place(i, k);
+        coordinates.insert(coordinates.end(), p.begin(), p.end());
+      }
+      privates += !shared[i][k];
+    }
   }
-  Index next = processes.maximum(highest) + 1;
+  // Shared points first, in the order of their coordinates; then those of one process after the other.
+  coordinates = processes.gather(coordinates);
+  std::vector<Vec3> places;
+  for (std::size_t k = 0; k + 2 < coordinates.size(); k += 3)
+  {
+    places.push_back({ coordinates[k], coordinates[k + 1], coordinates[k + 2] });
+  }
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  auto next = static_cast<Index>(places.size());
   const std::vector<double> counts = processes.gather({ privates });
   for (int rank = 0; rank < processes.rank(); ++rank)
   {
     next += static_cast<Index>(counts[static_cast<std::size_t>(rank)]);
   }
+  std::vector<std::vector<Index>> ids(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
-    vtkIdType candidate = 0;
-    for (const char inside : own[i])
+    for (std::size_t k = 0; k < shared[i].size(); ++k)
     {
-      const bool known = found[i] && candidate < found[i]->GetNumberOfTuples();
-      ids[i].push_back(inside ? next++
-          : known             ? static_cast<Index>(found[i]->GetComponent(candidate++, 0))
-                              : -1);
+      ids[i].push_back(shared[i][k]
+          ? std::lower_bound(places.begin(), places.end(), place(i, k)) - places.begin()
+          : next++);
     }
   }
-#else
-  (void)processes;
-  throw Error("The points of the parts of the mesh have no global ids, and this VTK cannot find "
-              "which are the same: build it with the module FiltersParallelDIY2.");
-#endif
   return ids;
 }
 
