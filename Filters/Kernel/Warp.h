@@ -80,14 +80,14 @@ struct WarpOptions
   double stiffeningFactor =
     2.0; ///< IterativeStiffening: by which inverted elements get stiffer each time
   double distancePower = 3.0; ///< InverseDistance
-  double supportRadius = 0.0; ///< RadialBasis; 0: from the size of the mesh and the motion
+  double supportRadius = 0.0; ///< RadialBasis; 0: twice the extent of the prescribed points
   double fitTolerance =
     1e-3; ///< RadialBasis: of the greedy choice, relative to the largest displacement
   /**
-   * @brief Hybrid's second step. On: untangle() what the warp inverted, then lower the exponential sum of F_1, the shape
-   * (4.22), and of the squared inverse mean ratios of the same T, a barrier that keeps every element valid where
-   * (4.24) has the untangling metric, which is 0 from there on. Off: (4.24) as it stands; what it leaves inverted is
-   * untangled afterwards.
+   * @brief Hybrid's second step. On: untangle() what the warp inverted and, if that was anything, lower the squared inverse
+   * mean ratios of T for up to 20 sweeps; then lower the exponential sum of F_1, the shape (4.22), and of these squared
+   * ratios, a barrier that keeps every element valid where (4.24) has the untangling metric, which is 0 from there on.
+   * Off: (4.24) as it stands; what it leaves inverted is untangled afterwards.
    */
   bool untangleFirst = true;
   /// beta of (4.24) with untangleFirst off, relative to the mean area or volume of the elements; at least 0.
