@@ -13,8 +13,6 @@ CELLS = {
     "hinge": {10_000: 18_359, 50_000: 96_483, 100_000: 195_131, 200_000: 394_743, 500_000: 987_162},
 }
 
-Row = tuple[tuple[float, ...], tuple[int, ...]]
-
 
 def _row(text: str) -> tuple[float | None, ...]:
     return tuple(None if word == "*" else float(word) for word in text.split())
@@ -111,7 +109,8 @@ BY_METRIC = {
     ),
 }
 
-#: Tables 2.9 and 2.12: by equation and domain, per fraction of perturbed vertices.
+#: Tables 2.9 and 2.12: by equation and domain, per fraction of perturbed vertices. The first rows are those of Tables 2.8
+#: and 2.11; where Table 2.9 (b) prints 44.5 iterations for combination 10, Table 2.8 has 445.
 BY_PERTURBATION = {
     ("poisson", "wrench"): _rows(
         FRACTIONS,

@@ -116,8 +116,8 @@ def faster(report: Report, example: Example, swept: dict[str, np.ndarray]) -> No
     said = [f"{text(f)} instead of {text(s)} iterations at {a:g}" + (f" ({p:.0f} % less time)" if p == p else "")
             for f, s, a, p in zip(fast, slow, swept["amount"][at], seconds)]
     report.finding(example.section, f"{example.title}: (4.24) needs fewer iterations and less time to untangle it "
-                   f"(there by up to {example.faster:g} %)", np.all(fast <= slow) and np.any(fast < slow),
-                   ", ".join(said))
+                   f"(there by up to {example.faster:g} %)", np.all(fast <= slow) and np.any(fast < slow)
+                   and all(p > 0 for p in seconds if p == p), ", ".join(said))
 
 
 def pictures(report: Report, example: Example, moving: Moving, runs: dict[str, Warped]) -> None:
