@@ -1,6 +1,6 @@
 #include "ColorMaps.h"
 
-#include "tautline/Metrics.h"
+#include "tautline/Quality/Metrics.h"
 
 #include <algorithm>
 #include <cctype>

@@ -36,7 +36,7 @@
 
 #include "TautlineReadersModule.h" // for export macro
 
-#include "tautline/Types.h"
+#include "tautline/Core/Types.h"
 
 #include <string>
 #include <variant>

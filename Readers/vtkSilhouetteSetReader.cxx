@@ -1,6 +1,6 @@
 #include "vtkSilhouetteSetReader.h"
 
-#include "tautline/Types.h"
+#include "tautline/Core/Types.h"
 
 #include "vtkCompositeDataSet.h"
 #include "vtkFieldData.h"

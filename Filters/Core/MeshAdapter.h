@@ -12,9 +12,9 @@
 #ifndef tautline_MeshAdapter_h
 #define tautline_MeshAdapter_h
 
-#include "TautlineQualityModule.h" // for export macro
+#include "TautlineCoreModule.h" // for export macro
 
-#include "tautline/Mesh.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include "vtkSmartPointer.h"
 
@@ -27,7 +27,7 @@ class vtkPoints;
 
 namespace tautline
 {
-class TAUTLINEQUALITY_EXPORT MeshAdapter
+class TAUTLINECORE_EXPORT MeshAdapter
 {
 public:
   /// Throws tautline::Error if the mesh is malformed. An empty data set gives an empty mesh.
@@ -67,22 +67,22 @@ private:
  * @brief Throws Error unless the orientation allows what follows, or describes it.
  * @return a sentence for the user ("All 120 cells are reversed ..."), empty when all is well
  */
-TAUTLINEQUALITY_EXPORT std::string describe(const Orientation& orientation, const Mesh& mesh);
+TAUTLINECORE_EXPORT std::string describe(const Orientation& orientation, const Mesh& mesh);
 
 /**
  * @brief Reverses the order of the points of every cell, which an output shares with nobody after.
  * Throws Error for data sets other than unstructured grids and poly data, and for cells of higher
  * order.
  */
-TAUTLINEQUALITY_EXPORT void flipCells(vtkDataSet* data);
+TAUTLINECORE_EXPORT void flipCells(vtkDataSet* data);
 
 /// Cells to leave out of statistics: ghosts, and 2D cells beside 3D ones. Empty if there are none.
-TAUTLINEQUALITY_EXPORT std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter);
+TAUTLINECORE_EXPORT std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter);
 
 /**
  * @brief New points for an output: in the precision of `like`, with the coordinates given in double.
  */
-TAUTLINEQUALITY_EXPORT vtkSmartPointer<vtkPoints> makePoints(
+TAUTLINECORE_EXPORT vtkSmartPointer<vtkPoints> makePoints(
   const std::vector<double>& coordinates, vtkPoints* like);
 }
 #endif

@@ -1,7 +1,7 @@
 #include "MovableMesh.h"
 
-#include "tautline/BoundaryShape.h"
-#include "tautline/SimplexMesh.h"
+#include "tautline/Mesh/BoundaryShape.h"
+#include "tautline/Patches/SimplexMesh.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
@@ -437,7 +437,7 @@ void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
 }
 
 //------------------------------------------------------------------------------
-std::string summarize(const Optimization& result, const MovableMesh& mesh, const std::string& block)
+std::string summarize(const OptimizeResult& result, const MovableMesh& mesh, const std::string& block)
 {
   std::ostringstream text;
   text << (block.empty() ? "" : "In " + block + ": ") << describe(result.reason) << "\n";

@@ -6,10 +6,10 @@
 #ifndef tautline_MovableMesh_h
 #define tautline_MovableMesh_h
 
-#include "TautlineOptimizationModule.h" // for export macro
+#include "TautlineCoreModule.h" // for export macro
 
 #include "MeshAdapter.h"
-#include "tautline/Optimize.h"
+#include "tautline/Optimization/Optimize.h"
 
 #include "vtkSmartPointer.h"
 
@@ -36,7 +36,7 @@ struct BoundaryShape;
  * @brief A data set whose points can move. Its orientation is settled: reversed throughout is viewed as its
  * mirror image, mixed is refused.
  */
-class TAUTLINEOPTIMIZATION_EXPORT MovableMesh
+class TAUTLINECORE_EXPORT MovableMesh
 {
 public:
   /**
@@ -101,43 +101,43 @@ struct InputBlock
  * @brief Gives a composite output the structure of the input and calls visit for each data set, or
  * once. Throws Error if reference and input do not have the same structure.
  */
-TAUTLINEOPTIMIZATION_EXPORT void forEachBlock(vtkDataObject* input, vtkDataObject* reference,
+TAUTLINECORE_EXPORT void forEachBlock(vtkDataObject* input, vtkDataObject* reference,
   vtkDataObject* selected, vtkDataObject* output,
   const std::function<void(const InputBlock&)>& visit);
 
 /// The number of data sets, at least 1.
-TAUTLINEOPTIMIZATION_EXPORT int countBlocks(vtkDataObject* input);
+TAUTLINECORE_EXPORT int countBlocks(vtkDataObject* input);
 
 /// Calls visit(flat index, data set) for the data sets of composite data, or with 0 for a single one.
-TAUTLINEOPTIMIZATION_EXPORT void forEachLeaf(
+TAUTLINECORE_EXPORT void forEachLeaf(
   vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit);
 
 /// The data set of `data` that belongs to a block of the input: at its place, or `data` itself; null: none.
-TAUTLINEOPTIMIZATION_EXPORT vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data);
+TAUTLINECORE_EXPORT vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data);
 
 /// The array of marks, of points or cells, in what markSelected() returns.
 constexpr const char* SelectedArray = "vtkInsidedness"; // the name vtkExtractSelection gives it
 
 /// A copy of the input with marks on what is selected; null without a selection.
-TAUTLINEOPTIMIZATION_EXPORT vtkSmartPointer<vtkDataObject> markSelected(
+TAUTLINECORE_EXPORT vtkSmartPointer<vtkDataObject> markSelected(
   vtkDataObject* input, vtkSelection* selection);
 
 /// Marks the points that markSelected() found, and those of cells it found.
-TAUTLINEOPTIMIZATION_EXPORT void fixSelected(MovableMesh& mesh, vtkDataSet* selected);
+TAUTLINECORE_EXPORT void fixSelected(MovableMesh& mesh, vtkDataSet* selected);
 
 /// A point or cell array named by an algorithm's input array choice; null if none is. Throws Error.
-TAUTLINEOPTIMIZATION_EXPORT vtkDataArray* chosenArray(
+TAUTLINECORE_EXPORT vtkDataArray* chosenArray(
   vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* what);
 
 /// Sets what an input port takes: data sets and composite ones, or a selection of what stays.
-TAUTLINEOPTIMIZATION_EXPORT void declareInput(vtkInformation* info, bool selection, bool optional);
+TAUTLINECORE_EXPORT void declareInput(vtkInformation* info, bool selection, bool optional);
 
 /// Makes the outputs: like the input on port 0, tables on the others.
-TAUTLINEOPTIMIZATION_EXPORT void provideOutputs(
+TAUTLINECORE_EXPORT void provideOutputs(
   vtkDataObject* input, vtkInformationVector* outputs);
 
 /// Columns that grow by rows; the names of the first row decide.
-class TAUTLINEOPTIMIZATION_EXPORT TableRows
+class TAUTLINECORE_EXPORT TableRows
 {
 public:
   void begin() { this->Next = 0; }
@@ -163,12 +163,12 @@ private:
  * (if there are several), `<name> mean`, `<name> worst`; `Inverted`, `N gradient`, `N moving`, `Time (s)`.
  * Row i is iteration i of the block; row 0 is the input. ParaView's charts leave out the last two.
  */
-TAUTLINEOPTIMIZATION_EXPORT void addHistory(TableRows& rows,
+TAUTLINECORE_EXPORT void addHistory(TableRows& rows,
   const std::vector<IterationRecord>& history, const std::vector<std::string>& names,
   const std::string& block);
 
 /// Reason, iterations, seconds, free points and inverted elements, in sentences.
-TAUTLINEOPTIMIZATION_EXPORT std::string summarize(
-  const Optimization& result, const MovableMesh& mesh, const std::string& block);
+TAUTLINECORE_EXPORT std::string summarize(
+  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block);
 }
 #endif

@@ -5,11 +5,15 @@
 #ifndef tautline_Processes_h
 #define tautline_Processes_h
 
-#include "tautline/PointNumbering.h"
+#include "TautlineCoreModule.h" // for export macro
+
+#include "tautline/Core/Communicator.h"
+#include "tautline/Core/Types.h"
 
 #include <functional>
 #include <vector>
 
+class vtkDataObject;
 class vtkMultiProcessController;
 
 namespace tautline
@@ -19,7 +23,7 @@ namespace tautline
  * @brief The processes of VTK's global controller; one if there is none. All methods except the first three
  * are collective.
  */
-class Processes
+class TAUTLINECORE_EXPORT Processes
 {
 public:
   /// Throws Error if there are several processes that do not talk by MPI, or if Tautline cannot.
@@ -49,5 +53,11 @@ private:
   int Rank = 0, Count = 1;
   Communicator Comm = nullptr;
 };
+
+/// The least of the numbers of all processes. Collective; MPI is not needed.
+TAUTLINECORE_EXPORT int minimumOverProcesses(int own);
+
+/// Throws Error, on all processes, if a data set has cells on several of them. Collective; MPI is not needed.
+TAUTLINECORE_EXPORT void requireOneProcess(vtkDataObject* input);
 }
 #endif

@@ -5,9 +5,9 @@
 #ifndef tautline_TargetChoice_h
 #define tautline_TargetChoice_h
 
-#include "TautlineQualityModule.h" // for export macro
+#include "TautlineCoreModule.h" // for export macro
 
-#include "tautline/Targets.h"
+#include "tautline/Quality/Targets.h"
 
 class vtkDataArray;
 class vtkDataSet;
@@ -35,7 +35,7 @@ struct TargetChoice
  * cell. A reference mesh that is reversed throughout is taken as its mirror image. Throws Error that
  * names what is missing or does not fit.
  */
-TAUTLINEQUALITY_EXPORT Targets makeTargets(
+TAUTLINECORE_EXPORT Targets makeTargets(
   const Mesh& mesh, const TargetChoice& choice, int threads);
 }
 #endif

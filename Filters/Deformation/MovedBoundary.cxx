@@ -1,6 +1,6 @@
 #include "MovedBoundary.h"
 
-#include "tautline/SimplexMesh.h"
+#include "tautline/Patches/SimplexMesh.h"
 
 #include "vtkCellData.h"
 #include "vtkCellType.h"

@@ -7,7 +7,7 @@
 #define tautline_MovedBoundary_h
 
 #include "MovableMesh.h"
-#include "tautline/BoundaryParts.h"
+#include "tautline/Mesh/BoundaryParts.h"
 
 #include <array>
 #include <functional>

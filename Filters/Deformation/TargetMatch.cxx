@@ -1,7 +1,7 @@
 #include "TargetMatch.h"
 
 #include "MeshAdapter.h"
-#include "tautline/BoundaryParts.h"
+#include "tautline/Mesh/BoundaryParts.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellType.h"

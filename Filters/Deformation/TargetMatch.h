@@ -5,7 +5,7 @@
 #ifndef tautline_TargetMatch_h
 #define tautline_TargetMatch_h
 
-#include "tautline/Mesh.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include <string>
 #include <vector>

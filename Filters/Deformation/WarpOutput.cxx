@@ -1,7 +1,7 @@
 #include "WarpOutput.h"
 
-#include "tautline/Statistics.h"
-#include "tautline/Targets.h"
+#include "tautline/Quality/Statistics.h"
+#include "tautline/Quality/Targets.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -44,7 +44,7 @@ void addCellArray(vtkDataSet* output, const char* name, const Values& values)
   output->GetCellData()->AddArray(array);
 }
 
-void addHistory(const Warping& result, const std::string& block, TableRows& rows)
+void addHistory(const WarpResult& result, const std::string& block, TableRows& rows)
 {
   for (const WarpRecord& record : result.history)
   {
@@ -69,7 +69,7 @@ struct Qualities
   Index elements = 0, inverted = 0;
 };
 
-void addStatistics(const Warping& result, const WarpFacts& facts, const Qualities& q,
+void addStatistics(const WarpResult& result, const WarpFacts& facts, const Qualities& q,
   const std::string& block, TableRows& rows)
 {
   rows.begin();
@@ -107,7 +107,7 @@ void addStatistics(const Warping& result, const WarpFacts& facts, const Qualitie
   rows.add("Total (s)", facts.seconds);
 }
 
-std::string describe(const Warping& result, const WarpFacts& facts, const Qualities& q)
+std::string describe(const WarpResult& result, const WarpFacts& facts, const Qualities& q)
 {
   std::ostringstream text;
   text << facts.method << ": ";
@@ -161,7 +161,7 @@ std::string describe(const Warping& result, const WarpFacts& facts, const Qualit
 }
 
 //------------------------------------------------------------------------------
-void addWarpOutput(const MovableMesh& rest, const Warping& result, const WarpFacts& facts,
+void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const WarpFacts& facts,
   const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals)
 {
   const Mesh& mesh = rest.mesh();

@@ -6,7 +6,7 @@
 #define tautline_WarpOutput_h
 
 #include "MovedBoundary.h"
-#include "tautline/Warp.h"
+#include "tautline/Deformation/Warp.h"
 
 namespace tautline
 {
@@ -38,7 +38,7 @@ struct WarpTotals
  * @brief Gives the output the new points and the arrays `Displacement`, `TMP shape` (the active scalars) and
  * `Validity`, adds rows to the tables and to the totals.
  */
-void addWarpOutput(const MovableMesh& rest, const Warping& result, const WarpFacts& facts,
+void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const WarpFacts& facts,
   const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals);
 }
 #endif

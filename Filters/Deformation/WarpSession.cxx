@@ -2,7 +2,7 @@
 
 #include "Processes.h"
 #include "TargetMatch.h"
-#include "tautline/PointMotion.h"
+#include "tautline/Deformation/PointMotion.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -262,7 +262,7 @@ void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
     }
   }
   // All processes take the same time steps, as what is upstream may need them all.
-  this->current = leastOfAll(this->current);
+  this->current = minimumOverProcesses(this->current);
 }
 
 //------------------------------------------------------------------------------
@@ -304,7 +304,7 @@ void vtkMeshWarp::Session::visit(const InputBlock& block, vtkDataObject* target,
   }
   WarpTask todo = this->task(block, kept.rest, target, selected);
   WarpFacts facts;
-  Warping result = this->warp(kept, todo, block.number, facts.reused);
+  WarpResult result = this->warp(kept, todo, block.number, facts.reused);
   if (!last)
   {
     return;
@@ -537,13 +537,13 @@ bool vtkMeshWarp::Session::prepare(RestingMesh& rest, WarpTask& task, int blockN
 }
 
 //------------------------------------------------------------------------------
-Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused)
+WarpResult vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused)
 {
   RestingMesh& rest = kept.rest;
   const MeshView& view = rest.mesh->mesh().view();
   const bool stepwise = this->sequence() && this->Self->StartFrom == PREVIOUS_STEP;
   const auto done = stepwise ? kept.frames.find(this->current) : kept.frames.end();
-  Warping result;
+  WarpResult result;
   reused = false;
   if (done != kept.frames.end())
   {
@@ -599,7 +599,7 @@ Warping vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNum
 }
 
 //------------------------------------------------------------------------------
-Warping vtkMeshWarp::Session::run(Warper& warper, const WarpTask& task) const
+WarpResult vtkMeshWarp::Session::run(Warper& warper, const WarpTask& task) const
 {
   if (!task.path)
   {

@@ -7,7 +7,7 @@
 
 #include "MovedBoundary.h"
 #include "WarpOutput.h"
-#include "tautline/Warp.h"
+#include "tautline/Deformation/Warp.h"
 #include "vtkMeshWarp.h"
 
 #include "vtkPointSet.h"
@@ -53,7 +53,7 @@ struct WarpBlock
 {
   RestingMesh rest;
   vtkSmartPointer<vtkPointSet> first;      ///< at the first time step
-  std::map<int, tautline::Warping> frames; ///< at time steps, each warped from the one before
+  std::map<int, tautline::WarpResult> frames; ///< at time steps, each warped from the one before
 };
 
 /// The motion of a data set as it is asked for.
@@ -100,8 +100,8 @@ private:
   std::vector<double> options() const;
   tautline::WarpOptions optionsFor(const RestingMesh& rest, int blockNumber);
   bool prepare(RestingMesh& rest, WarpTask& task, int blockNumber);
-  tautline::Warping warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused);
-  tautline::Warping run(tautline::Warper& warper, const WarpTask& task) const;
+  tautline::WarpResult warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused);
+  tautline::WarpResult run(tautline::Warper& warper, const WarpTask& task) const;
   void forget(WarpBlock& kept) const;
 
   vtkMeshWarp* Self;

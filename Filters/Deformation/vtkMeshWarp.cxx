@@ -268,7 +268,7 @@ int vtkMeshWarp::RequestData(
     failure = error.what();
   }
   // Processes fail together: those that did would execute again alone, and wait for the others.
-  if (tautline::leastOfAll(failure.empty()) == 0)
+  if (tautline::minimumOverProcesses(failure.empty()) == 0)
   {
     vtkErrorMacro(<< (failure.empty()
                       ? "Another process could not warp its data set, see its error."

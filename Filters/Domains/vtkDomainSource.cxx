@@ -2,7 +2,7 @@
 
 #include "MeshOutput.h"
 
-#include "tautline/Domains.h"
+#include "tautline/Domains/Domains.h"
 
 #include "vtkCellData.h"
 #include "vtkCellType.h"

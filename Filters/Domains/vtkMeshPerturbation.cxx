@@ -1,7 +1,7 @@
 #include "vtkMeshPerturbation.h"
 
 #include "MeshAdapter.h"
-#include "tautline/Perturb.h"
+#include "tautline/Domains/Perturb.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"

@@ -62,7 +62,7 @@
 #ifndef vtkMeshPerturbation_h
 #define vtkMeshPerturbation_h
 
-#include "TautlineQualityModule.h" // for export macro
+#include "TautlineDomainsModule.h" // for export macro
 #include "vtkDataSetAlgorithm.h"
 
 #include <string> // for Summary
@@ -72,7 +72,7 @@ namespace tautline
 struct Perturbation;
 }
 
-class TAUTLINEQUALITY_EXPORT vtkMeshPerturbation : public vtkDataSetAlgorithm
+class TAUTLINEDOMAINS_EXPORT vtkMeshPerturbation : public vtkDataSetAlgorithm
 {
 public:
   static vtkMeshPerturbation* New();

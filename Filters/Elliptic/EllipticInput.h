@@ -9,7 +9,7 @@
 #include "MeshParts.h"
 #include "PointFunction.h"
 
-#include "tautline/EllipticProblem.h"
+#include "tautline/Elliptic/EllipticSystem.h"
 
 #include <memory>
 

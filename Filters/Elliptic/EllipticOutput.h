@@ -5,7 +5,7 @@
 #ifndef tautline_EllipticOutput_h
 #define tautline_EllipticOutput_h
 
-#include "tautline/EllipticProblem.h"
+#include "tautline/Elliptic/EllipticSystem.h"
 
 #include <string>
 

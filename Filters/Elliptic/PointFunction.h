@@ -5,7 +5,7 @@
 #ifndef tautline_PointFunction_h
 #define tautline_PointFunction_h
 
-#include "tautline/Types.h"
+#include "tautline/Core/Types.h"
 
 #include <string>
 #include <vector>

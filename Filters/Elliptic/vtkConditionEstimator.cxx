@@ -4,7 +4,8 @@
 #include "EllipticOutput.h"
 #include "MovableMesh.h"
 
-#include "tautline/ConditionEstimate.h"
+#include "tautline/Elliptic/ElementContributions.h"
+#include "tautline/Solvers/ConditionEstimate.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -179,7 +180,7 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
   const double share = this->Preconditioner == none ? 1.0 : 0.5;
   options.progress = [&](double fraction)
   { return this->Report(mesh, share * fraction + (plain ? 0.0 : share)); };
-  const tautline::ConditionEstimate found = tautline::estimateCondition(input.system(), options);
+  const tautline::ConditionEstimate found = tautline::estimateCondition(input.system().linearSystem(), options);
 
   const std::string name =
     plain ? "A" : std::string("P^-1 A (") + tautline::nameOf(options.preconditioner) + ")";

@@ -25,7 +25,7 @@
 
 #include "vtkEllipticAlgorithm.h"
 
-class TAUTLINECONDITIONING_EXPORT vtkConditionEstimator : public vtkEllipticAlgorithm
+class TAUTLINEELLIPTIC_EXPORT vtkConditionEstimator : public vtkEllipticAlgorithm
 {
 public:
   static vtkConditionEstimator* New();

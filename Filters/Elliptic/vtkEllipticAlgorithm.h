@@ -27,7 +27,7 @@
 #ifndef vtkEllipticAlgorithm_h
 #define vtkEllipticAlgorithm_h
 
-#include "TautlineConditioningModule.h" // for export macro
+#include "TautlineEllipticModule.h" // for export macro
 #include "vtkDataObjectAlgorithm.h"
 
 #include <string> // for expressions
@@ -43,7 +43,7 @@ struct EllipticChoice;
 struct LocalMesh;
 }
 
-class TAUTLINECONDITIONING_EXPORT vtkEllipticAlgorithm : public vtkDataObjectAlgorithm
+class TAUTLINEELLIPTIC_EXPORT vtkEllipticAlgorithm : public vtkDataObjectAlgorithm
 {
 public:
   vtkTypeMacro(vtkEllipticAlgorithm, vtkDataObjectAlgorithm);

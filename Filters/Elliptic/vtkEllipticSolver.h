@@ -29,7 +29,7 @@
 
 #include "vtkEllipticAlgorithm.h"
 
-class TAUTLINECONDITIONING_EXPORT vtkEllipticSolver : public vtkEllipticAlgorithm
+class TAUTLINEELLIPTIC_EXPORT vtkEllipticSolver : public vtkEllipticAlgorithm
 {
 public:
   static vtkEllipticSolver* New();

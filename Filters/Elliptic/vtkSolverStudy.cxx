@@ -4,7 +4,7 @@
 #include "EllipticOutput.h"
 #include "MovableMesh.h"
 
-#include "tautline/SolverStudy.h"
+#include "tautline/Elliptic/SolverStudy.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkTable.h"

@@ -25,7 +25,7 @@
 
 #include <vector> // for combinations
 
-class TAUTLINECONDITIONING_EXPORT vtkSolverStudy : public vtkEllipticAlgorithm
+class TAUTLINEELLIPTIC_EXPORT vtkSolverStudy : public vtkEllipticAlgorithm
 {
 public:
   static vtkSolverStudy* New();

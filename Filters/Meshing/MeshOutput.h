@@ -5,7 +5,7 @@
 #ifndef tautline_MeshOutput_h
 #define tautline_MeshOutput_h
 
-#include "tautline/Types.h"
+#include "tautline/Core/Types.h"
 
 #include "vtkCellArray.h"
 #include "vtkIntArray.h"

@@ -11,7 +11,7 @@
 
 #include "TautlineMeshingModule.h" // for export macro
 
-#include "tautline/Domains.h"
+#include "tautline/Domains/Domains.h"
 
 #include <functional>
 

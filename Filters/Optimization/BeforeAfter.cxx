@@ -1,6 +1,6 @@
 #include "BeforeAfter.h"
 
-#include "tautline/Statistics.h"
+#include "tautline/Quality/Statistics.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"

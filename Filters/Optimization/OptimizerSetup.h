@@ -9,7 +9,7 @@
 #include "vtkMeshOptimizer.h"
 
 #include "MovableMesh.h"
-#include "tautline/BoundaryShape.h"
+#include "tautline/Mesh/BoundaryShape.h"
 
 #include "vtkMath.h"
 
@@ -35,7 +35,7 @@ struct vtkMeshOptimizer::Run
     int iteration;
     std::vector<double> points;
   };
-  tautline::Optimization result;
+  tautline::OptimizeResult result;
   std::vector<Frame> frames; ///< of the animation, every stride-th iteration
   int stride = 1;
   int iterations = 0;

@@ -442,7 +442,7 @@ void vtkMeshOptimizer::Report()
   this->Summary.clear();
   for (const auto& run : this->Runs)
   {
-    const tautline::Optimization& result = run->result;
+    const tautline::OptimizeResult& result = run->result;
     if (run->summary.empty())
     {
       continue; // an empty block

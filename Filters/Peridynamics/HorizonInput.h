@@ -5,8 +5,8 @@
 #ifndef tautline_HorizonInput_h
 #define tautline_HorizonInput_h
 
-#include "tautline/Mesh.h"
-#include "tautline/Peridynamics.h"
+#include "tautline/Mesh/Mesh.h"
+#include "tautline/Peridynamics/Peridynamics.h"
 
 #include "vtkType.h"
 

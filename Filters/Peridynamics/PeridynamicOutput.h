@@ -7,7 +7,7 @@
 
 #include "HorizonInput.h"
 
-#include "tautline/Lanczos.h"
+#include "tautline/Solvers/Lanczos.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
-#include "vtkHorizonCollar.h"
+#include "vtkInteractionLayer.h"
 
 #include "HorizonInput.h"
 
-#include "tautline/HorizonCollar.h"
+#include "tautline/Peridynamics/InteractionLayer.h"
 
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -19,7 +19,7 @@
 
 #include <functional>
 
-vtkStandardNewMacro(vtkHorizonCollar);
+vtkStandardNewMacro(vtkInteractionLayer);
 
 namespace
 {
@@ -52,14 +52,14 @@ void passData(vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkIdTy
 }
 
 //------------------------------------------------------------------------------
-int vtkHorizonCollar::FillInputPortInformation(int, vtkInformation* info)
+int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   return 1;
 }
 
 //------------------------------------------------------------------------------
-int vtkHorizonCollar::RequestData(
+int vtkInteractionLayer::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
@@ -126,7 +126,7 @@ int vtkHorizonCollar::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkHorizonCollar::PrintSelf(ostream& os, vtkIndent indent)
+void vtkInteractionLayer::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Width: " << this->Width << "\n";

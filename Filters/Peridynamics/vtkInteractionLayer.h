@@ -1,5 +1,5 @@
 /**
- * @class vtkHorizonCollar
+ * @class vtkInteractionLayer
  * @brief Puts a collar of triangles around a planar mesh, for the volume constraint of nonlocal models.
  *
  * A nonlocal (peridynamic) problem is given its solution not on the boundary but in a region around the domain that is
@@ -16,11 +16,11 @@
  *
  * @par Limitations:
  * Elements of the collar are about equally large (ElementSize). Where the boundary's edges are much longer
- * or shorter than that, elements next to it are flat: no matter for the matrix in exact reading.
+ * or shorter than that, elements next to it are flat: no matter for the matrix in exact discretization.
  *
  * @par Example:
  * @code
- * vtkNew<vtkHorizonCollar> collar;
+ * vtkNew<vtkInteractionLayer> collar;
  * collar->SetInputConnection(reader->GetOutputPort());
  * collar->SetWidth(0.2);
  * vtkNew<vtkPeridynamicStiffness> stiffness;
@@ -31,17 +31,17 @@
  * @sa tautline::addCollar (Filters/Kernel/HorizonCollar.h), vtkPeridynamicStiffness, vtkDomainSource
  */
 
-#ifndef vtkHorizonCollar_h
-#define vtkHorizonCollar_h
+#ifndef vtkInteractionLayer_h
+#define vtkInteractionLayer_h
 
 #include "TautlinePeridynamicsModule.h" // for export macro
 #include "vtkUnstructuredGridAlgorithm.h"
 
-class TAUTLINEPERIDYNAMICS_EXPORT vtkHorizonCollar : public vtkUnstructuredGridAlgorithm
+class TAUTLINEPERIDYNAMICS_EXPORT vtkInteractionLayer : public vtkUnstructuredGridAlgorithm
 {
 public:
-  static vtkHorizonCollar* New();
-  vtkTypeMacro(vtkHorizonCollar, vtkUnstructuredGridAlgorithm);
+  static vtkInteractionLayer* New();
+  vtkTypeMacro(vtkInteractionLayer, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -69,14 +69,14 @@ public:
   ///@}
 
 protected:
-  vtkHorizonCollar() = default;
-  ~vtkHorizonCollar() override = default;
+  vtkInteractionLayer() = default;
+  ~vtkInteractionLayer() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
-  vtkHorizonCollar(const vtkHorizonCollar&) = delete;
-  void operator=(const vtkHorizonCollar&) = delete;
+  vtkInteractionLayer(const vtkInteractionLayer&) = delete;
+  void operator=(const vtkInteractionLayer&) = delete;
 
   double Width = 0.2;
   double ElementSize = 0.0;

@@ -129,7 +129,7 @@ void vtkPeridynamicStiffness::Fill(tautline::PeridynamicOptions& options)
   options.basis = static_cast<tautline::PeridynamicBasis>(this->Basis);
   options.model =
     this->Elastic ? tautline::PeridynamicModel::Elastic : tautline::PeridynamicModel::Scalar;
-  options.reading = static_cast<tautline::Reading>(this->Reading);
+  options.discretization = static_cast<tautline::Discretization>(this->Discretization);
   options.rules = static_cast<tautline::RuleSet>(this->Rules);
   options.tolerance = this->Tolerance;
   options.constrained = this->Constrained;
@@ -328,7 +328,7 @@ void vtkPeridynamicStiffness::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "KernelValues: " << this->KernelValues.size() << "\n";
   os << indent << "Basis: " << this->Basis << "\n";
   os << indent << "Elastic: " << this->Elastic << "\n";
-  os << indent << "Reading: " << this->Reading << "\n";
+  os << indent << "Discretization: " << this->Discretization << "\n";
   os << indent << "Rules: " << this->Rules << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "CollarValue: " << this->CollarValue << "\n";

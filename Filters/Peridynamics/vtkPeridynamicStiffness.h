@@ -14,7 +14,7 @@
  * Extreme eigenvalues are by the Lanczos method, with error bounds; nothing is factorised.
  *
  * @par Input:
- * Any vtkDataSet of triangles in a plane, all of one orientation. vtkHorizonCollar adds a collar;
+ * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds a collar;
  * vtkDomainSource's square has one.
  *
  * @par Input arrays (SetInputArrayToProcess):
@@ -33,7 +33,7 @@
  * @par Output port 1 `Spectrum`:
  * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`, `Largest`, `SmallestBound`,
  * `LargestBound` (absolute error bounds), `Definite`, `Converged`, `Iterations`, `Rows`, `Nonzeros`,
- * `Asymmetry` (of the dissertation's reading: norm of the part that is dropped, relative), `CollarDeficit`,
+ * `Asymmetry` (of the dissertation's discretization: norm of the part that is dropped, relative), `CollarDeficit`,
  * `IntegratedPairs`, `Memory` (bytes, estimated).
  *
  * @par Output port 2 `Sparsity`:
@@ -54,7 +54,7 @@
  * std::cout << stiffness->GetCondition() << "\n"; // 9.28
  * @endcode
  *
- * @sa tautline::assemblePeridynamics (Filters/Kernel/Peridynamics.h), vtkHorizonCollar, vtkHorizonNeighbors
+ * @sa tautline::assemblePeridynamics (Filters/Kernel/Peridynamics.h), vtkInteractionLayer, vtkHorizonNeighbors
  */
 
 #ifndef vtkPeridynamicStiffness_h
@@ -168,8 +168,8 @@ public:
   /**
    * How the integrals are read. The default is EXACT (1).
    */
-  vtkSetClampMacro(Reading, int, DISSERTATION, EXACT);
-  vtkGetMacro(Reading, int);
+  vtkSetClampMacro(Discretization, int, DISSERTATION, EXACT);
+  vtkGetMacro(Discretization, int);
   ///@}
 
   /**
@@ -186,7 +186,7 @@ public:
 
   ///@{
   /**
-   * The rules, in the dissertation's reading. The default is TABLES (0).
+   * The rules, in the dissertation's discretization. The default is TABLES (0).
    */
   vtkSetClampMacro(Rules, int, TABLES, THREE_ONE);
   vtkGetMacro(Rules, int);
@@ -194,7 +194,7 @@ public:
 
   ///@{
   /**
-   * Wanted relative error of the integral over each pair of triangles in exact reading, 1e-10 to 0.1. The default is 1e-5.
+   * Wanted relative error of the integral over each pair of triangles in exact discretization, 1e-10 to 0.1. The default is 1e-5.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
@@ -202,7 +202,7 @@ public:
 
   ///@{
   /**
-   * Value of the region array in the collar. The default is 2, as vtkHorizonCollar and vtkDomainSource give it.
+   * Value of the region array in the collar. The default is 2, as vtkInteractionLayer and vtkDomainSource give it.
    */
   vtkSetMacro(CollarValue, double);
   vtkGetMacro(CollarValue, double);
@@ -332,7 +332,7 @@ private:
   std::vector<double> KernelValues;
   int Basis = PIECEWISE_LINEAR;
   bool Elastic = false;
-  int Reading = EXACT;
+  int Discretization = EXACT;
   int Rules = TABLES;
   double Tolerance = 1e-5;
   double CollarValue = 2.0;

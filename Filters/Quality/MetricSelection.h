@@ -7,7 +7,7 @@
 
 #include "TautlineQualityModule.h" // for export macro
 
-#include "tautline/Metrics.h"
+#include "tautline/Quality/Metrics.h"
 
 #include <vector>
 

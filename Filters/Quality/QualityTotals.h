@@ -5,7 +5,7 @@
 #ifndef tautline_QualityTotals_h
 #define tautline_QualityTotals_h
 
-#include "tautline/Statistics.h"
+#include "tautline/Quality/Statistics.h"
 
 #include <string>
 #include <vector>

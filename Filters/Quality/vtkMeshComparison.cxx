@@ -2,7 +2,7 @@
 
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
-#include "tautline/Compare.h"
+#include "tautline/Quality/Compare.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"

@@ -1,7 +1,7 @@
 #include "vtkMetricField.h"
 
 #include "MetricSelection.h"
-#include "tautline/MetricField.h"
+#include "tautline/Quality/MetricField.h"
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"

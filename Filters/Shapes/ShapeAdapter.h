@@ -5,7 +5,7 @@
 #ifndef tautline_ShapeAdapter_h
 #define tautline_ShapeAdapter_h
 
-#include "tautline/ShapeMatch.h"
+#include "tautline/Shapes/ShapeMatch.h"
 
 #include "vtkSmartPointer.h"
 

@@ -1,6 +1,6 @@
 #include "vtkShapeAlgorithm.h"
 
-#include "tautline/ShapeMatch.h"
+#include "tautline/Shapes/ShapeMatch.h"
 
 //------------------------------------------------------------------------------
 void vtkShapeAlgorithm::GetOptions(

@@ -1,7 +1,7 @@
 #include "vtkShapeRetrieval.h"
 
 #include "ShapeAdapter.h"
-#include "tautline/ShapeRetrieval.h"
+#include "tautline/Shapes/ShapeRetrieval.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCompositeDataSet.h"

@@ -1,7 +1,7 @@
 #include "vtkMeshUntangler.h"
 
 #include "MovableMesh.h"
-#include "tautline/Untangle.h"
+#include "tautline/Untangling/Untangle.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -53,7 +53,7 @@ void addFlags(vtkDataSet* output, const char* name, const std::vector<signed cha
 using Remaining = std::vector<std::pair<tautline::Index, tautline::CellType>>;
 
 /// The elements with an obstacle, by id.
-Remaining remainingOf(const tautline::Untangling& result, const tautline::Mesh& mesh)
+Remaining remainingOf(const tautline::UntangleResult& result, const tautline::Mesh& mesh)
 {
   Remaining remaining;
   for (const tautline::CellBlock& block : mesh.blocks())
@@ -72,7 +72,7 @@ Remaining remainingOf(const tautline::Untangling& result, const tautline::Mesh& 
 
 /// "All elements are valid", or how many are not, and for the first of them which, where and why.
 std::string verdict(
-  const tautline::Untangling& result, const Remaining& remaining, const tautline::Mesh& moved)
+  const tautline::UntangleResult& result, const Remaining& remaining, const tautline::Mesh& moved)
 {
   std::ostringstream text;
   if (remaining.empty())
@@ -208,7 +208,7 @@ void vtkMeshUntangler::Untangle(
     this->UpdateProgress((block.number + state.progress) / blocks);
     return !this->GetAbortExecute();
   };
-  const tautline::Untangling result = tautline::untangle(mesh.mesh(), options);
+  const tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);
 
   const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), result.points);
   addFlags(block.output, "Validity", mesh.validityAt(result.points));

@@ -35,7 +35,7 @@
 #ifndef vtkMeshUntangler_h
 #define vtkMeshUntangler_h
 
-#include "TautlineOptimizationModule.h" // for export macro
+#include "TautlineUntanglingModule.h" // for export macro
 #include "vtkDataObjectAlgorithm.h"
 
 #include <string> // for Summary
@@ -48,7 +48,7 @@ class TableRows;
 struct InputBlock;
 }
 
-class TAUTLINEOPTIMIZATION_EXPORT vtkMeshUntangler : public vtkDataObjectAlgorithm
+class TAUTLINEUNTANGLING_EXPORT vtkMeshUntangler : public vtkDataObjectAlgorithm
 {
 public:
   static vtkMeshUntangler* New();

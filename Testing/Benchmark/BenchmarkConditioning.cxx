@@ -6,7 +6,7 @@
 #include "Clocks.h"
 #include "KuhnMesh.h"
 
-#include "tautline/EllipticProblem.h"
+#include "tautline/Elliptic/EllipticSystem.h"
 
 #include <algorithm>
 #include <cstdio>

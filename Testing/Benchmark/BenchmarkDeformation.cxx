@@ -9,7 +9,7 @@
 #include "../Cxx/Warping.h"
 #include "Clocks.h"
 
-#include "tautline/Domains.h"
+#include "tautline/Domains/Domains.h"
 #include "vtkDomainSource.h"
 
 #include <iomanip>
@@ -76,7 +76,7 @@ void boxPart(double cells, int repeats)
       const std::vector<double> motion = domain.motion(degrees / 180.0);
       const std::string key = std::string(name) + ", " + std::to_string(degrees) + " degrees";
       double best = 1e300;
-      Warping result;
+      WarpResult result;
       for (int i = 0; i < repeats; ++i)
       {
         const double start = processTime();
@@ -102,7 +102,7 @@ void domainsPart(double factor)
     {
       const std::string key = std::string(name) + (amount == 1 ? "" : " x 1.5");
       const double start = processTime();
-      const Warping result =
+      const WarpResult result =
         Warper(domain.mesh(), withMethod(WarpMethod::Hybrid)).warp(domain.motion(amount).data());
       print(key + " seconds", processTime() - start);
       print(key + " inverted before", static_cast<double>(result.history[0].inverted));
@@ -148,7 +148,7 @@ void stagesPart(Index cubes, int repeats)
       { "wave, little later", wave(0.01) }, { "wave, another", wave(1) } },
   };
   std::map<std::string, double> best;
-  Warping first;
+  WarpResult first;
   for (int i = 0; i < repeats; ++i)
   {
     for (const std::vector<Motion>& kind : kinds)
@@ -165,7 +165,7 @@ void stagesPart(Index cubes, int repeats)
         const bool isFirst = !warper;
         warper = warper ? std::move(warper)
                         : std::make_unique<Warper>(mesh, withMethod(WarpMethod::Femwarp));
-        const Warping result = warper->warp(d.data());
+        const WarpResult result = warper->warp(d.data());
         const double seconds = processTime() - start, passed = wallTime() - wall;
         const auto note = [&](const std::string& key, double value)
         { best[key] = best.count(key) ? std::min(best[key], value) : value; };

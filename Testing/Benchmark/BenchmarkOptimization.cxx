@@ -20,8 +20,8 @@
 #include "KuhnMesh.h"
 #include "Yardstick.h"
 
-#include "tautline/Objective.h"
-#include "tautline/Perturb.h"
+#include "tautline/Objectives/ObjectiveSum.h"
+#include "tautline/Domains/Perturb.h"
 #include "vtkDomainSource.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"

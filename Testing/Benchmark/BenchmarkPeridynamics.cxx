@@ -3,8 +3,8 @@
 //
 // usage: BenchmarkPeridynamics [N [TURNS]]
 
-#include "tautline/Lanczos.h"
-#include "tautline/Peridynamics.h"
+#include "tautline/Solvers/Lanczos.h"
+#include "tautline/Peridynamics/Peridynamics.h"
 
 #include <algorithm>
 #include <chrono>
@@ -55,21 +55,21 @@ int main(int argc, char* argv[])
   struct Case
   {
     const char* name;
-    Reading reading;
+    Discretization discretization;
     PeridynamicBasis basis;
     double p;
   };
   const Case cases[] = {
-    { "dissertation linear p=1", Reading::Dissertation, PeridynamicBasis::Linear, 1.0 },
-    { "exact linear p=1", Reading::Exact, PeridynamicBasis::Linear, 1.0 },
-    { "exact linear p=2.5", Reading::Exact, PeridynamicBasis::Linear, 2.5 },
-    { "dissertation constant p=1", Reading::Dissertation, PeridynamicBasis::Constant, 1.0 },
-    { "exact constant p=1", Reading::Exact, PeridynamicBasis::Constant, 1.0 },
+    { "dissertation linear p=1", Discretization::Dissertation, PeridynamicBasis::Linear, 1.0 },
+    { "exact linear p=1", Discretization::Exact, PeridynamicBasis::Linear, 1.0 },
+    { "exact linear p=2.5", Discretization::Exact, PeridynamicBasis::Linear, 2.5 },
+    { "dissertation constant p=1", Discretization::Dissertation, PeridynamicBasis::Constant, 1.0 },
+    { "exact constant p=1", Discretization::Exact, PeridynamicBasis::Constant, 1.0 },
   };
   for (const Case& c : cases)
   {
     PeridynamicOptions options;
-    options.reading = c.reading;
+    options.discretization = c.discretization;
     options.basis = c.basis;
     options.kernel.exponent = c.p;
     const Times one = measure(mesh, options, 1, turns), two = measure(mesh, options, 2, turns);

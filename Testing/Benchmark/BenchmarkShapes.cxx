@@ -2,7 +2,7 @@
 //
 // usage: BenchmarkShapes shapes SIZE REPEATS    the grid has min(SIZE, 30) columns and rows
 
-#include "tautline/ShapeMatch.h"
+#include "tautline/Shapes/ShapeMatch.h"
 
 #include <algorithm>
 #include <chrono>

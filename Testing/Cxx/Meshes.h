@@ -6,8 +6,8 @@
 #ifndef tautline_Meshes_h
 #define tautline_Meshes_h
 
-#include "tautline/Metrics.h"
-#include "tautline/Targets.h"
+#include "tautline/Quality/Metrics.h"
+#include "tautline/Quality/Targets.h"
 
 #include <algorithm>
 #include <functional>

@@ -5,7 +5,7 @@
 #ifndef tautline_Systems_h
 #define tautline_Systems_h
 
-#include "tautline/SparseMatrix.h"
+#include "tautline/Solvers/SparseMatrix.h"
 
 #include <cmath>
 #include <functional>

@@ -220,5 +220,34 @@ inline bool any(Mask mask)
   }
   return bits != 0;
 }
+
+/// Packet vectors, used by the chain rules.
+using PacketVec = Packet[3];
+
+inline Packet dot(const Packet* a, const Packet* b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+inline void cross(const Packet* a, const Packet* b, Packet* result)
+{
+  result[0] = a[1] * b[2] - a[2] * b[1];
+  result[1] = a[2] * b[0] - a[0] * b[2];
+  result[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+inline void subtract(const Packet* a, const Packet* b, Packet* result)
+{
+  for (int c = 0; c < 3; ++c)
+  {
+    result[c] = a[c] - b[c];
+  }
+}
+
+/// Finite or zero: the values and gradients of elements beyond arithmetic are 0.
+inline Packet finiteOrZero(Packet x)
+{
+  return select(abs(x) <= 1.7976931348623157e308, x, Packet{});
+}
 }
 #endif

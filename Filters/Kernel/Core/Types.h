@@ -1,11 +1,11 @@
 /**
  * @file Types.h
- * @brief Small types every part of the kernel shares: indices, 3-vectors, errors.
+ * @brief Small types every part of the kernel shares: indices, vectors, errors.
  */
 #ifndef tautline_Types_h
 #define tautline_Types_h
 
-#include "TautlineKernelExport.h"
+#include "tautline/KernelExport.h"
 
 #include <array>
 #include <cmath>
@@ -17,6 +17,9 @@ namespace tautline
 {
 /// Point, cell and connectivity indices; the type of VTK's 64-bit cell arrays.
 using Index = std::int64_t;
+
+/// A point or vector of the plane, x y.
+using Vec2 = std::array<double, 2>;
 
 /// A point or vector, x y z.
 using Vec3 = std::array<double, 3>;
@@ -54,6 +57,27 @@ inline Vec3 cross(const Vec3& a, const Vec3& b)
 inline double norm(const Vec3& a)
 {
   return std::sqrt(dot(a, a));
+}
+
+inline Vec2 operator+(const Vec2& a, const Vec2& b)
+{
+  return { a[0] + b[0], a[1] + b[1] };
+}
+inline Vec2 operator-(const Vec2& a, const Vec2& b)
+{
+  return { a[0] - b[0], a[1] - b[1] };
+}
+inline Vec2 operator*(double s, const Vec2& a)
+{
+  return { s * a[0], s * a[1] };
+}
+inline double dot(const Vec2& a, const Vec2& b)
+{
+  return a[0] * b[0] + a[1] * b[1];
+}
+inline double cross(const Vec2& a, const Vec2& b)
+{
+  return a[0] * b[1] - a[1] * b[0];
 }
 
 /// What the kernel throws on input it cannot take. The message names the problem and the remedy.

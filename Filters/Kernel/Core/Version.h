@@ -1,7 +1,7 @@
 #ifndef tautline_Version_h
 #define tautline_Version_h
 
-#include "TautlineKernelExport.h"
+#include "tautline/KernelExport.h"
 
 namespace tautline
 {

@@ -13,8 +13,8 @@
 #ifndef tautline_PointMotion_h
 #define tautline_PointMotion_h
 
-#include "TautlineKernelExport.h"
-#include "Types.h"
+#include "tautline/Core/Types.h"
+#include "tautline/SolversExport.h"
 
 #include <vector>
 
@@ -58,7 +58,7 @@ struct PointMotion
  * Throws Error for numbers that are not finite, an axis or a direction of length 0, factors that are not
  * positive, and matrices that mirror, flatten or are not affine.
  */
-TAUTLINE_KERNEL_EXPORT std::vector<double> displacements(const PointMotion& motion, double amount,
+TAUTLINE_SOLVERS_EXPORT std::vector<double> displacements(const PointMotion& motion, double amount,
   Index numberOfPoints, const double* points, const unsigned char* moved);
 }
 #endif

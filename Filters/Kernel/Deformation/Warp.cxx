@@ -93,7 +93,7 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
   }
   if (mesh.dimension() == Dimension::Surface)
   {
-    throw Error("Warping works on planar and volume meshes: this is a surface in space.");
+    throw Error("WarpResult works on planar and volume meshes: this is a surface in space.");
   }
   for (const CellBlock& block : mesh.blocks())
   {
@@ -147,7 +147,7 @@ struct Warper::Implementation
   }
 
   void checkDisplacement(const double* displacement) const;
-  Warping run(const WarpMotion& motion, const WarpMotion& path);
+  WarpResult run(const WarpMotion& motion, const WarpMotion& path);
   void followMotion(const WarpMotion& path, const double* displacement, WarpControl& control);
   BoundaryState examineBoundary(const double* points) const;
   void explain(WarpControl& control);
@@ -196,9 +196,9 @@ void Warper::Implementation::checkDisplacement(const double* displacement) const
 }
 
 //------------------------------------------------------------------------------
-Warping Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& path)
+WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& path)
 {
-  Warping result;
+  WarpResult result;
   WarpControl control(this->Options, result);
   const WarpMotion checked = [&](double amount, double* displacement)
   {
@@ -234,7 +234,7 @@ Warping Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& 
 void Warper::Implementation::followMotion(
   const WarpMotion& path, const double* displacement, WarpControl& control)
 {
-  Warping& result = control.result();
+  WarpResult& result = control.result();
   const bool wholeWay = this->Options.steps == 1;
   if (wholeWay)
   {
@@ -244,7 +244,7 @@ void Warper::Implementation::followMotion(
       return;
     }
   }
-  const Warping before = result;
+  const WarpResult before = result;
   result.impossible = 0;
   warpInSteps(this->Input, this->Parts, path, 0, true, control);
   if (result.amount == 1.0 && !control.stopped())
@@ -304,7 +304,7 @@ BoundaryState Warper::Implementation::examineBoundary(const double* points) cons
 /// What the user should know.
 void Warper::Implementation::explain(WarpControl& control)
 {
-  Warping& result = control.result();
+  WarpResult& result = control.result();
   if (this->Parts.freePoints() == 0)
   {
     control.say("There are no points between the prescribed ones: nothing had to be found.");
@@ -366,7 +366,7 @@ Warper::Warper(const Mesh& mesh, const WarpOptions& options)
 
 Warper::~Warper() = default;
 
-Warping Warper::warp(const double* displacement)
+WarpResult Warper::warp(const double* displacement)
 {
   this->Impl->checkDisplacement(displacement);
   const std::size_t size = 3 * this->Impl->Parts.prescribed().size();
@@ -382,7 +382,7 @@ Warping Warper::warp(const double* displacement)
     });
 }
 
-Warping Warper::warp(const std::function<void(double, double*)>& motion)
+WarpResult Warper::warp(const std::function<void(double, double*)>& motion)
 {
   return this->Impl->run(motion, motion);
 }

@@ -1,6 +1,6 @@
 #include "WarpBoundary.h"
 
-#include "Predicates.h"
+#include "tautline/Geometry/Predicates.h"
 
 #include <algorithm>
 #include <limits>

@@ -5,7 +5,7 @@
 #ifndef tautline_WarpBoundary_h
 #define tautline_WarpBoundary_h
 
-#include "Mesh.h"
+#include "tautline/Mesh/Mesh.h"
 
 namespace tautline
 {

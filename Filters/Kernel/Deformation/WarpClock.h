@@ -5,8 +5,8 @@
 #ifndef tautline_WarpClock_h
 #define tautline_WarpClock_h
 
-#include "Parallel.h"
-#include "Warp.h"
+#include "tautline/Core/Parallel.h"
+#include "WarpOptions.h"
 
 #include <chrono>
 

@@ -5,7 +5,7 @@
 #ifndef tautline_WarpControl_h
 #define tautline_WarpControl_h
 
-#include "Warp.h"
+#include "WarpOptions.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,7 +15,7 @@ namespace tautline
 class WarpControl
 {
 public:
-  WarpControl(const WarpOptions& options, Warping& result)
+  WarpControl(const WarpOptions& options, WarpResult& result)
     : Options(options)
     , Result(result)
     , Start(std::chrono::steady_clock::now())
@@ -23,7 +23,7 @@ public:
   }
 
   const WarpOptions& options() const { return this->Options; }
-  Warping& result() { return this->Result; }
+  WarpResult& result() { return this->Result; }
 
   double elapsed() const
   {
@@ -79,7 +79,7 @@ public:
 
 private:
   const WarpOptions& Options;
-  Warping& Result;
+  WarpResult& Result;
   std::chrono::steady_clock::time_point Start;
   double From = 0, To = 1, Told = 0;
   int Iterations = 0;

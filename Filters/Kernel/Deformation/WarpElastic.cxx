@@ -1,6 +1,6 @@
 #include "WarpElastic.h"
 
-#include "Metrics.h"
+#include "tautline/Quality/Metrics.h"
 
 namespace tautline
 {

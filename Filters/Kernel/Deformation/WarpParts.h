@@ -6,7 +6,7 @@
 #ifndef tautline_WarpParts_h
 #define tautline_WarpParts_h
 
-#include "Mesh.h"
+#include "tautline/Mesh/Mesh.h"
 
 namespace tautline
 {

@@ -1,6 +1,6 @@
 #include "WarpPointwise.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -10,7 +10,8 @@
 #ifndef tautline_WarpPointwise_h
 #define tautline_WarpPointwise_h
 
-#include "Warp.h"
+#include "WarpOptions.h"
+#include "tautline/SolversExport.h"
 
 namespace tautline
 {
@@ -25,7 +26,7 @@ namespace tautline
  * -options.distancePower (above 0, at most 20). Far groups of points count by their expansion to second order, which
  * differs from the sum over all points by less than 1e-4 of the largest displacement.
  */
-TAUTLINE_KERNEL_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mesh,
+TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
@@ -34,7 +35,7 @@ TAUTLINE_KERNEL_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mes
  * the extent of the prescribed points) around as many prescribed points, at most 3000, as it takes for the others to be
  * met within options.fitTolerance times the largest displacement; the point that is met worst comes next.
  */
-TAUTLINE_KERNEL_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
+TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
@@ -45,14 +46,14 @@ TAUTLINE_KERNEL_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
  * in the tangent plane), all count the same. Points of parts without a prescribed point stay. The linear system is solved
  * to options.tolerance.
  */
-TAUTLINE_KERNEL_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
+TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
 // --- what the three share ------------------------------------------------------------------------------
 
 /// The prescribed displacements, split into an affine motion and the rest.
-class TAUTLINE_KERNEL_EXPORT PrescribedMotion
+class TAUTLINE_SOLVERS_EXPORT PrescribedMotion
 {
 public:
   PrescribedMotion(const Mesh& mesh, const std::vector<unsigned char>& prescribed,

@@ -1,6 +1,6 @@
 #include "WarpStep.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <Eigen/Dense>
 

@@ -1,6 +1,6 @@
 #include "WarpPointwise.h"
 
-#include "PointTree.h"
+#include "tautline/Geometry/PointTree.h"
 #include "WarpClock.h"
 
 namespace tautline

@@ -1,9 +1,10 @@
 #include "WarpStep.h"
 
-#include "Targets.h"
-#include "Untangle.h"
+#include "tautline/Quality/Targets.h"
+#include "tautline/Untangling/Untangle.h"
 #include "WarpElastic.h"
 #include "WarpPointwise.h"
+#include "tautline/Optimization/Optimize.h"
 
 namespace tautline
 {
@@ -146,7 +147,7 @@ Index WarpStep::run(
   {
     points[i] += from[i];
   }
-  Warping& result = control.result();
+  WarpResult& result = control.result();
   result.invertedWarp =
     this->record("warp", amount, control.iterations() - before, points.data(), control).inverted;
   result.invertedAfter = result.invertedWarp;
@@ -165,7 +166,7 @@ void WarpStep::improve(
   const double* displacement, double amount, WarpControl& control, std::vector<double>& points)
 {
   const WarpOptions& options = control.options();
-  Warping& result = control.result();
+  WarpResult& result = control.result();
   const double start = control.elapsed();
   const std::vector<char> moving = this->Parts.moving(displacement);
   std::vector<unsigned char> fixed = this->Parts.held();
@@ -228,7 +229,7 @@ int WarpStep::untangle(
   options.maximumSeconds = control.secondsLeft();
   options.observer = [&control](const IterationState& state)
   { return control.goOn(0.3 + 0.4 * state.progress); };
-  Untangling done = tautline::untangle(mesh, options);
+  UntangleResult done = tautline::untangle(mesh, options);
   if (done.reason == StopReason::TimeLimit)
   {
     control.result().timeLimit = true;
@@ -296,7 +297,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   }
   optimization.observer = [&control](const IterationState& state)
   { return control.goOn(0.7 + 0.3 * state.progress); };
-  Optimization done = tautline::optimize(mesh, optimization);
+  OptimizeResult done = tautline::optimize(mesh, optimization);
   points = std::move(done.points);
   return done.iterations;
 }

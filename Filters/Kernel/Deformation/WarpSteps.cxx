@@ -30,7 +30,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
   bool following, WarpControl& control)
 {
   const WarpOptions& options = control.options();
-  Warping& result = control.result();
+  WarpResult& result = control.result();
   const std::size_t size = 3 * static_cast<std::size_t>(mesh.view().numberOfPoints);
   const bool automatic = steps == 0;
   constexpr double longer = 2.0, shortest = 1e-4, cautious = 0.125; // of the motion

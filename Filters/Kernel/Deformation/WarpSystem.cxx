@@ -1,6 +1,6 @@
 #include "WarpSystem.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 namespace tautline
 {

@@ -7,6 +7,8 @@
 #define tautline_WarpSystem_h
 
 #include "WarpControl.h"
+#include "tautline/Elliptic/FiniteElements.h"
+#include "tautline/Solvers/LinearSolver.h"
 
 #include <deque>
 #include <memory>

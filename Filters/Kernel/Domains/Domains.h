@@ -10,7 +10,7 @@
 #ifndef tautline_Domains_h
 #define tautline_Domains_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "Perturb.h"
 
-#include "Random.h"
+#include "tautline/Core/Random.h"
 
 #include <algorithm>
 #include <limits>

@@ -13,7 +13,7 @@
 #ifndef tautline_Perturb_h
 #define tautline_Perturb_h
 
-#include "Mesh.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include <functional>
 #include <vector>

@@ -1,7 +1,9 @@
+#include "ElementContributions.h"
+
 #include "ElementMatrices.h"
-#include "Parallel.h"
-#include "SmallEigenvalues.h"
-#include "SpectrumEnds.h"
+#include "tautline/Core/Parallel.h"
+#include "tautline/Solvers/SmallEigenvalues.h"
+#include "tautline/Solvers/ExtremeEigenvalues.h"
 
 #include <limits>
 
@@ -120,7 +122,7 @@ std::vector<double> topEigenvector(const EllipticSystem& system)
   const PetscSystem objects(system.linearSystem());
   const ConditionOptions options;
   SpectrumWatch watch(objects, options);
-  const SpectrumEnd end = slepcLargest(objects.matrix(), options, optionSet, watch);
+  const ExtremeEigenvalue end = slepcLargestEigenvalue(objects.matrix(), options, optionSet, watch);
   std::vector<double> vector;
   if (end.found)
   {

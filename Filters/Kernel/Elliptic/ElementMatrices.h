@@ -8,7 +8,8 @@
 #define tautline_ElementMatrices_h
 
 #include "ElementShapes.h"
-#include "FiniteElements.h"
+#include "Materials.h"
+#include "tautline/Mesh/Mesh.h"
 
 namespace tautline
 {

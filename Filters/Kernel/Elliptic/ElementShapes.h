@@ -5,7 +5,7 @@
 #ifndef tautline_ElementShapes_h
 #define tautline_ElementShapes_h
 
-#include "CellTopology.h"
+#include "tautline/Mesh/CellTopology.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,7 @@
 #include "EllipticChecks.h"
 
 #include "ElementMatrices.h"
+#include "FiniteElements.h"
 
 #include <numeric>
 

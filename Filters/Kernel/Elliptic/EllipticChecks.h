@@ -1,11 +1,13 @@
 /**
  * @file EllipticChecks.h
- * @brief What a boundary value problem needs to have a solution, and the derivatives of that. Internal: not installed.
+ * @brief Checks that a boundary value problem has a solution. Internal: not installed.
  */
 #ifndef tautline_EllipticChecks_h
 #define tautline_EllipticChecks_h
 
 #include "EllipticProblem.h"
+#include "tautline/Mesh/Mesh.h"
+#include "tautline/Ranks/PointNumbering.h"
 
 namespace tautline
 {
@@ -57,8 +59,5 @@ private:
   const PointNumbering& Numbering;
   int Threads;
 };
-
-/// Fills in gradients or stresses from the values.
-void differentiate(const EllipticSystem& system, EllipticSolution& solution);
 }
 #endif

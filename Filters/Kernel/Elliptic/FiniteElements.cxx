@@ -1,7 +1,7 @@
 #include "FiniteElements.h"
 
 #include "ElementMatrices.h"
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <atomic>
 #include <limits>

@@ -17,42 +17,13 @@
 #ifndef tautline_FiniteElements_h
 #define tautline_FiniteElements_h
 
-#include "Mesh.h"
-#include "SparseMatrix.h"
+#include "Materials.h"
+#include "tautline/Mesh/Mesh.h"
+#include "tautline/Solvers/SparseMatrix.h"
+#include "tautline/SolversExport.h"
 
 namespace tautline
 {
-/// A symmetric tensor: xx yy zz xy yz xz, the order of VTK's arrays of symmetric tensors.
-using SymmetricTensor = std::array<double, 6>;
-
-constexpr SymmetricTensor IdentityTensor = { 1, 1, 1, 0, 0, 0 };
-
-/// The operator -div(C grad u) + a u, section 2.2 (2.3) and section 4.9 (4.11), (4.20).
-struct DiffusionOperator
-{
-  /// C, in the coordinates of space; positive semidefinite. Triangles in space see its tangential part.
-  SymmetricTensor tensor = IdentityTensor;
-  const double* tensors = nullptr; ///< 6 per cell, instead of tensor; or null
-  double reaction = 0.0;           ///< a; where it is negative the matrix may be indefinite
-};
-
-/// What a 2D elastic body is held by in the third direction.
-enum class PlaneState : int
-{
-  Strain = 0, ///< no strain: a slice of a long body
-  Stress = 1  ///< no stress: a thin sheet
-};
-
-/// Linear elasticity (2.4): -div(lambda (div u) I + 2 mu eps(u)).
-struct ElasticOperator
-{
-  double youngsModulus = 1.0; ///< E > 0
-  /// nu, -1 to 0.5 (plane stress: 1), exclusive. Near 0.5 linear elements lock: they are too stiff.
-  double poissonRatio = 0.3;
-  const double* stiffening = nullptr;    ///< factors of E, one per cell, positive; or null
-  PlaneState plane = PlaneState::Strain; ///< planar meshes only
-};
-
 /// How an assembly is to go; shared by all functions below.
 struct AssemblyOptions
 {
@@ -68,7 +39,7 @@ struct AssemblyOptions
  * vanishes (Mesh::degenerateTolerance()) it contributes nothing; inverted elements contribute by its absolute value. Ask
  * Mesh::classifyCells() first where that matters.
  */
-class TAUTLINE_KERNEL_EXPORT AssemblyPattern
+class TAUTLINE_SOLVERS_EXPORT AssemblyPattern
 {
 public:
   /**
@@ -134,21 +105,21 @@ private:
 };
 
 /// The matrix of a scalar operator: AssemblyPattern for one time.
-TAUTLINE_KERNEL_EXPORT SparseMatrix stiffnessMatrix(
+TAUTLINE_SOLVERS_EXPORT SparseMatrix stiffnessMatrix(
   const Mesh& mesh, const DiffusionOperator& pde, const AssemblyOptions& options = {});
 
 /// The matrix of linear elasticity: AssemblyPattern for one time.
-TAUTLINE_KERNEL_EXPORT SparseMatrix stiffnessMatrix(
+TAUTLINE_SOLVERS_EXPORT SparseMatrix stiffnessMatrix(
   const Mesh& mesh, const ElasticOperator& pde, const AssemblyOptions& options = {});
 
 /// Unknowns per point of linear elasticity: 2 or 3.
-TAUTLINE_KERNEL_EXPORT int elasticComponents(const Mesh& mesh);
+TAUTLINE_SOLVERS_EXPORT int elasticComponents(const Mesh& mesh);
 
 /**
  * @brief Integrals of f phi_p: f is given at the points (components per point, interpolated linearly).
  * @return components x numberOfPoints
  */
-TAUTLINE_KERNEL_EXPORT std::vector<double> loadVector(
+TAUTLINE_SOLVERS_EXPORT std::vector<double> loadVector(
   const Mesh& mesh, const double* f, int components, const AssemblyOptions& options = {});
 }
 #endif

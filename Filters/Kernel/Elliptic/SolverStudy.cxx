@@ -1,6 +1,6 @@
 #include "SolverStudy.h"
 
-#include "Metrics.h"
+#include "tautline/Quality/Metrics.h"
 
 #include <algorithm>
 #include <chrono>

@@ -5,7 +5,8 @@
 #ifndef tautline_SolverStudy_h
 #define tautline_SolverStudy_h
 
-#include "EllipticProblem.h"
+#include "EllipticSystem.h"
+#include "tautline/SolversExport.h"
 
 namespace tautline
 {
@@ -18,9 +19,9 @@ struct SolverCombination
 };
 
 /// "CG + ILU(0)".
-TAUTLINE_KERNEL_EXPORT std::string nameOf(const SolverCombination& combination);
+TAUTLINE_SOLVERS_EXPORT std::string nameOf(const SolverCombination& combination);
 /// The sixteen of Table 2.5, in its order; as there, multigrid only sees the matrix (nearNullSpace = false).
-TAUTLINE_KERNEL_EXPORT std::vector<SolverCombination> dissertationCombinations();
+TAUTLINE_SOLVERS_EXPORT std::vector<SolverCombination> dissertationCombinations();
 
 struct SolverStudyOptions
 {
@@ -61,7 +62,7 @@ struct SolverStudy
  * @brief Solves the system by each combination, from 0. Collective over the ranks. Failures are reasons of their rows; bad options
  * throw Error.
  */
-TAUTLINE_KERNEL_EXPORT SolverStudy studySolvers(
+TAUTLINE_SOLVERS_EXPORT SolverStudy studySolvers(
   const EllipticSystem& system, const SolverStudyOptions& options = {});
 }
 #endif

@@ -5,7 +5,7 @@
 #ifndef tautline_PlanarDelaunay_h
 #define tautline_PlanarDelaunay_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
 
 #include <array>
 #include <utility>
@@ -24,7 +24,7 @@ namespace tautline
  * @param segments pairs of point numbers
  * @return triangles, counter-clockwise
  */
-std::vector<std::array<Index, 3>> constrainedDelaunay(
+TAUTLINE_KERNEL_EXPORT std::vector<std::array<Index, 3>> constrainedDelaunay(
   const std::vector<double>& points, const std::vector<std::pair<Index, Index>>& segments);
 }
 #endif

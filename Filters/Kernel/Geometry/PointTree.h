@@ -5,7 +5,7 @@
 #ifndef tautline_PointTree_h
 #define tautline_PointTree_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
 
 #include <algorithm>
 #include <numeric>

@@ -12,15 +12,12 @@
 #ifndef tautline_Polygon_h
 #define tautline_Polygon_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
 
 #include <vector>
 
 namespace tautline
 {
-/// A point of the plane, x y.
-using Vec2 = std::array<double, 2>;
-
 /// Elimination of a vertex: its last triangle and the two other vertices of that, its parents.
 struct EliminationStep
 {

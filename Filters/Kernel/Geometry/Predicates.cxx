@@ -1,5 +1,7 @@
 #include "Predicates.h"
 
+#include <vector>
+
 #include <algorithm>
 #include <limits>
 

@@ -9,17 +9,17 @@
 #ifndef tautline_Predicates_h
 #define tautline_Predicates_h
 
-#include "Polygon.h"
+#include "tautline/Core/Types.h"
 
 namespace tautline
 {
 /// 1 if a, b, c run counter-clockwise, -1 if clockwise, 0 if they lie on a line.
-int orientation(const Vec2& a, const Vec2& b, const Vec2& c);
+TAUTLINE_KERNEL_EXPORT int orientation(const Vec2& a, const Vec2& b, const Vec2& c);
 
 /// 1 if d lies inside the circle through a, b, c (counter-clockwise), 0 on it, -1 outside.
-int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+TAUTLINE_KERNEL_EXPORT int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 
 /// Whether the closed segments ab and cd have a point in common.
-bool segmentsMeet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+TAUTLINE_KERNEL_EXPORT bool segmentsMeet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 }
 #endif

@@ -18,7 +18,7 @@
 #ifndef tautline_CellTopology_h
 #define tautline_CellTopology_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
 
 namespace tautline
 {

@@ -5,7 +5,7 @@
 #ifndef tautline_ElementFunction_h
 #define tautline_ElementFunction_h
 
-#include "ElementSum.h"
+#include "tautline/Quality/ElementSum.h"
 #include "Objective.h"
 
 #include <limits>
@@ -326,16 +326,5 @@ auto withTemplate(ObjectiveTemplate form, const Work& work)
       return work(std::integral_constant<T, T::Maximum>());
   }
 }
-
-struct ObjectiveSum::Implementation
-{
-  Objective objective;
-  ElementSum elements;
-  ElementFunction function;
-
-  Implementation(const Mesh& mesh, const Objective& objective, int threads);
-  template <bool WithGradient>
-  double run(double scale, double* gradient) const;
-};
 }
 #endif

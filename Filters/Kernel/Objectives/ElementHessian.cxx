@@ -1,6 +1,6 @@
 #include "ElementHessian.h"
 
-#include "ElementFunction.h"
+#include "ObjectiveSumState.h"
 
 #include <cmath>
 
@@ -257,7 +257,7 @@ ElementHessian::ElementHessian(const ObjectiveSum& objective, bool project)
   , Project(project)
   , Values(std::make_unique<Storage>())
 {
-  this->Values->offsets = offsetsOf(objective.implementation().elements);
+  this->Values->offsets = offsetsOf(objective.state().elements);
   this->Values->entries.assign(this->Values->offsets.back(), Packet{});
 }
 
@@ -265,7 +265,7 @@ ElementHessian::~ElementHessian() = default;
 
 std::size_t ElementHessian::memory(const ObjectiveSum& objective)
 {
-  const std::vector<Index> offsets = offsetsOf(objective.implementation().elements);
+  const std::vector<Index> offsets = offsetsOf(objective.state().elements);
   return offsets.back() * sizeof(Packet) + offsets.size() * sizeof(Index);
 }
 
@@ -279,7 +279,7 @@ namespace
 template <class Place, class Work>
 void makeHessians(const ObjectiveSum& objective, const Place& place, const Work& work)
 {
-  const ObjectiveSum::Implementation& sum = objective.implementation();
+  const ObjectiveSumState& sum = objective.state();
   const ElementSum& elements = sum.elements;
   const ObjectiveTemplate form = sum.function.form;
   const bool scaled = form == ObjectiveTemplate::PowerMean || form == ObjectiveTemplate::Maximum;
@@ -371,7 +371,7 @@ void ElementHessian::assemble()
 //------------------------------------------------------------------------------
 void ElementHessian::addTimes(double scale, const double* d, double* product) const
 {
-  this->Values->forEachBatch(this->TheObjective.implementation().elements,
+  this->Values->forEachBatch(this->TheObjective.state().elements,
     [=](auto nodesOfCell, const Batch& batch, const BatchNodes& nodes, const Packet* h)
     {
       constexpr int Nodes = decltype(nodesOfCell)::value;
@@ -414,7 +414,7 @@ void ElementHessian::addTimes(double scale, const double* d, double* product) co
 //------------------------------------------------------------------------------
 void ElementHessian::addDiagonal(double scale, double* blocks) const
 {
-  this->Values->forEachBatch(this->TheObjective.implementation().elements,
+  this->Values->forEachBatch(this->TheObjective.state().elements,
     [=](auto nodesOfCell, const Batch& batch, const BatchNodes& nodes, const Packet* h)
     { addBlocks<decltype(nodesOfCell)::value>(scale, batch, nodes, h, blocks); });
 }

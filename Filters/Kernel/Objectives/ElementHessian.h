@@ -10,7 +10,7 @@
 #ifndef tautline_ElementHessian_h
 #define tautline_ElementHessian_h
 
-#include "Objective.h"
+#include "ObjectiveSum.h"
 
 namespace tautline
 {

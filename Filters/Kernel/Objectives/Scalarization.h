@@ -9,7 +9,7 @@
 #ifndef tautline_Scalarization_h
 #define tautline_Scalarization_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
 
 #include <vector>
 

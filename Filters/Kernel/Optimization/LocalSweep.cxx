@@ -1,7 +1,7 @@
 #include "LocalSweep.h"
 
-#include "Parallel.h"
-#include "PatchMover.h"
+#include "tautline/Core/Parallel.h"
+#include "VertexOptimizer.h"
 
 #include <cmath>
 
@@ -33,7 +33,7 @@ private:
 
   SimplexMesh& Simplices;
   LocalOptions Options;
-  PatchMover<Dim> Mover;
+  VertexOptimizer<Dim> Mover;
 };
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,6 @@
 #include "Minimize.h"
 
-#include "VectorAlgebra.h"
+#include "tautline/Core/VectorAlgebra.h"
 
 #include <cmath>
 #include <utility>
@@ -53,7 +53,7 @@ public:
   {
   }
 
-  Minimization run();
+  MinimizeResult run();
 
 private:
   struct Pair
@@ -97,7 +97,7 @@ private:
   bool Preconditioned = false;
   bool Fresh = true;       ///< D does not use the history
   std::vector<Pair> Pairs; ///< oldest first
-  Minimization Result;
+  MinimizeResult Result;
 };
 
 //------------------------------------------------------------------------------
@@ -460,7 +460,7 @@ bool Minimizer::iterate()
 }
 
 //------------------------------------------------------------------------------
-Minimization Minimizer::run()
+MinimizeResult Minimizer::run()
 {
   this->F = this->Function.valueAndGradient(this->X, this->G.data());
   ++this->Result.evaluations;
@@ -536,7 +536,7 @@ Minimization Minimizer::run()
 }
 
 //------------------------------------------------------------------------------
-Minimization minimize(SmoothFunction& function, double* x, const MinimizeOptions& options)
+MinimizeResult minimize(SmoothFunction& function, double* x, const MinimizeOptions& options)
 {
   switch (options.method)
   {

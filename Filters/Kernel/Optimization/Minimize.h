@@ -11,7 +11,7 @@
 #ifndef tautline_Minimize_h
 #define tautline_Minimize_h
 
-#include "Optimize.h"
+#include "OptimizeOptions.h"
 
 #include <functional>
 #include <vector>
@@ -62,7 +62,7 @@ struct MinimizeOptions
   std::function<bool(int, double, double, const double*)> observer;
 };
 
-struct Minimization
+struct MinimizeResult
 {
   double value = 0;
   double gradientNorm = 0;
@@ -75,7 +75,7 @@ struct Minimization
  * @brief Minimises from x, which is overwritten by the best found; it is never worse than the start. From a start that is
  * not allowed nothing is done (NoProgress, value +infinity); without variables, NoFreeVertices.
  */
-TAUTLINE_KERNEL_EXPORT Minimization minimize(
+TAUTLINE_KERNEL_EXPORT MinimizeResult minimize(
   SmoothFunction& function, double* x, const MinimizeOptions& options);
 }
 #endif

@@ -1,6 +1,8 @@
 #include "OptimizationProblem.h"
 
-#include "Parallel.h"
+#include "PatchFunction.h"
+
+#include "tautline/Core/Parallel.h"
 
 #include <algorithm>
 #include <cmath>

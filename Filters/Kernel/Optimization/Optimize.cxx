@@ -1,10 +1,10 @@
 #include "Optimize.h"
 
-#include "ElementHessian.h"
+#include "tautline/Objectives/ElementHessian.h"
 #include "ImproveWorst.h"
 #include "Minimize.h"
 #include "OptimizationProblem.h"
-#include "Untangle.h"
+#include "tautline/Untangling/Untangle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +17,10 @@ namespace
 constexpr double roundingOfSums = 1e-12;
 
 /// Says when to stop, and why.
-class StopWatch
+class StoppingTest
 {
 public:
-  StopWatch(const OptimizationProblem& problem)
+  StoppingTest(const OptimizationProblem& problem)
     : Problem(problem)
     , Stop(problem.options().stopping)
   {
@@ -107,7 +107,7 @@ private:
 };
 
 /// Adds a record to the history and tells the observer; false if it wants to stop.
-bool report(OptimizationProblem& problem, const StopWatch& watch, Optimization& result,
+bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result,
   const IterationRecord& record)
 {
   result.history.push_back(record);
@@ -130,8 +130,8 @@ bool report(OptimizationProblem& problem, const StopWatch& watch, Optimization& 
  * @param failed set where a sweep raised the objective, as those of several objectives can
  * @param repaired set where an element that was left out has become valid
  */
-StopReason optimizeLocally(OptimizationProblem& problem, const StopWatch& watch,
-  Optimization& result, bool& failed, bool& repaired)
+StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& watch,
+  OptimizeResult& result, bool& failed, bool& repaired)
 {
   const StoppingCriteria& stop = problem.options().stopping;
   SimplexMesh& simplices = problem.simplices();
@@ -434,7 +434,7 @@ private:
 };
 
 StopReason optimizeGlobally(
-  OptimizationProblem& problem, const StopWatch& watch, Optimization& result)
+  OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result)
 {
   const StoppingCriteria& stop = problem.options().stopping;
   StopReason reason = StopReason::NoProgress;
@@ -478,7 +478,7 @@ StopReason optimizeGlobally(
       }
       return !ended;
     };
-    const Minimization found = minimize(function, x.data(), options);
+    const MinimizeResult found = minimize(function, x.data(), options);
     function.put(x.data());
     if (ended)
     {
@@ -502,11 +502,11 @@ Index countInvalid(const Mesh& mesh, int threads)
 //------------------------------------------------------------------------------
 /// Optimises from result.points on; returns whether there is more to do, with elements that have become valid.
 bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options,
-  std::chrono::steady_clock::time_point began, Optimization& result)
+  std::chrono::steady_clock::time_point began, OptimizeResult& result)
 {
   OptimizationProblem problem(mesh, options, result.points, began);
   result.freeVertices = problem.simplices().freeVertices();
-  const StopWatch watch(problem);
+  const StoppingTest watch(problem);
   const bool again = !result.history.empty();
   IterationRecord first = problem.record(again ? result.history.back().iteration : 0);
   problem.start(first);
@@ -570,34 +570,6 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options,
 }
 
 //------------------------------------------------------------------------------
-const char* describe(StopReason reason)
-{
-  switch (reason)
-  {
-    case StopReason::GradientNorm:
-      return "Converged: the gradient is as small as wanted.";
-    case StopReason::RelativeChange:
-      return "Converged: the objective hardly changes any more.";
-    case StopReason::TwoDigits:
-      return "The mean qualities keep two decimals.";
-    case StopReason::Reduction:
-      return "The wanted part of the possible reduction is reached.";
-    case StopReason::AllValid:
-      return "All elements are valid.";
-    case StopReason::IterationLimit:
-      return "The limit of iterations is reached.";
-    case StopReason::TimeLimit:
-      return "The time limit is reached.";
-    case StopReason::Aborted:
-      return "Stopped on request.";
-    case StopReason::NoProgress:
-      return "No step lowers the objective.";
-    default:
-      return "No vertex is free to move.";
-  }
-}
-
-//------------------------------------------------------------------------------
 void applyPreset(Preset preset, OptimizeOptions& options)
 {
   if (preset == Preset::Custom)
@@ -637,9 +609,9 @@ void applyPreset(Preset preset, OptimizeOptions& options)
 }
 
 //------------------------------------------------------------------------------
-Optimization optimize(const Mesh& mesh, const OptimizeOptions& given)
+OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& given)
 {
-  Optimization result;
+  OptimizeResult result;
   const MeshView& view = mesh.view();
   result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
   if (mesh.dimension() == Dimension::None)
@@ -672,7 +644,7 @@ Optimization optimize(const Mesh& mesh, const OptimizeOptions& given)
       record.mean = record.worst = record.objectives;
       return goOn = !options.observer || options.observer({ record, 0.0, state.points });
     };
-    Untangling untangled = untangle(mesh, untangling);
+    UntangleResult untangled = untangle(mesh, untangling);
     result.points = std::move(untangled.points);
     result.invertedAfter = untangled.invertedAfter;
     result.untangled = true;

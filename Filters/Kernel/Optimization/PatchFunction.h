@@ -6,8 +6,8 @@
 #ifndef tautline_PatchFunction_h
 #define tautline_PatchFunction_h
 
-#include "ElementFunction.h"
-#include "Energies.h"
+#include "tautline/Objectives/ObjectiveSumState.h"
+#include "tautline/Patches/Energies.h"
 
 #include <memory>
 
@@ -23,10 +23,10 @@ struct CellBatch
 
 /// All that is known of the vertex at hand. One per thread.
 template <int Dim>
-struct PatchSite
+struct VertexPatch
 {
   std::int32_t vertex = -1;
-  Patch<Dim> patch;
+  Patch<Dim> simplices;
   std::vector<CellBatch> cells; ///< only filled if a function needs them
   int cellBatches = 0;
   /// Displacement in the coordinates of the mesh = sum axes[c] d[c].
@@ -46,8 +46,8 @@ public:
   virtual double objective(double value, double change) const { return value + change; }
   /// Its derivative by the change, at 0.
   virtual double slope(double /*value*/) const { return 1.0; }
-  virtual double value(const PatchSite<Dim>& site, const double* d) const = 0;
-  virtual PatchSum<Dim> sum(const PatchSite<Dim>& site, const double* d, bool hessian) const = 0;
+  virtual double value(const VertexPatch<Dim>& patch, const double* d) const = 0;
+  virtual PatchSum<Dim> sum(const VertexPatch<Dim>& patch, const double* d, bool hessian) const = 0;
 };
 
 template <int Dim, class Energy>
@@ -58,13 +58,13 @@ public:
     : TheEnergy(energy)
   {
   }
-  double value(const PatchSite<Dim>& site, const double* d) const override
+  double value(const VertexPatch<Dim>& patch, const double* d) const override
   {
-    return valueOver(site.patch, d, this->TheEnergy);
+    return valueOver(patch.simplices, d, this->TheEnergy);
   }
-  PatchSum<Dim> sum(const PatchSite<Dim>& site, const double* d, bool) const override
+  PatchSum<Dim> sum(const VertexPatch<Dim>& patch, const double* d, bool) const override
   {
-    return sumOver(site.patch, d, this->TheEnergy);
+    return sumOver(patch.simplices, d, this->TheEnergy);
   }
 
 private:
@@ -77,7 +77,7 @@ class MetricFunction : public PatchFunction<Dim>
 {
 public:
   /// The sum must outlive the function.
-  explicit MetricFunction(const ObjectiveSum::Implementation& sum)
+  explicit MetricFunction(const ObjectiveSumState& sum)
     : Sum(sum)
   {
     for (const CellBlock& block : sum.elements.mesh().blocks())
@@ -114,13 +114,13 @@ public:
                                                          : 1.0;
   }
 
-  double value(const PatchSite<Dim>& site, const double* d) const override
+  double value(const VertexPatch<Dim>& patch, const double* d) const override
   {
     double total = 0;
-    const Vec3 shift = this->shiftOf(site, d);
-    for (int i = 0; i < site.cellBatches; ++i)
+    const Vec3 shift = this->shiftOf(patch, d);
+    for (int i = 0; i < patch.cellBatches; ++i)
     {
-      const CellBatch& cells = site.cells[i];
+      const CellBatch& cells = patch.cells[i];
       if (this->Value[cells.block])
       {
         Batch batch;
@@ -132,20 +132,20 @@ public:
     return total;
   }
 
-  PatchSum<Dim> sum(const PatchSite<Dim>& site, const double* d, bool hessian) const override
+  PatchSum<Dim> sum(const VertexPatch<Dim>& patch, const double* d, bool hessian) const override
   {
-    PatchSum<Dim> result = this->gradient(site, d);
+    PatchSum<Dim> result = this->gradient(patch, d);
     if (hessian)
     {
       // By differences of the gradient, over a small part of the patch's size; one-sided ones are enough for a direction.
       constexpr double part = 1e-6;
-      const double h = part * sizeOf(site.patch);
+      const double h = part * sizeOf(patch.simplices);
       for (int r = 0; r < Dim; ++r)
       {
         double forth[Dim];
         std::copy_n(d, Dim, forth);
         forth[r] += h;
-        const PatchSum<Dim> plus = this->gradient(site, forth);
+        const PatchSum<Dim> plus = this->gradient(patch, forth);
         for (int c = 0; c < Dim; ++c)
         {
           result.H[r][c] = (plus.g[c] - result.g[c]) / h;
@@ -163,12 +163,12 @@ public:
   }
 
 private:
-  Vec3 shiftOf(const PatchSite<Dim>& site, const double* d) const
+  Vec3 shiftOf(const VertexPatch<Dim>& patch, const double* d) const
   {
     Vec3 shift = { 0, 0, 0 };
     for (int c = 0; c < Dim; ++c)
     {
-      shift += d[c] * site.axes[c];
+      shift += d[c] * patch.axes[c];
     }
     return shift;
   }
@@ -209,14 +209,14 @@ private:
     slope = onlyCells(batch, slope);
   }
 
-  PatchSum<Dim> gradient(const PatchSite<Dim>& site, const double* d) const
+  PatchSum<Dim> gradient(const VertexPatch<Dim>& patch, const double* d) const
   {
     PatchSum<Dim> result = {};
     Vec3 total = { 0, 0, 0 };
-    const Vec3 shift = this->shiftOf(site, d);
-    for (int i = 0; i < site.cellBatches; ++i)
+    const Vec3 shift = this->shiftOf(patch, d);
+    for (int i = 0; i < patch.cellBatches; ++i)
     {
-      const CellBatch& cells = site.cells[i];
+      const CellBatch& cells = patch.cells[i];
       if (!this->Gradient[cells.block])
       {
         continue;
@@ -241,12 +241,12 @@ private:
     }
     for (int c = 0; c < Dim; ++c)
     {
-      result.g[c] = dot(total, site.axes[c]);
+      result.g[c] = dot(total, patch.axes[c]);
     }
     return result;
   }
 
-  const ObjectiveSum::Implementation& Sum;
+  const ObjectiveSumState& Sum;
   std::vector<BatchContext> Contexts;
   std::vector<BatchEvaluator> Value, Gradient;
   double Current = 1;

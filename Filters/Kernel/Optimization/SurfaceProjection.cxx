@@ -1,6 +1,6 @@
 #include "SurfaceProjection.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <algorithm>
 #include <limits>

@@ -5,7 +5,7 @@
 #ifndef tautline_SurfaceProjection_h
 #define tautline_SurfaceProjection_h
 
-#include "SimplexMesh.h"
+#include "tautline/Patches/SimplexMesh.h"
 
 namespace tautline
 {

@@ -1,4 +1,4 @@
-#include "PatchMover.h"
+#include "VertexOptimizer.h"
 
 #include <cmath>
 
@@ -31,7 +31,7 @@ void tangentsOf(const Vec3& n, Vec3* tangents)
 
 //------------------------------------------------------------------------------
 template <int Dim>
-PatchMover<Dim>::PatchMover(SimplexMesh& simplices, const Mesh& mesh, double* points,
+VertexOptimizer<Dim>::VertexOptimizer(SimplexMesh& simplices, const Mesh& mesh, double* points,
   const std::vector<LocalTerm>& terms, const LocalOptions& options)
   : Simplices(simplices)
   , TheMesh(mesh)
@@ -53,7 +53,7 @@ PatchMover<Dim>::PatchMover(SimplexMesh& simplices, const Mesh& mesh, double* po
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void PatchMover<Dim>::begin(const std::vector<double>& values)
+void VertexOptimizer<Dim>::begin(const std::vector<double>& values)
 {
   this->Values = values;
   for (std::size_t i = 0; i < this->Functions.size(); ++i)
@@ -64,7 +64,7 @@ void PatchMover<Dim>::begin(const std::vector<double>& values)
 
 //------------------------------------------------------------------------------
 template <int Dim>
-PatchWorker<Dim> PatchMover<Dim>::makeWorker() const
+PatchWorker<Dim> VertexOptimizer<Dim>::makeWorker() const
 {
   PatchWorker<Dim> w;
   const std::size_t n = this->Functions.size();
@@ -77,7 +77,7 @@ PatchWorker<Dim> PatchMover<Dim>::makeWorker() const
 
 //------------------------------------------------------------------------------
 template <int Dim>
-std::unique_ptr<PatchFunction<Dim>> PatchMover<Dim>::makeFunction(const LocalTerm& term) const
+std::unique_ptr<PatchFunction<Dim>> VertexOptimizer<Dim>::makeFunction(const LocalTerm& term) const
 {
   if (term.worst > 0)
   {
@@ -99,12 +99,12 @@ std::unique_ptr<PatchFunction<Dim>> PatchMover<Dim>::makeFunction(const LocalTer
     using Energy = SizeSquaredEnergy<Dim>;
     return std::make_unique<EnergyFunction<Dim, Energy>>(Energy{ term.sizeSquared });
   }
-  return std::make_unique<MetricFunction<Dim>>(term.metric->implementation());
+  return std::make_unique<MetricFunction<Dim>>(term.metric->state());
 }
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void PatchMover<Dim>::findTangents(std::int32_t v, Vec3* tangents) const
+void VertexOptimizer<Dim>::findTangents(std::int32_t v, Vec3* tangents) const
 {
   // The normal is the sum of the vector areas around the vertex.
   const double* x = this->Simplices.coordinates();
@@ -126,38 +126,38 @@ void PatchMover<Dim>::findTangents(std::int32_t v, Vec3* tangents) const
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void PatchMover<Dim>::gather(std::int32_t v, Site& site) const
+void VertexOptimizer<Dim>::gather(std::int32_t v, VertexPatch<Dim>& patch) const
 {
-  site.vertex = v;
+  patch.vertex = v;
   const double* weights = this->Options.weights.empty() ? nullptr : this->Options.weights.data();
   if (Dim == 2 && this->Simplices.surface())
   {
     Vec3 tangents[2];
     this->findTangents(v, tangents);
     gatherPatch<Dim>(
-      this->Simplices, this->Simplices.coordinates(), v, weights, site.patch, tangents);
+      this->Simplices, this->Simplices.coordinates(), v, weights, patch.simplices, tangents);
     for (int c = 0; c < Dim; ++c)
     {
-      site.axes[c] = this->Simplices.scale() * tangents[c];
+      patch.axes[c] = this->Simplices.scale() * tangents[c];
     }
   }
   else
   {
-    gatherPatch<Dim>(this->Simplices, this->Simplices.coordinates(), v, weights, site.patch);
+    gatherPatch<Dim>(this->Simplices, this->Simplices.coordinates(), v, weights, patch.simplices);
     for (int c = 0; c < Dim; ++c)
     {
-      site.axes[c] = this->Simplices.axis(c);
+      patch.axes[c] = this->Simplices.axis(c);
     }
   }
   if (this->NeedsCells)
   {
-    this->gatherCells(v, site);
+    this->gatherCells(v, patch);
   }
 }
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void PatchMover<Dim>::gatherCells(std::int32_t v, Site& site) const
+void VertexOptimizer<Dim>::gatherCells(std::int32_t v, VertexPatch<Dim>& patch) const
 {
   const MeshView& view = this->TheMesh.view();
   const Index point = this->Simplices.point(v);
@@ -165,17 +165,17 @@ void PatchMover<Dim>::gatherCells(std::int32_t v, Site& site) const
   const auto end = this->Cells.cells.begin() + this->Cells.offsets[point + 1];
   const bool mirrored = this->TheMesh.mirrored() && this->TheMesh.dimension() == Dimension::Volume;
   const auto& blocks = this->TheMesh.blocks();
-  site.cellBatches = 0;
+  patch.cellBatches = 0;
   for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
   {
     const CellTopology& t = topology(blocks[b].type);
     for (auto c = begin; c != end;)
     {
-      if (static_cast<std::size_t>(site.cellBatches) == site.cells.size())
+      if (static_cast<std::size_t>(patch.cellBatches) == patch.cells.size())
       {
-        site.cells.emplace_back();
+        patch.cells.emplace_back();
       }
-      CellBatch& batch = site.cells[site.cellBatches];
+      CellBatch& batch = patch.cells[patch.cellBatches];
       batch.block = b;
       int& count = batch.batch.count = 0;
       for (; c != end && count < PacketWidth; ++c)
@@ -189,7 +189,7 @@ void PatchMover<Dim>::gatherCells(std::int32_t v, Site& site) const
       {
         break;
       }
-      ++site.cellBatches;
+      ++patch.cellBatches;
       const Index* nodes[PacketWidth];
       for (int l = 0; l < PacketWidth; ++l)
       {
@@ -214,11 +214,11 @@ void PatchMover<Dim>::gatherCells(std::int32_t v, Site& site) const
 
 //------------------------------------------------------------------------------
 template <int Dim>
-bool PatchMover<Dim>::evaluate(PatchWorker<Dim>& w, const double* d, bool hessian) const
+bool VertexOptimizer<Dim>::evaluate(PatchWorker<Dim>& w, const double* d, bool hessian) const
 {
   for (std::size_t i = 0; i < this->Functions.size(); ++i)
   {
-    w.sums[i] = this->Functions[i]->sum(w.site, d, hessian);
+    w.sums[i] = this->Functions[i]->sum(w.patch, d, hessian);
     if (!std::isfinite(w.sums[i].f))
     {
       return false;
@@ -229,7 +229,7 @@ bool PatchMover<Dim>::evaluate(PatchWorker<Dim>& w, const double* d, bool hessia
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void PatchMover<Dim>::findSlopes(const Scalarizer& scalarizer, PatchWorker<Dim>& w) const
+void VertexOptimizer<Dim>::findSlopes(const Scalarizer& scalarizer, PatchWorker<Dim>& w) const
 {
   const std::size_t n = this->Functions.size();
   if (n == 1) // every scalarization of one objective is as low as that is
@@ -250,7 +250,7 @@ void PatchMover<Dim>::findSlopes(const Scalarizer& scalarizer, PatchWorker<Dim>&
 
 //------------------------------------------------------------------------------
 template <int Dim>
-PatchSum<Dim> PatchMover<Dim>::combined(const PatchWorker<Dim>& w) const
+PatchSum<Dim> VertexOptimizer<Dim>::combined(const PatchWorker<Dim>& w) const
 {
   PatchSum<Dim> sum = {};
   for (std::size_t i = 0; i < this->Functions.size(); ++i)
@@ -271,7 +271,7 @@ PatchSum<Dim> PatchMover<Dim>::combined(const PatchWorker<Dim>& w) const
 //------------------------------------------------------------------------------
 /// What the scalarized objective changes by when the vertex goes to d; w.trial gets the patch sums' changes.
 template <int Dim>
-double PatchMover<Dim>::changeAt(
+double VertexOptimizer<Dim>::changeAt(
   const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d) const
 {
   const std::size_t n = this->Functions.size();
@@ -279,7 +279,7 @@ double PatchMover<Dim>::changeAt(
   bool visible = false;
   for (std::size_t i = 0; i < n; ++i)
   {
-    w.trial[i] = this->Functions[i]->value(w.site, d) - w.sums[i].f;
+    w.trial[i] = this->Functions[i]->value(w.patch, d) - w.sums[i].f;
     linear += w.slopes[i] * w.trial[i];
     visible = visible || !(std::abs(w.trial[i]) <= visibleChange * std::abs(this->Values[i]));
   }
@@ -303,7 +303,7 @@ double PatchMover<Dim>::changeAt(
 //------------------------------------------------------------------------------
 /// An orthonormal basis of the directions a vertex may go in, as columns; returns how many.
 template <int Dim>
-int PatchMover<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
+int VertexOptimizer<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
 {
   const auto given = [&](const std::vector<Vec3>& directions, double* u)
   {
@@ -365,10 +365,10 @@ int PatchMover<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void PatchMover<Dim>::newton(const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, double* s) const
+void VertexOptimizer<Dim>::newton(const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, double* s) const
 {
   double basis[Dim][Dim] = {};
-  const int free = this->allowed(w.site.vertex, basis);
+  const int free = this->allowed(w.patch.vertex, basis);
   if (free == Dim)
   {
     newtonDirection<Dim>(sum, s);
@@ -406,7 +406,7 @@ void PatchMover<Dim>::newton(const PatchWorker<Dim>& w, const PatchSum<Dim>& sum
 //------------------------------------------------------------------------------
 /// The largest step up to t that keeps x + d + t s within the vertex's limit.
 template <int Dim>
-double PatchMover<Dim>::limited(std::int32_t v, const double* d, const double* s, double t) const
+double VertexOptimizer<Dim>::limited(std::int32_t v, const double* d, const double* s, double t) const
 {
   if (this->Options.limits.empty() || !std::isfinite(this->Options.limits[v]))
   {
@@ -432,7 +432,7 @@ double PatchMover<Dim>::limited(std::int32_t v, const double* d, const double* s
 /// Turns `direction` into Polak-Ribiere+'s and returns the step to where the slope would vanish by its change over a
 /// small one; 0 if there is nowhere to go.
 template <int Dim>
-double PatchMover<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d,
+double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d,
   int iteration, double* direction, double* lastGradient) const
 {
   double mixed = 0, last2 = 0, length2 = 0;
@@ -443,7 +443,7 @@ double PatchMover<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum,
   }
   const double beta = iteration > 0 && last2 > 0 ? std::max(0.0, mixed / last2) : 0.0;
   double basis[Dim][Dim] = {};
-  const int free = this->allowed(w.site.vertex, basis);
+  const int free = this->allowed(w.patch.vertex, basis);
   for (int r = 0; r < Dim; ++r)
   {
     double projected = free == Dim ? -sum.g[r] : 0.0;
@@ -463,7 +463,7 @@ double PatchMover<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum,
     return 0.0;
   }
   constexpr double part = 1e-4;
-  const double h = part * sizeOf(w.site.patch) / std::sqrt(length2);
+  const double h = part * sizeOf(w.patch.simplices) / std::sqrt(length2);
   double probe[Dim], slopeHere = 0, slopeThere = 0;
   for (int c = 0; c < Dim; ++c)
   {
@@ -484,10 +484,10 @@ double PatchMover<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum,
 
 //------------------------------------------------------------------------------
 template <int Dim>
-bool PatchMover<Dim>::moveVertex(
+bool VertexOptimizer<Dim>::moveVertex(
   std::int32_t v, const Scalarizer& scalarizer, PatchWorker<Dim>& w, double& gradient2)
 {
-  this->gather(v, w.site);
+  this->gather(v, w.patch);
   double d[Dim] = {}, direction[Dim] = {}, lastGradient[Dim] = {};
   std::vector<double>& change = w.change;
   bool moved = false;
@@ -532,7 +532,7 @@ bool PatchMover<Dim>::moveVertex(
     }
     if (!this->Options.allowInversion)
     {
-      t = std::min(t, safety * stepToInversion<Dim>(w.site.patch, d, direction));
+      t = std::min(t, safety * stepToInversion<Dim>(w.patch.simplices, d, direction));
     }
     t = this->limited(v, d, direction, t);
     bool found = false;
@@ -544,7 +544,7 @@ bool PatchMover<Dim>::moveVertex(
         to[c] = d[c] + t * direction[c];
       }
       if (this->changeAt(scalarizer, w, to) <= sufficientDecrease * t * slope &&
-        (!this->Guarded || staysValid<Dim>(w.site.patch, d, to)))
+        (!this->Guarded || staysValid<Dim>(w.patch.simplices, d, to)))
       {
         found = true;
         break;
@@ -568,7 +568,7 @@ bool PatchMover<Dim>::moveVertex(
   {
     return false;
   }
-  const double size = sizeOf(w.site.patch);
+  const double size = sizeOf(w.patch.simplices);
   double d2 = 0;
   for (int c = 0; c < Dim; ++c)
   {
@@ -595,7 +595,7 @@ bool PatchMover<Dim>::moveVertex(
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void PatchMover<Dim>::place(std::int32_t v, const Vec3& x)
+void VertexOptimizer<Dim>::place(std::int32_t v, const Vec3& x)
 {
   double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
   std::copy(x.begin(), x.end(), at);
@@ -609,7 +609,7 @@ void PatchMover<Dim>::place(std::int32_t v, const Vec3& x)
 //------------------------------------------------------------------------------
 /// Goes along the tangents and back to the surface, and stays there if that is better than before.
 template <int Dim>
-bool PatchMover<Dim>::placeOnSurface(
+bool VertexOptimizer<Dim>::placeOnSurface(
   std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
 {
   const std::size_t n = this->Functions.size();
@@ -619,24 +619,24 @@ bool PatchMover<Dim>::placeOnSurface(
   std::vector<double> old(n);
   for (std::size_t i = 0; i < n; ++i)
   {
-    old[i] = this->Functions[i]->value(w.site, zero);
+    old[i] = this->Functions[i]->value(w.patch, zero);
   }
   Vec3 x = before;
   for (int c = 0; c < Dim; ++c)
   {
-    x += (d[c] / this->Simplices.scale()) * w.site.axes[c];
+    x += (d[c] / this->Simplices.scale()) * w.patch.axes[c];
   }
   this->place(v, this->Options.surface ? this->Options.surface->closest(x) : x);
-  this->gather(v, w.site);
+  this->gather(v, w.patch);
   for (std::size_t i = 0; i < n; ++i)
   {
     w.sums[i].f = old[i];
   }
   const double infinity = std::numeric_limits<double>::infinity();
   double least = infinity;
-  for (int i = 0; i < w.site.patch.count; ++i)
+  for (int i = 0; i < w.patch.simplices.count; ++i)
   {
-    const PatchPacket<Dim>& p = w.site.patch.packets[i];
+    const PatchPacket<Dim>& p = w.patch.simplices.packets[i];
     least = std::min(least, leastOf(p.D0));
   }
   const bool upright = this->Options.allowInversion || least > 0;
@@ -652,6 +652,6 @@ bool PatchMover<Dim>::placeOnSurface(
   return true;
 }
 
-template class PatchMover<2>;
-template class PatchMover<3>;
+template class VertexOptimizer<2>;
+template class VertexOptimizer<3>;
 }

@@ -1,12 +1,13 @@
 /**
- * @file PatchMover.h
+ * @file VertexOptimizer.h
  * @brief Moves one free vertex so that the scalarized objective becomes smaller, given where the others are.
  * Internal: not installed.
  */
 #ifndef tautline_PatchMover_h
 #define tautline_PatchMover_h
 
-#include "LocalSweep.h"
+#include "LocalOptions.h"
+#include "PatchFunction.h"
 
 namespace tautline
 {
@@ -14,18 +15,18 @@ namespace tautline
 template <int Dim>
 struct PatchWorker
 {
-  PatchSite<Dim> site;
+  VertexPatch<Dim> patch;
   std::vector<PatchSum<Dim>> sums; ///< of each objective over the patch
   /// Of each objective: the patch sum's change on trial, the value now, dF/d(patch sum), the change since the sweep began.
   std::vector<double> trial, now, slopes, change;
 };
 
 template <int Dim>
-class PatchMover
+class VertexOptimizer
 {
 public:
   /// See LocalSweeper.
-  PatchMover(SimplexMesh& simplices, const Mesh& mesh, double* points,
+  VertexOptimizer(SimplexMesh& simplices, const Mesh& mesh, double* points,
     const std::vector<LocalTerm>& terms, const LocalOptions& options);
 
   /// The objectives as a sweep begins.
@@ -45,11 +46,9 @@ public:
     std::int32_t v, const Scalarizer& scalarizer, PatchWorker<Dim>& worker, double& gradient2);
 
 private:
-  using Site = PatchSite<Dim>;
-
   std::unique_ptr<PatchFunction<Dim>> makeFunction(const LocalTerm& term) const;
-  void gather(std::int32_t v, Site& site) const;
-  void gatherCells(std::int32_t v, Site& site) const;
+  void gather(std::int32_t v, VertexPatch<Dim>& patch) const;
+  void gatherCells(std::int32_t v, VertexPatch<Dim>& patch) const;
   void findTangents(std::int32_t v, Vec3* tangents) const;
   bool evaluate(PatchWorker<Dim>& w, const double* d, bool hessian) const;
   void findSlopes(const Scalarizer& scalarizer, PatchWorker<Dim>& w) const;
@@ -80,7 +79,7 @@ private:
   std::vector<double> Values; ///< of the objectives when the sweep began
 };
 
-extern template class PatchMover<2>;
-extern template class PatchMover<3>;
+extern template class VertexOptimizer<2>;
+extern template class VertexOptimizer<3>;
 }
 #endif

@@ -10,7 +10,7 @@
 #ifndef tautline_Patch_h
 #define tautline_Patch_h
 
-#include "Packet.h"
+#include "tautline/Core/Packet.h"
 #include "SimplexMesh.h"
 
 #include <limits>

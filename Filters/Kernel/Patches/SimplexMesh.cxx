@@ -1,6 +1,6 @@
 #include "SimplexMesh.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <cmath>
 #include <cstring>

@@ -10,8 +10,8 @@
 #ifndef tautline_SimplexMesh_h
 #define tautline_SimplexMesh_h
 
-#include "Mesh.h"
-#include "Metrics.h"
+#include "tautline/Mesh/Mesh.h"
+#include "tautline/Quality/Metrics.h"
 
 #include <vector>
 

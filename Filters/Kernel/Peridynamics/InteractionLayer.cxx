@@ -1,8 +1,8 @@
-#include "HorizonCollar.h"
+#include "InteractionLayer.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 #include "PeridynamicsCommon.h"
-#include "PlanarDelaunay.h"
+#include "tautline/Geometry/PlanarDelaunay.h"
 
 #include <algorithm>
 #include <map>
@@ -18,7 +18,7 @@ constexpr double MostPoints = 5e6;
 
 struct Edge
 {
-  Vec2 a, b;           ///< the mesh is on the left
+  Vec2 a = {}, b = {};          ///< the mesh is on the left
   Index first, second; ///< point numbers
 };
 
@@ -69,8 +69,8 @@ Place placeOf(Vec2 p, const std::vector<Edge>& edges)
     nearest = std::min(nearest, dot(d, d));
     place.crowds = place.crowds || dot(toA, toB) <= 0.1 * dot(e, e);
     const double side = cross(e, toA);
-    winding += edge.a.y <= p.y && edge.b.y > p.y && side > 0.0;
-    winding -= edge.a.y > p.y && edge.b.y <= p.y && side < 0.0;
+    winding += edge.a[1] <= p[1] && edge.b[1] > p[1] && side > 0.0;
+    winding -= edge.a[1] > p[1] && edge.b[1] <= p[1] && side < 0.0;
   }
   place.distance = std::sqrt(nearest);
   place.inside = winding != 0;
@@ -117,13 +117,13 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
   Vec2 low = { 1e300, 1e300 }, high = { -1e300, -1e300 };
   for (Index t = 0; t < mesh.size(); ++t)
   {
-    low = { std::min(low.x, mesh.low[t].x), std::min(low.y, mesh.low[t].y) };
-    high = { std::max(high.x, mesh.high[t].x), std::max(high.y, mesh.high[t].y) };
+    low = { std::min(low[0], mesh.low[t][0]), std::min(low[1], mesh.low[t][1]) };
+    high = { std::max(high[0], mesh.high[t][0]), std::max(high[1], mesh.high[t][1]) };
   }
   const double reach = options.width + Margin * size, rise = 0.5 * std::sqrt(3.0) * size;
-  const Vec2 from = { low.x - reach, low.y - reach };
-  const double columns = std::ceil((high.x + reach - from.x) / size) + 1.0;
-  const double rows = std::ceil((high.y + reach - from.y) / rise) + 1.0;
+  const Vec2 from = { low[0] - reach, low[1] - reach };
+  const double columns = std::ceil((high[0] + reach - from[0]) / size) + 1.0;
+  const double rows = std::ceil((high[1] + reach - from[1]) / rise) + 1.0;
   if (!(columns * rows <= MostPoints))
   {
     throw Error("a collar of this width with elements of size " + std::to_string(size) +
@@ -139,8 +139,8 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
     for (Index i = 0; i < m; ++i)
     {
       const double shift = j % 2 == 0 ? 0.0 : 0.5;
-      const Vec2 p = { from.x + (static_cast<double>(i) + shift + Shake * noise(i, j, 0)) * size,
-        from.y + (static_cast<double>(j)) * rise + Shake * noise(i, j, 1) * size };
+      const Vec2 p = { from[0] + (static_cast<double>(i) + shift + Shake * noise(i, j, 0)) * size,
+        from[1] + (static_cast<double>(j)) * rise + Shake * noise(i, j, 1) * size };
       const Place place = placeOf(p, edges);
       points[j * m + i] = p;
       kept[j * m + i] = !place.inside && !place.crowds && place.distance > LeastGap * size &&
@@ -187,8 +187,8 @@ HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options)
     if (fresh)
     {
       globalOf.push_back(p);
-      points.push_back(at.x);
-      points.push_back(at.y);
+      points.push_back(at[0]);
+      points.push_back(at[1]);
     }
     return place->second;
   };
@@ -205,10 +205,10 @@ HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options)
   for (const Vec2 p : latticePoints(triangles, edges, size, options))
   {
     globalOf.push_back(result.numberOfPoints());
-    result.points.push_back(p.x);
-    result.points.push_back(p.y);
-    points.push_back(p.x);
-    points.push_back(p.y);
+    result.points.push_back(p[0]);
+    result.points.push_back(p[1]);
+    points.push_back(p[0]);
+    points.push_back(p[1]);
   }
   proceed(options, 0.5);
   const auto boundaryPoints = static_cast<Index>(localOf.size());

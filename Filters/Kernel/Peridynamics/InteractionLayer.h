@@ -5,7 +5,8 @@
 #ifndef tautline_HorizonCollar_h
 #define tautline_HorizonCollar_h
 
-#include "Peridynamics.h"
+#include "PeridynamicOptions.h"
+#include "tautline/SolversExport.h"
 
 namespace tautline
 {
@@ -30,6 +31,6 @@ struct CollarOptions
  * Throws Error for a width that is not above 0, a mesh PeridynamicOptions would refuse, a boundary
  * that crosses or touches itself, and a collar of more than ten million triangles.
  */
-TAUTLINE_KERNEL_EXPORT HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options);
+TAUTLINE_SOLVERS_EXPORT HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options);
 }
 #endif

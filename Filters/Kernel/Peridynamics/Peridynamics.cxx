@@ -1,6 +1,8 @@
+#include "Peridynamics.h"
+
 #include "PeridynamicsCommon.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -145,7 +147,7 @@ double bytesFor(const HorizonMesh& mesh, const FunctionSpace& space, const BoxGr
   const double perEntry = 2.0 * sizeof(double) + sizeof(std::int32_t);
   const double sums = 3.0 * c * c * sizeof(double) * static_cast<double>(space.functions) *
     resolveThreads(options.threads);
-  const double perPair = options.reading == Reading::Exact
+  const double perPair = options.discretization == Discretization::Exact
     ? 4.0 * c * c * space.perTriangle() * space.perTriangle() * sizeof(double)
     : 0.0;
   return perEntry * nonzeros + (300.0 + 6.5 * perPair) * triangles + sums;
@@ -348,7 +350,7 @@ void checkDiagonal(const PeridynamicSystem& system)
       throw Error("row " + std::to_string(row) +
         " of the matrix is empty: the horizon is smaller than the elements, and the dissertation's "
         "rules see no "
-        "neighbour; take the exact reading, a larger horizon or smaller elements");
+        "neighbour; take the exact discretization, a larger horizon or smaller elements");
     }
   }
 }
@@ -374,10 +376,10 @@ FunctionSpace::FunctionSpace(
       const bool fixed =
         options.constrained && (byPoint ? mesh.givenPoints[f] != 0 : mesh.collar[t] != 0);
       this->unknownOf[f] = fixed || this->unknownOf[f] == given ? given : unknown;
-      this->low[f] = { std::min(this->low[f].x, triangles.low[t].x),
-        std::min(this->low[f].y, triangles.low[t].y) };
-      this->high[f] = { std::max(this->high[f].x, triangles.high[t].x),
-        std::max(this->high[f].y, triangles.high[t].y) };
+      this->low[f] = { std::min(this->low[f][0], triangles.low[t][0]),
+        std::min(this->low[f][1], triangles.low[t][1]) };
+      this->high[f] = { std::max(this->high[f][0], triangles.high[t][0]),
+        std::max(this->high[f][1], triangles.high[t][1]) };
     }
   }
   for (Index f = 0; f < this->functions; ++f)
@@ -456,7 +458,7 @@ PeridynamicSystem assemblePeridynamics(
 
   const PeridynamicWork work = { triangles, grid, space, options };
   Watch watch(options, 0.0, 0.5);
-  const bool exact = options.reading == Reading::Exact;
+  const bool exact = options.discretization == Discretization::Exact;
   std::shared_ptr<PairIntegrals> integrals;
   if (exact)
   {

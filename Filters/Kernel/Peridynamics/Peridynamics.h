@@ -25,7 +25,7 @@
  *     const HorizonMesh mesh = horizonSquare(0.1, 1, 0.2);
  *     PeridynamicOptions options;
  *     options.horizon = 0.2;
- *     options.reading = Reading::Dissertation;
+ *     options.discretization = Discretization::Dissertation;
  *     const PeridynamicSystem system = assemblePeridynamics(mesh, options);
  *     const double condition = extremeEigenvalues(system.matrix).condition;
  *
@@ -35,27 +35,11 @@
 #ifndef tautline_Peridynamics_h
 #define tautline_Peridynamics_h
 
-#include "SparseMatrix.h"
-
-#include <functional>
-#include <vector>
+#include "PeridynamicOptions.h"
+#include "tautline/SolversExport.h"
 
 namespace tautline
 {
-/// A triangle mesh in the plane, with its collar.
-struct HorizonMesh
-{
-  std::vector<double> points;        ///< x y each
-  std::vector<Index> triangles;      ///< three points each, all of one orientation
-  std::vector<unsigned char> collar; ///< per triangle, not 0 where the solution is given
-  /// Per point, not 0 where the continuous linear basis is given. Empty: at the points of collar triangles,
-  /// so also on the boundary of the domain.
-  std::vector<unsigned char> givenPoints;
-
-  Index numberOfPoints() const { return static_cast<Index>(this->points.size()) / 2; }
-  Index numberOfTriangles() const { return static_cast<Index>(this->triangles.size()) / 3; }
-};
-
 /**
  * @brief The square (0,1)^2 of right triangles with legs h sqrt(r) and h / sqrt(r), r the aspect ratio, with
  * a collar from -delta to 1 + delta, as the dissertation's tables need it.
@@ -67,103 +51,8 @@ struct HorizonMesh
  * whole number of elements.
  * @param extraLayers layers of elements added on each side, for a collar that is wide enough all the same
  */
-TAUTLINE_KERNEL_EXPORT HorizonMesh horizonSquare(
+TAUTLINE_SOLVERS_EXPORT HorizonMesh horizonSquare(
   double h, double aspectRatio, double delta, Index extraLayers = 0);
-
-/// The kernel k(r), r < delta.
-enum class KernelShape
-{
-  Power = 0,    ///< r^-p
-  Constant = 1, ///< 1
-  Gaussian = 2, ///< exp(-(r / (w delta))^2), w = KernelFunction::width
-  Conical = 3,  ///< 1 - r / delta
-  Table = 4     ///< linear between values at equal distances from 0 to delta
-};
-
-struct KernelFunction
-{
-  KernelShape shape = KernelShape::Power;
-  double exponent = 1.0; ///< p of Power
-  double width = 0.5;    ///< of Gaussian, in horizons; above 0
-  std::vector<double>
-    table; ///< of Table: two or more values, the first at r = 0, the last at delta
-};
-
-/// The functions the solution is made of.
-enum class PeridynamicBasis
-{
-  Constant = 0,           ///< one per triangle
-  Linear = 1,             ///< continuous, one per vertex
-  DiscontinuousLinear = 2 ///< three per triangle
-};
-
-enum class PeridynamicModel
-{
-  Scalar = 0, ///< diffusion, (4.6)
-  Elastic = 1 ///< linearised elasticity, (4.4)-(4.5): two components per function
-};
-
-enum class Reading
-{
-  Dissertation = 0,
-  Exact = 1
-};
-
-/// Numbers of points of the rules of the dissertation's reading.
-enum class RuleSet
-{
-  /// Three outer points; one inner point for the linear bases, three for the constant one: these
-  /// reproduce the tables.
-  Tables = 0,
-  /// One outer and three inner points: what section 4.3.1 says. Often indefinite with the linear basis.
-  Literal = 1,
-  OneOne = 2,     ///< one outer point, one inner
-  ThreeThree = 3, ///< three and three
-  ThreeOne = 4    ///< three outer points, one inner
-};
-
-struct PeridynamicOptions
-{
-  double horizon = 0.2; ///< delta, above 0, in the unit of the mesh
-  KernelFunction kernel;
-  PeridynamicBasis basis = PeridynamicBasis::Linear;
-  PeridynamicModel model = PeridynamicModel::Scalar;
-  Reading reading = Reading::Exact;
-  RuleSet rules = RuleSet::Tables;
-  /// Exact: wanted relative error of the integral over each pair of triangles, 1e-10 to 0.1.
-  double tolerance = 1e-5;
-  /// Whether functions of the collar are given. False: all are unknown, nothing is constrained, and
-  /// constants (Elastic: rigid motions) are in the null space.
-  bool constrained = true;
-  /// Whether a collar that is too thin is accepted: what lies beyond the mesh then does not count.
-  bool allowThinCollar = false;
-  /// Exact: whether pairs of triangles that are congruent up to a translation are integrated once.
-  bool reuseCongruent = true;
-  double memoryLimit = 0.0; ///< bytes the result may take; 0: as many as the machine has free
-  double timeLimit = 0.0;   ///< seconds; 0 is none
-  int threads = 0;          ///< 0 is all cores; the result does not depend on it
-  std::function<bool(double)>
-    progress; ///< told a fraction done; ends with an Error when it returns false
-};
-
-/// A matrix and what its rows are.
-struct PeridynamicSystem
-{
-  SparseMatrix matrix;  ///< symmetric
-  Index components = 1; ///< 1, Elastic: 2; row of function f, component c: components * f + c
-  /// Per function of the basis (triangle, vertex, or 3 x triangle + corner): its number among the
-  /// unknown ones, -1 where it is given, -2 where it is part of nothing.
-  std::vector<Index> unknownOf;
-  std::vector<Index> functionOf; ///< of an unknown one
-  /// Per row, sum of a(phi_j, phi_i) g_j over the given functions j; empty unless asked for.
-  std::vector<double> constraintLoad;
-  /// Of the dissertation's reading: Frobenius norm of the unsymmetric part, which is dropped, over all.
-  double asymmetry = 0.0;
-  /// By how much the collar is narrower than the horizon; 0 if it is wide enough.
-  double collarDeficit = 0.0;
-  double memory = 0.0;       ///< bytes, estimated before starting
-  Index integratedPairs = 0; ///< Exact: pairs of triangles integrated (not reused)
-};
 
 /**
  * @brief Assembles the stiffness matrix.
@@ -174,37 +63,37 @@ struct PeridynamicSystem
  * Throws Error, with the remedy, for: a horizon that is not above 0; an exponent at or above the singular
  * limit (singularLimit()); triangles that are inverted, degenerate, of mixed orientation or have
  * coordinates that are not finite; a missing collar, one narrower than the horizon; no unknown;
- * in the dissertation's reading, a horizon so small that a function meets no triangle; more memory
+ * in the dissertation's discretization, a horizon so small that a function meets no triangle; more memory
  * than allowed; time up; progress() said stop.
  */
-TAUTLINE_KERNEL_EXPORT PeridynamicSystem assemblePeridynamics(const HorizonMesh& mesh,
+TAUTLINE_SOLVERS_EXPORT PeridynamicSystem assemblePeridynamics(const HorizonMesh& mesh,
   const PeridynamicOptions& options, const std::vector<double>* given = nullptr);
 
 /**
  * @brief The exponent p has to be below: for r^-p the form is finite on linear functions up to 4, on those
  * that jump up to 3; the tensor kernel takes two powers off. (4.7) is about integrability alone: p < 2.
  */
-TAUTLINE_KERNEL_EXPORT double singularLimit(PeridynamicBasis basis, PeridynamicModel model);
+TAUTLINE_SOLVERS_EXPORT double singularLimit(PeridynamicBasis basis, PeridynamicModel model);
 
 /// The number of functions of a basis.
-TAUTLINE_KERNEL_EXPORT Index numberOfFunctions(const HorizonMesh& mesh, PeridynamicBasis basis);
+TAUTLINE_SOLVERS_EXPORT Index numberOfFunctions(const HorizonMesh& mesh, PeridynamicBasis basis);
 
 /// Bytes assemblePeridynamics() will take, from a sample of the rows. Checks the mesh on the way.
-TAUTLINE_KERNEL_EXPORT double estimatePeridynamicMemory(
+TAUTLINE_SOLVERS_EXPORT double estimatePeridynamicMemory(
   const HorizonMesh& mesh, const PeridynamicOptions& options);
 
 /**
  * @brief By how much the mesh falls short of reaching `horizon` beyond the domain, 0 if it does; the
  * domain is what is not collar.
  */
-TAUTLINE_KERNEL_EXPORT double collarDeficit(
+TAUTLINE_SOLVERS_EXPORT double collarDeficit(
   const HorizonMesh& mesh, double horizon, int threads = 0);
 
 /**
  * @brief The load of a source b: int phi_i b for each unknown and component.
  * @param source per vertex (`perVertex`) or per triangle, `components` values each; linear or constant in a triangle
  */
-TAUTLINE_KERNEL_EXPORT std::vector<double> sourceLoad(const HorizonMesh& mesh,
+TAUTLINE_SOLVERS_EXPORT std::vector<double> sourceLoad(const HorizonMesh& mesh,
   const PeridynamicSystem& system, PeridynamicBasis basis, const std::vector<double>& source,
   bool perVertex);
 
@@ -219,7 +108,7 @@ struct DiscIntersection
 };
 
 /// @param corners x y of the three corners, of either orientation
-TAUTLINE_KERNEL_EXPORT DiscIntersection intersectDisc(
+TAUTLINE_SOLVERS_EXPORT DiscIntersection intersectDisc(
   const double* corners, double x, double y, double radius);
 }
 #endif

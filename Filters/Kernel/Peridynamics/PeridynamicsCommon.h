@@ -5,7 +5,7 @@
 #ifndef tautline_PeridynamicsCommon_h
 #define tautline_PeridynamicsCommon_h
 
-#include "Peridynamics.h"
+#include "PeridynamicOptions.h"
 
 #include <array>
 #include <chrono>
@@ -13,32 +13,6 @@
 
 namespace tautline
 {
-/// A point or vector of the plane.
-struct Vec2
-{
-  double x = 0.0, y = 0.0;
-};
-inline Vec2 operator+(Vec2 a, Vec2 b)
-{
-  return { a.x + b.x, a.y + b.y };
-}
-inline Vec2 operator-(Vec2 a, Vec2 b)
-{
-  return { a.x - b.x, a.y - b.y };
-}
-inline Vec2 operator*(double s, Vec2 a)
-{
-  return { s * a.x, s * a.y };
-}
-inline double dot(Vec2 a, Vec2 b)
-{
-  return a.x * b.x + a.y * b.y;
-}
-inline double cross(Vec2 a, Vec2 b)
-{
-  return a.x * b.y - a.y * b.x;
-}
-
 /// Squared distance of the segments a-b and c-d, 0 where they cross.
 double squaredSegmentDistance(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
 
@@ -71,7 +45,7 @@ private:
   Index row(double y) const;
 
   const std::vector<Vec2>&Low, &High;
-  Vec2 Origin, Cell, LargestHalf;
+  Vec2 Origin = {}, Cell = {}, LargestHalf = {};
   Index Columns = 1, Rows = 1;
   std::vector<std::int32_t> Starts, Boxes;
 };

@@ -1,4 +1,4 @@
-/// The reading of the dissertation, section 4.3: low-order rules, cut triangles by their chords.
+/// The discretization of the dissertation, section 4.3: low-order rules, cut triangles by their chords.
 #include "PeridynamicsCommon.h"
 #include "PeridynamicsKernel.h"
 
@@ -78,7 +78,7 @@ public:
     for (int o = 0; o < this->Outer; ++o)
     {
       const Barycentric& at = this->Outer == 1 ? centroid[0] : threePoints[o];
-      Vec2 x;
+      Vec2 x = {};
       for (int k = 0; k < 3; ++k)
       {
         x = x + at[k] * mesh.corner(t, k);
@@ -112,8 +112,8 @@ private:
         {
           this->LocalOf[p] = static_cast<std::int32_t>(this->Points.size());
           this->Points.push_back(p);
-          this->Px.push_back(mesh.points[p].x);
-          this->Py.push_back(mesh.points[p].y);
+          this->Px.push_back(mesh.points[p][0]);
+          this->Py.push_back(mesh.points[p][1]);
         }
         this->Corners[i][k] = this->LocalOf[p];
       }
@@ -127,7 +127,7 @@ private:
     const double square = this->Work.options.horizon * this->Work.options.horizon;
     for (std::size_t i = 0; i < this->Points.size(); ++i)
     {
-      const double dx = this->Px[i] - x.x, dy = this->Py[i] - x.y;
+      const double dx = this->Px[i] - x[0], dy = this->Py[i] - x[1];
       this->Far[i] = dx * dx + dy * dy - square; // not above 0 in the disc
     }
     InnerPoints& points = this->Found;
@@ -159,8 +159,8 @@ private:
     points.values.resize(count);
     for (Index i = 0; i < count; ++i)
     {
-      points.x[i] -= x.x;
-      points.y[i] -= x.y;
+      points.x[i] -= x[0];
+      points.y[i] -= x[1];
       points.squares[i] = points.x[i] * points.x[i] + points.y[i] * points.y[i];
     }
     this->Kernel.evaluate(points.squares.data(), points.values.data(), count);

@@ -1,7 +1,7 @@
-/// The exact reading: which pairs of triangles are integrated, and where their integrals go.
+/// The exact discretization: which pairs of triangles are integrated, and where their integrals go.
 #include "PeridynamicsPair.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -148,7 +148,7 @@ void PairIntegrals::findShapes()
   Vec2 low = mesh.points[mesh.triangles[0][0]];
   for (Index t = 0; t < mesh.size(); ++t)
   {
-    low = { std::min(low.x, mesh.low[t].x), std::min(low.y, mesh.low[t].y) };
+    low = { std::min(low[0], mesh.low[t][0]), std::min(low[1], mesh.low[t][1]) };
   }
   this->Lattice.assign(mesh.points.size(), { 0, 0 }); // points of no triangle may be anywhere
   for (const auto& triangle : mesh.triangles)
@@ -156,7 +156,7 @@ void PairIntegrals::findShapes()
     for (const std::int32_t id : triangle)
     {
       const Vec2 p = mesh.points[id] - low;
-      this->Lattice[id] = { std::llround(p.x / this->Unit), std::llround(p.y / this->Unit) };
+      this->Lattice[id] = { std::llround(p[0] / this->Unit), std::llround(p[1] / this->Unit) };
     }
   }
   std::map<std::array<Index, 4>, std::int32_t> shapes; // by two edges
@@ -191,10 +191,10 @@ std::vector<char> PairIntegrals::wantedTriangles() const
 bool PairIntegrals::touch(Index t, Index other) const
 {
   const PlanarTriangles& mesh = this->Work.triangles;
-  if (mesh.low[t].x > mesh.high[other].x + this->Unit ||
-    mesh.low[other].x > mesh.high[t].x + this->Unit ||
-    mesh.low[t].y > mesh.high[other].y + this->Unit ||
-    mesh.low[other].y > mesh.high[t].y + this->Unit)
+  if (mesh.low[t][0] > mesh.high[other][0] + this->Unit ||
+    mesh.low[other][0] > mesh.high[t][0] + this->Unit ||
+    mesh.low[t][1] > mesh.high[other][1] + this->Unit ||
+    mesh.low[other][1] > mesh.high[t][1] + this->Unit)
   {
     return false;
   }
@@ -225,9 +225,9 @@ PairKey PairIntegrals::key(Index t, Index other, bool& exchanged) const
     std::swap(t, other);
     key = { key.second, key.first, -key.x, -key.y, 0 };
   }
-  if (this->Work.space.basis == PeridynamicBasis::Linear && mesh.low[t].x <= mesh.high[other].x &&
-    mesh.low[other].x <= mesh.high[t].x && mesh.low[t].y <= mesh.high[other].y &&
-    mesh.low[other].y <= mesh.high[t].y)
+  if (this->Work.space.basis == PeridynamicBasis::Linear && mesh.low[t][0] <= mesh.high[other][0] &&
+    mesh.low[other][0] <= mesh.high[t][0] && mesh.low[t][1] <= mesh.high[other][1] &&
+    mesh.low[other][1] <= mesh.high[t][1])
   {
     for (int k = 0; k < 3; ++k)
     {

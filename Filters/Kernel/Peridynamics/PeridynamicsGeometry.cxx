@@ -1,6 +1,8 @@
+#include "Peridynamics.h"
+
 #include "PeridynamicsCommon.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <algorithm>
 #include <limits>
@@ -131,8 +133,8 @@ PlanarTriangles::PlanarTriangles(const HorizonMesh& mesh)
       ? t
       : (area > 0.0 ? firstPositive : firstNegative);
     this->areas[t] = std::abs(area);
-    this->low[t] = { std::min({ a.x, b.x, c.x }), std::min({ a.y, b.y, c.y }) };
-    this->high[t] = { std::max({ a.x, b.x, c.x }), std::max({ a.y, b.y, c.y }) };
+    this->low[t] = { std::min({ a[0], b[0], c[0] }), std::min({ a[1], b[1], c[1] }) };
+    this->high[t] = { std::max({ a[0], b[0], c[0] }), std::max({ a[1], b[1], c[1] }) };
   }
   if (positive > 0 && negative > 0)
   {
@@ -162,30 +164,30 @@ BoxGrid::BoxGrid(const std::vector<Vec2>& low, const std::vector<Vec2>& high)
   for (Index i = 0; i < count; ++i)
   {
     const Vec2 c = 0.5 * (low[i] + high[i]);
-    first = { std::min(first.x, c.x), std::min(first.y, c.y) };
-    last = { std::max(last.x, c.x), std::max(last.y, c.y) };
-    this->LargestHalf.x = std::max(this->LargestHalf.x, 0.5 * (high[i].x - low[i].x));
-    this->LargestHalf.y = std::max(this->LargestHalf.y, 0.5 * (high[i].y - low[i].y));
+    first = { std::min(first[0], c[0]), std::min(first[1], c[1]) };
+    last = { std::max(last[0], c[0]), std::max(last[1], c[1]) };
+    this->LargestHalf[0] = std::max(this->LargestHalf[0], 0.5 * (high[i][0] - low[i][0]));
+    this->LargestHalf[1] = std::max(this->LargestHalf[1], 0.5 * (high[i][1] - low[i][1]));
     half = half + 0.5 / static_cast<double>(count) * (high[i] - low[i]);
   }
   // Cells about as large as the mean box, and not many more of them than boxes.
   const auto cells = [&](double extent, double size)
   { return std::clamp<Index>(static_cast<Index>(extent / std::max(size, 1e-300)), 1, 4096); };
-  this->Columns = cells(last.x - first.x, 2.0 * half.x);
-  this->Rows = cells(last.y - first.y, 2.0 * half.y);
+  this->Columns = cells(last[0] - first[0], 2.0 * half[0]);
+  this->Rows = cells(last[1] - first[1], 2.0 * half[1]);
   while (this->Columns * this->Rows > 4 * count + 16)
   {
     (this->Columns > this->Rows ? this->Columns : this->Rows) /= 2;
   }
   this->Origin = first;
-  this->Cell = { std::max((last.x - first.x) / static_cast<double>(this->Columns), 1e-300),
-    std::max((last.y - first.y) / static_cast<double>(this->Rows), 1e-300) };
+  this->Cell = { std::max((last[0] - first[0]) / static_cast<double>(this->Columns), 1e-300),
+    std::max((last[1] - first[1]) / static_cast<double>(this->Rows), 1e-300) };
   std::vector<std::int32_t> cellOf(count);
   this->Starts.assign(this->Columns * this->Rows + 1, 0);
   for (Index i = 0; i < count; ++i)
   {
     const Vec2 c = 0.5 * (low[i] + high[i]);
-    cellOf[i] = static_cast<std::int32_t>(this->row(c.y) * this->Columns + this->column(c.x));
+    cellOf[i] = static_cast<std::int32_t>(this->row(c[1]) * this->Columns + this->column(c[0]));
     ++this->Starts[cellOf[i] + 1];
   }
   for (std::size_t i = 1; i < this->Starts.size(); ++i)
@@ -202,7 +204,7 @@ BoxGrid::BoxGrid(const std::vector<Vec2>& low, const std::vector<Vec2>& high)
 
 Index BoxGrid::column(double x) const
 {
-  const double c = (x - this->Origin.x) / this->Cell.x;
+  const double c = (x - this->Origin[0]) / this->Cell[0];
   return c <= 0.0                             ? 0
     : c >= static_cast<double>(this->Columns) ? this->Columns - 1
                                               : static_cast<Index>(c);
@@ -210,7 +212,7 @@ Index BoxGrid::column(double x) const
 
 Index BoxGrid::row(double y) const
 {
-  const double r = (y - this->Origin.y) / this->Cell.y;
+  const double r = (y - this->Origin[1]) / this->Cell[1];
   return r <= 0.0                          ? 0
     : r >= static_cast<double>(this->Rows) ? this->Rows - 1
                                            : static_cast<Index>(r);
@@ -220,11 +222,11 @@ Index BoxGrid::row(double y) const
 void BoxGrid::near(Vec2 low, Vec2 high, double reach, std::vector<std::int32_t>& found) const
 {
   found.clear();
-  const Vec2 slack = { 1.000001 * (reach + this->LargestHalf.x),
-    1.000001 * (reach + this->LargestHalf.y) };
-  const Index firstRow = this->row(low.y - slack.y), lastRow = this->row(high.y + slack.y);
-  const Index firstColumn = this->column(low.x - slack.x),
-              lastColumn = this->column(high.x + slack.x);
+  const Vec2 slack = { 1.000001 * (reach + this->LargestHalf[0]),
+    1.000001 * (reach + this->LargestHalf[1]) };
+  const Index firstRow = this->row(low[1] - slack[1]), lastRow = this->row(high[1] + slack[1]);
+  const Index firstColumn = this->column(low[0] - slack[0]),
+              lastColumn = this->column(high[0] + slack[0]);
   for (Index r = firstRow; r <= lastRow; ++r)
   {
     const std::int32_t begin = this->Starts[r * this->Columns + firstColumn];
@@ -232,8 +234,8 @@ void BoxGrid::near(Vec2 low, Vec2 high, double reach, std::vector<std::int32_t>&
     for (std::int32_t k = begin; k < end; ++k)
     {
       const std::int32_t i = this->Boxes[k];
-      const double dx = std::max({ 0.0, this->Low[i].x - high.x, low.x - this->High[i].x });
-      const double dy = std::max({ 0.0, this->Low[i].y - high.y, low.y - this->High[i].y });
+      const double dx = std::max({ 0.0, this->Low[i][0] - high[0], low[0] - this->High[i][0] });
+      const double dy = std::max({ 0.0, this->Low[i][1] - high[1], low[1] - this->High[i][1] });
       if (dx * dx + dy * dy <= reach * reach)
       {
         found.push_back(i);
@@ -352,7 +354,7 @@ HorizonMesh horizonSquare(double h, double aspectRatio, double delta, Index extr
 DiscIntersection intersectDisc(const double* corners, double x, double y, double radius)
 {
   DiscIntersection result;
-  Vec2 p[3];
+  Vec2 p[3] = {};
   bool in[3];
   for (int k = 0; k < 3; ++k)
   {
@@ -370,8 +372,8 @@ DiscIntersection intersectDisc(const double* corners, double x, double y, double
     result.chordArea += 0.5 * std::abs(cross(b - a, c - a));
     for (const Vec2 v : { a, b, c })
     {
-      result.chords.push_back(v.x + x);
-      result.chords.push_back(v.y + y);
+      result.chords.push_back(v[0] + x);
+      result.chords.push_back(v[1] + y);
     }
   };
   if (result.corners == 3)

@@ -5,7 +5,7 @@
 #ifndef tautline_PeridynamicsKernel_h
 #define tautline_PeridynamicsKernel_h
 
-#include "Peridynamics.h"
+#include "PeridynamicOptions.h"
 
 #include <array>
 

@@ -101,8 +101,8 @@ void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
   {
     for (int l = 0; l < NodeCount; ++l)
     {
-      x[l] = a.x + gauss8[l] * e.x;
-      y[l] = a.y + gauss8[l] * e.y;
+      x[l] = a[0] + gauss8[l] * e[0];
+      y[l] = a[1] + gauss8[l] * e[1];
       squares[l] = x[l] * x[l] + y[l] * y[l];
       weights[l] = weights8[l] * twice;
     }
@@ -111,7 +111,7 @@ void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
   }
   const Vec2 along = (1.0 / length) * e;
   const double d = std::abs(twice) / length, sign = twice > 0.0 ? 1.0 : -1.0;
-  const Vec2 foot = { sign * d * along.y, -sign * d * along.x };
+  const Vec2 foot = { sign * d * along[1], -sign * d * along[0] };
   const double first = std::asinh(dot(a, along) / d), last = std::asinh(dot(b, along) / d);
   const int pieces = std::max(1, static_cast<int>(std::ceil((last - first) / pieceLength)));
   const double step = (last - first) / pieces;
@@ -121,8 +121,8 @@ void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
     {
       const double grown = std::exp(first + step * (piece + gauss8[l]));
       const double s = 0.5 * d * (grown - 1.0 / grown), r = 0.5 * d * (grown + 1.0 / grown);
-      x[l] = foot.x + s * along.x;
-      y[l] = foot.y + s * along.y;
+      x[l] = foot[0] + s * along[0];
+      y[l] = foot[1] + s * along[1];
       squares[l] = r * r;
       weights[l] = weights8[l] * step * sign * d * r;
     }
@@ -167,7 +167,7 @@ void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
 {
   const double angle = std::atan2(cross(a, b), dot(a, b));
   const Vec2 p = (1.0 / std::sqrt(dot(a, a))) * a, q = (1.0 / std::sqrt(dot(b, b))) * b;
-  const auto change = [&](auto f) { return f(q.x, q.y) - f(p.x, p.y); };
+  const auto change = [&](auto f) { return f(q[0], q[1]) - f(p[0], p[1]); };
   const auto add = [&](int degree, int power, double value)
   { m[momentAt(degree, power)] += this->Kernel.atHorizon(degree) * value; };
   const double xy = change([](double x, double y) { return x * y; });
@@ -178,11 +178,11 @@ void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
     {
       return;
     }
-    add(1, 0, q.y - p.y);
-    add(1, 1, p.x - q.x);
+    add(1, 0, q[1] - p[1]);
+    add(1, 1, p[0] - q[0]);
   }
   add(2, 0, 0.5 * (angle + xy));
-  add(2, 1, 0.5 * (q.y * q.y - p.y * p.y));
+  add(2, 1, 0.5 * (q[1] * q[1] - p[1] * p[1]));
   add(2, 2, 0.5 * (angle - xy));
   if (this->LastDegree < 4)
   {
@@ -289,16 +289,16 @@ void PairIntegrator::sample(Vec2 x, double weight, double coarseWeight)
       const int b = this->Used[j];
       const Vec2 gb = this->Gradients[b];
       const double constant = values[a] * values[b];
-      const Vec2 linear = { -values[a] * gb.x - values[b] * ga.x,
-        -values[a] * gb.y - values[b] * ga.y };
-      const double xx = ga.x * gb.x, xy = ga.x * gb.y + ga.y * gb.x, yy = ga.y * gb.y;
+      const Vec2 linear = { -values[a] * gb[0] - values[b] * ga[0],
+        -values[a] * gb[1] - values[b] * ga[1] };
+      const double xx = ga[0] * gb[0], xy = ga[0] * gb[1] + ga[1] * gb[0], yy = ga[1] * gb[1];
       for (int c = 0; c < this->Components; ++c)
       {
         // The factor z_x^(2-c) z_y^c of the tensor kernel raises the degree by two.
         double value = constant * m[momentAt(d, c)];
         if (this->Functions == 3)
         {
-          value += linear.x * m[momentAt(d + 1, c)] + linear.y * m[momentAt(d + 1, c + 1)] +
+          value += linear[0] * m[momentAt(d + 1, c)] + linear[1] * m[momentAt(d + 1, c + 1)] +
             xx * m[momentAt(d + 2, c)] + xy * m[momentAt(d + 2, c + 1)] +
             yy * m[momentAt(d + 2, c + 2)];
         }
@@ -520,7 +520,7 @@ void PairIntegrator::identicalPair(const TrianglePair& pair, double* block)
       for (int k = 0; k < this->Components; ++k)
       {
         block[(i * n + j) * this->Components + k] = 0.5 * 0.5 * twiceArea *
-          (gi.x * gj.x * m[k] + (gi.x * gj.y + gi.y * gj.x) * m[k + 1] + gi.y * gj.y * m[k + 2]);
+          (gi[0] * gj[0] * m[k] + (gi[0] * gj[1] + gi[1] * gj[0]) * m[k + 1] + gi[1] * gj[1] * m[k + 2]);
       }
     }
   }
@@ -550,7 +550,7 @@ void PairIntegrator::integrate(const TrianglePair& pair, double* block)
     {
       const Vec2 e = c[(k + 2) % 3] - c[(k + 1) % 3];
       const int i = pair.identical ? k : pair.shared[k] >= 0 ? pair.shared[k] : 3 + k;
-      this->Gradients[i] = (1.0 / twice) * Vec2{ -e.y, e.x };
+      this->Gradients[i] = (1.0 / twice) * Vec2{ -e[1], e[0] };
     }
   }
   if (pair.identical)

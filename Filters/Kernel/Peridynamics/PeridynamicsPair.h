@@ -13,7 +13,7 @@ namespace tautline
 /// Two triangles, counter-clockwise, and which corners they have in common.
 struct TrianglePair
 {
-  Vec2 first[3], second[3];
+  Vec2 first[3] = {}, second[3] = {};
   /// For each corner of the second: the corner of the first whose function it shares, or -1.
   int shared[3] = { -1, -1, -1 };
   /// The same for corners at the same place, whether they share a function or not.
@@ -61,7 +61,7 @@ private:
   static constexpr int Moments = 15;
   struct Corner
   {
-    Vec2 at;
+    Vec2 at = {};
     bool touches = false;
   };
   using Triangle = std::array<Corner, 3>;
@@ -88,7 +88,7 @@ private:
   // Of the pair at hand.
   const TrianglePair* Pair = nullptr;
   int Used[6], NumberUsed = 0; ///< functions with entries
-  Vec2 Gradients[6];           ///< of the second triangle's part of each function
+  Vec2 Gradients[6] = {};          ///< of the second triangle's part of each function
   double Scale = 0.0;
   int Parts = 0, CutSamples = 0;
   int

@@ -2,8 +2,8 @@
  * @file Angles.cxx
  * @brief The distribution of the angles of a mesh, counted in batches without a single arc cosine.
  */
-#include "Batch.h"
-#include "Parallel.h"
+#include "tautline/Mesh/CellBatch.h"
+#include "tautline/Core/Parallel.h"
 #include "Statistics.h"
 
 namespace tautline
@@ -67,7 +67,7 @@ struct AngleCounter
 };
 
 /// The normal of a face, or of a 2D cell: of a quadrilateral, of its diagonals.
-void faceNormal(const Batch& batch, const int* n, int size, Packet* normal)
+void faceNormal(const CellVertices& batch, const int* n, int size, Packet* normal)
 {
   Packet u[3], v[3];
   subtract(batch.points[n[size == 3 ? 1 : 2]], batch.points[n[0]], u);
@@ -75,7 +75,7 @@ void faceNormal(const Batch& batch, const int* n, int size, Packet* normal)
   cross(u, v, normal);
 }
 
-void countCorners(const CellTopology& t, const Batch& batch, Mask use, AngleCounter& counter)
+void countCorners(const CellTopology& t, const CellVertices& batch, Mask use, AngleCounter& counter)
 {
   constexpr int all[MaxFaceNodes] = { 0, 1, 2, 3 };
   Packet area[3];
@@ -91,7 +91,7 @@ void countCorners(const CellTopology& t, const Batch& batch, Mask use, AngleCoun
   }
 }
 
-void countDihedrals(const CellTopology& t, const Batch& batch, Mask use, AngleCounter& counter)
+void countDihedrals(const CellTopology& t, const CellVertices& batch, Mask use, AngleCounter& counter)
 {
   Packet normals[MaxFaces][3], lengths2[MaxFaces];
   for (int f = 0; f < t.faces; ++f)
@@ -120,7 +120,7 @@ std::array<Index, angleBins.size() - 1> angleDistribution(
     {
       continue;
     }
-    const BatchContext context = { &mesh, &block, &t, nullptr, false };
+    const CellSource source = { &mesh, &block, &t };
     std::vector<AngleCounts> perChunk(numberOfChunks(block.count));
     withNodes(t,
       [&](auto nodesOfCell)
@@ -130,12 +130,12 @@ std::array<Index, angleBins.size() - 1> angleDistribution(
           [&](Index chunk, Index begin, Index end)
           {
             AngleCounter counter;
-            Batch batch;
+            CellVertices batch;
             BatchNodes nodes;
             for (Index i = begin; i < end; i += PacketWidth)
             {
               const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
-              gather<Nodes>(context, nullptr, i, count, batch, nodes);
+              gather<Nodes>(source, nullptr, i, count, batch, nodes);
               Mask use = {};
               for (int l = 0; l < count; ++l)
               {

@@ -14,7 +14,7 @@
 #define tautline_ElementSum_h
 
 #include "Batch.h"
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <atomic>
 #include <cstdint>

@@ -14,7 +14,7 @@
 #ifndef tautline_Metrics_h
 #define tautline_Metrics_h
 
-#include "Mesh.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include <memory>
 #include <vector>

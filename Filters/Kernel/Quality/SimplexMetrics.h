@@ -15,7 +15,7 @@
 #define tautline_SimplexMetrics_h
 
 #include "Metrics.h"
-#include "Packet.h"
+#include "tautline/Core/Packet.h"
 
 namespace tautline
 {

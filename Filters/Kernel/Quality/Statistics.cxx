@@ -1,6 +1,6 @@
 #include "Statistics.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <cstring>
 #include <numeric>

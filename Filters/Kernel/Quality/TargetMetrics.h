@@ -20,7 +20,7 @@
 #define tautline_TargetMetrics_h
 
 #include "Metrics.h"
-#include "Packet.h"
+#include "tautline/Core/Packet.h"
 
 namespace tautline
 {

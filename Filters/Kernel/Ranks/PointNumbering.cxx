@@ -1,4 +1,6 @@
-#include "FacetTable.h"
+#include "tautline/Mesh/FacetTable.h"
+#include "PointNumbering.h"
+
 #include "RankExchange.h"
 
 #include <unordered_map>

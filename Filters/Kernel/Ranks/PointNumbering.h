@@ -5,22 +5,21 @@
 #ifndef tautline_PointNumbering_h
 #define tautline_PointNumbering_h
 
-#include "Mesh.h"
+#include "tautline/Core/Communicator.h"
+#include "tautline/Mesh/Mesh.h"
+#include "tautline/SolversExport.h"
 
 #include <memory>
 
 namespace tautline
 {
-/// A pointer to an MPI_Comm, so that users of the headers need no MPI; null: this process alone.
-using Communicator = const void*;
-
 /**
  * @class tautline::PointNumbering
  * @brief Each global point is owned by one rank, the lowest that has it; rows of a rank are contiguous.
  *
  * All methods are collective unless they are const accessors.
  */
-class TAUTLINE_KERNEL_EXPORT PointNumbering
+class TAUTLINE_SOLVERS_EXPORT PointNumbering
 {
 public:
   /**
@@ -64,7 +63,7 @@ private:
  * flags (ghosts) do not count. On one rank what Mesh::boundary() says. Collective.
  * @param globalIds as above; null on one rank
  */
-TAUTLINE_KERNEL_EXPORT std::vector<unsigned char> globalBoundaryPoints(
+TAUTLINE_SOLVERS_EXPORT std::vector<unsigned char> globalBoundaryPoints(
   const Mesh& mesh, Communicator communicator, const Index* globalIds, const unsigned char* skip);
 }
 #endif

@@ -5,7 +5,8 @@
 #ifndef tautline_RankExchange_h
 #define tautline_RankExchange_h
 
-#include "PointNumbering.h"
+#include "tautline/Core/Communicator.h"
+#include "tautline/Core/Types.h"
 
 #include <mpi.h>
 

@@ -1,6 +1,6 @@
-#include "ShapeDp.h"
+#include "ShapeDynamicProgram.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 #include "ShapeEnergy.h"
 
 #include <algorithm>

@@ -8,8 +8,8 @@
 #ifndef tautline_ShapeEnergy_h
 #define tautline_ShapeEnergy_h
 
-#include "PacketFloat.h"
-#include "ShapeMatch.h"
+#include "tautline/Core/PacketFloat.h"
+#include "ShapeModel.h"
 
 namespace tautline
 {

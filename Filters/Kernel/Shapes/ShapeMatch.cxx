@@ -1,6 +1,6 @@
 #include "ShapeMatch.h"
 
-#include "ShapeDp.h"
+#include "ShapeDynamicProgram.h"
 #include "ShapeEnergy.h"
 
 #include <algorithm>

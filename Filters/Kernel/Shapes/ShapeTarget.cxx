@@ -1,7 +1,7 @@
 #include "ShapeTarget.h"
 
-#include "PacketFloat.h"
-#include "Parallel.h"
+#include "tautline/Core/PacketFloat.h"
+#include "tautline/Core/Parallel.h"
 #include "ShapeEnergy.h"
 
 #include <algorithm>

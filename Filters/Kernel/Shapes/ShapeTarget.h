@@ -5,7 +5,7 @@
 #ifndef tautline_ShapeTarget_h
 #define tautline_ShapeTarget_h
 
-#include "ShapeMatch.h"
+#include "ShapeModel.h"
 
 namespace tautline
 {

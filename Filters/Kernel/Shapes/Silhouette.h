@@ -11,7 +11,7 @@
 #ifndef tautline_Silhouette_h
 #define tautline_Silhouette_h
 
-#include "Polygon.h"
+#include "tautline/Geometry/Polygon.h"
 
 namespace tautline
 {

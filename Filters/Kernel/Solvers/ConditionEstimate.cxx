@@ -1,4 +1,8 @@
-#include "SpectrumEnds.h"
+#include "ConditionEstimate.h"
+
+#include "ExtremeEigenvalues.h"
+#include "LinearSolver.h"
+#include "LinearSolverState.h"
 
 #include <limits>
 
@@ -22,7 +26,7 @@ void check(const ConditionOptions& options)
   }
 }
 
-double relative(const SpectrumEnd& end)
+double relative(const ExtremeEigenvalue& end)
 {
   return end.value != 0.0 ? end.bound / std::abs(end.value)
                           : std::numeric_limits<double>::infinity();
@@ -58,10 +62,10 @@ std::vector<double> valuesOf(const PetscSystem& system, Vec vector)
 }
 
 /// Puts the two ends together. Rounding moves eigenvalues by about the last digit of the largest, whatever residuals say.
-void fill(SpectrumEnds& ends, const PetscSystem& system, const ConditionOptions& options,
+void fill(ExtremeEigenvalues& ends, const PetscSystem& system, const ConditionOptions& options,
   const SpectrumWatch& watch, ConditionEstimate& result)
 {
-  SpectrumEnd &low = ends.smallest, &high = ends.largest;
+  ExtremeEigenvalue &low = ends.smallest, &high = ends.largest;
   low.bound = std::max(low.bound, std::numeric_limits<double>::epsilon() * std::abs(high.value));
   result.smallest = low.found ? low.value : 0.0;
   result.largest = high.found ? high.value : 0.0;
@@ -117,7 +121,7 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options, Spe
   solverOptions.observer = [&](int iteration, double)
   { return !watch.stop(iteration / (iteration + 100.0)); };
   LinearSolver solver(system, solverOptions);
-  const PetscSystem& objects = solver.implementation().Objects;
+  const PetscSystem& objects = solver.state().Objects;
   // As a right-hand side, random numbers: they see the whole spectrum.
   PetscVector start = objects.createVector();
   fillStartVector(start);
@@ -138,7 +142,7 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options, Spe
 }
 
 /// The spectrum of P^-1 A, whatever PETSc calls P.
-SpectrumEnds preconditionedEnds(const LinearSystem& system, const ConditionOptions& options,
+ExtremeEigenvalues preconditionedExtremeEigenvalues(const LinearSystem& system, const ConditionOptions& options,
   Preconditioner preconditioner, const std::string& petscOptions, SpectrumWatch& watch)
 {
   SolverOptions solverOptions;
@@ -147,9 +151,9 @@ SpectrumEnds preconditionedEnds(const LinearSystem& system, const ConditionOptio
   solverOptions.petscOptions = petscOptions;
   LinearSolver solver(system, solverOptions);
   solver.setUp();
-  LinearSolver::Implementation& own = solver.implementation();
+  LinearSolverState& own = solver.state();
   const PetscScope scope(own.OptionSet.database());
-  SpectrumEnds ends;
+  ExtremeEigenvalues ends;
   if (own.Failure != SolveReason::Exact)
   {
     ends.smallest.message = ends.largest.message = own.FailureText;
@@ -165,14 +169,14 @@ SpectrumEnds preconditionedEnds(const LinearSystem& system, const ConditionOptio
       "The preconditioner could not be built: a pivot is zero.";
     return ends;
   }
-  return lanczosEnds(own.Objects.matrix(), pc, options, watch);
+  return lanczosExtremeEigenvalues(own.Objects.matrix(), pc, options, watch);
 }
 
 /// The spectrum of A, or of D^-1 A.
-SpectrumEnds plainEnds(const LinearSystem& system, const PetscSystem& objects,
+ExtremeEigenvalues plainEnds(const LinearSystem& system, const PetscSystem& objects,
   const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
 {
-  SpectrumEnds ends;
+  ExtremeEigenvalues ends;
   Mat matrix = objects.matrix();
   PetscMatrix scaled;
   PetscVector roots;
@@ -186,10 +190,10 @@ SpectrumEnds plainEnds(const LinearSystem& system, const PetscSystem& objects,
     }
     matrix = scaled;
   }
-  ends = slepcEnds(matrix, system, objects.ranks(), options, optionSet, watch);
+  ends = slepcExtremeEigenvalues(matrix, system, objects.ranks(), options, optionSet, watch);
   if (roots)
   {
-    for (SpectrumEnd* end : { &ends.smallest, &ends.largest })
+    for (ExtremeEigenvalue* end : { &ends.smallest, &ends.largest })
     {
       if (end->vector)
       {
@@ -200,7 +204,7 @@ SpectrumEnds plainEnds(const LinearSystem& system, const PetscSystem& objects,
   // What shift-invert or LOBPCG cannot do, a singular or an indefinite matrix, the Lanczos method can.
   if ((!ends.smallest.found || !ends.largest.found) && !watch.stopped())
   {
-    SpectrumEnds other = preconditionedEnds(system, options, options.preconditioner, "", watch);
+    ExtremeEigenvalues other = preconditionedExtremeEigenvalues(system, options, options.preconditioner, "", watch);
     for (const auto& [end, second] : { std::make_pair(&ends.smallest, &other.smallest),
            std::make_pair(&ends.largest, &other.largest) })
     {
@@ -292,9 +296,9 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
     }
     else
     {
-      SpectrumEnds ends = plain
+      ExtremeEigenvalues ends = plain
         ? plainEnds(system, objects, options, optionSet, watch)
-        : preconditionedEnds(system, options, options.preconditioner, options.petscOptions, watch);
+        : preconditionedExtremeEigenvalues(system, options, options.preconditioner, options.petscOptions, watch);
       fill(ends, objects, options, watch, result);
     }
   }
@@ -307,10 +311,5 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
   watch.rethrow();
   result.seconds = watch.seconds();
   return result;
-}
-
-ConditionEstimate estimateCondition(const EllipticSystem& system, const ConditionOptions& options)
-{
-  return estimateCondition(system.linearSystem(), options);
 }
 }

@@ -1,12 +1,14 @@
 /**
- * @file SpectrumEnds.h
+ * @file ExtremeEigenvalues.h
  * @brief Both ends of the spectrum of A, or of P^-1 A, of a matrix that PETSc holds. Not a public header.
  */
 #ifndef tautline_SpectrumEnds_h
 #define tautline_SpectrumEnds_h
 
-#include "ConditionEstimate.h"
+#include "ConditionOptions.h"
 #include "PetscObjects.h"
+
+#include <chrono>
 
 namespace tautline
 {
@@ -40,7 +42,7 @@ private:
 };
 
 /// One end of a spectrum.
-struct SpectrumEnd
+struct ExtremeEigenvalue
 {
   bool found = false;
   double value = 0.0;
@@ -51,9 +53,9 @@ struct SpectrumEnd
   PetscVector vector;  ///< of P^-1 A
 };
 
-struct SpectrumEnds
+struct ExtremeEigenvalues
 {
-  SpectrumEnd smallest, largest;
+  ExtremeEigenvalue smallest, largest;
 };
 
 /// Numbers from 0.25 to 1.25 that depend on the row alone: the lowest mode is never missed, whatever the ranks.
@@ -71,18 +73,18 @@ void fillStartVector(Vec vector, std::uint64_t seed = 0);
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 10.1 to 10.3; C. C. Paige, J. Inst. Maths Applics
  * 18 (1976), on what rounding does; bounds: B. N. Parlett, The Symmetric Eigenvalue Problem, sections 10.6 and 15.9.
  */
-SpectrumEnds lanczosEnds(
+ExtremeEigenvalues lanczosExtremeEigenvalues(
   Mat matrix, PC preconditioner, const ConditionOptions& options, SpectrumWatch& watch);
 
 /**
  * @brief The ends of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest by Krylov-Schur on the inverse
  * where a factorisation is affordable, else by LOBPCG with BoomerAMG as the preconditioner.
  */
-SpectrumEnds slepcEnds(Mat matrix, const LinearSystem& system, int ranks,
+ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& system, int ranks,
   const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch);
 
 /// The largest alone.
-SpectrumEnd slepcLargest(
+ExtremeEigenvalue slepcLargestEigenvalue(
   Mat matrix, const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch);
 }
 #endif

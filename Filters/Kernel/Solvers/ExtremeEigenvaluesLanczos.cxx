@@ -1,4 +1,4 @@
-#include "SpectrumEnds.h"
+#include "ExtremeEigenvalues.h"
 
 #include "Tridiagonal.h"
 
@@ -124,7 +124,7 @@ void update(
 
 /// The value and its bound from the gathered y = P x.
 void measure(
-  Mat matrix, PC preconditioner, const PetscVector& y, const Candidate& candidate, SpectrumEnd& end)
+  Mat matrix, PC preconditioner, const PetscVector& y, const Candidate& candidate, ExtremeEigenvalue& end)
 {
   PetscVector x, r, z;
   petsc(VecDuplicate(y, x.out()));
@@ -186,12 +186,12 @@ void fillStartVector(Vec vector, std::uint64_t seed)
   petsc(VecRestoreArrayWrite(vector, &values));
 }
 
-SpectrumEnds lanczosEnds(
+ExtremeEigenvalues lanczosExtremeEigenvalues(
   Mat matrix, PC preconditioner, const ConditionOptions& options, SpectrumWatch& watch)
 {
-  SpectrumEnds ends;
+  ExtremeEigenvalues ends;
   ends.smallest.method = ends.largest.method = "Lanczos in the inner product of P";
-  const auto give = [&](const std::string& message) -> SpectrumEnds
+  const auto give = [&](const std::string& message) -> ExtremeEigenvalues
   {
     ends.smallest.message = ends.largest.message = message;
     return std::move(ends);

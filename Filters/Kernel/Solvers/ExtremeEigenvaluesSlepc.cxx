@@ -1,4 +1,4 @@
-#include "SpectrumEnds.h"
+#include "ExtremeEigenvalues.h"
 
 #include <slepceps.h>
 
@@ -65,7 +65,7 @@ void create(Mat matrix, const ConditionOptions& options, SpectrumWatch& watch, P
  * @brief The eigenpair nearest to the end, with the bound from its residual. Of the smallest, the next eigenvalue has converged,
  * too, and the distance to it counts (Kato-Temple); without that rounding would hide a small eigenvalue beside a large one.
  */
-void collect(Mat matrix, EPS solver, bool smallest, SpectrumEnd& end)
+void collect(Mat matrix, EPS solver, bool smallest, ExtremeEigenvalue& end)
 {
   PetscInt found = 0, iterations = 0;
   petsc(EPSGetConverged(solver, &found));
@@ -104,7 +104,7 @@ void collect(Mat matrix, EPS solver, bool smallest, SpectrumEnd& end)
 
 /// Runs it; a failure of SLEPc, or of what it is built on, is a message.
 template <class Call>
-void attempt(SpectrumEnd& end, const Call& call)
+void attempt(ExtremeEigenvalue& end, const Call& call)
 {
   try
   {
@@ -118,11 +118,11 @@ void attempt(SpectrumEnd& end, const Call& call)
 }
 
 //------------------------------------------------------------------------------
-SpectrumEnd slepcLargest(
+ExtremeEigenvalue slepcLargestEigenvalue(
   Mat matrix, const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
 {
   ensureSlepc();
-  SpectrumEnd end;
+  ExtremeEigenvalue end;
   end.method = "Krylov-Schur";
   PetscInt rows = 0;
   petsc(MatGetSize(matrix, &rows, nullptr));
@@ -141,16 +141,16 @@ SpectrumEnd slepcLargest(
   return end;
 }
 
-SpectrumEnds slepcEnds(Mat matrix, const LinearSystem& system, int ranks,
+ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& system, int ranks,
   const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
 {
-  SpectrumEnds ends;
+  ExtremeEigenvalues ends;
   PetscInt rows = 0;
   petsc(MatGetSize(matrix, &rows, nullptr));
   watch.stage(0.0, 0.4);
-  ends.largest = slepcLargest(matrix, options, optionSet, watch);
+  ends.largest = slepcLargestEigenvalue(matrix, options, optionSet, watch);
 
-  SpectrumEnd& low = ends.smallest;
+  ExtremeEigenvalue& low = ends.smallest;
   const bool factorise = isFactorAffordable(matrix, system.blockSize);
   PetscInt negative = 0;
   watch.stage(0.4, 1.0);

@@ -1,6 +1,6 @@
 #include "Lanczos.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 #include "Tridiagonal.h"
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 #define tautline_Lanczos_h
 
 #include "SparseMatrix.h"
+#include "tautline/SolversExport.h"
 
 #include <functional>
 
@@ -51,7 +52,7 @@ struct Spectrum
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., section 10.1-10.3; the bound: B. N. Parlett,
  * The Symmetric Eigenvalue Problem, section 10.6.
  */
-TAUTLINE_KERNEL_EXPORT Spectrum extremeEigenvalues(
+TAUTLINE_SOLVERS_EXPORT Spectrum extremeEigenvalues(
   const SparseMatrix& matrix, const LanczosOptions& options = {});
 
 /// How the conjugate gradient method ended.
@@ -68,7 +69,7 @@ struct SolveReport
  *
  * Throws Error if A is found not to be positive definite.
  */
-TAUTLINE_KERNEL_EXPORT SolveReport solveConjugateGradients(const SparseMatrix& matrix,
+TAUTLINE_SOLVERS_EXPORT SolveReport solveConjugateGradients(const SparseMatrix& matrix,
   const std::vector<double>& b, std::vector<double>& x, double tolerance = 1e-10,
   const LanczosOptions& options = {});
 }

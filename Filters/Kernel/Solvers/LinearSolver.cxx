@@ -1,4 +1,6 @@
-#include "PetscObjects.h"
+#include "LinearSolver.h"
+
+#include "LinearSolverState.h"
 
 #include <algorithm>
 #include <iterator>
@@ -187,7 +189,7 @@ const char* describe(SolveReason reason)
       return "not converged: the time limit was reached";
     case SolveReason::Aborted:
       return "stopped by the user";
-    case SolveReason::Misled:
+    case SolveReason::FalseConvergence:
       return "failed: the residual of the system is not small, only the preconditioned one; try "
              "another preconditioner";
     case SolveReason::OtherFailure:
@@ -197,7 +199,7 @@ const char* describe(SolveReason reason)
 }
 
 //------------------------------------------------------------------------------
-LinearSolver::Implementation::Implementation(
+LinearSolverState::LinearSolverState(
   const LinearSystem& system, const SolverOptions& options)
   : System(system)
   , Options(options)
@@ -209,7 +211,7 @@ LinearSolver::Implementation::Implementation(
   this->configure();
 }
 
-LinearSolver::Implementation::~Implementation()
+LinearSolverState::~LinearSolverState()
 {
   if (this->DestroyTest && petscUsable() && this->Generation == petscGeneration())
   {
@@ -217,7 +219,7 @@ LinearSolver::Implementation::~Implementation()
   }
 }
 
-void LinearSolver::Implementation::requireAlive() const
+void LinearSolverState::requireAlive() const
 {
   if (!petscUsable() || this->Generation != petscGeneration())
   {
@@ -226,7 +228,7 @@ void LinearSolver::Implementation::requireAlive() const
   }
 }
 
-void LinearSolver::Implementation::configure()
+void LinearSolverState::configure()
 {
   const bool direct = this->Options.method == KrylovMethod::Direct;
   PC pc = nullptr;
@@ -291,7 +293,7 @@ void LinearSolver::Implementation::configure()
   petsc(KSPSetConvergenceTest(this->Solver, test, this, nullptr));
 }
 
-void LinearSolver::Implementation::applyTolerances()
+void LinearSolverState::applyTolerances()
 {
   check(this->Options);
   const auto unlessGiven = [&](const char* name, double value, double kept)
@@ -306,10 +308,10 @@ void LinearSolver::Implementation::applyTolerances()
 }
 
 //------------------------------------------------------------------------------
-PetscErrorCode LinearSolver::Implementation::test(
+PetscErrorCode LinearSolverState::test(
   KSP solver, PetscInt iteration, PetscReal norm, KSPConvergedReason* reason, void* context)
 {
-  auto& self = *static_cast<Implementation*>(context);
+  auto& self = *static_cast<LinearSolverState*>(context);
   // GMRES tells the residual at a restart twice.
   self.Residuals.resize(static_cast<std::size_t>(iteration));
   self.Residuals.push_back(norm);
@@ -321,7 +323,7 @@ PetscErrorCode LinearSolver::Implementation::test(
   return code;
 }
 
-bool LinearSolver::Implementation::shouldStop(int iteration, double norm)
+bool LinearSolverState::shouldStop(int iteration, double norm)
 {
   bool aborted = false;
   // No exception may pass through PETSc.
@@ -347,7 +349,7 @@ bool LinearSolver::Implementation::shouldStop(int iteration, double norm)
 }
 
 //------------------------------------------------------------------------------
-double LinearSolver::Implementation::setUp()
+double LinearSolverState::setUp()
 {
   if (this->Ready)
   {
@@ -376,7 +378,7 @@ double LinearSolver::Implementation::setUp()
 }
 
 /// Of a semidefinite matrix a diagonal entry that is 0 means an empty row; Jacobi would not tell.
-void LinearSolver::Implementation::findEmptyRows()
+void LinearSolverState::findEmptyRows()
 {
   if (!this->System.symmetric || !this->System.positiveDefinite)
   {
@@ -396,7 +398,7 @@ void LinearSolver::Implementation::findEmptyRows()
   }
 }
 
-LinearSolution LinearSolver::Implementation::solve(const double* b, double* x)
+LinearSolution LinearSolverState::solve(const double* b, double* x)
 {
   LinearSolution solution;
   this->Start = std::chrono::steady_clock::now();
@@ -481,7 +483,7 @@ LinearSolution LinearSolver::Implementation::solve(const double* b, double* x)
   return solution;
 }
 
-void LinearSolver::Implementation::measure(Vec b, Vec x, LinearSolution& solution)
+void LinearSolverState::measure(Vec b, Vec x, LinearSolution& solution)
 {
   PetscVector residual = this->Objects.createVector();
   PetscReal before = 0.0, after = 0.0;
@@ -495,7 +497,7 @@ void LinearSolver::Implementation::measure(Vec b, Vec x, LinearSolution& solutio
     const bool relative = solution.reason == SolveReason::RelativeTolerance;
     const double misled = std::max(MisledResidual, this->Options.relativeTolerance);
     solution.reason =
-      relative && solution.trueResidual > misled ? SolveReason::Misled : solution.reason;
+      relative && solution.trueResidual > misled ? SolveReason::FalseConvergence : solution.reason;
     return;
   }
   // A factorisation does not notice that a matrix is singular; the residual does.
@@ -508,7 +510,7 @@ void LinearSolver::Implementation::measure(Vec b, Vec x, LinearSolution& solutio
   }
 }
 
-void LinearSolver::Implementation::ritzValues(LinearSolution& solution)
+void LinearSolverState::ritzValues(LinearSolution& solution)
 {
   const bool known = this->Options.method == KrylovMethod::ConjugateGradient ||
     this->Options.method == KrylovMethod::GMRES;
@@ -525,7 +527,7 @@ void LinearSolver::Implementation::ritzValues(LinearSolution& solution)
 LinearSolver::LinearSolver(const LinearSystem& system, const SolverOptions& options)
 {
   const PetscScope scope;
-  this->Impl = std::make_unique<Implementation>(system, options);
+  this->Impl = std::make_unique<LinearSolverState>(system, options);
 }
 
 LinearSolver::~LinearSolver()

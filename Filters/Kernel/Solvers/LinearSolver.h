@@ -8,134 +8,21 @@
 #ifndef tautline_LinearSolver_h
 #define tautline_LinearSolver_h
 
-#include "SparseMatrix.h"
+#include "LinearSystem.h"
+#include "SolverOptions.h"
+#include "tautline/SolversExport.h"
 
-#include <functional>
 #include <memory>
-#include <string>
 
 namespace tautline
 {
-class PointNumbering;
-
-/// The methods of section 2.5; the numbers are stable: ParaView state files hold them.
-enum class KrylovMethod : int
-{
-  ConjugateGradient = 0,
-  GMRES = 1,
-  MINRES = 2,
-  BiCGStab = 3,
-  Direct = 4 ///< a Cholesky or LU factorisation; the preconditioner is not used
-};
-
-/// The preconditioners of section 2.6, and others. The numbers are stable.
-enum class Preconditioner : int
-{
-  Jacobi = 0,
-  SSOR = 1,
-  ILU = 2, ///< no fill-in; on several ranks block Jacobi with ILU(0) in each block
-  BoomerAMG = 3,
-  ICC = 4,  ///< incomplete Cholesky, no fill-in; on several ranks as ILU
-  GAMG = 5, ///< smoothed aggregation
-  None = 6
-};
-
-/// Number of a combination in Table 2.5, 1 to 16; 0 for one that is not there.
-TAUTLINE_KERNEL_EXPORT int combinationNumber(KrylovMethod method, Preconditioner preconditioner);
-TAUTLINE_KERNEL_EXPORT const char* nameOf(KrylovMethod method);
-TAUTLINE_KERNEL_EXPORT const char* nameOf(Preconditioner preconditioner);
-
-/**
- * @brief PETSc options that make BoomerAMG's set-up and iterations several times cheaper than PETSc's defaults in 3D, for a few
- * iterations more: HMIS coarsening, aggressive on the finest level, and ext+i interpolation from at most four points. For
- * SolverOptions::petscOptions. The tables of chapter 2 have PETSc's defaults.
- *
- * Source: H. De Sterck, U. M. Yang, J. J. Heys, SIAM J. Matrix Anal. Appl. 27 (2006); U. M. Yang, Numer. Linear Algebra Appl. 17 (2010).
- */
-TAUTLINE_KERNEL_EXPORT const char* fastMultigridOptions();
-
-struct SolverOptions
-{
-  KrylovMethod method = KrylovMethod::ConjugateGradient;
-  Preconditioner preconditioner = Preconditioner::BoomerAMG;
-  double relativeTolerance = 1e-5; ///< of the preconditioned residual, as PETSc measures it (2.7)
-  double absoluteTolerance = 1e-50;
-  int maximumIterations = 10000;
-  int restart = 30;            ///< m of GMRES(m)
-  double omega = 1.0;          ///< of SSOR, 0 to 2 (exclusive)
-  double maximumSeconds = 0.0; ///< 0: no limit; looked at between iterations, not in a set-up
-  bool initialGuess = false;   ///< start from the x passed in rather than from 0
-  bool ritzValues = false;     ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
-  /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they win over the above.
-  std::string petscOptions;
-  int threads = 0; ///< 0: all cores; used where Tautline itself works
-  /// Told iteration and residual norm; stops when it returns false. Called from the calling thread.
-  /// On several ranks all have one or none has.
-  std::function<bool(int, double)> observer;
-};
-
-/// How a solve ended. The numbers are stable.
-enum class SolveReason : int
-{
-  RelativeTolerance = 0,
-  AbsoluteTolerance = 1,
-  Exact = 2,            ///< a direct solve, or nothing to do
-  OtherConvergence = 3, ///< converged as PETSc options asked
-  IterationLimit = 4,
-  IndefinitePreconditioner = 5, ///< shown as '*' in Tables 2.8 to 2.12
-  IndefiniteMatrix = 6,
-  Breakdown = 7,
-  Diverged = 8, ///< the residual grew beyond bounds
-  NotANumber = 9,
-  PreconditionerFailed = 10, ///< zero pivot, or its set-up failed
-  TimeLimit = 11,
-  Aborted = 12,
-  OtherFailure = 13,
-  /// The preconditioned residual is small, that of the system is as large as the right-hand side: the preconditioner misleads.
-  Misled = 14
-};
-
-TAUTLINE_KERNEL_EXPORT bool converged(SolveReason reason);
-/// A sentence for the user.
-TAUTLINE_KERNEL_EXPORT const char* describe(SolveReason reason);
-
-struct LinearSolution
-{
-  SolveReason reason = SolveReason::OtherFailure;
-  std::string message; ///< what PETSc said of a failure, or ""
-  int iterations = 0;
-  double setupSeconds =
-    0.0; ///< of the preconditioner or factorisation; 0 when it was there already
-  double solveSeconds = 0.0;     ///< without set-up
-  double trueResidual = 0.0;     ///< |b - A x| / |b| in the end; 0 if b is 0
-  std::vector<double> residuals; ///< norms as the method measures them; [0] is the initial one
-  double ritzSmallest = 0.0, ritzLargest = 0.0; ///< of P^-1 A, if asked for and known; else 0
-};
-
-/// A sparse matrix with what PETSc wants to know of it.
-struct LinearSystem
-{
-  /**
-   * @brief On one rank the matrix. On several: the sum of the contributions of this rank's cells, rows and columns by this
-   * rank's own unknowns: blockSize for each point that `numbering` gives a row, in order of point. Those of points shared
-   * with other ranks are added up.
-   */
-  const SparseMatrix* matrix = nullptr;
-  int blockSize = 1; ///< unknowns per point
-  bool symmetric = true;
-  bool positiveDefinite = true;
-  /// Coordinates of the points of the unknowns, 3 per point, in the axes of the unknowns (with blockSize 2 the first two count):
-  /// gives multigrid the rigid body modes; or null.
-  const double* coordinates = nullptr;
-  /// How this rank's points are numbered among all; null: one rank.
-  const PointNumbering* numbering = nullptr;
-};
+struct LinearSolverState;
 
 /**
  * @class tautline::LinearSolver
  * @brief Keeps a matrix and its preconditioner or factorisation for many right-hand sides.
  */
-class TAUTLINE_KERNEL_EXPORT LinearSolver
+class TAUTLINE_SOLVERS_EXPORT LinearSolver
 {
 public:
   /**
@@ -159,11 +46,11 @@ public:
   /// Tolerances, limits, observer and initial guess may change between solves; the rest is read once.
   SolverOptions& options();
 
-  struct Implementation; ///< PETSc's objects; in PetscObjects.h for the kernel itself
-  Implementation& implementation() { return *this->Impl; }
+  /// PETSc's objects; in LinearSolverState.h, for the kernel itself.
+  LinearSolverState& state() { return *this->Impl; }
 
 private:
-  std::unique_ptr<Implementation> Impl;
+  std::unique_ptr<LinearSolverState> Impl;
 };
 }
 #endif

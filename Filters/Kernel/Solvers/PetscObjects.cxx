@@ -1,6 +1,9 @@
 #include "PetscObjects.h"
 
-#include "RankExchange.h"
+#include <algorithm>
+
+#include "tautline/Ranks/PointNumbering.h"
+#include "tautline/Ranks/RankExchange.h"
 
 #include <sstream>
 

@@ -1,16 +1,14 @@
 /**
  * @file PetscObjects.h
- * @brief What a LinearSolver keeps: PETSc's matrix and solver and how this rank's unknowns map to them. Not a public header.
+ * @brief PETSc's matrix of a linear system, how this rank's unknowns map to it, and options. Not a public header.
  *
  * Whoever uses these objects holds a PetscScope of their database.
  */
 #ifndef tautline_PetscObjects_h
 #define tautline_PetscObjects_h
 
-#include "LinearSolver.h"
+#include "LinearSystem.h"
 #include "PetscSession.h"
-
-#include <chrono>
 
 namespace tautline
 {
@@ -97,48 +95,5 @@ private:
  */
 std::string chooseFactorization(PC preconditioner, const LinearSystem& system, int ranks,
   PetscOptionSet& options, const std::string& prefix = "");
-
-struct LinearSolver::Implementation
-{
-  Implementation(const LinearSystem& system, const SolverOptions& options);
-
-  /// Throws Error if PETSc has been shut down since: nothing of it may be touched.
-  void requireAlive() const;
-  double setUp();
-  LinearSolution solve(const double* b, double* x);
-
-  LinearSystem System;
-  SolverOptions Options;
-  int Generation = petscGeneration();
-  PetscOptionSet OptionSet;
-  PetscSystem Objects;
-  PetscSolver Solver;
-  bool Ready = false;                       // set up, or failed to
-  SolveReason Failure = SolveReason::Exact; // of the set-up; Exact: none
-  std::string FailureText;
-
-  // The convergence test that PETSc or its options chose; ours asks it first.
-  PetscErrorCode (*Test)(KSP, PetscInt, PetscReal, KSPConvergedReason*, void*) = nullptr;
-  void* TestContext = nullptr;
-  PetscErrorCode (*DestroyTest)(void*) = nullptr;
-
-  // The solve that is going on.
-  std::chrono::steady_clock::time_point Start;
-  std::vector<double> Residuals;
-  SolveReason Stopped = SolveReason::Exact; // TimeLimit or Aborted
-  std::exception_ptr Thrown;                // by the observer
-
-  ~Implementation();
-
-private:
-  void configure();
-  void applyTolerances();
-  void findEmptyRows();
-  void measure(Vec b, Vec x, LinearSolution& solution);
-  void ritzValues(LinearSolution& solution);
-  bool shouldStop(int iteration, double norm);
-  static PetscErrorCode test(
-    KSP solver, PetscInt iteration, PetscReal norm, KSPConvergedReason* reason, void* self);
-};
 }
 #endif

@@ -6,7 +6,7 @@
 #ifndef tautline_PetscSession_h
 #define tautline_PetscSession_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
 
 #include <petscksp.h>
 

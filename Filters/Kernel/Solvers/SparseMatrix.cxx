@@ -1,6 +1,6 @@
 #include "SparseMatrix.h"
 
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 #include <algorithm>
 

@@ -5,7 +5,8 @@
 #ifndef tautline_SparseMatrix_h
 #define tautline_SparseMatrix_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
+#include "tautline/SolversExport.h"
 
 #include <cstdint>
 #include <vector>
@@ -22,18 +23,18 @@ struct SparseMatrix
 
   Index nonzeros() const { return static_cast<Index>(this->columns.size()); }
   /// The entry, 0 where none is stored. Takes a binary search.
-  TAUTLINE_KERNEL_EXPORT double at(Index row, Index column) const;
+  TAUTLINE_SOLVERS_EXPORT double at(Index row, Index column) const;
   /// y = A x. Bitwise the same for any number of threads (0: all cores).
-  TAUTLINE_KERNEL_EXPORT void multiply(const double* x, double* y, int threads = 0) const;
+  TAUTLINE_SOLVERS_EXPORT void multiply(const double* x, double* y, int threads = 0) const;
 };
 
 /**
  * @brief Replaces A, whose pattern must be symmetric, by (A + A^T) / 2.
  * @return how unsymmetric it was: the Frobenius norm of (A - A^T) / 2 over that of A
  */
-TAUTLINE_KERNEL_EXPORT double symmetrize(SparseMatrix& matrix, int threads = 0);
+TAUTLINE_SOLVERS_EXPORT double symmetrize(SparseMatrix& matrix, int threads = 0);
 
 /// Drops the entries that are exactly zero off the diagonal.
-TAUTLINE_KERNEL_EXPORT void dropZeros(SparseMatrix& matrix);
+TAUTLINE_SOLVERS_EXPORT void dropZeros(SparseMatrix& matrix);
 }
 #endif

@@ -5,7 +5,7 @@
 #ifndef tautline_Tridiagonal_h
 #define tautline_Tridiagonal_h
 
-#include "Types.h"
+#include "tautline/Core/Types.h"
 
 #include <algorithm>
 #include <limits>

@@ -103,7 +103,7 @@ struct Turn
 
 /// A mesh with its holes turned back, and the way from there to where they are.
 template <int Dim>
-class Winding
+class RotationContinuation
 {
 public:
   /**
@@ -112,7 +112,7 @@ public:
    * @param x of the input; not changed
    * @param tolerance of the harmonic maps
    */
-  Winding(const TangledMesh<Dim>& tangled, const double* x, double tolerance);
+  RotationContinuation(const TangledMesh<Dim>& tangled, const double* x, double tolerance);
 
   /// No turn is better than none.
   bool empty() const { return this->Turns.empty(); }
@@ -154,7 +154,7 @@ private:
 };
 
 template <int Dim>
-Winding<Dim>::Winding(const TangledMesh<Dim>& tangled, const double* x, double tolerance)
+RotationContinuation<Dim>::RotationContinuation(const TangledMesh<Dim>& tangled, const double* x, double tolerance)
 {
   constexpr int iterations = 1000;
   constexpr std::size_t mostHoles = 8;

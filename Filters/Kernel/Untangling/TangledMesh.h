@@ -6,9 +6,9 @@
 #ifndef tautline_TangledMesh_h
 #define tautline_TangledMesh_h
 
-#include "Energies.h"
+#include "tautline/Patches/Energies.h"
 #include "LinearProgram.h"
-#include "Parallel.h"
+#include "tautline/Core/Parallel.h"
 
 namespace tautline
 {
@@ -30,11 +30,11 @@ struct PatchState
 /// What is wrong in the mesh.
 struct MeshState
 {
-  Index bad = 0;                       ///< simplices that are not valid, without the hopeless
-  double least = 0;                    ///< D among the simplices that are not hopeless
+  Index bad = 0;                       ///< simplices that are not valid, without the infeasible
+  double least = 0;                    ///< D among the simplices that are not infeasible
   double depth = 0;                    ///< the sum of -D over the inverted ones
   std::vector<std::int32_t> simplices; ///< the bad ones, in increasing order
-  std::vector<std::int32_t> hopeless;  ///< bad ones among the hopeless, in increasing order
+  std::vector<std::int32_t> infeasible;  ///< bad ones among the infeasible, in increasing order
 };
 
 template <int Dim>
@@ -44,12 +44,12 @@ public:
   TangledMesh(SimplexMesh& mesh, int threads)
     : Simplices(mesh)
     , Threads(mesh.simplices() < WorthThreads ? 1 : threads)
-    , Hopeless(mesh.simplices(), 0)
+    , Infeasible(mesh.simplices(), 0)
   {
     for (std::int32_t s = 0; s < mesh.simplices(); ++s)
     {
       const std::int32_t* corner = mesh.corners() + static_cast<std::size_t>(Dim + 1) * s;
-      this->Hopeless[s] = *std::min_element(corner, corner + Dim + 1) >= mesh.freeVertices();
+      this->Infeasible[s] = *std::min_element(corner, corner + Dim + 1) >= mesh.freeVertices();
     }
   }
 
@@ -60,9 +60,9 @@ public:
   double margin() const { return this->Margin; }
   void setMargin(double margin) { this->Margin = margin; }
 
-  /// Simplices that cannot become valid take no part; see giveUp().
-  bool hopeless(std::int32_t simplex) const { return this->Hopeless[simplex] != 0; }
-  void giveUp(const std::vector<std::int32_t>& simplices)
+  /// Simplices that cannot become valid take no part; see exclude().
+  bool infeasible(std::int32_t simplex) const { return this->Infeasible[simplex] != 0; }
+  void exclude(const std::vector<std::int32_t>& simplices)
   {
     if (simplices.empty())
     {
@@ -70,7 +70,7 @@ public:
     }
     for (std::int32_t s : simplices)
     {
-      this->Hopeless[s] = 1;
+      this->Infeasible[s] = 1;
     }
     // In the order of SimplexMesh's patches.
     const std::int32_t free = this->Simplices.freeVertices();
@@ -87,7 +87,7 @@ public:
         const std::int32_t v = this->Simplices.corners()[static_cast<std::size_t>(Dim + 1) * s + k];
         if (v < free)
         {
-          this->HopelessEntry[next[v]++] = this->Hopeless[s];
+          this->HopelessEntry[next[v]++] = this->Infeasible[s];
         }
       }
     }
@@ -144,7 +144,7 @@ public:
   bool relax(double* x, std::int32_t v, int steps, bool tryWidest, Patch<Dim>& patch) const;
 
   /// The farthest place from the planes of the patch within reach, and how far; negative if none is valid.
-  double findWidestPlace(const Patch<Dim>& patch, std::array<double, Dim>& place) const;
+  double chebyshevCenter(const Patch<Dim>& patch, std::array<double, Dim>& place) const;
 
   /// Calls visit(v, patch) for all free vertices with a nonzero flag (all if flags is null), in an order and concurrency that
   /// make the result independent of the number of threads; visit may move v.
@@ -186,7 +186,7 @@ private:
   SimplexMesh& Simplices;
   int Threads;
   double Margin = 1e-12;
-  std::vector<char> Hopeless;      ///< per simplex
+  std::vector<char> Infeasible;      ///< per simplex
   std::vector<char> HopelessEntry; ///< per entry of the patches; empty if none
 };
 
@@ -276,11 +276,11 @@ MeshState TangledMesh<Dim>::examine(const double* x) const
         {
           for (int l = 0; l < lanes; ++l)
           {
-            if (this->Hopeless[i + l])
+            if (this->Infeasible[i + l])
             {
               if (bad[l])
               {
-                part.hopeless.push_back(static_cast<std::int32_t>(i + l));
+                part.infeasible.push_back(static_cast<std::int32_t>(i + l));
               }
               continue;
             }
@@ -301,7 +301,7 @@ MeshState TangledMesh<Dim>::examine(const double* x) const
     state.least = std::min(state.least, part.least);
     state.depth += part.depth;
     state.simplices.insert(state.simplices.end(), part.simplices.begin(), part.simplices.end());
-    state.hopeless.insert(state.hopeless.end(), part.hopeless.begin(), part.hopeless.end());
+    state.infeasible.insert(state.infeasible.end(), part.infeasible.begin(), part.infeasible.end());
   }
   state.bad = static_cast<Index>(state.simplices.size());
   return state;
@@ -374,7 +374,7 @@ bool TangledMesh<Dim>::relax(
   if (state.bad > 0 && tryWidest)
   {
     std::array<double, Dim> place;
-    this->findWidestPlace(patch, place);
+    this->chebyshevCenter(patch, place);
     const PatchState there = this->examine(patch, place.data());
     if (there.bad < state.bad)
     {
@@ -395,7 +395,7 @@ bool TangledMesh<Dim>::relax(
 
 //------------------------------------------------------------------------------
 template <int Dim>
-double TangledMesh<Dim>::findWidestPlace(
+double TangledMesh<Dim>::chebyshevCenter(
   const Patch<Dim>& patch, std::array<double, Dim>& place) const
 {
   std::vector<HalfSpace<Dim>> planes;

@@ -1,3 +1,5 @@
+#include "Untangle.h"
+
 #include "Untangler.h"
 
 namespace tautline
@@ -63,7 +65,7 @@ void storeMoved(const SimplexMesh& simplices, const std::vector<double>& start, 
 /// Says of each cell that is not valid, why.
 void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
   const std::vector<signed char>& validity, const std::vector<std::int32_t>& impossible,
-  Untangling& result)
+  UntangleResult& result)
 {
   const MeshView& view = mesh.view();
   std::vector<char> free(view.numberOfPoints, 0);
@@ -131,7 +133,7 @@ void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
 
 template <int Dim>
 void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
-  const std::vector<signed char>& before, Clock::time_point began, Untangling& result)
+  const std::vector<signed char>& before, Clock::time_point began, UntangleResult& result)
 {
   const std::vector<double> start(simplices.coordinates(),
     simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices());
@@ -163,11 +165,11 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
 }
 
 //------------------------------------------------------------------------------
-Untangling untangle(const Mesh& mesh, const UntangleOptions& options)
+UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options)
 {
   const Clock::time_point start = Clock::now();
   const MeshView& view = mesh.view();
-  Untangling result;
+  UntangleResult result;
   result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
   result.obstacles.assign(view.numberOfCells, static_cast<signed char>(Obstacle::None));
   std::vector<signed char> validity(view.numberOfCells);

@@ -5,8 +5,8 @@
 #ifndef tautline_UntangleProgress_h
 #define tautline_UntangleProgress_h
 
-#include "SimplexMesh.h"
-#include "Untangle.h"
+#include "tautline/Patches/SimplexMesh.h"
+#include "UntangleOptions.h"
 
 #include <chrono>
 
@@ -26,7 +26,7 @@ class Progress
 {
 public:
   Progress(const Mesh& mesh, const SimplexMesh& simplices, const UntangleOptions& options,
-    Clock::time_point start, Untangling& result)
+    Clock::time_point start, UntangleResult& result)
     : Input(mesh)
     , Simplices(simplices)
     , Options(options)
@@ -103,7 +103,7 @@ private:
   const Mesh& Input;
   const SimplexMesh& Simplices;
   const UntangleOptions& Options;
-  Untangling& Result;
+  UntangleResult& Result;
   Clock::time_point Start;
   std::vector<double> Best;
   Index Fewest = 0;

@@ -7,7 +7,7 @@
 #define tautline_Untangler_h
 
 #include "UntangleProgress.h"
-#include "Unwind.h"
+#include "RotationContinuation.h"
 
 namespace tautline
 {
@@ -26,7 +26,7 @@ class Untangler
 {
 public:
   Untangler(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
-    Clock::time_point start, Untangling& result)
+    Clock::time_point start, UntangleResult& result)
     : Simplices(simplices)
     , Options(options)
     , Tangled(simplices, options.threads)
@@ -78,7 +78,7 @@ private:
   void markActive(int rings);
   void local(int sweeps, double progress, int patience);
   void finish() { this->local(10, 0.7, 1); }
-  void giveUpImpossible();
+  void excludeInfeasible();
   void smoothWorst();
   void descend(const Schedule& schedule);
   bool startHarmonic(double tolerance);
@@ -101,18 +101,18 @@ private:
   bool OnTheWay = false; ///< fixed vertices are not at their places
 };
 
-/// Cells with bad simplices, the hopeless included.
+/// Cells with bad simplices, the infeasible included.
 template <int Dim>
 Index Untangler<Dim>::cells() const
 {
   const MeshState& state = this->State;
   if (this->OnlySimplices)
   {
-    return state.bad + static_cast<Index>(state.hopeless.size());
+    return state.bad + static_cast<Index>(state.infeasible.size());
   }
   std::vector<Index> ids;
-  ids.reserve(state.simplices.size() + state.hopeless.size());
-  for (const std::vector<std::int32_t>* list : { &state.simplices, &state.hopeless })
+  ids.reserve(state.simplices.size() + state.infeasible.size());
+  for (const std::vector<std::int32_t>* list : { &state.simplices, &state.infeasible })
   {
     for (std::int32_t s : *list)
     {
@@ -190,7 +190,7 @@ void Untangler<Dim>::local(int sweeps, double progress, int patience)
 //------------------------------------------------------------------------------
 /// Looks at free vertices of bad simplices: whether the simplices they have with fixed vertices alone can all be valid.
 template <int Dim>
-void Untangler<Dim>::giveUpImpossible()
+void Untangler<Dim>::excludeInfeasible()
 {
   this->markActive(0);
   const std::int32_t free = this->Simplices.freeVertices();
@@ -205,7 +205,7 @@ void Untangler<Dim>::giveUpImpossible()
       v = corner[k] < free ? corner[k] : v;
       others += corner[k] >= free;
     }
-    if (others == Dim && this->Active[v] && !this->Tangled.hopeless(s))
+    if (others == Dim && this->Active[v] && !this->Tangled.infeasible(s))
     {
       held.emplace_back(v, s);
     }
@@ -313,7 +313,7 @@ void Untangler<Dim>::giveUpImpossible()
   }
   if (!impossible.empty())
   {
-    this->Tangled.giveUp(impossible);
+    this->Tangled.exclude(impossible);
     this->Impossible.insert(this->Impossible.end(), impossible.begin(), impossible.end());
     this->examine();
   }
@@ -412,7 +412,7 @@ template <int Dim>
 void Untangler<Dim>::unwind(double tolerance)
 {
   constexpr double largestStep = 0.27, smallestStep = 0.01; // radians
-  const Winding<Dim> winding(this->Tangled, this->x(), tolerance);
+  const RotationContinuation<Dim> winding(this->Tangled, this->x(), tolerance);
   if (winding.empty())
   {
     return;
@@ -573,7 +573,7 @@ const double* Untangler<Dim>::run(double margin)
   }
   if (!this->done())
   {
-    this->giveUpImpossible();
+    this->excludeInfeasible();
     this->record();
   }
   if (!this->done() && !onlyLocal)

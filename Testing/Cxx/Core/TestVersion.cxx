@@ -1,6 +1,6 @@
 #include "Check.h"
 
-#include "tautline/Version.h"
+#include "tautline/Core/Version.h"
 
 #include <string>
 

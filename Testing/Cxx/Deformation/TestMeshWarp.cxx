@@ -1,8 +1,9 @@
 // Warp Mesh: what is exact, what is kept between executions, what comes out.
 #include "WarpingMeshes.h"
 
-#include "tautline/PointMotion.h"
-#include "tautline/Warp.h"
+#include "tautline/Deformation/PointMotion.h"
+#include "tautline/Deformation/Warp.h"
+#include "tautline/Deformation/WarpQuality.h"
 
 #include "vtkCellData.h"
 #include "vtkMultiBlockDataSet.h"
@@ -146,7 +147,7 @@ void testOutputs()
     filter->GetMaximumIterations(), hybridOptimization().stopping.maximumIterations);
   WarpOptions options;
   options.prescribed = prescribed.data();
-  const Warping expected = Warper(rest, options).warp(d.data());
+  const WarpResult expected = Warper(rest, options).warp(d.data());
   TAUTLINE_CHECK(after.points == expected.points);
 
   const std::vector<double> shape = shapeSimilarity(rest, after.points.data());

@@ -1,8 +1,8 @@
 // Warp Mesh: the paths of transforms, steps along them, and which part of the boundary they move.
 #include "WarpingMeshes.h"
 
-#include "tautline/BoundaryParts.h"
-#include "tautline/PointMotion.h"
+#include "tautline/Mesh/BoundaryParts.h"
+#include "tautline/Deformation/PointMotion.h"
 
 #include "vtkIdTypeArray.h"
 #include "vtkSelection.h"

@@ -1,10 +1,10 @@
 // FEMWARP and its anisotropic forms: the propositions of section 4.9.1, the coefficients, the limits in which they
 // vanish, and what is kept for the next boundary position.
 
-#include "../Benchmark/KuhnMesh.h"
+#include "../../Benchmark/KuhnMesh.h"
 #include "Warping.h"
 
-#include "tautline/FiniteElements.h"
+#include "tautline/Elliptic/FiniteElements.h"
 
 using namespace tautline;
 
@@ -54,7 +54,7 @@ void testPropositions()
       return Vec3{ 0, p[1] > 0.999 ? -0.85 * std::pow(std::sin(1.5 * p[0]), 2) : 0.0, 0 };
     };
     WarpOptions options = manual(0, 1);
-    const Warping result = warped(data, motion, options);
+    const WarpResult result = warped(data, motion, options);
     double worst = 0;
     for (Index i = 0; i < data.numberOfPoints(); ++i)
     {
@@ -73,7 +73,7 @@ void testPropositions()
 
     // The sums of the displacements find these coefficients, to the last bit.
     options.coefficients = WarpCoefficients::DisplacementSums;
-    const Warping same = warped(data, motion, options);
+    const WarpResult same = warped(data, motion, options);
     TAUTLINE_CHECK((same.tensor == SymmetricTensor{ 0, 1, 0, 0, 0, 0 }));
     TAUTLINE_CHECK(same.points == result.points);
     // FEMWARP inverts elements here, Figure 4.20.
@@ -91,7 +91,7 @@ void testPropositions()
       d[axis] = norm(p - place) == 0 ? 0.01 : 0.0;
       return d;
     };
-    const Warping result = warped(data, motion, axis == 0 ? manual(1, 0) : manual(0, 1));
+    const WarpResult result = warped(data, motion, axis == 0 ? manual(1, 0) : manual(0, 1));
     double others = 0, own = 1;
     for (Index i = 0; i < data.numberOfPoints(); ++i)
     {
@@ -113,7 +113,7 @@ void testPropositions()
   const auto top = [](const Vec3& p) {
     return Vec3{ 0, 0, p[2] > 0.999 ? -2.4 * p[0] * (1 - p[0]) * p[1] : 0.0 };
   };
-  const Warping result = warped(cubes, top, manual(0, 0, 1));
+  const WarpResult result = warped(cubes, top, manual(0, 0, 1));
   TAUTLINE_CHECK_EQUAL(result.decoupled, 0);
   TAUTLINE_CHECK_EQUAL(result.regularization, 0.0);
   for (Index i = 0; i < cubes.numberOfPoints(); ++i)
@@ -146,7 +146,7 @@ void testAffine()
       };
       const auto check = [&](const WarpOptions& options)
       {
-        const Warping result = warped(data, motion, options);
+        const WarpResult result = warped(data, motion, options);
         double worst = 0;
         for (Index i = 0; i < data.numberOfPoints(); ++i)
         {
@@ -215,7 +215,7 @@ void testEquation()
       options.automaticSolver = false;
       options.solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient;
       options.tolerance = 1e-12;
-      const Warping result = warped(data, motion, options);
+      const WarpResult result = warped(data, motion, options);
       DiffusionOperator pde;
       pde.tensor = options.tensor;
       const SparseMatrix matrix = stiffnessMatrix(mesh, pde);
@@ -310,7 +310,7 @@ void testCoefficients()
     MeshData straight = data;
     straight.points = Warper(mesh, options).warp(d.data()).points;
     straight.transform([&](const Vec3& q) { return turn * q; });
-    const Warping result = Warper(turnedMesh, options).warp(moved.data());
+    const WarpResult result = Warper(turnedMesh, options).warp(moved.data());
     TAUTLINE_CHECK_NEAR(distance(result.points, straight.points), 0, 1e-8);
   }
 }
@@ -351,7 +351,7 @@ void testPerCell()
       const double tensor[6] = { value, value, value, 0, 0, 0 };
       std::copy_n(tensor, 6, &tensors[6 * c]);
     }
-    const Warping result = warped(data, motion, each);
+    const WarpResult result = warped(data, motion, each);
     const std::vector<double> q = shapeSimilarity(Mesh(data.view()), result.points.data());
     double sum = 0;
     for (Index c = 0; c < data.numberOfCells(); ++c)
@@ -383,7 +383,7 @@ void testDecoupled()
     const auto motion = [](const Vec3& p) {
       return Vec3{ 0, p[1] > 0.5 ? -0.4 * p[0] * p[0] : 0.0, 0 };
     };
-    const Warping result = warped(data, motion, options);
+    const WarpResult result = warped(data, motion, options);
     // Q1 couples columns with each other, and no column is alone.
     TAUTLINE_CHECK_EQUAL(result.decoupled, type == CellType::Triangle ? 5 * 7 : 0);
     double worst = 0, most = 0;
@@ -432,7 +432,7 @@ void testDecoupled()
           d[axis] = onInnerBox(p, flat) ? 0.1 * std::sin(9 * p[0] + 7 * p[1] + p[2]) : 0.0;
           return d;
         };
-        const Warping result = warped(data, motion, options);
+        const WarpResult result = warped(data, motion, options);
         TAUTLINE_CHECK(distance(result.points, data.points) < 0.5);
         TAUTLINE_CHECK(result.regularization < 1);
       }
@@ -472,8 +472,8 @@ void testReuse()
       { shifted(70), 0 } };
     for (const auto& [motion, solves] : positions)
     {
-      const Warping kept = warper.warp(displacements(data, motion).data());
-      const Warping fresh = Warper(mesh, options).warp(displacements(data, motion).data());
+      const WarpResult kept = warper.warp(displacements(data, motion).data());
+      const WarpResult fresh = Warper(mesh, options).warp(displacements(data, motion).data());
       TAUTLINE_CHECK_NEAR(distance(kept.points, fresh.points), 0, 1e-9);
       if (direct)
       {
@@ -488,10 +488,10 @@ void testReuse()
         return onInnerBox(p, false) ? Vec3{ 0.03 * std::sin((3 + k) * p[1]), 0, 0 }
                                     : Vec3{ 0, 0, 0 };
       };
-      const Warping kept = warper.warp(displacements(data, motion).data());
+      const WarpResult kept = warper.warp(displacements(data, motion).data());
       if (k == 19)
       {
-        const Warping fresh = Warper(mesh, options).warp(displacements(data, motion).data());
+        const WarpResult fresh = Warper(mesh, options).warp(displacements(data, motion).data());
         TAUTLINE_CHECK_NEAR(distance(kept.points, fresh.points), 0, 1e-9);
       }
     }

@@ -1,4 +1,4 @@
-// Warping: what is refused and how, what is reported, and how it is stopped.
+// WarpResult: what is refused and how, what is reported, and how it is stopped.
 
 #include "Warping.h"
 
@@ -32,7 +32,7 @@ void testRefused()
   const Mesh mesh(data.view());
   for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
   {
-    const Warping result = Warper(mesh, withMethod(WarpMethod(method))).warp(d.data());
+    const WarpResult result = Warper(mesh, withMethod(WarpMethod(method))).warp(d.data());
     MeshData expected = data;
     expected.transform([](const Vec3& p) { return p + Vec3{ 0.25, 0, 0 }; });
     TAUTLINE_CHECK_NEAR(distance(result.points, expected.points), 0, 1e-12);
@@ -71,7 +71,7 @@ void testRefused()
     {
       const auto run = [&]
       {
-        const Warping result = warped(
+        const WarpResult result = warped(
           block, [](const Vec3& p) { return 0.1 * p; }, withMethod(WarpMethod(method)));
         TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
       };
@@ -133,7 +133,7 @@ void testParts()
   const auto stretch = [](const Vec3& p) { return Vec3{ p[0], 0, 0 }; };
   for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
   {
-    const Warping result = warped(square, stretch, withMethod(WarpMethod(method)));
+    const WarpResult result = warped(square, stretch, withMethod(WarpMethod(method)));
     TAUTLINE_CHECK_EQUAL(result.points[3], 2.0);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
     TAUTLINE_CHECK(
@@ -172,7 +172,7 @@ void testParts()
     const auto motion = [](const Vec3& p) {
       return p[0] < 8 ? Vec3{ 0.05 * p[1] * p[1], 0.3 * std::sin(p[0]), 0 } : Vec3{ 0, 0, 0 };
     };
-    const Warping result = warped(three, motion, options);
+    const WarpResult result = warped(three, motion, options);
     const std::size_t own = 3 * std::size_t(one.numberOfPoints());
     TAUTLINE_CHECK(std::equal(
       result.points.begin() + Index(own), result.points.end(), three.points.begin() + Index(own)));
@@ -180,7 +180,7 @@ void testParts()
     TAUTLINE_CHECK(
       result.message.find("Without a prescribed point 1 part of the mesh") != std::string::npos);
     // The part that moves does not care for the others.
-    const Warping alone = warped(one, motion, withMethod(WarpMethod(method)));
+    const WarpResult alone = warped(one, motion, withMethod(WarpMethod(method)));
     double worst = 0;
     for (std::size_t i = 0; i < own && method < int(WarpMethod::InverseDistance); ++i)
     {
@@ -206,7 +206,7 @@ void testImpossible()
     for (const WarpMethod method :
       { WarpMethod::Hybrid, WarpMethod::Femwarp, WarpMethod::FemwarpUntangling })
     {
-      const Warping result = warped(data, through, withMethod(method));
+      const WarpResult result = warped(data, through, withMethod(method));
       TAUTLINE_CHECK(result.crossings > 0);
       TAUTLINE_CHECK(
         result.message.find("The moved boundary intersects itself") != std::string::npos);
@@ -218,7 +218,7 @@ void testImpossible()
     // In steps it goes as far as there is a mesh.
     WarpOptions options;
     options.steps = 0;
-    const Warping part = warped(data, through, options);
+    const WarpResult part = warped(data, through, options);
     TAUTLINE_CHECK_EQUAL(part.invertedAfter, 0);
     TAUTLINE_CHECK_EQUAL(invalid(data, part.points), 0);
     TAUTLINE_CHECK(part.amount > 0.4 && part.amount < 0.3 / 0.43);
@@ -228,7 +228,7 @@ void testImpossible()
 
   // An element of prescribed points alone, turned over.
   const MeshData square = blockMesh(CellType::Triangle, 1, 1, 0);
-  const Warping flipped = warped(
+  const WarpResult flipped = warped(
     square,
     [](const Vec3& p) {
       return p[0] + p[1] == 2 ? Vec3{ -1.5, -1.5, 0 } : Vec3{ 0, 0, 0 };
@@ -254,7 +254,7 @@ void testImpossible()
     const double along = 40 * (angle < -0.1 ? angle + 2 * std::acos(-1.0) : angle) / 5.5;
     return bent({ along, std::hypot(p[0], p[1]) - 10, 0 }, 6.6) - p;
   };
-  const Warping overlapping = warped(ring, closing, withMethod(WarpMethod::Femwarp));
+  const WarpResult overlapping = warped(ring, closing, withMethod(WarpMethod::Femwarp));
   TAUTLINE_CHECK_EQUAL(overlapping.invertedAfter, 0);
   TAUTLINE_CHECK(overlapping.crossings > 0);
 }
@@ -277,7 +277,7 @@ void testStopping()
         last = fraction;
         return calls++ < after;
       };
-      const Warping result = warped(data, turnedBox(90, false), options);
+      const WarpResult result = warped(data, turnedBox(90, false), options);
       TAUTLINE_CHECK_EQUAL(result.points.size(), data.points.size());
       TAUTLINE_CHECK(std::all_of(
         result.points.begin(), result.points.end(), [](double x) { return std::isfinite(x); }));
@@ -287,7 +287,7 @@ void testStopping()
     }
     WarpOptions options = withMethod(WarpMethod(method));
     options.maximumSeconds = 1e-9;
-    const Warping result = warped(data, turnedBox(90, false), options);
+    const WarpResult result = warped(data, turnedBox(90, false), options);
     TAUTLINE_CHECK(result.timeLimit);
     TAUTLINE_CHECK_EQUAL(result.points.size(), data.points.size());
     TAUTLINE_CHECK(std::all_of(

@@ -2,14 +2,14 @@
 
 #include "Warping.h"
 
-#include "tautline/FiniteElements.h"
+#include "tautline/Elliptic/FiniteElements.h"
 
 using namespace tautline;
 
 namespace
 {
 /// No inverted element, the boundary where it belongs, and a history that says so.
-void checkValid(const MeshData& data, const Field& motion, const Warping& result)
+void checkValid(const MeshData& data, const Field& motion, const WarpResult& result)
 {
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
   TAUTLINE_CHECK_EQUAL(invalid(data, result.points), 0);
@@ -56,7 +56,7 @@ void testTurnedBox()
       const Field motion = turnedBox(degrees, flat);
       for (const WarpMethod method : { WarpMethod::Hybrid, WarpMethod::FemwarpUntangling })
       {
-        const Warping result = warped(data, motion, withMethod(method));
+        const WarpResult result = warped(data, motion, withMethod(method));
         checkValid(data, motion, result);
         if (degrees > 30)
         {
@@ -128,20 +128,20 @@ void testSecondStep()
     WarpOptions options = withMethod(WarpMethod::Hybrid);
     options.untangleFirst = beta < 0;
     options.untanglingBeta = std::max(0.0, beta);
-    const Warping result = warped(data, motion, options);
+    const WarpResult result = warped(data, motion, options);
     checkValid(data, motion, result);
     TAUTLINE_CHECK(result.history.back().worstShape < untangled);
     TAUTLINE_CHECK_EQUAL(result.history[1].stage, std::string(beta < 0 ? "untangle" : "optimize"));
   }
   // The unit of length does not matter.
-  const Warping unit = warped(data, motion, withMethod(WarpMethod::Hybrid));
+  const WarpResult unit = warped(data, motion, withMethod(WarpMethod::Hybrid));
   for (const double scale : { 0x1p-27, 0x1p27, 1e-8, 1e8 })
   {
     // Powers of two round alike; others lead the optimizer to another place where it hardly changes any more.
     const double close = scale == 0x1p-27 || scale == 0x1p27 ? 1e-12 : 0.02;
     MeshData scaled = data;
     scaled.transform([scale](const Vec3& p) { return scale * p; });
-    Warping result = warped(
+    WarpResult result = warped(
       scaled, [&](const Vec3& p) { return scale * motion((1 / scale) * p); },
       withMethod(WarpMethod::Hybrid));
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
@@ -172,7 +172,7 @@ void testSecondStep()
     mixed, turnedBox(40, true), warped(mixed, turnedBox(40, true), withMethod(WarpMethod::Hybrid)));
 
   // Nothing moves: nothing changes.
-  const Warping still = warped(
+  const WarpResult still = warped(
     data,
     [](const Vec3&) {
       return Vec3{ 0, 0, 0 };
@@ -199,7 +199,7 @@ void testNoBarrier()
   options.objectives[1].metric = Metric::UntangleBeta;
   options.stopping.maximumIterations = 40;
   options.stopping.relativeChange = 0;
-  const Optimization result = optimize(now, options);
+  const OptimizeResult result = optimize(now, options);
   TAUTLINE_CHECK_EQUAL(result.invertedBefore, 0);
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
   TAUTLINE_CHECK(result.history.back().objective < 0.5 * result.history[0].objective);
@@ -215,7 +215,7 @@ void testBiharmonic()
   const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
   const auto motion = [](const Vec3& p) { return Vec3{ 0.1 * p[0] * p[1], 0, 0 }; };
   WarpOptions options = withMethod(WarpMethod::Biharmonic);
-  const Warping result = warped(data, motion, options);
+  const WarpResult result = warped(data, motion, options);
   const SparseMatrix K = stiffnessMatrix(mesh, DiffusionOperator());
   const std::vector<double> one(K.size, 1.0);
   const std::vector<double> mass = loadVector(mesh, one.data(), 1);
@@ -249,22 +249,22 @@ void testElasticity()
   const Field turn = turnedBox(90, true);
   WarpOptions options = withMethod(WarpMethod::IterativeStiffening);
   options.maximumStiffenings = 0;
-  const Warping uniform = warped(data, turn, options);
+  const WarpResult uniform = warped(data, turn, options);
   TAUTLINE_CHECK(uniform.invertedAfter > 0);
   TAUTLINE_CHECK(uniform.message.find("after 0 rounds") != std::string::npos);
   options.maximumStiffenings = 100;
-  const Warping stiffened = warped(data, turn, options);
+  const WarpResult stiffened = warped(data, turn, options);
   checkValid(data, turn, stiffened);
 
   // No power: one material. Its rows applied to the displacements vanish inside.
   options = withMethod(WarpMethod::JacobianStiffening);
   options.stiffeningPower = 0;
-  const Warping same = warped(data, turn, options);
+  const WarpResult same = warped(data, turn, options);
   TAUTLINE_CHECK_NEAR(distance(same.points, uniform.points), 0, 1e-12);
   for (const double nu : { 0.0, 0.4 })
   {
     options.poissonRatio = nu;
-    const Warping result = warped(data, turn, options);
+    const WarpResult result = warped(data, turn, options);
     ElasticOperator pde;
     pde.poissonRatio = nu;
     const Mesh mesh(data.view());
@@ -332,7 +332,7 @@ void testSteps()
   const MeshData data = boxInBox(CellType::Triangle, 20, 8);
   const Field motion = turnedBox(70, true);
   TAUTLINE_CHECK(warped(data, motion, withMethod(WarpMethod::Femwarp)).invertedAfter > 0);
-  const Warping small = warped(data, motion, withMethod(WarpMethod::SmallStepFemwarp));
+  const WarpResult small = warped(data, motion, withMethod(WarpMethod::SmallStepFemwarp));
   TAUTLINE_CHECK_EQUAL(small.invertedAfter, 0);
   TAUTLINE_CHECK_EQUAL(invalid(data, small.points), 0);
   TAUTLINE_CHECK(small.amount > 0.4 && small.amount <= 1);
@@ -340,7 +340,7 @@ void testSteps()
     small.message.find("could follow only a part of the motion") != std::string::npos);
   WarpOptions few = withMethod(WarpMethod::SmallStepFemwarp);
   few.maximumSteps = 2;
-  const Warping stopped = warped(data, motion, few);
+  const WarpResult stopped = warped(data, motion, few);
   TAUTLINE_CHECK(stopped.amount <= small.amount);
   TAUTLINE_CHECK_EQUAL(stopped.invertedAfter, 0);
 
@@ -348,7 +348,7 @@ void testSteps()
   few.steps = 0;
   few.method = WarpMethod::Femwarp;
   few.maximumSteps = 100;
-  const Warping part = warped(data, turnedBox(150, true), few);
+  const WarpResult part = warped(data, turnedBox(150, true), few);
   TAUTLINE_CHECK(part.amount > 0.1 && part.amount < 1);
   const Mesh mesh(data.view());
   const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
@@ -360,7 +360,7 @@ void testSteps()
       std::abs(part.points[3 * i] - q[0]) + std::abs(part.points[3 * i + 1] - q[1]) < 1e-12);
   }
   // A motion that is given as a function of the amount is taken as it is.
-  const Warping given = Warper(mesh, few).warp(
+  const WarpResult given = Warper(mesh, few).warp(
     [&](double amount, double* to)
     {
       const std::vector<double> d = displacements(data, turnedBox(150 * amount, true));
@@ -376,7 +376,7 @@ void testSteps()
     const auto affine = [](const Vec3& p) {
       return Vec3{ 0.3 * p[0] + 0.2 * p[1] + 1, -0.4 * p[0] + 0.1 * p[1], 0 };
     };
-    const Warping result = warped(data, affine, few);
+    const WarpResult result = warped(data, affine, few);
     TAUTLINE_CHECK_EQUAL(result.history.size(), std::size_t(std::max(1, steps)));
     for (Index i = 0; i < data.numberOfPoints(); ++i)
     {
@@ -402,15 +402,15 @@ void testThreads()
     options.maximumStiffenings = 3;
     options.threads = 1;
     const Field motion = turnedBox(50, false);
-    const Warping one = warped(data, motion, options);
+    const WarpResult one = warped(data, motion, options);
     options.threads = 3;
-    const Warping three = warped(data, motion, options);
+    const WarpResult three = warped(data, motion, options);
     TAUTLINE_CHECK(one.points == three.points);
     TAUTLINE_CHECK_EQUAL(one.history.size(), three.history.size());
   }
   WarpOptions options = withMethod(WarpMethod::AnisotropicFemwarp);
   options.automaticSolver = false; // CG with BoomerAMG
-  const Warping one = warped(data, turnedBox(50, false), options);
+  const WarpResult one = warped(data, turnedBox(50, false), options);
   options.threads = 3;
   TAUTLINE_CHECK(one.points == warped(data, turnedBox(50, false), options).points);
 }
@@ -436,8 +436,8 @@ void testMirrored()
     for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
     {
       const Context context("method " + std::to_string(method));
-      const Warping straight = Warper(mesh, withMethod(WarpMethod(method))).warp(d.data());
-      const Warping result =
+      const WarpResult straight = Warper(mesh, withMethod(WarpMethod(method))).warp(d.data());
+      const WarpResult result =
         Warper(imageMesh, withMethod(WarpMethod(method))).warp(mirrored.data());
       TAUTLINE_CHECK_EQUAL(result.history[0].inverted, straight.history[0].inverted);
       TAUTLINE_CHECK_EQUAL(result.invertedAfter == 0, straight.invertedAfter == 0);

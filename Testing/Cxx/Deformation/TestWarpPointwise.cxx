@@ -2,7 +2,7 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/WarpPointwise.h"
+#include "tautline/Deformation/WarpPointwise.h"
 
 #include <ctime>
 

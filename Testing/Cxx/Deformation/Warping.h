@@ -1,13 +1,14 @@
 /**
- * @file Warping.h
+ * @file WarpResult.h
  * @brief Meshes and boundaries that move, for the tests of warping.
  */
 #ifndef tautline_Warping_h
 #define tautline_Warping_h
 
-#include "Optimizing.h"
+#include "../Optimization/Optimizing.h"
 
-#include "tautline/Warp.h"
+#include "tautline/Deformation/Warp.h"
+#include "tautline/Deformation/WarpQuality.h"
 
 namespace tautline
 {
@@ -25,7 +26,7 @@ inline std::vector<double> displacements(const MeshData& data, const Field& moti
   return result;
 }
 
-inline Warping warped(const MeshData& data, const Field& motion, const WarpOptions& options)
+inline WarpResult warped(const MeshData& data, const Field& motion, const WarpOptions& options)
 {
   const Mesh mesh(data.view());
   return Warper(mesh, options).warp(displacements(data, motion).data());

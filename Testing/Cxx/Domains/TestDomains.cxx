@@ -2,8 +2,8 @@
 
 #include "Check.h"
 
-#include "tautline/Domains.h"
-#include "tautline/Mesh.h"
+#include "tautline/Domains/Domains.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

@@ -3,7 +3,8 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/EllipticProblem.h"
+#include "tautline/Elliptic/ErrorNorms.h"
+#include "tautline/Elliptic/EllipticSystem.h"
 
 #include <limits>
 

@@ -3,7 +3,8 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/SolverStudy.h"
+#include "tautline/Elliptic/ErrorNorms.h"
+#include "tautline/Elliptic/SolverStudy.h"
 
 #include <mpi.h>
 

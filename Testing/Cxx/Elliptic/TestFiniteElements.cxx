@@ -3,7 +3,7 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/FiniteElements.h"
+#include "tautline/Elliptic/FiniteElements.h"
 
 #include <limits>
 

@@ -3,7 +3,7 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/SolverStudy.h"
+#include "tautline/Elliptic/SolverStudy.h"
 
 #include <limits>
 

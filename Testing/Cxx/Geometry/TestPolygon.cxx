@@ -2,7 +2,7 @@
 
 #include "Check.h"
 
-#include "tautline/Polygon.h"
+#include "tautline/Geometry/Polygon.h"
 
 #include <limits>
 #include <random>

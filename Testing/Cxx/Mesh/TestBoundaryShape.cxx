@@ -2,7 +2,7 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/BoundaryShape.h"
+#include "tautline/Mesh/BoundaryShape.h"
 
 #include <cmath>
 

@@ -19,7 +19,7 @@
 #include "vtkTriangleMesher.h"
 #include "vtkUnstructuredGrid.h"
 
-#include "tautline/Types.h"
+#include "tautline/Core/Types.h"
 
 #include <algorithm>
 #include <cmath>

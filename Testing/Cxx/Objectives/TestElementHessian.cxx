@@ -3,8 +3,8 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/ElementHessian.h"
-#include "tautline/Minimize.h"
+#include "tautline/Objectives/ElementHessian.h"
+#include "tautline/Optimization/Minimize.h"
 
 #include <numeric>
 
@@ -378,7 +378,7 @@ void testNewton()
     options.gradientNorm = 1e-6;
     options.maximumIterations = 300;
     options.threads = 1;
-    const Minimization m = minimize(f, x.data(), options);
+    const MinimizeResult m = minimize(f, x.data(), options);
     std::cout << "smoothing, method " << static_cast<int>(method) << ": " << m.iterations
               << " iterations, " << m.evaluations << " evaluations, " << std::setprecision(10)
               << m.value << "\n";

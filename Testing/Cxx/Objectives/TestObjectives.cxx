@@ -3,7 +3,7 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/Objective.h"
+#include "tautline/Objectives/ObjectiveSum.h"
 
 #include <limits>
 #include <numeric>

@@ -2,7 +2,7 @@
 // extreme values, errors.
 #include "Check.h"
 
-#include "tautline/Scalarization.h"
+#include "tautline/Objectives/Scalarization.h"
 
 #include <limits>
 

@@ -8,7 +8,7 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/Optimize.h"
+#include "tautline/Optimization/Optimize.h"
 
 namespace tautline
 {
@@ -68,13 +68,13 @@ inline double worstMovable(const MeshData& like, const std::vector<double>& poin
   return worst;
 }
 
-inline Optimization run(const MeshData& data, const OptimizeOptions& options)
+inline OptimizeResult run(const MeshData& data, const OptimizeOptions& options)
 {
   return optimize(Mesh(data.view()), options);
 }
 
 /// A history whose objective never rises and is what the metric says of the points.
-inline void checkHistory(const MeshData& data, const Optimization& result)
+inline void checkHistory(const MeshData& data, const OptimizeResult& result)
 {
   for (std::size_t i = 1; i < result.history.size(); ++i)
   {

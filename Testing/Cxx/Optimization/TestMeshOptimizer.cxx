@@ -2,8 +2,8 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
-#include "tautline/Optimize.h"
-#include "tautline/Perturb.h"
+#include "tautline/Optimization/Optimize.h"
+#include "tautline/Domains/Perturb.h"
 #include "vtkMeshOptimizer.h"
 
 #include "vtkDoubleArray.h"
@@ -105,7 +105,7 @@ void testAgainstKernel()
     OptimizeOptions options;
     applyPreset(Preset(preset), options);
     options.fixed = boundary.data();
-    const Optimization expected = optimize(mesh, options);
+    const OptimizeResult expected = optimize(mesh, options);
     vtkNew<vtkMeshOptimizer> filter;
     filter->SetInputData(toGrid(data));
     filter->SetPreset(preset);
@@ -144,7 +144,7 @@ void testCustom()
   options.stopping.maximumIterations = 7;
   options.stopping.relativeChange = 0;
   options.fixed = boundary.data();
-  const Optimization expected = optimize(Mesh(data.view()), options);
+  const OptimizeResult expected = optimize(Mesh(data.view()), options);
 
   vtkNew<vtkMeshOptimizer> filter;
   auto grid = toGrid(data);
@@ -266,7 +266,7 @@ void testOptions()
     filter->SetMaximumIterations(12);
     change(filter, options);
     filter->Update();
-    const Optimization expected = optimize(Mesh(data.view()), options);
+    const OptimizeResult expected = optimize(Mesh(data.view()), options);
     TAUTLINE_CHECK(pointsOf(filter) == expected.points);
     TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(expected.reason));
   }

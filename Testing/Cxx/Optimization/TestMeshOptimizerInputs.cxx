@@ -3,8 +3,8 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
-#include "tautline/Optimize.h"
-#include "tautline/Perturb.h"
+#include "tautline/Optimization/Optimize.h"
+#include "tautline/Domains/Perturb.h"
 #include "vtkMeshOptimizer.h"
 
 #include "vtkCallbackCommand.h"
@@ -315,7 +315,7 @@ void testAnimation()
     state.points(seen.back().data());
     return true;
   };
-  const Optimization expected = optimize(Mesh(data.view()), options);
+  const OptimizeResult expected = optimize(Mesh(data.view()), options);
   TAUTLINE_CHECK(seen.size() > 5);
 
   vtkNew<vtkMeshOptimizer> filter;

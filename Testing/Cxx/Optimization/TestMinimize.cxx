@@ -1,7 +1,7 @@
 // The global minimisers on functions whose minima are known.
 #include "Check.h"
 
-#include "tautline/Minimize.h"
+#include "tautline/Optimization/Minimize.h"
 
 #include <limits>
 #include <numeric>
@@ -204,7 +204,7 @@ MinimizeOptions optionsFor(Optimizer method, int iterations, double gradientNorm
   return options;
 }
 
-void report(const char* what, Optimizer method, const Minimization& m)
+void report(const char* what, Optimizer method, const MinimizeResult& m)
 {
   std::cout << std::setprecision(4) << what << ", " << nameOf(method) << ": " << m.iterations
             << " iterations, " << m.evaluations << " evaluations, value " << m.value << "\n";
@@ -238,7 +238,7 @@ void testRosenbrock()
         last = value;
         return true;
       };
-      const Minimization m = minimize(f, x.data(), options);
+      const MinimizeResult m = minimize(f, x.data(), options);
       report(("Rosenbrock " + std::to_string(n)).c_str(), method, m);
       TAUTLINE_CHECK(m.reason == StopReason::GradientNorm);
       TAUTLINE_CHECK(distance(x, Vector(n, 1.0)) < 1e-5);
@@ -271,7 +271,7 @@ void testQuadratic()
       Quadratic f(300, 1e6);
       f.knowsHessian = f.preconditioned = preconditioned;
       Vector x(f.size(), 0.0);
-      const Minimization m = minimize(f, x.data(), optionsFor(method, 20000, 1e-10));
+      const MinimizeResult m = minimize(f, x.data(), optionsFor(method, 20000, 1e-10));
       report(preconditioned ? "quadratic, preconditioned" : "quadratic", method, m);
       TAUTLINE_CHECK(m.reason == StopReason::GradientNorm);
       TAUTLINE_CHECK(distance(x, f.a) < 1e-3);
@@ -309,7 +309,7 @@ void testBarrier()
         return TAUTLINE_CHECK(
           std::all_of(at, at + f.size(), [](double v) { return std::abs(v) < 1; }));
       };
-      const Minimization m = minimize(f, x.data(), options);
+      const MinimizeResult m = minimize(f, x.data(), options);
       report(steps ? "barrier, known steps" : "barrier", method, m);
       TAUTLINE_CHECK(m.reason == StopReason::GradientNorm);
       TAUTLINE_CHECK(distance(x, expected) < 1e-4);
@@ -332,7 +332,7 @@ void testRough()
         x[i] = spread * std::sin(static_cast<double>(3 * i + 1));
       }
       const double before = f.valueAndGradient(x.data(), g.data());
-      const Minimization m = minimize(f, x.data(), optionsFor(method, 100, 1e-6));
+      const MinimizeResult m = minimize(f, x.data(), optionsFor(method, 100, 1e-6));
       TAUTLINE_CHECK(m.value < before);
       TAUTLINE_CHECK_EQUAL(f.valueAndGradient(x.data(), g.data()), m.value);
       // From 9.9 some variables run into the wall at 10.
@@ -342,7 +342,7 @@ void testRough()
     // A start that is not allowed stays.
     Rough f;
     Vector x(f.size(), 11.0);
-    const Minimization m = minimize(f, x.data(), optionsFor(method, 10, 0));
+    const MinimizeResult m = minimize(f, x.data(), optionsFor(method, 10, 0));
     TAUTLINE_CHECK(m.reason == StopReason::NoProgress && m.value == infinity);
     TAUTLINE_CHECK(x == Vector(f.size(), 11.0));
   }
@@ -361,7 +361,7 @@ void testStopping()
       seen.assign(at, at + f.size());
       return iteration < 3;
     };
-    Minimization m = minimize(f, x.data(), options);
+    MinimizeResult m = minimize(f, x.data(), options);
     TAUTLINE_CHECK(m.reason == StopReason::Aborted && m.iterations == 3);
     TAUTLINE_CHECK(x == seen);
 

@@ -1,7 +1,7 @@
 // The optimizer: minima, invariances, objectives, stopping, faulty input.
 #include "Optimizing.h"
 
-#include "tautline/Targets.h"
+#include "tautline/Quality/Targets.h"
 
 #include <cstring>
 
@@ -33,7 +33,7 @@ void testMinima()
       options.stopping.maximumIterations = 400;
       options.stopping.relativeChange = 1e-13;
       options.stopping.gradientNorm = 1e-9;
-      const Optimization result = run(data, options);
+      const OptimizeResult result = run(data, options);
       checkHistory(data, result);
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
       const double F = result.history.back().objective;
@@ -76,7 +76,7 @@ void testSingleVertex()
   options.stopping.relativeChange = 0;
   options.stopping.gradientNorm = 1e-12;
   options.relaxation = 1.0;
-  const Optimization result = run(data, options);
+  const OptimizeResult result = run(data, options);
   TAUTLINE_CHECK_NEAR(result.points[0], 0.0, 1e-9);
   TAUTLINE_CHECK_NEAR(result.points[1], 0.0, 1e-9);
   TAUTLINE_CHECK_NEAR(result.history.back().worst[0], 1.0, 1e-12);
@@ -102,13 +102,13 @@ void testInvariance()
       const Context which("scale " + std::to_string(scale));
       MeshData moved = shuffled(data, 5);
       moved.transform([&](const Vec3& p) { return scale * (turn * p); });
-      const Optimization result = run(moved, options);
+      const OptimizeResult result = run(moved, options);
       TAUTLINE_CHECK_RELATIVE(result.history.back().objective, F, 1e-7);
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
     }
     MeshData far = data;
     far.transform([](const Vec3& p) { return p + Vec3{ 1e6, -1e6, 0 }; });
-    const Optimization result = run(far, options);
+    const OptimizeResult result = run(far, options);
     TAUTLINE_CHECK_RELATIVE(result.history.back().objective, F, 1e-6);
 
     // A mesh listed the other way round is its mirror image.
@@ -125,7 +125,7 @@ void testInvariance()
     {
       Mesh mesh(reversed.view());
       mesh.setMirrored(true);
-      const Optimization mirrored = optimize(mesh, options);
+      const OptimizeResult mirrored = optimize(mesh, options);
       TAUTLINE_CHECK_RELATIVE(mirrored.history.back().objective, F, 1e-7);
       TAUTLINE_CHECK_EQUAL(mirrored.invertedAfter, Index(0));
     }
@@ -152,7 +152,7 @@ void testThreads()
     for (int threads : { 1, 2, 4 })
     {
       options.threads = threads;
-      const Optimization result = run(data, options);
+      const OptimizeResult result = run(data, options);
       first = threads == 1 ? result.points : first;
       TAUTLINE_CHECK_EQUAL(
         std::memcmp(first.data(), result.points.data(), first.size() * sizeof(double)), 0);
@@ -177,7 +177,7 @@ void testScalarizations()
       second.metric = Metric::Size;
       options.objectives.push_back(second);
       options.scalarization.method = static_cast<Scalarization>(method);
-      const Optimization result = run(data, options);
+      const OptimizeResult result = run(data, options);
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
       const IterationRecord &first = result.history.front(), &last = result.history.back();
       if (options.scalarization.method != Scalarization::Lexicographic)
@@ -215,7 +215,7 @@ void testMetrics()
         options.optimizer = optimizer;
         options.objectives[0].metric = info.metric;
         options.stopping.maximumIterations = 5;
-        const Optimization result = run(data, options);
+        const OptimizeResult result = run(data, options);
         TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
         TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
       }
@@ -226,7 +226,7 @@ void testMetrics()
       const Context context("template " + std::to_string(static_cast<int>(form)));
       OptimizeOptions options;
       options.objectives[0].form = form;
-      const Optimization result = run(data, options);
+      const OptimizeResult result = run(data, options);
       TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
       if (form == ObjectiveTemplate::Maximum)
       {
@@ -251,7 +251,7 @@ void testTargetsAndWeights()
     options.objectives[0].evaluation.targets = &targets;
     options.stopping.maximumIterations = 200;
     options.stopping.relativeChange = 1e-14;
-    const Optimization result = optimize(mesh, options);
+    const OptimizeResult result = optimize(mesh, options);
     double most = 0;
     for (std::size_t i = 0; i < moved.points.size(); ++i)
     {
@@ -264,9 +264,9 @@ void testTargetsAndWeights()
   std::vector<double> weights(data.numberOfCells(), 1.0);
   weights[24] = 100;
   OptimizeOptions options;
-  const Optimization plain = run(data, options);
+  const OptimizeResult plain = run(data, options);
   options.objectives[0].elementWeights = weights.data();
-  const Optimization weighted = run(data, options);
+  const OptimizeResult weighted = run(data, options);
   MeshData a = data, b = data;
   a.points = plain.points;
   b.points = weighted.points;
@@ -282,7 +282,7 @@ void testStopping()
   options.stopping.relativeChange = 0;
   options.stopping.gradientNorm = 0;
   options.stopping.maximumIterations = 7;
-  Optimization result = run(data, options);
+  OptimizeResult result = run(data, options);
   TAUTLINE_CHECK(result.reason == StopReason::IterationLimit);
   TAUTLINE_CHECK_EQUAL(result.iterations, 7);
   const double least = [&]()
@@ -353,9 +353,9 @@ void testWorst()
       });
     OptimizeOptions options;
     applyPreset(Preset::BestShape, options);
-    const Optimization best = run(data, options);
+    const OptimizeResult best = run(data, options);
     applyPreset(Preset::WorstElement, options);
-    const Optimization result = run(data, options);
+    const OptimizeResult result = run(data, options);
     TAUTLINE_CHECK(worstMovable(data, result.points) < 0.99 * worstMovable(data, best.points));
     TAUTLINE_CHECK(result.history.back().mean[0] <= 1.01 * best.history.back().mean[0]);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
@@ -372,7 +372,7 @@ void testUntanglingObjectives()
   OptimizeOptions options;
   options.objectives[0].metric = Metric::UntangleBeta;
   options.objectives[0].evaluation.parameters.beta = 0.1;
-  Optimization result = run(data, options);
+  OptimizeResult result = run(data, options);
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
   TAUTLINE_CHECK(!result.untangled);
 
@@ -387,7 +387,7 @@ void testUntanglingObjectives()
   OptimizeOptions alone;
   alone.objectives[0] = options.objectives[1];
   alone.stopping.relativeChange = 1e-10;
-  const Optimization shape = run(blockMesh(CellType::Triangle, 6, 6, 0), alone);
+  const OptimizeResult shape = run(blockMesh(CellType::Triangle, 6, 6, 0), alone);
   TAUTLINE_CHECK_RELATIVE(result.history.back().worst[1], shape.history.back().worst[0], 1e-2);
 
   // Without such an objective the mesh is untangled first, or refused.
@@ -411,7 +411,7 @@ void testFaulty()
 
   MeshData nan = perturbedBlock(CellType::Triangle, 6, 0.2);
   nan.points[3 * 24] = std::nan("");
-  const Optimization result = run(nan, options);
+  const OptimizeResult result = run(nan, options);
   TAUTLINE_CHECK(std::isfinite(result.history.back().objective));
   TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
   TAUTLINE_CHECK(std::isnan(result.points[3 * 24]));

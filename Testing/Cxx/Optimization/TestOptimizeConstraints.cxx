@@ -1,8 +1,8 @@
 // What the optimizer must keep: fixed points, limits, planes, lines, surfaces.
 #include "Optimizing.h"
 
-#include "tautline/SimplexMesh.h"
-#include "tautline/SurfaceProjection.h"
+#include "tautline/Patches/SimplexMesh.h"
+#include "tautline/Optimization/SurfaceProjection.h"
 
 #include <cstring>
 
@@ -23,7 +23,7 @@ void testConstraints()
   }
   OptimizeOptions options;
   options.fixed = fixed.data();
-  Optimization result = run(data, options);
+  OptimizeResult result = run(data, options);
   for (Index i = 0; i < n; ++i)
   {
     if (fixed[i])
@@ -156,7 +156,7 @@ void testSlidingSurface()
     const double F = run(data, options).history.back().objective;
     options.fixed = fixed.data();
     options.slideSurface = slides.data();
-    const Optimization result = run(data, options);
+    const OptimizeResult result = run(data, options);
     TAUTLINE_CHECK(result.history.back().objective < 0.99 * F);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
     TAUTLINE_CHECK(result.surfaceError > 0 && result.surfaceError < 0.05);
@@ -194,7 +194,7 @@ void testSurface()
     data.setPoint(i, { p[0], p[1], std::sqrt(4 - p[0] * p[0] - p[1] * p[1]) });
   }
   OptimizeOptions options;
-  const Optimization result = run(data, options);
+  const OptimizeResult result = run(data, options);
   TAUTLINE_CHECK(result.history.back().objective < 0.95 * result.history.front().objective);
   TAUTLINE_CHECK_RELATIVE(sumOfSquares(data, result.points, Metric::InverseMeanRatio),
     result.history.back().objective, 1e-10);

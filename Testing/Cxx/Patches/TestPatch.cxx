@@ -2,9 +2,9 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/Energies.h"
-#include "tautline/SimplexMesh.h"
-#include "tautline/SurfaceProjection.h"
+#include "tautline/Patches/Energies.h"
+#include "tautline/Patches/SimplexMesh.h"
+#include "tautline/Optimization/SurfaceProjection.h"
 
 using namespace tautline;
 

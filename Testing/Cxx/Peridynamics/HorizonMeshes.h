@@ -7,8 +7,8 @@
 
 #include "Meshes.h"
 
-#include "tautline/Lanczos.h"
-#include "tautline/Peridynamics.h"
+#include "tautline/Solvers/Lanczos.h"
+#include "tautline/Peridynamics/Peridynamics.h"
 
 namespace tautline
 {
@@ -102,13 +102,13 @@ inline const std::vector<TableCell>& tableCells()
   return cells;
 }
 
-inline PeridynamicOptions optionsOf(const TableCell& cell, Reading reading)
+inline PeridynamicOptions optionsOf(const TableCell& cell, Discretization discretization)
 {
   PeridynamicOptions options;
   options.horizon = cell.delta;
   options.kernel.exponent = cell.table == 3 ? 2.5 : 1.0;
   options.basis = cell.table == 1 ? PeridynamicBasis::Constant : PeridynamicBasis::Linear;
-  options.reading = reading;
+  options.discretization = discretization;
   options.allowThinCollar = true;
   return options;
 }

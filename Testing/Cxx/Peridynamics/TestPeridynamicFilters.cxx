@@ -4,7 +4,7 @@
 #include "VtkMeshes.h"
 
 #include "vtkDomainSource.h"
-#include "vtkHorizonCollar.h"
+#include "vtkInteractionLayer.h"
 #include "vtkHorizonNeighbors.h"
 #include "vtkPeridynamicStiffness.h"
 
@@ -185,7 +185,7 @@ void testCollar()
     for (const int precision : { VTK_DOUBLE, VTK_FLOAT })
     {
       const auto bare = bareSquare(8, slanted, precision);
-      vtkNew<vtkHorizonCollar> collar;
+      vtkNew<vtkInteractionLayer> collar;
       collar->SetInputData(bare);
       collar->SetWidth(0.25);
       vtkNew<vtkPeridynamicStiffness> filter;
@@ -295,7 +295,7 @@ void testErrors()
   curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[0] * p[1] }; });
   filter->SetInputData(toGrid(curved));
   check(filter, "do not lie in a plane");
-  vtkNew<vtkHorizonCollar> collar;
+  vtkNew<vtkInteractionLayer> collar;
   collar->SetInputData(toGrid(curved));
   check(collar, "do not lie in a plane");
   collar->SetInputData(bareSquare(4, false));

@@ -17,7 +17,7 @@ void testDissertation()
       std::to_string(cell.aspectRatio) + " n " + std::to_string(cell.n) + " delta " +
       std::to_string(cell.delta));
     const HorizonMesh mesh = horizonSquare(1.0 / cell.n, cell.aspectRatio, cell.delta);
-    const PeridynamicOptions options = optionsOf(cell, Reading::Dissertation);
+    const PeridynamicOptions options = optionsOf(cell, Discretization::Dissertation);
     const PeridynamicSystem system = assemblePeridynamics(mesh, options);
     const Spectrum spectrum = extremeEigenvalues(system.matrix);
     TAUTLINE_CHECK(spectrum.converged && spectrum.definite);
@@ -43,7 +43,7 @@ void testExact()
     // The one grid whose lines miss the square's sides needs a further layer for a collar that is wide enough.
     const bool off = cell.aspectRatio == 4 && cell.n == 10 && cell.delta == 0.3;
     const HorizonMesh mesh = horizonSquare(1.0 / cell.n, cell.aspectRatio, cell.delta, off ? 1 : 0);
-    PeridynamicOptions options = optionsOf(cell, Reading::Exact);
+    PeridynamicOptions options = optionsOf(cell, Discretization::Exact);
     options.allowThinCollar = false;
     TAUTLINE_CHECK_RELATIVE(
       conditionOf(mesh, options), cell.reference, cell.table == 3 ? 2e-3 : 1e-3);
@@ -66,7 +66,7 @@ void testLiteral()
     PeridynamicOptions options;
     options.horizon = c.delta;
     options.kernel.exponent = c.p;
-    options.reading = Reading::Dissertation;
+    options.discretization = Discretization::Dissertation;
     options.rules = RuleSet::Literal;
     const Spectrum spectrum = extremeEigenvalues(
       assemblePeridynamics(horizonSquare(1.0 / c.n, c.aspectRatio, c.delta), options).matrix);

@@ -3,7 +3,7 @@
 #include "Check.h"
 #include "HorizonMeshes.h"
 
-#include "tautline/HorizonCollar.h"
+#include "tautline/Peridynamics/InteractionLayer.h"
 
 #include <limits>
 #include <set>
@@ -83,7 +83,7 @@ void testStructure()
         options.tolerance = 1e-4;
         options.basis = basis;
         options.model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar;
-        options.reading = exact ? Reading::Exact : Reading::Dissertation;
+        options.discretization = exact ? Discretization::Exact : Discretization::Dissertation;
         options.kernel.exponent = elastic ? 3.0 : 1.0;
         const PeridynamicSystem held = assemblePeridynamics(mesh, options);
         TAUTLINE_CHECK(extremeEigenvalues(held.matrix).definite);
@@ -279,9 +279,9 @@ void testKernels()
     return s;
   };
   options.kernel.exponent = 0.0;
-  for (const Reading reading : { Reading::Dissertation, Reading::Exact })
+  for (const Discretization discretization : { Discretization::Dissertation, Discretization::Exact })
   {
-    options.reading = reading;
+    options.discretization = discretization;
     const Spectrum power = with(KernelShape::Power, {}, 0.5);
     const Spectrum constant = with(KernelShape::Constant, {}, 0.5);
     TAUTLINE_CHECK(power.smallest == constant.smallest && power.largest == constant.largest);
@@ -318,12 +318,12 @@ void testThreads()
   {
     for (const PeridynamicBasis basis : bases)
     {
-      for (const Reading reading : { Reading::Dissertation, Reading::Exact })
+      for (const Discretization discretization : { Discretization::Dissertation, Discretization::Exact })
       {
         PeridynamicOptions options;
         options.tolerance = 1e-3;
         options.basis = basis;
-        options.reading = reading;
+        options.discretization = discretization;
         options.threads = 1;
         const PeridynamicSystem one = assemblePeridynamics(*mesh, options);
         LanczosOptions lanczos;
@@ -357,7 +357,7 @@ void testThreads()
 //------------------------------------------------------------------------------
 void testCollar()
 {
-  // The matrix of the exact reading does not depend on how the collar is cut, as the functions are 0 there.
+  // The matrix of the exact discretization does not depend on how the collar is cut, as the functions are 0 there.
   const HorizonMesh regular = horizonSquare(0.1, 1, 0.2);
   HorizonMesh bare;
   std::vector<Index> newId(regular.numberOfPoints(), -1);
@@ -586,7 +586,7 @@ void testRefusals()
   refuse("see no neighbour",
     [](Mesh2, Options o)
     {
-      o.reading = Reading::Dissertation;
+      o.discretization = Discretization::Dissertation;
       o.horizon = 0.01;
     });
   TAUTLINE_CHECK_THROWS(horizonSquare(0.1, 3, 0.2), "whole number");

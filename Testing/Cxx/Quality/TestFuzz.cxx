@@ -3,7 +3,7 @@
 #include "Check.h"
 #include "Blocks.h"
 
-#include "tautline/Statistics.h"
+#include "tautline/Quality/Statistics.h"
 
 #include <algorithm>
 #include <limits>

@@ -3,7 +3,7 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
-#include "tautline/MetricField.h"
+#include "tautline/Quality/MetricField.h"
 #include "vtkMetricField.h"
 
 #include "vtkContourFilter.h"

@@ -2,7 +2,7 @@
 #include "Check.h"
 #include "Meshes.h"
 
-#include "tautline/Statistics.h"
+#include "tautline/Quality/Statistics.h"
 
 #include <algorithm>
 #include <limits>

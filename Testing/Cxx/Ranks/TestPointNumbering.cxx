@@ -3,7 +3,10 @@
 #include "Check.h"
 #include "Systems.h"
 
-#include "tautline/ConditionEstimate.h"
+#include "tautline/Elliptic/ElementContributions.h"
+#include "tautline/Elliptic/EllipticSystem.h"
+#include "tautline/Solvers/ConditionEstimate.h"
+#include "tautline/Solvers/LinearSolver.h"
 
 #include <mpi.h>
 
@@ -380,8 +383,8 @@ void testConditions(MPI_Comm comm)
       const Context context(nameOf(preconditioner));
       ConditionOptions options;
       options.preconditioner = preconditioner;
-      const ConditionEstimate one = estimateCondition(expected, options),
-                              all = estimateCondition(system, options);
+      const ConditionEstimate one = estimateCondition(expected.linearSystem(), options),
+                              all = estimateCondition(system.linearSystem(), options);
       TAUTLINE_CHECK(one.converged && all.converged);
       // Multigrid is another one on several ranks.
       const bool same = preconditioner != Preconditioner::BoomerAMG;

@@ -2,7 +2,7 @@
 
 #include "MeshFileChecks.h"
 
-#include "tautline/Mesh.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include "vtkCell.h"
 #include "vtkCellData.h"

@@ -5,7 +5,7 @@
 #ifndef tautline_test_Shapes_h
 #define tautline_test_Shapes_h
 
-#include "tautline/ShapeMatch.h"
+#include "tautline/Shapes/ShapeMatch.h"
 
 #include <functional>
 

@@ -3,7 +3,7 @@
 #include "Check.h"
 #include "Shapes.h"
 
-#include "tautline/ShapeMatch.h"
+#include "tautline/Shapes/ShapeMatch.h"
 
 #include <chrono>
 #include <limits>

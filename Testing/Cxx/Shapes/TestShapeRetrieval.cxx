@@ -3,7 +3,7 @@
 #include "Check.h"
 #include "Shapes.h"
 
-#include "tautline/ShapeRetrieval.h"
+#include "tautline/Shapes/ShapeRetrieval.h"
 
 using namespace tautline;
 

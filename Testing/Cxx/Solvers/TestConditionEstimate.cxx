@@ -3,7 +3,8 @@
 #include "Check.h"
 #include "Systems.h"
 
-#include "tautline/ConditionEstimate.h"
+#include "tautline/Elliptic/ElementContributions.h"
+#include "tautline/Solvers/ConditionEstimate.h"
 
 #include <Eigen/Dense>
 #include <petscksp.h>

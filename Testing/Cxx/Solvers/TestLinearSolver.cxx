@@ -3,7 +3,8 @@
 #include "Check.h"
 #include "Systems.h"
 
-#include "tautline/EllipticProblem.h"
+#include "tautline/Elliptic/EllipticSystem.h"
+#include "tautline/Solvers/LinearSolver.h"
 
 #include <petscksp.h>
 

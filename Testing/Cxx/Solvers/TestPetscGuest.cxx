@@ -3,7 +3,8 @@
 #include "Check.h"
 #include "Systems.h"
 
-#include "tautline/ConditionEstimate.h"
+#include "tautline/Solvers/ConditionEstimate.h"
+#include "tautline/Solvers/LinearSolver.h"
 
 #include <memory>
 #include <petscksp.h>

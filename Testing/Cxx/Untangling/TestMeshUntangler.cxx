@@ -2,8 +2,8 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
-#include "tautline/Perturb.h"
-#include "tautline/Untangle.h"
+#include "tautline/Domains/Perturb.h"
+#include "tautline/Untangling/Untangle.h"
 #include "vtkMeshUntangler.h"
 
 #include "vtkCallbackCommand.h"
@@ -60,7 +60,7 @@ void testValid()
     const std::vector<unsigned char> fixed(boundary.begin(), boundary.end());
     UntangleOptions options;
     options.fixed = fixed.data();
-    const Untangling expected = untangle(mesh, options);
+    const UntangleResult expected = untangle(mesh, options);
     vtkNew<vtkMeshUntangler> filter;
     Messages messages(filter);
     filter->SetInputData(toGrid(data));

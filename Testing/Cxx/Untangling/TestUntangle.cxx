@@ -6,9 +6,9 @@
 #include "Blocks.h"
 #include "Check.h"
 
-#include "tautline/LinearProgram.h"
-#include "tautline/Perturb.h"
-#include "tautline/Untangle.h"
+#include "tautline/Untangling/LinearProgram.h"
+#include "tautline/Domains/Perturb.h"
+#include "tautline/Untangling/Untangle.h"
 
 #include "vtkCell.h"
 #include "vtkDataArray.h"
@@ -149,7 +149,7 @@ Index countNotValid(const MeshData& data, bool mirrored = false)
   return std::count_if(validity.begin(), validity.end(), [](signed char v) { return v != Valid; });
 }
 
-MeshData moved(const MeshData& data, const Untangling& result)
+MeshData moved(const MeshData& data, const UntangleResult& result)
 {
   MeshData after = data;
   after.points = result.points;
@@ -162,11 +162,11 @@ bool samePoint(const MeshData& a, const MeshData& b, Index i)
 }
 
 /// Untangles and checks that the result keeps its promises and is valid throughout.
-Untangling checkUntangles(
+UntangleResult checkUntangles(
   const MeshData& data, const std::string& name, const UntangleOptions& options = {})
 {
   const Context context(name);
-  const Untangling result = untangle(Mesh(data.view()), options);
+  const UntangleResult result = untangle(Mesh(data.view()), options);
   const MeshData after = moved(data, result);
   TAUTLINE_CHECK_EQUAL(result.invertedBefore, countNotValid(data));
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
@@ -232,7 +232,7 @@ void testLocality()
   data.setPoint(center, from + Vec3{ 1.4, 0.1, 0.2 });
   UntangleOptions options;
   options.effort = Effort::Local;
-  const Untangling result = checkUntangles(data, "one vertex astray", options);
+  const UntangleResult result = checkUntangles(data, "one vertex astray", options);
   Index far = 0, any = 0;
   const MeshData after = moved(data, result);
   for (Index i = 0; i < data.numberOfPoints(); ++i)
@@ -275,7 +275,7 @@ void testFiles(const std::string& dataDirectory)
       vtkIdList* ids = grid->GetCell(i)->GetPointIds();
       data.addCell(grid->GetCellType(i), std::vector<Index>(ids->begin(), ids->end()));
     }
-    const Untangling byBoundary = checkUntangles(data, name);
+    const UntangleResult byBoundary = checkUntangles(data, name);
     TAUTLINE_CHECK(byBoundary.invertedBefore > 0);
     vtkDataArray* flags = grid->GetPointData()->GetArray("fixed");
     if (TAUTLINE_CHECK(flags))
@@ -299,7 +299,7 @@ void testFrames()
   {
     const Context context(topology(type).name);
     const MeshData data = scattered(block(type, isFlat(type) ? 20 : 8), 0.3);
-    const Untangling plain = checkUntangles(data, "plain");
+    const UntangleResult plain = checkUntangles(data, "plain");
     MeshData other = data;
     other.transform([](const Vec3& p) { return p + Vec3{ 1e6, -1e6, 1e6 }; });
     checkUntangles(other, "translated by 1e6");
@@ -312,7 +312,7 @@ void testFrames()
     other = data;
     const double scale = 0x1p20;
     other.transform([=](const Vec3& p) { return scale * p; });
-    const Untangling scaled = checkUntangles(other, "scaled by a power of two");
+    const UntangleResult scaled = checkUntangles(other, "scaled by a power of two");
     Index different = 0;
     for (std::size_t i = 0; i < plain.points.size(); ++i)
     {
@@ -331,14 +331,14 @@ void testThreads()
   for (const MeshData& data : { slightlyTangled(block(CellType::Tetrahedron, 20), 0.02),
          turnedHole(CellType::Tetrahedron, 20, 60) })
   {
-    Untangling one;
+    UntangleResult one;
     for (int threads : { 1, 2, 4 })
     {
       UntangleOptions options;
       options.threads = threads;
       // Far enough into the phase of all vertices.
       options.observer = [](const IterationState& state) { return state.record.iteration < 8; };
-      const Untangling result = untangle(Mesh(data.view()), options);
+      const UntangleResult result = untangle(Mesh(data.view()), options);
       if (threads == 1)
       {
         one = result;
@@ -373,14 +373,14 @@ void testObstacles()
 {
   {
     const Context context("a single free vertex");
-    const Untangling result = checkUntangles(star({ 3, 3, 3 }), "outside");
+    const UntangleResult result = checkUntangles(star({ 3, 3, 3 }), "outside");
     TAUTLINE_CHECK_EQUAL(result.invertedBefore, 1);
   }
   {
     const Context context("no free vertex");
     MeshData data = singleCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
     std::swap(data.connectivity[0], data.connectivity[1]);
-    const Untangling result = untangle(Mesh(data.view()), {});
+    const UntangleResult result = untangle(Mesh(data.view()), {});
     TAUTLINE_CHECK(result.reason == StopReason::NoFreeVertices);
     TAUTLINE_CHECK_EQUAL(int(result.obstacles[0]), int(Obstacle::FixedElement));
     TAUTLINE_CHECK_EQUAL(result.impossible, 1);
@@ -396,7 +396,7 @@ void testObstacles()
       data.addPoint(p + Vec3{ 20, 0, 0 });
     }
     data.addCell(CellType::Tetrahedron, { first + 1, first, first + 2, first + 3 });
-    const Untangling result = untangle(Mesh(data.view()), {});
+    const UntangleResult result = untangle(Mesh(data.view()), {});
     TAUTLINE_CHECK(result.invertedBefore > 100);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 1);
     TAUTLINE_CHECK_EQUAL(result.history.back().inverted, 1);
@@ -417,7 +417,7 @@ void testObstacles()
     {
       data.addCell(CellType::Triangle, std::vector<Index>{ k, (k + 1) % 4, 4 });
     }
-    const Untangling result = untangle(Mesh(data.view()), {});
+    const UntangleResult result = untangle(Mesh(data.view()), {});
     TAUTLINE_CHECK(result.invertedAfter > 0);
     TAUTLINE_CHECK(result.invertedAfter <= result.invertedBefore);
     TAUTLINE_CHECK_EQUAL(result.impossible, result.invertedAfter);
@@ -434,7 +434,7 @@ void testObstacles()
     const Context context("a reflex corner of the boundary");
     MeshData data = scattered(block(CellType::Quadrilateral, 8), 0.3);
     data.setPoint(0, { 1.5, 1.5, 0 });
-    const Untangling result = untangle(Mesh(data.view()), {});
+    const UntangleResult result = untangle(Mesh(data.view()), {});
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 1);
     TAUTLINE_CHECK_EQUAL(result.history.back().inverted, 1);
     TAUTLINE_CHECK_EQUAL(result.impossible, 1);
@@ -446,13 +446,13 @@ void testDegenerate()
 {
   {
     const Context context("empty");
-    const Untangling result = untangle(Mesh(MeshData().view()), {});
+    const UntangleResult result = untangle(Mesh(MeshData().view()), {});
     TAUTLINE_CHECK(result.points.empty() && result.reason == StopReason::AllValid);
   }
   {
     const Context context("already valid");
     const MeshData data = block(CellType::Hexahedron, 3);
-    const Untangling result = untangle(Mesh(data.view()), {});
+    const UntangleResult result = untangle(Mesh(data.view()), {});
     TAUTLINE_CHECK(result.points == data.points);
     TAUTLINE_CHECK(result.reason == StopReason::AllValid);
   }
@@ -481,7 +481,7 @@ void testDegenerate()
     MeshData data = scattered(block(CellType::Tetrahedron, 6), 0.3);
     const Index bad = 3 + 7 * (3 + 7 * 3);
     data.setPoint(bad, { std::numeric_limits<double>::quiet_NaN(), 0, 0 });
-    const Untangling result = untangle(Mesh(data.view()), {});
+    const UntangleResult result = untangle(Mesh(data.view()), {});
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
     Index nonFinite = 0, nan = 0;
     for (signed char o : result.obstacles)
@@ -502,7 +502,7 @@ void testDegenerate()
     data.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
     Mesh mesh(data.view());
     mesh.setMirrored(true);
-    const Untangling result = untangle(mesh, {});
+    const UntangleResult result = untangle(mesh, {});
     TAUTLINE_CHECK(result.invertedBefore > 0);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
     TAUTLINE_CHECK_EQUAL(countNotValid(moved(data, result), true), 0);
@@ -530,7 +530,7 @@ void testLimits()
       }
       return calls++ < last;
     };
-    const Untangling result = untangle(Mesh(data.view()), options);
+    const UntangleResult result = untangle(Mesh(data.view()), options);
     TAUTLINE_CHECK(result.reason == StopReason::Aborted);
     TAUTLINE_CHECK_EQUAL(calls, last + 1);
     TAUTLINE_CHECK(result.invertedAfter <= before && result.invertedAfter > 0);
@@ -541,7 +541,7 @@ void testLimits()
   }
   UntangleOptions options;
   options.maximumSeconds = 1e-4;
-  const Untangling result = untangle(Mesh(data.view()), options);
+  const UntangleResult result = untangle(Mesh(data.view()), options);
   TAUTLINE_CHECK(result.reason == StopReason::TimeLimit);
   TAUTLINE_CHECK(result.history.size() <= 2);
   TAUTLINE_CHECK(result.invertedAfter <= before);

@@ -1,4 +1,4 @@
-#include <tautline/Version.h>
+#include "tautline/Core/Version.h"
 
 #include <iostream>
 

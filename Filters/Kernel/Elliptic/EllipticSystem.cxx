@@ -1,7 +1,9 @@
-#include "EllipticProblem.h"
+#include "EllipticSystem.h"
 
 #include "EllipticChecks.h"
-#include "Parallel.h"
+#include "EllipticFields.h"
+#include "FiniteElements.h"
+#include "tautline/Core/Parallel.h"
 
 #include <chrono>
 #include <limits>
@@ -347,7 +349,7 @@ EllipticSolution EllipticSystem::fields(const std::vector<double>& unknowns) con
     }
     std::copy_n(u.begin(), solution.components, &solution.values[solution.components * point]);
   }
-  differentiate(*this, solution);
+  differentiate({ *impl.Input, impl.Problem, impl.Part, impl.Threads }, solution);
   return solution;
 }
 }

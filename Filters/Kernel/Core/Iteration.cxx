@@ -1,0 +1,31 @@
+#include "Iteration.h"
+
+namespace tautline
+{
+const char* describe(StopReason reason)
+{
+  switch (reason)
+  {
+    case StopReason::GradientNorm:
+      return "Converged: the gradient is as small as wanted.";
+    case StopReason::RelativeChange:
+      return "Converged: the objective hardly changes any more.";
+    case StopReason::TwoDigits:
+      return "The mean qualities keep two decimals.";
+    case StopReason::Reduction:
+      return "The wanted part of the possible reduction is reached.";
+    case StopReason::AllValid:
+      return "All elements are valid.";
+    case StopReason::IterationLimit:
+      return "The limit of iterations is reached.";
+    case StopReason::TimeLimit:
+      return "The time limit is reached.";
+    case StopReason::Aborted:
+      return "Stopped on request.";
+    case StopReason::NoProgress:
+      return "No step lowers the objective.";
+    default:
+      return "No vertex is free to move.";
+  }
+}
+}

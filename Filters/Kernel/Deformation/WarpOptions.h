@@ -1,0 +1,131 @@
+/**
+ * @file WarpOptions.h
+ * @brief The options of a mesh deformation, and its result.
+ */
+#ifndef tautline_WarpOptions_h
+#define tautline_WarpOptions_h
+
+#include "tautline/Elliptic/Materials.h"
+#include "tautline/Optimization/OptimizeOptions.h"
+#include "tautline/Solvers/SolverOptions.h"
+#include "tautline/SolversExport.h"
+
+namespace tautline
+{
+/// The numbers are stable: ParaView state files hold them.
+enum class WarpMethod : int
+{
+  Hybrid =
+    0, ///< anisotropic FEMWARP, then shape against the initial mesh and untangling (4.22)-(4.24)
+  Femwarp = 1,            ///< one harmonic solve (4.10)
+  AnisotropicFemwarp = 2, ///< with coefficients (4.11), (4.20)
+  SmallStepFemwarp = 3,   ///< FEMWARP in steps, the matrix of each from the mesh before it
+  FemwarpUntangling = 4,  ///< FEMWARP, then untangling
+  IterativeStiffening =
+    5, ///< linear elasticity, inverted elements stiffened until there are none (UBN's part)
+  JacobianStiffening =
+    6, ///< linear elasticity, small elements stiff (Stein, Tezduyar and Benson 2003)
+  Biharmonic = 7,
+  InverseDistance = 8,
+  RadialBasis = 9, ///< compactly supported, points chosen greedily
+  WeightedLaplacian =
+    10 ///< weighted Laplacian smoothing: each vertex an affine combination of its neighbours
+};
+
+/// Where the coefficients of AnisotropicFemwarp and Hybrid come from. The numbers are stable.
+enum class WarpCoefficients : int
+{
+  DisplacementSums = 0,    ///< (4.19), (4.21): sums of the absolute displacements along the axes
+  PrincipalDirections = 1, ///< a tensor along the principal directions of the motion
+  Manual = 2,              ///< `tensor`
+  PerCell = 3              ///< `tensors`
+};
+
+/// What Hybrid's second step starts from: at most 50 iterations, to a relative change of 1e-3.
+TAUTLINE_SOLVERS_EXPORT OptimizeOptions hybridOptimization();
+
+struct WarpOptions
+{
+  WarpMethod method = WarpMethod::Hybrid;
+  WarpCoefficients coefficients = WarpCoefficients::DisplacementSums;
+  SymmetricTensor tensor = IdentityTensor; ///< Manual; alpha, beta, gamma are its first three
+  const double* tensors = nullptr;         ///< PerCell: 6 per cell
+  /// One flag per point, nonzero = follows its given displacement; null: the points of the boundary.
+  const unsigned char* prescribed = nullptr;
+  /**
+   * @brief Steps the motion is cut into, each from the mesh of the one before. 0: as many as are needed for no element to
+   * invert; steps that invert one are halved, and grow again. The result is then valid and may have come only a part of the
+   * way, see WarpResult::amount. SmallStepFemwarp takes 1 for 0. On the way each connected piece of prescribed points turns and
+   * stretches as its displacements together say, if they are those of one affine map, about; else it goes straight.
+   *
+   * Hybrid and FemwarpUntangling try one step first, with 0 as with 1; if untangling fails there, though the moved boundary does
+   * not cross itself, they follow the motion in short steps.
+   */
+  int steps = 1;
+  int maximumSteps = 100; ///< where their number is free
+  /// Direct up to 600,000 unknowns (planar) or 20,000 (volume), else CG with BoomerAMG; off: `solver`.
+  bool automaticSolver = true;
+  SolverOptions solver;      ///< its tolerance is `tolerance`
+  double tolerance = 1e-10;  ///< relative, of the solves; affine motions are exact whatever it is
+  double poissonRatio = 0.3; ///< of the elastic methods
+  double stiffeningPower = 1.0; ///< JacobianStiffening: chi
+  int maximumStiffenings = 50;  ///< IterativeStiffening
+  double stiffeningFactor =
+    2.0; ///< IterativeStiffening: by which inverted elements get stiffer each time
+  double distancePower = 3.0; ///< InverseDistance
+  double supportRadius = 0.0; ///< RadialBasis; 0: twice the extent of the prescribed points
+  double fitTolerance =
+    1e-3; ///< RadialBasis: of the greedy choice, relative to the largest displacement
+  /**
+   * @brief Hybrid's second step. On: untangle() what the warp inverted and, if that was anything, lower the squared inverse
+   * mean ratios of T for up to 20 sweeps; then lower the exponential sum of F_1, the shape (4.22), and of these squared
+   * ratios, a barrier that keeps every element valid where (4.24) has the untangling metric, which is 0 from there on.
+   * Off: (4.24) as it stands; what it leaves inverted is untangled afterwards.
+   */
+  bool untangleFirst = true;
+  /// beta of (4.24) with untangleFirst off, relative to the mean area or volume of the elements; at least 0.
+  double untanglingBeta = 0.0;
+  /// Hybrid's second step: optimizer and stopping criteria count, and c of the exponential sum; the rest is set.
+  OptimizeOptions optimization = hybridOptimization();
+  double maximumSeconds = 0.0;          ///< 0: no limit
+  int threads = 0;                      ///< 0: all cores. The result does not depend on it.
+  std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
+};
+
+/// One line of the history.
+struct WarpRecord
+{
+  double amount = 0.0;     ///< of the motion, 0 to 1
+  Index inverted = 0;      ///< inverted or degenerate elements
+  double worstShape = 0.0; ///< largest TMP shape (4.22) over the elements that are valid
+  double meanShape = 0.0;
+  double seconds = 0.0;
+  int iterations = 0; ///< of linear solvers and optimizers
+  std::string stage;  ///< "warp", "untangle", "optimize"
+};
+
+struct WarpResult
+{
+  std::vector<double> points; ///< 3 x numberOfPoints
+  std::vector<WarpRecord> history;
+  double amount = 1.0;                     ///< how far it came
+  SymmetricTensor tensor = IdentityTensor; ///< the coefficients used, unless PerCell
+  Index invertedWarp = 0;                  ///< after the warp itself
+  Index invertedAfter = 0;                 ///< at the end
+  /// Inverted elements no interior position can make valid: the moved boundary itself is not.
+  Index impossible = 0;
+  /// Pairs of edges, or of boundary triangles, of the moved boundary that cross and did not before.
+  Index crossings = 0;
+  /**
+   * @brief Points that a coefficient of 0 cuts off from all prescribed ones. They follow the points around them by the
+   * isotropic operator, which changes nothing for the others.
+   */
+  Index decoupled = 0;
+  /// The isotropic operator's part added to a singular one, relative to its largest coefficient, for a bounded motion; 0: none.
+  double regularization = 0.0;
+  double assembleSeconds = 0, setupSeconds = 0, solveSeconds = 0, improveSeconds = 0;
+  bool aborted = false, timeLimit = false;
+  std::string message; ///< what the user should know, or ""
+};
+}
+#endif

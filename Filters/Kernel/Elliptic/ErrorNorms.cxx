@@ -1,0 +1,43 @@
+#include "ErrorNorms.h"
+
+#include "EllipticFields.h"
+
+namespace tautline
+{
+std::array<double, 2> errorNorms(const EllipticSystem& system, const EllipticSolution& solution,
+  const std::function<void(const Vec3&, double* value, double* gradient)>& exact)
+{
+  constexpr int gaussPoints = 4;
+  const EllipticDomain domain = { system.mesh(), system.problem(), system.part(), system.threads() };
+  // One sum per cell, so that their order is that of the cells.
+  std::vector<std::array<double, 2>> squares(system.mesh().view().numberOfCells);
+  forEachSample(domain, gaussPoints, false,
+    [&](Index cell, const Index* node, const Vec3* p, const auto& sample)
+    {
+      Vec3 place = { 0, 0, 0 }, value;
+      std::array<Vec3, 3> gradient;
+      for (std::size_t k = 0; k < sample.gradient[0].size(); ++k)
+      {
+        place += sample.value[k] * p[k];
+      }
+      interpolate(sample, solution, node, value, gradient);
+      double knownValue[3] = {}, knownGradient[9] = {};
+      exact(place, knownValue, knownGradient);
+      for (int c = 0; c < solution.components; ++c)
+      {
+        const double error = value[c] - knownValue[c];
+        const double* g = knownGradient + 3 * c;
+        const Vec3 slope = gradient[c] - Vec3{ g[0], g[1], g[2] };
+        squares[cell][0] += sample.weight * error * error;
+        squares[cell][1] += sample.weight * dot(slope, slope);
+      }
+    });
+  std::array<double, 2> sums = {};
+  for (const auto& square : squares)
+  {
+    sums[0] += square[0];
+    sums[1] += square[1];
+  }
+  return { std::sqrt(system.numbering().sum(sums[0])), std::sqrt(system.numbering().sum(sums[1])) };
+}
+}

@@ -1,0 +1,25 @@
+/**
+ * @file ErrorNorms.h
+ * @brief The distance of a finite element solution from a known function.
+ */
+#ifndef tautline_ErrorNorms_h
+#define tautline_ErrorNorms_h
+
+#include "EllipticSystem.h"
+#include "tautline/SolversExport.h"
+
+#include <array>
+#include <functional>
+
+namespace tautline
+{
+/**
+ * @brief Norms of the difference between a solution and a known function, by four Gauss points in each direction. Collective.
+ * @param exact writes `components` values and their gradients (3 per component; of a surface its tangential ones) at a place
+ * @return { L2 norm of the error, L2 norm of the gradient's error }
+ */
+TAUTLINE_SOLVERS_EXPORT std::array<double, 2> errorNorms(const EllipticSystem& system,
+  const EllipticSolution& solution,
+  const std::function<void(const Vec3&, double* value, double* gradient)>& exact);
+}
+#endif

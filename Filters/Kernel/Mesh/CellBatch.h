@@ -1,0 +1,101 @@
+/**
+ * @file CellBatch.h
+ * @brief The vertices of several cells of one type, gathered into packets. Internal: not installed.
+ */
+#ifndef tautline_CellBatch_h
+#define tautline_CellBatch_h
+
+#include "Mesh.h"
+#include "tautline/Core/Packet.h"
+
+#include <type_traits>
+
+namespace tautline
+{
+/// Where cells are gathered from: a block of a mesh.
+struct CellSource
+{
+  const Mesh* mesh = nullptr;
+  const CellBlock* block = nullptr;
+  const CellTopology* topology = nullptr;
+};
+
+/// Up to PacketWidth cells and their vertices.
+struct CellVertices
+{
+  Index cells[PacketWidth]; ///< the last one repeated to fill the packet
+  int count = 0;
+  Packet points[MaxNodes][3];
+};
+
+/// Calls work(N) with the number of nodes as a compile-time constant, so that loops over it unroll.
+template <class Work>
+void withNodes(const CellTopology& topology, const Work& work)
+{
+  switch (topology.nodes)
+  {
+    case 3:
+      return work(std::integral_constant<int, 3>());
+    case 4:
+      return work(std::integral_constant<int, 4>());
+    case 5:
+      return work(std::integral_constant<int, 5>());
+    case 6:
+      return work(std::integral_constant<int, 6>());
+    default:
+      static_assert(MaxNodes == 8, "a case for each number of nodes");
+      return work(std::integral_constant<int, 8>());
+  }
+}
+
+/// The nodes of each cell of a batch, in the connectivity.
+using BatchNodes = const Index* [PacketWidth];
+
+/// Finds the nodes of cells [begin, begin + count) of a block; order maps positions if not null.
+inline void locate(const CellSource& source, const Index* order, Index begin, int count,
+  CellVertices& batch, BatchNodes& nodes)
+{
+  const MeshView& view = source.mesh->view();
+  for (int l = 0; l < PacketWidth; ++l)
+  {
+    const Index position = begin + (l < count ? l : count - 1);
+    const Index cell = source.block->cell(order ? order[position] : position);
+    batch.cells[l] = cell;
+    nodes[l] = view.connectivity + view.offsets[cell];
+  }
+  batch.count = count;
+}
+
+/// Loads the vertices of the cells of a batch, of which `nodes` has the numbers.
+template <int Nodes, class Numbers>
+void loadNodes(
+  const CellSource& source, const double* points, const Numbers& nodes, CellVertices& batch)
+{
+  for (int k = 0; k < Nodes; ++k)
+  {
+    const double* p[PacketWidth];
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      p[l] = points + 3 * static_cast<Index>(nodes[l][k]);
+    }
+    loadPoints(p, batch.points[k]);
+  }
+  if (source.mesh->mirrored() && source.mesh->dimension() == Dimension::Volume)
+  {
+    for (int k = 0; k < Nodes; ++k)
+    {
+      batch.points[k][0] = -batch.points[k][0];
+    }
+  }
+}
+
+/// Loads the vertices of the cells that locate() finds.
+template <int Nodes>
+void gather(const CellSource& source, const Index* order, Index begin, int count, CellVertices& batch,
+  BatchNodes& nodes)
+{
+  locate(source, order, begin, count, batch, nodes);
+  loadNodes<Nodes>(source, source.mesh->view().points, nodes, batch);
+}
+}
+#endif

@@ -1,0 +1,157 @@
+#include "Mesh.h"
+
+#include "FacetTable.h"
+
+namespace tautline
+{
+namespace
+{
+/**
+ * Signed area or volume of a cell with its faces cut into triangles about their centres, so that the sum
+ * over a mesh whose cells agree depends on its boundary only, however tangled its inside. Seen from one origin for all
+ * cells, what an inner edge or face adds cancels to the last digit.
+ */
+double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node, const Vec3& origin)
+{
+  const MeshView& view = mesh.view();
+  Vec3 p[MaxNodes];
+  for (int k = 0; k < t.nodes; ++k)
+  {
+    p[k] = pointOf(view, node[k]) - origin;
+  }
+  if (t.dimension == 2)
+  {
+    Vec3 area = { 0, 0, 0 };
+    for (int k = 0; k < t.nodes; ++k)
+    {
+      area += cross(p[k], p[(k + 1) % t.nodes]);
+    }
+    return 0.5 * dot(mesh.normal(), area);
+  }
+  double sum = 0;
+  for (int f = 0; f < t.faces; ++f)
+  {
+    const int size = t.faceSizes[f];
+    Vec3 center = { 0, 0, 0 };
+    for (int k = 0; k < size; ++k)
+    {
+      center += (1.0 / size) * p[t.faceNodes[f][k]];
+    }
+    for (int k = 0; k < size; ++k)
+    {
+      sum += dot(center, cross(p[t.faceNodes[f][k]], p[t.faceNodes[f][(k + 1) % size]])) / 6;
+    }
+  }
+  return sum;
+}
+}
+
+//------------------------------------------------------------------------------
+Orientation Mesh::orientation(const signed char* validity) const
+{
+  Orientation result;
+  const int dimension = this->Dim == Dimension::Volume ? 3 : 2;
+  Index cells = 0;
+  for (const CellBlock& block : this->Blocks)
+  {
+    if (topology(block.type).dimension == dimension)
+    {
+      cells += block.count;
+      for (Index i = 0; i < block.count; ++i)
+      {
+        result.positiveCells += validity[block.cell(i)] == Valid;
+        result.negativeCells += validity[block.cell(i)] == Inverted;
+      }
+    }
+  }
+  if (cells == 0)
+  {
+    return result;
+  }
+  const bool haveSigns = this->Dim != Dimension::Surface;
+  if (haveSigns && result.negativeCells == 0)
+  {
+    return result;
+  }
+  if (haveSigns && result.positiveCells == 0)
+  {
+    result.state = Orientation::Reversed;
+    return result;
+  }
+
+  // Signs differ (a tangled or a mixed mesh), or there are none (a surface): look at neighbours.
+  std::vector<Index> parent(this->View.numberOfCells);
+  std::iota(parent.begin(), parent.end(), Index(0));
+  auto find = [&](Index cell)
+  {
+    while (parent[cell] != cell)
+    {
+      cell = parent[cell] = parent[parent[cell]];
+    }
+    return cell;
+  };
+  FacetTable(*this).forEachFacet(
+    [&](Index, const FacetUse* uses, Index count)
+    {
+      if (count == 2)
+      {
+        result.disagreeing += uses[0].forward == uses[1].forward;
+        parent[find(uses[0].cell)] = find(uses[1].cell);
+      }
+    });
+
+  // The signed size of a part tells, tangled or not; where it is lost to rounding (a vertex far out), the majority.
+  struct Part
+  {
+    double sum = 0, magnitude = 0;
+    Index majority = 0; // positive less inverted cells
+  };
+  std::vector<Part> parts(this->View.numberOfCells);
+  Vec3 origin = { 0, 0, 0 };
+  for (Index i = 0; i < this->View.numberOfPoints; ++i)
+  {
+    origin = pointOf(this->View, i);
+    if (std::isfinite(dot(origin, origin)))
+    {
+      break;
+    }
+  }
+  for (const CellBlock& block : this->Blocks)
+  {
+    if (topology(block.type).dimension == dimension)
+    {
+      for (Index i = 0; i < block.count; ++i)
+      {
+        const Index cell = block.cell(i);
+        if (haveSigns && validity[cell] >= Inverted) // flat ones, too: they may be long
+        {
+          const double size = signedSize(*this, topology(block.type),
+            this->View.connectivity + this->View.offsets[cell], origin);
+          Part& part = parts[find(cell)];
+          part.sum += size;
+          part.magnitude += std::abs(size);
+          part.majority += validity[cell]; // 1, 0 or -1
+        }
+        result.parts += find(cell) == cell;
+      }
+    }
+  }
+  if (haveSigns)
+  {
+    constexpr double rounding = 1e-9;
+    const double sign = this->Mirrored ? -1 : 1;
+    result.reversedParts = std::count_if(parts.begin(), parts.end(),
+      [=](const Part& p)
+      { return std::abs(p.sum) > rounding * p.magnitude ? sign * p.sum < 0 : p.majority < 0; });
+  }
+  if (result.disagreeing > 0 || (result.reversedParts > 0 && result.reversedParts < result.parts))
+  {
+    result.state = Orientation::Mixed;
+  }
+  else if (result.reversedParts > 0)
+  {
+    result.state = Orientation::Reversed;
+  }
+  return result;
+}
+}

@@ -1,0 +1,131 @@
+#include "Mesh.h"
+
+#include "CellBatch.h"
+#include "tautline/Core/Parallel.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tautline
+{
+Validity Mesh::classifyCell(const CellTopology& t, const Vec3* p, const Vec3* against) const
+{
+  const bool surface = t.dimension == 2 && this->Dim != Dimension::Planar;
+  const double sign = this->Mirrored && !surface ? -1.0 : 1.0;
+  Vec3 normal = against ? *against : this->Normal;
+  if (surface && !against)
+  {
+    // A surface quadrilateral is judged against its own mean normal.
+    normal = vectorArea(t, p);
+    const double length = norm(normal);
+    normal = length > 0 ? (1.0 / length) * normal : normal;
+  }
+  Validity verdict = Valid;
+  for (int c = 0; c < t.samples; ++c)
+  {
+    const auto& corner = t.cornerNodes[c];
+    const Vec3 a = p[corner[1]] - p[corner[0]];
+    const Vec3 b = p[corner[2]] - p[corner[0]];
+    double det = 0, scale = norm(a) * norm(b);
+    if (t.dimension == 2)
+    {
+      det = dot(cross(a, b), normal);
+    }
+    else
+    {
+      const Vec3 d = p[corner[3]] - p[corner[0]];
+      det = dot(a, cross(b, d));
+      scale *= norm(d);
+    }
+    det *= sign;
+    if (!std::isfinite(scale))
+    {
+      return NonFinite;
+    }
+    if (std::abs(det) <= degenerateTolerance() * scale)
+    {
+      verdict = std::min(verdict, Degenerate);
+    }
+    else if (det < 0)
+    {
+      verdict = Inverted;
+    }
+  }
+  return verdict;
+}
+
+namespace
+{
+/// Whether all cells of a batch are valid beyond doubt; what is near a limit is left to classifyCell().
+bool clearlyValid(const Mesh& mesh, const CellTopology& t, const CellVertices& batch)
+{
+  constexpr double margin = 2, smallest = 1e-200, largest = 1e200;
+  constexpr double tolerance = margin * Mesh::degenerateTolerance();
+  Packet normal[3];
+  for (int c = 0; c < 3; ++c)
+  {
+    normal[c] = broadcast((mesh.mirrored() ? -1.0 : 1.0) * mesh.normal()[c]);
+  }
+  Mask valid = ~Mask{};
+  for (int s = 0; s < t.samples; ++s)
+  {
+    const auto& corner = t.cornerNodes[s];
+    Packet a[3], b[3], d[3], ab[3];
+    subtract(batch.points[corner[1]], batch.points[corner[0]], a);
+    subtract(batch.points[corner[2]], batch.points[corner[0]], b);
+    cross(a, b, ab);
+    Packet det = dot(ab, normal), lengths2 = dot(a, a) * dot(b, b);
+    if (t.dimension == 3)
+    {
+      subtract(batch.points[corner[3]], batch.points[corner[0]], d);
+      det = dot(ab, d);
+      lengths2 *= dot(d, d);
+    }
+    valid &= (det > 0.0) & (det * det > tolerance * tolerance * lengths2) & (lengths2 > smallest) &
+      (lengths2 < largest);
+  }
+  return !any(~valid);
+}
+}
+
+//------------------------------------------------------------------------------
+void Mesh::classifyCells(signed char* validity, int threads) const
+{
+  if (this->Unsupported > 0)
+  {
+    std::fill(validity, validity + this->View.numberOfCells, NotMeasured);
+  }
+  for (const CellBlock& block : this->Blocks)
+  {
+    const CellTopology& t = topology(block.type);
+    const CellSource source = { this, &block, &t };
+    const bool surface = t.dimension == 2 && this->Dim != Dimension::Planar;
+    withNodes(t,
+      [&](auto nodesOfCell)
+      {
+        constexpr int Nodes = decltype(nodesOfCell)::value;
+        forEachChunk(block.count, threads,
+          [&](Index, Index begin, Index end)
+          {
+            CellVertices batch;
+            BatchNodes nodes;
+            for (Index i = begin; i < end; i += PacketWidth)
+            {
+              const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
+              gather<Nodes>(source, nullptr, i, count, batch, nodes);
+              const bool allValid = !surface && clearlyValid(*this, t, batch);
+              for (int l = 0; l < count; ++l)
+              {
+                Vec3 p[MaxNodes];
+                for (int k = 0; !allValid && k < Nodes; ++k)
+                {
+                  p[k] = pointOf(this->View, nodes[l][k]);
+                }
+                validity[batch.cells[l]] = allValid ? Valid : this->classifyCell(t, p);
+              }
+            }
+          });
+      });
+  }
+}
+}

@@ -1,0 +1,203 @@
+#include "ObjectiveSum.h"
+
+#include "ObjectiveSumState.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+namespace tautline
+{
+namespace
+{
+bool isIn(ObjectiveTemplate form, std::initializer_list<ObjectiveTemplate> forms)
+{
+  return std::find(forms.begin(), forms.end(), form) != forms.end();
+}
+
+Objective resolved(Objective objective, int threads)
+{
+  if (objective.form == ObjectiveTemplate::Default)
+  {
+    objective.form = defaultTemplate(objective.metric);
+  }
+  objective.evaluation.threads = threads > 0 ? threads : objective.evaluation.threads;
+  return objective;
+}
+
+void checkForm(const Objective& objective)
+{
+  const MetricInfo& info = metricInfo(objective.metric);
+  const std::string label = info.label;
+  using T = ObjectiveTemplate;
+  const int number = static_cast<int>(objective.form);
+  if (number < 0 || number > static_cast<int>(T::Maximum))
+  {
+    throw Error("There is no objective template number " + std::to_string(number) + ".");
+  }
+  if (objective.form == T::SumOfSquares && info.direction == Direction::LargerIsBetter)
+  {
+    throw Error("A larger value of \"" + label +
+      "\" is better: lowering the sum of its squares would spoil the mesh. Choose a sum of "
+      "reciprocals.");
+  }
+  if (isIn(objective.form, { T::SumOfReciprocals, T::SumOfSquaredReciprocals }) &&
+    info.direction == Direction::SmallerIsBetter)
+  {
+    throw Error("A smaller value of \"" + label +
+      "\" is better: lowering a sum of its reciprocals would spoil the mesh. Choose the sum of "
+      "squares.");
+  }
+  if (!(objective.weight > 0) || !std::isfinite(objective.weight))
+  {
+    throw Error("The weight of an objective must be above 0 and finite.");
+  }
+  if (objective.form == T::PowerMean && !(objective.power >= 1 && std::isfinite(objective.power)))
+  {
+    throw Error("The power of a power mean must be at least 1 and finite.");
+  }
+  if (objective.form == T::Maximum && !(objective.power > 0 && std::isfinite(objective.power)))
+  {
+    throw Error("The sharpness of a smooth maximum must be above 0 and finite.");
+  }
+}
+
+Fault faultOf(const Objective& objective)
+{
+  const MetricInfo& info = metricInfo(objective.metric);
+  using T = ObjectiveTemplate;
+  if (info.barrier)
+  {
+    // Only a sign tells inverted elements where no valid element comes near 0.
+    const bool separated =
+      (!info.in2D || info.full2D.low > 0) && (!info.in3D || info.full3D.low > 0);
+    return separated && info.inverted == InvertedValue::Negative ? Fault::NotPositive
+                                                                 : Fault::Jacobian;
+  }
+  if (objective.form == T::SumOfSquaredReciprocals ||
+    (objective.form == T::PowerMean && info.direction == Direction::LargerIsBetter))
+  {
+    return Fault::NotPositive;
+  }
+  return objective.form == T::SumOfReciprocals ? Fault::Zero : Fault::None;
+}
+}
+
+//------------------------------------------------------------------------------
+ObjectiveSumState::ObjectiveSumState(const Mesh& mesh, const Objective& given, int threads)
+  : objective(resolved(given, threads))
+  , elements(mesh, objective.metric, objective.evaluation)
+{
+  const MetricInfo& info = metricInfo(this->objective.metric);
+  checkForm(this->objective);
+  if (this->elements.empty())
+  {
+    throw Error("The metric \"" + std::string(info.label) +
+      "\" is not defined on any cell of the mesh. Choose another metric, or convert the cells.");
+  }
+  const double* weights = this->objective.elementWeights;
+  double total = 0;
+  for (const ElementSum::Chunk& chunk : this->elements.chunks())
+  {
+    const CellBlock& block = mesh.blocks()[chunk.block];
+    double sum = 0;
+    for (Index i = chunk.begin; i < chunk.end; ++i)
+    {
+      const Index cell = block.cell(i);
+      const double w = weights ? weights[cell] : 1.0;
+      if (!(w >= 0) || !std::isfinite(w))
+      {
+        throw Error("The weight of cell " + std::to_string(cell) + " is " + std::to_string(w) +
+          "; weights must be finite and at least 0.");
+      }
+      sum += w;
+    }
+    total += sum;
+  }
+  if (!(total > 0))
+  {
+    throw Error("The weights of all elements are 0: nothing is left to minimise.");
+  }
+  this->function = { this->objective.form, this->objective.power,
+    info.direction == Direction::LargerIsBetter ? -1.0 : 1.0, faultOf(this->objective), weights,
+    total };
+}
+
+//------------------------------------------------------------------------------
+template <bool WithGradient>
+double ObjectiveSumState::run(double scale, double* gradient) const
+{
+  const ElementFunction& f = this->function;
+  return withTemplate(f.form,
+    [&](auto form)
+    {
+      constexpr ObjectiveTemplate Form = decltype(form)::value;
+      if constexpr (Form == ObjectiveTemplate::PowerMean || Form == ObjectiveTemplate::Maximum)
+      {
+        const double F = f.combine<Form>(this->elements.run<false, ScaledSums>(
+          [&f](const BatchContext& context, const Batch& batch, ScaledSums& total, Packet&)
+          { f.addScaled<Form>(context, batch, total); },
+          nullptr));
+        if (WithGradient && std::isfinite(F))
+        {
+          this->elements.run<true, LaneSums>([&f, F, scale](const BatchContext& context,
+                                               const Batch& batch, LaneSums&, Packet& slope)
+            { slope = scale * f.slopeOf<Form>(context, batch, F); },
+            gradient);
+        }
+        return F;
+      }
+      else
+      {
+        const auto totals = this->elements.run<WithGradient, LaneSums>(
+          [&f, scale](
+            const BatchContext& context, const Batch& batch, LaneSums& total, Packet& slope)
+          {
+            Packet value;
+            f.term<Form>(context, batch, value, slope);
+            slope *= scale;
+            total.lanes += onlyCells(batch, value);
+          },
+          gradient);
+        double sum = 0;
+        for (const LaneSums& total : totals)
+        {
+          sum += total.sum();
+        }
+        // Infinite terms of both signs: an element at fault decides.
+        return std::isnan(sum) ? HUGE_VAL : sum;
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+ObjectiveSum::ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads)
+  : Impl(std::make_unique<ObjectiveSumState>(mesh, objective, threads))
+{
+}
+
+ObjectiveSum::~ObjectiveSum() = default;
+ObjectiveSum::ObjectiveSum(ObjectiveSum&&) noexcept = default;
+ObjectiveSum& ObjectiveSum::operator=(ObjectiveSum&&) noexcept = default;
+
+double ObjectiveSum::value() const
+{
+  return this->Impl->run<false>(1.0, nullptr);
+}
+
+double ObjectiveSum::addGradient(double scale, double* gradient) const
+{
+  return scale == 0 ? this->value() : this->Impl->run<true>(scale, gradient);
+}
+
+void ObjectiveSum::elementValues(double* values) const
+{
+  evaluateMetric(this->Impl->elements.mesh(), this->Impl->objective.metric,
+    this->Impl->objective.evaluation, values);
+}
+
+const Objective& ObjectiveSum::objective() const
+{
+  return this->Impl->objective;
+}
+}

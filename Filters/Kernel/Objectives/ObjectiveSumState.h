@@ -1,0 +1,26 @@
+/**
+ * @file ObjectiveSumState.h
+ * @brief What an ObjectiveSum holds. Internal: not installed.
+ */
+#ifndef tautline_ObjectiveSumState_h
+#define tautline_ObjectiveSumState_h
+
+#include "ElementFunction.h"
+#include "Objective.h"
+#include "tautline/Quality/ElementSum.h"
+
+namespace tautline
+{
+/// An objective, the elements it is summed over, and its function of one element.
+struct ObjectiveSumState
+{
+  Objective objective;
+  ElementSum elements;
+  ElementFunction function;
+
+  ObjectiveSumState(const Mesh& mesh, const Objective& objective, int threads);
+  template <bool WithGradient>
+  double run(double scale, double* gradient) const;
+};
+}
+#endif

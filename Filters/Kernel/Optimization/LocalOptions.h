@@ -1,0 +1,45 @@
+/**
+ * @file LocalOptions.h
+ * @brief The terms and the options of the local sweeps. Internal: not installed.
+ */
+#ifndef tautline_LocalOptions_h
+#define tautline_LocalOptions_h
+
+#include "OptimizeOptions.h"
+#include "SurfaceProjection.h"
+#include "tautline/Objectives/ObjectiveSum.h"
+
+namespace tautline
+{
+/// One of the objectives as the sweeps see it: by the power, the size or the metric, whichever is set.
+struct LocalTerm
+{
+  /// The power (1 or 2) of an inverse mean ratio; 0: see metric.
+  int shapePower = 0;
+  /// Above 0: the squared inverse mean ratio with emphasis on values near this, see WorstRatioEnergy.
+  double worst = 0;
+  /// The size to the power of 2, times this; 0: see metric.
+  double sizeSquared = 0;
+  const ObjectiveSum* metric = nullptr;
+};
+
+struct LocalOptions
+{
+  bool newton = true; ///< or Polak-Ribiere+ conjugate gradients
+  int patchIterations = 1;
+  double relaxation = 1.0;
+  double culling = 0.0;
+  bool allowInversion = false;
+  int threads = 0;
+  /// Per vertex of the simplex mesh, or empty: a direction (line or plane normal) or zero.
+  std::vector<Vec3> planes, lines;
+  /// Per vertex: the start and how far from it the vertex may go, in the simplex mesh's coordinates; or empty.
+  std::vector<double> limits, start;
+  /// What a surface mesh is projected to, or what the vertices of onSurface slide on.
+  const SurfaceProjection* surface = nullptr;
+  std::vector<unsigned char> onSurface; ///< per vertex, or empty
+  /// Per simplex, or empty; of the fast terms. Needs SimplexMesh::indexPatches().
+  std::vector<double> weights;
+};
+}
+#endif

@@ -1,0 +1,124 @@
+/**
+ * @file OptimizeOptions.h
+ * @brief The options of optimize(): objectives, algorithm, constraints, stopping criteria, presets.
+ */
+#ifndef tautline_OptimizeOptions_h
+#define tautline_OptimizeOptions_h
+
+#include "tautline/Core/Iteration.h"
+#include "tautline/Objectives/Objective.h"
+#include "tautline/Objectives/Scalarization.h"
+
+#include <limits>
+
+namespace tautline
+{
+/// The algorithms. The numbers are stable: ParaView state files hold them.
+enum class Optimizer : int
+{
+  /// LocalNewton; should a sweep fail to lower several objectives, LimitedMemoryBFGS from there
+  Automatic = 0,
+  LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each
+  LocalConjugateGradient = 2, ///< sweeps over one-vertex patches, Polak-Ribiere+ steps in each
+  ConjugateGradientFletcherReeves = 3, ///< all vertices at once
+  ConjugateGradientPolakRibiere = 4,   ///< all vertices at once
+  LimitedMemoryBFGS = 5,               ///< all vertices at once
+  NewtonConjugateGradient = 6          ///< all vertices at once; truncated Newton
+};
+
+struct StoppingCriteria
+{
+  /// Sweeps of the local algorithms, iterations of the others; at least 0.
+  int maximumIterations = 100;
+  /// Seconds of wall time; 0: no limit. Honoured within two iterations.
+  double maximumSeconds = 0.0;
+  /// Stop when the gradient's norm has fallen by this factor; 0: never.
+  double gradientNorm = 1e-6;
+  /// Stop when an iteration lowers the objective by less than this, relative to it; 0: never.
+  double relativeChange = 1e-5;
+  /// "Inaccurate smoothing", section 3.4: stop when all mean qualities keep two decimals.
+  bool twoDigits = false;
+  /**
+   * @brief Section 2.4: stop when this fraction of the possible reduction is reached (0.95 there); 1: never. The
+   * possible reduction is that to bestKnown, or an estimate from the decrease of the iterations so far.
+   */
+  double reduction = 1.0;
+  /// The objective of the completely smoothed mesh, if known.
+  double bestKnown = std::numeric_limits<double>::quiet_NaN();
+  /// Stop when every element is valid.
+  bool allValid = false;
+};
+
+/// Ready-made options. The numbers are stable: ParaView state files hold them.
+enum class Preset : int
+{
+  Custom = 0,      ///< the options as they are
+  FastCleanUp = 1, ///< sum of squared IMR, a few sweeps: 95 % of the possible reduction
+  BestShape = 2,   ///< sum of squared IMR to convergence
+  UniformSize = 3, ///< shape (IMR) and size at once, by the objective product
+  LowInterpolationError =
+    4, ///< shape (IMR) and SS of section 3.2.1 at once, by the objective product
+  UntangleThenImprove = 5, ///< untangle(), then BestShape
+  PreserveShape = 6, ///< sum of squared IMR against the elements of a reference mesh (targets)
+  WorstElement = 7   ///< BestShape, then the worst IMR without giving up the mean
+};
+
+struct OptimizeOptions
+{
+  /// At least one.
+  std::vector<Objective> objectives = std::vector<Objective>(1);
+  ScalarizationOptions scalarization;
+  Optimizer optimizer = Optimizer::Automatic;
+  StoppingCriteria stopping;
+  /// One flag per point, nonzero = fixed; null: the points of the boundary.
+  const unsigned char* fixed = nullptr;
+  /**
+   * @brief Unit normals n of planes that points may slide in: 3 per point; zero for a point that is free or
+   * fixed. Null: none. Only for points that are not fixed.
+   */
+  const double* slidePlanes = nullptr;
+  /// Unit directions of lines that points may slide along; 3 per point, zero elsewhere; or null.
+  const double* slideLines = nullptr;
+  /// How far each point may go from its start, 3D distance; one per point (infinity = any), or null.
+  const double* limits = nullptr;
+  /**
+   * @brief One flag per point: nonzero for boundary points of a volume or planar mesh that slide on the boundary as it
+   * was (only those that are not fixed); or null. Points on sharp edges are the caller's to fix. Needs a local optimizer.
+   */
+  const unsigned char* slideSurface = nullptr;
+  SurfaceConstraint surface;
+  /// Lets steps invert elements that are valid. Off: they are shortened.
+  bool allowInversion = false;
+  /**
+   * @brief What to do with an input that has inverted elements and objectives none of which orders them:
+   * untangle() first (on), or refuse with an Error (off).
+   */
+  bool untangleFirst = true;
+  /**
+   * @brief Section 3.3.3: multiplies the untangling objectives by a constant that makes their largest element
+   * value exceed the largest of the other objectives at the start.
+   */
+  bool rescaleUntangling = true;
+  /// Local algorithms: leave out vertices that moved less than this times their shortest edge; 0: none.
+  double culling = 1e-3;
+  /// Steps in each patch of the local algorithms.
+  int patchIterations = 1;
+  /**
+   * @brief Over-relaxation of LocalNewton: a step is this times Newton's, 1 to 2 (exclusive). Around 1.4
+   * halves the number of sweeps.
+   */
+  double relaxation = 1.4;
+  /**
+   * @brief WorstElement: after the objective has converged, lowers the largest value of the first
+   * objective's metric as long as its mean does not rise by more than this part of it; 0: off.
+   */
+  double improveWorst = 0.0;
+  int threads = 0; ///< 0: all cores. The result does not depend on it.
+  /**
+   * @brief Called after each iteration; return false to stop. Called from the calling thread. While untangle() runs
+   * first, the records are its own, with 0 for what belongs to the objectives, and progress stays 0.
+   */
+  std::function<bool(const IterationState&)> observer;
+};
+}
+#endif

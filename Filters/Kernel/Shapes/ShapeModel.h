@@ -1,0 +1,183 @@
+/**
+ * @file ShapeModel.h
+ * @brief The source, the target, the energy and the options of shape matching.
+ */
+#ifndef tautline_ShapeModel_h
+#define tautline_ShapeModel_h
+
+#include "Silhouette.h"
+
+#include <functional>
+#include <memory>
+
+namespace tautline
+{
+/// What to do about triangles that a placement turns over.
+enum class Reflection
+{
+  Forbidden = 0, ///< they count as flat
+  Whole = 1, ///< the shape or its mirror image, whichever fits better; single triangles as above
+  Free = 2   ///< they cost nothing by themselves, as in the dissertation's formula
+};
+
+/// The terms of the energy and their weights.
+struct ShapeEnergy
+{
+  double lambda = 0.1;     ///< of the edge cost, above 0; |grad I| is 1 on an ideal edge
+  double deformation = 12; ///< a, at least 0
+  double distortion = 3;   ///< b, at least 0; 0 gives Felzenszwalb's energy
+  /// E_dis = |log(l_t / l_s) - log(d_t / d_s)|: a triangle must shrink where the shape shrinks. The
+  /// dissertation's form, the default, compares how much lengths change, not whether they grow.
+  bool signedDistortion = false;
+  /// Standard deviation of the Gaussian the target is smoothed with, in pixels, above 0.
+  double smoothing = 1.5;
+  /// The edge cost sees the gradient along the polygon's inner normal only: the dark side of an edge must
+  /// be outside. Not in the dissertation.
+  bool directedEdges = false;
+  /// Weight of 1 - cos(angle a triangle turns by); 0, the default: turning is free.
+  double rotation = 0.0;
+  /// Weight per vertex of the squared difference between what source and target look like around
+  /// it: the part of the shape in discs of four radii, and the distance from the centre of mass.
+  double descriptor = 0.0;
+  /// Weight per boundary edge of |log(length along the target's outline / expected)|, with the outline
+  /// run through in the polygon's direction. Contour locations only.
+  double ordering = 0.0;
+  Reflection reflection = Reflection::Forbidden;
+
+  /// The dissertation's: a = 4 b, lambda = 0.1, b = 3.
+  static ShapeEnergy dissertation() { return {}; }
+  /// The special case b = 0.
+  static ShapeEnergy felzenszwalb()
+  {
+    ShapeEnergy energy;
+    energy.distortion = 0.0;
+    return energy;
+  }
+};
+
+/// A shape to look for.
+struct ShapeSource
+{
+  PolygonMesh mesh;
+  Vec2 centre = {};
+  double maxDistance = 0;  ///< d_max of the source
+  double perimeter = 0;    ///< of the outline
+  std::vector<double> arc; ///< where each vertex lies along the outline, 0 to 1; empty if not known
+  std::vector<std::array<float, 5>> descriptors; ///< per vertex; empty if not known
+};
+
+/// The triangulated polygon of a silhouette. Throws Error on a spacing that is not above 0.
+TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(const Silhouette& shape, double spacing);
+
+/// A polygon as the shape to look for; centre and d_max are those of its area and vertices.
+TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(std::vector<Vec2> polygon);
+
+/// Where vertices may go.
+enum class Locations
+{
+  Grid = 0,     ///< the centres of columns x rows equal rectangles of the image
+  NearGrid = 1, ///< those of them within a grid step of the target's outline
+  Contour = 2   ///< points at equal distances along the target's outline
+};
+
+struct LocationOptions
+{
+  Locations kind = Locations::Grid;
+  Index columns = 30; ///< of the grid
+  Index rows = 30;
+  Index contour = 60; ///< points on the outline
+  int threads = 0;    ///< 0: all cores. The result does not depend on it.
+};
+
+/// The target: an image, its outline, and the locations. Precomputed once, shared by any number of matches.
+class TAUTLINE_KERNEL_EXPORT ShapeTarget
+{
+public:
+  /**
+   * Prepares a target. Edge costs are tables over pairs of locations, which depend on lambda, smoothing and
+   * directedEdges of the energy only; descriptors are made if it weights them.
+   * @param grey the image, if its grey values rather than the silhouette shall give the gradient; may be null
+   * Throws Error if there are less than 3 locations, their table would take more than 4 GiB, or an option is out of range.
+   */
+  ShapeTarget(const Silhouette& shape, const LocationOptions& locations,
+    const ShapeEnergy& energy = {}, const ImageView* grey = nullptr);
+  ~ShapeTarget();
+  ShapeTarget(ShapeTarget&&) noexcept;
+  ShapeTarget& operator=(ShapeTarget&&) noexcept;
+
+  const std::vector<Vec2>& locations() const;
+  Vec2 centre() const;
+  double maxDistance() const;
+  /// Mean of 1 / (lambda + |grad I|) from p to q, sampled about once a pixel.
+  double edgeCost(const Vec2& p, const Vec2& q) const;
+
+  struct Data;
+  const Data& data() const { return *this->Private; }
+
+private:
+  std::unique_ptr<Data> Private;
+};
+
+/// How to search.
+struct MatchOptions
+{
+  ShapeEnergy energy;
+  /// Solutions whose centre is farther from the target's centre of mass than this times d_max are passed
+  /// over for the next best (dissertation equation 5.2). 0: the rule is off. The dissertation's is 1/3.
+  double centreTolerance = 1.0 / 3.0;
+  /// The most solutions to try for the rule; then the one with the least distance is taken.
+  Index maxSolutions = 1000;
+  /// Solves on a third of the locations first, then around that solution only; fast, not exact.
+  bool coarseToFine = false;
+  /// Bounds that skip placements which cannot be the best. The result is the same without.
+  bool bounds = true;
+  /// Sources turned by multiples of 360 / rotations degrees are tried; makes sense with energy.rotation.
+  Index rotations = 1;
+  /// Target sizes tried, an odd number: delta times 2^(k/2), k = -(n-1)/2 ... (n-1)/2; for images with other
+  /// things than the shape in them, where d_max says little.
+  Index scales = 1;
+  int threads = 0;      ///< 0: all cores. The result does not depend on it.
+  double timeLimit = 0; ///< seconds; 0: none. When it is over, the best so far is returned.
+  /// Called with the part done, 0 to 1; returns whether to go on. May be empty.
+  std::function<bool(double)> progress;
+};
+
+/// The three terms of a triangle and the optional ones, unweighted.
+struct TriangleEnergy
+{
+  double edge = 0;
+  double deformation = 0;
+  double distortion = 0;
+  double rotation = 0;
+};
+
+/// Why a search ended.
+enum class MatchStop
+{
+  Complete = 0,
+  TimeLimit = 1,
+  Stopped = 2 ///< progress() said so
+};
+
+struct ShapeMatch
+{
+  std::vector<Vec2> points; ///< of the source's vertices in the target
+  double energy = 0;        ///< E, all weighted terms
+  double edge = 0;          ///< sum of E_edge
+  double deformation = 0;   ///< sum of E_def
+  double distortion = 0;    ///< sum of E_dis
+  double rotation = 0;      ///< sum of 1 - cos(angle)
+  double descriptor = 0;    ///< sum of squared differences
+  double ordering = 0;      ///< sum of |log|
+  std::vector<TriangleEnergy> triangles;
+  Index rank = 1;            ///< of the solution taken: 1 is the least energy
+  double centreDistance = 0; ///< D, from the mean of the points to the target's centre of mass
+  bool centreAccepted = true;
+  bool mirrored = false; ///< the source's mirror image was matched
+  double angle = 0;      ///< by which the source was turned, in degrees
+  double scale = 1;      ///< factor on the expected size
+  bool exact = true;     ///< no placement on the locations has a lower energy (rank 1)
+  MatchStop stop = MatchStop::Complete;
+};
+}
+#endif

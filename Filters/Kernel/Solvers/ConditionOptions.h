@@ -1,0 +1,37 @@
+/**
+ * @file ConditionOptions.h
+ * @brief The options of estimateCondition().
+ */
+#ifndef tautline_ConditionOptions_h
+#define tautline_ConditionOptions_h
+
+#include "SolverOptions.h"
+
+namespace tautline
+{
+/// How eigenvalues are found. The numbers are stable: ParaView state files hold them.
+enum class SpectrumMethod : int
+{
+  Automatic = 0,  ///< Accurate
+  RitzValues = 1, ///< of the Krylov solver (CG): cheap, from inside the spectrum, no error bound
+  /// To a tolerance: SLEPc for A and D^-1 A (Krylov-Schur, shift-invert where a factorisation is affordable, else LOBPCG), the
+  /// Lanczos method in the inner product of P for other P^-1 A.
+  Accurate = 2
+};
+
+struct ConditionOptions
+{
+  SpectrumMethod method = SpectrumMethod::Automatic;
+  /// None: the spectrum of A; else of P^-1 A.
+  Preconditioner preconditioner = Preconditioner::None;
+  double omega = 1.0; ///< of SSOR
+  /// Relative, of each eigenvalue; multigrid takes ten times longer to 1e-6.
+  double tolerance = 1e-4;
+  int maximumIterations = 10000;
+  /// 0: no limit; looked at between iterations, not in a factorisation.
+  double maximumSeconds = 0.0;
+  std::string petscOptions;
+  std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
+};
+}
+#endif

@@ -1,0 +1,110 @@
+/**
+ * @file SolverOptions.h
+ * @brief The options of linear solvers, and the result of a solve.
+ */
+#ifndef tautline_SolverOptions_h
+#define tautline_SolverOptions_h
+
+#include "tautline/Core/Types.h"
+#include "tautline/SolversExport.h"
+
+#include <functional>
+#include <vector>
+
+namespace tautline
+{
+/// The methods of section 2.5; the numbers are stable: ParaView state files hold them.
+enum class KrylovMethod : int
+{
+  ConjugateGradient = 0,
+  GMRES = 1,
+  MINRES = 2,
+  BiCGStab = 3,
+  Direct = 4 ///< a Cholesky or LU factorisation; the preconditioner is not used
+};
+
+/// The preconditioners of section 2.6, and others. The numbers are stable.
+enum class Preconditioner : int
+{
+  Jacobi = 0,
+  SSOR = 1,
+  ILU = 2, ///< no fill-in; on several ranks block Jacobi with ILU(0) in each block
+  BoomerAMG = 3,
+  ICC = 4,  ///< incomplete Cholesky, no fill-in; on several ranks as ILU
+  GAMG = 5, ///< smoothed aggregation
+  None = 6
+};
+
+/// Number of a combination in Table 2.5, 1 to 16; 0 for one that is not there.
+TAUTLINE_SOLVERS_EXPORT int combinationNumber(KrylovMethod method, Preconditioner preconditioner);
+TAUTLINE_SOLVERS_EXPORT const char* nameOf(KrylovMethod method);
+TAUTLINE_SOLVERS_EXPORT const char* nameOf(Preconditioner preconditioner);
+
+/**
+ * @brief PETSc options that make BoomerAMG's set-up and iterations several times cheaper than PETSc's defaults in 3D, for a few
+ * iterations more: HMIS coarsening, aggressive on the finest level, and ext+i interpolation from at most four points. For
+ * SolverOptions::petscOptions. The tables of chapter 2 have PETSc's defaults.
+ *
+ * Source: H. De Sterck, U. M. Yang, J. J. Heys, SIAM J. Matrix Anal. Appl. 27 (2006); U. M. Yang, Numer. Linear Algebra Appl. 17 (2010).
+ */
+TAUTLINE_SOLVERS_EXPORT const char* fastMultigridOptions();
+
+struct SolverOptions
+{
+  KrylovMethod method = KrylovMethod::ConjugateGradient;
+  Preconditioner preconditioner = Preconditioner::BoomerAMG;
+  double relativeTolerance = 1e-5; ///< of the preconditioned residual, as PETSc measures it (2.7)
+  double absoluteTolerance = 1e-50;
+  int maximumIterations = 10000;
+  int restart = 30;            ///< m of GMRES(m)
+  double omega = 1.0;          ///< of SSOR, 0 to 2 (exclusive)
+  double maximumSeconds = 0.0; ///< 0: no limit; looked at between iterations, not in a set-up
+  bool initialGuess = false;   ///< start from the x passed in rather than from 0
+  bool ritzValues = false;     ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
+  /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they win over the above.
+  std::string petscOptions;
+  int threads = 0; ///< 0: all cores; used where Tautline itself works
+  /// Told iteration and residual norm; stops when it returns false. Called from the calling thread.
+  /// On several ranks all have one or none has.
+  std::function<bool(int, double)> observer;
+};
+
+/// How a solve ended. The numbers are stable.
+enum class SolveReason : int
+{
+  RelativeTolerance = 0,
+  AbsoluteTolerance = 1,
+  Exact = 2,            ///< a direct solve, or nothing to do
+  OtherConvergence = 3, ///< converged as PETSc options asked
+  IterationLimit = 4,
+  IndefinitePreconditioner = 5, ///< shown as '*' in Tables 2.8 to 2.12
+  IndefiniteMatrix = 6,
+  Breakdown = 7,
+  Diverged = 8, ///< the residual grew beyond bounds
+  NotANumber = 9,
+  PreconditionerFailed = 10, ///< zero pivot, or its set-up failed
+  TimeLimit = 11,
+  Aborted = 12,
+  OtherFailure = 13,
+  /// The preconditioned residual is small, that of the system is as large as the right-hand side: the preconditioner misleads.
+  FalseConvergence = 14
+};
+
+TAUTLINE_SOLVERS_EXPORT bool converged(SolveReason reason);
+/// A sentence for the user.
+TAUTLINE_SOLVERS_EXPORT const char* describe(SolveReason reason);
+
+struct LinearSolution
+{
+  SolveReason reason = SolveReason::OtherFailure;
+  std::string message; ///< what PETSc said of a failure, or ""
+  int iterations = 0;
+  double setupSeconds =
+    0.0; ///< of the preconditioner or factorisation; 0 when it was there already
+  double solveSeconds = 0.0;     ///< without set-up
+  double trueResidual = 0.0;     ///< |b - A x| / |b| in the end; 0 if b is 0
+  std::vector<double> residuals; ///< norms as the method measures them; [0] is the initial one
+  double ritzSmallest = 0.0, ritzLargest = 0.0; ///< of P^-1 A, if asked for and known; else 0
+};
+}
+#endif
