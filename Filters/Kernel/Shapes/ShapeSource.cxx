@@ -1,3 +1,4 @@
+#include "ShapeMatch.h"
 #include "ShapeTarget.h"
 
 #include "ShapeEnergy.h"
