@@ -2,6 +2,7 @@
 
 #include "tautline/Core/Parallel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -286,7 +287,7 @@ SimplexMesh::SimplexMesh(
   this->cut(mesh, vertexOf, targets);
   this->load(mesh.view().points, threads);
   this->findPatches();
-  this->findBlocks();
+  this->findBlocks(mesh, vertexOf);
 }
 
 //------------------------------------------------------------------------------
@@ -554,31 +555,72 @@ void SimplexMesh::indexPatches()
 }
 
 //------------------------------------------------------------------------------
-void SimplexMesh::findBlocks()
+/// Pairs of blocks with vertices that are opposite in a hexahedron, which no simplex of it has both of.
+std::vector<std::pair<std::int32_t, std::int32_t>> SimplexMesh::blocksAcross(
+  const Mesh& mesh, const std::vector<std::int32_t>& vertexOf) const
+{
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  const MeshView& view = mesh.view();
+  for (const CellBlock& block : mesh.blocks())
+  {
+    for (Index i = 0; block.type == CellType::Hexahedron && i < block.count; ++i)
+    {
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      for (int k = 0; k < 4; ++k)
+      {
+        const std::int32_t a = vertexOf[node[k]], b = vertexOf[node[4 + (k + 2) % 4]];
+        if (a < 0 || b < 0 || a >= this->Free || b >= this->Free)
+        {
+          continue;
+        }
+        const std::int32_t first = a / this->Blocks.size, second = b / this->Blocks.size;
+        if (first != second)
+        {
+          pairs.emplace_back(first, second);
+          pairs.emplace_back(second, first);
+        }
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::findBlocks(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf)
 {
   const std::int32_t size = this->Blocks.size;
   const std::int32_t blocks = (this->Free + size - 1) / size;
+  const auto across = this->blocksAcross(mesh, vertexOf);
+  auto pair = across.begin();
   std::vector<std::int32_t> colour(blocks, -1), seen(blocks, -1);
   std::vector<char> taken;
   std::int32_t colours = 0;
   for (std::int32_t b = 0; b < blocks; ++b)
   {
     taken.assign(colours + 1, 0);
+    const auto take = [&](std::int32_t other)
+    {
+      if (seen[other] != b && colour[other] >= 0)
+      {
+        taken[colour[other]] = 1;
+      }
+      seen[other] = b;
+    };
     const std::size_t begin = static_cast<std::size_t>(this->PatchStarts[b * size]) * this->Dim;
     const std::size_t end =
       static_cast<std::size_t>(this->PatchStarts[std::min(this->Free, (b + 1) * size)]) * this->Dim;
     for (std::size_t i = begin; i < end; ++i)
     {
-      const std::int32_t v = this->PatchVertices[i];
-      if (v < this->Free && seen[v / size] != b)
+      if (this->PatchVertices[i] < this->Free)
       {
-        const std::int32_t other = v / size;
-        seen[other] = b;
-        if (colour[other] >= 0)
-        {
-          taken[colour[other]] = 1;
-        }
+        take(this->PatchVertices[i] / size);
       }
+    }
+    for (; pair != across.end() && pair->first == b; ++pair)
+    {
+      take(pair->second);
     }
     colour[b] = static_cast<std::int32_t>(std::find(taken.begin(), taken.end(), 0) - taken.begin());
     colours = std::max(colours, colour[b] + 1);

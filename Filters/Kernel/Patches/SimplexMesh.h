@@ -13,6 +13,7 @@
 #include "tautline/Mesh/Mesh.h"
 #include "tautline/Quality/Metrics.h"
 
+#include <utility>
 #include <vector>
 
 namespace tautline
@@ -28,7 +29,8 @@ struct TargetSimplex
   double det = 1; ///< of W^-1
 };
 
-/// Blocks of consecutive free vertices; no two of one colour share a simplex.
+/// Blocks of consecutive free vertices. No two of one colour share a cell, since most metrics read all
+/// points of the cells at a vertex: those of one colour can move at the same time.
 struct VertexBlocks
 {
   std::int32_t size = 256;                ///< block b has the vertices from b * size on
@@ -105,7 +107,9 @@ private:
   void findPatches();
   template <class Visit>
   void forEachPatchCorner(const Visit& visit);
-  void findBlocks();
+  std::vector<std::pair<std::int32_t, std::int32_t>> blocksAcross(
+    const Mesh& mesh, const std::vector<std::int32_t>& vertexOf) const;
+  void findBlocks(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf);
 
   int Dim = 3;
   bool Surface = false;

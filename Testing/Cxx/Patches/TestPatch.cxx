@@ -79,6 +79,47 @@ void testPatches(CellType type)
   TAUTLINE_CHECK(std::count(seen.begin(), seen.end(), 0) < data.numberOfCells());
 }
 
+/// Blocks of one colour, whose vertices move at the same time, have no cell in common.
+void testBlocks(CellType type)
+{
+  const Context context(topology(type).name);
+  const bool planar = topology(type).dimension == 2;
+  const MeshData data =
+    shuffled(planar ? blockMesh(type, 60, 60, 0) : blockMesh(type, 20, 20, 20), 3);
+  const SimplexMesh simplices(Mesh(data.view()), nullptr, nullptr, 1);
+  const VertexBlocks& blocks = simplices.blocks();
+  const std::int32_t numberOfBlocks = static_cast<std::int32_t>(blocks.byColour.size());
+  TAUTLINE_CHECK(numberOfBlocks > 10);
+  std::vector<int> colour(numberOfBlocks, -1);
+  for (std::size_t c = 0; c + 1 < blocks.colourStarts.size(); ++c)
+  {
+    for (std::int32_t i = blocks.colourStarts[c]; i < blocks.colourStarts[c + 1]; ++i)
+    {
+      colour[blocks.byColour[i]] = static_cast<int>(c);
+    }
+  }
+  std::vector<std::int32_t> blockOf(data.numberOfPoints(), -1);
+  for (std::int32_t v = 0; v < simplices.freeVertices(); ++v)
+  {
+    blockOf[simplices.point(v)] = v / blocks.size;
+  }
+  int shared = 0, clashes = 0;
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    for (Index i = data.offsets[cell]; i < data.offsets[cell + 1]; ++i)
+    {
+      for (Index j = data.offsets[cell]; j < i; ++j)
+      {
+        const std::int32_t a = blockOf[data.connectivity[i]], b = blockOf[data.connectivity[j]];
+        shared += a >= 0 && b >= 0 && a != b;
+        clashes += a >= 0 && b >= 0 && a != b && colour[a] == colour[b];
+      }
+    }
+  }
+  TAUTLINE_CHECK(shared > 0);
+  TAUTLINE_CHECK_EQUAL(clashes, 0);
+}
+
 /// Values, gradients and Hessians of an energy over patches, against fourth-order differences.
 template <int Dim, class Energy>
 void testEnergy(const char* name, const Energy& energy)
@@ -192,6 +233,10 @@ void testProjection()
 int TestPatch(int, char*[])
 {
   testBoundary();
+  for (CellType type : allTypes)
+  {
+    testBlocks(type);
+  }
   testPatches<2>(CellType::Triangle);
   testPatches<2>(CellType::Quadrilateral);
   testPatches<3>(CellType::Tetrahedron);
