@@ -216,7 +216,7 @@ HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options)
   proceed(options, 0.8);
   for (const auto& t : all)
   {
-    Vec2 corner[3], centre;
+    Vec2 corner[3] = {}, centre = {};
     bool ofBoundary = true;
     for (int k = 0; k < 3; ++k)
     {

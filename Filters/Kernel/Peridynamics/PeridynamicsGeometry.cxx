@@ -160,7 +160,7 @@ BoxGrid::BoxGrid(const std::vector<Vec2>& low, const std::vector<Vec2>& high)
   , High(high)
 {
   const auto count = static_cast<Index>(low.size());
-  Vec2 first = { 1e300, 1e300 }, last = { -1e300, -1e300 }, half;
+  Vec2 first = { 1e300, 1e300 }, last = { -1e300, -1e300 }, half = {};
   for (Index i = 0; i < count; ++i)
   {
     const Vec2 c = 0.5 * (low[i] + high[i]);
