@@ -1,6 +1,7 @@
 /**
  * @file Startup.h
- * @brief What the plugin does when ParaView loads it, in the GUI, in pvpython and on a server alike.
+ * @brief What the plugin does when ParaView loads it, in the GUI, in pvpython and on a server
+ * alike.
  */
 
 #ifndef tautline_Startup_h

@@ -13,7 +13,8 @@ constexpr int Hexahedron20[] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 1
   15 };
 constexpr int Hexahedron27[] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14,
   15, 22, 23, 21, 24, 20, 25, 26 };
-// VTK's wedge has 0 1 2 counter-clockwise seen from outside, Gmsh's from inside: 1 and 2 are exchanged.
+// VTK's wedge has 0 1 2 counter-clockwise seen from outside, Gmsh's from inside: 1 and 2 are
+// exchanged.
 constexpr int Wedge[] = { 0, 2, 1, 3, 5, 4 };
 constexpr int Wedge15[] = { 0, 2, 1, 3, 5, 4, 7, 9, 6, 13, 14, 12, 8, 11, 10 };
 constexpr int Wedge18[] = { 0, 2, 1, 3, 5, 4, 7, 9, 6, 13, 14, 12, 8, 11, 10, 16, 17, 15 };

@@ -3,9 +3,9 @@
  * @brief Medit's ASCII .mesh (versions 1 and 2) and .sol files.
  *
  * Read are Vertices, Corners, RequiredVertices, Edges, Triangles, Quadrilaterals, Tetrahedra,
- * Hexahedra, Prisms, Pyramids, Ridges, RequiredEdges and RequiredTriangles; other sections are skipped.
- * Cells are ordered by type: tetrahedra, hexahedra, wedges, pyramids, triangles, quadrilaterals, lines.
- * The array names are listed in MeshFile.h; `Reference` is always there.
+ * Hexahedra, Prisms, Pyramids, Ridges, RequiredEdges and RequiredTriangles; other sections are
+ * skipped. Cells are ordered by type: tetrahedra, hexahedra, wedges, pyramids, triangles,
+ * quadrilaterals, lines. The array names are listed in MeshFile.h; `Reference` is always there.
  *
  * A .sol file adds an array for each of its fields: scalars, vectors (3 components) and symmetric
  * tensors, which become full 3 x 3 matrices, row by row (9 components).

@@ -7,29 +7,26 @@
  *
  * Names every format shares, so that a filter finds them wherever a mesh came from:
  *
- * | array            | on      | type    | meaning                                                      |
- * |------------------|---------|---------|--------------------------------------------------------------|
- * | `BoundaryMarker` | points  | int64   | TetGen, Triangle: 0 inside, other numbers name the boundary    |
- * | `BoundaryMarker` | cells   | int64   | TetGen, Triangle: marker of a facet, face, edge or segment     |
- * | `Reference`      | points  | int64   | Medit, FreeFem++: label of a vertex                            |
- * | `Reference`      | cells   | int64   | material or region: TetGen's first element attribute (double   |
- * |                  |         |         | where it is no whole number), Medit and FreeFem++ label, Gmsh's |
- * |                  |         |         | physical tag                                                  |
- * | `Entity`         | cells   | int64   | Gmsh: tag of the geometric entity                              |
- * | `Fixed`          | points  | uint8   | Medit: 1 for required vertices and corners                      |
- * | `Corner`         | points  | uint8   | Medit: 1 for corners                                            |
- * | `Ridge`          | cells   | uint8   | Medit: 1 for ridges (edges)                                     |
- * | `Required`       | cells   | uint8   | Medit: 1 for required edges and triangles                        |
- * | `Normals`        | points  | double  | NOFF                                                          |
- * | `Color`          | both    | uint8 or double | COFF, colours of OFF faces: 3 or 4 components            |
- * | `Facet`          | cells   | int64   | TetGen .poly: the facet a polygon belongs to, from 0             |
- * | `Holes`          | field   | double  | .poly, .smesh: a point x y z in each hole                        |
- * | `Regions`        | field   | double  | .poly, .smesh: x y z, attribute, largest size                     |
- * | `FacetHoles`     | field   | double  | TetGen .poly: facet, then a point x y z in the hole of the facet   |
+ * - `BoundaryMarker` (points, int64): TetGen, Triangle: 0 inside, other numbers name the boundary
+ * - `BoundaryMarker` (cells, int64): TetGen, Triangle: marker of a facet, face, edge or segment
+ * - `Reference` (points, int64): Medit, FreeFem++: label of a vertex
+ * - `Reference` (cells, int64): material or region: TetGen's first element attribute (double where
+ *   it is no whole number), Medit and FreeFem++ label, Gmsh's physical tag
+ * - `Entity` (cells, int64): Gmsh: tag of the geometric entity
+ * - `Fixed` (points, uint8): Medit: 1 for required vertices and corners
+ * - `Corner` (points, uint8): Medit: 1 for corners
+ * - `Ridge` (cells, uint8): Medit: 1 for ridges (edges)
+ * - `Required` (cells, uint8): Medit: 1 for required edges and triangles
+ * - `Normals` (points, double): NOFF
+ * - `Color` (both, uint8 or double): COFF, colours of OFF faces: 3 or 4 components
+ * - `Facet` (cells, int64): TetGen .poly: the facet a polygon belongs to, from 0
+ * - `Holes` (field, double): .poly, .smesh: a point x y z in each hole
+ * - `Regions` (field, double): .poly, .smesh: x y z, attribute, largest size
+ * - `FacetHoles` (field, double): TetGen .poly: facet, then a point x y z in the hole of the facet
  *
  * Everything else keeps the name its file gives it (Gmsh), or is `Attribute1`, ... (TetGen) and
- * `Solution1`, ... (Medit .sol) unless the file was written by Tautline, which leaves the names in a
- * comment that other programs skip.
+ * `Solution1`, ... (Medit .sol) unless the file was written by Tautline, which leaves the names in
+ * a comment that other programs skip.
  */
 #ifndef tautline_MeshFile_h
 #define tautline_MeshFile_h

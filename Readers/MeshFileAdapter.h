@@ -14,8 +14,8 @@ class vtkUnstructuredGrid;
 
 namespace tautline
 {
-/// Fills an empty grid: points in double precision, 64-bit cells, all arrays. The large vectors become
-/// the grid's without being copied.
+/// Fills an empty grid: points in double precision, 64-bit cells, all arrays. The large vectors
+/// become the grid's without being copied.
 TAUTLINEREADERS_EXPORT void toGrid(MeshFile mesh, vtkUnstructuredGrid* grid);
 
 /// Fills an empty surface; cells are sorted as VTK wants them: vertices, lines, polygons.
@@ -25,7 +25,8 @@ TAUTLINEREADERS_EXPORT void toSurface(MeshFile mesh, vtkPolyData* surface);
  * @brief Copies a data set. Pixels and voxels become quadrilaterals and hexahedra, ghost cells are
  * left out, arrays that are not numeric too.
  *
- * Throws Error, naming types and counts, on cells files of ours do not have (strips, polyhedra, ...).
+ * Throws Error, naming types and counts, on cells files of ours do not have (strips, polyhedra,
+ * ...).
  */
 TAUTLINEREADERS_EXPORT MeshFile fromDataSet(vtkDataSet* input);
 }

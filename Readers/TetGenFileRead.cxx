@@ -177,8 +177,8 @@ NodeList readNodeFile(const std::string& name, const std::string& why, MeshFile&
   return nodes;
 }
 
-/// Where a file's local node numbers go in VTK's order: TetGen lists the middle nodes of a quadratic
-/// tetrahedron and triangle in another one.
+/// Where a file's local node numbers go in VTK's order: TetGen lists the middle nodes of a
+/// quadratic tetrahedron and triangle in another one.
 std::vector<int> vtkPlaces(unsigned char type)
 {
   switch (type)
@@ -278,7 +278,8 @@ void addMarkers(MeshFile& mesh, std::vector<Index> markers, bool present)
   }
 }
 
-/// Faces (3 or 6 nodes) or edges (2 or 3) with an optional marker; numbers of neighbours are skipped.
+/// Faces (3 or 6 nodes) or edges (2 or 3) with an optional marker; numbers of neighbours are
+/// skipped.
 void readBoundary(const FileContent& file, const NodeList& nodes, bool faces, MeshFile& mesh)
 {
   TextCursor cursor(file, Comment);

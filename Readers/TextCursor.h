@@ -24,7 +24,8 @@ namespace tautline
 class FileContent
 {
 public:
-  /// Throws FileError when the file cannot be read; `why` says who needs it ("the companion of ...").
+  /// Throws FileError when the file cannot be read; `why` says who needs it ("the companion of
+  /// ...").
   explicit FileContent(const std::string& name, const std::string& why = std::string());
   /// The bytes of a string, for tests.
   FileContent(std::string name, std::string_view bytes);
@@ -50,7 +51,8 @@ private:
 class TextCursor
 {
 public:
-  /// Starts after a UTF-8 byte order mark. With `comment` set, it and the rest of its line are blank.
+  /// Starts after a UTF-8 byte order mark. With `comment` set, it and the rest of its line are
+  /// blank.
   explicit TextCursor(const FileContent& file, char comment = '\0');
 
   /// Throws FileError with the current file and line.
@@ -222,8 +224,8 @@ inline Index TextCursor::integer(const char* what)
   return static_cast<Index>(bytes);
 }
 
-/// Asks the system for large pages: touching a large new array for the first time in ordinary ones takes
-/// as long as filling it.
+/// Asks the system for large pages: touching a large new array for the first time in ordinary ones
+/// takes as long as filling it.
 void adviseLargePages(void* memory, std::size_t bytes);
 
 /// Room for `size` values in all, in large pages where there are some.

@@ -1,6 +1,7 @@
 /**
  * @file TextOutput.h
- * @brief Text written through one large buffer, numbers in the fewest digits that read back the same.
+ * @brief Text written through one large buffer, numbers in the fewest digits that read back the
+ * same.
  */
 #ifndef tautline_TextOutput_h
 #define tautline_TextOutput_h

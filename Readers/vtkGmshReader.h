@@ -2,8 +2,8 @@
  * @class vtkGmshReader
  * @brief Reads Gmsh's .msh 2.2 and 4.1, text and binary, and FreeFem++'s .msh.
  *
- * Cell arrays: `Reference` (physical tag; FreeFem++: label), `Entity` (elementary tag). $NodeData and
- * $ElementData come as arrays of their names. Elements up to second order.
+ * Cell arrays: `Reference` (physical tag; FreeFem++: label), `Entity` (elementary tag). $NodeData
+ * and $ElementData come as arrays of their names. Elements up to second order.
  *
  * Limits: versions 1 and 4.0 are refused with the command that converts them; periodic, ghost and
  * partition data are skipped; of a field with several time steps the last is kept.

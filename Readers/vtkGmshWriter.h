@@ -2,8 +2,9 @@
  * @class vtkGmshWriter
  * @brief Writes Gmsh's .msh 4.1, text or binary.
  *
- * `Reference` (else `BoundaryMarker`) becomes the physical tag, `Entity` the elementary one; all other
- * numeric arrays become $NodeData and $ElementData, as doubles. Cells up to second order, mixed.
+ * `Reference` (else `BoundaryMarker`) becomes the physical tag, `Entity` the elementary one; all
+ * other numeric arrays become $NodeData and $ElementData, as doubles. Cells up to second order,
+ * mixed.
  *
  * Limits: Gmsh itself shows data of 1, 3 or 9 components; others are written all the same.
  *

@@ -3,8 +3,9 @@
  * @brief Reads Medit's ASCII .mesh (versions 1 and 2) and .sol files.
  *
  * A .mesh brings its .sol companion, a .sol its .mesh. Point arrays: `Reference`, `Fixed` (required
- * vertices and corners), `Corner`, fields of the .sol. Cell arrays: `Reference`, `Ridge`, `Required`.
- * Tensors of a .sol become 3 x 3 matrices, row by row, as the metric-tensor targets want them.
+ * vertices and corners), `Corner`, fields of the .sol. Cell arrays: `Reference`, `Ridge`,
+ * `Required`. Tensors of a .sol become 3 x 3 matrices, row by row, as the metric-tensor targets
+ * want them.
  *
  * Limits: .meshb (binary) and curved (P2) cells are not read; normals and tangents are skipped.
  *

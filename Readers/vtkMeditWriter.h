@@ -3,8 +3,8 @@
  * @brief Writes Medit's ASCII .mesh (version 2), and a .sol for the arrays a .mesh cannot hold.
  *
  * `Reference` (else `BoundaryMarker`) is the reference of points and cells, of boundary cells
- * `BoundaryMarker` comes first. `Fixed`, `Corner`, `Ridge`, `Required` become RequiredVertices, Corners,
- * Ridges, RequiredEdges and RequiredTriangles. Planar meshes are written in 2D.
+ * `BoundaryMarker` comes first. `Fixed`, `Corner`, `Ridge`, `Required` become RequiredVertices,
+ * Corners, Ridges, RequiredEdges and RequiredTriangles. Planar meshes are written in 2D.
  *
  * Limits: linear cells without polygons; cells are sorted by type; field data are not written.
  *

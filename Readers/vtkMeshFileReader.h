@@ -4,7 +4,8 @@
  *
  * A subclass names a format. The whole file is read at once and checked; what is wrong with it is
  * reported as "file:line: problem" and leaves an empty output. Coordinates are double precision.
- * Array names are the same for all formats (see MeshFile.h): `Fixed`, `BoundaryMarker`, `Reference`.
+ * Array names are the same for all formats (see MeshFile.h): `Fixed`, `BoundaryMarker`,
+ * `Reference`.
  *
  * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkOffReader vtkMeshFileWriter
  */
@@ -40,8 +41,8 @@ public:
   ///@{
   /**
    * Whether cells of lower dimension than the mesh are kept: boundary triangles beside tetrahedra,
-   * edges beside triangles, with their markers. Off, the output is a mesh every filter can take as it
-   * is. The default is off.
+   * edges beside triangles, with their markers. Off, the output is a mesh every filter can take as
+   * it is. The default is off.
    */
   vtkSetMacro(LowerCells, bool);
   vtkGetMacro(LowerCells, bool);

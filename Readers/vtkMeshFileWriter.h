@@ -2,10 +2,10 @@
  * @class vtkMeshFileWriter
  * @brief What Tautline's mesh writers share: a file name, the input, errors.
  *
- * A subclass names a format. A mesh with cells the format has not is refused, by name and number of the
- * cells, and nothing is written. Numbers have as many digits as it takes to read the same number
- * back. Discretization what was written gives the same mesh with the same arrays, apart from arrays that are
- * not numeric and integers other than 64-bit ones, which come back as 64-bit.
+ * A subclass names a format. A mesh with cells the format has not is refused, by name and number of
+ * the cells, and nothing is written. Numbers have as many digits as it takes to read the same
+ * number back. Discretization what was written gives the same mesh with the same arrays, apart from
+ * arrays that are not numeric and integers other than 64-bit ones, which come back as 64-bit.
  *
  * @sa vtkTetGenWriter vtkMeditWriter vtkGmshWriter vtkOffWriter vtkMeshFileReader
  */

@@ -2,8 +2,8 @@
  * @class vtkOffReader
  * @brief Reads Geomview's OFF, COFF, NOFF and CNOFF files.
  *
- * The output is a vtkPolyData. Point arrays: `Normals` (the active normals), `Color`; cell array: `Color`.
- * Show a colour by choosing `Color` and switching off Map Scalars.
+ * The output is a vtkPolyData. Point arrays: `Normals` (the active normals), `Color`; cell array:
+ * `Color`. Show a colour by choosing `Color` and switching off Map Scalars.
  *
  * Limits: binary, 4OFF, nOFF and textured (STOFF) files are refused; entries of a colour map are
  * skipped.

@@ -3,14 +3,15 @@
  * @brief Reads a set of labelled images: a list of them in a .csv file, or all images of a folder.
  *
  * FileName is one of
- * - a .csv file with a line of column names, of which `file` (relative to the list, or to a folder `images` beside it)
- *   is needed, and `class` or else `class_id`, `label` is the label;
- * - a folder: all images in it, in the order of their names; the label is the name up to the first digit or blank;
+ * - a .csv file with a line of column names, of which `file` (relative to the list, or to a folder
+ *   `images` beside it) is needed, and `class` or else `class_id`, `label` is the label;
+ * - a folder: all images in it, in the order of their names; the label is the name up to the first
+ *   digit or blank;
  * - an image in such a folder: the same as the folder.
- * Images are those VTK reads by their contents: PNG, JPEG, TIFF, BMP, PNM and others.
+ *   Images are those VTK reads by their contents: PNG, JPEG, TIFF, BMP, PNM and others.
  *
- * The output is a vtkMultiBlockDataSet of vtkImageData. The name of a block is that of the file without its ending; field
- * arrays of the image: `Label` and `File`, strings.
+ * The output is a vtkMultiBlockDataSet of vtkImageData. The name of a block is that of the file
+ * without its ending; field arrays of the image: `Label` and `File`, strings.
  *
  * @sa vtkShapeRetrieval
  */

@@ -6,9 +6,11 @@
  * meshes: triangles), faces, edges, as far as there are any. .poly and .smesh write polygons or
  * segments with `Holes` and `Regions` of the field data. `BoundaryMarker` is the marker (else
  * `Reference` of a point or face), `Reference` the first attribute of an element; all other numeric
- * point and element arrays are attributes, whose names are kept in a comment. Numbering starts at 0.
+ * point and element arrays are attributes, whose names are kept in a comment. Numbering starts at
+ * 0.
  *
- * Limits: tetrahedra and triangles only; face and edge arrays other than the marker are not written.
+ * Limits: tetrahedra and triangles only; face and edge arrays other than the marker are not
+ * written.
  *
  * @sa vtkMeshFileWriter vtkTetGenReader tautline::writeTetGen
  */

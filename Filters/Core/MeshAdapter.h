@@ -80,7 +80,8 @@ TAUTLINECORE_EXPORT void flipCells(vtkDataSet* data);
 TAUTLINECORE_EXPORT std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter);
 
 /**
- * @brief New points for an output: in the precision of `like`, with the coordinates given in double.
+ * @brief New points for an output: in the precision of `like`, with the coordinates given in
+ * double.
  */
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkPoints> makePoints(
   const std::vector<double>& coordinates, vtkPoints* like);

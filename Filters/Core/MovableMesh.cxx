@@ -437,7 +437,8 @@ void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
 }
 
 //------------------------------------------------------------------------------
-std::string summarize(const OptimizeResult& result, const MovableMesh& mesh, const std::string& block)
+std::string summarize(
+  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block)
 {
   std::ostringstream text;
   text << (block.empty() ? "" : "In " + block + ": ") << describe(result.reason) << "\n";

@@ -33,15 +33,15 @@ struct BoundaryShape;
 
 /**
  * @class tautline::MovableMesh
- * @brief A data set whose points can move. Its orientation is settled: reversed throughout is viewed as its
- * mirror image, mixed is refused.
+ * @brief A data set whose points can move. Its orientation is settled: reversed throughout is
+ * viewed as its mirror image, mixed is refused.
  */
 class TAUTLINECORE_EXPORT MovableMesh
 {
 public:
   /**
-   * @brief Throws Error that names the remedy for points that are implicit (image data), cells of higher
-   * order, no cell at all that is measured, and mixed orientation.
+   * @brief Throws Error that names the remedy for points that are implicit (image data), cells of
+   * higher order, no cell at all that is measured, and mixed orientation.
    */
   MovableMesh(vtkDataSet* input, int threads);
 
@@ -62,14 +62,14 @@ public:
   /// Marks points of the boundary that cannot slide; see boundaryShape().
   void fixCorners(const BoundaryShape& shape);
   /**
-   * @brief The flags set so far, and those that are always set: points of ghost cells, of cells that are
-   * not measured (lines, polygons, polyhedra) and of surfaces inside a volume mesh.
+   * @brief The flags set so far, and those that are always set: points of ghost cells, of cells
+   * that are not measured (lines, polygons, polyhedra) and of surfaces inside a volume mesh.
    */
   const std::vector<unsigned char>& fixed() const { return this->Fixed; }
 
   /**
-   * @brief Gives the output new points, in the precision of the input unless a valid cell would not be valid
-   * in it, and the point array `Displacement`.
+   * @brief Gives the output new points, in the precision of the input unless a valid cell would not
+   * be valid in it, and the point array `Displacement`.
    * @return a sentence if single precision did not do, else ""
    */
   std::string move(vtkPointSet* output, const std::vector<double>& points) const;
@@ -108,11 +108,13 @@ TAUTLINECORE_EXPORT void forEachBlock(vtkDataObject* input, vtkDataObject* refer
 /// The number of data sets, at least 1.
 TAUTLINECORE_EXPORT int countBlocks(vtkDataObject* input);
 
-/// Calls visit(flat index, data set) for the data sets of composite data, or with 0 for a single one.
+/// Calls visit(flat index, data set) for the data sets of composite data, or with 0 for a single
+/// one.
 TAUTLINECORE_EXPORT void forEachLeaf(
   vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit);
 
-/// The data set of `data` that belongs to a block of the input: at its place, or `data` itself; null: none.
+/// The data set of `data` that belongs to a block of the input: at its place, or `data` itself;
+/// null: none.
 TAUTLINECORE_EXPORT vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data);
 
 /// The array of marks, of points or cells, in what markSelected() returns.
@@ -133,8 +135,7 @@ TAUTLINECORE_EXPORT vtkDataArray* chosenArray(
 TAUTLINECORE_EXPORT void declareInput(vtkInformation* info, bool selection, bool optional);
 
 /// Makes the outputs: like the input on port 0, tables on the others.
-TAUTLINECORE_EXPORT void provideOutputs(
-  vtkDataObject* input, vtkInformationVector* outputs);
+TAUTLINECORE_EXPORT void provideOutputs(vtkDataObject* input, vtkInformationVector* outputs);
 
 /// Columns that grow by rows; the names of the first row decide.
 class TAUTLINECORE_EXPORT TableRows
@@ -159,13 +160,13 @@ private:
 };
 
 /**
- * @brief Adds a row per iteration: `Block` (composite input), `Objective`, for each name `<name> objective`
- * (if there are several), `<name> mean`, `<name> worst`; `Inverted`, `N gradient`, `N moving`, `Time (s)`.
- * Row i is iteration i of the block; row 0 is the input. ParaView's charts leave out the last two.
+ * @brief Adds a row per iteration: `Block` (composite input), `Objective`, for each name `<name>
+ * objective` (if there are several), `<name> mean`, `<name> worst`; `Inverted`, `N gradient`, `N
+ * moving`, `Time (s)`. Row i is iteration i of the block; row 0 is the input. ParaView's charts
+ * leave out the last two.
  */
-TAUTLINECORE_EXPORT void addHistory(TableRows& rows,
-  const std::vector<IterationRecord>& history, const std::vector<std::string>& names,
-  const std::string& block);
+TAUTLINECORE_EXPORT void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
+  const std::vector<std::string>& names, const std::string& block);
 
 /// Reason, iterations, seconds, free points and inverted elements, in sentences.
 TAUTLINECORE_EXPORT std::string summarize(

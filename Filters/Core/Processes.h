@@ -20,8 +20,8 @@ namespace tautline
 {
 /**
  * @class tautline::Processes
- * @brief The processes of VTK's global controller; one if there is none. All methods except the first three
- * are collective.
+ * @brief The processes of VTK's global controller; one if there is none. All methods except the
+ * first three are collective.
  */
 class TAUTLINECORE_EXPORT Processes
 {
@@ -43,8 +43,9 @@ public:
   std::vector<double> gather(const std::vector<double>& values) const;
 
   /**
-   * @brief Does work that does not communicate, or that throws on all processes if on any. What it throws on any process is
-   * thrown on all, as Error, so that none waits for another that has given up.
+   * @brief Does work that does not communicate, or that throws on all processes if on any. What it
+   * throws on any process is thrown on all, as Error, so that none waits for another that has given
+   * up.
    */
   void together(const std::function<void()>& work) const;
 
@@ -57,7 +58,8 @@ private:
 /// The least of the numbers of all processes. Collective; MPI is not needed.
 TAUTLINECORE_EXPORT int minimumOverProcesses(int own);
 
-/// Throws Error, on all processes, if a data set has cells on several of them. Collective; MPI is not needed.
+/// Throws Error, on all processes, if a data set has cells on several of them. Collective; MPI is
+/// not needed.
 TAUTLINECORE_EXPORT void requireOneProcess(vtkDataObject* input);
 }
 #endif

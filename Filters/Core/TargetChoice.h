@@ -31,11 +31,10 @@ struct TargetChoice
 };
 
 /**
- * @brief The targets chosen; none for TargetType::Ideal. Values of point arrays are averaged over each
- * cell. A reference mesh that is reversed throughout is taken as its mirror image. Throws Error that
- * names what is missing or does not fit.
+ * @brief The targets chosen; none for TargetType::Ideal. Values of point arrays are averaged over
+ * each cell. A reference mesh that is reversed throughout is taken as its mirror image. Throws
+ * Error that names what is missing or does not fit.
  */
-TAUTLINECORE_EXPORT Targets makeTargets(
-  const Mesh& mesh, const TargetChoice& choice, int threads);
+TAUTLINECORE_EXPORT Targets makeTargets(const Mesh& mesh, const TargetChoice& choice, int threads);
 }
 #endif

@@ -1,7 +1,7 @@
 /**
  * @file MovedBoundary.h
- * @brief Which points of a mesh move, which stay, by how much; and tensors per cell. From arrays and
- * selections.
+ * @brief Which points of a mesh move, which stay, by how much; and tensors per cell. From arrays
+ * and selections.
  */
 #ifndef tautline_MovedBoundary_h
 #define tautline_MovedBoundary_h
@@ -40,8 +40,8 @@ struct PartChoice
 };
 
 /**
- * @brief Throws Error for what no warp can start from: inverted elements, coordinates that are not finite,
- * cells without a shape to keep (polygons, polyhedra), no boundary.
+ * @brief Throws Error for what no warp can start from: inverted elements, coordinates that are not
+ * finite, cells without a shape to keep (polygons, polyhedra), no boundary.
  */
 void requireElements(const MovableMesh& mesh);
 
@@ -58,7 +58,8 @@ void markPoints(const Mesh& mesh, vtkDataSet* selected, PointFlags& flags);
 /// Marks the points of ghost cells.
 void markGhosts(vtkDataSet* input, PointFlags& flags);
 
-/// 3 per point, 0 where the flags are 0. Throws Error for other numbers of components, and values that are not finite.
+/// 3 per point, 0 where the flags are 0. Throws Error for other numbers of components, and values
+/// that are not finite.
 std::vector<double> displacementsOf(vtkDataArray* array, const PointFlags& flags);
 
 /// 6 per cell of 1, 3, 6 or 9 components.

@@ -99,7 +99,8 @@ public:
   {
   }
 
-  /// For each point of the target a point of the mesh, or None; empty if there is no correspondence.
+  /// For each point of the target a point of the mesh, or None; empty if there is no
+  /// correspondence.
   std::vector<Index> match(std::string& how)
   {
     const Correspondence wanted = this->Request.correspondence;
@@ -298,7 +299,8 @@ private:
   std::unordered_set<std::pair<Index, Index>, EdgeHash> Edges;
 };
 
-/// What the boundary of a mesh can lie on: the target, or its boundary if it has as many dimensions as the mesh.
+/// What the boundary of a mesh can lie on: the target, or its boundary if it has as many dimensions
+/// as the mesh.
 vtkSmartPointer<vtkDataSet> surfaceOf(vtkDataSet* target, bool ofVolume)
 {
   const int wanted = ofVolume ? 2 : 1;

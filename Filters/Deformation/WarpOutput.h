@@ -35,8 +35,8 @@ struct WarpTotals
 };
 
 /**
- * @brief Gives the output the new points and the arrays `Displacement`, `TMP shape` (the active scalars) and
- * `Validity`, adds rows to the tables and to the totals.
+ * @brief Gives the output the new points and the arrays `Displacement`, `TMP shape` (the active
+ * scalars) and `Validity`, adds rows to the tables and to the totals.
  */
 void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const WarpFacts& facts,
   const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals);

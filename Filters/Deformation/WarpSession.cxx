@@ -21,7 +21,8 @@ using namespace tautline;
 
 namespace
 {
-// Arrays to process. All are of the mesh: ParaView's pipeline takes those of one port at consecutive indices only.
+// Arrays to process. All are of the mesh: ParaView's pipeline takes those of one port at
+// consecutive indices only.
 enum Arrays
 {
   DisplacementArray = 0,
@@ -537,7 +538,8 @@ bool vtkMeshWarp::Session::prepare(RestingMesh& rest, WarpTask& task, int blockN
 }
 
 //------------------------------------------------------------------------------
-WarpResult vtkMeshWarp::Session::warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused)
+WarpResult vtkMeshWarp::Session::warp(
+  WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused)
 {
   RestingMesh& rest = kept.rest;
   const MeshView& view = rest.mesh->mesh().view();

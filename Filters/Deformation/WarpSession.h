@@ -52,7 +52,7 @@ private:
 struct WarpBlock
 {
   RestingMesh rest;
-  vtkSmartPointer<vtkPointSet> first;      ///< at the first time step
+  vtkSmartPointer<vtkPointSet> first;         ///< at the first time step
   std::map<int, tautline::WarpResult> frames; ///< at time steps, each warped from the one before
 };
 

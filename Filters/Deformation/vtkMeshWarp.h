@@ -2,53 +2,57 @@
  * @class vtkMeshWarp
  * @brief Moves the interior of a mesh after its boundary has moved.
  *
- * The boundary moves by a displacement array, to a second data set, by a transform of a part of it, or as it
- * does over the time steps of the input. The interior follows by anisotropic FEMWARP and the optimization of
- * shape and validity (HYBRID, dissertation section 4.9) or by one of the methods this is compared with. The
- * connectivity stays. An affine motion of the whole boundary comes out exactly, except by JACOBIAN_STIFFENING,
- * whose material is not uniform, and by HYBRID, which goes on to restore the shapes that it changed.
+ * The boundary moves by a displacement array, to a second data set, by a transform of a part of it,
+ * or as it does over the time steps of the input. The interior follows by anisotropic FEMWARP and
+ * the optimization of shape and validity (HYBRID, dissertation section 4.9) or by one of the
+ * methods this is compared with. The connectivity stays. An affine motion of the whole boundary
+ * comes out exactly, except by JACOBIAN_STIFFENING, whose material is not uniform, and by HYBRID,
+ * which goes on to restore the shapes that it changed.
  *
- * Takes data sets with explicit points, or blocks of these (one after the other, each with its own boundary):
- * triangles, quadrilaterals, tetrahedra and hexahedra (pointwise methods: wedges and pyramids, too). The
- * elements must be valid to begin with. A mesh reversed throughout is treated as its mirror image; surfaces in
- * space, mixed orientation, image data (implicit points), polygons, polyhedra and cells of higher order are
- * refused.
+ * Takes data sets with explicit points, or blocks of these (one after the other, each with its own
+ * boundary): triangles, quadrilaterals, tetrahedra and hexahedra (pointwise methods: wedges and
+ * pyramids, too). The elements must be valid to begin with. A mesh reversed throughout is treated
+ * as its mirror image; surfaces in space, mixed orientation, image data (implicit points),
+ * polygons, polyhedra and cells of higher order are refused.
  *
  * @par Input ports:
- * 0 the mesh; 1 (optional) where its boundary goes (TARGET): a data set, or for a mesh of blocks one of the
- * same blocks or one for all of them; 2 (optional) a vtkSelection of what moves (MovedPart SELECTION); 3
- * (optional) a vtkSelection of points that stay, or cells whose points stay.
+ * 0 the mesh; 1 (optional) where its boundary goes (TARGET): a data set, or for a mesh of blocks
+ * one of the same blocks or one for all of them; 2 (optional) a vtkSelection of what moves
+ * (MovedPart SELECTION); 3 (optional) a vtkSelection of points that stay, or cells whose points
+ * stay.
  *
- * Arrays of the mesh (SetInputArrayToProcess), by index: 0 displacements (points, 3 components; "Automatic",
- * the default, is `Displacement` or the active vectors); 1 what moves (points or cells, see MovedPart); 2
- * points that stay (not 0); 3 tensors (cells; 1, 3, 6 or 9 components); 4 regions (cells).
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 displacements (points, 3 components;
+ * "Automatic", the default, is `Displacement` or the active vectors); 1 what moves (points or
+ * cells, see MovedPart); 2 points that stay (not 0); 3 tensors (cells; 1, 3, 6 or 9 components); 4
+ * regions (cells).
  *
  * @par Output port 0 `Mesh`:
- * The input with new points, the point array `Displacement` (from the mesh at rest), and the cell arrays `TMP
- * shape` (similarity to the element at rest (4.22), 0 is the same shape) and `Validity` (see
- * vtkElementQuality). Points in single precision stay so unless a valid element would not be valid when
- * rounded.
+ * The input with new points, the point array `Displacement` (from the mesh at rest), and the cell
+ * arrays `TMP shape` (similarity to the element at rest (4.22), 0 is the same shape) and `Validity`
+ * (see vtkElementQuality). Points in single precision stay so unless a valid element would not be
+ * valid when rounded.
  *
  * @par Output port 1 `History`:
- * A vtkTable with a row per stage of the work: `Amount`, `Inverted`, `Worst shape`, `Mean shape`, `Stage`
- * (text), `N iterations`, `Time (s)`; of composite data sets also `Block`.
+ * A vtkTable with a row per stage of the work: `Amount`, `Inverted`, `Worst shape`, `Mean shape`,
+ * `Stage` (text), `N iterations`, `Time (s)`; of composite data sets also `Block`.
  *
  * @par Output port 2 `Statistics`:
- * A vtkTable with a row per data set: `Block` (composite data sets), `Elements`, `Boundary points`, `Moved
- * points`, `Largest displacement`, `Amount`, `Inverted after warp`, `Inverted`, `Impossible` (elements no place
- * of the interior makes valid), `Crossings` (pairs of boundary edges or triangles that cross and did not),
- * `Worst shape`, `Mean shape`, `Worst IMR before`, `Mean IMR before`, `Worst IMR`, `Mean IMR` (inverse mean
- * ratio), `Cxx` ... `Cxz` (the coefficients), `Decoupled`, `Regularization`, `Reused` (1: matrices of the run
- * before), `Assemble (s)`, `Set-up (s)`, `Solve (s)`, `Improve (s)`, `Total (s)`.
+ * A vtkTable with a row per data set: `Block` (composite data sets), `Elements`, `Boundary points`,
+ * `Moved points`, `Largest displacement`, `Amount`, `Inverted after warp`, `Inverted`, `Impossible`
+ * (elements no place of the interior makes valid), `Crossings` (pairs of boundary edges or
+ * triangles that cross and did not), `Worst shape`, `Mean shape`, `Worst IMR before`, `Mean IMR
+ * before`, `Worst IMR`, `Mean IMR` (inverse mean ratio), `Cxx` ... `Cxz` (the coefficients),
+ * `Decoupled`, `Regularization`, `Reused` (1: matrices of the run before), `Assemble (s)`, `Set-up
+ * (s)`, `Solve (s)`, `Improve (s)`, `Total (s)`.
  *
  * @par Again and again:
- * Matrices and factorisations are kept as long as the mesh, the points that are given and the options of the
- * method are the same: animating Amount, or a target over time, pays for them once.
+ * Matrices and factorisations are kept as long as the mesh, the points that are given and the
+ * options of the method are the same: animating Amount, or a target over time, pays for them once.
  *
  * @par Several processes:
- * A mesh spread over processes is refused, as the boundary of a part is not that of the mesh: gather it on one
- * process first (in ParaView, by Aggregate Dataset). Blocks may be on different processes. Points of ghost
- * cells stay.
+ * A mesh spread over processes is refused, as the boundary of a part is not that of the mesh:
+ * gather it on one process first (in ParaView, by Aggregate Dataset). Blocks may be on different
+ * processes. Points of ghost cells stay.
  *
  * @par Example:
  * @code
@@ -102,8 +106,8 @@ public:
 
   ///@{
   /**
-   * How much of the motion, along its path: 0 is the input (bitwise), 1 all; more goes on beyond it. At least
-   * 0. The default is 1.
+   * How much of the motion, along its path: 0 is the input (bitwise), 1 all; more goes on beyond
+   * it. At least 0. The default is 1.
    */
   vtkSetClampMacro(Amount, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Amount, double);
@@ -118,15 +122,16 @@ public:
     CLOSEST_POINT = 4    ///< projection to the nearest point of the surface (curve)
   };
   ///@{
-  /// Which point of the target belongs to which of the mesh. The default is AUTOMATIC_MATCH; the summary tells.
+  /// Which point of the target belongs to which of the mesh. The default is AUTOMATIC_MATCH; the
+  /// summary tells.
   vtkSetClampMacro(Correspondence, int, AUTOMATIC_MATCH, CLOSEST_POINT);
   vtkGetMacro(Correspondence, int);
   ///@}
 
   ///@{
   /**
-   * A point array of the target: values of the mesh's point array of the same name, or numbers of the mesh's
-   * points. "" or "None", the default, is none.
+   * A point array of the target: values of the mesh's point array of the same name, or numbers of
+   * the mesh's points. "" or "None", the default, is none.
    */
   void SetTargetIds(const char* name);
   const char* GetTargetIds() const { return this->TargetIds.c_str(); }
@@ -144,15 +149,16 @@ public:
   };
   ///@{
   /**
-   * Which part of the boundary moves, by a transform or to a target; the rest of it stays. Of values and
-   * selections the points on the boundary count. The default is AUTOMATIC_PART.
+   * Which part of the boundary moves, by a transform or to a target; the rest of it stays. Of
+   * values and selections the points on the boundary count. The default is AUTOMATIC_PART.
    */
   vtkSetClampMacro(MovedPart, int, AUTOMATIC_PART, SELECTION);
   vtkGetMacro(MovedPart, int);
   ///@}
 
   ///@{
-  /// Connected parts of the boundary, from 1, by the size of the box around them, the largest first.
+  /// Connected parts of the boundary, from 1, by the size of the box around them, the largest
+  /// first.
   void AddPart(int number);
   void RemoveAllParts();
   ///@}
@@ -214,7 +220,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether the centre is the middle of the box around the points that move, not Center. The default is on.
+  /// Whether the centre is the middle of the box around the points that move, not Center. The
+  /// default is on.
   vtkSetMacro(OwnCenter, bool);
   vtkGetMacro(OwnCenter, bool);
   vtkBooleanMacro(OwnCenter, bool);
@@ -234,8 +241,8 @@ public:
   };
   ///@{
   /**
-   * From which mesh a time step is warped, if the input or the target has several. Either way the result at a
-   * time is the same in whatever order times are asked for. The default is FIRST_STEP.
+   * From which mesh a time step is warped, if the input or the target has several. Either way the
+   * result at a time is the same in whatever order times are asked for. The default is FIRST_STEP.
    */
   vtkSetClampMacro(StartFrom, int, FIRST_STEP, PREVIOUS_STEP);
   vtkGetMacro(StartFrom, int);
@@ -289,8 +296,9 @@ public:
 
   ///@{
   /**
-   * Steps the motion is cut into: 0 (and 1 of SMALL_STEP_FEMWARP) is as many as are needed for no element to
-   * invert, up to MaximumSteps. Steps of a transform follow its path. The defaults are 1 and 100.
+   * Steps the motion is cut into: 0 (and 1 of SMALL_STEP_FEMWARP) is as many as are needed for no
+   * element to invert, up to MaximumSteps. Steps of a transform follow its path. The defaults are 1
+   * and 100.
    */
   vtkSetClampMacro(Steps, int, 0, 10000);
   vtkGetMacro(Steps, int);
@@ -300,9 +308,10 @@ public:
 
   ///@{
   /**
-   * Let the size of the mesh decide on the solver (on, the default), or take Solver and Preconditioner: the
-   * numbers of tautline::KrylovMethod (0 conjugate gradients, ..., 4 direct) and tautline::Preconditioner (0
-   * Jacobi, 1 SSOR, 2 ILU, 3 BoomerAMG, ...); the defaults are 0 and 3.
+   * Let the size of the mesh decide on the solver (on, the default), or take Solver and
+   * Preconditioner: the numbers of tautline::KrylovMethod (0 conjugate gradients, ..., 4 direct)
+   * and tautline::Preconditioner (0 Jacobi, 1 SSOR, 2 ILU, 3 BoomerAMG, ...); the defaults are 0
+   * and 3.
    */
   vtkSetMacro(AutomaticSolver, bool);
   vtkGetMacro(AutomaticSolver, bool);
@@ -327,9 +336,9 @@ public:
 
   ///@{
   /**
-   * JACOBIAN_STIFFENING: power of the element's size its stiffness falls by; at least 0, the default is 1.
-   * ITERATIVE_STIFFENING: by what factor (above 1, default 2) inverted elements get stiffer, how often at most
-   * (default 50).
+   * JACOBIAN_STIFFENING: power of the element's size its stiffness falls by; at least 0, the
+   * default is 1. ITERATIVE_STIFFENING: by what factor (above 1, default 2) inverted elements get
+   * stiffer, how often at most (default 50).
    */
   vtkSetClampMacro(StiffeningPower, double, 0.0, 10.0);
   vtkGetMacro(StiffeningPower, double);
@@ -347,8 +356,8 @@ public:
 
   ///@{
   /**
-   * RADIAL_BASIS: the radius of the functions (0, the default: chosen) and how well the boundary is met,
-   * relative to the largest displacement (default 1e-3).
+   * RADIAL_BASIS: the radius of the functions (0, the default: chosen) and how well the boundary is
+   * met, relative to the largest displacement (default 1e-3).
    */
   vtkSetClampMacro(SupportRadius, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(SupportRadius, double);
@@ -358,9 +367,9 @@ public:
 
   ///@{
   /**
-   * HYBRID: whether to untangle before the optimization of shape, which then keeps every element valid; else
-   * (4.24) as it stands, with this beta (relative to the mean element, at least 0) in its untangling metric.
-   * The defaults are on and 0.
+   * HYBRID: whether to untangle before the optimization of shape, which then keeps every element
+   * valid; else (4.24) as it stands, with this beta (relative to the mean element, at least 0) in
+   * its untangling metric. The defaults are on and 0.
    */
   vtkSetMacro(UntangleFirst, bool);
   vtkGetMacro(UntangleFirst, bool);
@@ -394,7 +403,8 @@ public:
   ///@}
 
   ///@{
-  /// The result of the last execution, of all blocks together; the names are those of the statistics.
+  /// The result of the last execution, of all blocks together; the names are those of the
+  /// statistics.
   const char* GetSummary() const { return this->Summary.c_str(); }
   vtkIdType GetInvertedAfterWarp() const { return this->InvertedAfterWarp; }
   vtkIdType GetInverted() const { return this->Inverted; }

@@ -2,24 +2,25 @@
  * @class vtkDomainSource
  * @brief The geometric domains of the dissertation, meshed with as many cells as asked for.
  *
- * The shapes follow the figures (tautline/Domains.h lists them with their numbers); the dissertation
- * gives no dimensions and its meshes are not published, so these are shapes of the same kind, not the
- * same meshes. Structured domains (rectangle, square) are exact and need nothing; the others need the
- * module Meshing, and say so when it was not built.
+ * The shapes follow the figures (tautline/Domains.h lists them with their numbers); the
+ * dissertation gives no dimensions and its meshes are not published, so these are shapes of the
+ * same kind, not the same meshes. Structured domains (rectangle, square) are exact and need
+ * nothing; the others need the module Meshing, and say so when it was not built.
  *
  * Output 0, vtkUnstructuredGrid of triangles or tetrahedra. Point arrays:
  * - `BoundaryMarker`: 0 inside, 1 on the outer boundary, 2, 3, ... on holes and other parts;
  * - `Fixed`: 1 on the boundary, 0 inside, the usual choice of points an optimizer leaves alone;
  * - `Displacement`: 3 components, moving domains only: where boundary points go; 0 inside.
- * Cell array `Reference`, square only: 1 in the unit square, 2 in the collar around it.
+ *   Cell array `Reference`, square only: 1 in the unit square, 2 in the collar around it.
  *
- * Output 1, vtkPolyData `Deformed Boundary`: the boundary with its points moved by Displacement (not
- * moved for domains at rest), with the cell array `BoundaryMarker` (structured domains: no cells).
+ * Output 1, vtkPolyData `Deformed Boundary`: the boundary with its points moved by Displacement
+ * (not moved for domains at rest), with the cell array `BoundaryMarker` (structured domains: no
+ * cells).
  *
- * The number of cells is met within 5 % (usually 0.5 % in 2D, 2 % in 3D) by repeating the meshing with a
- * corrected size, as long as it is at least 3,000 (2D) or 20,000 (3D); fewer may be impossible with the details of a shape.
- * Structured domains take the nearest number their grid allows.
- * Deterministic: the same properties give the same mesh.
+ * The number of cells is met within 5 % (usually 0.5 % in 2D, 2 % in 3D) by repeating the meshing
+ * with a corrected size, as long as it is at least 3,000 (2D) or 20,000 (3D); fewer may be
+ * impossible with the details of a shape. Structured domains take the nearest number their grid
+ * allows. Deterministic: the same properties give the same mesh.
  *
  * @sa vtkTriangleMesher vtkTetGenMesher tautline::domains
  */

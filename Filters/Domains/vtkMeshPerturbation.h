@@ -5,32 +5,34 @@
  * Makes test meshes: worse than the input by a known amount, but valid; or tangled, with a known
  * fraction of inverted elements.
  *
- * A percentage of the vertices inside the mesh is chosen. One after the other, each moves in a random
- * direction by a random part (evenly from 0 to Fraction) of the distance at which, in that direction,
- * the first element around it would invert, given where the others are by then. This distance is
- * exact: the determinant of every corner is linear in one vertex. The dissertation asks for "less
- * than half the distance at which element inversion would occur" (section 2.7.2): the default. No
- * element becomes inverted or degenerate, in the precision the output is stored in.
+ * A percentage of the vertices inside the mesh is chosen. One after the other, each moves in a
+ * random direction by a random part (evenly from 0 to Fraction) of the distance at which, in that
+ * direction, the first element around it would invert, given where the others are by then. This
+ * distance is exact: the determinant of every corner is linear in one vertex. The dissertation asks
+ * for "less than half the distance at which element inversion would occur" (section 2.7.2): the
+ * default. No element becomes inverted or degenerate, in the precision the output is stored in.
  *
- * With a TangledFraction above 0, interior vertices then go past inversion until that fraction of the
- * elements is inverted. It is reached to the nearest element up to about 0.8 (a mesh with a fixed
- * boundary cannot always be inverted throughout); GetTangledFractionReached() tells.
+ * With a TangledFraction above 0, interior vertices then go past inversion until that fraction of
+ * the elements is inverted. It is reached to the nearest element up to about 0.8 (a mesh with a
+ * fixed boundary cannot always be inverted throughout); GetTangledFractionReached() tells.
  *
- * Vertices of a planar mesh stay in its plane. Those of a surface in space move in the tangent plane
- * of the elements around them, and so leave the surface by a second-order amount; an element inverts
- * where it turns by 90 degrees from what it was. (Element Quality, which knows no "before", cannot
- * see that: a surface triangle always agrees with its own normal. Mind sharp edges: fix their points.)
+ * Vertices of a planar mesh stay in its plane. Those of a surface in space move in the tangent
+ * plane of the elements around them, and so leave the surface by a second-order amount; an element
+ * inverts where it turns by 90 degrees from what it was. (Element Quality, which knows no "before",
+ * cannot see that: a surface triangle always agrees with its own normal. Mind sharp edges: fix
+ * their points.)
  *
- * The result depends on the input, the options and Seed only: not on the number of threads, nor on the
- * random numbers of the system. With one seed, the vertices moved at a lower percentage are among
- * those moved at a higher one.
+ * The result depends on the input, the options and Seed only: not on the number of threads, nor on
+ * the random numbers of the system. With one seed, the vertices moved at a lower percentage are
+ * among those moved at a higher one.
  *
  * @par Input:
  * Any vtkPointSet: vtkUnstructuredGrid, vtkPolyData, vtkStructuredGrid, ... with triangles,
- * quadrilaterals, tetrahedra, hexahedra, wedges, pyramids. Multiblock data are treated block by block.
- * A mesh whose elements are all reversed is treated as its mirror image. The points of other cells
- * (lines, polygons, polyhedra, 2D cells in a volume mesh), of ghost cells and of cells with NaN
- * coordinates stay. Elements that are inverted already may stay so, but get no worse neighbours.
+ * quadrilaterals, tetrahedra, hexahedra, wedges, pyramids. Multiblock data are treated block by
+ * block. A mesh whose elements are all reversed is treated as its mirror image. The points of other
+ * cells (lines, polygons, polyhedra, 2D cells in a volume mesh), of ghost cells and of cells with
+ * NaN coordinates stay. Elements that are inverted already may stay so, but get no worse
+ * neighbours.
  *
  * @par Input array 0 (optional, SetInputArrayToProcess):
  * A point array with one component. Points where it is not 0 stay.
@@ -42,8 +44,8 @@
  *
  * @par Limitations:
  * Validity is that of the corners; a hexahedron with positive corners may still be folded inside.
- * Quadratic cells are refused. In parallel, points shared by two pieces are on the boundary of each and
- * stay.
+ * Quadratic cells are refused. In parallel, points shared by two pieces are on the boundary of each
+ * and stay.
  *
  * @par Example:
  * @code
@@ -89,8 +91,8 @@ public:
 
   ///@{
   /**
-   * The largest part of its distance to inversion by which a vertex moves, between 0 and 1; the part
-   * is drawn evenly from 0 to this. The default is 0.5.
+   * The largest part of its distance to inversion by which a vertex moves, between 0 and 1; the
+   * part is drawn evenly from 0 to this. The default is 0.5.
    */
   vtkSetClampMacro(Fraction, double, 0.0, 1.0);
   vtkGetMacro(Fraction, double);
@@ -98,8 +100,8 @@ public:
 
   ///@{
   /**
-   * Fraction of the elements to be inverted in the output, between 0 and 1; inverted elements of the
-   * input count. The default is 0: none is inverted.
+   * Fraction of the elements to be inverted in the output, between 0 and 1; inverted elements of
+   * the input count. The default is 0: none is inverted.
    */
   vtkSetClampMacro(TangledFraction, double, 0.0, 1.0);
   vtkGetMacro(TangledFraction, double);
@@ -124,9 +126,9 @@ public:
 
   ///@{
   /**
-   * Results of the last execution (for multiblock data, of its last block): vertices inside the mesh
-   * that were free to move; those that did; the elements inverted before and after, and the fraction
-   * of the elements that the latter are; the largest displacement; all of it in words.
+   * Results of the last execution (for multiblock data, of its last block): vertices inside the
+   * mesh that were free to move; those that did; the elements inverted before and after, and the
+   * fraction of the elements that the latter are; the largest displacement; all of it in words.
    */
   vtkGetMacro(NumberOfMovablePoints, vtkIdType);
   vtkGetMacro(NumberOfMovedPoints, vtkIdType);

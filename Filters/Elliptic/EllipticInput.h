@@ -41,14 +41,16 @@ struct EllipticChoice
 
 /**
  * @class tautline::EllipticInput
- * @brief Keeps what the system on a mesh refers to. The orientation is settled as for movable meshes.
+ * @brief Keeps what the system on a mesh refers to. The orientation is settled as for movable
+ * meshes.
  */
 class EllipticInput
 {
 public:
   /**
-   * @brief Collective. Throws Error, on all processes, for what EllipticSystem refuses, arrays and expressions that do
-   * not fit, cells of higher order, polygons and polyhedra, and mixed orientation.
+   * @brief Collective. Throws Error, on all processes, for what EllipticSystem refuses, arrays and
+   * expressions that do not fit, cells of higher order, polygons and polyhedra, and mixed
+   * orientation.
    */
   EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkAlgorithm* algorithm,
     const Processes& processes, int threads);

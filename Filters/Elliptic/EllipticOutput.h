@@ -16,8 +16,8 @@ namespace tautline
 class TableRows;
 
 /**
- * @brief Adds an array to the points or cells, made the active one. Values that are not finite, as those of points outside
- * all elements, become 0.
+ * @brief Adds an array to the points or cells, made the active one. Values that are not finite, as
+ * those of points outside all elements, become 0.
  * @return how many tuples these were
  */
 Index addArray(vtkDataSet* output, bool ofCells, const std::string& name,
@@ -30,8 +30,8 @@ void addStress(vtkDataSet* output, const std::vector<double>& stresses);
 std::string sentence(std::string text);
 
 /**
- * @brief Adds a row per iteration: `Block` (if there is one), `Log10 residual` (relative to the first; 1e-16 of it at
- * least), `N residual`, the norm.
+ * @brief Adds a row per iteration: `Block` (if there is one), `Log10 residual` (relative to the
+ * first; 1e-16 of it at least), `N residual`, the norm.
  */
 void addResiduals(TableRows& rows, const std::vector<double>& residuals, const std::string& block);
 }

@@ -156,7 +156,8 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// Removes from the flagged points those inside of a mesh without ghosts, which no other piece can have.
+/// Removes from the flagged points those inside of a mesh without ghosts, which no other piece can
+/// have.
 void dropInside(vtkDataSet* input, std::vector<char>& flags)
 {
   const MeshAdapter adapter(input);
@@ -182,7 +183,8 @@ struct Box
   vtkBoundingBox bounds;
 };
 
-/// Flags, for each piece, the points that other pieces may have, too. @param ghosts whether any piece has some. Collective.
+/// Flags, for each piece, the points that other pieces may have, too. @param ghosts whether any
+/// piece has some. Collective.
 std::vector<std::vector<char>> sharedPoints(
   const std::vector<Piece>& pieces, bool ghosts, const Processes& processes)
 {
@@ -263,7 +265,8 @@ std::vector<std::vector<Index>> generateIds(
       privates += !shared[i][k];
     }
   }
-  // Shared points first, in the order of their coordinates; then those of one process after the other.
+  // Shared points first, in the order of their coordinates; then those of one process after the
+  // other.
   coordinates = processes.gather(coordinates);
   std::vector<Vec3> places;
   for (std::size_t k = 0; k + 2 < coordinates.size(); k += 3)

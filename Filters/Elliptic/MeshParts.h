@@ -1,7 +1,7 @@
 /**
  * @file MeshParts.h
- * @brief The meshes in a data object, each as this process has it: with its ghost cells, its global point ids, and its
- * partitions put together.
+ * @brief The meshes in a data object, each as this process has it: with its ghost cells, its global
+ * point ids, and its partitions put together.
  */
 #ifndef tautline_MeshParts_h
 #define tautline_MeshParts_h
@@ -32,12 +32,13 @@ struct LocalMesh
 };
 
 /**
- * @brief Calls visit for each mesh with a cell on any process; the others are passed on as they are. Collective.
+ * @brief Calls visit for each mesh with a cell on any process; the others are passed on as they
+ * are. Collective.
  *
- * A data set is a mesh, and so is each block of a multiblock data set. The partitions of a partitioned or multipiece
- * data set are one mesh, on all processes together. Points on several processes or partitions are recognised by
- * the global point ids of the input, or else by equal coordinates. Throws Error if points of one partition
- * cannot be told apart.
+ * A data set is a mesh, and so is each block of a multiblock data set. The partitions of a
+ * partitioned or multipiece data set are one mesh, on all processes together. Points on several
+ * processes or partitions are recognised by the global point ids of the input, or else by equal
+ * coordinates. Throws Error if points of one partition cannot be told apart.
  *
  * @param selected what markSelected() returned
  * @param output of the class of the input; gets its structure

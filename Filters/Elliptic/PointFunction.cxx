@@ -144,7 +144,8 @@ private:
   std::vector<vtkDataArray*> Vectors;
 };
 
-/// What is wrong, from the parser's "... Msg: ERR201 - Undefined symbol: 'q'<tab>Expression: ..." or another message.
+/// What is wrong, from the parser's "... Msg: ERR201 - Undefined symbol: 'q'<tab>Expression: ..."
+/// or another message.
 std::string plain(std::string message)
 {
   const auto after = [&message](const std::string& mark)

@@ -37,16 +37,17 @@ struct PointFunction
 };
 
 /**
- * @brief The values at all points, `components` (1 or 3) each; of vectors with two components the third is 0. Throws Error
- * for an array that is missing, of cells or of other components.
+ * @brief The values at all points, `components` (1 or 3) each; of vectors with two components the
+ * third is 0. Throws Error for an array that is missing, of cells or of other components.
  */
 std::vector<double> valuesAt(
   const PointFunction& function, vtkAlgorithm* algorithm, vtkDataSet* data, int components);
 
 /**
- * @brief The values of an expression of x, y, z, of the point arrays by name (vectors also by component: v_X, v_Y, v_Z)
- * and, for vectors, of iHat, jHat, kHat; names with other characters than letters, digits and _ go in double quotes. Throws Error
- * that quotes the expression if it is empty, not understood, not of so many components or, unless that is allowed, not finite
+ * @brief The values of an expression of x, y, z, of the point arrays by name (vectors also by
+ * component: v_X, v_Y, v_Z) and, for vectors, of iHat, jHat, kHat; names with other characters than
+ * letters, digits and _ go in double quotes. Throws Error that quotes the expression if it is
+ * empty, not understood, not of so many components or, unless that is allowed, not finite
  * somewhere; else NaN stands there.
  */
 std::vector<double> evaluate(const std::string& expression, const std::string& what,

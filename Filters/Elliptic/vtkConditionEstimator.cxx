@@ -114,7 +114,8 @@ std::vector<double> excess(const std::vector<double>& values, const tautline::Pr
   return result;
 }
 
-/// The number of elements on all processes, and of the fewest that have most of the eigenvalue together.
+/// The number of elements on all processes, and of the fewest that have most of the eigenvalue
+/// together.
 std::array<tautline::Index, 2> concentration(
   const std::vector<double>& shares, const tautline::Processes& processes)
 {
@@ -180,7 +181,8 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
   const double share = this->Preconditioner == none ? 1.0 : 0.5;
   options.progress = [&](double fraction)
   { return this->Report(mesh, share * fraction + (plain ? 0.0 : share)); };
-  const tautline::ConditionEstimate found = tautline::estimateCondition(input.system().linearSystem(), options);
+  const tautline::ConditionEstimate found =
+    tautline::estimateCondition(input.system().linearSystem(), options);
 
   const std::string name =
     plain ? "A" : std::string("P^-1 A (") + tautline::nameOf(options.preconditioner) + ")";

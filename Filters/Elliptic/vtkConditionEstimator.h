@@ -1,21 +1,24 @@
 /**
  * @class vtkConditionEstimator
- * @brief Condition number of the linear system of an elliptic problem on a mesh, and which elements cause it.
+ * @brief Condition number of the linear system of an elliptic problem on a mesh, and which elements
+ * cause it.
  *
- * The problem and the inputs are those of vtkEllipticAlgorithm. The extreme eigenvalues of the matrix A of the free
- * unknowns and, unless Preconditioner is NONE, of P^-1 A are found: a Krylov method needs the more iterations the
- * larger the condition number of P^-1 A is.
+ * The problem and the inputs are those of vtkEllipticAlgorithm. The extreme eigenvalues of the
+ * matrix A of the free unknowns and, unless Preconditioner is NONE, of P^-1 A are found: a Krylov
+ * method needs the more iterations the larger the condition number of P^-1 A is.
  *
  * @par Output port 0 `Mesh`:
- * The input with the cell arrays `LargestEigenvalue`, of the stiffness matrix of each element; `Excess`, its log10 over the
- * geometric mean of all elements (1: ten times); and, if ComputeShares is on, `Share`: the part of the largest eigenvalue of A that
- * is due to the element, x_e^T A_e x_e of its eigenvector x over the whole. Shares add up to 1; elements that hurt have large
- * ones, often very few. All are 0 for cells that are not solved on.
+ * The input with the cell arrays `LargestEigenvalue`, of the stiffness matrix of each element;
+ * `Excess`, its log10 over the geometric mean of all elements (1: ten times); and, if ComputeShares
+ * is on, `Share`: the part of the largest eigenvalue of A that is due to the element, x_e^T A_e x_e
+ * of its eigenvector x over the whole. Shares add up to 1; elements that hurt have large ones,
+ * often very few. All are 0 for cells that are not solved on.
  *
  * @par Output port 1 `Spectrum`:
- * A vtkTable with a row for A and one for P^-1 A (per block): `Matrix`, `Smallest`, `Largest`, `Condition` (0: not
- * positive definite, or not found), `SmallestError`, `LargestError` (relative bounds; -1: not known), `Converged`,
- * `Iterations`, `Seconds`, `Method`, `Message`; of composite data sets also `Block`.
+ * A vtkTable with a row for A and one for P^-1 A (per block): `Matrix`, `Smallest`, `Largest`,
+ * `Condition` (0: not positive definite, or not found), `SmallestError`, `LargestError` (relative
+ * bounds; -1: not known), `Converged`, `Iterations`, `Seconds`, `Method`, `Message`; of composite
+ * data sets also `Block`.
  *
  * @sa vtkSolverStudy, vtkEllipticSolver, tautline/ConditionEstimate.h
  */
@@ -40,13 +43,15 @@ public:
     ACCURATE = 2
   };
   ///@{
-  /// RITZ_VALUES of a Krylov method: cheap, without error bounds. ACCURATE: to Tolerance. AUTOMATIC, the default, is ACCURATE.
+  /// RITZ_VALUES of a Krylov method: cheap, without error bounds. ACCURATE: to Tolerance.
+  /// AUTOMATIC, the default, is ACCURATE.
   vtkSetClampMacro(Method, int, AUTOMATIC, ACCURATE);
   vtkGetMacro(Method, int);
   ///@}
 
   ///@{
-  /// P, see vtkEllipticSolver::Preconditioners. The default is BoomerAMG (3); 6, none, leaves P^-1 A out.
+  /// P, see vtkEllipticSolver::Preconditioners. The default is BoomerAMG (3); 6, none, leaves P^-1
+  /// A out.
   vtkSetClampMacro(Preconditioner, int, 0, 6);
   vtkGetMacro(Preconditioner, int);
   ///@}
@@ -74,7 +79,8 @@ public:
   vtkTable* GetSpectrum();
 
   ///@{
-  /// Condition numbers of A and of P^-1 A of the last execution (of blocks, the largest); 0: not known.
+  /// Condition numbers of A and of P^-1 A of the last execution (of blocks, the largest); 0: not
+  /// known.
   double GetCondition() const { return this->Condition; }
   double GetPreconditionedCondition() const { return this->PreconditionedCondition; }
   ///@}

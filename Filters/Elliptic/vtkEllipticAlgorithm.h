@@ -1,25 +1,28 @@
 /**
  * @class vtkEllipticAlgorithm
- * @brief What the filters that solve elliptic partial differential equations have in common: the problem.
+ * @brief What the filters that solve elliptic partial differential equations have in common: the
+ * problem.
  *
- * Abstract. The boundary value problem of dissertation section 2.2, discretised by linear finite elements (triangles,
- * quadrilaterals, tetrahedra, hexahedra, wedges and pyramids) on the mesh at input port 0. Input port 1 (optional)
- * is a vtkSelection of points, or of cells with their points, where the solution is given.
+ * Abstract. The boundary value problem of dissertation section 2.2, discretised by linear finite
+ * elements (triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids) on the mesh at
+ * input port 0. Input port 1 (optional) is a vtkSelection of points, or of cells with their points,
+ * where the solution is given.
  *
- * Each block of a multiblock data set is a mesh of its own; the partitions of a partitioned data set are one
- * mesh. With several MPI processes (pvserver, pvbatch) the parts of all processes are one mesh, which they solve
- * together; ghost cells are left out. Points on several processes are known by their global ids if the mesh has
- * them, else by equal coordinates. Tables are those of process 0.
+ * Each block of a multiblock data set is a mesh of its own; the partitions of a partitioned data
+ * set are one mesh. With several MPI processes (pvserver, pvbatch) the parts of all processes are
+ * one mesh, which they solve together; ghost cells are left out. Points on several processes are
+ * known by their global ids if the mesh has them, else by equal coordinates. Tables are those of
+ * process 0.
  *
- * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted and
- * degenerate elements, polygons, polyhedra, cells of higher order, mixed orientation, parts without a point
- * where the solution is given, values and coefficients that are not finite.
+ * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted
+ * and degenerate elements, polygons, polyhedra, cells of higher order, mixed orientation, parts
+ * without a point where the solution is given, values and coefficients that are not finite.
  *
- * Arrays of SetInputArrayToProcess: 0 fixed points (of points or cells), 1 source, 2 given values (of
- * points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.
+ * Arrays of SetInputArrayToProcess: 0 fixed points (of points or cells), 1 source, 2 given values
+ * (of points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.
  *
- * Expressions know x, y, z and the point arrays by name, as ParaView's Calculator: sin(x)*exp(-y), "my array"/2,
- * if(x<0.5, 1, 2); vectors are written 2*iHat - x*jHat.
+ * Expressions know x, y, z and the point arrays by name, as ParaView's Calculator: sin(x)*exp(-y),
+ * "my array"/2, if(x<0.5, 1, 2); vectors are written 2*iHat - x*jHat.
  *
  * @sa vtkEllipticSolver, vtkConditionEstimator, vtkSolverStudy, tautline/EllipticProblem.h
  */
@@ -58,15 +61,16 @@ public:
   };
   ///@{
   /**
-   * POISSON, -laplace u = f (the default); ELLIPTIC, -alpha u_xx - beta u_yy - gamma u_zz + a u = f; ELASTICITY,
-   * -div(lambda (div u) I + 2 mu eps(u)) = f.
+   * POISSON, -laplace u = f (the default); ELLIPTIC, -alpha u_xx - beta u_yy - gamma u_zz + a u =
+   * f; ELASTICITY, -div(lambda (div u) I + 2 mu eps(u)) = f.
    */
   vtkSetClampMacro(Equation, int, POISSON, ELASTICITY);
   vtkGetMacro(Equation, int);
   ///@}
 
   ///@{
-  /// Coefficients of ELLIPTIC: at least 0. The default is 1 each; gamma is for volumes. Array 3 goes before them.
+  /// Coefficients of ELLIPTIC: at least 0. The default is 1 each; gamma is for volumes. Array 3
+  /// goes before them.
   vtkSetMacro(Alpha, double);
   vtkGetMacro(Alpha, double);
   vtkSetMacro(Beta, double);
@@ -76,7 +80,8 @@ public:
   ///@}
 
   ///@{
-  /// a of ELLIPTIC. The default is 1. Where it is negative, the matrix may be indefinite: MINRES and GMRES take it.
+  /// a of ELLIPTIC. The default is 1. Where it is negative, the matrix may be indefinite: MINRES
+  /// and GMRES take it.
   vtkSetMacro(Reaction, double);
   vtkGetMacro(Reaction, double);
   ///@}
@@ -100,7 +105,8 @@ public:
     PLANE_STRESS = 1
   };
   ///@{
-  /// PLANE_STRAIN, a slice of a long body (the default), or PLANE_STRESS, a thin sheet. Planar meshes only.
+  /// PLANE_STRAIN, a slice of a long body (the default), or PLANE_STRESS, a thin sheet. Planar
+  /// meshes only.
   vtkSetClampMacro(PlaneState, int, PLANE_STRAIN, PLANE_STRESS);
   vtkGetMacro(PlaneState, int);
   ///@}
@@ -145,9 +151,10 @@ public:
   };
   ///@{
   /**
-   * WHOLE_BOUNDARY (the default), PART_OF_BOUNDARY, where FixedWhere is not 0, or ONLY_CHOSEN. In any case points are fixed where
-   * array 0 is not 0 (of cells: the points of such cells), and those selected at input port 1. On the rest
-   * of the boundary the natural condition holds: no flux, no traction.
+   * WHOLE_BOUNDARY (the default), PART_OF_BOUNDARY, where FixedWhere is not 0, or ONLY_CHOSEN. In
+   * any case points are fixed where array 0 is not 0 (of cells: the points of such cells), and
+   * those selected at input port 1. On the rest of the boundary the natural condition holds: no
+   * flux, no traction.
    */
   vtkSetClampMacro(FixedPart, int, WHOLE_BOUNDARY, ONLY_CHOSEN);
   vtkGetMacro(FixedPart, int);
@@ -191,8 +198,9 @@ public:
 
   ///@{
   /**
-   * Options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5". They go before other properties, and those of
-   * other users of PETSc in the process are neither read nor changed. One that PETSc does not know is an error.
+   * Options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5". They go before other
+   * properties, and those of other users of PETSc in the process are neither read nor changed. One
+   * that PETSc does not know is an error.
    */
   vtkSetMacro(PETScOptions, std::string);
   vtkGetMacro(PETScOptions, std::string);
@@ -205,7 +213,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of threads of the assembly; 0, the default, is all cores. The result does not depend on it.
+  /// Number of threads of the assembly; 0, the default, is all cores. The result does not depend on
+  /// it.
   vtkSetClampMacro(Threads, int, 0, 1024);
   vtkGetMacro(Threads, int);
   ///@}

@@ -2,19 +2,20 @@
  * @class vtkEllipticSolver
  * @brief Solves an elliptic partial differential equation on a mesh.
  *
- * The problem and the inputs are those of vtkEllipticAlgorithm. The linear system is solved by a Krylov method with a
- * preconditioner, dissertation sections 2.5 and 2.6, or directly.
+ * The problem and the inputs are those of vtkEllipticAlgorithm. The linear system is solved by a
+ * Krylov method with a preconditioner, dissertation sections 2.5 and 2.6, or directly.
  *
  * @par Output port 0 `Mesh`:
- * The input with the point array `Solution` (ELASTICITY: the vector `Displacement`), or of the name SolutionName, and, if
- * ComputeGradient is on, the cell arrays `Gradient` (3 components) or, of ELASTICITY, `Stress` (6: XX YY ZZ XY YZ XZ) and `VonMises`. Points
- * outside all elements get 0.
+ * The input with the point array `Solution` (ELASTICITY: the vector `Displacement`), or of the name
+ * SolutionName, and, if ComputeGradient is on, the cell arrays `Gradient` (3 components) or, of
+ * ELASTICITY, `Stress` (6: XX YY ZZ XY YZ XZ) and `VonMises`. Points outside all elements get 0.
  *
  * @par Output port 1 `History`:
- * A vtkTable whose row i is iteration i (0 is the start): `Log10 residual`, relative to the first, and `N residual`, its norm
- * as the method measures it; of composite data sets also `Block`.
+ * A vtkTable whose row i is iteration i (0 is the start): `Log10 residual`, relative to the first,
+ * and `N residual`, its norm as the method measures it; of composite data sets also `Block`.
  *
- * A solve that does not converge is a warning with its reason; the solution is then the best there was.
+ * A solve that does not converge is a warning with its reason; the solution is then the best there
+ * was.
  *
  *     vtkNew<vtkEllipticSolver> solver;
  *     solver->SetInputData(mesh);
@@ -64,15 +65,17 @@ public:
   };
   ///@{
   /**
-   * Jacobi, SSOR with Omega, ILU(0), BoomerAMG (the default), incomplete Cholesky, smoothed aggregation, or none. With several
-   * processes SSOR, ILU and incomplete Cholesky work in the block of each process.
+   * Jacobi, SSOR with Omega, ILU(0), BoomerAMG (the default), incomplete Cholesky, smoothed
+   * aggregation, or none. With several processes SSOR, ILU and incomplete Cholesky work in the
+   * block of each process.
    */
   vtkSetClampMacro(Preconditioner, int, JACOBI, NONE);
   vtkGetMacro(Preconditioner, int);
   ///@}
 
   ///@{
-  /// Of the preconditioned residual, relative to the first, above 0 and below 1. The default is 1e-5, PETSc's.
+  /// Of the preconditioned residual, relative to the first, above 0 and below 1. The default is
+  /// 1e-5, PETSc's.
   vtkSetMacro(RelativeTolerance, double);
   vtkGetMacro(RelativeTolerance, double);
   ///@}
@@ -104,8 +107,9 @@ public:
 
   ///@{
   /**
-   * Whether BoomerAMG coarsens aggressively and interpolates sparsely, tautline::fastMultigridOptions(). It takes more iterations
-   * and much less time, above all in volumes and on several processes. Off: PETSc's defaults, those of the dissertation. On.
+   * Whether BoomerAMG coarsens aggressively and interpolates sparsely,
+   * tautline::fastMultigridOptions(). It takes more iterations and much less time, above all in
+   * volumes and on several processes. Off: PETSc's defaults, those of the dissertation. On.
    */
   vtkSetMacro(FastMultigrid, bool);
   vtkGetMacro(FastMultigrid, bool);
@@ -130,8 +134,8 @@ public:
 
   ///@{
   /**
-   * The result of the last execution: whether all blocks converged and how the last one ended; iterations, seconds of set-up of the
-   * preconditioner and of the solve, of all blocks together.
+   * The result of the last execution: whether all blocks converged and how the last one ended;
+   * iterations, seconds of set-up of the preconditioner and of the solve, of all blocks together.
    */
   bool GetConverged() const { return this->Converged; }
   const char* GetReason() const { return this->Reason.c_str(); }

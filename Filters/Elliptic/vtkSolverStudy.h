@@ -1,19 +1,21 @@
 /**
  * @class vtkSolverStudy
- * @brief Solves an elliptic problem by many combinations of solver and preconditioner and recommends one.
+ * @brief Solves an elliptic problem by many combinations of solver and preconditioner and
+ * recommends one.
  *
- * The problem and the inputs are those of vtkEllipticAlgorithm. The combinations are the sixteen of dissertation Table 2.5,
- * by its numbers, and some beyond it.
+ * The problem and the inputs are those of vtkEllipticAlgorithm. The combinations are the sixteen of
+ * dissertation Table 2.5, by its numbers, and some beyond it.
  *
  * @par Output port 0 `Mesh`:
  * The input, as it is.
  *
  * @par Output port 1 `Study`:
- * A vtkTable with a row per combination (and block): `Combination`, its name; `N combination`, its number; `Total
- * time (s)`, set-up of the preconditioner and solve, 0 if it failed; `Result`, the same as text, "*" if it failed as in the
- * dissertation's tables, "-" if there was no time for it; `Time set-up (s)`, `Time solve (s)`, `N iterations`, `N
- * condition` of P^-1 A (an estimate; 0: not known), `N true residual`, norm of b - A x over that of b; `N converged`, 1 or 0;
- * `Reason`; of composite data sets also `Block`. ParaView's bar chart shows the total time.
+ * A vtkTable with a row per combination (and block): `Combination`, its name; `N combination`, its
+ * number; `Total time (s)`, set-up of the preconditioner and solve, 0 if it failed; `Result`, the
+ * same as text, "*" if it failed as in the dissertation's tables, "-" if there was no time for it;
+ * `Time set-up (s)`, `Time solve (s)`, `N iterations`, `N condition` of P^-1 A (an estimate; 0: not
+ * known), `N true residual`, norm of b - A x over that of b; `N converged`, 1 or 0; `Reason`; of
+ * composite data sets also `Block`. ParaView's bar chart shows the total time.
  *
  * @sa vtkEllipticSolver, vtkConditionEstimator, tautline/SolverStudy.h
  */
@@ -34,10 +36,11 @@ public:
 
   ///@{
   /**
-   * Combinations to run, by number; none by default, which means 1 to 16, those of Table 2.5: Jacobi, SSOR, ILU(0), BoomerAMG, each with
-   * CG, GMRES, MINRES, Bi-CGSTAB. 17 is a direct solver; 18 CG with incomplete Cholesky; 19 to 22 smoothed aggregation (GAMG) with CG,
-   * GMRES, MINRES, Bi-CGSTAB; 23 CG without preconditioner. In 19 to 22 multigrid is told the rigid body modes of an elastic body,
-   * in 13 to 16 it only sees the matrix; 24 is 13 with them, 25 is 19 without.
+   * Combinations to run, by number; none by default, which means 1 to 16, those of Table 2.5:
+   * Jacobi, SSOR, ILU(0), BoomerAMG, each with CG, GMRES, MINRES, Bi-CGSTAB. 17 is a direct solver;
+   * 18 CG with incomplete Cholesky; 19 to 22 smoothed aggregation (GAMG) with CG, GMRES, MINRES,
+   * Bi-CGSTAB; 23 CG without preconditioner. In 19 to 22 multigrid is told the rigid body modes of
+   * an elastic body, in 13 to 16 it only sees the matrix; 24 is 13 with them, 25 is 19 without.
    */
   void AddCombination(int number);
   void ClearCombinations();
@@ -72,7 +75,8 @@ public:
   ///@}
 
   ///@{
-  /// Seconds for each combination; 0 is no limit. The default is 60. TimeLimit is that of the whole study.
+  /// Seconds for each combination; 0 is no limit. The default is 60. TimeLimit is that of the whole
+  /// study.
   vtkSetClampMacro(CombinationTimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(CombinationTimeLimit, double);
   ///@}

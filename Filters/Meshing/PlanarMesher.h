@@ -1,10 +1,11 @@
 /**
  * @file PlanarMesher.h
- * @brief Quality triangulation of a planar region with CGAL (GPL); no VTK, and no CGAL in this header.
+ * @brief Quality triangulation of a planar region with CGAL (GPL); no VTK, and no CGAL in this
+ * header.
  *
  * The constrained Delaunay triangulation of the segments is refined until no triangle has an angle
- * below a bound or an edge above a size (J. Shewchuk's and J. Ruppert's algorithms as CGAL has them).
- * The result depends on nothing but the input.
+ * below a bound or an edge above a size (J. Shewchuk's and J. Ruppert's algorithms as CGAL has
+ * them). The result depends on nothing but the input.
  */
 #ifndef tautline_PlanarMesher_h
 #define tautline_PlanarMesher_h
@@ -20,8 +21,8 @@ namespace tautline
 /// What the triangles have to be like.
 struct PlanarOptions
 {
-  /// Degrees; up to 20.7 the refinement ends for certain (inputs with sharp corners apart), beyond 33
-  /// it seldom does.
+  /// Degrees; up to 20.7 the refinement ends for certain (inputs with sharp corners apart), beyond
+  /// 33 it seldom does.
   double minimumAngle = 20.7;
   /// Longest edge allowed; 0 for no bound.
   double size = 0.0;

@@ -238,7 +238,8 @@ constexpr int Crashed = -1;
 constexpr int Stopped = -2;
 constexpr int TooLong = -3;
 
-/// Everything from the pipe until it closes, asking now and then whether to go on; 0, Stopped or TooLong.
+/// Everything from the pipe until it closes, asking now and then whether to go on; 0, Stopped or
+/// TooLong.
 int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
 {
   using Clock = std::chrono::steady_clock;
@@ -268,9 +269,9 @@ int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
 }
 
 /**
- * Runs TetGen; 0, the number it throws, Crashed, Stopped or TooLong. It runs in a process of its own: TetGen
- * 1.5 frees its memory twice when it throws, which would take this program with it, and some
- * inputs make it loop or crash.
+ * Runs TetGen; 0, the number it throws, Crashed, Stopped or TooLong. It runs in a process of its
+ * own: TetGen 1.5 frees its memory twice when it throws, which would take this program with it, and
+ * some inputs make it loop or crash.
  */
 int run(const std::string& switches, const SolidBoundary& boundary, const SolidOptions& options,
   bool numbers, SolidMesh& mesh)

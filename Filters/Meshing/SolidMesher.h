@@ -1,10 +1,11 @@
 /**
  * @file SolidMesher.h
- * @brief Quality tetrahedralization of a region with TetGen (AGPL); no VTK, and no TetGen in this header.
+ * @brief Quality tetrahedralization of a region with TetGen (AGPL); no VTK, and no TetGen in this
+ * header.
  *
- * TetGen is called as a library, in a forked process: whatever it does there (throw, crash, exit, loop)
- * comes out as an Error here, or can be stopped. For surfaces that intersect themselves the Error
- * names the facets. The result depends on nothing but the input.
+ * TetGen is called as a library, in a forked process: whatever it does there (throw, crash, exit,
+ * loop) comes out as an Error here, or can be stopped. For surfaces that intersect themselves the
+ * Error names the facets. The result depends on nothing but the input.
  */
 #ifndef tautline_SolidMesher_h
 #define tautline_SolidMesher_h

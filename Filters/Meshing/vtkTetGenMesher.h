@@ -2,19 +2,20 @@
  * @class vtkTetGenMesher
  * @brief Quality tetrahedra in a closed surface with TetGen (AGPL).
  *
- * Input: triangles, quadrilaterals and polygons that share their points and close one or more volumes
- * (merge doubled points with Clean to Grid first). Inner surfaces part the volume. Field arrays,
- * as vtkTetGenReader gives them: `Holes` (a point x y z in each cavity), `Regions` (x y z, reference,
- * largest volume; negative for none), `FacetHoles`. Polygons with the same value of the cell array
- * `Facet` are one facet with holes.
+ * Input: triangles, quadrilaterals and polygons that share their points and close one or more
+ * volumes (merge doubled points with Clean to Grid first). Inner surfaces part the volume. Field
+ * arrays, as vtkTetGenReader gives them: `Holes` (a point x y z in each cavity), `Regions` (x y z,
+ * reference, largest volume; negative for none), `FacetHoles`. Polygons with the same value of the
+ * cell array `Facet` are one facet with holes.
  *
  * Output 0, vtkUnstructuredGrid: tetrahedra; the input's points come first. Point array
- * `BoundaryMarker`: the lowest marker of the facets a point is on (cell array `BoundaryMarker` of the
- * input, else 1), 0 inside. Cell array `Reference` with the region, if there are regions. Output 1,
- * vtkPolyData `Boundary`: the facets in pieces on the same points, with `BoundaryMarker`.
+ * `BoundaryMarker`: the lowest marker of the facets a point is on (cell array `BoundaryMarker` of
+ * the input, else 1), 0 inside. Cell array `Reference` with the region, if there are regions.
+ * Output 1, vtkPolyData `Boundary`: the facets in pieces on the same points, with `BoundaryMarker`.
  *
- * A surface that intersects itself is an error that names the facets. TetGen runs in a process of its
- * own: whatever happens to it is an error with an empty output, and abort is obeyed. Deterministic.
+ * A surface that intersects itself is an error that names the facets. TetGen runs in a process of
+ * its own: whatever happens to it is an error with an empty output, and abort is obeyed.
+ * Deterministic.
  *
  * Limits: TetGen does not say how far it is, so progress only shows that it runs.
  *
@@ -38,8 +39,8 @@ public:
 
   ///@{
   /**
-   * Largest ratio of circumradius and shortest edge of a tetrahedron; smaller is better, 1.1 and less
-   * seldom ends, 0 is no bound. The default is 1.4.
+   * Largest ratio of circumradius and shortest edge of a tetrahedron; smaller is better, 1.1 and
+   * less seldom ends, 0 is no bound. The default is 1.4.
    */
   vtkSetClampMacro(RadiusEdgeRatio, double, 0.0, 100.0);
   vtkGetMacro(RadiusEdgeRatio, double);
@@ -63,8 +64,8 @@ public:
 
   ///@{
   /**
-   * Whether the point array to process (index 0) gives the wanted edge length at each input point. The
-   * default is off.
+   * Whether the point array to process (index 0) gives the wanted edge length at each input point.
+   * The default is off.
    */
   vtkSetMacro(UseSizeArray, bool);
   vtkGetMacro(UseSizeArray, bool);

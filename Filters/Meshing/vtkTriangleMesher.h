@@ -2,23 +2,23 @@
  * @class vtkTriangleMesher
  * @brief Quality triangles in planar outlines with holes and inner constraints (CGAL, GPL).
  *
- * Input: lines, polylines or polygons in a plane z = constant. Their edges are kept, in pieces where the
- * refinement needs it. What an odd number of outlines surrounds is filled, unless the field array `Holes`
- * (points x y z, as vtkTetGenReader gives it) says what is not; then everything else is.
- * Points without cells inside of the domain stay points of the mesh.
+ * Input: lines, polylines or polygons in a plane z = constant. Their edges are kept, in pieces
+ * where the refinement needs it. What an odd number of outlines surrounds is filled, unless the
+ * field array `Holes` (points x y z, as vtkTetGenReader gives it) says what is not; then everything
+ * else is. Points without cells inside of the domain stay points of the mesh.
  *
  * Output 0, vtkUnstructuredGrid: triangles, counter-clockwise; the input's points come first. Point
- * array `BoundaryMarker`: lowest marker of the segments a point is on (cell array `BoundaryMarker` of
- * the input, else 1), 0 elsewhere. Output 1, vtkPolyData `Boundary`: the segments in pieces on the same
- * points, with the cell array `BoundaryMarker`.
+ * array `BoundaryMarker`: lowest marker of the segments a point is on (cell array `BoundaryMarker`
+ * of the input, else 1), 0 elsewhere. Output 1, vtkPolyData `Boundary`: the segments in pieces on
+ * the same points, with the cell array `BoundaryMarker`.
  *
  * Deterministic. Progress is reported and abort is obeyed; an aborted run gives an empty output.
  *
  * Limits: segments must not cross (the message names the first that does). Angles between segments
  * below 60 degrees can leave smaller angles beside them. Other arrays are not carried over.
  *
- * Method: J. R. Shewchuk, Delaunay refinement algorithms for triangular mesh generation, Computational
- * Geometry 22 (2002); dissertation sections 2.7 and 5.2 use such meshes.
+ * Method: J. R. Shewchuk, Delaunay refinement algorithms for triangular mesh generation,
+ * Computational Geometry 22 (2002); dissertation sections 2.7 and 5.2 use such meshes.
  *
  * @sa vtkTetGenMesher vtkDomainSource tautline::meshPlane
  */
@@ -37,8 +37,8 @@ public:
 
   ///@{
   /**
-   * Smallest angle of a triangle, degrees. Up to 20.7 the refinement ends for certain. The default is
-   * 20.7.
+   * Smallest angle of a triangle, degrees. Up to 20.7 the refinement ends for certain. The default
+   * is 20.7.
    */
   vtkSetClampMacro(MinimumAngle, double, 0.0, 35.0);
   vtkGetMacro(MinimumAngle, double);

@@ -25,10 +25,10 @@ std::vector<MeasuredMetric> measuredMetrics(const std::vector<Objective>& object
 std::vector<std::string> objectiveNames(const std::vector<Objective>& objectives);
 
 /**
- * @brief Adds to the output the cell arrays `<name>_before` and `<name>` of each metric and `Validity`, and
- * makes the first the active scalars.
- * @param rows gets a row per metric: `Block` (composite input), `Metric`, `Label`, and with the endings
- * Before and After `Minimum`, `Mean`, `Maximum`, `RMS`, `StandardDeviation`, `Worst`,
+ * @brief Adds to the output the cell arrays `<name>_before` and `<name>` of each metric and
+ * `Validity`, and makes the first the active scalars.
+ * @param rows gets a row per metric: `Block` (composite input), `Metric`, `Label`, and with the
+ * endings Before and After `Minimum`, `Mean`, `Maximum`, `RMS`, `StandardDeviation`, `Worst`,
  * `OutsideAcceptable`, `Inverted`, `Degenerate`
  * @return a line per metric: "imr: mean 1.3 to 1.1, worst 8.2 to 2.1"
  */

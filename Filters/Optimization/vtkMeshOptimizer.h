@@ -2,51 +2,57 @@
  * @class vtkMeshOptimizer
  * @brief Moves the points of a mesh so that one or several measures of its quality become better.
  *
- * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from data sets
- * with explicit points, or blocks of these (one after the other, each with its own boundary). The
- * connectivity stays. What is lowered is chosen by a preset, or in full: up to any number of objectives (a
- * metric, summed up by a template, against a target), how they are combined, and the algorithm.
+ * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from
+ * data sets with explicit points, or blocks of these (one after the other, each with its own
+ * boundary). The connectivity stays. What is lowered is chosen by a preset, or in full: up to any
+ * number of objectives (a metric, summed up by a template, against a target), how they are
+ * combined, and the algorithm.
  *
- * The output is never worse than the input: the combined objective does not rise, and no valid element
- * becomes inverted unless AllowInversion. An input with inverted elements is untangled first (UntangleFirst)
- * where the objectives cannot repair it. Points of a planar mesh stay in its plane, those of a surface are
- * projected back to the input surface. A mesh reversed throughout is treated as its mirror image; one of
- * mixed orientation is refused. Image data (implicit points) and cells of higher order are refused too.
+ * The output is never worse than the input: the combined objective does not rise, and no valid
+ * element becomes inverted unless AllowInversion. An input with inverted elements is untangled
+ * first (UntangleFirst) where the objectives cannot repair it. Points of a planar mesh stay in its
+ * plane, those of a surface are projected back to the input surface. A mesh reversed throughout is
+ * treated as its mirror image; one of mixed orientation is refused. Image data (implicit points)
+ * and cells of higher order are refused too.
  *
  * @par Input ports:
- * 0 the mesh; 1 (optional) a reference mesh with the same cells, for targets of type REFERENCE and the
- * preset PRESERVE_SHAPE; 2 (optional) a vtkSelection of points or cells that stay.
+ * 0 the mesh; 1 (optional) a reference mesh with the same cells, for targets of type REFERENCE and
+ * the preset PRESERVE_SHAPE; 2 (optional) a vtkSelection of points or cells that stay.
  *
- * Arrays of the mesh (SetInputArrayToProcess), by index: 0 wanted sizes, 1 metric tensors, 2 fixed points (not
- * 0), 3 limits of the points' displacements, 4 weights of the elements (cells, at least 0).
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 wanted sizes, 1 metric tensors, 2 fixed
+ * points (not 0), 3 limits of the points' displacements, 4 weights of the elements (cells, at least
+ * 0).
  *
  * @par Output port 0 `Mesh`:
- * The input with new points, the point array `Displacement` (new minus old), and cell arrays: for each
- * objective's metric its value after, named by the metric ("imr"), and before ("imr_before"); `Validity`
- * after (see vtkElementQuality). Points that were in single precision stay so unless a valid element would
- * not be valid when rounded; the summary says so.
+ * The input with new points, the point array `Displacement` (new minus old), and cell arrays: for
+ * each objective's metric its value after, named by the metric ("imr"), and before ("imr_before");
+ * `Validity` after (see vtkElementQuality). Points that were in single precision stay so unless a
+ * valid element would not be valid when rounded; the summary says so.
  *
  * @par Output port 1 `History`:
- * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric `<metric> mean` and
+ * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric `<metric>
+ * mean` and
  * `<metric> worst`, and with several objectives `<metric> objective`; `Inverted` (with degenerate
- * elements), `N gradient`, `N moving` (points), `Time (s)`. Of composite data sets the rows of each block
- * follow each other, told apart by the column `Block`.
+ * elements), `N gradient`, `N moving` (points), `Time (s)`. Of composite data sets the rows of each
+ * block follow each other, told apart by the column `Block`.
  *
  * @par Output port 2 `Statistics`:
- * A vtkTable with a row per metric (and block): `Metric`, `Label`, and `Before` and `After` of: `Minimum`,
- * `Mean`, `Maximum`, `RMS`, `StandardDeviation`, `Worst`, `OutsideAcceptable`, `Inverted`, `Degenerate`.
+ * A vtkTable with a row per metric (and block): `Metric`, `Label`, and `Before` and `After` of:
+ * `Minimum`, `Mean`, `Maximum`, `RMS`, `StandardDeviation`, `Worst`, `OutsideAcceptable`,
+ * `Inverted`, `Degenerate`.
  *
  * @par Several processes:
- * Each optimises its own part. Points of ghost cells stay, so that the parts still fit together; without
- * ghost cells the boundary of each part stays. Tables and summary are those of each process.
+ * Each optimises its own part. Points of ghost cells stay, so that the parts still fit together;
+ * without ghost cells the boundary of each part stays. Tables and summary are those of each
+ * process.
  *
  * @par Example:
  * @code
  * vtkNew<vtkMeshOptimizer> optimizer;
  * optimizer->SetInputConnection(reader->GetOutputPort());
  * optimizer->AddObjectiveByName("imr");
- * optimizer->AddObjectiveByName("mu_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::SIZE);
- * optimizer->SetScalarization(vtkMeshOptimizer::OBJECTIVE_PRODUCT);
+ * optimizer->AddObjectiveByName("mu_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0,
+ * vtkMeshOptimizer::SIZE); optimizer->SetScalarization(vtkMeshOptimizer::OBJECTIVE_PRODUCT);
  * optimizer->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "size");
  * optimizer->Update();
  * std::cout << optimizer->GetSummary();
@@ -96,9 +102,9 @@ public:
   };
   ///@{
   /**
-   * What to do in one word. All but CUSTOM decide on objectives, scalarization, optimizer and stopping
-   * criteria (but for the time limit), see tautline::applyPreset(); those below are for CUSTOM. The
-   * default is BEST_SHAPE.
+   * What to do in one word. All but CUSTOM decide on objectives, scalarization, optimizer and
+   * stopping criteria (but for the time limit), see tautline::applyPreset(); those below are for
+   * CUSTOM. The default is BEST_SHAPE.
    */
   vtkSetClampMacro(Preset, int, CUSTOM, WORST_ELEMENT);
   vtkGetMacro(Preset, int);
@@ -124,13 +130,13 @@ public:
   ///@{
   /**
    * Adds an objective and chooses the preset CUSTOM.
-   * @param metric by number (enum Metric of tautline/Metrics.h) or by name, label, symbol or alias; an
-   * unknown one is an error and changes nothing
+   * @param metric by number (enum Metric of tautline/Metrics.h) or by name, label, symbol or alias;
+   * an unknown one is an error and changes nothing
    * @param form one of Templates; DEFAULT_TEMPLATE is that the dissertation uses for the metric
    * @param weight above 0, for the scalarizations that take weights
-   * @param target one of TargetTypes, as in vtkElementQuality: the ideal element, that of the mesh at port 1,
-   * the ideal shape in the size of the array at index 0 or in the metric tensor of the array at index 1
-   * (SetInputArrayToProcess; points or cells)
+   * @param target one of TargetTypes, as in vtkElementQuality: the ideal element, that of the mesh
+   * at port 1, the ideal shape in the size of the array at index 0 or in the metric tensor of the
+   * array at index 1 (SetInputArrayToProcess; points or cells)
    */
   void AddObjective(
     int metric, int form = DEFAULT_TEMPLATE, double weight = 1.0, int target = IDEAL);
@@ -179,13 +185,15 @@ public:
     POWER_MEAN = 2
   };
   ///@{
-  /// How target metrics combine the corners of a cell, as in vtkElementQuality. The default is MEAN.
+  /// How target metrics combine the corners of a cell, as in vtkElementQuality. The default is
+  /// MEAN.
   vtkSetClampMacro(Combination, int, MEAN, POWER_MEAN);
   vtkGetMacro(Combination, int);
   ///@}
 
   ///@{
-  /// Area or volume every element should have at least, for the untangling metric. The default is 0.
+  /// Area or volume every element should have at least, for the untangling metric. The default is
+  /// 0.
   vtkSetMacro(Beta, double);
   vtkGetMacro(Beta, double);
   ///@}
@@ -202,7 +210,8 @@ public:
     RAO = 7
   };
   ///@{
-  /// How several objectives become one, see tautline/Scalarization.h. The default is EXPONENTIAL_SUM.
+  /// How several objectives become one, see tautline/Scalarization.h. The default is
+  /// EXPONENTIAL_SUM.
   vtkSetClampMacro(Scalarization, int, EXPONENTIAL_SUM, RAO);
   vtkGetMacro(Scalarization, int);
   ///@}
@@ -221,8 +230,8 @@ public:
 
   ///@{
   /**
-   * By what part of its value an objective may rise while those after it are lowered (LEXICOGRAPHIC), at
-   * least 0. The default is 0.01.
+   * By what part of its value an objective may rise while those after it are lowered
+   * (LEXICOGRAPHIC), at least 0. The default is 0.01.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
@@ -230,8 +239,8 @@ public:
 
   ///@{
   /**
-   * The value each objective would have at best, for WEIGHTED_MIN_MAX, EXPONENTIAL_WEIGHTED and RAO: none
-   * (then they are 0) or one for each objective.
+   * The value each objective would have at best, for WEIGHTED_MIN_MAX, EXPONENTIAL_WEIGHTED and
+   * RAO: none (then they are 0) or one for each objective.
    */
   void AddUtopia(double value);
   void RemoveAllUtopias();
@@ -249,8 +258,9 @@ public:
   };
   ///@{
   /**
-   * The algorithm: local ones sweep over the points, others move all at once. AUTOMATIC, the default,
-   * is LOCAL_NEWTON; should a sweep fail to lower several objectives, LIMITED_MEMORY_BFGS goes on.
+   * The algorithm: local ones sweep over the points, others move all at once. AUTOMATIC, the
+   * default, is LOCAL_NEWTON; should a sweep fail to lower several objectives, LIMITED_MEMORY_BFGS
+   * goes on.
    */
   vtkSetClampMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);
   vtkGetMacro(Optimizer, int);
@@ -275,7 +285,8 @@ public:
   ///@}
 
   ///@{
-  /// Stop when an iteration lowers the objective by less than this part; 0: never. The default is 1e-5.
+  /// Stop when an iteration lowers the objective by less than this part; 0: never. The default is
+  /// 1e-5.
   vtkSetClampMacro(RelativeChange, double, 0.0, 1.0);
   vtkGetMacro(RelativeChange, double);
   ///@}
@@ -289,8 +300,8 @@ public:
 
   ///@{
   /**
-   * Section 2.4: stop when this part of the possible reduction of the objective is reached; 1, the default:
-   * never. The possible reduction is that to BestKnown or, if this is 0, an estimate.
+   * Section 2.4: stop when this part of the possible reduction of the objective is reached; 1, the
+   * default: never. The possible reduction is that to BestKnown or, if this is 0, an estimate.
    */
   vtkSetClampMacro(Reduction, double, 0.0, 1.0);
   vtkGetMacro(Reduction, double);
@@ -314,13 +325,14 @@ public:
   };
   ///@{
   /**
-   * What the points of the boundary do. FIXED: they stay. SLIDING: of a volume mesh those within a flat part
-   * of the surface move in it, those on a straight edge along it, corners and curved parts stay; of a mesh
-   * of 2D cells those on straight parts move along them (see FlatAngle). ON_SURFACE: besides, those where the
-   * boundary of a volume or planar mesh is curved but smooth (see FeatureAngle) slide on it as it was; this needs
-   * a local optimizer, and GetSurfaceError() tells how far the new boundary is from the old. FREE: they
-   * move as all others. Points also stay where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the
-   * selection at port 2 holds them or a cell of theirs. The default is FIXED.
+   * What the points of the boundary do. FIXED: they stay. SLIDING: of a volume mesh those within a
+   * flat part of the surface move in it, those on a straight edge along it, corners and curved
+   * parts stay; of a mesh of 2D cells those on straight parts move along them (see FlatAngle).
+   * ON_SURFACE: besides, those where the boundary of a volume or planar mesh is curved but smooth
+   * (see FeatureAngle) slide on it as it was; this needs a local optimizer, and GetSurfaceError()
+   * tells how far the new boundary is from the old. FREE: they move as all others. Points also stay
+   * where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the selection at
+   * port 2 holds them or a cell of theirs. The default is FIXED.
    */
   vtkSetClampMacro(Boundary, int, FIXED, ON_SURFACE);
   vtkGetMacro(Boundary, int);
@@ -328,8 +340,9 @@ public:
 
   ///@{
   /**
-   * Boundary facets whose normals differ by at most so many degrees are one plane (edges: one line) to
-   * slide in. On curved surfaces keep it small: points slide in the mean plane. The default is 1.
+   * Boundary facets whose normals differ by at most so many degrees are one plane (edges: one line)
+   * to slide in. On curved surfaces keep it small: points slide in the mean plane. The default
+   * is 1.
    */
   vtkSetClampMacro(FlatAngle, double, 0.0, 90.0);
   vtkGetMacro(FlatAngle, double);
@@ -337,8 +350,8 @@ public:
 
   ///@{
   /**
-   * For ON_SURFACE: edges of the boundary at which it bends by more than so many degrees are sharp. The
-   * default is 30.
+   * For ON_SURFACE: edges of the boundary at which it bends by more than so many degrees are sharp.
+   * The default is 30.
    */
   vtkSetClampMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
@@ -346,9 +359,9 @@ public:
 
   ///@{
   /**
-   * How far a point may go from where it was, in the unit of the coordinates; 0: any distance. Where the point
-   * array at index 3 is chosen, it gives a limit for each point instead (negative: any distance). The
-   * default is 0.
+   * How far a point may go from where it was, in the unit of the coordinates; 0: any distance.
+   * Where the point array at index 3 is chosen, it gives a limit for each point instead (negative:
+   * any distance). The default is 0.
    */
   vtkSetClampMacro(MaximumDisplacement, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaximumDisplacement, double);
@@ -370,8 +383,8 @@ public:
 
   ///@{
   /**
-   * Untangle an input with inverted elements first, where no objective can repair it; off: refuse it.
-   * On.
+   * Untangle an input with inverted elements first, where no objective can repair it; off: refuse
+   * it. On.
    */
   vtkSetMacro(UntangleFirst, bool);
   vtkGetMacro(UntangleFirst, bool);
@@ -387,8 +400,8 @@ public:
 
   ///@{
   /**
-   * Local algorithms leave out points that moved less than this part of their shortest edge; 0: none. The
-   * default is 1e-3.
+   * Local algorithms leave out points that moved less than this part of their shortest edge; 0:
+   * none. The default is 1e-3.
    */
   vtkSetClampMacro(Culling, double, 0.0, 1.0);
   vtkGetMacro(Culling, double);
@@ -408,8 +421,8 @@ public:
 
   ///@{
   /**
-   * After the objective has converged, lower the worst value of the first metric as long as its mean does
-   * not get worse by more than this part; 0, the default: do not.
+   * After the objective has converged, lower the worst value of the first metric as long as its
+   * mean does not get worse by more than this part; 0, the default: do not.
    */
   vtkSetClampMacro(ImproveWorst, double, 0.0, 1.0);
   vtkGetMacro(ImproveWorst, double);
@@ -417,9 +430,9 @@ public:
 
   ///@{
   /**
-   * Give the iterations as time steps: time t is the mesh after iteration t (those of untangling come
-   * first), so that ParaView's animation plays the optimization. Without a request for a time, the
-   * output is the result. The time of the input is then its default one. Off.
+   * Give the iterations as time steps: time t is the mesh after iteration t (those of untangling
+   * come first), so that ParaView's animation plays the optimization. Without a request for a time,
+   * the output is the result. The time of the input is then its default one. Off.
    */
   vtkSetMacro(Animation, bool);
   vtkGetMacro(Animation, bool);
@@ -428,8 +441,8 @@ public:
 
   ///@{
   /**
-   * Megabytes for the points of the iterations; if they do not do, every second is dropped, and again. The
-   * default is 1000.
+   * Megabytes for the points of the iterations; if they do not do, every second is dropped, and
+   * again. The default is 1000.
    */
   vtkSetClampMacro(AnimationMemory, double, 1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(AnimationMemory, double);
@@ -449,8 +462,9 @@ public:
 
   ///@{
   /**
-   * The result of the last execution; numbers are of all blocks together, the reason is that of the last:
-   * why it stopped as a sentence and as a number (enum StopReason of tautline/Optimize.h, -1: nothing done).
+   * The result of the last execution; numbers are of all blocks together, the reason is that of the
+   * last: why it stopped as a sentence and as a number (enum StopReason of tautline/Optimize.h, -1:
+   * nothing done).
    */
   const char* GetReason() const { return this->Reason.c_str(); }
   int GetStopReason() const { return this->StopReason; }

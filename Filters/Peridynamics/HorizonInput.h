@@ -25,7 +25,8 @@ public:
   /**
    * @brief Takes the triangles of a planar mesh; points keep their numbers.
    *
-   * Vertices and lines are left out; other cells, surfaces in space and an input without triangles throw Error.
+   * Vertices and lines are left out; other cells, surfaces in space and an input without triangles
+   * throw Error.
    * @param region cell array, may be null; @param collarValue its value in the collar
    */
   HorizonInput(vtkDataSet* input, vtkDataArray* region, double collarValue, int threads);

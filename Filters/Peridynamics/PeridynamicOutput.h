@@ -30,14 +30,15 @@ struct PeridynamicResult
 void addRowData(const PeridynamicResult& result, vtkDataSet* output);
 
 /**
- * @brief Adds a vector over the rows as an array: on points (continuous linear) or on cells, with as many
- * components as there are functions; of the elastic model, vectors in space.
+ * @brief Adds a vector over the rows as an array: on points (continuous linear) or on cells, with
+ * as many components as there are functions; of the elastic model, vectors in space.
  * @param given values of functions that are not unknown, may be null: 0
  */
 void addRowVector(const PeridynamicResult& result, const std::vector<double>& values,
   const char* name, const std::vector<double>* given, vtkDataSet* output);
 
-/// Values of an array on the functions of the basis, `components` each; of vectors in space, those in the plane.
+/// Values of an array on the functions of the basis, `components` each; of vectors in space, those
+/// in the plane.
 std::vector<double> onFunctions(const HorizonInput& input, PeridynamicBasis basis, Index components,
   vtkDataArray* array, bool onPoints);
 

@@ -1,17 +1,19 @@
 /**
  * @class vtkHorizonNeighbors
- * @brief Draws the horizon of a point and the triangles that meet it, by the cases of dissertation Figure 4.4.
+ * @brief Draws the horizon of a point and the triangles that meet it, by the cases of dissertation
+ * Figure 4.4.
  *
- * To see what a row of a nonlocal matrix is made of, and what the dissertation's approximation of cut
- * triangles leaves out.
+ * To see what a row of a nonlocal matrix is made of, and what the dissertation's approximation of
+ * cut triangles leaves out.
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane.
  *
  * @par Output port 0 `Triangles`:
- * vtkPolyData: the triangles that meet the disc. Cell arrays: `Case` (int), 1 all three corners inside, 2 two,
- * 3 one, 0 none (an edge is cut, or the disc lies in the triangle: the dissertation leaves these out);
- * `CellId`; `Area` of the part in the disc; `ChordArea`, the same as the dissertation takes it; `Missed`, the difference.
+ * vtkPolyData: the triangles that meet the disc. Cell arrays: `Case` (int), 1 all three corners
+ * inside, 2 two, 3 one, 0 none (an edge is cut, or the disc lies in the triangle: the dissertation
+ * leaves these out); `CellId`; `Area` of the part in the disc; `ChordArea`, the same as the
+ * dissertation takes it; `Missed`, the difference.
  *
  * @par Output port 1 `Horizon`:
  * vtkPolyData: the circle, as a closed line of 256 pieces.

@@ -1,22 +1,26 @@
 /**
  * @class vtkInteractionLayer
- * @brief Puts a collar of triangles around a planar mesh, for the volume constraint of nonlocal models.
+ * @brief Puts a collar of triangles around a planar mesh, for the volume constraint of nonlocal
+ * models.
  *
- * A nonlocal (peridynamic) problem is given its solution not on the boundary but in a region around the domain that is
- * as wide as the horizon (dissertation section 4.2, Figure 4.3). This filter adds that region: outside the
- * mesh and in its holes, up to Width from it. The collar has the edges and points of the boundary.
+ * A nonlocal (peridynamic) problem is given its solution not on the boundary but in a region around
+ * the domain that is as wide as the horizon (dissertation section 4.2, Figure 4.3). This filter
+ * adds that region: outside the mesh and in its holes, up to Width from it. The collar has the
+ * edges and points of the boundary.
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane. Other cells but vertices and lines are refused.
  *
  * @par Output:
- * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the collar. Points of
- * the input come first and keep their numbers. Point and cell data of the input pass, with zeros in the collar.
- * The cell array `Reference` (int) is 1 in the domain, 2 in the collar: vtkPeridynamicStiffness takes it.
+ * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the collar. Points
+ * of the input come first and keep their numbers. Point and cell data of the input pass, with zeros
+ * in the collar. The cell array `Reference` (int) is 1 in the domain, 2 in the collar:
+ * vtkPeridynamicStiffness takes it.
  *
  * @par Limitations:
- * Elements of the collar are about equally large (ElementSize). Where the boundary's edges are much longer
- * or shorter than that, elements next to it are flat: no matter for the matrix in exact discretization.
+ * Elements of the collar are about equally large (ElementSize). Where the boundary's edges are much
+ * longer or shorter than that, elements next to it are flat: no matter for the matrix in exact
+ * discretization.
  *
  * @par Example:
  * @code
@@ -28,7 +32,8 @@
  * stiffness->SetHorizon(0.2);
  * @endcode
  *
- * @sa tautline::addCollar (Filters/Kernel/HorizonCollar.h), vtkPeridynamicStiffness, vtkDomainSource
+ * @sa tautline::addCollar (Filters/Kernel/HorizonCollar.h), vtkPeridynamicStiffness,
+ * vtkDomainSource
  */
 
 #ifndef vtkInteractionLayer_h

@@ -1,47 +1,52 @@
 /**
  * @class vtkPeridynamicStiffness
- * @brief The stiffness matrix of a nonlocal (peridynamic) model: its condition number, its rows, its solution.
+ * @brief The stiffness matrix of a nonlocal (peridynamic) model: its condition number, its rows,
+ * its solution.
  *
  * Assembles the bond-based model of dissertation chapter 4 on a planar triangle mesh with a collar:
  *
- *     a(u, w) = s int w(x) int_{|x - y| < delta} (u(x) - u(y)) k(|x - y|) dy dx,   k(r) = r^-p,  s = 1 / delta^(4-p)
+ *     a(u, w) = s int w(x) int_{|x - y| < delta} (u(x) - u(y)) k(|x - y|) dy dx,
+ *     k(r) = r^-p,  s = 1 / delta^(4-p)
  *
- * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel. The solution is
- * given in the collar, the cells whose region is CollarValue. Two readings of the integrals:
+ * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel. The
+ * solution is given in the collar, the cells whose region is CollarValue. Two readings of the
+ * integrals:
  * - EXACT: geometry and singularity of the inner integral are exact; converges; symmetric.
  * - DISSERTATION: the rules of section 4.3. With Rules at TABLES it reproduces Tables 4.1 to 4.3.
  *
  * Extreme eigenvalues are by the Lanczos method, with error bounds; nothing is factorised.
  *
  * @par Input:
- * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds a collar;
- * vtkDomainSource's square has one.
+ * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds a
+ * collar; vtkDomainSource's square has one.
  *
  * @par Input arrays (SetInputArrayToProcess):
  * - 0, region: cell array with one component; cells where it is CollarValue are the collar.
  * - 1, source b: on points or cells, one component (elastic: two or three). None: UniformSource.
  * - 2, given g: in the collar; on points, or with discontinuous bases on cells. None: 0.
- * - 3, given points: point array, not 0 where the continuous linear basis is given. None: the points of collar cells.
+ * - 3, given points: point array, not 0 where the continuous linear basis is given. None: the
+ *   points of collar cells.
  *
  * @par Output port 0 `Mesh`:
- * The input with arrays on the points (continuous linear basis) or cells (others; the discontinuous linear one has a
- * component per corner): `Unknown` (1 or 0), `Neighbors` (unknown functions a row couples with),
- * `RowSum` (of the unknown part: what of the diagonal goes to the collar), `Diagonal`; `SmallestMode` and
- * `LargestMode`, eigenvectors of norm 1, if ComputeSpectrum; `Solution` if Solve. Elastic vectors have three
- * components per function, in space.
+ * The input with arrays on the points (continuous linear basis) or cells (others; the discontinuous
+ * linear one has a component per corner): `Unknown` (1 or 0), `Neighbors` (unknown functions a row
+ * couples with), `RowSum` (of the unknown part: what of the diagonal goes to the collar),
+ * `Diagonal`; `SmallestMode` and `LargestMode`, eigenvectors of norm 1, if ComputeSpectrum;
+ * `Solution` if Solve. Elastic vectors have three components per function, in space.
  *
  * @par Output port 1 `Spectrum`:
- * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`, `Largest`, `SmallestBound`,
- * `LargestBound` (absolute error bounds), `Definite`, `Converged`, `Iterations`, `Rows`, `Nonzeros`,
- * `Asymmetry` (of the dissertation's discretization: norm of the part that is dropped, relative), `CollarDeficit`,
- * `IntegratedPairs`, `Memory` (bytes, estimated).
+ * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`,
+ * `Largest`, `SmallestBound`, `LargestBound` (absolute error bounds), `Definite`, `Converged`,
+ * `Iterations`, `Rows`, `Nonzeros`, `Asymmetry` (of the dissertation's discretization: norm of the
+ * part that is dropped, relative), `CollarDeficit`, `IntegratedPairs`, `Memory` (bytes, estimated).
  *
  * @par Output port 2 `Sparsity`:
  * vtkImageData with `Entries` per pixel, as Figure 4.2; empty unless SparsityPixels is above 0.
  *
  * @par Errors:
- * Whatever tautline::assemblePeridynamics refuses, by name and with the remedy: no collar or too thin a one, an
- * exponent at the singular limit, inverted or degenerate triangles, too little memory, time over.
+ * Whatever tautline::assemblePeridynamics refuses, by name and with the remedy: no collar or too
+ * thin a one, an exponent at the singular limit, inverted or degenerate triangles, too little
+ * memory, time over.
  *
  * @par Example:
  * @code
@@ -54,7 +59,8 @@
  * std::cout << stiffness->GetCondition() << "\n"; // 9.28
  * @endcode
  *
- * @sa tautline::assemblePeridynamics (Filters/Kernel/Peridynamics.h), vtkInteractionLayer, vtkHorizonNeighbors
+ * @sa tautline::assemblePeridynamics (Filters/Kernel/Peridynamics.h), vtkInteractionLayer,
+ * vtkHorizonNeighbors
  */
 
 #ifndef vtkPeridynamicStiffness_h
@@ -111,8 +117,8 @@ public:
 
   ///@{
   /**
-   * Exponent p of the power, from 0 to below 4 (continuous linear basis) or 3 (others); elastic: 6 or 5. The
-   * kernel is integrable below 2 (4: elastic). The default is 1.
+   * Exponent p of the power, from 0 to below 4 (continuous linear basis) or 3 (others); elastic: 6
+   * or 5. The kernel is integrable below 2 (4: elastic). The default is 1.
    */
   vtkSetMacro(Exponent, double);
   vtkGetMacro(Exponent, double);
@@ -128,7 +134,8 @@ public:
 
   ///@{
   /**
-   * Values of the tabulated kernel: two or more, not negative, the first at r = 0, the last at delta.
+   * Values of the tabulated kernel: two or more, not negative, the first at r = 0, the last at
+   * delta.
    */
   void AddKernelValue(double value);
   void ClearKernelValues();
@@ -194,7 +201,8 @@ public:
 
   ///@{
   /**
-   * Wanted relative error of the integral over each pair of triangles in exact discretization, 1e-10 to 0.1. The default is 1e-5.
+   * Wanted relative error of the integral over each pair of triangles in exact discretization,
+   * 1e-10 to 0.1. The default is 1e-5.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
@@ -202,7 +210,8 @@ public:
 
   ///@{
   /**
-   * Value of the region array in the collar. The default is 2, as vtkInteractionLayer and vtkDomainSource give it.
+   * Value of the region array in the collar. The default is 2, as vtkInteractionLayer and
+   * vtkDomainSource give it.
    */
   vtkSetMacro(CollarValue, double);
   vtkGetMacro(CollarValue, double);
@@ -210,8 +219,8 @@ public:
 
   ///@{
   /**
-   * Whether the solution is given in the collar. If not, every function is unknown, and constants are in the
-   * null space. The default is true.
+   * Whether the solution is given in the collar. If not, every function is unknown, and constants
+   * are in the null space. The default is true.
    */
   vtkSetMacro(Constrained, bool);
   vtkGetMacro(Constrained, bool);
@@ -220,8 +229,8 @@ public:
 
   ///@{
   /**
-   * Whether a collar narrower than the horizon is accepted; what lies beyond the mesh then does not count. The default is
-   * false.
+   * Whether a collar narrower than the horizon is accepted; what lies beyond the mesh then does not
+   * count. The default is false.
    */
   vtkSetMacro(AllowThinCollar, bool);
   vtkGetMacro(AllowThinCollar, bool);
@@ -256,7 +265,8 @@ public:
 
   ///@{
   /**
-   * The source b where no array is given; elastic: of its first component, the other is 0. The default is 1.
+   * The source b where no array is given; elastic: of its first component, the other is 0. The
+   * default is 1.
    */
   vtkSetMacro(UniformSource, double);
   vtkGetMacro(UniformSource, double);
@@ -264,7 +274,8 @@ public:
 
   ///@{
   /**
-   * Largest number of rows of the picture of the sparsity pattern, 0 for none, up to 4096. The default is 0.
+   * Largest number of rows of the picture of the sparsity pattern, 0 for none, up to 4096. The
+   * default is 0.
    */
   vtkSetClampMacro(SparsityPixels, int, 0, 4096);
   vtkGetMacro(SparsityPixels, int);
@@ -280,8 +291,8 @@ public:
 
   ///@{
   /**
-   * Seconds the assembly may take, then as many the eigenvalues; 0, the default, is no limit. The assembly ends
-   * with an error; the eigenvalues with the best so far and a warning.
+   * Seconds the assembly may take, then as many the eigenvalues; 0, the default, is no limit. The
+   * assembly ends with an error; the eigenvalues with the best so far and a warning.
    */
   vtkSetClampMacro(TimeLimit, double, 0.0, 1e9);
   vtkGetMacro(TimeLimit, double);
@@ -297,8 +308,8 @@ public:
 
   ///@{
   /**
-   * Results of the last execution: condition number (0: none, or not positive definite), extreme eigenvalues, all
-   * in words.
+   * Results of the last execution: condition number (0: none, or not positive definite), extreme
+   * eigenvalues, all in words.
    */
   vtkGetMacro(Condition, double);
   vtkGetMacro(SmallestEigenvalue, double);

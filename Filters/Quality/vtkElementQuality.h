@@ -3,47 +3,47 @@
  * @brief Measures every element of a mesh by any number of quality metrics.
  *
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from any
- * vtkDataSet or composite data set; cells of higher order are measured on their corners. Whether the
- * mesh is planar, a surface or a volume is found, not asked, and so is its orientation: a mesh that is
- * reversed throughout is reported and, by default, measured as if it were not; one of mixed
+ * vtkDataSet or composite data set; cells of higher order are measured on their corners. Whether
+ * the mesh is planar, a surface or a volume is found, not asked, and so is its orientation: a mesh
+ * that is reversed throughout is reported and, by default, measured as if it were not; one of mixed
  * orientation is reported.
  *
  * @par Output port 0 `Mesh`:
- * The input with cell arrays: one per metric (double, named by the metric: "imr", "mean_ratio", ...)
- * and `Validity` (signed char): 1 valid, 0 degenerate, -1 inverted, -2 not measured (cell type), -3
- * not finite (coordinates NaN, infinite or beyond 1e100). Values are always finite. A metric that is
- * singular at a degenerate element is 0 there; one that is not defined on a cell is 0. Inverted
- * elements have negative values of signed metrics (see MetricInfo::inverted). The first metric is the
- * active cell scalar array; point arrays pass, none of them active.
+ * The input with cell arrays: one per metric (double, named by the metric: "imr", "mean_ratio",
+ * ...) and `Validity` (signed char): 1 valid, 0 degenerate, -1 inverted, -2 not measured (cell
+ * type), -3 not finite (coordinates NaN, infinite or beyond 1e100). Values are always finite. A
+ * metric that is singular at a degenerate element is 0 there; one that is not defined on a cell is
+ * 0. Inverted elements have negative values of signed metrics (see MetricInfo::inverted). The first
+ * metric is the active cell scalar array; point arrays pass, none of them active.
  *
  * @par Output port 1 `Statistics`:
  * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (elements summed up), `Minimum`,
  * `Maximum`, `Mean`, `RMS`, `StandardDeviation`, `Quantile01`, `05`, `25`, `50`, `75`, `95`, `99`,
  * `OutsideAcceptable`, `AcceptableLow`, `AcceptableHigh`, then the same in each row: `Inverted`,
  * `Degenerate`, `NotMeasured`, `NonFinite`; `WorstCells` (10 components: ids, worst first, -1 where
- * there are fewer) and `WorstPositions` (30 components: their centres). Statistics are over the valid
- * elements of the highest dimension in the data; ghost cells do not count.
+ * there are fewer) and `WorstPositions` (30 components: their centres). Statistics are over the
+ * valid elements of the highest dimension in the data; ghost cells do not count.
  *
  * @par Output port 2 `Distribution`:
- * A vtkTable with HistogramBins rows; for each metric the columns `<metric> value` (middle of the bin)
- * and `<metric> count`.
+ * A vtkTable with HistogramBins rows; for each metric the columns `<metric> value` (middle of the
+ * bin) and `<metric> count`.
  *
  * @par Output port 3 `Angles`:
- * A vtkTable with the five bins of dissertation Table 2.7: `From`, `To` (degrees), `Count`, `Percent`
- * of the corner angles, in volume meshes of the dihedral angles.
+ * A vtkTable with the five bins of dissertation Table 2.7: `From`, `To` (degrees), `Count`,
+ * `Percent` of the corner angles, in volume meshes of the dihedral angles.
  *
  * @par Output port 4 `Worst`:
  * A vtkPolyData with a vertex at the centre of each of the ten worst elements of each metric; point
  * arrays `Metric` (number), `Rank` (1 is the worst), `CellId`, `Value`, `Validity`. Zoom to it.
  *
- * For composite data sets and on several MPI ranks the tables are those of the whole; on ranks above
- * 0 they are empty. Cell ids are then the global ids of the cells if the data have any, else they
- * count through blocks and ranks in order.
+ * For composite data sets and on several MPI ranks the tables are those of the whole; on ranks
+ * above 0 they are empty. Cell ids are then the global ids of the cells if the data have any, else
+ * they count through blocks and ranks in order.
  *
  * @par Targets:
- * Metrics that are functions of T = A W^-1 take the wanted element W from TargetType: the ideal one,
- * the same element of a reference mesh (input port 1), the ideal shape in a size given per cell or
- * point, or in a metric tensor.
+ * Metrics that are functions of T = A W^-1 take the wanted element W from TargetType: the ideal
+ * one, the same element of a reference mesh (input port 1), the ideal shape in a size given per
+ * cell or point, or in a metric tensor.
  *
  * @par Example:
  * @code
@@ -111,8 +111,8 @@ public:
   ///@{
   /**
    * How target metrics combine the corners of cells other than simplices: their mean, the worst, or
-   * the mean of the power Power (negated where larger is better). If some corners are inverted, only
-   * these are combined, but for metrics that untangle. The default is MEAN.
+   * the mean of the power Power (negated where larger is better). If some corners are inverted,
+   * only these are combined, but for metrics that untangle. The default is MEAN.
    */
   vtkSetClampMacro(Combination, int, MEAN, POWER_MEAN);
   vtkGetMacro(Combination, int);
@@ -134,11 +134,11 @@ public:
   ///@{
   /**
    * What the wanted element is, for target metrics. IDEAL: the ideal cell of each type with unit
-   * edges. REFERENCE: the same cell of the mesh at input port 1. SIZE: the ideal shape with the area or
-   * volume in the array at index 0 (SetInputArrayToProcess; points or cells). TENSOR: the ideal shape
-   * in the metric tensor in the array at index 1 (6 components xx yy zz xy yz xz, or 9; points or
-   * cells), whose wanted edges have length 1. Values of point arrays are averaged over each cell. The
-   * default is IDEAL.
+   * edges. REFERENCE: the same cell of the mesh at input port 1. SIZE: the ideal shape with the
+   * area or volume in the array at index 0 (SetInputArrayToProcess; points or cells). TENSOR: the
+   * ideal shape in the metric tensor in the array at index 1 (6 components xx yy zz xy yz xz, or 9;
+   * points or cells), whose wanted edges have length 1. Values of point arrays are averaged over
+   * each cell. The default is IDEAL.
    */
   vtkSetClampMacro(TargetType, int, IDEAL, TENSOR);
   vtkGetMacro(TargetType, int);
@@ -167,10 +167,11 @@ public:
   };
   ///@{
   /**
-   * What to do with a mesh whose cells all list their points in the opposite order. MEASURE_AS_GIVEN:
-   * its elements count as inverted. MEASURE_FLIPPED: measured as if flipped, the output keeps the
-   * input's cells. FLIP_OUTPUT: the output's cells are flipped too (unstructured grids and poly data of
-   * linear cells). It is reported in each case. The default is MEASURE_FLIPPED.
+   * What to do with a mesh whose cells all list their points in the opposite order.
+   * MEASURE_AS_GIVEN: its elements count as inverted. MEASURE_FLIPPED: measured as if flipped, the
+   * output keeps the input's cells. FLIP_OUTPUT: the output's cells are flipped too (unstructured
+   * grids and poly data of linear cells). It is reported in each case. The default is
+   * MEASURE_FLIPPED.
    */
   vtkSetClampMacro(ReversedMesh, int, MEASURE_AS_GIVEN, FLIP_OUTPUT);
   vtkGetMacro(ReversedMesh, int);

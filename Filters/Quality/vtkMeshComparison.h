@@ -2,39 +2,42 @@
  * @class vtkMeshComparison
  * @brief What changed, element by element, between two meshes of equal connectivity.
  *
- * Compares a mesh before and after something moved its points: perturbation, smoothing, warping. For each
- * metric chosen it tells where elements became better or worse and by how much, and counts them.
+ * Compares a mesh before and after something moved its points: perturbation, smoothing, warping.
+ * For each metric chosen it tells where elements became better or worse and by how much, and counts
+ * them.
  *
  * Validity decides first: an element that becomes valid is better, one that becomes degenerate or
  * inverted is worse. Between two valid elements (and two inverted ones, where the metric orders
  * these, as untangling metrics do) the values decide, by the direction of the metric. They count as
- * equal if they differ by no more than Tolerance times the larger magnitude; for metrics without a unit
- * whose ideal value is 0, times 1 if that is more. A neutral metric (the size) makes no valid element
- * better or worse.
+ * equal if they differ by no more than Tolerance times the larger magnitude; for metrics without a
+ * unit whose ideal value is 0, times 1 if that is more. A neutral metric (the size) makes no valid
+ * element better or worse.
  *
  * @par Inputs:
- * Port 0 `Input`: the mesh before; port 1 `Other`: the mesh after. Both any vtkDataSet with the same
- * number of points and the same cells with the same points, in the same order; or two composite data
- * sets of the same structure whose blocks are such pairs. Other meshes are refused, and the first
- * difference named. If both meshes are reversed throughout, both are treated as their mirror images.
+ * Port 0 `Input`: the mesh before; port 1 `Other`: the mesh after. Both any vtkDataSet with the
+ * same number of points and the same cells with the same points, in the same order; or two
+ * composite data sets of the same structure whose blocks are such pairs. Other meshes are refused,
+ * and the first difference named. If both meshes are reversed throughout, both are treated as their
+ * mirror images.
  *
  * @par Output port 0:
  * The second mesh with its data, and these arrays. Cells: `<metric>_before`, `<metric>_after`,
  * `<metric>_difference` (after minus before) for each metric (double; `imr_before`, ...);
- * `Validity_before`, `Validity_after` and `Change` (signed char). `Change` is 1 if the element became
- * better in some metric and worse in none, -1 if worse in some and better in none, else 0. Points:
- * `Displacement` (3 components, double), second minus first position.
+ * `Validity_before`, `Validity_after` and `Change` (signed char). `Change` is 1 if the element
+ * became better in some metric and worse in none, -1 if worse in some and better in none, else 0.
+ * Points: `Displacement` (3 components, double), second minus first position.
  *
  * @par Output port 1 `Comparison`:
- * A vtkTable with a row per metric: `Metric` (its name); `Better`, `Worse`, `Equal`, numbers of elements
- * on which the metric is defined, ghost cells left out; `InvertedBefore`, `InvertedAfter`, numbers of
- * inverted elements; `MinimumBefore`, `MinimumAfter`, `MeanBefore`, `MeanAfter`, `MaximumBefore`,
- * `MaximumAfter` over the valid elements (for metrics that order inverted elements, over these too; 0
- * without any); `LargestDisplacement`. For composite data, over all blocks.
+ * A vtkTable with a row per metric: `Metric` (its name); `Better`, `Worse`, `Equal`, numbers of
+ * elements on which the metric is defined, ghost cells left out; `InvertedBefore`, `InvertedAfter`,
+ * numbers of inverted elements; `MinimumBefore`, `MinimumAfter`, `MeanBefore`, `MeanAfter`,
+ * `MaximumBefore`, `MaximumAfter` over the valid elements (for metrics that order inverted
+ * elements, over these too; 0 without any); `LargestDisplacement`. For composite data, over all
+ * blocks.
  *
  * @par Limitations:
- * Metrics take the ideal cell as their target and the mean over the corners of a cell. In parallel the
- * table is that of each process.
+ * Metrics take the ideal cell as their target and the mean over the corners of a cell. In parallel
+ * the table is that of each process.
  *
  * @par Example:
  * @code
@@ -85,8 +88,8 @@ public:
 
   ///@{
   /**
-   * Relative difference up to which two values are equal, between 0 and 1. The default is 1e-6, about
-   * the rounding of coordinates in single precision.
+   * Relative difference up to which two values are equal, between 0 and 1. The default is 1e-6,
+   * about the rounding of coordinates in single precision.
    */
   vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);

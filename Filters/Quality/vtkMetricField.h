@@ -2,25 +2,26 @@
  * @class vtkMetricField
  * @brief A quality metric of a triangle or tetrahedron as a function of its last vertex.
  *
- * Two vertices of a triangle, or three of a tetrahedron, are held fixed. At every point of a grid stands
- * the value the metric has with the last vertex there: contours show which shapes a metric likes and
- * how hard it punishes the others. The defaults are those of dissertation Figures 2.1 and 3.1: the
- * base from (0, 0) to (1, 0), the free vertex in [-1, 2] x [0, 2].
+ * Two vertices of a triangle, or three of a tetrahedron, are held fixed. At every point of a grid
+ * stands the value the metric has with the last vertex there: contours show which shapes a metric
+ * likes and how hard it punishes the others. The defaults are those of dissertation Figures 2.1
+ * and 3.1: the base from (0, 0) to (1, 0), the free vertex in [-1, 2] x [0, 2].
  *
- * A triangle lies in the plane z = 0; the third numbers of Vertex1, Vertex2, Bounds and Dimensions do
- * not matter to it. It is positive with the free vertex left of the line from Vertex1 to Vertex2 (with
- * the defaults, above the base). A tetrahedron is positive with the free vertex on the side from which
- * Vertex1, Vertex2, Vertex3 run counter-clockwise (with the defaults, z > 0).
+ * A triangle lies in the plane z = 0; the third numbers of Vertex1, Vertex2, Bounds and Dimensions
+ * do not matter to it. It is positive with the free vertex left of the line from Vertex1 to Vertex2
+ * (with the defaults, above the base). A tetrahedron is positive with the free vertex on the side
+ * from which Vertex1, Vertex2, Vertex3 run counter-clockwise (with the defaults, z > 0).
  *
  * @par Output:
- * vtkImageData with a point array (double) per metric, named by the metric (`imr`, `si`, ...), the first
- * one active, and the point array `Validity` (signed char): 1 valid, 0 degenerate, -1 inverted.
+ * vtkImageData with a point array (double) per metric, named by the metric (`imr`, `si`, ...), the
+ * first one active, and the point array `Validity` (signed char): 1 valid, 0 degenerate, -1
+ * inverted.
  *
  * @par Limitations:
- * Values are always finite: where the cell is degenerate, metrics that are singular there are 0. On the
- * base itself the inverse mean ratio therefore drops from large values to 0; contours and colour ranges
- * are cleaner with Bounds that start slightly above it, or after a Threshold of Validity at 1.
- * Metrics take the ideal cell with edges of length 1 as their target.
+ * Values are always finite: where the cell is degenerate, metrics that are singular there are 0. On
+ * the base itself the inverse mean ratio therefore drops from large values to 0; contours and
+ * colour ranges are cleaner with Bounds that start slightly above it, or after a Threshold of
+ * Validity at 1. Metrics take the ideal cell with edges of length 1 as their target.
  *
  * @par Example:
  * @code
@@ -99,7 +100,8 @@ public:
 
   ///@{
   /**
-   * Where the free vertex goes: xmin, xmax, ymin, ymax, zmin, zmax. The default is -1, 2, 0, 2, 0, 2.
+   * Where the free vertex goes: xmin, xmax, ymin, ymax, zmin, zmax. The default is -1, 2, 0, 2,
+   * 0, 2.
    */
   vtkSetVector6Macro(Bounds, double);
   vtkGetVector6Macro(Bounds, double);

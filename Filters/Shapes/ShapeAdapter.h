@@ -26,9 +26,11 @@ public:
   /**
    * @brief Takes the grey values of a planar image.
    *
-   * Colours become their luminance. Of an image with an alpha channel that is not constant, the alpha is taken: what
-   * is transparent is not the shape. Throws Error on volumes, on pixels that are not square, without an array.
-   * @param array the values; null: the active point scalars, the first point array, or the same of the cells
+   * Colours become their luminance. Of an image with an alpha channel that is not constant, the
+   * alpha is taken: what is transparent is not the shape. Throws Error on volumes, on pixels that
+   * are not square, without an array.
+   * @param array the values; null: the active point scalars, the first point array, or the same of
+   * the cells
    */
   explicit GreyImage(vtkImageData* image, vtkDataArray* array = nullptr);
 

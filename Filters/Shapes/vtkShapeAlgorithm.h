@@ -1,13 +1,14 @@
 /**
  * @class vtkShapeAlgorithm
- * @brief What Match Shape and Shape Retrieval have in common: the energy, the locations and the search.
+ * @brief What Match Shape and Shape Retrieval have in common: the energy, the locations and the
+ * search.
  *
  * Abstract. The energy of a placement of the source's triangles is (dissertation equation 5.1)
  *
  *     E = sum over triangles of  E_edge + a E_def + b E_dis
  *
- * and its terms are in tautline/ShapeMatch.h. The properties below are those of dissertation chapter 5, and
- * some that are not in it: they are off unless it is said otherwise.
+ * and its terms are in tautline/ShapeMatch.h. The properties below are those of dissertation
+ * chapter 5, and some that are not in it: they are off unless it is said otherwise.
  *
  * @sa vtkShapeMatcher, vtkShapeRetrieval, tautline::matchShape (Filters/Kernel/ShapeMatch.h)
  */
@@ -32,7 +33,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Where vertices may go: a grid over the image, the grid locations near the outline, or points on the outline.
+   * Where vertices may go: a grid over the image, the grid locations near the outline, or points on
+   * the outline.
    */
   enum LocationKinds
   {
@@ -53,7 +55,8 @@ public:
 
   ///@{
   /**
-   * Constant of the edge cost 1 / (lambda + |grad I|), above 0; the gradient is 1 on an ideal edge. The default is 0.1.
+   * Constant of the edge cost 1 / (lambda + |grad I|), above 0; the gradient is 1 on an ideal edge.
+   * The default is 0.1.
    */
   vtkSetMacro(Lambda, double);
   vtkGetMacro(Lambda, double);
@@ -61,7 +64,8 @@ public:
 
   ///@{
   /**
-   * a, weight of the squared log-anisotropy of the triangles, at least 0. The default is 12 (a = 4 b).
+   * a, weight of the squared log-anisotropy of the triangles, at least 0. The default is 12 (a = 4
+   * b).
    */
   vtkSetMacro(DeformationWeight, double);
   vtkGetMacro(DeformationWeight, double);
@@ -69,7 +73,8 @@ public:
 
   ///@{
   /**
-   * b, weight of the edge length distortion, at least 0. The default is 3; 0 is Felzenszwalb's energy.
+   * b, weight of the edge length distortion, at least 0. The default is 3; 0 is Felzenszwalb's
+   * energy.
    */
   vtkSetMacro(DistortionWeight, double);
   vtkGetMacro(DistortionWeight, double);
@@ -77,7 +82,8 @@ public:
 
   ///@{
   /**
-   * Whether the distortion tells growing from shrinking; the dissertation's does not. Off by default.
+   * Whether the distortion tells growing from shrinking; the dissertation's does not. Off by
+   * default.
    */
   vtkSetMacro(SignedDistortion, bool);
   vtkGetMacro(SignedDistortion, bool);
@@ -86,7 +92,8 @@ public:
 
   ///@{
   /**
-   * Standard deviation of the Gaussian before the gradient is taken, pixels, above 0. The default is 1.5.
+   * Standard deviation of the Gaussian before the gradient is taken, pixels, above 0. The default
+   * is 1.5.
    */
   vtkSetMacro(Smoothing, double);
   vtkGetMacro(Smoothing, double);
@@ -103,7 +110,8 @@ public:
 
   ///@{
   /**
-   * Weight of 1 - cos(angle a triangle turns by), at least 0. The default, 0, lets shapes turn freely.
+   * Weight of 1 - cos(angle a triangle turns by), at least 0. The default, 0, lets shapes turn
+   * freely.
    */
   vtkSetMacro(RotationWeight, double);
   vtkGetMacro(RotationWeight, double);
@@ -119,7 +127,8 @@ public:
 
   ///@{
   /**
-   * Weight of unequal lengths along the outline, at least 0; contour locations only. The default is 0.
+   * Weight of unequal lengths along the outline, at least 0; contour locations only. The default is
+   * 0.
    */
   vtkSetMacro(OrderingWeight, double);
   vtkGetMacro(OrderingWeight, double);
@@ -127,8 +136,8 @@ public:
 
   ///@{
   /**
-   * FORBIDDEN (0, the default): triangles that turn over count as flat. WHOLE (1): the shape or its mirror image,
-   * whichever fits better. FREE (2): triangles may turn over at no cost.
+   * FORBIDDEN (0, the default): triangles that turn over count as flat. WHOLE (1): the shape or its
+   * mirror image, whichever fits better. FREE (2): triangles may turn over at no cost.
    */
   vtkSetClampMacro(Reflection, int, FORBIDDEN, FREE);
   vtkGetMacro(Reflection, int);
@@ -160,8 +169,9 @@ public:
 
   ///@{
   /**
-   * theta / d_max: how far the mean of the matched vertices may be from the target's centre of mass before the next best
-   * solution is taken (equation 5.2), at least 0; 0 switches the rule off. The default is 1/3.
+   * theta / d_max: how far the mean of the matched vertices may be from the target's centre of mass
+   * before the next best solution is taken (equation 5.2), at least 0; 0 switches the rule off. The
+   * default is 1/3.
    */
   vtkSetMacro(CentreTolerance, double);
   vtkGetMacro(CentreTolerance, double);
@@ -194,7 +204,8 @@ public:
 
   ///@{
   /**
-   * Sizes of the target to try, an odd number from 1 to 31, each sqrt(2) times the next. The default is 1.
+   * Sizes of the target to try, an odd number from 1 to 31, each sqrt(2) times the next. The
+   * default is 1.
    */
   vtkSetMacro(Scales, int);
   vtkGetMacro(Scales, int);
@@ -202,7 +213,8 @@ public:
 
   ///@{
   /**
-   * Which side of the automatic threshold is the shape: 0 automatic (the default), 1 bright, 2 dark.
+   * Which side of the automatic threshold is the shape: 0 automatic (the default), 1 bright, 2
+   * dark.
    */
   vtkSetClampMacro(Foreground, int, 0, 2);
   vtkGetMacro(Foreground, int);

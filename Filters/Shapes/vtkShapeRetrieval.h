@@ -1,25 +1,27 @@
 /**
  * @class vtkShapeRetrieval
- * @brief "Shape Retrieval": matches each of a set of silhouettes with each other one, and ranks them.
+ * @brief "Shape Retrieval": matches each of a set of silhouettes with each other one, and ranks
+ * them.
  *
  * @par Input:
- * vtkMultiBlockDataSet of images, as the silhouette-set reader gives them: the name of a block is the name of the
- * shape, its field array `Label` (string or number) the class. Without labels the class is the name up to its first
- * digit.
+ * vtkMultiBlockDataSet of images, as the silhouette-set reader gives them: the name of a block is
+ * the name of the shape, its field array `Label` (string or number) the class. Without labels the
+ * class is the name up to its first digit.
  *
  * @par Outputs, vtkTable:
- * Port 0, Distances: `Name`, `Label` and a column per shape with the distance to it; -1 where the run ended before.
- * Port 1, Ranking: a row for each of the best matches of each query: `Query`, `QueryLabel`, `Rank`, `Match`,
- * `MatchLabel`, `Distance`, `Correct`.
- * Port 2, Statistics: a row per rank, `Rank`, `Correct` (queries whose match at that rank is of their class), `Rate` in
- * percent of the queries; the field array `RecognitionRate` (percent of all) is also GetRecognitionRate().
- * Port 3, Confusion: `Label` and a column per class: the percentage of the best matches of a class's shapes that are of
- * each class.
+ * Port 0, Distances: `Name`, `Label` and a column per shape with the distance to it; -1 where the
+ * run ended before. Port 1, Ranking: a row for each of the best matches of each query: `Query`,
+ * `QueryLabel`, `Rank`, `Match`, `MatchLabel`, `Distance`, `Correct`. Port 2, Statistics: a row per
+ * rank, `Rank`, `Correct` (queries whose match at that rank is of their class), `Rate` in percent
+ * of the queries; the field array `RecognitionRate` (percent of all) is also GetRecognitionRate().
+ * Port 3, Confusion: `Label` and a column per class: the percentage of the best matches of a
+ * class's shapes that are of each class.
  *
- * The recognition rate is the number of best matches of the query's own class, as a part of those possible
- * (dissertation section 5.3); the query itself does not count.
+ * The recognition rate is the number of best matches of the query's own class, as a part of those
+ * possible (dissertation section 5.3); the query itself does not count.
  *
- * @sa vtkSilhouetteSetReader, vtkShapeMatcher, tautline::retrieveShapes (Filters/Kernel/ShapeRetrieval.h)
+ * @sa vtkSilhouetteSetReader, vtkShapeMatcher, tautline::retrieveShapes
+ * (Filters/Kernel/ShapeRetrieval.h)
  */
 
 #ifndef vtkShapeRetrieval_h
@@ -50,10 +52,11 @@ public:
 
   ///@{
   /**
-   * CUSTOM (0): the properties as they are. DISSERTATION (1): spacing 25, 30 x 30 grid, a = 4 b, theta = d_max / 3.
-   * FELZENSZWALB (2): the same without the distortion and the centre of mass. HIGHEST (3, the default): contour locations,
-   * denser vertices, directed edges, ordering, descriptors, a weight of turning, both directions. All but CUSTOM override
-   * the properties of the energy, the locations, the spacing, the rule and Symmetric.
+   * CUSTOM (0): the properties as they are. DISSERTATION (1): spacing 25, 30 x 30 grid, a = 4 b,
+   * theta = d_max / 3. FELZENSZWALB (2): the same without the distortion and the centre of mass.
+   * HIGHEST (3, the default): contour locations, denser vertices, directed edges, ordering,
+   * descriptors, a weight of turning, both directions. All but CUSTOM override the properties of
+   * the energy, the locations, the spacing, the rule and Symmetric.
    */
   vtkSetClampMacro(Setting, int, CUSTOM, HIGHEST);
   vtkGetMacro(Setting, int);

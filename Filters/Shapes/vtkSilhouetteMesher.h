@@ -2,25 +2,29 @@
  * @class vtkSilhouetteMesher
  * @brief "Silhouette to Mesh": the triangulated polygon around what an image shows.
  *
- * The largest component of the foreground of a binary, grey or colour image is traced to sub-pixel, a simple polygon
- * with nearly equally spaced vertices is laid along its outline, and the polygon gets a constrained Delaunay
- * triangulation without interior points (dissertation sections 5.2.1 and 5.2.2). That is the shape Match Shape looks for.
+ * The largest component of the foreground of a binary, grey or colour image is traced to sub-pixel,
+ * a simple polygon with nearly equally spaced vertices is laid along its outline, and the polygon
+ * gets a constrained Delaunay triangulation without interior points (dissertation sections 5.2.1
+ * and 5.2.2). That is the shape Match Shape looks for.
  *
  * @par Input:
- * vtkImageData of one slice with square pixels and a point or cell array: grey values, colours (their luminance is taken), or
- * with an alpha channel (taken if it is not constant). Input array 0 chooses it; the default are the active scalars.
+ * vtkImageData of one slice with square pixels and a point or cell array: grey values, colours
+ * (their luminance is taken), or with an alpha channel (taken if it is not constant). Input array 0
+ * chooses it; the default are the active scalars.
  *
  * @par Output 0, Mesh:
- * vtkUnstructuredGrid of n - 2 triangles. Point arrays `BoundaryOrder` (0 to n - 1, counter-clockwise) and
- * `EliminationOrder` (the step at which dynamic programming is done with the vertex; the last two are never
- * eliminated); cell array `EliminationStep`. Field arrays: `CentreOfMass` (2, in space, of the area inside the outline),
- * `MaximumDistance` (d_max, from there to the outline), `Area`, `Components`, `Holes`, `TouchesBorder`.
+ * vtkUnstructuredGrid of n - 2 triangles. Point arrays `BoundaryOrder` (0 to n - 1,
+ * counter-clockwise) and `EliminationOrder` (the step at which dynamic programming is done with the
+ * vertex; the last two are never eliminated); cell array `EliminationStep`. Field arrays:
+ * `CentreOfMass` (2, in space, of the area inside the outline), `MaximumDistance` (d_max, from
+ * there to the outline), `Area`, `Components`, `Holes`, `TouchesBorder`.
  *
  * @par Output 1, Outline:
  * vtkPolyData, the traced outline as one closed line.
  *
  * @par Limitations:
- * Holes and smaller components are counted and ignored. The image must be planar: extract a slice of a volume first.
+ * Holes and smaller components are counted and ignored. The image must be planar: extract a slice
+ * of a volume first.
  *
  * @par Example:
  * @code
@@ -59,7 +63,8 @@ public:
 
   ///@{
   /**
-   * The ideal distance of vertices along the outline, in pixels, above 0. The default is 25, the dissertation's.
+   * The ideal distance of vertices along the outline, in pixels, above 0. The default is 25, the
+   * dissertation's.
    */
   vtkSetMacro(Spacing, double);
   vtkGetMacro(Spacing, double);
@@ -84,8 +89,8 @@ public:
 
   ///@{
   /**
-   * Which side of the threshold is the shape: AUTOMATIC (0, the default: the side that fewer pixels of the border of the
-   * image are on), BRIGHT (1) or DARK (2).
+   * Which side of the threshold is the shape: AUTOMATIC (0, the default: the side that fewer pixels
+   * of the border of the image are on), BRIGHT (1) or DARK (2).
    */
   vtkSetClampMacro(Foreground, int, AUTOMATIC, DARK);
   vtkGetMacro(Foreground, int);

@@ -2,32 +2,36 @@
  * @class vtkMeshUntangler
  * @brief Makes the elements of a mesh valid by moving its points.
  *
- * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from data sets
- * with explicit points, or blocks of these. The connectivity stays, and so do the points of the boundary
- * unless FixBoundary is off. The output never has more inverted elements than the input. What it says of the
- * result is a guarantee: that every element is valid, or which are not, where they are, and why.
+ * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from
+ * data sets with explicit points, or blocks of these. The connectivity stays, and so do the points
+ * of the boundary unless FixBoundary is off. The output never has more inverted elements than the
+ * input. What it says of the result is a guarantee: that every element is valid, or which are not,
+ * where they are, and why.
  *
- * A mesh reversed throughout is treated as its mirror image; one of mixed orientation, image data (implicit
- * points) and cells of higher order are refused. For better elements run vtkMeshOptimizer afterwards.
+ * A mesh reversed throughout is treated as its mirror image; one of mixed orientation, image data
+ * (implicit points) and cells of higher order are refused. For better elements run vtkMeshOptimizer
+ * afterwards.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay.
  *
  * @par Output port 0 `Mesh`:
- * The input with new points, the point array `Displacement` (new minus old) and the cell arrays `Validity`
- * (see vtkElementQuality) and `Obstacle` (signed char), why an element is not valid: 0 it is valid, 1
- * unknown (the iterations ended), 2 all its points are fixed, 3 the fixed points around leave no
- * place, 4 a fixed point is NaN or infinite. Points in single precision stay so unless a valid element would not
- * be valid when rounded.
+ * The input with new points, the point array `Displacement` (new minus old) and the cell arrays
+ * `Validity` (see vtkElementQuality) and `Obstacle` (signed char), why an element is not valid: 0
+ * it is valid, 1 unknown (the iterations ended), 2 all its points are fixed, 3 the fixed points
+ * around leave no place, 4 a fixed point is NaN or infinite. Points in single precision stay so
+ * unless a valid element would not be valid when rounded.
  *
  * @par Output port 1 `History`:
- * A vtkTable whose row i is iteration i (0 is the input): `Objective` (the energy), `Inverted` (with degenerate
- * elements), `N gradient`, `N moving` (points), `Time (s)`; of composite data sets also `Block`.
+ * A vtkTable whose row i is iteration i (0 is the input): `Objective` (the energy), `Inverted`
+ * (with degenerate elements), `N gradient`, `N moving` (points), `Time (s)`; of composite data sets
+ * also `Block`.
  *
  * @par Several processes:
  * Each untangles its own part. Points of ghost cells stay, so that the parts still fit together.
  *
- * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see tautline/Untangle.h.
+ * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see
+ * tautline/Untangle.h.
  *
  * @sa vtkMeshOptimizer, vtkElementQuality, vtkMeshPerturbation
  */
@@ -63,8 +67,8 @@ public:
   };
   ///@{
   /**
-   * How hard to try: LOCAL moves only what is around inverted elements, NORMAL then all points, THOROUGH for
-   * thousands of iterations and from several starts. The default is NORMAL.
+   * How hard to try: LOCAL moves only what is around inverted elements, NORMAL then all points,
+   * THOROUGH for thousands of iterations and from several starts. The default is NORMAL.
    */
   vtkSetClampMacro(Effort, int, LOCAL, THOROUGH);
   vtkGetMacro(Effort, int);
@@ -79,7 +83,8 @@ public:
   ///@{
   /**
    * Whether the points of the boundary stay. Points also stay where the point array at index 0
-   * (SetInputArrayToProcess) is not 0, and where the selection at port 1 holds them or a cell of theirs. On.
+   * (SetInputArrayToProcess) is not 0, and where the selection at port 1 holds them or a cell of
+   * theirs. On.
    */
   vtkSetMacro(FixBoundary, bool);
   vtkGetMacro(FixBoundary, bool);

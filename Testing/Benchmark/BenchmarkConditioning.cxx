@@ -1,5 +1,6 @@
-// Assembly of finite element matrices: seconds, the best of several turns, CPU time on one thread and wall time on one
-// and on two; and what BoomerAMG takes for its set-up on the same matrix. Lines `key<tab>number`.
+// Assembly of finite element matrices: seconds, the best of several turns, CPU time on one thread
+// and wall time on one and on two; and what BoomerAMG takes for its set-up on the same matrix.
+// Lines `key<tab>number`.
 //
 // usage: BenchmarkConditioning [CELLS [TURNS]]
 

@@ -1,9 +1,10 @@
-// BenchmarkOptimization PART ...: times the optimizer, in passes of the yardstick (see Yardstick.h) of the CPU
-// time of one thread, from the filter's input to its output. Prints lines "key<tab>number". Run by
-// optimization.py. PARTs:
+// BenchmarkOptimization PART ...: times the optimizer, in passes of the yardstick (see Yardstick.h)
+// of the CPU time of one thread, from the filter's input to its output. Prints lines
+// "key<tab>number". Run by optimization.py. PARTs:
 //   yardstick REPEATS          nanoseconds per element of the unit
-//   make RECIPE CELLS FILE     a mesh: disk2d or disk3d, then -plain, -perturbed (50 %), -tangled (1 % of the
-//                              cells) or -scattered (30 % of the inner points anywhere in the bounding box)
+//   make RECIPE CELLS FILE     a mesh: disk2d or disk3d, then -plain, -perturbed (50 %),
+//                              -tangled (1 % of the cells) or -scattered (30 % of the inner
+//                              points anywhere in the bounding box)
 //   best FILE                  the sum of squared IMR after hundreds of sweeps, close to the least
 //   objective FILE REPEATS     value and gradient of the sum of squared IMR
 //   shape FILE REPEATS BEST    95 % of the reduction to BEST, 1.0001 BEST, the presets
@@ -14,7 +15,7 @@
 //   sweeps FILE REPEATS        ten local sweeps of IMR and size by the exponential sum
 //   memory CUBES               the best shape of 6 CUBES^3 tetrahedra; peak memory in bytes
 
-#include "../../Filters/Quality/MeshAdapter.h"
+#include "../../Filters/Core/MeshAdapter.h"
 #include "../Cxx/VtkMeshes.h"
 #include "Clocks.h"
 #include "KuhnMesh.h"
@@ -217,7 +218,8 @@ void makePart(const std::string& recipe, vtkIdType cells, const std::string& fil
 }
 
 //------------------------------------------------------------------------------
-/// A close upper bound of the least sum: Newton's method for all points at once would take far longer.
+/// A close upper bound of the least sum: Newton's method for all points at once would take far
+/// longer.
 double bestSum(vtkDataSet* mesh)
 {
   constexpr int many = 300;
@@ -414,7 +416,8 @@ void sweepsPart(const std::string& file, int repeats)
 }
 
 //------------------------------------------------------------------------------
-/// Arrays made in the size they need: a builder that grows would itself need more than the optimizer.
+/// Arrays made in the size they need: a builder that grows would itself need more than the
+/// optimizer.
 Grid perturbedCubes(Index n)
 {
   MeshData data = cutIntoTetrahedra(blockMesh(CellType::Hexahedron, n, n, n), n);

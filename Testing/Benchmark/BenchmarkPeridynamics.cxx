@@ -1,5 +1,5 @@
-// Assembly and condition number of nonlocal matrices, h = 1/N, delta = 0.2: CPU seconds of one thread, the best of
-// several turns, and wall seconds of one and of two. Lines `key<tab>number`.
+// Assembly and condition number of nonlocal matrices, h = 1/N, delta = 0.2: CPU seconds of one
+// thread, the best of several turns, and wall seconds of one and of two. Lines `key<tab>number`.
 //
 // usage: BenchmarkPeridynamics [N [TURNS]]
 

@@ -1,10 +1,11 @@
-// BenchmarkQuality PART N REPEATS: times element quality on an N x N x N grid of perturbed cells and
-// prints lines "key<tab>nanoseconds per element" (other units as said below). Run by run.py. PARTs:
+// BenchmarkQuality PART N REPEATS: times element quality on an N x N x N grid of perturbed cells
+// and prints lines "key<tab>nanoseconds per element" (other units as said below). Run by run.py.
+// PARTs:
 //   kernel   plain loops, then the kernel's evaluations, in turns, best of REPEATS
 //   filter   vtkElementQuality and its parts against vtkMeshQuality, in turns, best of REPEATS
 //   memory-tautline, memory-verdict   one filter, once; peak memory in bytes per element
 
-#include "../../Filters/Quality/MeshAdapter.h"
+#include "../../Filters/Core/MeshAdapter.h"
 #include "../Cxx/VtkMeshes.h"
 #include "Clocks.h"
 #include "KuhnMesh.h"

@@ -1,4 +1,5 @@
-// Shape matching: nanoseconds of one match, for the ratios of run.py. Single-thread times are CPU time.
+// Shape matching: nanoseconds of one match, for the ratios of run.py. Single-thread times are CPU
+// time.
 //
 // usage: BenchmarkShapes shapes SIZE REPEATS    the grid has min(SIZE, 30) columns and rows
 

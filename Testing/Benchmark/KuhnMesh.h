@@ -11,7 +11,8 @@
 
 namespace tautline
 {
-/// Cuts the unit cubes of a block of n x n x n hexahedra into six tetrahedra round a diagonal (Kuhn).
+/// Cuts the unit cubes of a block of n x n x n hexahedra into six tetrahedra round a diagonal
+/// (Kuhn).
 inline MeshData cutIntoTetrahedra(MeshData data, Index n)
 {
   const std::vector<Index> cubes = std::move(data.connectivity);

@@ -13,12 +13,12 @@ namespace tautline
 {
 /**
  * @class Yardstick
- * @brief A loop over 998,250 tetrahedra that sums up the squared inverse mean ratio and its gradient, written
- * as the formulas stand on paper, in the order of the elements, on one thread.
+ * @brief A loop over 998,250 tetrahedra that sums up the squared inverse mean ratio and its
+ * gradient, written as the formulas stand on paper, in the order of the elements, on one thread.
  *
- * A *pass* over N elements is N times what this loop takes for one. Its source file is compiled with -O2 for
- * the plainest instruction set, whatever the flags of the rest: the unit does not change as the
- * compiler's vectorisation or the kernel does.
+ * A *pass* over N elements is N times what this loop takes for one. Its source file is compiled
+ * with -O2 for the plainest instruction set, whatever the flags of the rest: the unit does not
+ * change as the compiler's vectorisation or the kernel does.
  */
 class Yardstick
 {

@@ -13,8 +13,8 @@ namespace tautline
 
 /**
  * A block of nx x ny x nz unit cubes, each cut into cells of one type: itself; two wedges; five
- * tetrahedra, mirrored in every other cube so that the faces fit; six pyramids round its centre. With
- * nz = 0 a rectangle of squares or of triangles, two to a square.
+ * tetrahedra, mirrored in every other cube so that the faces fit; six pyramids round its centre.
+ * With nz = 0 a rectangle of squares or of triangles, two to a square.
  */
 inline MeshData blockMesh(CellType type, Index nx, Index ny, Index nz)
 {
@@ -125,7 +125,8 @@ inline MeshData shuffled(const MeshData& mesh, unsigned seed)
   return result;
 }
 
-/** A block with all its points, the boundary's too, moved by up to `amplitude` in each direction it has. */
+/** A block with all its points, the boundary's too, moved by up to `amplitude` in each direction it
+ * has. */
 inline MeshData movedBlock(CellType type, Index n, double amplitude, unsigned seed = 31)
 {
   const bool flat = topology(type).dimension == 2;

@@ -1,6 +1,7 @@
 /**
  * @file Meshes.h
- * @brief Meshes in memory for the tests of the kernel: single cells and scattered ones. See also Blocks.h.
+ * @brief Meshes in memory for the tests of the kernel: single cells and scattered ones. See also
+ * Blocks.h.
  */
 
 #ifndef tautline_Meshes_h
@@ -228,7 +229,8 @@ inline std::vector<double> cornerSines(
   return sines;
 }
 
-/** The ideal cell with each corner moved by up to `amplitude` in each direction its dimension has. */
+/** The ideal cell with each corner moved by up to `amplitude` in each direction its dimension has.
+ */
 inline std::vector<Vec3> perturbedCell(CellType type, double amplitude, Random& random)
 {
   std::vector<Vec3> corners = idealCell(type);
@@ -271,7 +273,8 @@ inline std::vector<Vec3> unflatCell(CellType type, bool anywhere, Random& random
 
 /**
  * Cells without common points, half of them well-shaped. On a surface each 2D cell is turned into a
- * plane of its own, where it is seen from its own positive side; `cells` says how it looks from there.
+ * plane of its own, where it is seen from its own positive side; `cells` says how it looks from
+ * there.
  */
 inline MeshData scatteredCells(
   CellType type, bool surface, int count, Random& random, std::vector<std::vector<Vec3>>& cells)

@@ -13,7 +13,8 @@
 
 namespace tautline
 {
-/// Rows by rows: entry(row, column) for the columns of the 5-point stencil on an n x n grid, those that are 0 too.
+/// Rows by rows: entry(row, column) for the columns of the 5-point stencil on an n x n grid, those
+/// that are 0 too.
 inline SparseMatrix gridMatrix(int n, const std::function<double(int, int)>& entry)
 {
   SparseMatrix a;
@@ -34,7 +35,8 @@ inline SparseMatrix gridMatrix(int n, const std::function<double(int, int)>& ent
   return a;
 }
 
-/// The 5-point Laplacian on n x n inner points of a square, times `scale`, plus `shift` on the diagonal.
+/// The 5-point Laplacian on n x n inner points of a square, times `scale`, plus `shift` on the
+/// diagonal.
 inline SparseMatrix laplacian(int n, double scale = 1.0, double shift = 0.0)
 {
   return gridMatrix(n, [=](int i, int j) { return i == j ? 4.0 * scale + shift : -scale; });

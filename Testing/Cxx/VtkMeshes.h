@@ -1,6 +1,7 @@
 /**
  * @file VtkMeshes.h
- * @brief What the tests of the filters share: meshes as VTK data sets, and the errors of an algorithm.
+ * @brief What the tests of the filters share: meshes as VTK data sets, and the errors of an
+ * algorithm.
  */
 
 #ifndef tautline_VtkMeshes_h

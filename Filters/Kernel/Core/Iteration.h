@@ -1,6 +1,7 @@
 /**
  * @file Iteration.h
- * @brief What iterative methods have in common: why they stopped, a record per iteration, what observers are passed.
+ * @brief What iterative methods have in common: why they stopped, a record per iteration, what
+ * observers are passed.
  */
 #ifndef tautline_Iteration_h
 #define tautline_Iteration_h

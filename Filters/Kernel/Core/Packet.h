@@ -2,8 +2,9 @@
  * @file Packet.h
  * @brief A packet of doubles, one per element of a batch, with the functions metrics need.
  *
- * The width is that of the machine the kernel is compiled for: 8 (AVX-512), 4 (AVX) or 2. Arithmetic
- * and comparisons are the compiler's vector extensions. Internal to the kernel: not installed.
+ * The width is that of the machine the kernel is compiled for: 8 (AVX-512), 4 (AVX) or 2.
+ * Arithmetic and comparisons are the compiler's vector extensions. Internal to the kernel: not
+ * installed.
  */
 #ifndef tautline_Packet_h
 #define tautline_Packet_h

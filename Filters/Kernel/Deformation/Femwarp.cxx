@@ -260,7 +260,8 @@ std::vector<double> Femwarp::warp(const double* displacement, WarpControl& contr
   const double nothing =
     roundings * std::numeric_limits<double>::epsilon() * (most + slope * position);
 
-  // A singular operator: regularise more and more until the motion is no larger than what the maximum principle would allow, about.
+  // A singular operator: regularise more and more until the motion is no larger than what the
+  // maximum principle would allow, about.
   constexpr double excess = 2.0, firstRegularization = 1e-10, factor = 100, last = 1e-1;
   std::vector<double> values(n);
   for (;;)

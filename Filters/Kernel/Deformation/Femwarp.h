@@ -1,7 +1,8 @@
 /**
  * @file Femwarp.h
- * @brief FEMWARP and anisotropic FEMWARP, sections 4.8 and 4.9.1: the coefficients, the harmonic solve, the limit in
- * which a coefficient is 0; and the biharmonic equation. Internal: not installed.
+ * @brief FEMWARP and anisotropic FEMWARP, sections 4.8 and 4.9.1: the coefficients, the harmonic
+ * solve, the limit in which a coefficient is 0; and the biharmonic equation. Internal: not
+ * installed.
  */
 #ifndef tautline_Femwarp_h
 #define tautline_Femwarp_h
@@ -12,28 +13,30 @@
 namespace tautline
 {
 /**
- * @brief The coefficients (4.19), (4.21): sums of the absolute displacements along the axes, the largest scaled to 1.
- * The identity where nothing moves.
+ * @brief The coefficients (4.19), (4.21): sums of the absolute displacements along the axes, the
+ * largest scaled to 1. The identity where nothing moves.
  */
 SymmetricTensor displacementSums(
   const std::vector<unsigned char>& prescribed, const double* displacement);
 
 /**
- * @brief The same along the principal directions of the motion: the eigenvectors of the sum of d d^T. Where
- * eigenvalues coincide (within 1e-6 of the largest) the sums are averages over all directions of their space, so that the tensor
- * turns with the motion.
+ * @brief The same along the principal directions of the motion: the eigenvectors of the sum of d
+ * d^T. Where eigenvalues coincide (within 1e-6 of the largest) the sums are averages over all
+ * directions of their space, so that the tensor turns with the motion.
  */
 SymmetricTensor principalDirections(
   const std::vector<unsigned char>& prescribed, const double* displacement);
 
 /**
  * @class tautline::Femwarp
- * @brief One scalar operator, solved for every coordinate of the displacements after their affine part is taken off.
+ * @brief One scalar operator, solved for every coordinate of the displacements after their affine
+ * part is taken off.
  *
- * Where C is singular some points may depend on no prescribed point: rows, chains of rows and whole layers of the matrix that
- * decouple. These points get the isotropic operator instead, with all others given; the others do not
- * notice. Where the motion with such a C is nonetheless unbounded or the solver fails, a part of the isotropic operator is added to
- * all, the least of 1e-10, 1e-8, ... that helps.
+ * Where C is singular some points may depend on no prescribed point: rows, chains of rows and whole
+ * layers of the matrix that decouple. These points get the isotropic operator instead, with all
+ * others given; the others do not notice. Where the motion with such a C is nonetheless unbounded
+ * or the solver fails, a part of the isotropic operator is added to all, the least of 1e-10, 1e-8,
+ * ... that helps.
  */
 class Femwarp
 {

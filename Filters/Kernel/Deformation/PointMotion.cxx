@@ -106,8 +106,9 @@ Vector normalOf(Index n, const double* points, const unsigned char* moved, const
 }
 
 /**
- * @brief The same map of the plane with this normal, which stays a unit normal: what a box around a flat mesh does in the direction
- * it has no size in (ParaView's scales by 0 there) is of no account.
+ * @brief The same map of the plane with this normal, which stays a unit normal: what a box around a
+ * flat mesh does in the direction it has no size in (ParaView's scales by 0 there) is of no
+ * account.
  */
 Matrix withinPlane(const Matrix& linear, const Vector& normal)
 {
@@ -127,7 +128,8 @@ Matrix withinPlane(const Matrix& linear, const Vector& normal)
     image / area * normal.transpose();
 }
 
-/// x -> c(a) + R(a) (I + a (P - I)) (x - c), where the matrix is R P and the shift; c(a) goes along a screw.
+/// x -> c(a) + R(a) (I + a (P - I)) (x - c), where the matrix is R P and the shift; c(a) goes along
+/// a screw.
 Path matrixPath(
   const PointMotion& motion, double amount, const Vector& middle, const Vector& normal)
 {

@@ -1,7 +1,7 @@
 /**
  * @file PointMotion.h
- * @brief Motions of points along their true paths: an arc for a rotation, a screw for a rigid motion, ever
- * smaller radii for a bend. For parts of a boundary that a mesh is to follow (Warp.h).
+ * @brief Motions of points along their true paths: an arc for a rotation, a screw for a rigid
+ * motion, ever smaller radii for a bend. For parts of a boundary that a mesh is to follow (Warp.h).
  *
  * Example: the points marked, a third of the way round an axis through their middle.
  *
@@ -24,16 +24,17 @@ namespace tautline
 enum class MotionKind : int
 {
   /**
-   * @brief Any affine map without reflection: stretch about the centre of the points, then turn and shift along
-   * a screw. Of points in one plane, what it does across the plane does not count.
+   * @brief Any affine map without reflection: stretch about the centre of the points, then turn and
+   * shift along a screw. Of points in one plane, what it does across the plane does not count.
    */
   Matrix = 0,
   Translation = 1,
   Rotation = 2, ///< by `angle` about `axis` through the centre
   Scaling = 3,  ///< by `factors` along the coordinate axes, from the centre
   /**
-   * @brief A bar along `direction` becomes an arc of `angle` about `axis`; the line through the centre keeps
-   * its length. It is held where the points begin (ownCenter), or at the centre, and before that nothing moves.
+   * @brief A bar along `direction` becomes an arc of `angle` about `axis`; the line through the
+   * centre keeps its length. It is held where the points begin (ownCenter), or at the centre, and
+   * before that nothing moves.
    */
   Bending = 4
 };
@@ -52,11 +53,12 @@ struct PointMotion
 };
 
 /**
- * @brief By how much the points marked with a value other than 0 move, 3 per point; 0 for the others.
+ * @brief By how much the points marked with a value other than 0 move, 3 per point; 0 for the
+ * others.
  * @param amount 0 is where they are, 1 the whole motion; more goes on
  *
- * Throws Error for numbers that are not finite, an axis or a direction of length 0, factors that are not
- * positive, and matrices that mirror, flatten or are not affine.
+ * Throws Error for numbers that are not finite, an axis or a direction of length 0, factors that
+ * are not positive, and matrices that mirror, flatten or are not affine.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> displacements(const PointMotion& motion, double amount,
   Index numberOfPoints, const double* points, const unsigned char* moved);

@@ -230,7 +230,8 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
 }
 
 //------------------------------------------------------------------------------
-/// Where a single step left inverted elements that the boundary does not call for: in steps, each untangled.
+/// Where a single step left inverted elements that the boundary does not call for: in steps, each
+/// untangled.
 void Warper::Implementation::followMotion(
   const WarpMotion& path, const double* displacement, WarpControl& control)
 {

@@ -1,7 +1,7 @@
 /**
  * @file Warp.h
- * @brief Moves the interior points of a mesh after its boundary: FEMWARP, anisotropic FEMWARP, the hybrid algorithm of
- * section 4.9, and the methods they are compared with.
+ * @brief Moves the interior points of a mesh after its boundary: FEMWARP, anisotropic FEMWARP, the
+ * hybrid algorithm of section 4.9, and the methods they are compared with.
  *
  * Example: the boundary has moved, the interior follows.
  *
@@ -22,29 +22,31 @@ namespace tautline
 {
 /**
  * @class tautline::Warper
- * @brief Keeps matrices, preconditioners and former solutions of a mesh for the next boundary position.
+ * @brief Keeps matrices, preconditioners and former solutions of a mesh for the next boundary
+ * position.
  */
 class TAUTLINE_SOLVERS_EXPORT Warper
 {
 public:
   /**
-   * @brief The mesh and the arrays of the options stay alive. Throws Error for surfaces in space, elements that are not valid
-   * (how many, the first), cells the method does not take (wedges and pyramids: the last three do), no prescribed point, and
-   * options out of range.
+   * @brief The mesh and the arrays of the options stay alive. Throws Error for surfaces in space,
+   * elements that are not valid (how many, the first), cells the method does not take (wedges and
+   * pyramids: the last three do), no prescribed point, and options out of range.
    */
   Warper(const Mesh& mesh, const WarpOptions& options);
   ~Warper();
 
   /**
-   * @brief Where the points are once the prescribed ones have moved by `displacement` (3 per point of the mesh; those of other points
-   * are not read). Throws Error for displacements that are not finite (how many, the first point), or lead out of the plane of a planar
-   * mesh.
+   * @brief Where the points are once the prescribed ones have moved by `displacement` (3 per point
+   * of the mesh; those of other points are not read). Throws Error for displacements that are not
+   * finite (how many, the first point), or lead out of the plane of a planar mesh.
    */
   WarpResult warp(const double* displacement);
 
   /**
-   * @brief The same where the boundary does not go straight: `motion(amount, displacement)` writes where the prescribed points
-   * are after a part of the motion, 0 < amount <= 1, as displacements from the mesh. Matters with more than one step.
+   * @brief The same where the boundary does not go straight: `motion(amount, displacement)` writes
+   * where the prescribed points are after a part of the motion, 0 < amount <= 1, as displacements
+   * from the mesh. Matters with more than one step.
    */
   WarpResult warp(const std::function<void(double amount, double* displacement)>& motion);
 

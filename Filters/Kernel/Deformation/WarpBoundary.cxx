@@ -110,7 +110,8 @@ WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
     return Vec2{ dot(this->Input.frame()[0], at(p)), dot(this->Input.frame()[1], at(p)) };
   };
 
-  // A grid of boxes about as large as the facets; each facet is in all boxes its bounding box reaches.
+  // A grid of boxes about as large as the facets; each facet is in all boxes its bounding box
+  // reaches.
   struct Box
   {
     Vec3 low, high;

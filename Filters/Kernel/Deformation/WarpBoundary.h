@@ -21,8 +21,8 @@ public:
     std::array<Index, 2> first = { 0, 0 }; ///< a point of each of the first pair
   };
   /**
-   * @brief Counts pairs without a common point that meet: edges that cross or touch, triangles that an edge of the
-   * other goes right through.
+   * @brief Counts pairs without a common point that meet: edges that cross or touch, triangles that
+   * an edge of the other goes right through.
    * @param points 3 per point of the mesh
    */
   Crossing crossings(const double* points) const;

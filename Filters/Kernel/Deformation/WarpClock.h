@@ -1,6 +1,7 @@
 /**
  * @file WarpClock.h
- * @brief The time limit and the observer of a warp, and loops that heed them. Internal: not installed.
+ * @brief The time limit and the observer of a warp, and loops that heed them. Internal: not
+ * installed.
  */
 #ifndef tautline_WarpClock_h
 #define tautline_WarpClock_h
@@ -36,8 +37,8 @@ private:
 };
 
 /**
- * Calls work(i) for each i below n; between runs of many the clock is told the fraction, which starts at `from`. False:
- * stopped before the end.
+ * Calls work(i) for each i below n; between runs of many the clock is told the fraction, which
+ * starts at `from`. False: stopped before the end.
  */
 template <class Work>
 bool forEachBatch(std::size_t n, int threads, const WarpClock& clock, double from, const Work& work)

@@ -54,7 +54,8 @@ void ElasticWarp::assemble(WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
-/// A body of one material follows affine motions exactly: they are taken off then, and only the rest is solved for.
+/// A body of one material follows affine motions exactly: they are taken off then, and only the
+/// rest is solved for.
 bool ElasticWarp::solve(
   const double* displacement, WarpControl& control, std::vector<double>& moved)
 {

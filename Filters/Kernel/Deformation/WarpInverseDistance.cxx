@@ -8,11 +8,13 @@ namespace tautline
 namespace
 {
 constexpr double LargestPower = 20.0;
-/// Squared distance below which points are at one place: beyond, the largest power is far from overflow.
+/// Squared distance below which points are at one place: beyond, the largest power is far from
+/// overflow.
 constexpr double Coincident = 1e-28;
 constexpr std::size_t LeafSize = 16;
-/// A group of points counts as a whole from a distance at which the third term of its expansion, for points all in
-/// one direction, is this part of the first. (The groups lie around their centres: what is left of it is far less.)
+/// A group of points counts as a whole from a distance at which the third term of its expansion,
+/// for points all in one direction, is this part of the first. (The groups lie around their
+/// centres: what is left of it is far less.)
 constexpr double ThirdTerm = 0.05;
 constexpr double LargestOpening = 0.5; ///< radius of a group over its distance, whatever the power
 
@@ -141,7 +143,8 @@ private:
     return points;
   }
 
-  /// The terms of |u - offset|^-p: f (1 + p a + p ((p + 2) a^2 - b) / 2), a = u.offset / u.u, b = offset^2 / u.u.
+  /// The terms of |u - offset|^-p: f (1 + p a + p ((p + 2) a^2 - b) / 2), a = u.offset / u.u, b =
+  /// offset^2 / u.u.
   void add(
     const Moments& m, const Vec3& u, double square, double f, double& weights, Vec3& values) const
   {

@@ -50,20 +50,24 @@ struct WarpOptions
   WarpCoefficients coefficients = WarpCoefficients::DisplacementSums;
   SymmetricTensor tensor = IdentityTensor; ///< Manual; alpha, beta, gamma are its first three
   const double* tensors = nullptr;         ///< PerCell: 6 per cell
-  /// One flag per point, nonzero = follows its given displacement; null: the points of the boundary.
+  /// One flag per point, nonzero = follows its given displacement; null: the points of the
+  /// boundary.
   const unsigned char* prescribed = nullptr;
   /**
-   * @brief Steps the motion is cut into, each from the mesh of the one before. 0: as many as are needed for no element to
-   * invert; steps that invert one are halved, and grow again. The result is then valid and may have come only a part of the
-   * way, see WarpResult::amount. SmallStepFemwarp takes 1 for 0. On the way each connected piece of prescribed points turns and
-   * stretches as its displacements together say, if they are those of one affine map, about; else it goes straight.
+   * @brief Steps the motion is cut into, each from the mesh of the one before. 0: as many as are
+   * needed for no element to invert; steps that invert one are halved, and grow again. The result
+   * is then valid and may have come only a part of the way, see WarpResult::amount.
+   * SmallStepFemwarp takes 1 for 0. On the way each connected piece of prescribed points turns and
+   * stretches as its displacements together say, if they are those of one affine map, about; else
+   * it goes straight.
    *
-   * Hybrid and FemwarpUntangling try one step first, with 0 as with 1; if untangling fails there, though the moved boundary does
-   * not cross itself, they follow the motion in short steps.
+   * Hybrid and FemwarpUntangling try one step first, with 0 as with 1; if untangling fails there,
+   * though the moved boundary does not cross itself, they follow the motion in short steps.
    */
   int steps = 1;
   int maximumSteps = 100; ///< where their number is free
-  /// Direct up to 600,000 unknowns (planar) or 20,000 (volume), else CG with BoomerAMG; off: `solver`.
+  /// Direct up to 600,000 unknowns (planar) or 20,000 (volume), else CG with BoomerAMG; off:
+  /// `solver`.
   bool automaticSolver = true;
   SolverOptions solver;      ///< its tolerance is `tolerance`
   double tolerance = 1e-10;  ///< relative, of the solves; affine motions are exact whatever it is
@@ -77,15 +81,18 @@ struct WarpOptions
   double fitTolerance =
     1e-3; ///< RadialBasis: of the greedy choice, relative to the largest displacement
   /**
-   * @brief Hybrid's second step. On: untangle() what the warp inverted and, if that was anything, lower the squared inverse
-   * mean ratios of T for up to 20 sweeps; then lower the exponential sum of F_1, the shape (4.22), and of these squared
-   * ratios, a barrier that keeps every element valid where (4.24) has the untangling metric, which is 0 from there on.
-   * Off: (4.24) as it stands; what it leaves inverted is untangled afterwards.
+   * @brief Hybrid's second step. On: untangle() what the warp inverted and, if that was anything,
+   * lower the squared inverse mean ratios of T for up to 20 sweeps; then lower the exponential sum
+   * of F_1, the shape (4.22), and of these squared ratios, a barrier that keeps every element valid
+   * where (4.24) has the untangling metric, which is 0 from there on. Off: (4.24) as it stands;
+   * what it leaves inverted is untangled afterwards.
    */
   bool untangleFirst = true;
-  /// beta of (4.24) with untangleFirst off, relative to the mean area or volume of the elements; at least 0.
+  /// beta of (4.24) with untangleFirst off, relative to the mean area or volume of the elements; at
+  /// least 0.
   double untanglingBeta = 0.0;
-  /// Hybrid's second step: optimizer and stopping criteria count, and c of the exponential sum; the rest is set.
+  /// Hybrid's second step: optimizer and stopping criteria count, and c of the exponential sum; the
+  /// rest is set.
   OptimizeOptions optimization = hybridOptimization();
   double maximumSeconds = 0.0;          ///< 0: no limit
   int threads = 0;                      ///< 0: all cores. The result does not depend on it.
@@ -117,11 +124,12 @@ struct WarpResult
   /// Pairs of edges, or of boundary triangles, of the moved boundary that cross and did not before.
   Index crossings = 0;
   /**
-   * @brief Points that a coefficient of 0 cuts off from all prescribed ones. They follow the points around them by the
-   * isotropic operator, which changes nothing for the others.
+   * @brief Points that a coefficient of 0 cuts off from all prescribed ones. They follow the points
+   * around them by the isotropic operator, which changes nothing for the others.
    */
   Index decoupled = 0;
-  /// The isotropic operator's part added to a singular one, relative to its largest coefficient, for a bounded motion; 0: none.
+  /// The isotropic operator's part added to a singular one, relative to its largest coefficient,
+  /// for a bounded motion; 0: none.
   double regularization = 0.0;
   double assembleSeconds = 0, setupSeconds = 0, solveSeconds = 0, improveSeconds = 0;
   bool aborted = false, timeLimit = false;

@@ -96,7 +96,8 @@ std::vector<char> WarpParts::moving(const double* displacement) const
 //------------------------------------------------------------------------------
 std::vector<AffineMotion> WarpParts::affine(const double* points, const double* displacement) const
 {
-  // Directions in which the points extend by less than this part of their extent count as not spanned.
+  // Directions in which the points extend by less than this part of their extent count as not
+  // spanned.
   constexpr double flat = 1e-6;
   using Matrix = Eigen::Matrix3d;
   using Vector = Eigen::Vector3d;

@@ -1,7 +1,7 @@
 /**
  * @file WarpParts.h
- * @brief The prescribed points of a mesh, its connected parts, and the affine motion of each. Internal: not
- * installed.
+ * @brief The prescribed points of a mesh, its connected parts, and the affine motion of each.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpParts_h
 #define tautline_WarpParts_h
@@ -38,15 +38,17 @@ public:
   Index loose() const { return this->Loose; }
   Index prescribedPoints() const { return this->PrescribedPoints; }
   Index freePoints() const { return this->FreePoints; }
-  /// 1 for points whose place is no unknown: prescribed, outside all cells, or in a part that is loose.
+  /// 1 for points whose place is no unknown: prescribed, outside all cells, or in a part that is
+  /// loose.
   const std::vector<unsigned char>& held() const { return this->Held; }
 
   /// Whether each part has a prescribed point that moves at all.
   std::vector<char> moving(const double* displacement) const;
 
   /**
-   * @brief For each part the affine motion that is closest to the prescribed displacements, by least squares; exact, to
-   * rounding, where they are affine. Directions the prescribed points do not span have no derivative.
+   * @brief For each part the affine motion that is closest to the prescribed displacements, by
+   * least squares; exact, to rounding, where they are affine. Directions the prescribed points do
+   * not span have no derivative.
    * @param points of the mesh, 3 each
    */
   std::vector<AffineMotion> affine(const double* points, const double* displacement) const;

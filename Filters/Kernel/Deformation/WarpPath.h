@@ -1,6 +1,7 @@
 /**
  * @file WarpPath.h
- * @brief The way the prescribed points take to their places, where only the places are known. Internal: not installed.
+ * @brief The way the prescribed points take to their places, where only the places are known.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpPath_h
 #define tautline_WarpPath_h
@@ -11,17 +12,19 @@ namespace tautline
 {
 /**
  * @class tautline::WarpPath
- * @brief Lets each connected piece of prescribed points turn, stretch and shift as the affine map does that fits its
- * displacements best, and what this leaves of them go straight. A piece that turns does so rigidly, where straight ways would
- * shrink it: half a turn would take it through a point. Where the map mirrors, or leaves more than 5 % of the displacements
- * (root mean square, without the shift), all go straight.
+ * @brief Lets each connected piece of prescribed points turn, stretch and shift as the affine map
+ * does that fits its displacements best, and what this leaves of them go straight. A piece that
+ * turns does so rigidly, where straight ways would shrink it: half a turn would take it through a
+ * point. Where the map mirrors, or leaves more than 5 % of the displacements (root mean square,
+ * without the shift), all go straight.
  */
 class WarpPath
 {
 public:
   WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displacement);
 
-  /// Displacements of the prescribed points after a part of the motion, 0 to 1; exact at 1. Others are 0.
+  /// Displacements of the prescribed points after a part of the motion, 0 to 1; exact at 1. Others
+  /// are 0.
   void at(double amount, double* displacement) const;
 
 private:

@@ -8,7 +8,8 @@ namespace tautline
 {
 namespace
 {
-/// Second moments of the prescribed points below this part of the largest count as 0: a plane or a line.
+/// Second moments of the prescribed points below this part of the largest count as 0: a plane or a
+/// line.
 constexpr double RankTolerance = 1e-14;
 /// Relative to the largest displacement: an affine motion to rounding.
 constexpr double AffineTolerance = 1e-14;
@@ -50,7 +51,8 @@ PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned 
   const double extent = norm(high - low);
   this->Scale = extent > 0 ? extent : 1.0;
 
-  // The inverse of the second moments; where the points do not determine an affine motion, of the smallest one.
+  // The inverse of the second moments; where the points do not determine an affine motion, of the
+  // smallest one.
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Index id : this->Prescribed)
   {

@@ -1,11 +1,13 @@
 /**
  * @file WarpPointwise.h
- * @brief The warping methods that are compared with FEMWARP and need no partial differential equation: inverse
- * distance weighting, radial basis functions and weighted Laplacian smoothing. Internal: not installed.
+ * @brief The warping methods that are compared with FEMWARP and need no partial differential
+ * equation: inverse distance weighting, radial basis functions and weighted Laplacian smoothing.
+ * Internal: not installed.
  *
- * All three move the points by the affine motion that fits the prescribed displacements best (least squares) and
- * treat only what is left of these; an affine motion comes out exactly, by whatever method. They work in lengths
- * relative to the extent of the prescribed points, so that the unit of length does not matter.
+ * All three move the points by the affine motion that fits the prescribed displacements best (least
+ * squares) and treat only what is left of these; an affine motion comes out exactly, by whatever
+ * method. They work in lengths relative to the extent of the prescribed points, so that the unit of
+ * length does not matter.
  */
 #ifndef tautline_WarpPointwise_h
 #define tautline_WarpPointwise_h
@@ -16,41 +18,47 @@
 namespace tautline
 {
 /**
- * @brief Displacements of all points, 3 each, by one of the methods; bitwise the same for any number of threads.
+ * @brief Displacements of all points, 3 each, by one of the methods; bitwise the same for any
+ * number of threads.
  *
- * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is read, and returned
- * as it is, where the flag is set. Without any prescribed point nothing moves. The result is empty when
- * options.progress returned false or options.maximumSeconds were over. Throws Error for options out of range.
+ * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is
+ * read, and returned as it is, where the flag is set. Without any prescribed point nothing moves.
+ * The result is empty when options.progress returned false or options.maximumSeconds were over.
+ * Throws Error for options out of range.
  *
- * Inverse distance weighting (Shepard): the mean of the prescribed displacements, weighted by the distance to the power
- * -options.distancePower (above 0, at most 20). Far groups of points count by their expansion to second order, which
- * differs from the sum over all points by less than 1e-4 of the largest displacement.
+ * Inverse distance weighting (Shepard): the mean of the prescribed displacements, weighted by the
+ * distance to the power -options.distancePower (above 0, at most 20). Far groups of points count by
+ * their expansion to second order, which differs from the sum over all points by less than 1e-4 of
+ * the largest displacement.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
 /**
- * @brief As above by radial basis functions: Wendland's C2 function with the radius options.supportRadius (0: twice
- * the extent of the prescribed points) around as many prescribed points, at most 3000, as it takes for the others to be
- * met within options.fitTolerance times the largest displacement; the point that is met worst comes next.
+ * @brief As above by radial basis functions: Wendland's C2 function with the radius
+ * options.supportRadius (0: twice the extent of the prescribed points) around as many prescribed
+ * points, at most 3000, as it takes for the others to be met within options.fitTolerance times the
+ * largest displacement; the point that is met worst comes next.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
 /**
- * @brief As above by the method of Shontz and Vavasis (2003): each point that is not prescribed is a convex combination
- * of its neighbours in the initial mesh, of all such combinations the one with the largest product of weights; it
- * stays that. Neighbours are the other points of the cells around; where the point is not within their hull (surfaces:
- * in the tangent plane), all count the same. Points of parts without a prescribed point stay. The linear system is solved
- * to options.tolerance.
+ * @brief As above by the method of Shontz and Vavasis (2003): each point that is not prescribed is
+ * a convex combination of its neighbours in the initial mesh, of all such combinations the one with
+ * the largest product of weights; it stays that. Neighbours are the other points of the cells
+ * around; where the point is not within their hull (surfaces: in the tangent plane), all count the
+ * same. Points of parts without a prescribed point stay. The linear system is solved to
+ * options.tolerance.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement,
   const WarpOptions& options);
 
-// --- what the three share ------------------------------------------------------------------------------
+// --- what the three share
+// ------------------------------------------------------------------------------
 
 /// The prescribed displacements, split into an affine motion and the rest.
 class TAUTLINE_SOLVERS_EXPORT PrescribedMotion

@@ -56,7 +56,8 @@ double similarity(const CellTopology& t, const Mesh& mesh, const Vec3* before, c
   return sum / t.samples;
 }
 
-/// Calls visit(chunk, cell, value) for each cell that is an element; the value is NaN where it is not valid.
+/// Calls visit(chunk, cell, value) for each cell that is an element; the value is NaN where it is
+/// not valid.
 template <class Visit>
 void forEachElement(const Mesh& mesh, const double* points, int threads, const Visit& visit)
 {

@@ -14,7 +14,8 @@ constexpr std::size_t FirstCandidates = 4000;
 constexpr std::size_t MoreCandidates = 1000; ///< each time
 /// No more points than this are chosen: their matrix is dense.
 constexpr std::size_t MostCenters = 3000;
-/// A candidate that is within this (squared) of what the chosen ones span adds nothing but rounding.
+/// A candidate that is within this (squared) of what the chosen ones span adds nothing but
+/// rounding.
 constexpr double Independence = 1e-12;
 constexpr std::size_t LeafSize = 32;
 /// Products from which a choice is worth starting threads.
@@ -32,8 +33,8 @@ double wendland(double ratio)
 /**
  * @brief Chooses centres among candidates one by one, always where the residual is largest.
  *
- * Row i of the basis holds, for candidate i, the values of Newton's basis of the functions chosen: columns of a Cholesky
- * factor that grows with the pivot. A choice costs one product with each row.
+ * Row i of the basis holds, for candidate i, the values of Newton's basis of the functions chosen:
+ * columns of a Cholesky factor that grows with the pivot. A choice costs one product with each row.
  */
 class GreedyFit
 {
@@ -281,7 +282,8 @@ std::vector<double> warpByRadialBasis(const Mesh& mesh,
     options.supportRadius > 0 ? options.supportRadius / motion.scale() : DefaultRadius;
   const double enough = options.fitTolerance * motion.largest();
 
-  // Every so manieth prescribed point is a candidate, then those of the others that are met worst, until there are none.
+  // Every so manieth prescribed point is a candidate, then those of the others that are met worst,
+  // until there are none.
   const std::vector<Index>& all = motion.prescribed();
   const std::size_t stride = (all.size() + FirstCandidates - 1) / FirstCandidates;
   std::vector<char> isCandidate(all.size(), 0);

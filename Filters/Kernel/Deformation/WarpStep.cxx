@@ -192,14 +192,16 @@ void WarpStep::improve(
   {
     stage("untangle", this->untangle(fixed, control, points));
   }
-  // Following, the next step needs a mesh that is good, else the shape is to be that of the beginning.
+  // Following, the next step needs a mesh that is good, else the shape is to be that of the
+  // beginning.
   const bool optimizes = this->Following ? result.invertedAfter == 0
                                          : options.method == WarpMethod::Hybrid && !literal &&
       result.invertedAfter < this->Initial.view().numberOfCells;
   if (optimizes && !control.stopped())
   {
-    // The shape (4.22) goes with the fourth power of T. From elements that were valid in the nick of time its descent
-    // would end early: at 120 degrees of a box in a box with a worst value of 870 instead of 41.
+    // The shape (4.22) goes with the fourth power of T. From elements that were valid in the nick
+    // of time its descent would end early: at 120 degrees of a box in a box with a worst value of
+    // 870 instead of 41.
     int iterations = 0;
     if (result.invertedAfter == 0 && (this->Following || tangled))
     {

@@ -1,7 +1,7 @@
 /**
  * @file WarpStep.h
- * @brief One step of a motion: from a mesh and the displacements of its prescribed points to the points of all. Internal: not
- * installed.
+ * @brief One step of a motion: from a mesh and the displacements of its prescribed points to the
+ * points of all. Internal: not installed.
  */
 #ifndef tautline_WarpStep_h
 #define tautline_WarpStep_h
@@ -32,8 +32,9 @@ public:
   ~WarpStep();
 
   /**
-   * @brief Makes it one of many steps of an untangling method: isotropic FEMWARP, local untangling, a little smoothing by shape
-   * against `initial`; what is left to do at the end of the way is improve()'s.
+   * @brief Makes it one of many steps of an untangling method: isotropic FEMWARP, local untangling,
+   * a little smoothing by shape against `initial`; what is left to do at the end of the way is
+   * improve()'s.
    */
   void setFollowing(bool following) { this->Following = following; }
 
@@ -46,7 +47,8 @@ public:
   Index run(
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
 
-  /// The second step of the methods that have one, on points that are where `displacement` wants them.
+  /// The second step of the methods that have one, on points that are where `displacement` wants
+  /// them.
   void improve(
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
 
@@ -73,13 +75,15 @@ private:
   bool Following = false;
 };
 
-/// Where the prescribed points are after a part of the motion: (amount, displacements from the mesh).
+/// Where the prescribed points are after a part of the motion: (amount, displacements from the
+/// mesh).
 using WarpMotion = std::function<void(double, double*)>;
 
 /**
  * @brief The motion in steps, each from the mesh the one before came to.
- * @param steps so many of equal length; 0: as few as it takes for no element to invert. There a step that inverts elements is
- * halved, and the next grows again; if steps become too small or too many, the result is the mesh of the last good one.
+ * @param steps so many of equal length; 0: as few as it takes for no element to invert. There a
+ * step that inverts elements is halved, and the next grows again; if steps become too small or too
+ * many, the result is the mesh of the last good one.
  * @param following see WarpStep::setFollowing(); the first of such steps is short
  */
 void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, int steps,

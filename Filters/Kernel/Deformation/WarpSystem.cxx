@@ -8,8 +8,8 @@ namespace
 {
 /// Former solutions kept; each costs two vectors.
 constexpr std::size_t mostFormer = 12;
-/// Up to so many unknowns a factorisation pays, measured: its first solve takes no more than a few tenths of a second longer than
-/// multigrid, or about as long, and each further one a tenth.
+/// Up to so many unknowns a factorisation pays, measured: its first solve takes no more than a few
+/// tenths of a second longer than multigrid, or about as long, and each further one a tenth.
 constexpr Index directPlanar = 600000, directVolume = 20000;
 /// Where CG fails, a factorisation is tried that is this much larger at most.
 constexpr Index largestFactor = 10;
@@ -111,7 +111,8 @@ void WarpSystem::makeSolver(KrylovMethod method)
   options.observer = nullptr;
   if (this->Options.automaticSolver && method == KrylovMethod::ConjugateGradient)
   {
-    // Coarser and sparser levels than BoomerAMG's own choice: a third of the time for 10^6 tetrahedra.
+    // Coarser and sparser levels than BoomerAMG's own choice: a third of the time for 10^6
+    // tetrahedra.
     options.preconditioner = Preconditioner::BoomerAMG;
     options.petscOptions =
       "-pc_hypre_boomeramg_strong_threshold 0.5 -pc_hypre_boomeramg_coarsen_type HMIS "

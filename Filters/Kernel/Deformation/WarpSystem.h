@@ -1,7 +1,7 @@
 /**
  * @file WarpSystem.h
- * @brief The partition (4.8) of a matrix by points whose values are given and points whose values are wanted, and
- * solutions of (4.10) for many given values. Internal: not installed.
+ * @brief The partition (4.8) of a matrix by points whose values are given and points whose values
+ * are wanted, and solutions of (4.10) for many given values. Internal: not installed.
  */
 #ifndef tautline_WarpSystem_h
 #define tautline_WarpSystem_h
@@ -19,9 +19,10 @@ namespace tautline
  * @class tautline::WarpSystem
  * @brief Keeps the matrix, its preconditioner or factorisation, and former solutions.
  *
- * A new solve starts from the projection of its right-hand side on the former ones (P. F. Fischer, "Projection
- * techniques for iterative solution of Ax = b with successive right-hand sides", CMAME 163, 1998), and ends
- * there where nothing is left: a boundary that turns, shifts or stretches as a whole needs no solve once it has done so.
+ * A new solve starts from the projection of its right-hand side on the former ones (P. F. Fischer,
+ * "Projection techniques for iterative solution of Ax = b with successive right-hand sides", CMAME
+ * 163, 1998), and ends there where nothing is left: a boundary that turns, shifts or stretches as a
+ * whole needs no solve once it has done so.
  */
 class WarpSystem
 {
@@ -37,8 +38,8 @@ public:
     const double* points, int dimension, const WarpOptions& options);
 
   /**
-   * @brief Finds the values of the points that are not held from those that are; `values` has block x numberOfPoints.
-   * Adds times and iterations to the control's result.
+   * @brief Finds the values of the points that are not held from those that are; `values` has block
+   * x numberOfPoints. Adds times and iterations to the control's result.
    * @return false if the solver failed: `values` are the best there is, and failure() tells
    */
   bool solve(std::vector<double>& values, WarpControl& control);

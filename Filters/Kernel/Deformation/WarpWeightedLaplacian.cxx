@@ -14,8 +14,8 @@ namespace
 using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr int NewtonSteps = 50;
-/// Newton's method is done at this (squared) decrement, which no affine map of the neighbours changes, and was
-/// successful at the second.
+/// Newton's method is done at this (squared) decrement, which no affine map of the neighbours
+/// changes, and was successful at the second.
 constexpr double Enough = 1e-27, Acceptable = 1e-20;
 /// Of the incomplete factorisation.
 constexpr double DropTolerance = 1e-3;
@@ -58,7 +58,8 @@ struct WeightedNeighbors
   std::vector<double> weights;
 };
 
-/// Solution of a positive definite system of the leading rows, by elimination; the other components are 0.
+/// Solution of a positive definite system of the leading rows, by elimination; the other components
+/// are 0.
 Vec3 solved(std::array<Vec3, 3> a, Vec3 b, int dimension)
 {
   const auto n = static_cast<std::size_t>(dimension);
@@ -90,8 +91,9 @@ Vec3 solved(std::array<Vec3, 3> a, Vec3 b, int dimension)
 /**
  * @brief The weights w > 0 with sum 1 and w . offsets = 0 that have the largest product.
  *
- * They are 1 / (n + l . offset): l, which has as many components as space, minimises -sum log(n + l . offset). Where the
- * point is not inside the convex hull of its neighbours there is no minimum: all weights are the same then.
+ * They are 1 / (n + l . offset): l, which has as many components as space, minimises -sum log(n + l
+ * . offset). Where the point is not inside the convex hull of its neighbours there is no minimum:
+ * all weights are the same then.
  */
 void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vector<double>& weights)
 {
@@ -250,8 +252,8 @@ private:
 };
 
 /**
- * @brief Solves the system, column by column, by stabilised biconjugate gradients; the matrix is diagonally dominant and
- * an incomplete factorisation exists.
+ * @brief Solves the system, column by column, by stabilised biconjugate gradients; the matrix is
+ * diagonally dominant and an incomplete factorisation exists.
  * @return false when the clock said stop
  */
 bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
@@ -343,11 +345,13 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
     {
       place[motion.prescribed()[i]] = static_cast<Index>(i);
     }
-    // Components along and across the plane of a planar mesh: none of the solver's error leads out of it.
+    // Components along and across the plane of a planar mesh: none of the solver's error leads out
+    // of it.
     const std::array<Vec3, 3> frame = mesh.dimension() == Dimension::Planar
       ? std::array<Vec3, 3>{ mesh.frame()[0], mesh.frame()[1], mesh.normal() }
       : std::array<Vec3, 3>{ Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
-    // Each unknown minus its combination of unknowns is its combination of prescribed displacements.
+    // Each unknown minus its combination of unknowns is its combination of prescribed
+    // displacements.
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n, 3);
     for (Eigen::Index i = 0; i < n; ++i)

@@ -1,6 +1,7 @@
 /**
  * @file Domains.h
- * @brief The geometric domains of the dissertation: boundaries for a mesher, structured meshes, motions.
+ * @brief The geometric domains of the dissertation: boundaries for a mesher, structured meshes,
+ * motions.
  *
  * The figures show the shapes without dimensions; lengths here are chosen after them. A boundary is
  * sampled with a wanted spacing, so that a mesh of any size has a boundary of its own resolution.
@@ -87,18 +88,20 @@ TAUTLINE_KERNEL_EXPORT SolidBoundary solidBoundary(const std::string& name, doub
 TAUTLINE_KERNEL_EXPORT StructuredMesh structuredRectangle(Index cells);
 
 /**
- * @brief The square (0,1)^2 of right triangles of Figures 4.6 and 4.7 with a collar of width `collar`.
+ * @brief The square (0,1)^2 of right triangles of Figures 4.6 and 4.7 with a collar of width
+ * `collar`.
  *
- * The legs of a triangle are h sqrt(r) and h / sqrt(r), so that the number of triangles in the square
- * is 2 / h^2 for every aspect ratio r. 1 / (h sqrt(r)) and sqrt(r) / h must be whole numbers; the
- * collar has as many whole layers as are needed to be at least `collar` wide. Throws Error otherwise.
+ * The legs of a triangle are h sqrt(r) and h / sqrt(r), so that the number of triangles in the
+ * square is 2 / h^2 for every aspect ratio r. 1 / (h sqrt(r)) and sqrt(r) / h must be whole
+ * numbers; the collar has as many whole layers as are needed to be at least `collar` wide. Throws
+ * Error otherwise.
  */
 TAUTLINE_KERNEL_EXPORT StructuredMesh structuredSquare(double h, double aspectRatio, double collar);
 
 /**
  * @brief Where a boundary point goes: its displacement at the end of the motion, times `amount`.
- * Motions that are not linear in amount (bending, turning) are evaluated at that amount: the inner box turns by
- * 180 degrees times amount. Zero on fixed parts.
+ * Motions that are not linear in amount (bending, turning) are evaluated at that amount: the inner
+ * box turns by 180 degrees times amount. Zero on fixed parts.
  */
 TAUTLINE_KERNEL_EXPORT Vec3 domainDisplacement(
   const std::string& name, const Vec3& point, int marker, double amount);

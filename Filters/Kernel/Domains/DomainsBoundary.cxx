@@ -229,8 +229,8 @@ const std::map<std::string, void (*)(Pen&)> Planar = {
     } },
 };
 
-/// A planar boundary between z = 0 and z = height: side facets in layers, bottom and top with holes.
-/// Markers of the sides are those of the segments; 4 is the bottom, 5 the top.
+/// A planar boundary between z = 0 and z = height: side facets in layers, bottom and top with
+/// holes. Markers of the sides are those of the segments; 4 is the bottom, 5 the top.
 SolidBoundary extrude(const PlanarBoundary& plane, double height, double spacing)
 {
   SolidBoundary solid;

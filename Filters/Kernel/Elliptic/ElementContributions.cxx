@@ -39,7 +39,8 @@ struct Work
   }
 };
 
-/// One cell: its largest eigenvalue, that of its part among the free unknowns, its energy in the eigenvector.
+/// One cell: its largest eigenvalue, that of its part among the free unknowns, its energy in the
+/// eigenvector.
 template <int Nodes, int Dimension, class Element>
 void visitCell(Work& work, const Element& element, Index cell, CellType type, double& lowerBound)
 {
@@ -166,7 +167,8 @@ ElementContributions elementContributions(const EllipticSystem& system, bool sha
       DiffusionElement(problem.pde == Pde::Poisson ? DiffusionOperator() : problem.diffusion));
   }
 
-  // x^T A x = sum x_e^T A_e x_e <= sum lambda_e |x_e|^2 = sum over points of |x_p|^2 times the sum of their cells' lambda_e.
+  // x^T A x = sum x_e^T A_e x_e <= sum lambda_e |x_e|^2 = sum over points of |x_p|^2 times the sum
+  // of their cells' lambda_e.
   std::vector<double> sums(system.freePoints().size(), 0.0);
   double total = 0.0;
   for (std::size_t cell = 0; cell < cells; ++cell)

@@ -1,8 +1,10 @@
 /**
  * @file ElementMatrices.h
- * @brief Stiffness matrices of single elements, of the diffusion operator and of linear elasticity. Internal: not installed.
+ * @brief Stiffness matrices of single elements, of the diffusion operator and of linear elasticity.
+ * Internal: not installed.
  *
- * All are exactly symmetric: of two entries that mirror each other one is computed and the other copied.
+ * All are exactly symmetric: of two entries that mirror each other one is computed and the other
+ * copied.
  */
 #ifndef tautline_ElementMatrices_h
 #define tautline_ElementMatrices_h
@@ -22,13 +24,15 @@ inline Vec3 applyTensor(const SymmetricTensor& c, const Vec3& v)
     c[5] * v[0] + c[4] * v[1] + c[2] * v[2] };
 }
 
-/// Whether a tensor is a number times the identity: then only edges and faces matter, not where they point.
+/// Whether a tensor is a number times the identity: then only edges and faces matter, not where
+/// they point.
 inline bool isIsotropic(const SymmetricTensor& c)
 {
   return c[0] == c[1] && c[1] == c[2] && c[3] == 0 && c[4] == 0 && c[5] == 0;
 }
 
-/// Where the matrix of an element is integrated: at one place of a simplex, where gradients are constant.
+/// Where the matrix of an element is integrated: at one place of a simplex, where gradients are
+/// constant.
 inline std::vector<ReferencePoint> elementRule(CellType type)
 {
   const CellTopology& t = topology(type);
@@ -60,7 +64,8 @@ inline void completeRows(double* k)
   }
 }
 
-/// Element matrices of -div(C grad u) + a u: K_ij is the integral of grad phi_i . C grad phi_j + a phi_i phi_j.
+/// Element matrices of -div(C grad u) + a u: K_ij is the integral of grad phi_i . C grad phi_j + a
+/// phi_i phi_j.
 class DiffusionElement
 {
 public:
@@ -97,8 +102,9 @@ public:
 
 private:
   /**
-   * Closed forms. With h_i the edge (face) opposite node i, turned to its inner normal and as long as it is (twice its area),
-   * grad phi_i = h_i / det J. In a triangle and with C = c I the turning does not matter.
+   * Closed forms. With h_i the edge (face) opposite node i, turned to its inner normal and as long
+   * as it is (twice its area), grad phi_i = h_i / det J. In a triangle and with C = c I the turning
+   * does not matter.
    */
   template <int Nodes>
   void simplex(const SymmetricTensor& c, const Vec3* p, double* k) const
@@ -204,7 +210,8 @@ private:
   std::array<std::vector<ReferencePoint>, NumberOfCellTypes> Rules;
 };
 
-/// lambda and mu of a body with E = 1 (2.4); for plane stress lambda is replaced so that the third normal stress vanishes.
+/// lambda and mu of a body with E = 1 (2.4); for plane stress lambda is replaced so that the third
+/// normal stress vanishes.
 inline std::array<double, 2> lameParameters(const ElasticOperator& pde, bool planar)
 {
   const double nu = pde.poissonRatio, e = pde.youngsModulus;

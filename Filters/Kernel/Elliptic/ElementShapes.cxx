@@ -53,7 +53,8 @@ void multilinear(
 constexpr int cubeCorners[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 }, { 0, 0, 1 },
   { 1, 0, 1 }, { 1, 1, 1 }, { 0, 1, 1 } };
 
-/// Shape functions at a place of the unit cube, which is collapsed to the cell; the weight gets the factor of that.
+/// Shape functions at a place of the unit cube, which is collapsed to the cell; the weight gets the
+/// factor of that.
 void evaluateShapes(CellType type, const double* u, ReferencePoint& at)
 {
   switch (type)

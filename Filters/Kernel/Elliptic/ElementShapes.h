@@ -1,6 +1,7 @@
 /**
  * @file ElementShapes.h
- * @brief Shape functions of the six linear cell types with quadrature, and their gradients in space. Internal: not installed.
+ * @brief Shape functions of the six linear cell types with quadrature, and their gradients in
+ * space. Internal: not installed.
  */
 #ifndef tautline_ElementShapes_h
 #define tautline_ElementShapes_h
@@ -13,7 +14,8 @@
 
 namespace tautline
 {
-/// A place in the reference cell: weight, shape functions and their derivatives by reference coordinates.
+/// A place in the reference cell: weight, shape functions and their derivatives by reference
+/// coordinates.
 struct ReferencePoint
 {
   double weight;
@@ -22,13 +24,14 @@ struct ReferencePoint
 };
 
 /**
- * @brief Quadrature on the reference cell: Gauss points, so many per direction. Simplices, wedges and pyramids are cubes with
- * collapsed sides, so that n points are exact to degree 2 n - 2 on triangles and 2 n - 3 on tetrahedra and pyramids.
- * The weights of simplices sum to 1/2 and 1/6.
+ * @brief Quadrature on the reference cell: Gauss points, so many per direction. Simplices, wedges
+ * and pyramids are cubes with collapsed sides, so that n points are exact to degree 2 n - 2 on
+ * triangles and 2 n - 3 on tetrahedra and pyramids. The weights of simplices sum to 1/2 and 1/6.
  */
 std::vector<ReferencePoint> referenceRule(CellType type, int pointsPerDirection);
 
-/// Gradients of the shape functions at one place of an element, and what the place counts in an integral.
+/// Gradients of the shape functions at one place of an element, and what the place counts in an
+/// integral.
 template <int Nodes>
 struct ElementSample
 {
@@ -37,7 +40,8 @@ struct ElementSample
   std::array<double, Nodes> gradient[3]; ///< [x, y, z][node]
 };
 
-/// A place whose |det J| is at most so much of the product of the lengths of J's columns counts as flat.
+/// A place whose |det J| is at most so much of the product of the lengths of J's columns counts as
+/// flat.
 constexpr double flatTolerance = 1e-13; // Mesh::degenerateTolerance()
 
 /// False for what overflows or is not a number: that goes on, so that it is found.
@@ -47,8 +51,9 @@ inline bool isFlat(double det, double lengths)
 }
 
 /**
- * @brief Fills a sample: a cell of dimension 3 in space, or one of dimension 2 anywhere in space, whose gradients are tangential.
- * A place where the Jacobian vanishes gets weight 0 and gradients 0.
+ * @brief Fills a sample: a cell of dimension 3 in space, or one of dimension 2 anywhere in space,
+ * whose gradients are tangential. A place where the Jacobian vanishes gets weight 0 and gradients
+ * 0.
  */
 template <int Nodes, int CellDimension>
 inline void sampleElement(

@@ -17,7 +17,8 @@ std::string elements(Index count, Index first)
   return std::to_string(count) + (count == 1 ? " element" : " elements") + where;
 }
 
-/// Sylvester's criterion for a symmetric matrix with the rows a d f, d b e, f e c; c = 1, e = f = 0 for the plane.
+/// Sylvester's criterion for a symmetric matrix with the rows a d f, d b e, f e c; c = 1, e = f = 0
+/// for the plane.
 bool positiveDefinite(double a, double b, double c, double d, double e, double f)
 {
   const double second = a * b - d * d;

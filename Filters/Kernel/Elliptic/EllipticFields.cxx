@@ -6,7 +6,8 @@ namespace tautline
 {
 namespace
 {
-/// The stress (2.4) of a displacement gradient; a planar body's is that of its plane, and of what holds it across.
+/// The stress (2.4) of a displacement gradient; a planar body's is that of its plane, and of what
+/// holds it across.
 SymmetricTensor stressOf(
   const Mesh& mesh, const ElasticOperator& pde, double factor, const std::array<Vec3, 3>& gradient)
 {

@@ -1,6 +1,7 @@
 /**
  * @file EllipticFields.h
- * @brief Fields derived from the values of a solution: gradients and stresses. Internal: not installed.
+ * @brief Fields derived from the values of a solution: gradients and stresses. Internal: not
+ * installed.
  */
 #ifndef tautline_EllipticFields_h
 #define tautline_EllipticFields_h
@@ -40,7 +41,8 @@ void interpolate(const ElementSample<Nodes>& sample, const EllipticSolution& sol
   }
 }
 
-/// Calls work(cell, nodes, sample) at the places of a rule in every cell that is not skipped, chunk by chunk.
+/// Calls work(cell, nodes, sample) at the places of a rule in every cell that is not skipped, chunk
+/// by chunk.
 template <class Work>
 void forEachSample(
   const EllipticDomain& domain, int pointsPerDirection, bool ghosts, const Work& work)

@@ -31,14 +31,19 @@ class TAUTLINE_SOLVERS_EXPORT EllipticSystem
 {
 public:
   /**
-   * @brief Assembles. Collective over the ranks, which all throw if one does. Throws Error that names the problem and the remedy:
+   * @brief Assembles. Collective over the ranks, which all throw if one does. Throws Error that
+   * names the problem and the remedy:
    *
-   * - no cells, cells of other types, coordinates or coefficients that are not finite or out of range;
-   * - degenerate elements, or elements inverted against the rest (how many, the first). A mesh that is reversed throughout is taken;
-   * - f or given values that are not finite where they are needed, or that point out of the plane of a planar mesh;
-   * - no free point; parts of the mesh without a fixed point where the operator is singular there (Poisson, a = 0). Elastic parts
-   *   need two fixed points in the plane and three in space, not in one line; parts that touch in one point (or in space along
-   *   one edge) count as one, and that they may turn about it is not found. On several ranks only one fixed point is asked for.
+   * - no cells, cells of other types, coordinates or coefficients that are not finite or out of
+   *   range;
+   * - degenerate elements, or elements inverted against the rest (how many, the first). A mesh that
+   *   is reversed throughout is taken;
+   * - f or given values that are not finite where they are needed, or that point out of the plane
+   *   of a planar mesh;
+   * - no free point; parts of the mesh without a fixed point where the operator is singular there
+   *   (Poisson, a = 0). Elastic parts need two fixed points in the plane and three in space, not in
+   *   one line; parts that touch in one point (or in space along one edge) count as one, and that
+   *   they may turn about it is not found. On several ranks only one fixed point is asked for.
    *
    * @param mesh stays alive as long as the system, and so do the arrays of problem and part
    */
@@ -49,7 +54,8 @@ public:
   Index unknowns() const;         ///< on all ranks
   int blockSize() const;          ///< unknowns per point: 1, 2 or 3
   double assembleSeconds() const; ///< wall time of the matrix and the right-hand side
-  /// This rank's contributions; unknown blockSize i + k is component k of point freePoints()[i]. On one rank the matrix.
+  /// This rank's contributions; unknown blockSize i + k is component k of point freePoints()[i]. On
+  /// one rank the matrix.
   const SparseMatrix& matrix() const;
   const std::vector<double>& rightHandSide() const;
   const std::vector<Index>& freePoints() const;

@@ -8,7 +8,8 @@ std::array<double, 2> errorNorms(const EllipticSystem& system, const EllipticSol
   const std::function<void(const Vec3&, double* value, double* gradient)>& exact)
 {
   constexpr int gaussPoints = 4;
-  const EllipticDomain domain = { system.mesh(), system.problem(), system.part(), system.threads() };
+  const EllipticDomain domain = { system.mesh(), system.problem(), system.part(),
+    system.threads() };
   // One sum per cell, so that their order is that of the cells.
   std::vector<std::array<double, 2>> squares(system.mesh().view().numberOfCells);
   forEachSample(domain, gaussPoints, false,

@@ -14,8 +14,10 @@
 namespace tautline
 {
 /**
- * @brief Norms of the difference between a solution and a known function, by four Gauss points in each direction. Collective.
- * @param exact writes `components` values and their gradients (3 per component; of a surface its tangential ones) at a place
+ * @brief Norms of the difference between a solution and a known function, by four Gauss points in
+ * each direction. Collective.
+ * @param exact writes `components` values and their gradients (3 per component; of a surface its
+ * tangential ones) at a place
  * @return { L2 norm of the error, L2 norm of the gradient's error }
  */
 TAUTLINE_SOLVERS_EXPORT std::array<double, 2> errorNorms(const EllipticSystem& system,

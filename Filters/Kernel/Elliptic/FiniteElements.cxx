@@ -119,8 +119,8 @@ void AssemblyPattern::findUses(const unsigned char* skip)
 {
   const MeshView& view = this->Input->view();
   const Index points = view.numberOfPoints;
-  // Each part of the cells counts for itself and later fills in from where the parts before it end: so the uses of a point
-  // are in order of cells, however many parts there are.
+  // Each part of the cells counts for itself and later fills in from where the parts before it end:
+  // so the uses of a point are in order of cells, however many parts there are.
   constexpr Index mostParts = 8; // each takes four bytes per point
   const Index parts = std::max<Index>(1,
     std::min({ mostParts, static_cast<Index>(resolveThreads(this->Threads)),
@@ -177,7 +177,8 @@ void AssemblyPattern::findColumns()
   this->Offsets.assign(points + 1, 0);
   this->Slots.resize(this->Uses.size() * this->Stride);
   std::vector<std::vector<std::int32_t>> chunks(numberOfChunks(points));
-  // Each thread marks the points it meets with their place in the row at hand, and clears the marks after each row.
+  // Each thread marks the points it meets with their place in the row at hand, and clears the marks
+  // after each row.
 #pragma omp parallel num_threads(resolveThreads(this->Threads)) if (chunks.size() > 1)
   {
     std::vector<std::int32_t> place(points, -1), row;
@@ -282,8 +283,9 @@ void AssemblyPattern::expand(int components, SparseMatrix& matrix) const
 
 //------------------------------------------------------------------------------
 /**
- * Cells are taken in batches: first the matrices of a batch, by cell; then every row adds what the batch has for it,
- * in increasing order of cells. So no two threads write to one row, sums have one order, and memory stays small.
+ * Cells are taken in batches: first the matrices of a batch, by cell; then every row adds what the
+ * batch has for it, in increasing order of cells. So no two threads write to one row, sums have one
+ * order, and memory stays small.
  */
 template <class Element>
 void AssemblyPattern::gather(
@@ -294,7 +296,8 @@ void AssemblyPattern::gather(
   MeshView view = this->Input->view();
   view.points = points ? points : view.points;
   const Index entries = components * components * this->Stride * this->Stride;
-  // The buffer takes no more than the matrix itself, unless that is small. Few batches, since each looks at all rows.
+  // The buffer takes no more than the matrix itself, unless that is small. Few batches, since each
+  // looks at all rows.
   constexpr Index least = 1 << 15;
   const Index batch = std::min(
     view.numberOfCells, std::max(least, static_cast<Index>(matrix.values.size()) / entries));

@@ -1,12 +1,14 @@
 /**
  * @file FiniteElements.h
- * @brief Stiffness matrices and load vectors of linear finite elements: P1 on triangles and tetrahedra, Q1 on
- * quadrilaterals and hexahedra, and what fits to them on wedges and pyramids.
+ * @brief Stiffness matrices and load vectors of linear finite elements: P1 on triangles and
+ * tetrahedra, Q1 on quadrilaterals and hexahedra, and what fits to them on wedges and pyramids.
  *
- * Matrices are those of all points of the mesh, before any boundary condition: a point outside all cells has an
- * empty row. They come out the same, bitwise, for any number of threads, and exactly symmetric.
+ * Matrices are those of all points of the mesh, before any boundary condition: a point outside all
+ * cells has an empty row. They come out the same, bitwise, for any number of threads, and exactly
+ * symmetric.
  *
- * Example: the matrix of -laplace u, and then that of -div(C grad u) without looking for its pattern again.
+ * Example: the matrix of -laplace u, and then that of -div(C grad u) without looking for its
+ * pattern again.
  *
  *     tautline::AssemblyPattern pattern(mesh);
  *     tautline::SparseMatrix matrix = pattern.assemble(tautline::DiffusionOperator());
@@ -33,11 +35,12 @@ struct AssemblyOptions
 
 /**
  * @class tautline::AssemblyPattern
- * @brief Where the entries of the matrices of a mesh are: found once, used for every assembly on that mesh.
+ * @brief Where the entries of the matrices of a mesh are: found once, used for every assembly on
+ * that mesh.
  *
- * Elements with more than two nodes along an edge and cells of other types are refused. Where the Jacobian of an element
- * vanishes (Mesh::degenerateTolerance()) it contributes nothing; inverted elements contribute by its absolute value. Ask
- * Mesh::classifyCells() first where that matters.
+ * Elements with more than two nodes along an edge and cells of other types are refused. Where the
+ * Jacobian of an element vanishes (Mesh::degenerateTolerance()) it contributes nothing; inverted
+ * elements contribute by its absolute value. Ask Mesh::classifyCells() first where that matters.
  */
 class TAUTLINE_SOLVERS_EXPORT AssemblyPattern
 {
@@ -50,7 +53,8 @@ public:
   explicit AssemblyPattern(const Mesh& mesh, const AssemblyOptions& options = {});
 
   /**
-   * @brief Fills a matrix; one that this pattern filled before keeps its memory. numberOfPoints square.
+   * @brief Fills a matrix; one that this pattern filled before keeps its memory. numberOfPoints
+   * square.
    * @param points coordinates instead of those of the mesh, 3 per point; or null
    * Throws Error for coordinates or coefficients that are not finite: the first cell that has them.
    */
@@ -58,8 +62,9 @@ public:
     const DiffusionOperator& pde, SparseMatrix& matrix, const double* points = nullptr) const;
 
   /**
-   * @brief The same for linear elasticity: unknown d p + k is component k of point p, d = elasticComponents(). The components of
-   * a planar mesh are along Mesh::frame(). Throws Error also for surfaces in space, and for E, nu or factors out of their range.
+   * @brief The same for linear elasticity: unknown d p + k is component k of point p, d =
+   * elasticComponents(). The components of a planar mesh are along Mesh::frame(). Throws Error also
+   * for surfaces in space, and for E, nu or factors out of their range.
    */
   void assemble(
     const ElasticOperator& pde, SparseMatrix& matrix, const double* points = nullptr) const;
@@ -95,7 +100,8 @@ private:
   int Stride = 0;                     // the most nodes a cell has
   bool Uniform = false;               // all cells have so many, without gaps
   std::array<signed char, 256> Nodes; // of a cell by its VTK type
-  /// The cells at each point, in increasing order, each with the point's place in it: cell * MaxNodes + place.
+  /// The cells at each point, in increasing order, each with the point's place in it: cell *
+  /// MaxNodes + place.
   std::vector<Index> UseOffsets;
   std::vector<std::uint32_t> Uses;
   /// Where the nodes of each use are in the row of its point; Stride per use.
@@ -116,7 +122,8 @@ TAUTLINE_SOLVERS_EXPORT SparseMatrix stiffnessMatrix(
 TAUTLINE_SOLVERS_EXPORT int elasticComponents(const Mesh& mesh);
 
 /**
- * @brief Integrals of f phi_p: f is given at the points (components per point, interpolated linearly).
+ * @brief Integrals of f phi_p: f is given at the points (components per point, interpolated
+ * linearly).
  * @return components x numberOfPoints
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> loadVector(

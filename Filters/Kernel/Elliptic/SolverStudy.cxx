@@ -104,7 +104,8 @@ LinearSystem Study::systemFor(const SolverCombination& combination)
 }
 
 //------------------------------------------------------------------------------
-/// Finds out in which combinations PETSc's options have an effect, and whether all options are good, before any time is spent.
+/// Finds out in which combinations PETSc's options have an effect, and whether all options are
+/// good, before any time is spent.
 void Study::checkOptions()
 {
   const auto& combinations = this->Options.combinations;
@@ -355,7 +356,8 @@ std::string Study::warnings() const
     text += " The matrix is nearly singular (condition about " + digits(condition) +
       " even with a preconditioner): check the fixed points and the coefficients.";
   }
-  // The inverse mean ratio is the trace of an element's matrix over that of the ideal one (in the plane).
+  // The inverse mean ratio is the trace of an element's matrix over that of the ideal one (in the
+  // plane).
   const Mesh& mesh = this->System.mesh();
   const Index cells = mesh.view().numberOfCells;
   std::vector<double> shape(cells);

@@ -1,6 +1,7 @@
 /**
  * @file SolverStudy.h
- * @brief Solves one system by many combinations of solver and preconditioner (Table 2.5) and recommends one.
+ * @brief Solves one system by many combinations of solver and preconditioner (Table 2.5) and
+ * recommends one.
  */
 #ifndef tautline_SolverStudy_h
 #define tautline_SolverStudy_h
@@ -14,28 +15,33 @@ struct SolverCombination
 {
   KrylovMethod method = KrylovMethod::ConjugateGradient;
   Preconditioner preconditioner = Preconditioner::BoomerAMG;
-  /// Elasticity: multigrid is told which unknowns belong to one point, and the rigid body modes. Others do not ask.
+  /// Elasticity: multigrid is told which unknowns belong to one point, and the rigid body modes.
+  /// Others do not ask.
   bool nearNullSpace = true;
 };
 
 /// "CG + ILU(0)".
 TAUTLINE_SOLVERS_EXPORT std::string nameOf(const SolverCombination& combination);
-/// The sixteen of Table 2.5, in its order; as there, multigrid only sees the matrix (nearNullSpace = false).
+/// The sixteen of Table 2.5, in its order; as there, multigrid only sees the matrix (nearNullSpace
+/// = false).
 TAUTLINE_SOLVERS_EXPORT std::vector<SolverCombination> dissertationCombinations();
 
 struct SolverStudyOptions
 {
   std::vector<SolverCombination> combinations = dissertationCombinations();
   /**
-   * @brief The rest: tolerances, restart, omega, limits per combination. PETSc options go to the combinations in which they have
-   * an effect; one that has none in any of them is an error. The observer is called, too.
+   * @brief The rest: tolerances, restart, omega, limits per combination. PETSc options go to the
+   * combinations in which they have an effect; one that has none in any of them is an error. The
+   * observer is called, too.
    */
   SolverOptions solver;
-  /// Estimate the condition of each P^-1 A by the Ritz values of CG, which is run besides where it is not in the list.
+  /// Estimate the condition of each P^-1 A by the Ritz values of CG, which is run besides where it
+  /// is not in the list.
   bool conditions = true;
   int repetitions = 1;         ///< the best time of so many
   double maximumSeconds = 0.0; ///< of the whole study; 0: no limit
-  /// Told a fraction; the study stops when it returns false. On several ranks all have one or none has.
+  /// Told a fraction; the study stops when it returns false. On several ranks all have one or none
+  /// has.
   std::function<bool(double)> progress;
 };
 
@@ -59,8 +65,8 @@ struct SolverStudy
 };
 
 /**
- * @brief Solves the system by each combination, from 0. Collective over the ranks. Failures are reasons of their rows; bad options
- * throw Error.
+ * @brief Solves the system by each combination, from 0. Collective over the ranks. Failures are
+ * reasons of their rows; bad options throw Error.
  */
 TAUTLINE_SOLVERS_EXPORT SolverStudy studySolvers(
   const EllipticSystem& system, const SolverStudyOptions& options = {});

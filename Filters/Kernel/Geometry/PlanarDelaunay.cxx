@@ -284,7 +284,8 @@ void Triangulation::insert(Index p)
   this->Last = this->TriangleOf[p];
 }
 
-/// Whether the edge is there; and a triangle at a that has it, or whose opposite edge the segment crosses.
+/// Whether the edge is there; and a triangle at a that has it, or whose opposite edge the segment
+/// crosses.
 bool Triangulation::hasEdge(Index a, Index b, Index& triangle) const
 {
   triangle = -1;

@@ -1,6 +1,7 @@
 /**
  * @file PlanarDelaunay.h
- * @brief A constrained Delaunay triangulation of points in the plane. Internal to the kernel: not installed.
+ * @brief A constrained Delaunay triangulation of points in the plane. Internal to the kernel: not
+ * installed.
  */
 #ifndef tautline_PlanarDelaunay_h
 #define tautline_PlanarDelaunay_h
@@ -16,9 +17,9 @@ namespace tautline
 /**
  * @brief Triangulates the convex hull of points so that every given segment is an edge.
  *
- * Delaunay but for the segments: by insertion and flips, segments by the flips of S. W. Sloan (Computers &
- * Structures 47 (1993) 441-450). No two points may coincide, no two segments cross, and no
- * point lie on a segment. Throws Error where they do.
+ * Delaunay but for the segments: by insertion and flips, segments by the flips of S. W. Sloan
+ * (Computers & Structures 47 (1993) 441-450). No two points may coincide, no two segments cross,
+ * and no point lie on a segment. Throws Error where they do.
  *
  * @param points x y each
  * @param segments pairs of point numbers

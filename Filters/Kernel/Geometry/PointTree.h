@@ -1,6 +1,7 @@
 /**
  * @file PointTree.h
- * @brief Points in boxes in boxes: a binary tree by medians along the longest side. Internal: not installed.
+ * @brief Points in boxes in boxes: a binary tree by medians along the longest side. Internal: not
+ * installed.
  */
 #ifndef tautline_PointTree_h
 #define tautline_PointTree_h
@@ -16,8 +17,8 @@ namespace tautline
 /**
  * @brief The points in an order in which those of a node follow each other; nodes are in preorder.
  *
- * Descends without recursion: the first child of node i is i + 1, and `next` is where to go on when the points of
- * node i are dealt with.
+ * Descends without recursion: the first child of node i is i + 1, and `next` is where to go on when
+ * the points of node i are dealt with.
  */
 class PointTree
 {

@@ -2,9 +2,10 @@
  * @file Polygon.h
  * @brief Constrained Delaunay triangulation of a simple polygon, without interior points.
  *
- * A polygon of n vertices becomes n - 2 triangles. The triangles and the diagonals they share form a
- * tree, which is what makes dynamic programming over the triangles possible (dissertation section
- * 5.2.2): leaf after leaf, the vertex with one triangle left is eliminated (a perfect elimination order).
+ * A polygon of n vertices becomes n - 2 triangles. The triangles and the diagonals they share form
+ * a tree, which is what makes dynamic programming over the triangles possible (dissertation section
+ * 5.2.2): leaf after leaf, the vertex with one triangle left is eliminated (a perfect elimination
+ * order).
  *
  *     const tautline::PolygonMesh mesh = tautline::triangulatePolygon(points);
  *     // mesh.triangles, mesh.elimination
@@ -50,11 +51,12 @@ TAUTLINE_KERNEL_EXPORT bool isSimple(const std::vector<Vec2>& polygon);
 /**
  * @brief The constrained Delaunay triangulation of a simple polygon, with its elimination order.
  *
- * Ear clipping, then edge flips; both with exact signs, so that the triangulation is Delaunay up to the
- * polygon's edges and every triangle has a positive area. A clockwise polygon is reversed. O(n^2).
+ * Ear clipping, then edge flips; both with exact signs, so that the triangulation is Delaunay up to
+ * the polygon's edges and every triangle has a positive area. A clockwise polygon is reversed.
+ * O(n^2).
  *
- * Throws Error if the polygon has fewer than 3 vertices, a coordinate that is not finite, meets itself
- * or lies on a line.
+ * Throws Error if the polygon has fewer than 3 vertices, a coordinate that is not finite, meets
+ * itself or lies on a line.
  */
 TAUTLINE_KERNEL_EXPORT PolygonMesh triangulatePolygon(std::vector<Vec2> polygon);
 }

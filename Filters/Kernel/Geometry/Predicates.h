@@ -3,8 +3,9 @@
  * @brief Signs of the orientation and in-circle determinants, exact for finite doubles.
  *
  * A determinant is computed in doubles first; if it is smaller than the bound of its rounding error
- * (Shewchuk, Discrete & Computational Geometry 18, 1997), it is computed again as an unevaluated sum
- * of doubles, which is exact short of overflow and underflow. Internal to the kernel: not installed.
+ * (Shewchuk, Discrete & Computational Geometry 18, 1997), it is computed again as an unevaluated
+ * sum of doubles, which is exact short of overflow and underflow. Internal to the kernel: not
+ * installed.
  */
 #ifndef tautline_Predicates_h
 #define tautline_Predicates_h
@@ -20,6 +21,7 @@ TAUTLINE_KERNEL_EXPORT int orientation(const Vec2& a, const Vec2& b, const Vec2&
 TAUTLINE_KERNEL_EXPORT int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 
 /// Whether the closed segments ab and cd have a point in common.
-TAUTLINE_KERNEL_EXPORT bool segmentsMeet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+TAUTLINE_KERNEL_EXPORT bool segmentsMeet(
+  const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 }
 #endif

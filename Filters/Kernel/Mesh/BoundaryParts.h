@@ -11,17 +11,19 @@ namespace tautline
 {
 struct BoundaryParts
 {
-  /// One per point: 0 inside, else the number of its part. Part 1 has the largest box around it, then 2, ...
+  /// One per point: 0 inside, else the number of its part. Part 1 has the largest box around it,
+  /// then 2, ...
   std::vector<int> part;
   int parts = 0;
-  /// One flag per part (part 1 first): it has the largest box of the parts of its piece of the mesh.
+  /// One flag per part (part 1 first): it has the largest box of the parts of its piece of the
+  /// mesh.
   std::vector<char> outer;
 };
 
 /**
- * @brief Parts are connected by the facets (edges of 2D cells, faces of 3D cells) that one cell uses. Of two of
- * the same size the one with the smallest point number is first. Cells of lower dimension than others do not
- * count.
+ * @brief Parts are connected by the facets (edges of 2D cells, faces of 3D cells) that one cell
+ * uses. Of two of the same size the one with the smallest point number is first. Cells of lower
+ * dimension than others do not count.
  */
 TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryParts(const Mesh& mesh);
 }

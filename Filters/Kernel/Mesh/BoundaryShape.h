@@ -25,15 +25,16 @@ struct BoundaryShape
 /**
  * @brief Looks at the boundary facets around each boundary point.
  *
- * In a volume mesh a point whose faces all lie in one plane may slide in it; one whose faces lie in two
- * planes, along the line these share. In a mesh of 2D cells a point whose two boundary edges are
- * straight may slide along them. With a feature angle, points that are not in one plane but where the
- * surface is smooth may slide on it; what is sharper is an edge, to slide along if it is straight. All others,
- * and those where three or more cells meet at one facet, are fixed.
+ * In a volume mesh a point whose faces all lie in one plane may slide in it; one whose faces lie in
+ * two planes, along the line these share. In a mesh of 2D cells a point whose two boundary edges
+ * are straight may slide along them. With a feature angle, points that are not in one plane but
+ * where the surface is smooth may slide on it; what is sharper is an edge, to slide along if it is
+ * straight. All others, and those where three or more cells meet at one facet, are fixed.
  * @param flatAngle facets whose normals (edges whose directions) differ by at most so many degrees
  * count as one plane (line); 0 to 90
- * @param featureAngle the boundary (of volume and planar meshes) is smooth at a point if no facet there differs from
- * their mean by more than half of so many degrees; 0, the default: it is not asked for; up to 180
+ * @param featureAngle the boundary (of volume and planar meshes) is smooth at a point if no facet
+ * there differs from their mean by more than half of so many degrees; 0, the default: it is not
+ * asked for; up to 180
  */
 TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShape(
   const Mesh& mesh, double flatAngle, double featureAngle = 0);

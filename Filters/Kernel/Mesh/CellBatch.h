@@ -91,8 +91,8 @@ void loadNodes(
 
 /// Loads the vertices of the cells that locate() finds.
 template <int Nodes>
-void gather(const CellSource& source, const Index* order, Index begin, int count, CellVertices& batch,
-  BatchNodes& nodes)
+void gather(const CellSource& source, const Index* order, Index begin, int count,
+  CellVertices& batch, BatchNodes& nodes)
 {
   locate(source, order, begin, count, batch, nodes);
   loadNodes<Nodes>(source, source.mesh->view().points, nodes, batch);

@@ -1,6 +1,7 @@
 /**
  * @file CellTopology.h
- * @brief The cell types Tautline computes with: local numbering, edges, faces, corners, ideal shape.
+ * @brief The cell types Tautline computes with: local numbering, edges, faces, corners, ideal
+ * shape.
  *
  * Local numbering and type codes are VTK's, so that a VTK cell array is used as it is.
  *

@@ -24,9 +24,9 @@ namespace tautline
 /**
  * @brief Borrowed arrays that describe a mesh; the caller keeps them alive and unchanged.
  *
- * Cell i has the nodes connectivity[offsets[i]] .. connectivity[offsets[i + 1] - 1] and the VTK type
- * cellTypes[i]. Coordinates are x y z per point; a 2D mesh has a constant third coordinate or lies
- * in any other plane.
+ * Cell i has the nodes connectivity[offsets[i]] .. connectivity[offsets[i + 1] - 1] and the VTK
+ * type cellTypes[i]. Coordinates are x y z per point; a 2D mesh has a constant third coordinate or
+ * lies in any other plane.
  */
 struct MeshView
 {
@@ -132,8 +132,8 @@ public:
   /**
    * @brief Treats the mesh as its mirror image, for one that is reversed throughout: every sign and
    * every metric is then that of the cells listed in the opposite order. Gradients stay those with
-   * respect to the actual coordinates. Metrics that depend on orientation in space see a volume mirrored
-   * in x. Off by default.
+   * respect to the actual coordinates. Metrics that depend on orientation in space see a volume
+   * mirrored in x. Off by default.
    */
   void setMirrored(bool mirrored) { this->Mirrored = mirrored; }
   bool mirrored() const { return this->Mirrored; }

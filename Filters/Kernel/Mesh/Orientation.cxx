@@ -7,9 +7,9 @@ namespace tautline
 namespace
 {
 /**
- * Signed area or volume of a cell with its faces cut into triangles about their centres, so that the sum
- * over a mesh whose cells agree depends on its boundary only, however tangled its inside. Seen from one origin for all
- * cells, what an inner edge or face adds cancels to the last digit.
+ * Signed area or volume of a cell with its faces cut into triangles about their centres, so that
+ * the sum over a mesh whose cells agree depends on its boundary only, however tangled its inside.
+ * Seen from one origin for all cells, what an inner edge or face adds cancels to the last digit.
  */
 double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node, const Vec3& origin)
 {
@@ -100,7 +100,8 @@ Orientation Mesh::orientation(const signed char* validity) const
       }
     });
 
-  // The signed size of a part tells, tangled or not; where it is lost to rounding (a vertex far out), the majority.
+  // The signed size of a part tells, tangled or not; where it is lost to rounding (a vertex far
+  // out), the majority.
   struct Part
   {
     double sum = 0, magnitude = 0;

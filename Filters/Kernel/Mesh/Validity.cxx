@@ -56,7 +56,8 @@ Validity Mesh::classifyCell(const CellTopology& t, const Vec3* p, const Vec3* ag
 
 namespace
 {
-/// Whether all cells of a batch are valid beyond doubt; what is near a limit is left to classifyCell().
+/// Whether all cells of a batch are valid beyond doubt; what is near a limit is left to
+/// classifyCell().
 bool clearlyValid(const Mesh& mesh, const CellTopology& t, const CellVertices& batch)
 {
   constexpr double margin = 2, smallest = 1e-200, largest = 1e200;

@@ -1,6 +1,7 @@
 /**
  * @file ElementFunction.h
- * @brief What an objective makes of one element's metric, with its derivative. Internal: not installed.
+ * @brief What an objective makes of one element's metric, with its derivative. Internal: not
+ * installed.
  */
 #ifndef tautline_ElementFunction_h
 #define tautline_ElementFunction_h
@@ -262,8 +263,8 @@ struct ElementFunction
   }
 
   /**
-   * @brief The share of each element in a PowerMean or Maximum of value F, and its derivative by q: the shares
-   * add up to 1 where the mean is F.
+   * @brief The share of each element in a PowerMean or Maximum of value F, and its derivative by q:
+   * the shares add up to 1 where the mean is F.
    */
   template <ObjectiveTemplate Form>
   void share(

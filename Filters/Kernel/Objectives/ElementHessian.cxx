@@ -8,7 +8,8 @@ namespace tautline
 {
 namespace
 {
-/// Step of the differences, relative to the shortest edge: far below the height of a poor element, far above rounding.
+/// Step of the differences, relative to the shortest edge: far below the height of a poor element,
+/// far above rounding.
 constexpr double relativeStep = 1e-6;
 
 /// Rows of the Hessian of an element, and numbers in its lower triangle.
@@ -99,8 +100,8 @@ void differences(
 }
 
 /**
- * @brief Turns rows and columns p and q of the symmetric matrices a so that a[p][q] becomes 0, and the columns of v
- * with them.
+ * @brief Turns rows and columns p and q of the symmetric matrices a so that a[p][q] becomes 0, and
+ * the columns of v with them.
  */
 template <int Rows>
 void rotate(Packet (&a)[Rows][Rows], Packet (&v)[Rows][Rows], int p, int q)
@@ -128,7 +129,8 @@ void rotate(Packet (&a)[Rows][Rows], Packet (&v)[Rows][Rows], int p, int q)
   }
 }
 
-/// Replaces the negative eigenvalues of each matrix of a batch by 0: cyclic Jacobi, all matrices side by side.
+/// Replaces the negative eigenvalues of each matrix of a batch by 0: cyclic Jacobi, all matrices
+/// side by side.
 template <int Rows>
 void project(Packet* h)
 {
@@ -172,7 +174,8 @@ void project(Packet* h)
       }
     }
   }
-  // The columns of v are orthonormal however far the sweeps came: what they give is never indefinite.
+  // The columns of v are orthonormal however far the sweeps came: what they give is never
+  // indefinite.
   Packet positive[Rows], least = {};
   for (int k = 0; k < Rows; ++k)
   {
@@ -222,7 +225,8 @@ struct ElementHessian::Storage
   std::vector<Index> offsets;
   std::vector<Packet> entries;
 
-  /// Calls work(nodes of a cell, chunk number, batch, nodes, numbers of the batch) in the order of the elements.
+  /// Calls work(nodes of a cell, chunk number, batch, nodes, numbers of the batch) in the order of
+  /// the elements.
   template <class Work>
   void forEachBatch(const ElementSum& elements, const Work& work)
   {
@@ -273,8 +277,8 @@ std::size_t ElementHessian::memory(const ObjectiveSum& objective)
 namespace
 {
 /**
- * @brief Calls work(nodes of a cell, batch, nodes, numbers) with the Hessians of each batch, which are made where
- * place(chunk number, first cell in the chunk) says.
+ * @brief Calls work(nodes of a cell, batch, nodes, numbers) with the Hessians of each batch, which
+ * are made where place(chunk number, first cell in the chunk) says.
  */
 template <class Place, class Work>
 void makeHessians(const ObjectiveSum& objective, const Place& place, const Work& work)

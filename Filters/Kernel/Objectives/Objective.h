@@ -13,22 +13,22 @@
  *     Maximum                 (1/k) ln(sum w_i exp(k s q_i)), a smooth maximum that exceeds the
  *                             true one by at most ln(sum w_i) / k
  *
- * SumOfSquares takes metrics where smaller is better and sizes, the two with reciprocals those where
- * larger is better and sizes, the others any. PowerMean and Maximum are scaled within, so that no power and no
- * exponential overflows; their gradient costs a value and a gradient.
+ * SumOfSquares takes metrics where smaller is better and sizes, the two with reciprocals those
+ * where larger is better and sizes, the others any. PowerMean and Maximum are scaled within, so
+ * that no power and no exponential overflows; their gradient costs a value and a gradient.
  *
  * Inverted and degenerate elements. An element is at fault, and the objective +infinity, if
- * - the metric is a barrier (MetricInfo::barrier) and a corner Jacobian is not positive, whatever the
- *   template;
+ * - the metric is a barrier (MetricInfo::barrier) and a corner Jacobian is not positive, whatever
+ *   the template;
  * - the template is SumOfSquaredReciprocals, or PowerMean where larger is better, and q <= 0;
  * - the template is SumOfReciprocals and q = 0. Negative q give the finite negative terms of the
  *   dissertation: lowering them drives an inverted element *towards* degeneration, and it takes an
  *   untangling objective beside it to turn the element round.
- * All else is finite on any element: UntangleBeta and the other metrics that grow as elements invert
- * (InvertedValue::Larger), and Sum and Maximum of signed metrics where larger is better. Elements at
- * fault add nothing to the gradient, which never has a NaN; elements of weight 0 add nothing at all. A
- * cell with a coordinate that is not finite has q = 0: at fault for barriers and reciprocals, no
- * contribution to other templates but that of q = 0.
+ * All else is finite on any element: UntangleBeta and the other metrics that grow as elements
+ * invert (InvertedValue::Larger), and Sum and Maximum of signed metrics where larger is better.
+ * Elements at fault add nothing to the gradient, which never has a NaN; elements of weight 0 add
+ * nothing at all. A cell with a coordinate that is not finite has q = 0: at fault for barriers and
+ * reciprocals, no contribution to other templates but that of q = 0.
  *
  * Cells the metric is not defined on are left out.
  */
@@ -67,16 +67,16 @@ struct Objective
 };
 
 /**
- * @brief The template of section 3.2.2: SumOfReciprocals for the conditioning metrics (SI), SumOfSquaredReciprocals
- * for the interpolation metrics (SS) and all others where larger is better, SumOfSquares for metrics where
- * smaller is better and for sizes.
+ * @brief The template of section 3.2.2: SumOfReciprocals for the conditioning metrics (SI),
+ * SumOfSquaredReciprocals for the interpolation metrics (SS) and all others where larger is better,
+ * SumOfSquares for metrics where smaller is better and for sizes.
  */
 TAUTLINE_KERNEL_EXPORT ObjectiveTemplate defaultTemplate(Metric metric);
 
 /**
- * @brief Whether the objective is finite on inverted elements and larger the more they are inverted, so
- * that lowering it can repair them: sums, means and maxima of metrics that grow as elements invert, and Sum
- * and Maximum of signed metrics where larger is better.
+ * @brief Whether the objective is finite on inverted elements and larger the more they are
+ * inverted, so that lowering it can repair them: sums, means and maxima of metrics that grow as
+ * elements invert, and Sum and Maximum of signed metrics where larger is better.
  */
 TAUTLINE_KERNEL_EXPORT bool canUntangle(const Objective& objective);
 }

@@ -23,8 +23,9 @@ class TAUTLINE_KERNEL_EXPORT ObjectiveSum
 {
 public:
   /**
-   * @brief Throws Error if the objective cannot be evaluated on the mesh: a metric not defined on any of its
-   * cells, a template that does not fit the metric's direction, weights or powers out of range.
+   * @brief Throws Error if the objective cannot be evaluated on the mesh: a metric not defined on
+   * any of its cells, a template that does not fit the metric's direction, weights or powers out of
+   * range.
    * @param mesh must outlive the sum. The coordinates in its view's array may change between calls;
    * the dimension and the plane remain those found when the mesh was made.
    * @param threads 0: as objective.evaluation says
@@ -34,7 +35,8 @@ public:
   ObjectiveSum(ObjectiveSum&&) noexcept;
   ObjectiveSum& operator=(ObjectiveSum&&) noexcept;
 
-  /// The objective at the points of the mesh's view; +infinity if an element is at fault, never NaN.
+  /// The objective at the points of the mesh's view; +infinity if an element is at fault, never
+  /// NaN.
   double value() const;
   /**
    * @brief The objective and its gradient: 3 entries per point, *added* to what is there after

@@ -8,9 +8,11 @@ namespace tautline
 namespace
 {
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// The largest value over c, where c is not given: the worst objective leads, the others still count.
+/// The largest value over c, where c is not given: the worst objective leads, the others still
+/// count.
 constexpr double sharpness = 10.0;
-/// Height of the lexicographic barrier half-way to the bound, relative to the objective being lowered.
+/// Height of the lexicographic barrier half-way to the bound, relative to the objective being
+/// lowered.
 constexpr double barrierHeight = 0.01;
 
 void requirePositive(double value, const std::string& what)

@@ -3,8 +3,8 @@
  * @brief Combines n objective values F_i into one F, with dF/dF_i.
  *
  * Section 3.3.1 of Kim's dissertation, and R. T. Marler and J. S. Arora, "Survey of multi-objective
- * optimization methods for engineering", Struct. Multidisc. Optim. 26, 2004. One gradient pass suffices
- * for any number of objectives: grad F = sum dF/dF_i grad F_i.
+ * optimization methods for engineering", Struct. Multidisc. Optim. 26, 2004. One gradient pass
+ * suffices for any number of objectives: grad F = sum dF/dF_i grad F_i.
  */
 #ifndef tautline_Scalarization_h
 #define tautline_Scalarization_h
@@ -16,11 +16,13 @@
 namespace tautline
 {
 /**
- * @brief The methods. z_i = (F_i - U_i) / S_i with the utopia values U_i and the scales S_i of Scalarizer.
+ * @brief The methods. z_i = (F_i - U_i) / S_i with the utopia values U_i and the scales S_i of
+ * Scalarizer.
  *
- * Three of them are minimised in a form that has the same minima as the textbook's, but cannot overflow and
- * whose slopes do not vanish: the logarithm of ExponentialWeighted, the negative logarithm of Rao's product, a
- * smooth maximum in WeightedMinMax. The numbers are stable: ParaView state files hold them.
+ * Three of them are minimised in a form that has the same minima as the textbook's, but cannot
+ * overflow and whose slopes do not vanish: the logarithm of ExponentialWeighted, the negative
+ * logarithm of Rao's product, a smooth maximum in WeightedMinMax. The numbers are stable: ParaView
+ * state files hold them.
  */
 enum class Scalarization : int
 {
@@ -32,13 +34,14 @@ enum class Scalarization : int
   WeightedMinMax = 4,
   ExponentialWeighted = 5, ///< (1/p) ln(sum (exp(p w_i) - 1) exp(p z_i))
   /**
-   * F_1 first; then F_2 while F_1 stays below (1 + tolerance) times what was reached, and so on. A smooth barrier,
-   * zero up to the value reached and infinite at the bound, keeps it there.
+   * F_1 first; then F_2 while F_1 stays below (1 + tolerance) times what was reached, and so on. A
+   * smooth barrier, zero up to the value reached and infinite at the bound, keeps it there.
    */
   Lexicographic = 6,
   /**
-   * -sum ln(1 - z_i / 2): the product of the distances from twice the initial values (Nash, Rao) is as large
-   * as can be. (With the initial values themselves as the worst allowed, every factor and slope would start at 0.)
+   * -sum ln(1 - z_i / 2): the product of the distances from twice the initial values (Nash, Rao) is
+   * as large as can be. (With the initial values themselves as the worst allowed, every factor and
+   * slope would start at 0.)
    */
   Rao = 7
 };
@@ -51,8 +54,8 @@ struct ScalarizationOptions
   /// p of ExponentialWeighted; above 0. The larger, the more the worst objective counts.
   double exponent = 1.0;
   /**
-   * @brief By how much an objective of higher rank may rise, relative to its value, while those after it are
-   * lowered (Lexicographic); at least 0. With 0 it may not rise at all.
+   * @brief By how much an objective of higher rank may rise, relative to its value, while those
+   * after it are lowered (Lexicographic); at least 0. With 0 it may not rise at all.
    */
   double tolerance = 0.01;
   /// Utopia values U_i, one per objective, or empty for 0.
@@ -63,23 +66,24 @@ struct ScalarizationOptions
  * @brief A scalarization made ready for given objectives and their initial values.
  *
  * Scales S_i = |F_i(initial) - U_i|, or 1 where that vanishes. With c = 0 the exponential sum takes
- * c = max |F_i(initial)| / 10 (1 if all vanish): the terms then differ by factors exp(20) at most, and
- * the largest still leads. All functions are stable for F_i / c in the thousands and never NaN.
+ * c = max |F_i(initial)| / 10 (1 if all vanish): the terms then differ by factors exp(20) at most,
+ * and the largest still leads. All functions are stable for F_i / c in the thousands and never NaN.
  */
 class TAUTLINE_KERNEL_EXPORT Scalarizer
 {
 public:
   /**
-   * @brief Throws Error if options or weights are out of range, the numbers do not match, or an initial value
-   * is not finite.
+   * @brief Throws Error if options or weights are out of range, the numbers do not match, or an
+   * initial value is not finite.
    * @param weights w_i > 0, one per objective
    */
   Scalarizer(const ScalarizationOptions& options, const std::vector<double>& weights,
     const std::vector<double>& initial);
 
   /**
-   * @brief F; +infinity where an objective is infinite or NaN, where F is not defined (a product with a
-   * negative factor, Rao's beyond the worst allowed, Lexicographic beyond a bound) or not representable.
+   * @brief F; +infinity where an objective is infinite or NaN, where F is not defined (a product
+   * with a negative factor, Rao's beyond the worst allowed, Lexicographic beyond a bound) or not
+   * representable.
    */
   double value(const std::vector<double>& objectives) const;
   /// F and dF/dF_i >= 0 in `slopes`, which are all 0 where F is not finite.
@@ -88,7 +92,8 @@ public:
   /// Lexicographic: the objective that is being lowered; 0 before the first call of next().
   int stage() const { return this->Stage; }
   /**
-   * @brief Lexicographic: the current objective is as low as it gets, at `objectives`; go on to the next.
+   * @brief Lexicographic: the current objective is as low as it gets, at `objectives`; go on to the
+   * next.
    * @return false if there is none, and always for the other methods.
    */
   bool next(const std::vector<double>& objectives);

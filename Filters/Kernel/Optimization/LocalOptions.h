@@ -11,12 +11,14 @@
 
 namespace tautline
 {
-/// One of the objectives as the sweeps see it: by the power, the size or the metric, whichever is set.
+/// One of the objectives as the sweeps see it: by the power, the size or the metric, whichever is
+/// set.
 struct LocalTerm
 {
   /// The power (1 or 2) of an inverse mean ratio; 0: see metric.
   int shapePower = 0;
-  /// Above 0: the squared inverse mean ratio with emphasis on values near this, see WorstRatioEnergy.
+  /// Above 0: the squared inverse mean ratio with emphasis on values near this, see
+  /// WorstRatioEnergy.
   double worst = 0;
   /// The size to the power of 2, times this; 0: see metric.
   double sizeSquared = 0;
@@ -33,7 +35,8 @@ struct LocalOptions
   int threads = 0;
   /// Per vertex of the simplex mesh, or empty: a direction (line or plane normal) or zero.
   std::vector<Vec3> planes, lines;
-  /// Per vertex: the start and how far from it the vertex may go, in the simplex mesh's coordinates; or empty.
+  /// Per vertex: the start and how far from it the vertex may go, in the simplex mesh's
+  /// coordinates; or empty.
   std::vector<double> limits, start;
   /// What a surface mesh is projected to, or what the vertices of onSurface slide on.
   const SurfaceProjection* surface = nullptr;

@@ -1,7 +1,7 @@
 /**
  * @file LocalSweep.h
- * @brief Sweeps over the free vertices that move one after the other, given where the others are by then.
- * Internal: not installed.
+ * @brief Sweeps over the free vertices that move one after the other, given where the others are by
+ * then. Internal: not installed.
  */
 #ifndef tautline_LocalSweep_h
 #define tautline_LocalSweep_h
@@ -25,16 +25,16 @@ class LocalSweeper
 {
 public:
   /**
-   * @param points 3 per point of `mesh`, kept up to date with the simplex mesh if a term needs it; `mesh`
-   * is a mesh whose view has these points
+   * @param points 3 per point of `mesh`, kept up to date with the simplex mesh if a term needs it;
+   * `mesh` is a mesh whose view has these points
    */
   LocalSweeper(SimplexMesh& simplices, const Mesh& mesh, double* points,
     const std::vector<LocalTerm>& terms, const LocalOptions& options);
   ~LocalSweeper();
 
   /**
-   * @brief One sweep. Objective values in `values` are those of the mesh before and, up to rounding, after.
-   * A step is taken if it lowers the scalarized objective.
+   * @brief One sweep. Objective values in `values` are those of the mesh before and, up to
+   * rounding, after. A step is taken if it lowers the scalarized objective.
    */
   SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values);
 

@@ -141,8 +141,8 @@ double interpolate(double lo, double flo, double slo, double hi, double fhi, dou
 
 //------------------------------------------------------------------------------
 /**
- * @brief Goes along D to a point of the Wolfe conditions. The bracket [lo, hi] always holds one: at lo the
- * value is low enough and falls too steeply, at hi it is too high or rises too steeply.
+ * @brief Goes along D to a point of the Wolfe conditions. The bracket [lo, hi] always holds one: at
+ * lo the value is low enough and falls too steeply, at hi it is too high or rises too steeply.
  */
 bool Minimizer::search(double first, double curvature, bool strong)
 {
@@ -211,7 +211,8 @@ bool Minimizer::search(double first, double curvature, bool strong)
   return true;
 }
 
-/// The first step of all: to a somewhat smaller value, or one of length 1 if the value says nothing.
+/// The first step of all: to a somewhat smaller value, or one of length 1 if the value says
+/// nothing.
 double Minimizer::firstStep() const
 {
   return this->F != 0 ? firstDecrease * std::abs(this->F) / std::abs(this->Slope)
@@ -334,7 +335,8 @@ void Minimizer::quasiNewton()
 //------------------------------------------------------------------------------
 void Minimizer::conjugate()
 {
-  // With z = P g: beta is z.g / z'.g' (Fletcher-Reeves) or z.(g - g') / z'.g', at least 0 (Polak-Ribiere+).
+  // With z = P g: beta is z.g / z'.g' (Fletcher-Reeves) or z.(g - g') / z'.g', at least 0
+  // (Polak-Ribiere+).
   this->precondition(this->OldG, this->Z);
   const double before = this->dot(this->OldG, this->Z);
   this->precondition(this->G, this->Z);

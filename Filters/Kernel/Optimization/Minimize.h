@@ -1,12 +1,12 @@
 /**
  * @file Minimize.h
- * @brief Minimises a smooth function of many variables: nonlinear conjugate gradients, L-BFGS, truncated
- * Newton. Internal: not installed.
+ * @brief Minimises a smooth function of many variables: nonlinear conjugate gradients, L-BFGS,
+ * truncated Newton. Internal: not installed.
  *
- * Every accepted step lowers the value (Armijo) and satisfies the weak Wolfe condition, for conjugate gradients the
- * strong one, unless largestStep() ends it before. Sources: J. Nocedal and S. J. Wright, "Numerical
- * Optimization", 2nd ed. 2006, sections 3.5 (line search), 5.2 (Fletcher-Reeves, Polak-Ribiere+), 7.1 (truncated
- * Newton), 7.2 (L-BFGS).
+ * Every accepted step lowers the value (Armijo) and satisfies the weak Wolfe condition, for
+ * conjugate gradients the strong one, unless largestStep() ends it before. Sources: J. Nocedal and
+ * S. J. Wright, "Numerical Optimization", 2nd ed. 2006, sections 3.5 (line search), 5.2
+ * (Fletcher-Reeves, Polak-Ribiere+), 7.1 (truncated Newton), 7.2 (L-BFGS).
  */
 #ifndef tautline_Minimize_h
 #define tautline_Minimize_h
@@ -25,8 +25,9 @@ public:
   virtual ~SmoothFunction() = default;
   virtual std::size_t size() const = 0;
   /**
-   * @brief The value and the gradient at x; +infinity where x is not allowed (an element would invert), and
-   * the gradient is then not looked at. Minimisation calls nothing else to learn of values.
+   * @brief The value and the gradient at x; +infinity where x is not allowed (an element would
+   * invert), and the gradient is then not looked at. Minimisation calls nothing else to learn of
+   * values.
    */
   virtual double valueAndGradient(const double* x, double* gradient) = 0;
   /**
@@ -37,16 +38,18 @@ public:
   {
     return wanted;
   }
-  /// Applies a symmetric positive definite approximation of the inverse Hessian; returns false if there is none.
+  /// Applies a symmetric positive definite approximation of the inverse Hessian; returns false if
+  /// there is none.
   virtual bool precondition(const double* /*r*/, double* /*z*/) { return false; }
   /**
-   * @brief Makes ready for hessianTimes() and precondition() at x, where the last gradient was taken. Called before
-   * every direction of NewtonConjugateGradient; for the others at iterations 0, 1, 3, 9 and so on, at the latest
-   * MinimizeOptions::refresh iterations after the last time. L-BFGS then forgets its pairs, if there is a
-   * preconditioner.
+   * @brief Makes ready for hessianTimes() and precondition() at x, where the last gradient was
+   * taken. Called before every direction of NewtonConjugateGradient; for the others at iterations
+   * 0, 1, 3, 9 and so on, at the latest MinimizeOptions::refresh iterations after the last time.
+   * L-BFGS then forgets its pairs, if there is a preconditioner.
    */
   virtual void linearize(const double* /*x*/) {}
-  /// The product of a positive semidefinite approximation of the Hessian with d; false if there is none.
+  /// The product of a positive semidefinite approximation of the Hessian with d; false if there is
+  /// none.
   virtual bool hessianTimes(const double* /*d*/, double* /*product*/) { return false; }
 };
 
@@ -72,8 +75,9 @@ struct MinimizeResult
 };
 
 /**
- * @brief Minimises from x, which is overwritten by the best found; it is never worse than the start. From a start that is
- * not allowed nothing is done (NoProgress, value +infinity); without variables, NoFreeVertices.
+ * @brief Minimises from x, which is overwritten by the best found; it is never worse than the
+ * start. From a start that is not allowed nothing is done (NoProgress, value +infinity); without
+ * variables, NoFreeVertices.
  */
 TAUTLINE_KERNEL_EXPORT MinimizeResult minimize(
   SmoothFunction& function, double* x, const MinimizeOptions& options);

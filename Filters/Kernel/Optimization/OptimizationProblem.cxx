@@ -221,7 +221,8 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   this->Moving->setMirrored(mesh.mirrored());
   this->Resolved = options.objectives;
 
-  // One set of targets can be built into the simplices; objectives with others take the general way.
+  // One set of targets can be built into the simplices; objectives with others take the general
+  // way.
   const Targets* targets = nullptr;
   for (Objective& objective : this->Resolved)
   {

@@ -1,7 +1,7 @@
 /**
  * @file OptimizationProblem.h
- * @brief The state of an optimization: the moving points, the objectives on them, and what the history says of
- * them. Internal: not installed.
+ * @brief The state of an optimization: the moving points, the objectives on them, and what the
+ * history says of them. Internal: not installed.
  */
 #ifndef tautline_OptimizationProblem_h
 #define tautline_OptimizationProblem_h
@@ -43,7 +43,8 @@ public:
     return this->AllFast && this->Resolved.size() == 1 && this->LeftOut.empty() &&
       this->Resolved[0].metric == Metric::InverseMeanRatio;
   }
-  /// Whether an element that an objective leaves out because it was inverted is valid at the stored points.
+  /// Whether an element that an objective leaves out because it was inverted is valid at the stored
+  /// points.
   bool someRepaired() const;
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);

@@ -139,7 +139,8 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     problem.localOptions());
   std::vector<double> best(simplices.coordinates(),
     simplices.coordinates() + VertexStride * static_cast<std::size_t>(simplices.freeVertices()));
-  // One objective in closed form needs neither the mesh's own points on the way nor a way back: each step lowers it.
+  // One objective in closed form needs neither the mesh's own points on the way nor a way back:
+  // each step lowers it.
   const bool simple = problem.isSimple();
   StopReason reason = StopReason::NoProgress;
   double firstGradient = 0;
@@ -352,7 +353,8 @@ public:
   }
 
 private:
-  /// Applies a linear map of all points to free ones, with zeros at the others; to() starts at zero.
+  /// Applies a linear map of all points to free ones, with zeros at the others; to() starts at
+  /// zero.
   template <class Map>
   void inAllPoints(const double* x, double* y, const Map& map)
   {
@@ -500,7 +502,8 @@ Index countInvalid(const Mesh& mesh, int threads)
 }
 
 //------------------------------------------------------------------------------
-/// Optimises from result.points on; returns whether there is more to do, with elements that have become valid.
+/// Optimises from result.points on; returns whether there is more to do, with elements that have
+/// become valid.
 bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options,
   std::chrono::steady_clock::time_point began, OptimizeResult& result)
 {

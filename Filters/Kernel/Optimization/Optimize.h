@@ -24,22 +24,25 @@ struct OptimizeResult
   int iterations = 0;
   Index freeVertices = 0;
   Index invertedBefore = 0, invertedAfter = 0;
-  /// Largest distance of the output's surface (of a surface mesh, or of points that slide) from the input's; else 0.
+  /// Largest distance of the output's surface (of a surface mesh, or of points that slide) from the
+  /// input's; else 0.
   double surfaceError = 0;
   bool untangled = false; ///< untangle() was run first
 };
 
 /**
- * @brief Sets objectives, scalarization, optimizer and stopping criteria to those of a preset; the rest
- * stays. For PreserveShape, set objectives[0].evaluation.targets afterwards (referenceTargets()).
+ * @brief Sets objectives, scalarization, optimizer and stopping criteria to those of a preset; the
+ * rest stays. For PreserveShape, set objectives[0].evaluation.targets afterwards
+ * (referenceTargets()).
  */
 TAUTLINE_KERNEL_EXPORT void applyPreset(Preset preset, OptimizeOptions& options);
 
 /**
- * @brief Optimises. Elements that are not valid at the start are left out of the objectives that cannot repair them, and
- * join as soon as they are valid; the objective in the history rises by their share then. The result is never worse than the input in the scalarized objective, and unless
- * allowInversion no valid element becomes inverted. Throws Error on options that cannot be met and
- * names the remedy.
+ * @brief Optimises. Elements that are not valid at the start are left out of the objectives that
+ * cannot repair them, and join as soon as they are valid; the objective in the history rises by
+ * their share then. The result is never worse than the input in the scalarized objective, and
+ * unless allowInversion no valid element becomes inverted. Throws Error on options that cannot be
+ * met and names the remedy.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
  */
 TAUTLINE_KERNEL_EXPORT OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options);

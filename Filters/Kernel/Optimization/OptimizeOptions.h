@@ -39,8 +39,9 @@ struct StoppingCriteria
   /// "Inaccurate smoothing", section 3.4: stop when all mean qualities keep two decimals.
   bool twoDigits = false;
   /**
-   * @brief Section 2.4: stop when this fraction of the possible reduction is reached (0.95 there); 1: never. The
-   * possible reduction is that to bestKnown, or an estimate from the decrease of the iterations so far.
+   * @brief Section 2.4: stop when this fraction of the possible reduction is reached (0.95 there);
+   * 1: never. The possible reduction is that to bestKnown, or an estimate from the decrease of the
+   * iterations so far.
    */
   double reduction = 1.0;
   /// The objective of the completely smoothed mesh, if known.
@@ -73,39 +74,42 @@ struct OptimizeOptions
   /// One flag per point, nonzero = fixed; null: the points of the boundary.
   const unsigned char* fixed = nullptr;
   /**
-   * @brief Unit normals n of planes that points may slide in: 3 per point; zero for a point that is free or
-   * fixed. Null: none. Only for points that are not fixed.
+   * @brief Unit normals n of planes that points may slide in: 3 per point; zero for a point that is
+   * free or fixed. Null: none. Only for points that are not fixed.
    */
   const double* slidePlanes = nullptr;
   /// Unit directions of lines that points may slide along; 3 per point, zero elsewhere; or null.
   const double* slideLines = nullptr;
-  /// How far each point may go from its start, 3D distance; one per point (infinity = any), or null.
+  /// How far each point may go from its start, 3D distance; one per point (infinity = any), or
+  /// null.
   const double* limits = nullptr;
   /**
-   * @brief One flag per point: nonzero for boundary points of a volume or planar mesh that slide on the boundary as it
-   * was (only those that are not fixed); or null. Points on sharp edges are the caller's to fix. Needs a local optimizer.
+   * @brief One flag per point: nonzero for boundary points of a volume or planar mesh that slide on
+   * the boundary as it was (only those that are not fixed); or null. Points on sharp edges are the
+   * caller's to fix. Needs a local optimizer.
    */
   const unsigned char* slideSurface = nullptr;
   SurfaceConstraint surface;
   /// Lets steps invert elements that are valid. Off: they are shortened.
   bool allowInversion = false;
   /**
-   * @brief What to do with an input that has inverted elements and objectives none of which orders them:
-   * untangle() first (on), or refuse with an Error (off).
+   * @brief What to do with an input that has inverted elements and objectives none of which orders
+   * them: untangle() first (on), or refuse with an Error (off).
    */
   bool untangleFirst = true;
   /**
-   * @brief Section 3.3.3: multiplies the untangling objectives by a constant that makes their largest element
-   * value exceed the largest of the other objectives at the start.
+   * @brief Section 3.3.3: multiplies the untangling objectives by a constant that makes their
+   * largest element value exceed the largest of the other objectives at the start.
    */
   bool rescaleUntangling = true;
-  /// Local algorithms: leave out vertices that moved less than this times their shortest edge; 0: none.
+  /// Local algorithms: leave out vertices that moved less than this times their shortest edge; 0:
+  /// none.
   double culling = 1e-3;
   /// Steps in each patch of the local algorithms.
   int patchIterations = 1;
   /**
-   * @brief Over-relaxation of LocalNewton: a step is this times Newton's, 1 to 2 (exclusive). Around 1.4
-   * halves the number of sweeps.
+   * @brief Over-relaxation of LocalNewton: a step is this times Newton's, 1 to 2 (exclusive).
+   * Around 1.4 halves the number of sweeps.
    */
   double relaxation = 1.4;
   /**
@@ -115,8 +119,9 @@ struct OptimizeOptions
   double improveWorst = 0.0;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
   /**
-   * @brief Called after each iteration; return false to stop. Called from the calling thread. While untangle() runs
-   * first, the records are its own, with 0 for what belongs to the objectives, and progress stays 0.
+   * @brief Called after each iteration; return false to stop. Called from the calling thread. While
+   * untangle() runs first, the records are its own, with 0 for what belongs to the objectives, and
+   * progress stays 0.
    */
   std::function<bool(const IterationState&)> observer;
 };

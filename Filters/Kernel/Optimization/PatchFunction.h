@@ -1,7 +1,7 @@
 /**
  * @file PatchFunction.h
- * @brief What one objective is as a function of one free vertex: in closed form where it is an energy f(N, D),
- * else through the metric's own evaluator. Internal: not installed.
+ * @brief What one objective is as a function of one free vertex: in closed form where it is an
+ * energy f(N, D), else through the metric's own evaluator. Internal: not installed.
  */
 #ifndef tautline_PatchFunction_h
 #define tautline_PatchFunction_h
@@ -137,7 +137,8 @@ public:
     PatchSum<Dim> result = this->gradient(patch, d);
     if (hessian)
     {
-      // By differences of the gradient, over a small part of the patch's size; one-sided ones are enough for a direction.
+      // By differences of the gradient, over a small part of the patch's size; one-sided ones are
+      // enough for a direction.
       constexpr double part = 1e-6;
       const double h = part * sizeOf(patch.simplices);
       for (int r = 0; r < Dim; ++r)

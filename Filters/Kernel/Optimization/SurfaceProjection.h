@@ -24,11 +24,13 @@ public:
   /// The unit normal there; of an edge of a planar mesh, in the plane. Zero if there is none.
   Vec3 normal(const Vec3& x) const;
 
-  /// The largest distance of the corners, edge midpoints and centres of the cells of `mesh` at these coordinates.
+  /// The largest distance of the corners, edge midpoints and centres of the cells of `mesh` at
+  /// these coordinates.
   double distance(
     const Mesh& mesh, const SimplexMesh& simplices, const double* points, int threads) const;
 
-  /// The largest distance of the corners, edge midpoints and centres of these triangles from another surface.
+  /// The largest distance of the corners, edge midpoints and centres of these triangles from
+  /// another surface.
   double distanceTo(const SurfaceProjection& other) const;
 
 private:

@@ -269,7 +269,8 @@ PatchSum<Dim> VertexOptimizer<Dim>::combined(const PatchWorker<Dim>& w) const
 }
 
 //------------------------------------------------------------------------------
-/// What the scalarized objective changes by when the vertex goes to d; w.trial gets the patch sums' changes.
+/// What the scalarized objective changes by when the vertex goes to d; w.trial gets the patch sums'
+/// changes.
 template <int Dim>
 double VertexOptimizer<Dim>::changeAt(
   const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d) const
@@ -365,7 +366,8 @@ int VertexOptimizer<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void VertexOptimizer<Dim>::newton(const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, double* s) const
+void VertexOptimizer<Dim>::newton(
+  const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, double* s) const
 {
   double basis[Dim][Dim] = {};
   const int free = this->allowed(w.patch.vertex, basis);
@@ -406,7 +408,8 @@ void VertexOptimizer<Dim>::newton(const PatchWorker<Dim>& w, const PatchSum<Dim>
 //------------------------------------------------------------------------------
 /// The largest step up to t that keeps x + d + t s within the vertex's limit.
 template <int Dim>
-double VertexOptimizer<Dim>::limited(std::int32_t v, const double* d, const double* s, double t) const
+double VertexOptimizer<Dim>::limited(
+  std::int32_t v, const double* d, const double* s, double t) const
 {
   if (this->Options.limits.empty() || !std::isfinite(this->Options.limits[v]))
   {
@@ -429,11 +432,11 @@ double VertexOptimizer<Dim>::limited(std::int32_t v, const double* d, const doub
 }
 
 //------------------------------------------------------------------------------
-/// Turns `direction` into Polak-Ribiere+'s and returns the step to where the slope would vanish by its change over a
-/// small one; 0 if there is nowhere to go.
+/// Turns `direction` into Polak-Ribiere+'s and returns the step to where the slope would vanish by
+/// its change over a small one; 0 if there is nowhere to go.
 template <int Dim>
-double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d,
-  int iteration, double* direction, double* lastGradient) const
+double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum,
+  const double* d, int iteration, double* direction, double* lastGradient) const
 {
   double mixed = 0, last2 = 0, length2 = 0;
   for (int c = 0; c < Dim; ++c)

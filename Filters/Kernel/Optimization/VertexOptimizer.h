@@ -1,7 +1,7 @@
 /**
  * @file VertexOptimizer.h
- * @brief Moves one free vertex so that the scalarized objective becomes smaller, given where the others are.
- * Internal: not installed.
+ * @brief Moves one free vertex so that the scalarized objective becomes smaller, given where the
+ * others are. Internal: not installed.
  */
 #ifndef tautline_PatchMover_h
 #define tautline_PatchMover_h
@@ -17,7 +17,8 @@ struct PatchWorker
 {
   VertexPatch<Dim> patch;
   std::vector<PatchSum<Dim>> sums; ///< of each objective over the patch
-  /// Of each objective: the patch sum's change on trial, the value now, dF/d(patch sum), the change since the sweep began.
+  /// Of each objective: the patch sum's change on trial, the value now, dF/d(patch sum), the change
+  /// since the sweep began.
   std::vector<double> trial, now, slopes, change;
 };
 

@@ -46,8 +46,8 @@ private:
 };
 
 /**
- * @brief q^2 + K q_w^2 (q / q_w)^p of the inverse mean ratio q: the square, until q comes near q_w, from where on the second
- * term leads.
+ * @brief q^2 + K q_w^2 (q / q_w)^p of the inverse mean ratio q: the square, until q comes near q_w,
+ * from where on the second term leads.
  */
 template <int Dim>
 struct WorstRatioEnergy
@@ -97,7 +97,8 @@ private:
 
 /**
  * @brief N / chi^(2/n) with the regularised determinant chi = (D + sqrt(D^2 + eps^2)) / 2, which is
- * positive and smooth on inverted simplices, too, and becomes D as eps goes to zero. With eps = 0, a barrier.
+ * positive and smooth on inverted simplices, too, and becomes D as eps goes to zero. With eps = 0,
+ * a barrier.
  *
  * J. M. Escobar et al., CMAME 192 (2003); V. Garanzha et al., ACM TOG 40 (2021).
  */

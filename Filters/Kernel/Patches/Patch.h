@@ -145,8 +145,8 @@ void invariants(const PatchPacket<Dim>& p, const double* d, Packet& N, Packet& D
 }
 
 /**
- * @brief Whether the simplices that are valid at `from` are so at `to` with room to spare. Where an objective has no barrier, steps
- * that each stop short of inversion would end there.
+ * @brief Whether the simplices that are valid at `from` are so at `to` with room to spare. Where an
+ * objective has no barrier, steps that each stop short of inversion would end there.
  */
 template <int Dim>
 bool staysValid(const Patch<Dim>& patch, const double* from, const double* to)
@@ -168,7 +168,8 @@ bool staysValid(const Patch<Dim>& patch, const double* from, const double* to)
   return true;
 }
 
-/// The edge coefficients at the first vertex of each patch simplex, of its other edges, and the determinants.
+/// The edge coefficients at the first vertex of each patch simplex, of its other edges, and the
+/// determinants.
 template <int Dim>
 void loadTargets(
   const SimplexMesh& mesh, std::int32_t first, int lanes, Packet* at, Packet* across, Packet& det)

@@ -555,7 +555,8 @@ void SimplexMesh::indexPatches()
 }
 
 //------------------------------------------------------------------------------
-/// Pairs of blocks with vertices that are opposite in a hexahedron, which no simplex of it has both of.
+/// Pairs of blocks with vertices that are opposite in a hexahedron, which no simplex of it has both
+/// of.
 std::vector<std::pair<std::int32_t, std::int32_t>> SimplexMesh::blocksAcross(
   const Mesh& mesh, const std::vector<std::int32_t>& vertexOf) const
 {

@@ -1,11 +1,11 @@
 /**
  * @file SimplexMesh.h
- * @brief A mesh made ready for optimization: the simplices at the corners of its cells, renumbered for
- * the cache, with the patch of simplices around each free vertex. Internal: not installed.
+ * @brief A mesh made ready for optimization: the simplices at the corners of its cells, renumbered
+ * for the cache, with the patch of simplices around each free vertex. Internal: not installed.
  *
- * With T = A W^-1 of a simplex, N = |T|^2 is the sum of c_kl |x_k - x_l|^2 over its edges, and D = det T
- * a multiple of its volume. In one of its vertices N is quadratic (with a multiple of the unit
- * matrix as Hessian) and D is linear. All fast objectives are functions of N and D.
+ * With T = A W^-1 of a simplex, N = |T|^2 is the sum of c_kl |x_k - x_l|^2 over its edges, and D =
+ * det T a multiple of its volume. In one of its vertices N is quadratic (with a multiple of the
+ * unit matrix as Hessian) and D is linear. All fast objectives are functions of N and D.
  */
 #ifndef tautline_SimplexMesh_h
 #define tautline_SimplexMesh_h
@@ -29,8 +29,8 @@ struct TargetSimplex
   double det = 1; ///< of W^-1
 };
 
-/// Blocks of consecutive free vertices. No two of one colour share a cell, since most metrics read all
-/// points of the cells at a vertex: those of one colour can move at the same time.
+/// Blocks of consecutive free vertices. No two of one colour share a cell, since most metrics read
+/// all points of the cells at a vertex: those of one colour can move at the same time.
 struct VertexBlocks
 {
   std::int32_t size = 256;                ///< block b has the vertices from b * size on
@@ -43,9 +43,9 @@ class TAUTLINE_KERNEL_EXPORT SimplexMesh
 public:
   /**
    * @param fixed one flag per point, or null for the boundary
-   * @param targets or null for the ideal cells with edges as long as scale(); metric roots are left out
-   * Vertices of cells that are no elements (lines, polygons, cells of another dimension) and non-finite points
-   * are fixed, too; simplices with non-finite points are left out.
+   * @param targets or null for the ideal cells with edges as long as scale(); metric roots are left
+   * out Vertices of cells that are no elements (lines, polygons, cells of another dimension) and
+   * non-finite points are fixed, too; simplices with non-finite points are left out.
    */
   SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads);
 
@@ -83,7 +83,8 @@ public:
   std::int32_t patchStart(std::int32_t v) const { return this->PatchStarts[v]; }
   /// dimension() vertices per entry, so that (v, these) is an even permutation of the simplex.
   const std::int32_t* patchVertices() const { return this->PatchVertices.data(); }
-  /// simplex * (dimension() + 1) + position of v in it, per entry; unless uniform(), or after indexPatches().
+  /// simplex * (dimension() + 1) + position of v in it, per entry; unless uniform(), or after
+  /// indexPatches().
   const std::int32_t* patchCorners() const { return this->PatchCorners.data(); }
   void indexPatches();
 
@@ -132,10 +133,10 @@ private:
 /**
  * @brief One flag per point: on an edge (2D) or face (3D) that not exactly two cells share.
  *
- * Each facet has a random 64-bit number, and each point the exclusive or of those of its facets, which
- * vanishes where each occurs twice: no sorting. A boundary point is overlooked with probability 2^-64, or
- * if its facets belong to an even number of cells. Where nothing seems to be boundary (every cell is there twice, or
- * a closed surface), Mesh::boundary() decides.
+ * Each facet has a random 64-bit number, and each point the exclusive or of those of its facets,
+ * which vanishes where each occurs twice: no sorting. A boundary point is overlooked with
+ * probability 2^-64, or if its facets belong to an even number of cells. Where nothing seems to be
+ * boundary (every cell is there twice, or a closed surface), Mesh::boundary() decides.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<char> boundaryPoints(const Mesh& mesh);
 

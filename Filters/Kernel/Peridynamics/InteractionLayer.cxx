@@ -18,7 +18,7 @@ constexpr double MostPoints = 5e6;
 
 struct Edge
 {
-  Vec2 a = {}, b = {};          ///< the mesh is on the left
+  Vec2 a = {}, b = {}; ///< the mesh is on the left
   Index first, second; ///< point numbers
 };
 

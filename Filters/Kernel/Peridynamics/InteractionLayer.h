@@ -1,6 +1,7 @@
 /**
  * @file HorizonCollar.h
- * @brief Puts a collar of triangles around a planar mesh, for the volume constraint of nonlocal models.
+ * @brief Puts a collar of triangles around a planar mesh, for the volume constraint of nonlocal
+ * models.
  */
 #ifndef tautline_HorizonCollar_h
 #define tautline_HorizonCollar_h
@@ -23,14 +24,15 @@ struct CollarOptions
 /**
  * @brief The mesh with triangles added all around it, and in its holes, up to `width` from it.
  *
- * Points and triangles of the mesh stay as they are, and come first; the collar is conforming: it has
- * the edges of the boundary. Its points lie on a lattice of equilateral triangles, slightly shaken,
- * joined with those of the boundary by a constrained Delaunay triangulation. Triangles that already are
- * collar stay so, and count as part of the mesh the collar is put around.
+ * Points and triangles of the mesh stay as they are, and come first; the collar is conforming: it
+ * has the edges of the boundary. Its points lie on a lattice of equilateral triangles, slightly
+ * shaken, joined with those of the boundary by a constrained Delaunay triangulation. Triangles that
+ * already are collar stay so, and count as part of the mesh the collar is put around.
  *
  * Throws Error for a width that is not above 0, a mesh PeridynamicOptions would refuse, a boundary
  * that crosses or touches itself, and a collar of more than ten million triangles.
  */
-TAUTLINE_SOLVERS_EXPORT HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options);
+TAUTLINE_SOLVERS_EXPORT HorizonMesh addCollar(
+  const HorizonMesh& mesh, const CollarOptions& options);
 }
 #endif

@@ -18,8 +18,8 @@ struct HorizonMesh
   std::vector<double> points;        ///< x y each
   std::vector<Index> triangles;      ///< three points each, all of one orientation
   std::vector<unsigned char> collar; ///< per triangle, not 0 where the solution is given
-  /// Per point, not 0 where the continuous linear basis is given. Empty: at the points of collar triangles,
-  /// so also on the boundary of the domain.
+  /// Per point, not 0 where the continuous linear basis is given. Empty: at the points of collar
+  /// triangles, so also on the boundary of the domain.
   std::vector<unsigned char> givenPoints;
 
   Index numberOfPoints() const { return static_cast<Index>(this->points.size()) / 2; }
@@ -71,7 +71,8 @@ enum class RuleSet
   /// Three outer points; one inner point for the linear bases, three for the constant one: these
   /// reproduce the tables.
   Tables = 0,
-  /// One outer and three inner points: what section 4.3.1 says. Often indefinite with the linear basis.
+  /// One outer and three inner points: what section 4.3.1 says. Often indefinite with the linear
+  /// basis.
   Literal = 1,
   OneOne = 2,     ///< one outer point, one inner
   ThreeThree = 3, ///< three and three
@@ -113,7 +114,8 @@ struct PeridynamicSystem
   std::vector<Index> functionOf; ///< of an unknown one
   /// Per row, sum of a(phi_j, phi_i) g_j over the given functions j; empty unless asked for.
   std::vector<double> constraintLoad;
-  /// Of the dissertation's discretization: Frobenius norm of the unsymmetric part, which is dropped, over all.
+  /// Of the dissertation's discretization: Frobenius norm of the unsymmetric part, which is
+  /// dropped, over all.
   double asymmetry = 0.0;
   /// By how much the collar is narrower than the horizon; 0 if it is wide enough.
   double collarDeficit = 0.0;

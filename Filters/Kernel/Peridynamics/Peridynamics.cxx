@@ -64,7 +64,8 @@ void checkOptions(const PeridynamicOptions& o)
   }
 }
 
-/// Colours triangles so that those of one colour share no function; each colour in increasing order.
+/// Colours triangles so that those of one colour share no function; each colour in increasing
+/// order.
 std::vector<std::vector<std::int32_t>> colourTriangles(
   const PlanarTriangles& triangles, const FunctionSpace& space, const std::vector<char>& wanted)
 {
@@ -141,8 +142,8 @@ double bytesFor(const HorizonMesh& mesh, const FunctionSpace& space, const BoxGr
   const double c = options.model == PeridynamicModel::Elastic ? 2.0 : 1.0;
   const double nonzeros =
     c * c * entries / static_cast<double>(sampled) * static_cast<double>(space.unknowns);
-  // Values twice, as they are mirrored once; columns; the mesh with its boxes and grid; sums per thread;
-  // integrals of pairs that touch, of which a triangle has about thirteen.
+  // Values twice, as they are mirrored once; columns; the mesh with its boxes and grid; sums per
+  // thread; integrals of pairs that touch, of which a triangle has about thirteen.
   const double triangles = static_cast<double>(mesh.numberOfTriangles());
   const double perEntry = 2.0 * sizeof(double) + sizeof(std::int32_t);
   const double sums = 3.0 * c * c * sizeof(double) * static_cast<double>(space.functions) *
@@ -371,7 +372,8 @@ FunctionSpace::FunctionSpace(
     for (int k = 0; k < this->perTriangle(); ++k)
     {
       const Index f = this->function(triangles, t, k);
-      // A vertex of any collar triangle is given: those on the boundary of the domain are not unknown.
+      // A vertex of any collar triangle is given: those on the boundary of the domain are not
+      // unknown.
       const bool byPoint = this->basis == PeridynamicBasis::Linear && !mesh.givenPoints.empty();
       const bool fixed =
         options.constrained && (byPoint ? mesh.givenPoints[f] != 0 : mesh.collar[t] != 0);

@@ -1,6 +1,7 @@
 /**
  * @file PeridynamicsCommon.h
- * @brief What the two readings of the peridynamic integrals share. Internal to the kernel: not installed.
+ * @brief What the two readings of the peridynamic integrals share. Internal to the kernel: not
+ * installed.
  */
 #ifndef tautline_PeridynamicsCommon_h
 #define tautline_PeridynamicsCommon_h

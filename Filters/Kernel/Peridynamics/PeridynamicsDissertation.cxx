@@ -1,4 +1,5 @@
-/// The discretization of the dissertation, section 4.3: low-order rules, cut triangles by their chords.
+/// The discretization of the dissertation, section 4.3: low-order rules, cut triangles by their
+/// chords.
 #include "PeridynamicsCommon.h"
 #include "PeridynamicsKernel.h"
 
@@ -188,7 +189,8 @@ private:
     }
   }
 
-  /// A cut triangle: one piece (one corner inside, case 3 of Figure 4.4) or two (case 2, Figure 4.5).
+  /// A cut triangle: one piece (one corner inside, case 3 of Figure 4.4) or two (case 2,
+  /// Figure 4.5).
   void addCut(std::int32_t local, const bool* in, int inside, double area)
   {
     int first = 0; // the inner corner, or the first of the two

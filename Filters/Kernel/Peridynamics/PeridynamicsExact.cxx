@@ -46,7 +46,8 @@ struct PairKeyHash
   std::size_t operator()(const PairKey& key) const { return hashOf(key); }
 };
 
-/// The surroundings of a triangle, up to a translation: two hashes of the keys of its pairs, in order.
+/// The surroundings of a triangle, up to a translation: two hashes of the keys of its pairs, in
+/// order.
 struct Signature
 {
   std::uint64_t a = 0x243f6a8885a308d3u, b = 0x13198a2e03707344u;
@@ -87,7 +88,8 @@ public:
   const std::vector<Slot>* slotsOf(Index t, const std::vector<std::int32_t>& near) const;
   /// The slot of a pair that touches.
   Slot slotOf(Index t, Index other) const;
-  /// The rows of the functions of the triangle a pair is seen from: functions x 2 functions x components^2.
+  /// The rows of the functions of the triangle a pair is seen from: functions x 2 functions x
+  /// components^2.
   const double* rows(Slot slot) const
   {
     return this->Rows.data() + static_cast<std::size_t>(slot) * this->RowSize;

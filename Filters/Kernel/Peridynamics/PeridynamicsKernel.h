@@ -18,9 +18,10 @@ using Nodes = std::array<double, NodeCount>;
 /**
  * @brief k(r) for 0 < r <= delta, and F_m(R) = int_0^R r^(m+1) k(r) dr, m = 0 .. 6.
  *
- * Of powers whose integral from 0 diverges (m + 2 < p), F_m is the primitive that vanishes at infinity; near
- * m + 2 = p the one that vanishes at the horizon. Sums of F_m over directions that close around nothing are
- * right all the same; those around a point need the integral from 0, which then exists (fromOrigin).
+ * Of powers whose integral from 0 diverges (m + 2 < p), F_m is the primitive that vanishes at
+ * infinity; near m + 2 = p the one that vanishes at the horizon. Sums of F_m over directions that
+ * close around nothing are right all the same; those around a point need the integral from 0, which
+ * then exists (fromOrigin).
  */
 class RadialKernel
 {

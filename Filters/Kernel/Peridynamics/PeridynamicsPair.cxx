@@ -51,7 +51,8 @@ PairIntegrator::PairIntegrator(const PeridynamicOptions& options, int functions)
   // Gauss's rule with n nodes errs by about rho^(-2n), rho + 1/rho the sum of the distances.
   const double rho = std::pow(0.1 * this->Tolerance, -1.0 / (2.0 * NodeCount));
   this->EllipseSum = rho + 1.0 / rho;
-  // Integrals over the second triangle behave like a power of the distance to it; graded, like a high one.
+  // Integrals over the second triangle behave like a power of the distance to it; graded, like a
+  // high one.
   const double p =
     options.kernel.shape == KernelShape::Power ? options.kernel.exponent - this->FirstDegree : 0.0;
   const double power = (options.basis == PeridynamicBasis::Linear ? 4.0 : 2.0) - std::max(p, 0.0);
@@ -85,7 +86,8 @@ bool PairIntegrator::clip(Vec2 a, Vec2 b, double& t0, double& t1) const
 }
 
 //------------------------------------------------------------------------------
-/// Calls work(x, y, squares, weights) for nodes z on the segment; a weight is that of the angle times |z|^2.
+/// Calls work(x, y, squares, weights) for nodes z on the segment; a weight is that of the angle
+/// times |z|^2.
 template <class Work>
 void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
 {
@@ -200,7 +202,8 @@ void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
 }
 
 //------------------------------------------------------------------------------
-/// Moments of z = y - x over the part of the second triangle in the disc around x; false if there is none.
+/// Moments of z = y - x over the part of the second triangle in the disc around x; false if there
+/// is none.
 bool PairIntegrator::moments(Vec2 x, double* m)
 {
   const Vec2* corners = this->Pair->second;
@@ -460,7 +463,8 @@ void PairIntegrator::identicalPair(const TrianglePair& pair, double* block)
   const double f[3] = { this->Kernel.atHorizon(degree, true),
     this->Kernel.atHorizon(degree + 1, true), this->Kernel.atHorizon(degree + 2, true) };
   double m[5] = {};
-  // F_d(R) - 2 F_d+1(R) / rho + F_d+2(R) / rho^2, rho to the hexagon and R to the horizon if that is nearer.
+  // F_d(R) - 2 F_d+1(R) / rho + F_d+2(R) / rho^2, rho to the hexagon and R to the horizon if that
+  // is nearer.
   const auto along = [&](Vec2 a, Vec2 b, bool inside)
   {
     this->forEachNodes(a, b,
@@ -520,7 +524,8 @@ void PairIntegrator::identicalPair(const TrianglePair& pair, double* block)
       for (int k = 0; k < this->Components; ++k)
       {
         block[(i * n + j) * this->Components + k] = 0.5 * 0.5 * twiceArea *
-          (gi[0] * gj[0] * m[k] + (gi[0] * gj[1] + gi[1] * gj[0]) * m[k + 1] + gi[1] * gj[1] * m[k + 2]);
+          (gi[0] * gj[0] * m[k] + (gi[0] * gj[1] + gi[1] * gj[0]) * m[k + 1] +
+            gi[1] * gj[1] * m[k + 2]);
       }
     }
   }
@@ -569,8 +574,8 @@ void PairIntegrator::integrate(const TrianglePair& pair, double* block)
   this->Kernel.evaluate(&square, &k, 1);
   // A kernel may vanish at a distance; its mean does not.
   const double mean = 2.0 * this->Kernel.atHorizon(0) / (this->Horizon * this->Horizon);
-  // What a pair can contribute: of triangles larger than the disc, that of the disc; of linear functions
-  // both triangles share, that of differences over the horizon.
+  // What a pair can contribute: of triangles larger than the disc, that of the disc; of linear
+  // functions both triangles share, that of differences over the horizon.
   const auto areaOf = [](const Vec2* c) { return 0.5 * std::abs(cross(c[1] - c[0], c[2] - c[0])); };
   const double disc = M_PI * this->Horizon * this->Horizon;
   const double first = areaOf(pair.first), second = areaOf(pair.second);

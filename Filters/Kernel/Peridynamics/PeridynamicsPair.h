@@ -1,6 +1,7 @@
 /**
  * @file PeridynamicsPair.h
- * @brief The bilinear form over one pair of triangles, to a tolerance. Internal to the kernel: not installed.
+ * @brief The bilinear form over one pair of triangles, to a tolerance. Internal to the kernel: not
+ * installed.
  */
 #ifndef tautline_PeridynamicsPair_h
 #define tautline_PeridynamicsPair_h
@@ -29,14 +30,15 @@ struct TrianglePair
 /**
  * @brief Integrates products of differences of basis functions over pairs of triangles.
  *
- * For x in the first triangle, the integral over the part of the second that lies in the disc around
- * x is a sum over its edges: in polar coordinates around x, which take the singularity away, the
- * radial integral is known (RadialKernel) and the angular one becomes an integral along the edge, or
- * along the circle where the edge is outside. It is exact up to Gauss's rule along the edge, which is
- * spaced by s = d sinh t where the edge passes x closely, at the distance d. What remains is smooth in
- * x but at common corners and edges, towards which points are graded; a triangle is quartered until two
- * rules agree. A triangle with itself needs one integral along the hexagon of its differences, as the
- * area of its intersection with its translate by z is quadratic in z.
+ * For x in the first triangle, the integral over the part of the second that lies in the disc
+ * around x is a sum over its edges: in polar coordinates around x, which take the singularity away,
+ * the radial integral is known (RadialKernel) and the angular one becomes an integral along the
+ * edge, or along the circle where the edge is outside. It is exact up to Gauss's rule along the
+ * edge, which is spaced by s = d sinh t where the edge passes x closely, at the distance d. What
+ * remains is smooth in x but at common corners and edges, towards which points are graded; a
+ * triangle is quartered until two rules agree. A triangle with itself needs one integral along the
+ * hexagon of its differences, as the area of its intersection with its translate by z is quadratic
+ * in z.
  */
 class PairIntegrator
 {
@@ -49,10 +51,12 @@ public:
   int blockSize() const { return 4 * this->Functions * this->Functions * this->Components; }
 
   /**
-   * @brief int int (phi_i(x) - phi_i(y)) (phi_j(x) - phi_j(y)) k over first x second, symmetric in i and j.
+   * @brief int int (phi_i(x) - phi_i(y)) (phi_j(x) - phi_j(y)) k over first x second, symmetric in
+   * i and j.
    *
-   * Functions of the first triangle come first; the entries of a function both share are in its rows and columns, those
-   * of the second's are zero. For a pair `identical`, halved: such a pair comes once, others twice.
+   * Functions of the first triangle come first; the entries of a function both share are in its
+   * rows and columns, those of the second's are zero. For a pair `identical`, halved: such a pair
+   * comes once, others twice.
    */
   void integrate(const TrianglePair& pair, double* block);
 
@@ -88,7 +92,7 @@ private:
   // Of the pair at hand.
   const TrianglePair* Pair = nullptr;
   int Used[6], NumberUsed = 0; ///< functions with entries
-  Vec2 Gradients[6] = {};          ///< of the second triangle's part of each function
+  Vec2 Gradients[6] = {};      ///< of the second triangle's part of each function
   double Scale = 0.0;
   int Parts = 0, CutSamples = 0;
   int

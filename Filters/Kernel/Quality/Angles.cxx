@@ -37,8 +37,8 @@ struct AngleCounter
 
   /**
    * Counts the angle with this cosine times the root of lengths2 in the lanes of `use`; in those of
-   * `reflex` it is beyond every end. An angle exceeds an end if its cosine is smaller, and so if its
-   * signed square is. (Set bits are -1.)
+   * `reflex` it is beyond every end. An angle exceeds an end if its cosine is smaller, and so if
+   * its signed square is. (Set bits are -1.)
    */
   void add(Packet product, Packet lengths2, Mask use, Mask reflex)
   {
@@ -91,7 +91,8 @@ void countCorners(const CellTopology& t, const CellVertices& batch, Mask use, An
   }
 }
 
-void countDihedrals(const CellTopology& t, const CellVertices& batch, Mask use, AngleCounter& counter)
+void countDihedrals(
+  const CellTopology& t, const CellVertices& batch, Mask use, AngleCounter& counter)
 {
   Packet normals[MaxFaces][3], lengths2[MaxFaces];
   for (int f = 0; f < t.faces; ++f)

@@ -32,7 +32,8 @@ Vec3 perpendicular(const Vec3& x, const Vec3& unit)
   return x - dot(x, unit) * unit;
 }
 
-/// Angle between two vectors in [0, pi] and its derivatives; 0 with zero derivatives if one vanishes.
+/// Angle between two vectors in [0, pi] and its derivatives; 0 with zero derivatives if one
+/// vanishes.
 double angleBetween(const Vec3& a, const Vec3& b, Vec3* da, Vec3* db)
 {
   const double la = norm(a), lb = norm(b);
@@ -87,7 +88,8 @@ double cellSign(const Cell& cell, const FaceNormal& face)
 }
 
 //------------------------------------------------------------------------------
-/// Signed area or volume. A bilinear face bounds the mean volume of its two triangulations, exactly.
+/// Signed area or volume. A bilinear face bounds the mean volume of its two triangulations,
+/// exactly.
 double size(const Cell& cell, Gradient g)
 {
   const CellTopology& t = cell.topology;

@@ -32,16 +32,16 @@ struct MetricChange
 };
 
 /**
- * @brief Tells for each cell whether its metric became better (1), worse (-1) or neither (0), and adds
- * up the counts.
+ * @brief Tells for each cell whether its metric became better (1), worse (-1) or neither (0), and
+ * adds up the counts.
  *
- * Validity decides first: a cell that becomes valid is better, one that becomes degenerate or inverted
- * is worse. Of two valid cells, and of two inverted ones where the metric orders these
- * (InvertedValue::Larger), the values decide, by the direction of the metric. They are equal if they
- * differ by no more than `tolerance` times the larger magnitude; for metrics without a unit whose
- * ideal value is 0, times 1 if that is more. A neutral metric, such as the size, makes no valid
- * cell better or worse. Cells the metric is not defined on, and those to skip, get 0 and are not
- * counted.
+ * Validity decides first: a cell that becomes valid is better, one that becomes degenerate or
+ * inverted is worse. Of two valid cells, and of two inverted ones where the metric orders these
+ * (InvertedValue::Larger), the values decide, by the direction of the metric. They are equal if
+ * they differ by no more than `tolerance` times the larger magnitude; for metrics without a unit
+ * whose ideal value is 0, times 1 if that is more. A neutral metric, such as the size, makes no
+ * valid cell better or worse. Cells the metric is not defined on, and those to skip, get 0 and are
+ * not counted.
  * @param dimension 2 or 3
  */
 TAUTLINE_KERNEL_EXPORT void compareMetric(const MetricInfo& info, int dimension,

@@ -3,12 +3,13 @@
  * @brief Sums a function of a metric over the elements of a mesh, with its gradient. Internal: not
  * installed.
  *
- * The elements are cut into chunks and the chunks coloured: those of one colour share no vertex, so that
- * threads add to the gradient without locks and in an order that the mesh alone decides.
+ * The elements are cut into chunks and the chunks coloured: those of one colour share no vertex, so
+ * that threads add to the gradient without locks and in an order that the mesh alone decides.
  *
- * Where the numbering of the mesh has no locality the cells are visited along a space-filling curve. Sums go
- * over copies of the connectivity in that order and, if they do not fit into the cache anyway, of the coordinates and
- * the gradient in the order the cells meet the points: all would be read and written at random otherwise.
+ * Where the numbering of the mesh has no locality the cells are visited along a space-filling
+ * curve. Sums go over copies of the connectivity in that order and, if they do not fit into the
+ * cache anyway, of the coordinates and the gradient in the order the cells meet the points: all
+ * would be read and written at random otherwise.
  */
 #ifndef tautline_ElementSum_h
 #define tautline_ElementSum_h
@@ -119,8 +120,8 @@ public:
     return this->Order[chunk.block].empty() ? nullptr : this->Order[chunk.block].data();
   }
 
-  /// Calls work(i) for each chunk; at one time only for chunks that share no vertex, and in an order
-  /// that is fixed for each vertex.
+  /// Calls work(i) for each chunk; at one time only for chunks that share no vertex, and in an
+  /// order that is fixed for each vertex.
   template <class Work>
   void forEachChunk(const Work& work) const
   {
@@ -137,8 +138,9 @@ public:
   }
 
   /**
-   * @brief Evaluates every cell and calls function(context, batch, total, slope) for each batch: it adds to
-   * `total`, and `slope` is what the metric's gradient is multiplied by and added to `gradient`.
+   * @brief Evaluates every cell and calls function(context, batch, total, slope) for each batch: it
+   * adds to `total`, and `slope` is what the metric's gradient is multiplied by and added to
+   * `gradient`.
    * @return the totals, one per chunk, in a fixed order
    */
   template <bool WithGradient, class Total, class Function>

@@ -43,7 +43,8 @@ void evaluateSimplex(const BatchContext& context, Batch& batch)
   Packet lengths2 = s.edge2[0] * s.edge2[2], jacobian2;
   if constexpr (N == 2)
   {
-    // A planar triangle's area is signed along the mesh's normal, a surface triangle's along its own.
+    // A planar triangle's area is signed along the mesh's normal, a surface triangle's along its
+    // own.
     jacobian2 = dot(normal, normal);
     const Packet length = sqrt(jacobian2);
     const Packet over = select(length > 0.0, 1.0 / length, Packet{});

@@ -34,8 +34,8 @@ struct FieldGrid
  * @brief The cell with all vertices but the last one held fixed.
  *
  * A triangle lies in the plane z = 0, where a free vertex left of the line from the first to the
- * second vertex makes it positive: the third coordinates are ignored. A tetrahedron is positive with
- * the free vertex on the side from which its first three vertices run counter-clockwise.
+ * second vertex makes it positive: the third coordinates are ignored. A tetrahedron is positive
+ * with the free vertex on the side from which its first three vertices run counter-clockwise.
  */
 class TAUTLINE_KERNEL_EXPORT MetricField
 {

@@ -7,9 +7,10 @@
  *     std::vector<double> imr(mesh.view().numberOfCells);
  *     tautline::evaluateMetric(mesh, tautline::Metric::InverseMeanRatio, {}, imr.data());
  *
- * Values are always finite, and right for edges between 1e-35 and 1e35; beyond, an element may count as
- * degenerate and be 0. A degenerate element has the value 0 of every metric that is singular
- * there, and so has a cell the metric is not defined on; Mesh::classifyCells() tells them apart.
+ * Values are always finite, and right for edges between 1e-35 and 1e35; beyond, an element may
+ * count as degenerate and be 0. A degenerate element has the value 0 of every metric that is
+ * singular there, and so has a cell the metric is not defined on; Mesh::classifyCells() tells them
+ * apart.
  */
 #ifndef tautline_Metrics_h
 #define tautline_Metrics_h
@@ -180,8 +181,8 @@ struct Targets
   std::vector<Index> offsets;
   std::vector<double> inverse;
   /**
-   * @brief M^(1/2) of each cell, 9 entries as above, or empty: then T = M^(1/2) A W^-1, the element as
-   * the metric tensor M sees it.
+   * @brief M^(1/2) of each cell, 9 entries as above, or empty: then T = M^(1/2) A W^-1, the element
+   * as the metric tensor M sees it.
    */
   std::vector<double> metricRoots;
 };
@@ -191,8 +192,8 @@ struct EvaluationOptions
 {
   Parameters parameters;
   /**
-   * @brief For cells with several corners. If some corners are inverted, only these are combined (not
-   * for metrics that order inverted elements, InvertedValue::Larger).
+   * @brief For cells with several corners. If some corners are inverted, only these are combined
+   * (not for metrics that order inverted elements, InvertedValue::Larger).
    */
   Combination combination = Combination::Mean;
   double power = 2.0;               ///< p of PowerMean, at least 1

@@ -9,7 +9,8 @@ namespace tautline
 {
 namespace
 {
-/// Beyond the ends of a range by this, relative to their size or to 1, a value still counts as inside.
+/// Beyond the ends of a range by this, relative to their size or to 1, a value still counts as
+/// inside.
 constexpr double roundingTolerance = 1e-12;
 
 /// For each of the 256 cell types whether the metric is defined on it.
@@ -28,8 +29,8 @@ std::array<bool, 256> definedTypes(const MetricInfo& info)
 namespace
 {
 /**
- * Finds the values at given places of the sorted order without sorting: counts values by the leading
- * bits of their representation, then sorts only the few buckets that hold a wanted place.
+ * Finds the values at given places of the sorted order without sorting: counts values by the
+ * leading bits of their representation, then sorts only the few buckets that hold a wanted place.
  */
 class OrderStatistics
 {
@@ -217,8 +218,8 @@ MetricStatistics summarize(
   result.minimum = minimum;
   result.maximum = maximum;
   result.outsideAcceptable = outside;
-  // Scaled by a power of two that brings the largest near 1, so that squares neither overflow nor vanish;
-  // the deviation in a second pass, so that it is right for nearly equal values.
+  // Scaled by a power of two that brings the largest near 1, so that squares neither overflow nor
+  // vanish; the deviation in a second pass, so that it is right for nearly equal values.
   const double largest = std::max(std::abs(result.minimum), std::abs(result.maximum));
   constexpr int farthestExponent = 1000;
   const int exponent =

@@ -71,9 +71,9 @@ TAUTLINE_KERNEL_EXPORT MetricStatistics summarize(const MetricInfo& info, int di
   const std::vector<double>& measured, bool withQuantiles = true);
 
 /**
- * @brief Up to WorstCount elements, worst first. Inverted elements come first, then degenerate ones,
- * then the worst of the valid ones in the metric's direction (for neutral metrics the smallest);
- * equals by cell.
+ * @brief Up to WorstCount elements, worst first. Inverted elements come first, then degenerate
+ * ones, then the worst of the valid ones in the metric's direction (for neutral metrics the
+ * smallest); equals by cell.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<WorstElement> worstElements(
   const MetricInfo& info, const CellValues& data);
@@ -83,8 +83,8 @@ TAUTLINE_KERNEL_EXPORT bool isWorse(
   const MetricInfo& info, const WorstElement& a, const WorstElement& b);
 
 /**
- * @brief Histogram between the smallest and largest value. Bin i covers [edges[i], edges[i + 1]); the
- * last one includes its upper end. Without values the bins span [0, 1].
+ * @brief Histogram between the smallest and largest value. Bin i covers [edges[i], edges[i + 1]);
+ * the last one includes its upper end. Without values the bins span [0, 1].
  */
 struct Histogram
 {

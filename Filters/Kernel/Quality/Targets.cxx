@@ -11,7 +11,8 @@ using Matrix = Eigen::Matrix3d;
 /// Relative deviation up to which a tensor on a surface counts as isotropic.
 constexpr double isotropyTolerance = 1e-6;
 
-/// Calls make(cell, sample, topology) for each sample of each cell and stores the matrix it returns.
+/// Calls make(cell, sample, topology) for each sample of each cell and stores the matrix it
+/// returns.
 template <class Make>
 Targets makeTargets(const Mesh& mesh, const Make& make)
 {
@@ -114,8 +115,8 @@ Targets referenceTargets(const Mesh& mesh, const Mesh& reference)
       }
       else
       {
-        // On a surface: the first edge along the first axis, as in the evaluation; a reflex corner is
-        // negative.
+        // On a surface: the first edge along the first axis, as in the evaluation; a reflex corner
+        // is negative.
         Vec3 p[MaxNodes];
         for (int k = 0; k < t.nodes; ++k)
         {

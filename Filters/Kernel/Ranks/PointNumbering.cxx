@@ -19,7 +19,8 @@ struct Entry
   std::size_t place;
 };
 
-/// A facet by the global ids of its points in increasing order, -1 in front; and how many cells have it.
+/// A facet by the global ids of its points in increasing order, -1 in front; and how many cells
+/// have it.
 struct SharedFacet
 {
   std::array<Index, MaxFaceNodes> ids;
@@ -50,13 +51,15 @@ struct PointNumbering::Implementation
   Index Points = 0, GlobalSize = 0, FirstRow = 0, OwnedRows = 0;
   std::vector<Index> Rows;
   std::vector<unsigned char> Owned;
-  /// Local points owned by other ranks, in order of owner; owned points that others have, in order of rank.
+  /// Local points owned by other ranks, in order of owner; owned points that others have, in order
+  /// of rank.
   RankLists<Index> Lent, Borrowed;
 
   void build(const Index* globalIds, const unsigned char* used);
   std::vector<int> findOwners(const std::vector<Index>& ids, std::string& complaint) const;
 
-  /// Combines the values of shared points at their owners and hands the result to all who have them.
+  /// Combines the values of shared points at their owners and hands the result to all who have
+  /// them.
   template <class Item, class Read, class Combine, class Write>
   void combine(const Read& read, const Combine& add, const Write& write) const
   {
@@ -345,7 +348,8 @@ std::vector<unsigned char> globalBoundaryPoints(
     }
   };
 
-  // As Mesh::boundary() has it, what does not have two cells is boundary; other ranks may have the second one.
+  // As Mesh::boundary() has it, what does not have two cells is boundary; other ranks may have the
+  // second one.
   std::vector<Facet> facets;
   std::vector<SharedFacet> shared;
   std::vector<int> target;

@@ -1,6 +1,7 @@
 /**
  * @file PointNumbering.h
- * @brief How the points of a mesh that is spread over MPI ranks are numbered together, and sums over ranks.
+ * @brief How the points of a mesh that is spread over MPI ranks are numbered together, and sums
+ * over ranks.
  */
 #ifndef tautline_PointNumbering_h
 #define tautline_PointNumbering_h
@@ -15,7 +16,8 @@ namespace tautline
 {
 /**
  * @class tautline::PointNumbering
- * @brief Each global point is owned by one rank, the lowest that has it; rows of a rank are contiguous.
+ * @brief Each global point is owned by one rank, the lowest that has it; rows of a rank are
+ * contiguous.
  *
  * All methods are collective unless they are const accessors.
  */
@@ -23,10 +25,10 @@ class TAUTLINE_SOLVERS_EXPORT PointNumbering
 {
 public:
   /**
-   * @param globalIds one id per local point, the same on all ranks for the same point; any numbers from 0 on; null only
-   * on one rank
-   * @param used one flag per local point, nonzero = has a row (a point that is in a cell and is not eliminated); null: all.
-   * The ranks must agree on shared points.
+   * @param globalIds one id per local point, the same on all ranks for the same point; any numbers
+   * from 0 on; null only on one rank
+   * @param used one flag per local point, nonzero = has a row (a point that is in a cell and is not
+   * eliminated); null: all. The ranks must agree on shared points.
    *
    * Throws Error, on all ranks, for ids that are missing, negative or twice on one rank.
    */
@@ -44,7 +46,8 @@ public:
   const std::vector<Index>& rows() const; ///< the row of each local point, -1 without one
   bool owned(Index point) const;
 
-  /// Replaces `components` values per local point with a row by their sums over all ranks; others stay.
+  /// Replaces `components` values per local point with a row by their sums over all ranks; others
+  /// stay.
   void sum(double* values, int components) const;
   /// Nonzero flags of points with a row become nonzero on every rank that has the point.
   void either(unsigned char* flags) const;
@@ -59,8 +62,9 @@ private:
 };
 
 /**
- * @brief The points of edges (2D) or faces (3D) that exactly one cell on all ranks has (or more than two); cells with skip
- * flags (ghosts) do not count. On one rank what Mesh::boundary() says. Collective.
+ * @brief The points of edges (2D) or faces (3D) that exactly one cell on all ranks has (or more
+ * than two); cells with skip flags (ghosts) do not count. On one rank what Mesh::boundary() says.
+ * Collective.
  * @param globalIds as above; null on one rank
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<unsigned char> globalBoundaryPoints(

@@ -1,6 +1,7 @@
 /**
  * @file RankExchange.h
- * @brief Lists sent from every MPI rank to every other, and agreement on errors. Not a public header.
+ * @brief Lists sent from every MPI rank to every other, and agreement on errors. Not a public
+ * header.
  */
 #ifndef tautline_RankExchange_h
 #define tautline_RankExchange_h
@@ -30,7 +31,8 @@ inline bool onAnyRank(MPI_Comm communicator, bool condition)
   return all != 0;
 }
 
-/// Throws Error on all ranks if one of them has something to complain about: an exception on one alone would leave the others waiting.
+/// Throws Error on all ranks if one of them has something to complain about: an exception on one
+/// alone would leave the others waiting.
 inline void throwTogether(MPI_Comm communicator, const std::string& complaint)
 {
   if (onAnyRank(communicator, !complaint.empty()))

@@ -360,7 +360,8 @@ void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable&
   const float limit = bounds ? this->StepLimit : Unreachable;
   const float stepX = static_cast<float>(set.step[0]), stepY = static_cast<float>(set.step[1]);
   // For one offset q - p the cost of the triangle depends on r - p only: a slice of all of them is
-  // made once and serves every p. Columns run over r - p from 1 - columns on, padded for whole packets.
+  // made once and serves every p. Columns run over r - p from 1 - columns on, padded for whole
+  // packets.
   const Index sliceRows = 2 * rows - 1;
   const Index sliceWidth = (2 * columns - 1 + width + FloatWidth) / FloatWidth * FloatWidth;
   const Index offsets = (2 * columns - 1) * sliceRows;
@@ -444,7 +445,8 @@ void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable&
               }
               else
               {
-                // A row whose three least parts together are no better than what is found is skipped.
+                // A row whose three least parts together are no better than what is found is
+                // skipped.
                 const float *rowsI = minI.row(p), *rowsJ = minJ.row(q);
                 const float* rowsCost = sliceMinima.data() + rows - 1 - py;
                 for (Index row = 0; row < rows; ++row)

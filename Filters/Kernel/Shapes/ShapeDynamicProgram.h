@@ -1,6 +1,7 @@
 /**
  * @file ShapeDp.h
- * @brief Dynamic programming over the triangles of a polygon. Internal to the kernel: not installed.
+ * @brief Dynamic programming over the triangles of a polygon. Internal to the kernel: not
+ * installed.
  */
 #ifndef tautline_ShapeDp_h
 #define tautline_ShapeDp_h

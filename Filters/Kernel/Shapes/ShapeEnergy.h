@@ -2,8 +2,8 @@
  * @file ShapeEnergy.h
  * @brief The energy of one triangle of a shape match, for a packet of places of its last vertex.
  *
- * Internal to the kernel: not installed. triangleEnergy() in ShapeMatch.h is the same in doubles and
- * by another route.
+ * Internal to the kernel: not installed. triangleEnergy() in ShapeMatch.h is the same in doubles
+ * and by another route.
  */
 #ifndef tautline_ShapeEnergy_h
 #define tautline_ShapeEnergy_h
@@ -15,8 +15,8 @@ namespace tautline
 {
 /// A large energy that sums of stay finite with; no match has it.
 constexpr float Unreachable = 1e30f;
-/// Anisotropy (alpha / beta + beta / alpha) / 2 of a triangle that is flat, or inverted where that is
-/// forbidden. Its energy is finite, and larger than that of any triangle one would want.
+/// Anisotropy (alpha / beta + beta / alpha) / 2 of a triangle that is flat, or inverted where that
+/// is forbidden. Its energy is finite, and larger than that of any triangle one would want.
 constexpr float FlatAnisotropy = 1e6f;
 /// The least area, as part of the square of the perimeter, of a triangle that is not flat.
 constexpr float FlatArea = 1e-7f;
@@ -68,8 +68,8 @@ struct TriangleTerms
     4.6e-5f };
   static constexpr float MostLog2 = 49.0f;
 
-  /// A bound from below of the energy of any triangle with an edge of this length: the sum of its edges is
-  /// at least twice that, and log x >= 1 - 1 / x.
+  /// A bound from below of the energy of any triangle with an edge of this length: the sum of its
+  /// edges is at least twice that, and log x >= 1 - 1 / x.
   float bound(float edge) const
   {
     const float most = this->longest / (2.0f * edge + LeastLength);
@@ -96,8 +96,8 @@ struct BaseEdge
 /**
  * @brief Whether, for some r of a packet, the deformation may leave the sum below a value.
  *
- * Without division, root or logarithm: a log(alpha / beta)^2 < value - parts is norm < size cosh(sqrt(y))
- * with y = (value - parts) / a, at most MostLog2. Never wrong where the answer is no.
+ * Without division, root or logarithm: a log(alpha / beta)^2 < value - parts is norm < size
+ * cosh(sqrt(y)) with y = (value - parts) / a, at most MostLog2. Never wrong where the answer is no.
  * @param norm the anisotropy times the size
  * @param parts the other costs
  * @param value divided by a

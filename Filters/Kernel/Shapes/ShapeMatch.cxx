@@ -19,7 +19,8 @@ constexpr double MemoryLimit = 4.0 * 1024 * 1024 * 1024;
 constexpr std::size_t SmallTarget = 30;
 /// A first solution on more locations than this can be stopped, too.
 constexpr std::size_t LargeCoarse = 200;
-/// Coarse to fine: locations around a vertex, along each axis, and how often their distance is halved.
+/// Coarse to fine: locations around a vertex, along each axis, and how often their distance is
+/// halved.
 constexpr int RefineRadius = 3;
 constexpr int RefineLevels = 3;
 /// A first solution on a contour is improved by moves of so many locations either way, so often.
@@ -380,7 +381,8 @@ private:
     return points;
   }
 
-  /// The first solution, in the order of the energy, whose centre is near the target's centre of mass.
+  /// The first solution, in the order of the energy, whose centre is near the target's centre of
+  /// mass.
   ShapeMatch choose(
     const PlacementProblem& problem, const PlacementSolver& solver, bool nextBest) const
   {

@@ -1,15 +1,18 @@
 /**
  * @file ShapeMatch.h
- * @brief Finds a deformable shape in an image: the placement of a triangulated polygon of least energy.
+ * @brief Finds a deformable shape in an image: the placement of a triangulated polygon of least
+ * energy.
  *
- * The source is a triangulated polygon (Polygon.h), the target an image with a finite set of locations
- * for its vertices. The energy of a placement is a sum over the triangles (dissertation equation 5.1),
+ * The source is a triangulated polygon (Polygon.h), the target an image with a finite set of
+ * locations for its vertices. The energy of a placement is a sum over the triangles (dissertation
+ * equation 5.1),
  *
  *     E = sum_i  E_edge,i + a E_def,i + b E_dis,i
  *
  *     E_edge  mean of 1 / (lambda + |grad I|) along each of the triangle's edges on the boundary
  *     E_def   log(alpha / beta)^2, with the singular values of the map of the triangle
- *     E_dis   |log(gamma / delta)|, gamma the larger ratio of the sums of edge lengths, delta that of d_max
+ *     E_dis   |log(gamma / delta)|, gamma the larger ratio of the sums of edge lengths,
+ *             delta that of d_max
  *
  * and the least of all placements is found by dynamic programming: exactly, whatever the start.
  *
@@ -18,8 +21,9 @@
  *     tautline::ShapeMatch match = tautline::matchShape(source, target, {});
  *     // match.points: where the vertices of source.mesh went
  *
- * Sources: J. Kim, dissertation, chapter 5; P. Felzenszwalb, Representation and detection of deformable
- * shapes, IEEE PAMI 27 (2005). Where the text leaves a choice, it is said below and in the help page.
+ * Sources: J. Kim, dissertation, chapter 5; P. Felzenszwalb, Representation and detection of
+ * deformable shapes, IEEE PAMI 27 (2005). Where the text leaves a choice, it is said below and in
+ * the help page.
  */
 #ifndef tautline_ShapeMatch_h
 #define tautline_ShapeMatch_h
@@ -31,8 +35,8 @@ namespace tautline
 /**
  * @brief The placement of least energy, exact unless coarseToFine or stopped.
  *
- * The tables are in single precision; the energies returned are computed again in double. Ties go to
- * the location that comes first.
+ * The tables are in single precision; the energies returned are computed again in double. Ties go
+ * to the location that comes first.
  *
  * Throws Error on options out of range or not finite, and if the tables would take more than 4 GiB.
  */
@@ -44,7 +48,8 @@ TAUTLINE_KERNEL_EXPORT ShapeMatch evaluatePlacement(const ShapeSource& source,
   const ShapeTarget& target, const ShapeEnergy& energy, const std::vector<Vec2>& points);
 
 /**
- * @brief Deformation, distortion and rotation of a map of a triangle, in double, from its singular values.
+ * @brief Deformation, distortion and rotation of a map of a triangle, in double, from its singular
+ * values.
  * @param delta d_max of the source over d_max of the target
  */
 TAUTLINE_KERNEL_EXPORT TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source,

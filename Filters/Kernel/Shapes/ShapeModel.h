@@ -31,16 +31,16 @@ struct ShapeEnergy
   bool signedDistortion = false;
   /// Standard deviation of the Gaussian the target is smoothed with, in pixels, above 0.
   double smoothing = 1.5;
-  /// The edge cost sees the gradient along the polygon's inner normal only: the dark side of an edge must
-  /// be outside. Not in the dissertation.
+  /// The edge cost sees the gradient along the polygon's inner normal only: the dark side of an
+  /// edge must be outside. Not in the dissertation.
   bool directedEdges = false;
   /// Weight of 1 - cos(angle a triangle turns by); 0, the default: turning is free.
   double rotation = 0.0;
   /// Weight per vertex of the squared difference between what source and target look like around
   /// it: the part of the shape in discs of four radii, and the distance from the centre of mass.
   double descriptor = 0.0;
-  /// Weight per boundary edge of |log(length along the target's outline / expected)|, with the outline
-  /// run through in the polygon's direction. Contour locations only.
+  /// Weight per boundary edge of |log(length along the target's outline / expected)|, with the
+  /// outline run through in the polygon's direction. Contour locations only.
   double ordering = 0.0;
   Reflection reflection = Reflection::Forbidden;
 
@@ -89,15 +89,17 @@ struct LocationOptions
   int threads = 0;    ///< 0: all cores. The result does not depend on it.
 };
 
-/// The target: an image, its outline, and the locations. Precomputed once, shared by any number of matches.
+/// The target: an image, its outline, and the locations. Precomputed once, shared by any number of
+/// matches.
 class TAUTLINE_KERNEL_EXPORT ShapeTarget
 {
 public:
   /**
-   * Prepares a target. Edge costs are tables over pairs of locations, which depend on lambda, smoothing and
-   * directedEdges of the energy only; descriptors are made if it weights them.
-   * @param grey the image, if its grey values rather than the silhouette shall give the gradient; may be null
-   * Throws Error if there are less than 3 locations, their table would take more than 4 GiB, or an option is out of range.
+   * Prepares a target. Edge costs are tables over pairs of locations, which depend on lambda,
+   * smoothing and directedEdges of the energy only; descriptors are made if it weights them.
+   * @param grey the image, if its grey values rather than the silhouette shall give the gradient;
+   * may be null Throws Error if there are less than 3 locations, their table would take more than 4
+   * GiB, or an option is out of range.
    */
   ShapeTarget(const Silhouette& shape, const LocationOptions& locations,
     const ShapeEnergy& energy = {}, const ImageView* grey = nullptr);
@@ -122,8 +124,9 @@ private:
 struct MatchOptions
 {
   ShapeEnergy energy;
-  /// Solutions whose centre is farther from the target's centre of mass than this times d_max are passed
-  /// over for the next best (dissertation equation 5.2). 0: the rule is off. The dissertation's is 1/3.
+  /// Solutions whose centre is farther from the target's centre of mass than this times d_max are
+  /// passed over for the next best (dissertation equation 5.2). 0: the rule is off. The
+  /// dissertation's is 1/3.
   double centreTolerance = 1.0 / 3.0;
   /// The most solutions to try for the rule; then the one with the least distance is taken.
   Index maxSolutions = 1000;
@@ -131,10 +134,11 @@ struct MatchOptions
   bool coarseToFine = false;
   /// Bounds that skip placements which cannot be the best. The result is the same without.
   bool bounds = true;
-  /// Sources turned by multiples of 360 / rotations degrees are tried; makes sense with energy.rotation.
+  /// Sources turned by multiples of 360 / rotations degrees are tried; makes sense with
+  /// energy.rotation.
   Index rotations = 1;
-  /// Target sizes tried, an odd number: delta times 2^(k/2), k = -(n-1)/2 ... (n-1)/2; for images with other
-  /// things than the shape in them, where d_max says little.
+  /// Target sizes tried, an odd number: delta times 2^(k/2), k = -(n-1)/2 ... (n-1)/2; for images
+  /// with other things than the shape in them, where d_max says little.
   Index scales = 1;
   int threads = 0;      ///< 0: all cores. The result does not depend on it.
   double timeLimit = 0; ///< seconds; 0: none. When it is over, the best so far is returned.

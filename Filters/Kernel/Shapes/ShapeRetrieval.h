@@ -1,8 +1,10 @@
 /**
  * @file ShapeRetrieval.h
- * @brief Which of a set of labelled silhouettes are alike: all matches, the ranking and the recognition rate.
+ * @brief Which of a set of labelled silhouettes are alike: all matches, the ranking and the
+ * recognition rate.
  *
- *     tautline::Retrieval result = tautline::retrieveShapes(shapes, labels, tautline::RetrievalOptions::highest());
+ *     const auto options = tautline::RetrievalOptions::highest();
+ *     tautline::Retrieval result = tautline::retrieveShapes(shapes, labels, options);
  *     // result.recognition.rate: 1 if the 10 best matches of each are of its own class
  */
 #ifndef tautline_ShapeRetrieval_h
@@ -17,8 +19,8 @@ struct RetrievalOptions
   double spacing = 25.0; ///< of the polygons' vertices, pixels, above 0
   LocationOptions locations;
   MatchOptions match; ///< its threads, timeLimit and progress are those of the whole run
-  /// The distance of two shapes is E(a to b) / triangles of a + E(b to a) / triangles of b, rather than
-  /// E(a to b): each must be found in the other.
+  /// The distance of two shapes is E(a to b) / triangles of a + E(b to a) / triangles of b, rather
+  /// than E(a to b): each must be found in the other.
   bool symmetric = false;
   Index best = 10; ///< matches per query that count, at least 1
 
@@ -26,8 +28,9 @@ struct RetrievalOptions
   static RetrievalOptions dissertation() { return {}; }
   /// The same with Felzenszwalb's energy and without the centre of mass.
   TAUTLINE_KERNEL_EXPORT static RetrievalOptions felzenszwalb();
-  /// What recognizes best here: vertices 15 pixels apart, 80 locations on the contour, directed edges,
-  /// ordering 1, descriptors 100, rotation 1, both directions. The help page tells how it was chosen.
+  /// What recognizes best here: vertices 15 pixels apart, 80 locations on the contour, directed
+  /// edges, ordering 1, descriptors 100, rotation 1, both directions. The help page tells how it
+  /// was chosen.
   TAUTLINE_KERNEL_EXPORT static RetrievalOptions highest();
 };
 
@@ -46,7 +49,8 @@ struct Recognition
 struct Retrieval
 {
   Index count = 0;
-  /// Row after row, the distance of a query (row) to a target; 0 to itself, -1 if it was not computed.
+  /// Row after row, the distance of a query (row) to a target; 0 to itself, -1 if it was not
+  /// computed.
   std::vector<double> distances;
   /// Row after row, the other shapes in order of their distance: count - 1 each.
   std::vector<Index> ranking;
@@ -59,13 +63,14 @@ struct Retrieval
  * @brief Matches each of the shapes with each other one.
  *
  * @param labels the class of each shape
- * Throws Error on less than 2 shapes, on another number of labels, and on options out of range; errors with a
- * shape name its number.
+ * Throws Error on less than 2 shapes, on another number of labels, and on options out of range;
+ * errors with a shape name its number.
  */
 TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(const std::vector<Silhouette>& shapes,
   const std::vector<Index>& labels, const RetrievalOptions& options);
 
-/// The others in order of a row of distances; equal ones in their order, those not computed (-1) last.
+/// The others in order of a row of distances; equal ones in their order, those not computed (-1)
+/// last.
 TAUTLINE_KERNEL_EXPORT std::vector<Index> rankShapes(
   const std::vector<double>& distances, Index count);
 

@@ -265,7 +265,8 @@ ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options
     sum += gauss.back();
     moment += slope.back() * static_cast<double>(k);
   }
-  // A unit step has the gradient 1 / (sigma sqrt(2 pi)) at its place; a pixel's step is half a pixel off.
+  // A unit step has the gradient 1 / (sigma sqrt(2 pi)) at its place; a pixel's step is half a
+  // pixel off.
   const double step = energy.smoothing * std::sqrt(2.0 * Pi);
   for (std::size_t k = 0; k < gauss.size(); ++k)
   {

@@ -54,8 +54,8 @@ using Descriptor = std::array<float, 5>;
 /// What a silhouette looks like from points of its outline.
 std::vector<Descriptor> describe(const Silhouette& shape, const std::vector<Vec2>& points);
 
-/// The source turned by an angle in radians, or mirrored and turned; a mirrored polygon runs through its vertices
-/// backwards.
+/// The source turned by an angle in radians, or mirrored and turned; a mirrored polygon runs
+/// through its vertices backwards.
 ShapeSource transformSource(const ShapeSource& source, double angle, bool mirrored);
 
 struct ShapeTarget::Data

@@ -63,9 +63,9 @@ struct Silhouette
 /**
  * @brief Traces the largest component of the foreground, to sub-pixel by marching squares.
  *
- * Between two pixels the outline crosses where linear interpolation gives the threshold; midway in a
- * binary image. Beyond the border of the image is background. Of components of equal size, the one
- * that comes first in the image is taken.
+ * Between two pixels the outline crosses where linear interpolation gives the threshold; midway in
+ * a binary image. Beyond the border of the image is background. Of components of equal size, the
+ * one that comes first in the image is taken.
  *
  * Throws Error on an empty image, on values that are not finite, on an image of one value, and if
  * nothing is on the foreground's side of the threshold or no background is left.
@@ -76,10 +76,11 @@ TAUTLINE_KERNEL_EXPORT Silhouette traceSilhouette(
 /**
  * @brief A simple polygon with vertices on an outline at nearly equal distances.
  *
- * Vertices are chosen among points a twentieth of the spacing apart so that the sum over the edges of
- * (length along the outline / spacing - 1)^2 + (largest distance of the outline from the edge / spacing)^2
- * is least, with lengths from a half to one and a half spacings (dissertation section 5.2.1; the
- * sum is ours). Where that polygon has less than 3 vertices or meets itself, the spacing is reduced.
+ * Vertices are chosen among points a twentieth of the spacing apart so that the sum over the edges
+ * of (length along the outline / spacing - 1)^2 + (largest distance of the outline from the edge /
+ * spacing)^2 is least, with lengths from a half to one and a half spacings (dissertation
+ * section 5.2.1; the sum is ours). Where that polygon has less than 3 vertices or meets itself, the
+ * spacing is reduced.
  *
  * @param outline closed, in either direction; the result runs counter-clockwise
  * @param spacing the ideal distance, above 0; the dissertation's is 25 pixels

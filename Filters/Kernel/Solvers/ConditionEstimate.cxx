@@ -61,7 +61,8 @@ std::vector<double> valuesOf(const PetscSystem& system, Vec vector)
   return values;
 }
 
-/// Puts the two ends together. Rounding moves eigenvalues by about the last digit of the largest, whatever residuals say.
+/// Puts the two ends together. Rounding moves eigenvalues by about the last digit of the largest,
+/// whatever residuals say.
 void fill(ExtremeEigenvalues& ends, const PetscSystem& system, const ConditionOptions& options,
   const SpectrumWatch& watch, ConditionEstimate& result)
 {
@@ -142,8 +143,9 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options, Spe
 }
 
 /// The spectrum of P^-1 A, whatever PETSc calls P.
-ExtremeEigenvalues preconditionedExtremeEigenvalues(const LinearSystem& system, const ConditionOptions& options,
-  Preconditioner preconditioner, const std::string& petscOptions, SpectrumWatch& watch)
+ExtremeEigenvalues preconditionedExtremeEigenvalues(const LinearSystem& system,
+  const ConditionOptions& options, Preconditioner preconditioner, const std::string& petscOptions,
+  SpectrumWatch& watch)
 {
   SolverOptions solverOptions;
   solverOptions.preconditioner = preconditioner;
@@ -201,10 +203,12 @@ ExtremeEigenvalues plainEnds(const LinearSystem& system, const PetscSystem& obje
       }
     }
   }
-  // What shift-invert or LOBPCG cannot do, a singular or an indefinite matrix, the Lanczos method can.
+  // What shift-invert or LOBPCG cannot do, a singular or an indefinite matrix, the Lanczos method
+  // can.
   if ((!ends.smallest.found || !ends.largest.found) && !watch.stopped())
   {
-    ExtremeEigenvalues other = preconditionedExtremeEigenvalues(system, options, options.preconditioner, "", watch);
+    ExtremeEigenvalues other =
+      preconditionedExtremeEigenvalues(system, options, options.preconditioner, "", watch);
     for (const auto& [end, second] : { std::make_pair(&ends.smallest, &other.smallest),
            std::make_pair(&ends.largest, &other.largest) })
     {
@@ -296,9 +300,9 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
     }
     else
     {
-      ExtremeEigenvalues ends = plain
-        ? plainEnds(system, objects, options, optionSet, watch)
-        : preconditionedExtremeEigenvalues(system, options, options.preconditioner, options.petscOptions, watch);
+      ExtremeEigenvalues ends = plain ? plainEnds(system, objects, options, optionSet, watch)
+                                      : preconditionedExtremeEigenvalues(system, options,
+                                          options.preconditioner, options.petscOptions, watch);
       fill(ends, objects, options, watch, result);
     }
   }

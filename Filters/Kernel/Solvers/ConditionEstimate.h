@@ -14,8 +14,8 @@ namespace tautline
 struct ConditionEstimate
 {
   double smallest = 0.0, largest = 0.0; ///< eigenvalues; 0 where not found
-  /// Relative errors: bounds from residuals or, where eigenvalues crowd, an estimate from the last half of the iterations;
-  /// infinity where nothing is known (Ritz values).
+  /// Relative errors: bounds from residuals or, where eigenvalues crowd, an estimate from the last
+  /// half of the iterations; infinity where nothing is known (Ritz values).
   double smallestError = 0.0, largestError = 0.0;
   double condition = 0.0; ///< largest / smallest; 0 where the smallest is not positive
   bool converged = false;
@@ -31,10 +31,11 @@ struct ConditionEstimate
 /**
  * @brief Extreme eigenvalues of A or of P^-1 A, and their ratio. Collective over the ranks.
  *
- * Failures of PETSc or SLEPc, a matrix that is singular or not definite, a preconditioner that is not symmetric or not
- * definite, the time limit and an abort are messages, not exceptions; what was found is kept. Bad options throw Error, and so
- * does what LinearSolver refuses. Errors are those of the computed vectors: that no eigenvalue lies further out rests on the
- * start vector, which is random, and for a factorised A on its number of negative pivots.
+ * Failures of PETSc or SLEPc, a matrix that is singular or not definite, a preconditioner that is
+ * not symmetric or not definite, the time limit and an abort are messages, not exceptions; what was
+ * found is kept. Bad options throw Error, and so does what LinearSolver refuses. Errors are those
+ * of the computed vectors: that no eigenvalue lies further out rests on the start vector, which is
+ * random, and for a factorised A on its number of negative pivots.
  */
 TAUTLINE_SOLVERS_EXPORT ConditionEstimate estimateCondition(
   const LinearSystem& system, const ConditionOptions& options);

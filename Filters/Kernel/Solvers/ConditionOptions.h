@@ -14,8 +14,8 @@ enum class SpectrumMethod : int
 {
   Automatic = 0,  ///< Accurate
   RitzValues = 1, ///< of the Krylov solver (CG): cheap, from inside the spectrum, no error bound
-  /// To a tolerance: SLEPc for A and D^-1 A (Krylov-Schur, shift-invert where a factorisation is affordable, else LOBPCG), the
-  /// Lanczos method in the inner product of P for other P^-1 A.
+  /// To a tolerance: SLEPc for A and D^-1 A (Krylov-Schur, shift-invert where a factorisation is
+  /// affordable, else LOBPCG), the Lanczos method in the inner product of P for other P^-1 A.
   Accurate = 2
 };
 

@@ -1,6 +1,7 @@
 /**
  * @file ExtremeEigenvalues.h
- * @brief Both ends of the spectrum of A, or of P^-1 A, of a matrix that PETSc holds. Not a public header.
+ * @brief Both ends of the spectrum of A, or of P^-1 A, of a matrix that PETSc holds. Not a public
+ * header.
  */
 #ifndef tautline_SpectrumEnds_h
 #define tautline_SpectrumEnds_h
@@ -58,27 +59,32 @@ struct ExtremeEigenvalues
   ExtremeEigenvalue smallest, largest;
 };
 
-/// Numbers from 0.25 to 1.25 that depend on the row alone: the lowest mode is never missed, whatever the ranks.
+/// Numbers from 0.25 to 1.25 that depend on the row alone: the lowest mode is never missed,
+/// whatever the ranks.
 void fillStartVector(Vec vector, std::uint64_t seed = 0);
 
 /**
- * @brief Lanczos' method for P^-1 A in the inner product of P, without reorthogonalisation, in two passes: the second gathers
- * the vectors of the ends once the first knows their weights. Needs five vectors however many the steps.
+ * @brief Lanczos' method for P^-1 A in the inner product of P, without reorthogonalisation, in two
+ * passes: the second gathers the vectors of the ends once the first knows their weights. Needs five
+ * vectors however many the steps.
  *
- * For an end, the tridiagonal matrix of the step at which it converged is taken, before rounding makes copies of it. With y
- * gathered and x = P^-1 y, the value is the Rayleigh quotient x^T A x / x^T y; an eigenvalue is within the norm of
- * A x - theta y, in the inner product of P^-1, of it: rounding in the recurrence does not matter. Where that is far too
- * large, because eigenvalues crowd, the error is estimated from the last half of the steps.
+ * For an end, the tridiagonal matrix of the step at which it converged is taken, before rounding
+ * makes copies of it. With y gathered and x = P^-1 y, the value is the Rayleigh quotient x^T A x /
+ * x^T y; an eigenvalue is within the norm of A x - theta y, in the inner product of P^-1, of it:
+ * rounding in the recurrence does not matter. Where that is far too large, because eigenvalues
+ * crowd, the error is estimated from the last half of the steps.
  *
- * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 10.1 to 10.3; C. C. Paige, J. Inst. Maths Applics
- * 18 (1976), on what rounding does; bounds: B. N. Parlett, The Symmetric Eigenvalue Problem, sections 10.6 and 15.9.
+ * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 10.1 to 10.3; C. C.
+ * Paige, J. Inst. Maths Applics 18 (1976), on what rounding does; bounds: B. N. Parlett, The
+ * Symmetric Eigenvalue Problem, sections 10.6 and 15.9.
  */
 ExtremeEigenvalues lanczosExtremeEigenvalues(
   Mat matrix, PC preconditioner, const ConditionOptions& options, SpectrumWatch& watch);
 
 /**
- * @brief The ends of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest by Krylov-Schur on the inverse
- * where a factorisation is affordable, else by LOBPCG with BoomerAMG as the preconditioner.
+ * @brief The ends of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest by
+ * Krylov-Schur on the inverse where a factorisation is affordable, else by LOBPCG with BoomerAMG as
+ * the preconditioner.
  */
 ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& system, int ranks,
   const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch);

@@ -86,10 +86,11 @@ private:
 };
 
 /**
- * What the first pass finds of an end. An eigenvalue lies within the residual r of the value. Where eigenvalues crowd, r is far
- * larger than the error; r^2 over the distance to the next Ritz value (Kato-Temple) is far smaller as long as close eigenvalues
- * have not come apart. So that is believed only together with how far the value moved since half of the steps: convergence is
- * at least quadratic in their number (Kaniel-Paige), so that no more than a third of it is left.
+ * What the first pass finds of an end. An eigenvalue lies within the residual r of the value. Where
+ * eigenvalues crowd, r is far larger than the error; r^2 over the distance to the next Ritz value
+ * (Kato-Temple) is far smaller as long as close eigenvalues have not come apart. So that is
+ * believed only together with how far the value moved since half of the steps: convergence is at
+ * least quadratic in their number (Kaniel-Paige), so that no more than a third of it is left.
  */
 struct Candidate
 {
@@ -123,8 +124,8 @@ void update(
 }
 
 /// The value and its bound from the gathered y = P x.
-void measure(
-  Mat matrix, PC preconditioner, const PetscVector& y, const Candidate& candidate, ExtremeEigenvalue& end)
+void measure(Mat matrix, PC preconditioner, const PetscVector& y, const Candidate& candidate,
+  ExtremeEigenvalue& end)
 {
   PetscVector x, r, z;
   petsc(VecDuplicate(y, x.out()));

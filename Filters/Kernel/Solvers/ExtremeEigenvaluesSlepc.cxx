@@ -10,7 +10,8 @@ namespace
 {
 using PetscEigensolver = PetscHandle<EPS, EPSDestroy>;
 
-/// Unknowns up to which a factorisation costs less than an iteration: of plane problems, with few neighbours, and of others.
+/// Unknowns up to which a factorisation costs less than an iteration: of plane problems, with few
+/// neighbours, and of others.
 constexpr PetscInt PlanarFactorLimit = 400000, SpatialFactorLimit = 30000;
 /// Neighbours of a point, itself among them, that tell the one from the other.
 constexpr double PlanarNeighbours = 11.0;
@@ -62,8 +63,9 @@ void create(Mat matrix, const ConditionOptions& options, SpectrumWatch& watch, P
 }
 
 /**
- * @brief The eigenpair nearest to the end, with the bound from its residual. Of the smallest, the next eigenvalue has converged,
- * too, and the distance to it counts (Kato-Temple); without that rounding would hide a small eigenvalue beside a large one.
+ * @brief The eigenpair nearest to the end, with the bound from its residual. Of the smallest, the
+ * next eigenvalue has converged, too, and the distance to it counts (Kato-Temple); without that
+ * rounding would hide a small eigenvalue beside a large one.
  */
 void collect(Mat matrix, EPS solver, bool smallest, ExtremeEigenvalue& end)
 {
@@ -165,7 +167,8 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
       petsc(EPSGetST(solver, &transformation));
       if (factorise)
       {
-        // MUMPS counts negative pivots (Sylvester): the smallest eigenvalue is the one nearest to 0 if there are none.
+        // MUMPS counts negative pivots (Sylvester): the smallest eigenvalue is the one nearest to 0
+        // if there are none.
         LinearSystem symmetric = system;
         symmetric.symmetric = true;
         symmetric.positiveDefinite = false;

@@ -29,8 +29,8 @@ struct LanczosOptions
 struct Spectrum
 {
   double smallest = 0.0, largest = 0.0; ///< eigenvalues
-  /// Absolute error bounds: the norm r of the residual or, if that is less, r^2 over the distance to
-  /// the next Ritz value (Kato-Temple, with the Ritz value for the eigenvalue).
+  /// Absolute error bounds: the norm r of the residual or, if that is less, r^2 over the distance
+  /// to the next Ritz value (Kato-Temple, with the Ritz value for the eigenvalue).
   double smallestBound = 0.0, largestBound = 0.0;
   /// largest / smallest, the condition number of a positive definite matrix in the 2-norm; 0 where
   /// the smallest eigenvalue is not positive beyond its bound.
@@ -46,11 +46,11 @@ struct Spectrum
  * reorthogonalisation (twice), from a fixed pseudo-random vector.
  *
  * Of a spectrum with more than `maxIterations` steps to go, or when time is up or progress() says
- * stop, the best found so far, with its bounds and `converged` false. Throws Error for an empty matrix
- * and for one with entries that are not finite.
+ * stop, the best found so far, with its bounds and `converged` false. Throws Error for an empty
+ * matrix and for one with entries that are not finite.
  *
- * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., section 10.1-10.3; the bound: B. N. Parlett,
- * The Symmetric Eigenvalue Problem, section 10.6.
+ * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., section 10.1-10.3; the bound:
+ * B. N. Parlett, The Symmetric Eigenvalue Problem, section 10.6.
  */
 TAUTLINE_SOLVERS_EXPORT Spectrum extremeEigenvalues(
   const SparseMatrix& matrix, const LanczosOptions& options = {});
@@ -64,8 +64,8 @@ struct SolveReport
 };
 
 /**
- * @brief Solves A x = b, A symmetric positive definite, by conjugate gradients with the diagonal as the
- * preconditioner, from x = 0, to a relative residual of `tolerance`.
+ * @brief Solves A x = b, A symmetric positive definite, by conjugate gradients with the diagonal as
+ * the preconditioner, from x = 0, to a relative residual of `tolerance`.
  *
  * Throws Error if A is found not to be positive definite.
  */

@@ -12,7 +12,8 @@ namespace
 /// A direct solve must leave a residual below this, relative to b; a singular matrix does not.
 constexpr double DirectTolerance = 1e-6;
 
-/// A solution that leaves so much of the right-hand side is no better than 0. Some preconditioners hide that.
+/// A solution that leaves so much of the right-hand side is no better than 0. Some preconditioners
+/// hide that.
 constexpr double MisledResidual = 0.5;
 
 constexpr int TableMethods = 4, TablePreconditioners = 4; // of Table 2.5
@@ -199,8 +200,7 @@ const char* describe(SolveReason reason)
 }
 
 //------------------------------------------------------------------------------
-LinearSolverState::LinearSolverState(
-  const LinearSystem& system, const SolverOptions& options)
+LinearSolverState::LinearSolverState(const LinearSystem& system, const SolverOptions& options)
   : System(system)
   , Options(options)
   , OptionSet(options.petscOptions)

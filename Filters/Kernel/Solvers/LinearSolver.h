@@ -1,9 +1,11 @@
 /**
  * @file LinearSolver.h
- * @brief Sparse linear systems solved by PETSc: Krylov methods and preconditioners of chapter 2, and direct solvers.
+ * @brief Sparse linear systems solved by PETSc: Krylov methods and preconditioners of chapter 2,
+ * and direct solvers.
  *
- * Each solver has options of its own; those of other users of PETSc in the process are neither read nor changed. PETSc
- * is initialised at first use, on the MPI the program has (or its own), without its signal handler. Its errors become Error.
+ * Each solver has options of its own; those of other users of PETSc in the process are neither read
+ * nor changed. PETSc is initialised at first use, on the MPI the program has (or its own), without
+ * its signal handler. Its errors become Error.
  */
 #ifndef tautline_LinearSolver_h
 #define tautline_LinearSolver_h
@@ -26,8 +28,9 @@ class TAUTLINE_SOLVERS_EXPORT LinearSolver
 {
 public:
   /**
-   * @brief Hands the matrix to PETSc; the SparseMatrix must outlive the solver. Collective over the ranks. Throws Error for a
-   * bad option string (naming the option), an empty matrix, entries that are not finite, or no memory.
+   * @brief Hands the matrix to PETSc; the SparseMatrix must outlive the solver. Collective over the
+   * ranks. Throws Error for a bad option string (naming the option), an empty matrix, entries that
+   * are not finite, or no memory.
    */
   LinearSolver(const LinearSystem& system, const SolverOptions& options);
   ~LinearSolver();
@@ -38,12 +41,14 @@ public:
   double setUp();
 
   /**
-   * @brief Solves A x = b. On several ranks b holds this rank's contributions (added up like the matrix) and x gets the values of
-   * all of this rank's unknowns, shared ones too. A failure is a reason, with x the best there is; it does not throw.
+   * @brief Solves A x = b. On several ranks b holds this rank's contributions (added up like the
+   * matrix) and x gets the values of all of this rank's unknowns, shared ones too. A failure is a
+   * reason, with x the best there is; it does not throw.
    */
   LinearSolution solve(const double* b, double* x);
 
-  /// Tolerances, limits, observer and initial guess may change between solves; the rest is read once.
+  /// Tolerances, limits, observer and initial guess may change between solves; the rest is read
+  /// once.
   SolverOptions& options();
 
   /// PETSc's objects; in LinearSolverState.h, for the kernel itself.

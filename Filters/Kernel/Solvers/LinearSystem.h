@@ -15,16 +15,16 @@ class PointNumbering;
 struct LinearSystem
 {
   /**
-   * @brief On one rank the matrix. On several: the sum of the contributions of this rank's cells, rows and columns by this
-   * rank's own unknowns: blockSize for each point that `numbering` gives a row, in order of point. Those of points shared
-   * with other ranks are added up.
+   * @brief On one rank the matrix. On several: the sum of the contributions of this rank's cells,
+   * rows and columns by this rank's own unknowns: blockSize for each point that `numbering` gives a
+   * row, in order of point. Those of points shared with other ranks are added up.
    */
   const SparseMatrix* matrix = nullptr;
   int blockSize = 1; ///< unknowns per point
   bool symmetric = true;
   bool positiveDefinite = true;
-  /// Coordinates of the points of the unknowns, 3 per point, in the axes of the unknowns (with blockSize 2 the first two count):
-  /// gives multigrid the rigid body modes; or null.
+  /// Coordinates of the points of the unknowns, 3 per point, in the axes of the unknowns (with
+  /// blockSize 2 the first two count): gives multigrid the rigid body modes; or null.
   const double* coordinates = nullptr;
   /// How this rank's points are numbered among all; null: one rank.
   const PointNumbering* numbering = nullptr;

@@ -13,7 +13,8 @@ namespace
 {
 constexpr Index None = -1;
 
-/// The first row with something wrong: an entry that is not finite, or columns out of order or range.
+/// The first row with something wrong: an entry that is not finite, or columns out of order or
+/// range.
 Index firstBadRow(const SparseMatrix& matrix)
 {
   for (Index row = 0; row < matrix.size; ++row)
@@ -137,7 +138,8 @@ std::string chooseFactorization(PC preconditioner, const LinearSystem& system, i
   const MatFactorType kind = system.symmetric ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU;
   const char* type = ranks > 1 ? MATMPIAIJ : MATSEQAIJ;
   petsc(PCSetType(preconditioner, system.symmetric ? PCCHOLESKY : PCLU));
-  // CHOLMOD is the fastest but takes no pivots but positive ones; MUMPS takes any matrix and any number of ranks.
+  // CHOLMOD is the fastest but takes no pivots but positive ones; MUMPS takes any matrix and any
+  // number of ranks.
   for (const char* package :
     { MATSOLVERCHOLMOD, MATSOLVERMUMPS, MATSOLVERSUPERLU_DIST, MATSOLVERPETSC })
   {
@@ -148,7 +150,8 @@ std::string chooseFactorization(PC preconditioner, const LinearSystem& system, i
     if (fits && there && takesType)
     {
       petsc(PCFactorSetMatSolverType(preconditioner, package));
-      // Its warnings go to the console; that the matrix is not definite comes back as an error, too.
+      // Its warnings go to the console; that the matrix is not definite comes back as an error,
+      // too.
       options.setDefault("-" + prefix + "mat_cholmod_print", "0");
       return package;
     }

@@ -1,6 +1,7 @@
 /**
  * @file PetscObjects.h
- * @brief PETSc's matrix of a linear system, how this rank's unknowns map to it, and options. Not a public header.
+ * @brief PETSc's matrix of a linear system, how this rank's unknowns map to it, and options. Not a
+ * public header.
  *
  * Whoever uses these objects holds a PetscScope of their database.
  */
@@ -18,7 +19,8 @@ class PetscSystem
 public:
   /**
    * @brief Throws Error as LinearSolver's constructor does; within a PetscScope.
-   * @param copy on one rank: whether PETSc gets entries of its own, because it is going to change them
+   * @param copy on one rank: whether PETSc gets entries of its own, because it is going to change
+   * them
    */
   explicit PetscSystem(const LinearSystem& system, bool copy = false);
 
@@ -30,7 +32,8 @@ public:
   /// Whether a condition holds on some rank.
   bool anywhere(bool condition) const;
 
-  /// A vector of rows, and back: contributions are added up, values come from and go to all who share them.
+  /// A vector of rows, and back: contributions are added up, values come from and go to all who
+  /// share them.
   PetscVector createVector() const;
   void add(const double* contributions, Vec rows) const;
   void copyIn(const double* values, Vec rows) const;
@@ -63,8 +66,8 @@ public:
   /// Sets one of ours, unless the user gave it.
   void setDefault(const std::string& name, const std::string& value);
   /**
-   * @brief Throws Error that names the options nothing has read. Before the set-up those that only an inner solver or a viewer
-   * reads are not yet missed.
+   * @brief Throws Error that names the options nothing has read. Before the set-up those that only
+   * an inner solver or a viewer reads are not yet missed.
    */
   void rejectUnused(bool afterSetUp) const;
   /// Runs a call that reads options; an error then tells the text.

@@ -49,7 +49,8 @@ void finalizeMpi()
   }
 }
 
-/// Keeps the innermost message, which is the one that names the cause; prints nothing, ends nothing.
+/// Keeps the innermost message, which is the one that names the cause; prints nothing, ends
+/// nothing.
 PetscErrorCode collectError(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
   PetscErrorType type, const char* message, void*)
 {
@@ -94,8 +95,9 @@ void ensurePetsc()
   {
     return;
   }
-  // On a communicator of one rank nothing is collective: a filter may run on one rank alone. PETSc wants arguments of its
-  // own, or it reads .petscrc; those of the program are none of its business.
+  // On a communicator of one rank nothing is collective: a filter may run on one rank alone. PETSc
+  // wants arguments of its own, or it reads .petscrc; those of the program are none of its
+  // business.
   static char program[] = "tautline", noFiles[] = "-skip_petscrc",
               noSignals[] = "-no_signal_handler";
   static char* list[] = { program, noFiles, noSignals, nullptr };

@@ -1,7 +1,7 @@
 /**
  * @file PetscSession.h
- * @brief PETSc inside somebody else's process: initialised at first use, one thread at a time, with options and an error
- * handler that leave those of other users alone. Not a public header.
+ * @brief PETSc inside somebody else's process: initialised at first use, one thread at a time, with
+ * options and an error handler that leave those of other users alone. Not a public header.
  */
 #ifndef tautline_PetscSession_h
 #define tautline_PetscSession_h
@@ -44,9 +44,10 @@ void ensureSlepc();
  * @class tautline::PetscScope
  * @brief Every use of PETSc happens within one.
  *
- * The first one of the process initialises PETSc (and MPI if nobody has), not collectively, without signal handler, without
- * the program's arguments and without .petscrc. While a scope lives, no other thread of ours uses PETSc, options are looked up
- * in `database` alone, and errors are collected rather than printed. Scopes nest.
+ * The first one of the process initialises PETSc (and MPI if nobody has), not collectively, without
+ * signal handler, without the program's arguments and without .petscrc. While a scope lives, no
+ * other thread of ours uses PETSc, options are looked up in `database` alone, and errors are
+ * collected rather than printed. Scopes nest.
  */
 class PetscScope
 {
@@ -76,7 +77,8 @@ inline void petsc(PetscErrorCode code)
   }
 }
 
-/// Owns a PETSc object. Its destructor must run within a PetscScope; it does nothing once PETSc has gone.
+/// Owns a PETSc object. Its destructor must run within a PetscScope; it does nothing once PETSc has
+/// gone.
 template <class Object, PetscErrorCode (*Destroy)(Object*)>
 class PetscHandle
 {

@@ -11,7 +11,8 @@
 namespace tautline
 {
 /**
- * @brief The largest eigenvalue of a symmetric matrix of n rows, which is destroyed, by Jacobi's method.
+ * @brief The largest eigenvalue of a symmetric matrix of n rows, which is destroyed, by Jacobi's
+ * method.
  *
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., section 8.5.
  */
@@ -27,7 +28,8 @@ inline double largestEigenvalue(double* a, int n)
       for (int q = p + 1; q < n; ++q)
       {
         const double apq = a[n * p + q];
-        // The diagonal of a semidefinite matrix bounds what is beside it; one of an indefinite matrix takes a few sweeps more.
+        // The diagonal of a semidefinite matrix bounds what is beside it; one of an indefinite
+        // matrix takes a few sweeps more.
         if (std::abs(apq) <= small * (std::abs(a[n * p + p]) + std::abs(a[n * q + q])))
         {
           continue;

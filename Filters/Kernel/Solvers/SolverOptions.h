@@ -41,11 +41,13 @@ TAUTLINE_SOLVERS_EXPORT const char* nameOf(KrylovMethod method);
 TAUTLINE_SOLVERS_EXPORT const char* nameOf(Preconditioner preconditioner);
 
 /**
- * @brief PETSc options that make BoomerAMG's set-up and iterations several times cheaper than PETSc's defaults in 3D, for a few
- * iterations more: HMIS coarsening, aggressive on the finest level, and ext+i interpolation from at most four points. For
- * SolverOptions::petscOptions. The tables of chapter 2 have PETSc's defaults.
+ * @brief PETSc options that make BoomerAMG's set-up and iterations several times cheaper than
+ * PETSc's defaults in 3D, for a few iterations more: HMIS coarsening, aggressive on the finest
+ * level, and ext+i interpolation from at most four points. For SolverOptions::petscOptions. The
+ * tables of chapter 2 have PETSc's defaults.
  *
- * Source: H. De Sterck, U. M. Yang, J. J. Heys, SIAM J. Matrix Anal. Appl. 27 (2006); U. M. Yang, Numer. Linear Algebra Appl. 17 (2010).
+ * Source: H. De Sterck, U. M. Yang, J. J. Heys, SIAM J. Matrix Anal. Appl. 27 (2006); U. M. Yang,
+ * Numer. Linear Algebra Appl. 17 (2010).
  */
 TAUTLINE_SOLVERS_EXPORT const char* fastMultigridOptions();
 
@@ -61,7 +63,8 @@ struct SolverOptions
   double maximumSeconds = 0.0; ///< 0: no limit; looked at between iterations, not in a set-up
   bool initialGuess = false;   ///< start from the x passed in rather than from 0
   bool ritzValues = false;     ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
-  /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they win over the above.
+  /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they win over the
+  /// above.
   std::string petscOptions;
   int threads = 0; ///< 0: all cores; used where Tautline itself works
   /// Told iteration and residual norm; stops when it returns false. Called from the calling thread.
@@ -86,7 +89,8 @@ enum class SolveReason : int
   TimeLimit = 11,
   Aborted = 12,
   OtherFailure = 13,
-  /// The preconditioned residual is small, that of the system is as large as the right-hand side: the preconditioner misleads.
+  /// The preconditioned residual is small, that of the system is as large as the right-hand side:
+  /// the preconditioner misleads.
   FalseConvergence = 14
 };
 

@@ -72,7 +72,8 @@ double symmetrize(SparseMatrix& matrix, int threads)
 {
   std::vector<double> difference(matrix.size, 0.0), all(matrix.size, 0.0);
   std::vector<double> mirrored(matrix.values.size());
-  // Rows ascend, so the entries of a column are met from top to bottom: a cursor per row finds each mirror image.
+  // Rows ascend, so the entries of a column are met from top to bottom: a cursor per row finds each
+  // mirror image.
   std::vector<Index> cursor(matrix.offsets.begin(), matrix.offsets.end() - 1);
   for (Index row = 0; row < matrix.size; ++row)
   {

@@ -1,6 +1,7 @@
 /**
  * @file Tridiagonal.h
- * @brief Extreme eigenvalues of symmetric tridiagonal matrices, for methods of Lanczos. Not a public header.
+ * @brief Extreme eigenvalues of symmetric tridiagonal matrices, for methods of Lanczos. Not a
+ * public header.
  */
 #ifndef tautline_Tridiagonal_h
 #define tautline_Tridiagonal_h

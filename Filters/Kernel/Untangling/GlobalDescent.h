@@ -1,7 +1,7 @@
 /**
  * @file GlobalDescent.h
- * @brief Limited-memory BFGS on all free vertices of a tangled mesh, preconditioned by the Hessian blocks of
- * the vertices, and the harmonic map of the mesh. Internal: not installed.
+ * @brief Limited-memory BFGS on all free vertices of a tangled mesh, preconditioned by the Hessian
+ * blocks of the vertices, and the harmonic map of the mesh. Internal: not installed.
  */
 #ifndef tautline_GlobalDescent_h
 #define tautline_GlobalDescent_h
@@ -355,8 +355,8 @@ bool GlobalDescent<Dim>::step(double* x)
 
 //------------------------------------------------------------------------------
 /**
- * @brief Puts every free vertex at the mean of its neighbours, by conjugate gradients. In 2D and with a
- * convex boundary no element is inverted then (W. T. Tutte, 1963).
+ * @brief Puts every free vertex at the mean of its neighbours, by conjugate gradients. In 2D and
+ * with a convex boundary no element is inverted then (W. T. Tutte, 1963).
  * @return false if there is nothing that holds the mesh (no fixed vertices)
  */
 template <int Dim>

@@ -1,8 +1,8 @@
 /**
  * @file LinearProgram.h
- * @brief Linear programs in a few variables (R. Seidel, "Small-dimensional linear programming and convex
- * hulls made easy", Discrete Comput. Geom. 6, 1991), and the widest place between half-spaces. Internal:
- * not installed.
+ * @brief Linear programs in a few variables (R. Seidel, "Small-dimensional linear programming and
+ * convex hulls made easy", Discrete Comput. Geom. 6, 1991), and the widest place between
+ * half-spaces. Internal: not installed.
  */
 #ifndef tautline_LinearProgram_h
 #define tautline_LinearProgram_h
@@ -151,8 +151,9 @@ bool maximize(const std::array<double, K>& c, const std::vector<HalfSpace<K>>& s
 }
 
 /**
- * @brief The centre and radius of the largest ball between planes n . d <= b with unit normals, within the
- * ball's distance `reach` of the origin. A negative radius: no point satisfies all, by so much.
+ * @brief The centre and radius of the largest ball between planes n . d <= b with unit normals,
+ * within the ball's distance `reach` of the origin. A negative radius: no point satisfies all, by
+ * so much.
  */
 template <int Dim>
 double widestPlace(

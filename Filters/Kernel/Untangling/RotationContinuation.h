@@ -1,7 +1,7 @@
 /**
  * @file Unwind.h
- * @brief A start for untangling a mesh around holes that were turned: which energies lead into a fold where the
- * elements should wind around the hole. Internal: not installed.
+ * @brief A start for untangling a mesh around holes that were turned: which energies lead into a
+ * fold where the elements should wind around the hole. Internal: not installed.
  */
 #ifndef tautline_Unwind_h
 #define tautline_Unwind_h
@@ -13,8 +13,8 @@
 namespace tautline
 {
 /**
- * @brief The fixed vertices in groups connected by edges, the largest in extent first; other members of a group are in
- * the order of the vertices.
+ * @brief The fixed vertices in groups connected by edges, the largest in extent first; other
+ * members of a group are in the order of the vertices.
  */
 template <int Dim>
 std::vector<std::vector<std::int32_t>> fixedGroups(const SimplexMesh& mesh, const double* x)
@@ -107,8 +107,8 @@ class RotationContinuation
 {
 public:
   /**
-   * @brief Finds for each hole how far its boundary is turned against the rest: the turn back with which the
-   * harmonic map has the fewest bad simplices.
+   * @brief Finds for each hole how far its boundary is turned against the rest: the turn back with
+   * which the harmonic map has the fewest bad simplices.
    * @param x of the input; not changed
    * @param tolerance of the harmonic maps
    */
@@ -127,7 +127,8 @@ public:
     }
     return largest;
   }
-  /// Turns the holes, and the vertices around them less the farther away they are, by a part of the way.
+  /// Turns the holes, and the vertices around them less the farther away they are, by a part of the
+  /// way.
   void advance(double part, double* x) const
   {
     for (const HoleTurn& hole : this->Turns)
@@ -154,7 +155,8 @@ private:
 };
 
 template <int Dim>
-RotationContinuation<Dim>::RotationContinuation(const TangledMesh<Dim>& tangled, const double* x, double tolerance)
+RotationContinuation<Dim>::RotationContinuation(
+  const TangledMesh<Dim>& tangled, const double* x, double tolerance)
 {
   constexpr int iterations = 1000;
   constexpr std::size_t mostHoles = 8;

@@ -1,7 +1,7 @@
 /**
  * @file TangledMesh.h
- * @brief A SimplexMesh with the simplices that are not valid, and the moves of one vertex that make more of
- * them valid. Internal: not installed.
+ * @brief A SimplexMesh with the simplices that are not valid, and the moves of one vertex that make
+ * more of them valid. Internal: not installed.
  */
 #ifndef tautline_TangledMesh_h
 #define tautline_TangledMesh_h
@@ -30,11 +30,11 @@ struct PatchState
 /// What is wrong in the mesh.
 struct MeshState
 {
-  Index bad = 0;                       ///< simplices that are not valid, without the infeasible
-  double least = 0;                    ///< D among the simplices that are not infeasible
-  double depth = 0;                    ///< the sum of -D over the inverted ones
-  std::vector<std::int32_t> simplices; ///< the bad ones, in increasing order
-  std::vector<std::int32_t> infeasible;  ///< bad ones among the infeasible, in increasing order
+  Index bad = 0;                        ///< simplices that are not valid, without the infeasible
+  double least = 0;                     ///< D among the simplices that are not infeasible
+  double depth = 0;                     ///< the sum of -D over the inverted ones
+  std::vector<std::int32_t> simplices;  ///< the bad ones, in increasing order
+  std::vector<std::int32_t> infeasible; ///< bad ones among the infeasible, in increasing order
 };
 
 template <int Dim>
@@ -136,18 +136,21 @@ public:
   }
 
   /**
-   * @brief Moves v to lower the regularised shape energy of its patch, a few Newton steps; never to more bad
-   * simplices. The regularisation is chosen for the patch, anew in each step.
-   * @param tryWidest where simplices stay bad, try the place farthest from all of the patch's planes
+   * @brief Moves v to lower the regularised shape energy of its patch, a few Newton steps; never to
+   * more bad simplices. The regularisation is chosen for the patch, anew in each step.
+   * @param tryWidest where simplices stay bad, try the place farthest from all of the patch's
+   * planes
    * @return whether it moved
    */
   bool relax(double* x, std::int32_t v, int steps, bool tryWidest, Patch<Dim>& patch) const;
 
-  /// The farthest place from the planes of the patch within reach, and how far; negative if none is valid.
+  /// The farthest place from the planes of the patch within reach, and how far; negative if none is
+  /// valid.
   double chebyshevCenter(const Patch<Dim>& patch, std::array<double, Dim>& place) const;
 
-  /// Calls visit(v, patch) for all free vertices with a nonzero flag (all if flags is null), in an order and concurrency that
-  /// make the result independent of the number of threads; visit may move v.
+  /// Calls visit(v, patch) for all free vertices with a nonzero flag (all if flags is null), in an
+  /// order and concurrency that make the result independent of the number of threads; visit may
+  /// move v.
   template <class Visit>
   void sweep(const unsigned char* flags, const Visit& visit) const
   {
@@ -186,7 +189,7 @@ private:
   SimplexMesh& Simplices;
   int Threads;
   double Margin = 1e-12;
-  std::vector<char> Infeasible;      ///< per simplex
+  std::vector<char> Infeasible;    ///< per simplex
   std::vector<char> HopelessEntry; ///< per entry of the patches; empty if none
 };
 

@@ -2,13 +2,13 @@
  * @file Untangle.h
  * @brief Makes the elements of a mesh valid by moving its free vertices.
  *
- * First vertex by vertex around the inverted elements with a regularised determinant (J. M. Escobar et
- * al., "Simultaneous untangling and smoothing of tetrahedral meshes", CMAME 192, 2003), then, for what
- * is left, all vertices at once: from the harmonic map of the mesh, by a foldover-free map energy (V. Garanzha
- * et al., "Foldover-free maps in 50 lines of code", ACM TOG 40, 2021) whose regularisation is driven to zero;
- * around holes that were turned by more than a quarter, by way of meshes with the holes turned back.
- * A cell counts as valid when its corner Jacobians are (Mesh::classifyCells()). The connectivity never changes.
- * Planar and volume meshes.
+ * First vertex by vertex around the inverted elements with a regularised determinant (J. M. Escobar
+ * et al., "Simultaneous untangling and smoothing of tetrahedral meshes", CMAME 192, 2003), then,
+ * for what is left, all vertices at once: from the harmonic map of the mesh, by a foldover-free map
+ * energy (V. Garanzha et al., "Foldover-free maps in 50 lines of code", ACM TOG 40, 2021) whose
+ * regularisation is driven to zero; around holes that were turned by more than a quarter, by way of
+ * meshes with the holes turned back. A cell counts as valid when its corner Jacobians are
+ * (Mesh::classifyCells()). The connectivity never changes. Planar and volume meshes.
  */
 #ifndef tautline_Untangle_h
 #define tautline_Untangle_h
@@ -19,8 +19,8 @@
 namespace tautline
 {
 /**
- * @brief Untangles. The result never has more inverted or degenerate elements than the input; fixed points and
- * points that need not move keep their bits.
+ * @brief Untangles. The result never has more inverted or degenerate elements than the input; fixed
+ * points and points that need not move keep their bits.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
  * Throws Error for a surface mesh in space with inverted elements.
  */

@@ -44,8 +44,9 @@ struct UntangleResult
   std::vector<double> points; ///< 3 x numberOfPoints, the one with the fewest inverted elements
   std::vector<signed char> obstacles; ///< an Obstacle per cell
   /**
-   * @brief objective: the sum of -D over inverted simplices (corners of cells), D = det T with targets as long as the mean
-   * edge, comparable between all phases; inverted: elements left. One record or none if there was nothing to do.
+   * @brief objective: the sum of -D over inverted simplices (corners of cells), D = det T with
+   * targets as long as the mean edge, comparable between all phases; inverted: elements left. One
+   * record or none if there was nothing to do.
    */
   std::vector<IterationRecord> history;
   Index invertedBefore = 0, invertedAfter = 0;

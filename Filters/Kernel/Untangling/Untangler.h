@@ -1,7 +1,7 @@
 /**
  * @file Untangler.h
- * @brief The phases of untangling: sweeps around the inverted simplices; all vertices at once; holes that
- * were turned. Internal: not installed.
+ * @brief The phases of untangling: sweeps around the inverted simplices; all vertices at once;
+ * holes that were turned. Internal: not installed.
  */
 #ifndef tautline_Untangler_h
 #define tautline_Untangler_h
@@ -43,7 +43,8 @@ public:
   /// Untangles until no simplex is bad; returns the best coordinates.
   const double* run(double margin);
 
-  /// Simplices no place of their free vertex makes valid while the fixed vertices are where they are.
+  /// Simplices no place of their free vertex makes valid while the fixed vertices are where they
+  /// are.
   const std::vector<std::int32_t>& impossible() const { return this->Impossible; }
   bool stopped() const { return this->Run.stopped(); }
   /// Cells that are not valid.
@@ -162,7 +163,8 @@ void Untangler<Dim>::markActive(int rings)
 }
 
 //------------------------------------------------------------------------------
-/// Sweeps around the bad simplices until `patience` of them in a row leave more than the part `progress`.
+/// Sweeps around the bad simplices until `patience` of them in a row leave more than the part
+/// `progress`.
 template <int Dim>
 void Untangler<Dim>::local(int sweeps, double progress, int patience)
 {
@@ -188,7 +190,8 @@ void Untangler<Dim>::local(int sweeps, double progress, int patience)
 }
 
 //------------------------------------------------------------------------------
-/// Looks at free vertices of bad simplices: whether the simplices they have with fixed vertices alone can all be valid.
+/// Looks at free vertices of bad simplices: whether the simplices they have with fixed vertices
+/// alone can all be valid.
 template <int Dim>
 void Untangler<Dim>::excludeInfeasible()
 {
@@ -357,8 +360,8 @@ void Untangler<Dim>::smoothWorst()
 
 //------------------------------------------------------------------------------
 /**
- * @brief Minimises the energy of the whole mesh for a falling sequence of regularisations. Between the solves
- * the local sweeps try to finish; where they cannot, what they did is undone.
+ * @brief Minimises the energy of the whole mesh for a falling sequence of regularisations. Between
+ * the solves the local sweeps try to finish; where they cannot, what they did is undone.
  */
 template <int Dim>
 void Untangler<Dim>::descend(const Schedule& schedule)
@@ -405,8 +408,8 @@ bool Untangler<Dim>::startHarmonic(double tolerance)
 }
 
 /**
- * @brief For holes that were turned: from a mesh with the holes turned back step by step to where they
- * are, valid after each step. Ends with the fixed vertices where they belong.
+ * @brief For holes that were turned: from a mesh with the holes turned back step by step to where
+ * they are, valid after each step. Ends with the fixed vertices where they belong.
  */
 template <int Dim>
 void Untangler<Dim>::unwind(double tolerance)

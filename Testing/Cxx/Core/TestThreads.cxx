@@ -1,5 +1,5 @@
-// Results are bitwise the same for any number of threads; sums over the mesh are what adding up its cells
-// gives, with the gradient that finite differences give.
+// Results are bitwise the same for any number of threads; sums over the mesh are what adding up its
+// cells gives, with the gradient that finite differences give.
 #include "Check.h"
 #include "Blocks.h"
 
@@ -11,8 +11,8 @@ using namespace tautline;
 namespace
 {
 constexpr int mostThreads = 4;
-// Cubes along an edge of a block of tetrahedra of more than 16 chunks of 4096: renumbered at random, its
-// cells are summed along a space-filling curve.
+// Cubes along an edge of a block of tetrahedra of more than 16 chunks of 4096: renumbered at
+// random, its cells are summed along a space-filling curve.
 constexpr Index manyCubes = 25;
 constexpr double powers[] = { 1, 2, -2, 0.5 };
 

@@ -73,8 +73,8 @@ void testAffine()
     for (int method = vtkMeshWarp::HYBRID; method <= vtkMeshWarp::WEIGHTED_LAPLACIAN; ++method)
     {
       filter->SetMethod(method);
-      // The second step of Hybrid goes on from an affine motion that changes shapes; a material that is not uniform
-      // does not follow it.
+      // The second step of Hybrid goes on from an affine motion that changes shapes; a material
+      // that is not uniform does not follow it.
       if (method != vtkMeshWarp::HYBRID && method != vtkMeshWarp::JACOBIAN_STIFFENING)
       {
         check("method " + std::to_string(method), 1e-10);
@@ -199,7 +199,8 @@ void testOutputs()
   }
 }
 
-/// Matrices are kept as long as mesh, given points and options are the same, whatever object holds them.
+/// Matrices are kept as long as mesh, given points and options are the same, whatever object holds
+/// them.
 void testReuse()
 {
   const MeshData data = holedBlock(CellType::Tetrahedron, 7);

@@ -1,4 +1,5 @@
-// Warp Mesh: targets and which of their points belong to which, time steps, and what is refused, by name.
+// Warp Mesh: targets and which of their points belong to which, time steps, and what is refused, by
+// name.
 #include "WarpingMeshes.h"
 
 #include "vtkCellData.h"
@@ -25,7 +26,8 @@ namespace
 {
 constexpr auto OnPoints = vtkDataObject::FIELD_ASSOCIATION_POINTS;
 
-/// A mesh whose points move with time: the hole turns, and inner points jump about; displacements from time 0.
+/// A mesh whose points move with time: the hole turns, and inner points jump about; displacements
+/// from time 0.
 class MovingMesh : public vtkUnstructuredGridAlgorithm
 {
 public:
@@ -95,7 +97,8 @@ vtkSmartPointer<MovingMesh> movingMesh()
   return source;
 }
 
-/// Any order of times gives the same meshes, from the first or from the one before; the latter differ from the former.
+/// Any order of times gives the same meshes, from the first or from the one before; the latter
+/// differ from the former.
 void testTimeSteps()
 {
   for (int motion : { vtkMeshWarp::TIME_STEPS, vtkMeshWarp::DISPLACEMENT, vtkMeshWarp::TARGET })
@@ -190,7 +193,8 @@ void testTimeSteps()
   }
 }
 
-/// Matrices are kept over time; times in between are read once; a mesh that changes its cells is refused.
+/// Matrices are kept over time; times in between are read once; a mesh that changes its cells is
+/// refused.
 void testTimeCosts()
 {
   auto source = movingMesh();
@@ -251,7 +255,8 @@ void testTimeCosts()
   TAUTLINE_CHECK(others.has("The input has no time steps"));
 }
 
-/// The boundary turned and shifted, given in every way there is: the same result, and the summary says which.
+/// The boundary turned and shifted, given in every way there is: the same result, and the summary
+/// says which.
 void testTargets()
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })

@@ -64,7 +64,8 @@ void testPaths()
         return Vec3{ 2.5 + (1 + 0.5 * amount) * (p[0] - 2.5),
           2.5 + (1 - 0.25 * amount) * (p[1] - 2.5), 0 };
       });
-    // The same turn about a point outside by a matrix: the way is an arc about that point, not a chord.
+    // The same turn about a point outside by a matrix: the way is an arc about that point, not a
+    // chord.
     filter->SetTransformKind(vtkMeshWarp::MATRIX);
     vtkNew<vtkTransform> transform;
     transform->Translate(2, 3, 0);
@@ -145,7 +146,8 @@ void testBending()
       TAUTLINE_CHECK(amount > 1e-3 || norm(q - p) < 1e-4);
     }
   }
-  // Held at a point on the way, what is before does not move; a full turn and more is a motion like any other.
+  // Held at a point on the way, what is before does not move; a full turn and more is a motion like
+  // any other.
   PointMotion motion;
   motion.kind = MotionKind::Bending;
   motion.angle = 720;
@@ -203,7 +205,8 @@ void testSteps()
   TAUTLINE_CHECK(boundary < 1e-12 && inside > 0.1);
   filter->SetAngle(180);
 
-  // As many steps as it takes, and no further than it goes: a warning, and by how much in the tables.
+  // As many steps as it takes, and no further than it goes: a warning, and by how much in the
+  // tables.
   filter->SetSteps(0);
   messages.clear();
   filter->Update();

@@ -1,5 +1,5 @@
-// FEMWARP and its anisotropic forms: the propositions of section 4.9.1, the coefficients, the limits in which they
-// vanish, and what is kept for the next boundary position.
+// FEMWARP and its anisotropic forms: the propositions of section 4.9.1, the coefficients, the
+// limits in which they vanish, and what is kept for the next boundary position.
 
 #include "../../Benchmark/KuhnMesh.h"
 #include "Warping.h"
@@ -127,7 +127,8 @@ void testPropositions()
 }
 
 //------------------------------------------------------------------------------
-/// Proposition 4 for every cell type, method and choice of coefficients, whatever tolerance and scale.
+/// Proposition 4 for every cell type, method and choice of coefficients, whatever tolerance and
+/// scale.
 void testAffine()
 {
   const Columns linear = { Vec3{ 0.1, -0.3, 0.2 }, Vec3{ 0.4, 0.2, -0.1 }, Vec3{ -0.2, 0.3, 0.3 } };

@@ -1,4 +1,5 @@
-// The methods beyond one harmonic solve: the hybrid algorithm, untangling, elasticity, the biharmonic equation, steps.
+// The methods beyond one harmonic solve: the hybrid algorithm, untangling, elasticity, the
+// biharmonic equation, steps.
 
 #include "Warping.h"
 
@@ -46,7 +47,8 @@ void testTurnedBox()
     const MeshData data = boxInBox(type, flat ? 20 : 11, flat ? 8 : 3, simplex ? 0.2 : 0.1);
     for (const double degrees : { 30.0, 90.0, 120.0, 180.0 })
     {
-      // A hexahedron or quadrilateral that winds round a corner of the box cannot be valid for long.
+      // A hexahedron or quadrilateral that winds round a corner of the box cannot be valid for
+      // long.
       if (!simplex && degrees > 30)
       {
         continue;
@@ -116,7 +118,8 @@ void testSimilarity()
 }
 
 //------------------------------------------------------------------------------
-/// (4.24) as it stands, and what replaces it: both end valid, and the shape is better than untangling leaves it.
+/// (4.24) as it stands, and what replaces it: both end valid, and the shape is better than
+/// untangling leaves it.
 void testSecondStep()
 {
   const MeshData data = boxInBox(CellType::Triangle, 20, 8);
@@ -137,7 +140,8 @@ void testSecondStep()
   const WarpResult unit = warped(data, motion, withMethod(WarpMethod::Hybrid));
   for (const double scale : { 0x1p-27, 0x1p27, 1e-8, 1e8 })
   {
-    // Powers of two round alike; others lead the optimizer to another place where it hardly changes any more.
+    // Powers of two round alike; others lead the optimizer to another place where it hardly changes
+    // any more.
     const double close = scale == 0x1p-27 || scale == 0x1p27 ? 1e-12 : 0.02;
     MeshData scaled = data;
     scaled.transform([scale](const Vec3& p) { return scale * p; });
@@ -182,7 +186,8 @@ void testSecondStep()
 }
 
 //------------------------------------------------------------------------------
-/// Objectives without a barrier, one of which would rather have some elements inverted, do not get that by small steps.
+/// Objectives without a barrier, one of which would rather have some elements inverted, do not get
+/// that by small steps.
 void testNoBarrier()
 {
   const MeshData data = boxInBox(CellType::Tetrahedron, 10, 3);

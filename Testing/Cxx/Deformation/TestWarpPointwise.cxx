@@ -1,4 +1,5 @@
-// Inverse distances, radial basis functions, weighted Laplacian: exact motions, known values, invariances, limits.
+// Inverse distances, radial basis functions, weighted Laplacian: exact motions, known values,
+// invariances, limits.
 #include "Blocks.h"
 #include "Check.h"
 
@@ -18,7 +19,8 @@ const struct
 } methods[] = { { "inverse distance", warpByInverseDistance },
   { "radial basis", warpByRadialBasis }, { "weighted Laplacian", warpByWeightedLaplacian } };
 
-/// A mesh, its prescribed points and what is prescribed; other displacements are NaN and must not be read.
+/// A mesh, its prescribed points and what is prescribed; other displacements are NaN and must not
+/// be read.
 struct Problem
 {
   MeshData data;
@@ -186,7 +188,8 @@ void testInvariances(CellType type)
   }
 }
 
-/// The groups of the tree against the sum over all points, for powers with a formula of their own and without.
+/// The groups of the tree against the sum over all points, for powers with a formula of their own
+/// and without.
 void testInverseDistance()
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, 14, 14, 14));
@@ -436,7 +439,8 @@ void testWeights()
 /// Square and cube that turn in a larger one: how many elements each method inverts.
 void testTurning()
 {
-  // weighted Laplacian and inverse distances give in early, as the dissertation says of methods of this kind
+  // weighted Laplacian and inverse distances give in early, as the dissertation says of methods of
+  // this kind
   const Problem disk = holeProblem(CellType::Triangle, 24, 8, 0.4);
   const Problem box = holeProblem(CellType::Tetrahedron, 12, 4, 0.25);
   for (const auto& method : methods)

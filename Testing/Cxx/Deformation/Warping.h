@@ -61,8 +61,8 @@ inline double distance(const std::vector<double>& a, const std::vector<double>& 
 }
 
 /**
- * The unit cube (square, with flat cells) of n^3 cubes cut into cells, without the cubes in its middle, `inner` along each
- * edge; the points inside at random about their places.
+ * The unit cube (square, with flat cells) of n^3 cubes cut into cells, without the cubes in its
+ * middle, `inner` along each edge; the points inside at random about their places.
  */
 inline MeshData boxInBox(CellType type, Index n, Index inner, double amplitude = 0.2)
 {

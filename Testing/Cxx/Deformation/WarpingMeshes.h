@@ -17,7 +17,8 @@
 
 namespace tautline
 {
-/// A block of n x n (x n) cubes, cut into cells, without the cube in its middle; n is odd. No point is without a cell.
+/// A block of n x n (x n) cubes, cut into cells, without the cube in its middle; n is odd. No point
+/// is without a cell.
 inline MeshData holedBlock(CellType type, Index n)
 {
   const bool flat = topology(type).dimension == 2;

@@ -1,5 +1,5 @@
-// Perturbation: nothing inverts, steps are within the fraction, tangling meets its fraction, and the
-// same seed gives the same mesh.
+// Perturbation: nothing inverts, steps are within the fraction, tangling meets its fraction, and
+// the same seed gives the same mesh.
 #include "Check.h"
 #include "VtkMeshes.h"
 

@@ -28,7 +28,8 @@ double sumOf(vtkDataSet* mesh, const char* name)
   return sum;
 }
 
-/// The five-point matrix has eigenvalues 4 sin^2(i pi / 2n) + 4 sin^2(j pi / 2n); its diagonal is 4.
+/// The five-point matrix has eigenvalues 4 sin^2(i pi / 2n) + 4 sin^2(j pi / 2n); its diagonal
+/// is 4.
 void testKnown()
 {
   constexpr Index n = 12;

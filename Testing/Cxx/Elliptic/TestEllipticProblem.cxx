@@ -1,5 +1,6 @@
-// Boundary value problems: orders of convergence against manufactured solutions, exactness for linear fields, plane strain
-// and plane stress against a known solution, stresses, parts left free, threads, whatever is refused.
+// Boundary value problems: orders of convergence against manufactured solutions, exactness for
+// linear fields, plane strain and plane stress against a known solution, stresses, parts left free,
+// threads, whatever is refused.
 #include "Blocks.h"
 #include "Check.h"
 

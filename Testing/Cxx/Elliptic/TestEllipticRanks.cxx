@@ -1,5 +1,6 @@
-// Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms and the study of solvers
-// are those of the whole mesh in one process; what one rank refuses all refuse. Runs on however many ranks it is started on.
+// Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms and
+// the study of solvers are those of the whole mesh in one process; what one rank refuses all
+// refuse. Runs on however many ranks it is started on.
 #include "Blocks.h"
 #include "Check.h"
 

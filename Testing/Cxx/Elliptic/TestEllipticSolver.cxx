@@ -1,4 +1,5 @@
-// Solve PDE: known solutions by every way a problem can be described, blocks and partitions, what it refuses.
+// Solve PDE: known solutions by every way a problem can be described, blocks and partitions, what
+// it refuses.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -86,7 +87,8 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(
 }
 
 //------------------------------------------------------------------------------
-/// A linear function is its own solution, whatever the cells, the precision and the size of the mesh.
+/// A linear function is its own solution, whatever the cells, the precision and the size of the
+/// mesh.
 void testLinear()
 {
   for (CellType type : allTypes)

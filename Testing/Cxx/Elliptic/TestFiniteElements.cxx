@@ -1,5 +1,5 @@
-// Stiffness matrices and load vectors: known small matrices, patch test, null spaces, invariances, symmetry,
-// threads, degenerate and inverted elements, and whatever is refused.
+// Stiffness matrices and load vectors: known small matrices, patch test, null spaces, invariances,
+// symmetry, threads, degenerate and inverted elements, and whatever is refused.
 #include "Blocks.h"
 #include "Check.h"
 
@@ -93,7 +93,8 @@ void testSmallMatrices()
   checkMatrix(stiffnessMatrix(Mesh(corner.view()), pde),
     { 6, -1, -2, -3, -1, 1, 0, 0, -2, 0, 2, 0, -3, 0, 0, 3 }, 1e-14);
 
-  // The unit square: 2/3 on the diagonal, -1/6 beside, -1/3 across. The unit cube: 1/3, 0, -1/12, -1/12.
+  // The unit square: 2/3 on the diagonal, -1/6 beside, -1/3 across. The unit cube: 1/3, 0, -1/12,
+  // -1/12.
   pde = {};
   const MeshData square = singleCell(CellType::Quadrilateral, idealCell(CellType::Quadrilateral));
   std::vector<double> q;
@@ -113,7 +114,8 @@ void testSmallMatrices()
   }
   checkMatrix(stiffnessMatrix(Mesh(singleCell(CellType::Hexahedron, cube).view()), pde), h, 1e-14);
 
-  // Elasticity of the right triangle, plane strain: E = 1, nu = 1/4 give lambda = mu = 2/5; see any textbook.
+  // Elasticity of the right triangle, plane strain: E = 1, nu = 1/4 give lambda = mu = 2/5; see any
+  // textbook.
   ElasticOperator elastic;
   elastic.poissonRatio = 0.25;
   const double m = 0.4 / 2; // times the area
@@ -166,7 +168,8 @@ void testLinearFields()
       pde.tensor = tensor;
       const SparseMatrix a = stiffnessMatrix(mesh, pde);
       TAUTLINE_CHECK(exactlySymmetric(a));
-      // Constants are in the null space; linear functions satisfy the equations of inner points (patch test).
+      // Constants are in the null space; linear functions satisfy the equations of inner points
+      // (patch test).
       TAUTLINE_CHECK(largest(times(a, std::vector<double>(a.size, 1.0))) < 1e-12);
       std::vector<double> u(a.size);
       for (Index i = 0; i < a.size; ++i)
@@ -222,7 +225,8 @@ void testLinearFields()
         energy += u[i] * au[i];
         TAUTLINE_CHECK(boundary[i / d] || std::abs(au[i]) < 1e-12);
       }
-      // Twice the energy density: lambda tr(eps)^2 + 2 mu eps : eps; in plane stress E / (1 - nu^2) (...).
+      // Twice the energy density: lambda tr(eps)^2 + 2 mu eps : eps; in plane stress E / (1 - nu^2)
+      // (...).
       const double nu = 0.3, mu = 2 / (2 * (1 + nu)), lambda = 2 * nu / ((1 + nu) * (1 - 2 * nu));
       const double x = 1e-2, y = -2e-2, z = planar ? 0 : 3e-2;
       const double density = planar && state == PlaneState::Stress
@@ -306,7 +310,8 @@ void testInvariance()
     TAUTLINE_CHECK(oblique.dimension() == mesh.dimension());
     checkSameMatrix(poisson, stiffnessMatrix(oblique, DiffusionOperator()), 1, 1e-12);
     checkSameMatrix(anisotropic, stiffnessMatrix(oblique, after), 1, 1e-12);
-    // Elasticity: the form u^T A u of a displacement that turns with the mesh, by its components there.
+    // Elasticity: the form u^T A u of a displacement that turns with the mesh, by its components
+    // there.
     const SparseMatrix there = stiffnessMatrix(oblique, ElasticOperator());
     std::vector<double> u(elastic.size), v(elastic.size);
     for (Index i = 0; i < data.numberOfPoints(); ++i)
@@ -356,7 +361,8 @@ void testInvariance()
 //------------------------------------------------------------------------------
 void testSurface()
 {
-  // A cylinder of triangles or quadrilaterals: it can be unrolled, so its matrix is that of the plane.
+  // A cylinder of triangles or quadrilaterals: it can be unrolled, so its matrix is that of the
+  // plane.
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
   {
     MeshData flat = blockMesh(type, 6, 3, 0), bent = flat;
@@ -489,7 +495,8 @@ void testThreadsAndReuse()
 //------------------------------------------------------------------------------
 void testBadElements()
 {
-  // A flat element and a point outside all cells contribute nothing; an inverted element its absolute value.
+  // A flat element and a point outside all cells contribute nothing; an inverted element its
+  // absolute value.
   MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
   const SparseMatrix before = stiffnessMatrix(Mesh(data.view()), DiffusionOperator());
   data.addCell(CellType::Triangle, { 0, 1, 2 });

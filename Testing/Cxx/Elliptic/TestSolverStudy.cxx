@@ -1,5 +1,5 @@
-// The study of solvers: the sixteen combinations, condition numbers that are known, the recommendation and what it warns of,
-// limits, stopping, PETSc options.
+// The study of solvers: the sixteen combinations, condition numbers that are known, the
+// recommendation and what it warns of, limits, stopping, PETSc options.
 #include "Blocks.h"
 #include "Check.h"
 
@@ -54,7 +54,8 @@ void testPoisson()
   TAUTLINE_CHECK(last > 0.9);
   TAUTLINE_CHECK_EQUAL(study.rows.size(), std::size_t(18));
   TAUTLINE_CHECK(!study.aborted && !study.timeLimit);
-  // The five-point matrix over 4: eigenvalues sin^2(i pi / 2n) + sin^2(j pi / 2n). Without preconditioner the same ratio.
+  // The five-point matrix over 4: eigenvalues sin^2(i pi / 2n) + sin^2(j pi / 2n). Without
+  // preconditioner the same ratio.
   const double condition = 1 / std::pow(std::tan(M_PI / (2 * n)), 2);
   double fastest = 1e300;
   for (std::size_t i = 0; i < study.rows.size(); ++i)

@@ -1,4 +1,5 @@
-// Data sets of VTK seen through MeshAdapter: what is copied, what becomes of the cells, what is said.
+// Data sets of VTK seen through MeshAdapter: what is copied, what becomes of the cells, what is
+// said.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -79,7 +80,8 @@ void testUnstructuredGrid()
   }
 }
 
-/// Pixels and voxels count rows of points; polygons of three and four points are what they look like.
+/// Pixels and voxels count rows of points; polygons of three and four points are what they look
+/// like.
 void testRelatedTypes()
 {
   MeshData data = blockMesh(CellType::Hexahedron, 1, 1, 1); // its points are those of a voxel

@@ -1,4 +1,5 @@
-// Constrained Delaunay triangulation of simple polygons: known ones, random ones, degenerate ones, refused ones.
+// Constrained Delaunay triangulation of simple polygons: known ones, random ones, degenerate ones,
+// refused ones.
 
 #include "Check.h"
 

@@ -82,7 +82,8 @@ void testFlat()
   }
 }
 
-/// A disk of a square: its rim is smooth at 30 degrees but for the square's corners, at 60 all of it.
+/// A disk of a square: its rim is smooth at 30 degrees but for the square's corners, at 60 all of
+/// it.
 void testSmooth()
 {
   MeshData disk = blockMesh(CellType::Triangle, 16, 16, 0);
@@ -118,7 +119,8 @@ void testSmooth()
   TAUTLINE_CHECK_THROWS(boundaryShape(Mesh(cube.view()), 1, -5), "between 0 and 180");
 }
 
-/// Three cells at one edge, a sheet without thickness, an edge without length: nothing slides there.
+/// Three cells at one edge, a sheet without thickness, an edge without length: nothing slides
+/// there.
 void testFaulty()
 {
   MeshData fan;

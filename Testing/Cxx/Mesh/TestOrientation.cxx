@@ -1,4 +1,5 @@
-// Which way round the cells are listed: consistently, all reversed, or mixed; and tangled is not mixed.
+// Which way round the cells are listed: consistently, all reversed, or mixed; and tangled is not
+// mixed.
 #include "Check.h"
 #include "Blocks.h"
 

@@ -1,4 +1,5 @@
-// The meshers: bounds kept, sizes exact, markers and regions, failures that are errors and not exits.
+// The meshers: bounds kept, sizes exact, markers and regions, failures that are errors and not
+// exits.
 
 #include "Check.h"
 
@@ -137,7 +138,8 @@ void testTriangles()
   TAUTLINE_CHECK(
     boundary->GetNumberOfLines() > 16 / 0.2 && boundary->GetCellData()->GetArray("BoundaryMarker"));
 
-  // without the field Holes the inner square is a hole by parity; the line to it (marker 0) does not matter
+  // without the field Holes the inner square is a hole by parity; the line to it (marker 0) does
+  // not matter
   vtkSmartPointer<vtkUnstructuredGrid> plate = read("plate.poly");
   plate->GetFieldData()->Initialize();
   mesher->SetInputData(plate);

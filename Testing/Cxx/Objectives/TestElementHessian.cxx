@@ -1,5 +1,5 @@
-// Element Hessians: against differences of the whole gradient, positive semidefinite on tangled meshes, and at
-// work in a truncated Newton method.
+// Element Hessians: against differences of the whole gradient, positive semidefinite on tangled
+// meshes, and at work in a truncated Newton method.
 #include "Blocks.h"
 #include "Check.h"
 
@@ -354,7 +354,8 @@ struct Smoothing : SmoothFunction
   }
 };
 
-/// Newton and preconditioned L-BFGS reach the same mesh, the one in few iterations, the other in few evaluations.
+/// Newton and preconditioned L-BFGS reach the same mesh, the one in few iterations, the other in
+/// few evaluations.
 void testNewton()
 {
   // Inner points only: the boundary stays a cube.

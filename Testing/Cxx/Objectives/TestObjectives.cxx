@@ -1,5 +1,5 @@
-// Objectives: every metric by every template against sums by hand, their gradients against fourth-order
-// differences; weights, scales, elements at fault, threads, moving points, errors.
+// Objectives: every metric by every template against sums by hand, their gradients against
+// fourth-order differences; weights, scales, elements at fault, threads, moving points, errors.
 #include "Blocks.h"
 #include "Check.h"
 
@@ -228,7 +228,8 @@ void forEachObjective(const Mesh& mesh, const Work& work)
 }
 
 //------------------------------------------------------------------------------
-/// Values and gradients by hand, with and without weights, valid and tangled, for 1, 2 and 4 threads.
+/// Values and gradients by hand, with and without weights, valid and tangled, for 1, 2 and 4
+/// threads.
 void testByHand(const MeshData& data, bool tangled, int& infinite)
 {
   const Mesh mesh(data.view());
@@ -271,7 +272,8 @@ void testByHand(const MeshData& data, bool tangled, int& infinite)
     });
 }
 
-/// Gradients along a random direction against differences; the points of the view move under the sum.
+/// Gradients along a random direction against differences; the points of the view move under the
+/// sum.
 void testDifferences(MeshData data, double scale, int& compared, int& skipped)
 {
   data.transform([=](const Vec3& p) { return scale * p; });

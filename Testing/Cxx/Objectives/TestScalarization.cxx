@@ -1,5 +1,5 @@
-// Scalarizations: values against closed forms in long double, slopes against fourth-order differences,
-// extreme values, errors.
+// Scalarizations: values against closed forms in long double, slopes against fourth-order
+// differences, extreme values, errors.
 #include "Check.h"
 
 #include "tautline/Objectives/Scalarization.h"

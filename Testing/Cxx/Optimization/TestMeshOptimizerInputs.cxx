@@ -233,8 +233,8 @@ void testPrecision()
     const auto validity = validityOf(after);
     TAUTLINE_CHECK(std::count(validity.begin(), validity.end(), Valid) == data.numberOfCells());
   }
-  // Beyond 2^25 single precision has every fourth number. The point that halves a rectangle of 4 by 8 must
-  // lie between two of them.
+  // Beyond 2^25 single precision has every fourth number. The point that halves a rectangle of 4 by
+  // 8 must lie between two of them.
   const double far = 1 << 25;
   MeshData narrow;
   for (const Vec3& p :

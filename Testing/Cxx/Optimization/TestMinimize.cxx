@@ -57,7 +57,8 @@ struct Rosenbrock : SmoothFunction
   }
 };
 
-/// (x - a)^t H (x - a) / 2 with H = Q D Q, Q a reflection, D from 1 to `condition`; may know H and D.
+/// (x - a)^t H (x - a) / 2 with H = Q D Q, Q a reflection, D from 1 to `condition`; may know H and
+/// D.
 struct Quadratic : SmoothFunction
 {
   Vector d, a, u;

@@ -132,7 +132,8 @@ void testInvariance()
   }
 }
 
-/// Bitwise the same on 1, 2 and 4 threads, in closed form and through a metric, one or several objectives.
+/// Bitwise the same on 1, 2 and 4 threads, in closed form and through a metric, one or several
+/// objectives.
 void testThreads()
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 14, 0.12);
@@ -160,7 +161,8 @@ void testThreads()
   }
 }
 
-/// Several objectives under each scalarization: the scalarized value falls, and no objective is forgotten.
+/// Several objectives under each scalarization: the scalarized value falls, and no objective is
+/// forgotten.
 void testScalarizations()
 {
   const MeshData data = perturbedBlock(CellType::Triangle, 8, 0.25);
@@ -193,7 +195,8 @@ void testScalarizations()
   }
 }
 
-/// Other metrics and templates, in patches and globally: each lowers its own objective and inverts nothing.
+/// Other metrics and templates, in patches and globally: each lowers its own objective and inverts
+/// nothing.
 void testMetrics()
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })

@@ -12,7 +12,8 @@
 
 namespace tautline
 {
-/** A square (0,1)^2 with a collar of whole layers; inner points moved by up to `shake` element sizes. */
+/** A square (0,1)^2 with a collar of whole layers; inner points moved by up to `shake` element
+ * sizes. */
 inline HorizonMesh shakenSquare(int n, int layers, double shake, unsigned seed = 5)
 {
   HorizonMesh mesh;
@@ -58,7 +59,8 @@ struct TableCell
   bool printedIsRight; ///< the notes list it among those the column reproduces
 };
 
-/** The cells with h = 0.1 and 0.05; Table 4.1 against column C, the others against column B of the notes. */
+/** The cells with h = 0.1 and 0.05; Table 4.1 against column C, the others against column B of the
+ * notes. */
 inline const std::vector<TableCell>& tableCells()
 {
   static const std::vector<TableCell> cells = {

@@ -1,4 +1,5 @@
-// The filters of nonlocal models: arrays, tables and pictures they make, input of every kind, errors in words.
+// The filters of nonlocal models: arrays, tables and pictures they make, input of every kind,
+// errors in words.
 #include "Check.h"
 #include "HorizonMeshes.h"
 #include "VtkMeshes.h"
@@ -108,7 +109,8 @@ void testStiffness()
   }
   TAUTLINE_CHECK_EQUAL(entries, column(filter, "Nonzeros"));
   TAUTLINE_CHECK_NEAR(square, 1.0, 1e-9);
-  // About that of the Laplacian with factor pi / 6: 0.0737 / (pi / 6) = 0.141, and more with a horizon.
+  // About that of the Laplacian with factor pi / 6: 0.0737 / (pi / 6) = 0.141, and more with a
+  // horizon.
   TAUTLINE_CHECK(highest > 0.13 && highest < 0.25);
   auto* picture = vtkImageData::SafeDownCast(filter->GetOutputDataObject(2));
   TAUTLINE_CHECK_EQUAL(picture->GetNumberOfPoints(), 1600);

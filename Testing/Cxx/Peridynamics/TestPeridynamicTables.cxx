@@ -1,6 +1,6 @@
-// Condition numbers of Tables 4.1 to 4.3 (h = 0.1 and 0.05) in both readings, against the printed values and
-// against the columns and references of an independent prototype; what the text's own rules give; that unstructured
-// meshes converge to the same limits.
+// Condition numbers of Tables 4.1 to 4.3 (h = 0.1 and 0.05) in both readings, against the printed
+// values and against the columns and references of an independent prototype; what the text's own
+// rules give; that unstructured meshes converge to the same limits.
 #include "Check.h"
 #include "HorizonMeshes.h"
 
@@ -40,7 +40,8 @@ void testExact()
     const Context context("exact 4." + std::to_string(cell.table) + " AR " +
       std::to_string(cell.aspectRatio) + " n " + std::to_string(cell.n) + " delta " +
       std::to_string(cell.delta));
-    // The one grid whose lines miss the square's sides needs a further layer for a collar that is wide enough.
+    // The one grid whose lines miss the square's sides needs a further layer for a collar that is
+    // wide enough.
     const bool off = cell.aspectRatio == 4 && cell.n == 10 && cell.delta == 0.3;
     const HorizonMesh mesh = horizonSquare(1.0 / cell.n, cell.aspectRatio, cell.delta, off ? 1 : 0);
     PeridynamicOptions options = optionsOf(cell, Discretization::Exact);
@@ -50,7 +51,8 @@ void testExact()
   }
 }
 
-/// One outer and three inner points, as the text says: column A of the notes; indefinite for p = 2.5.
+/// One outer and three inner points, as the text says: column A of the notes; indefinite for p
+/// = 2.5.
 void testLiteral()
 {
   struct Case
@@ -107,7 +109,8 @@ void testConvergence()
     {
       const HorizonMesh mesh = shakenSquare(n, n / 4, regular ? 0.0 : 0.2);
       const PeridynamicSystem system = assemblePeridynamics(mesh, options);
-      // Over the mass of a vertex of the regular mesh: the lowest eigenvalue of the operator, up to O(h^2).
+      // Over the mass of a vertex of the regular mesh: the lowest eigenvalue of the operator, up to
+      // O(h^2).
       smallest[level][regular] = extremeEigenvalues(system.matrix).smallest * n * n;
     }
   }

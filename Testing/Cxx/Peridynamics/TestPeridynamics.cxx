@@ -1,5 +1,5 @@
-// The nonlocal matrices: formulas, symmetry, definiteness, null spaces, the local limit, kernels, threads,
-// whatever is refused; the collar, the disc, the eigenvalues and the solver they need.
+// The nonlocal matrices: formulas, symmetry, definiteness, null spaces, the local limit, kernels,
+// threads, whatever is refused; the collar, the disc, the eigenvalues and the solver they need.
 #include "Check.h"
 #include "HorizonMeshes.h"
 
@@ -66,7 +66,8 @@ std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>&
 }
 
 //------------------------------------------------------------------------------
-/// Exactly symmetric; constants, and rigid motions, are in the null space before constraints; definite after.
+/// Exactly symmetric; constants, and rigid motions, are in the null space before constraints;
+/// definite after.
 void testStructure()
 {
   const HorizonMesh mesh = shakenSquare(4, 1, 0.2);
@@ -204,8 +205,8 @@ double solutionError(int n, double delta, double p, bool quadratic)
   return worst;
 }
 
-/// The operator tends to pi / (2 (4-p)) times the Laplacian: with delta^2 for smooth functions; on a
-/// fixed mesh with delta, as functions have kinks.
+/// The operator tends to pi / (2 (4-p)) times the Laplacian: with delta^2 for smooth functions; on
+/// a fixed mesh with delta, as functions have kinks.
 void testLocalLimit()
 {
   for (const double p : { 1.0, 2.5 })
@@ -279,7 +280,8 @@ void testKernels()
     return s;
   };
   options.kernel.exponent = 0.0;
-  for (const Discretization discretization : { Discretization::Dissertation, Discretization::Exact })
+  for (const Discretization discretization :
+    { Discretization::Dissertation, Discretization::Exact })
   {
     options.discretization = discretization;
     const Spectrum power = with(KernelShape::Power, {}, 0.5);
@@ -318,7 +320,8 @@ void testThreads()
   {
     for (const PeridynamicBasis basis : bases)
     {
-      for (const Discretization discretization : { Discretization::Dissertation, Discretization::Exact })
+      for (const Discretization discretization :
+        { Discretization::Dissertation, Discretization::Exact })
       {
         PeridynamicOptions options;
         options.tolerance = 1e-3;
@@ -357,7 +360,8 @@ void testThreads()
 //------------------------------------------------------------------------------
 void testCollar()
 {
-  // The matrix of the exact discretization does not depend on how the collar is cut, as the functions are 0 there.
+  // The matrix of the exact discretization does not depend on how the collar is cut, as the
+  // functions are 0 there.
   const HorizonMesh regular = horizonSquare(0.1, 1, 0.2);
   HorizonMesh bare;
   std::vector<Index> newId(regular.numberOfPoints(), -1);

@@ -1,6 +1,7 @@
 /**
  * @file Matrix.h
- * @brief 2 x 2 and 3 x 3 matrices for the second evaluation of the metrics: plain and slow on purpose.
+ * @brief 2 x 2 and 3 x 3 matrices for the second evaluation of the metrics: plain and slow on
+ * purpose.
  */
 
 #ifndef tautline_Matrix_h

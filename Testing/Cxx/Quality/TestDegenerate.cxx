@@ -1,5 +1,5 @@
-// Elements no metric is made for: flat, collapsed, not finite, enormous and tiny. Each is flagged, its
-// values and gradients are finite, and where a metric is singular its value is 0.
+// Elements no metric is made for: flat, collapsed, not finite, enormous and tiny. Each is flagged,
+// its values and gradients are finite, and where a metric is singular its value is 0.
 #include "Check.h"
 #include "Meshes.h"
 
@@ -21,8 +21,8 @@ bool allFinite(const std::vector<double>& values)
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// Metrics with a formula that breaks down where a corner Jacobian vanishes. The others are polynomials
-/// of T, or lengths and angles.
+/// Metrics with a formula that breaks down where a corner Jacobian vanishes. The others are
+/// polynomials of T, or lengths and angles.
 bool isSingular(const MetricInfo& info)
 {
   return (info.family == MetricFamily::Target && info.inverted != InvertedValue::Larger) ||
@@ -153,7 +153,8 @@ void testMagnitudes(CellType type)
   }
 }
 
-/// Flatter and flatter: valid and ever worse until the tolerance, then degenerate; never anything else.
+/// Flatter and flatter: valid and ever worse until the tolerance, then degenerate; never anything
+/// else.
 void testSlivers(CellType type)
 {
   const Context context(topology(type).name + std::string(", sliver"));
@@ -182,7 +183,8 @@ void testSlivers(CellType type)
   }
 }
 
-/// A quadrilateral with a straight corner (at 1) and an inverted one (at 2): the inverted one speaks.
+/// A quadrilateral with a straight corner (at 1) and an inverted one (at 2): the inverted one
+/// speaks.
 void testStraightAndInverted()
 {
   const Corners corners = { { 0, 0, 0 }, { 3, 0, 0 }, { 2, 0, 0 }, { 1, 1, 0 } };

@@ -1,4 +1,5 @@
-// The filter: its arrays, tables and notices, on every kind of data set, in numbers known beforehand.
+// The filter: its arrays, tables and notices, on every kind of data set, in numbers known
+// beforehand.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -21,7 +22,8 @@ namespace
 {
 const double height = std::sqrt(3.0) / 2;
 
-/// Separate triangles with the base from (0, 0) to (1, 0), given the heights of their apexes at x = 1/2.
+/// Separate triangles with the base from (0, 0) to (1, 0), given the heights of their apexes at x =
+/// 1/2.
 MeshData triangles(const std::vector<double>& heights)
 {
   MeshData data;

@@ -164,7 +164,8 @@ void testReversed()
 
 void testEveryCellAndMetric()
 {
-  // Nothing moved: everything is equal, for every cell and metric; and in a chain with a perturbation.
+  // Nothing moved: everything is equal, for every cell and metric; and in a chain with a
+  // perturbation.
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);

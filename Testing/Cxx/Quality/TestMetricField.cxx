@@ -1,5 +1,5 @@
-// The field of a metric: ideal at the apex of the ideal cell, symmetric, negative below the base, the
-// same in pieces, and good enough to contour.
+// The field of a metric: ideal at the apex of the ideal cell, symmetric, negative below the base,
+// the same in pieces, and good enough to contour.
 #include "Check.h"
 #include "VtkMeshes.h"
 

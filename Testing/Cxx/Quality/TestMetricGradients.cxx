@@ -1,10 +1,10 @@
 // Analytic gradients of every metric against fourth-order central differences.
 //
-// A cloud is a mesh of cells that share no point, so that node k of all of them is moved at once. For a
-// function smooth on the scale of the stencil the forward and the backward difference agree, and so do
-// the central ones with one and two steps. Where they do not, a kink (another edge, angle or corner
-// becomes the extreme one) lies within the stencil and differences mean nothing: that component is
-// skipped, and skips are counted and limited.
+// A cloud is a mesh of cells that share no point, so that node k of all of them is moved at once.
+// For a function smooth on the scale of the stencil the forward and the backward difference agree,
+// and so do the central ones with one and two steps. Where they do not, a kink (another edge, angle
+// or corner becomes the extreme one) lies within the stencil and differences mean nothing: that
+// component is skipped, and skips are counted and limited.
 #include "Check.h"
 #include "Meshes.h"
 

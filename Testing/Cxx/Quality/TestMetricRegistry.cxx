@@ -1,5 +1,5 @@
-// What the registry says of the metrics, held against their values: names, ranges, direction, barrier,
-// differentiability, and the options that are refused.
+// What the registry says of the metrics, held against their values: names, ranges, direction,
+// barrier, differentiability, and the options that are refused.
 #include "Check.h"
 #include "Meshes.h"
 
@@ -160,8 +160,8 @@ void testRange(CellType type, bool surface)
 }
 
 //------------------------------------------------------------------------------
-/// A barrier grows without bound as the element is flattened (a logarithm by the same amount in each
-/// decade); other metrics settle.
+/// A barrier grows without bound as the element is flattened (a logarithm by the same amount in
+/// each decade); other metrics settle.
 void testBarrier(const MetricInfo& info, CellType type)
 {
   if (info.metric == Metric::AspectRatio && topology(type).samples == 1)
@@ -183,8 +183,9 @@ void testBarrier(const MetricInfo& info, CellType type)
   }
 }
 
-/// At the ideal cell the metrics called kinked have one: the slopes to either side differ. Right angles
-/// have the largest sine, so the scaled Jacobian is tried at a sheared ideal cell where it has such.
+/// At the ideal cell the metrics called kinked have one: the slopes to either side differ. Right
+/// angles have the largest sine, so the scaled Jacobian is tried at a sheared ideal cell where it
+/// has such.
 void testKink(const MetricInfo& info, CellType type)
 {
   Random random(12);

@@ -1,6 +1,7 @@
-// The cells VTK itself makes are valid for us: local numbering, orientation and corners of every type,
-// linear and of higher order. The wedge is the one to watch: in VTK's linear and quadratic wedges the
-// corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and Bezier wedges from inside.
+// The cells VTK itself makes are valid for us: local numbering, orientation and corners of every
+// type, linear and of higher order. The wedge is the one to watch: in VTK's linear and quadratic
+// wedges the corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and Bezier
+// wedges from inside.
 #include "Check.h"
 #include "VtkMeshes.h"
 

@@ -1,11 +1,11 @@
 // Values against ParaView's own Mesh Quality (the Verdict library), for every measure both define.
 //
-// Verdict takes the corners of a wedge the other way round than VTK does: its volume of a wedge made by
-// VTK is negative. Its wedges below are therefore renumbered. Not compared, because they differ:
-// aspect ratio of quadrilaterals (there by perimeter and area; ours is Verdict's "max edge ratio");
-// equiangle skew of hexahedra (there above 1 at times: its faces are not walked round); condition
-// and shape of wedges (there against another corner); shape of pyramids (there of heights);
-// normalized inradius of tetrahedra; all that is relative to an average size.
+// Verdict takes the corners of a wedge the other way round than VTK does: its volume of a wedge
+// made by VTK is negative. Its wedges below are therefore renumbered. Not compared, because they
+// differ: aspect ratio of quadrilaterals (there by perimeter and area; ours is Verdict's "max edge
+// ratio"); equiangle skew of hexahedra (there above 1 at times: its faces are not walked round);
+// condition and shape of wedges (there against another corner); shape of pyramids (there of
+// heights); normalized inradius of tetrahedra; all that is relative to an average size.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -166,7 +166,8 @@ void compare(const Comparison& c)
   }
 }
 
-/// Where Verdict looks at the centre besides the corners, the two agree if all Jacobians are the same.
+/// Where Verdict looks at the centre besides the corners, the two agree if all Jacobians are the
+/// same.
 void testAffineHexahedra()
 {
   Random random(14);

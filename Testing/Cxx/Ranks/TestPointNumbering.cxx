@@ -1,5 +1,5 @@
-// Meshes spread over MPI ranks: numbering, sums, boundaries, and linear systems whose solution does not depend on the number of
-// ranks. Runs on however many ranks it is started on.
+// Meshes spread over MPI ranks: numbering, sums, boundaries, and linear systems whose solution does
+// not depend on the number of ranks. Runs on however many ranks it is started on.
 #include "Check.h"
 #include "Systems.h"
 
@@ -19,7 +19,8 @@ namespace
 {
 constexpr int columns = 24, rows = 18; // of squares, in the whole mesh
 
-/// A rank's part of a grid of squares: a band of columns, or, if `scattered`, every so-many-th square.
+/// A rank's part of a grid of squares: a band of columns, or, if `scattered`, every so-many-th
+/// square.
 struct Part
 {
   std::vector<double> points;
@@ -106,7 +107,8 @@ void testNumbering(MPI_Comm comm, bool scattered)
   TAUTLINE_CHECK_EQUAL(numbering.globalSize(), whole);
   TAUTLINE_CHECK_EQUAL(numbering.sum(numbering.ownedRows()), whole);
 
-  // Rows: one per point on all ranks, contiguous where owned, owned once, by the lowest rank that has the point.
+  // Rows: one per point on all ranks, contiguous where owned, owned once, by the lowest rank that
+  // has the point.
   std::vector<Index> rowOfNode((columns + 1) * (rows + 1), -1), most(rowOfNode), least(rowOfNode);
   std::vector<int> lowest(rowOfNode.size(), ranks), lowestOfAll(lowest);
   Index next = numbering.firstRow(), largest = -1;
@@ -196,8 +198,8 @@ void testBoundary(MPI_Comm comm)
 }
 
 //------------------------------------------------------------------------------
-/// A rank's contributions to a system on the inner points: a spring along each side and diagonal of its squares, `block`
-/// unknowns per point that are coupled; side and reaction scaled.
+/// A rank's contributions to a system on the inner points: a spring along each side and diagonal of
+/// its squares, `block` unknowns per point that are coupled; side and reaction scaled.
 struct Springs
 {
   SparseMatrix matrix;
@@ -500,7 +502,8 @@ int TestPointNumbering(int, char*[])
 {
   MPI_Init(nullptr, nullptr);
   MPI_Comm comm = MPI_COMM_WORLD;
-  // A rank on its own solves what it likes while the others do not: nothing is collective, not even the initialisation.
+  // A rank on its own solves what it likes while the others do not: nothing is collective, not even
+  // the initialisation.
   if (rankOf(comm) == 0)
   {
     const SparseMatrix a = laplacian(20);

@@ -1,4 +1,5 @@
-// The filters of the module Shapes: arrays and tables they promise, images of all kinds, errors, the reader.
+// The filters of the module Shapes: arrays and tables they promise, images of all kinds, errors,
+// the reader.
 
 #include "Check.h"
 #include "Shapes.h"

@@ -1,4 +1,5 @@
-// The energy's terms, the exact search against brute force and against the plain loop, invariances, reliability.
+// The energy's terms, the exact search against brute force and against the plain loop, invariances,
+// reliability.
 
 #include "Check.h"
 #include "Shapes.h"
@@ -34,7 +35,8 @@ void testTerms()
   TAUTLINE_CHECK_NEAR(e.deformation, std::log(3.0) * std::log(3.0), 1e-12);
   const double grown = (4.0 + std::sqrt(10.0)) / (2.0 + std::sqrt(2.0));
   TAUTLINE_CHECK_NEAR(e.distortion, std::log(grown), 1e-12);
-  // gamma and delta are ratios of the larger to the smaller: shrinking where the shape grows is free.
+  // gamma and delta are ratios of the larger to the smaller: shrinking where the shape grows is
+  // free.
   const std::array<Vec2, 3> half = { Vec2{ 0, 0 }, Vec2{ 0.5, 0 }, Vec2{ 0, 0.5 } };
   TAUTLINE_CHECK_NEAR(triangleEnergy(s, half, 0.5, plain()).distortion, 0.0, 1e-12);
   ShapeEnergy strict = plain();
@@ -192,7 +194,8 @@ void testPlainLoop()
   }
 }
 
-/// Moved by grid steps, scaled, mirrored and turned shapes are found with the energy they should have.
+/// Moved by grid steps, scaled, mirrored and turned shapes are found with the energy they should
+/// have.
 void testInvariance()
 {
   MatchOptions options;
@@ -223,7 +226,8 @@ void testInvariance()
   small.maxDistance = 0.5 * source.maxDistance;
   const ShapeTarget target(traceSilhouette(blob(96, 40, 44, 22).view()), grid, options.energy);
   const ShapeMatch scaled = matchShape(small, target, options);
-  // With delta = 1/2 the dissertation's distortion is still |log gamma - log delta|: 0 for the same placement.
+  // With delta = 1/2 the dissertation's distortion is still |log gamma - log delta|: 0 for the same
+  // placement.
   TAUTLINE_CHECK(scaled.energy <= base.energy + 1e-4);
   options.energy.signedDistortion = true;
   TAUTLINE_CHECK_RELATIVE(
@@ -296,7 +300,8 @@ void testThreadsAndStops()
       TAUTLINE_CHECK(
         several.points == one.points && several.energy == one.energy && several.rank == one.rank);
     }
-    // Coarse to fine is not below the exact optimum of its own locations by accident: it is finite and near.
+    // Coarse to fine is not below the exact optimum of its own locations by accident: it is finite
+    // and near.
     options.coarseToFine = true;
     const ShapeMatch rough = matchShape(source, target, options);
     TAUTLINE_CHECK(!rough.exact && std::isfinite(rough.energy) && rough.energy < 2.0 * one.energy);
@@ -363,7 +368,8 @@ void testRefused()
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, huge), "4 GiB");
 }
 
-/// A target without the shape, a 3-vertex source, a source larger than the target: an answer, and finite.
+/// A target without the shape, a 3-vertex source, a source larger than the target: an answer, and
+/// finite.
 void testOddTargets()
 {
   const ShapeSource source = makeShapeSource(traceSilhouette(blob(200, 100, 100, 60).view()), 25.0);

@@ -1,4 +1,5 @@
-// From images to outlines and polygons: known areas, sub-pixel places, what is ignored and what is refused.
+// From images to outlines and polygons: known areas, sub-pixel places, what is ignored and what is
+// refused.
 
 #include "Check.h"
 #include "Shapes.h"

@@ -1,5 +1,5 @@
-// Extreme eigenvalues and condition numbers of A and of P^-1 A: known values, dense eigenvalues, bounds that hold, limits and
-// matrices that have no condition number.
+// Extreme eigenvalues and condition numbers of A and of P^-1 A: known values, dense eigenvalues,
+// bounds that hold, limits and matrices that have no condition number.
 #include "Check.h"
 #include "Systems.h"
 
@@ -323,7 +323,8 @@ void testEquations()
     }
   }
 
-  // A unit right triangle: eigenvalues of its Poisson matrix are 0, 1/2 and 3/2. A needle dominates.
+  // A unit right triangle: eigenvalues of its Poisson matrix are 0, 1/2 and 3/2. A needle
+  // dominates.
   BoxMesh box(CellType::Triangle, 6);
   for (std::size_t i = 0; i < box.points.size(); ++i)
   {

@@ -1,5 +1,5 @@
-// Linear systems through PETSc: every method with every preconditioner against a direct solve, why a solve fails, options
-// and whose they are, limits, reuse, and whatever is refused.
+// Linear systems through PETSc: every method with every preconditioner against a direct solve, why
+// a solve fails, options and whose they are, limits, reuse, and whatever is refused.
 #include "Check.h"
 #include "Systems.h"
 
@@ -515,7 +515,8 @@ void testUnchanged()
   TAUTLINE_CHECK_EQUAL(std::string(nameOf(static_cast<KrylovMethod>(99))), std::string("unknown"));
 }
 
-/// A long elastic strip held at one end bends: rigid body modes are what smoothed aggregation needs to know of it.
+/// A long elastic strip held at one end bends: rigid body modes are what smoothed aggregation needs
+/// to know of it.
 void testRigidBodyModes()
 {
   const int columns = 120, rows = 8;

@@ -1,6 +1,7 @@
 /**
- * Untangling: meshes with a few and with many inverted elements, of all cell types; Mesquite's tangled meshes;
- * what cannot be untangled and why; limits; the same result in any frame and with any number of threads.
+ * Untangling: meshes with a few and with many inverted elements, of all cell types; Mesquite's
+ * tangled meshes; what cannot be untangled and why; limits; the same result in any frame and with
+ * any number of threads.
  */
 
 #include "Blocks.h"
