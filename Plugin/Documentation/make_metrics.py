@@ -1,14 +1,13 @@
 """make_metrics.py [--write] [--pictures]: what is generated from the registry of metrics.
 
-The table of the help page metrics.html (from metrics.html.in) and the lists of metrics in
-ServerManager/*.xml (between <!-- metrics --> and the end of the domain). Without an option, compares and
-exits with 1 if they differ or if README.md tells another number of metrics; --write writes them;
---pictures draws metric_<name>.png with vtkMetricField.
+The table of the help page metrics.html (from metrics.html.in) and the list of metrics that the panels include,
+ServerManager/Snippets/MetricDomain.xml. Without an option, compares and exits with 1 if they differ, if README.md
+has another number of metrics, or if a panel has a list of its own; --write writes them; --pictures draws
+metric_<name>.png with vtkMetricField.
 Needs the package tautline: eval "$(./run env)" first.
 """
 
 import html
-import re
 import sys
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from tautline import vtkElementQuality, vtkMetricField
 
 HERE = Path(__file__).resolve().parent
 PROXIES = HERE.parents[1] / "ServerManager"
+DOMAIN = PROXIES / "Snippets/MetricDomain.xml"
 MOST_BYTES = 6000  # of a picture
 
 # The window of the pictures, and their colours: those of the plugin's colour maps.
@@ -79,17 +79,26 @@ def page(metrics: list) -> str:
     return template.replace("@COUNT@", str(len(metrics))).replace("@ROWS@", "".join(map(row, metrics)))
 
 
-# --- the lists in the XML files ----------------------------------------------------------------------
+# --- the list of the panels --------------------------------------------------------------------------
 
 
-def with_entries(xml: str, metrics: list) -> str:
-    def entries(found) -> str:
-        indent = found[1]
-        lines = [f'<Entry value="{m["number"]}" text="{html.escape(m["label"])}"/>\n' for m in metrics]
-        return indent + "<!-- metrics -->\n" + "".join(indent + line for line in lines) + found[2]
+def domain(metrics: list) -> str:
+    entries = "".join(f'    <Entry value="{m["number"]}" text="{html.escape(m["label"])}"/>\n' for m in metrics)
+    return f"""<!-- Written by Plugin/Documentation/make_metrics.py from the registry of metrics. -->
+<Snippet>
+  <EnumerationDomain name="enum">
+{entries}  </EnumerationDomain>
+</Snippet>
+"""
 
-    pattern = r"^( *)<!-- metrics -->\n(?:.*<Entry .*\n)*(.*</EnumerationDomain>)"
-    return re.sub(pattern, entries, xml, flags=re.MULTILINE)
+
+def wrong_lists(metrics: list):
+    """Panels must include the list, and have none of their own."""
+    panels = {path: path.read_text(encoding="utf-8") for path in PROXIES.rglob("*.xml*") if path != DOMAIN}
+    own = f'text="{html.escape(metrics[0]["label"])}"'
+    yield from (f"{path} has a list of metrics of its own" for path, content in panels.items() if own in content)
+    if not any(f"<?include {DOMAIN.name}?>" in content for content in panels.values()):
+        yield f"no XML file includes {DOMAIN.name}"
 
 
 # --- the pictures ------------------------------------------------------------------------------------
@@ -174,20 +183,16 @@ def main(options: set) -> int:
     if "--pictures" in options:
         for metric in metrics:
             draw(metric, HERE / f"metric_{metric['name']}.png")
-    wanted = {HERE / "metrics.html": page(metrics)}
-    for path in sorted(PROXIES.glob("*.xml")):
-        wanted[path] = with_entries(path.read_text(encoding="utf-8"), metrics)
-    complaints = list(wrong_pictures(metrics))
+    wanted = {HERE / "metrics.html": page(metrics), DOMAIN: domain(metrics)}
+    complaints = [*wrong_pictures(metrics), *wrong_lists(metrics)]
     for path, content in wanted.items():
         if "--write" in options:
             path.write_text(content, encoding="utf-8")
         elif not path.is_file() or path.read_text(encoding="utf-8") != content:
             complaints.append(f"{path} is not what the registry says")
-    lists = sum(content.count("<!-- metrics -->") for content in wanted.values())
     if f"{len(metrics)} quality metrics" not in (HERE.parents[1] / "README.md").read_text(encoding="utf-8"):
         complaints.append(f"README.md does not say that there are {len(metrics)} quality metrics")
-    complaints += [] if lists else ["no XML file has a list of metrics"]
-    print("\n".join(complaints + [f"{len(metrics)} metrics, {lists} lists of them, {len(complaints)} complaints"]))
+    print("\n".join(complaints + [f"{len(metrics)} metrics, {len(complaints)} complaints"]))
     if complaints:
         print("remedy: python3 Plugin/Documentation/make_metrics.py --write --pictures")
     return 1 if complaints else 0

@@ -198,7 +198,7 @@ void checkNames()
 /// The menu of ParaView lists the registry.
 void checkXml(const std::string& data)
 {
-  std::ifstream file(data + "/../ServerManager/Domains.xml");
+  std::ifstream file(data + "/../ServerManager/Domains.xml.in");
   std::ostringstream text;
   text << file.rdbuf();
   int value = 0;

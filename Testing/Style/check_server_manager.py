@@ -1,0 +1,78 @@
+"""check_server_manager.py SERVER_MANAGER [GENERATED_XML...]: what repeats in ServerManager is written once.
+
+At most MOST_REPEATED of the lines that are not blank may stand in repeated blocks: runs of BLOCK or more lines that
+stand twice or more, white space aside. Templates, snippets and generated files are well-formed XML, every snippet is
+included somewhere, and in the generated files each property of a group is one of its proxy.
+"""
+
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from collections import defaultdict
+from pathlib import Path
+
+BLOCK = 8  # lines
+MOST_REPEATED = 0.01
+INCLUDE = re.compile(r"<\?include (\w+\.xml)")
+Line = tuple[Path, int]
+
+
+def lines_of(path: Path) -> list[tuple[int, str]]:
+    """Number and text of the lines that are not blank, white space folded."""
+    lines = [(number, " ".join(line.split())) for number, line in enumerate(path.read_text().splitlines(), 1)]
+    return [line for line in lines if line[1]]
+
+
+def repeated(files: list[Path]) -> tuple[list[list[Line]], float]:
+    """The places of each block of BLOCK lines that stands twice or more, and the share of lines in them."""
+    total = 0
+    places: dict[tuple, list[list[Line]]] = defaultdict(list)
+    for path in files:
+        lines = lines_of(path)
+        total += len(lines)
+        for start in range(len(lines) - BLOCK + 1):
+            block = lines[start : start + BLOCK]
+            places[tuple(text for _, text in block)].append([(path, number) for number, _ in block])
+    found = [blocks for blocks in places.values() if len(blocks) > 1]
+    inside = {line for blocks in found for block in blocks for line in block}
+    return [[block[0] for block in blocks] for blocks in found], len(inside) / max(total, 1)
+
+
+def malformed(files: list[Path]):
+    for path in files:
+        try:
+            ElementTree.parse(path)
+        except ElementTree.ParseError as error:
+            yield f"{path} is not well-formed: {error}"
+
+
+def unused(files: list[Path]):
+    included = {name for path in files for name in INCLUDE.findall(path.read_text())}
+    yield from (f"{path} is included nowhere" for path in files if path.suffix == ".xml" and path.name not in included)
+
+
+def strangers(path: Path):
+    """Properties of a group that their proxy does not have."""
+    for proxy in ElementTree.parse(path).iterfind("ProxyGroup/*"):
+        own = {child.get("name") for child in proxy if child.tag.endswith("Property")}
+        for group in proxy.iterfind("PropertyGroup/Property"):
+            if group.get("name") not in own:
+                yield f"{path}: {proxy.get('name')} has no property {group.get('name')}"
+
+
+def main(directory: Path, generated: list[Path]) -> int:
+    files = sorted(path for path in directory.rglob("*") if path.name.endswith((".xml", ".xml.in")))
+    blocks, share = repeated(files)
+    wrong = [*malformed(files + generated), *unused(files)]
+    if not wrong:
+        wrong += [complaint for path in generated for complaint in strangers(path)]
+    if share > MOST_REPEATED:
+        wrong += [" = ".join(f"{path.relative_to(directory)}:{line}" for path, line in block) for block in blocks]
+        wrong.append(f"{share:.1%} of the lines stand in repeated blocks, {MOST_REPEATED:.0%} are allowed: make snippets")
+    print("\n".join(wrong))
+    print(f"{len(files)} files, {len(generated)} generated, {share:.1%} repeated, {len(wrong)} complaints")
+    return 1 if wrong or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]).resolve(), [Path(argument) for argument in sys.argv[2:]]))
