@@ -1,8 +1,8 @@
 #include "Startup.h"
 
-#include "ColorMaps.h"
 #include "VersionCheck.h"
 
+#include "vtkElementQuality.h"
 #include "vtkOutputWindow.h"
 #include "vtkPVVersion.h"
 #include "vtkSMProxyManager.h"
@@ -29,5 +29,5 @@ void tautlineInstallColorMaps()
 {
   constexpr double belowSiteAndUser = -1.0;
   vtkSMSettings::GetInstance()->AddCollectionFromString(
-    tautline::colorMapSettings(tautline::metricColorMaps()), belowSiteAndUser);
+    vtkElementQuality::GetColorMapSettings(), belowSiteAndUser);
 }

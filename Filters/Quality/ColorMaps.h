@@ -12,6 +12,8 @@
 #ifndef tautline_ColorMaps_h
 #define tautline_ColorMaps_h
 
+#include "TautlineQualityModule.h" // for export macro
+
 #include <string>
 #include <vector>
 
@@ -28,13 +30,13 @@ struct ColorMapSpec
 };
 
 /** The colour maps of all metrics that have a direction and a finite acceptable range. */
-std::vector<ColorMapSpec> metricColorMaps();
+TAUTLINEQUALITY_EXPORT std::vector<ColorMapSpec> metricColorMaps();
 
 /**
  * @brief ParaView settings, as JSON text, that make these colour maps the default of their arrays,
  * and that colour the array `Validity` by category.
  */
-std::string colorMapSettings(const std::vector<ColorMapSpec>& specs);
+TAUTLINEQUALITY_EXPORT std::string colorMapSettings(const std::vector<ColorMapSpec>& specs);
 
 } // namespace tautline
 

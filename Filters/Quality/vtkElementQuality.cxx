@@ -1,5 +1,6 @@
 #include "vtkElementQuality.h"
 
+#include "ColorMaps.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
 #include "QualityTotals.h"
@@ -148,6 +149,12 @@ std::string vtkElementQuality::GetKnownMetric(int i)
 std::string vtkElementQuality::GetKnownMetricFields()
 {
   return tautline::metricFields();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkElementQuality::GetColorMapSettings()
+{
+  return tautline::colorMapSettings(tautline::metricColorMaps());
 }
 
 //------------------------------------------------------------------------------

@@ -213,6 +213,9 @@ public:
   static std::string GetKnownMetricFields();
   ///@}
 
+  /// ParaView's settings, as JSON text, that give the arrays of the metrics and Validity their colours.
+  static std::string GetColorMapSettings();
+
   /// What the user should know of how the last mesh was taken (orientation, cells left out), or "".
   const char* GetNotice() const { return this->Notice.c_str(); }
   /// The result of the last execution in a few lines.
