@@ -11,12 +11,14 @@ from pathlib import Path
 
 import tautline
 from paraview import simple
+from paraview.modules.vtkRemotingServerManager import vtkSMSettings
 from tautline import _tables
 
 METRICS = ["imr", "rr", "scaled_jacobian"]
 SHOWN, TITLE = METRICS[0], "Inverse mean ratio"
 CELLS = 1  # vtkDataObject::CELL
 WORST = 3  # elements listed
+LOW_PRIORITY = -1.0  # of settings: below those of the site and the user
 DOMAIN, CELL_COUNT = "bore", 8000
 SIZE = [1200, 800]
 FROM, ABOVE, UP, ZOOM = [0.75, -1.0, 0.55], [0, 0, 1], [0, 0, 1], 1.1  # where the camera looks from
@@ -50,7 +52,7 @@ def improve(mesh: Path, output: Path) -> Path:
     valid = tautline.untangle(mesh)
     better = tautline.optimize(valid)
     print(f"{valid.summary}\n{better.summary}\n")
-    tautline.write(better, output / "better.vtu")
+    tautline.write(tautline.quality(better, METRICS), output / "better.vtu")
     return output / "better.vtu"
 
 
@@ -79,8 +81,8 @@ def cut_open(quality, view, middle: list[float]) -> None:
 
 
 def picture(mesh: Path, file: Path) -> None:
-    """Measure with the ParaView filter, look inside, save a picture."""
-    quality = simple.ElementQuality(Input=simple.OpenDataFile(str(mesh)))
+    """Look inside a measured mesh, save a picture."""
+    quality = simple.OpenDataFile(str(mesh))
     quality.UpdatePipeline()
     xmin, xmax, ymin, ymax, zmin, zmax = quality.GetDataInformation().GetBounds()
     middle = [(xmin + xmax) / 2, (ymin + ymax) / 2, (zmin + zmax) / 2]
@@ -122,8 +124,11 @@ def main(mesh: Path | None, output: Path) -> None:
     """Write quality.vtu, quality.csv and quality.png of a mesh to a directory, better.vtu and better.png of the improved one."""
     output.mkdir(parents=True, exist_ok=True)
     mesh = mesh or start(output)
-    written = [*measure(mesh, output), output / "quality.png"]
-    picture(mesh, written[-1])
+    # The colours of the plugin, which need not be built for the demo.
+    vtkSMSettings.GetInstance().AddCollectionFromString(tautline.vtkElementQuality.GetColorMapSettings(), LOW_PRIORITY)
+    written = measure(mesh, output)
+    picture(written[0], output / "quality.png")
+    written.append(output / "quality.png")
     better = improve(mesh, output)
     written += [better, output / "better.png"]
     picture(better, written[-1])
