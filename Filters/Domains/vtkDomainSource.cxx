@@ -240,7 +240,7 @@ int vtkDomainSource::RequestData(
       : std::string(info.name) == "rectangle"
       ? fromStructured(tautline::structuredRectangle(cells))
       : fromStructured(
-          tautline::structuredSquare(this->ElementSize, this->AspectRatio, this->CollarWidth));
+          tautline::structuredSquare(this->ElementSize, this->AspectRatio, this->LayerWidth));
   }
   catch (const Error& error)
   {
@@ -282,5 +282,5 @@ void vtkDomainSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Amount: " << this->Amount << "\n";
   os << indent << "ElementSize: " << this->ElementSize << "\n";
   os << indent << "AspectRatio: " << this->AspectRatio << "\n";
-  os << indent << "CollarWidth: " << this->CollarWidth << "\n";
+  os << indent << "LayerWidth: " << this->LayerWidth << "\n";
 }

@@ -11,7 +11,8 @@
  * - `BoundaryMarker`: 0 inside, 1 on the outer boundary, 2, 3, ... on holes and other parts;
  * - `Fixed`: 1 on the boundary, 0 inside, the usual choice of points an optimizer leaves alone;
  * - `Displacement`: 3 components, moving domains only: where boundary points go; 0 inside.
- *   Cell array `Reference`, square only: 1 in the unit square, 2 in the collar around it.
+ *   Cell array `Reference`, square only: 1 in the unit square, 2 in the interaction layer around
+ * it.
  *
  * Output 1, vtkPolyData `Deformed Boundary`: the boundary with its points moved by Displacement
  * (not moved for domains at rest), with the cell array `BoundaryMarker` (structured domains: no
@@ -100,10 +101,10 @@ public:
 
   ///@{
   /**
-   * Square only: least width of the collar. The default is 0.2.
+   * Square only: least width of the interaction layer. The default is 0.2.
    */
-  vtkSetClampMacro(CollarWidth, double, 0.0, 10.0);
-  vtkGetMacro(CollarWidth, double);
+  vtkSetClampMacro(LayerWidth, double, 0.0, 10.0);
+  vtkGetMacro(LayerWidth, double);
   ///@}
 
 protected:
@@ -117,7 +118,7 @@ protected:
   double Amount = 1.0;
   double ElementSize = 0.1;
   double AspectRatio = 1.0;
-  double CollarWidth = 0.2;
+  double LayerWidth = 0.2;
 
 private:
   vtkDomainSource(const vtkDomainSource&) = delete;

@@ -14,7 +14,7 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-HorizonInput::HorizonInput(vtkDataSet* input, vtkDataArray* region, double collarValue, int threads)
+HorizonInput::HorizonInput(vtkDataSet* input, vtkDataArray* region, double layerValue, int threads)
 {
   const MeshAdapter adapter(input, threads);
   const class Mesh& mesh = adapter.mesh();
@@ -60,8 +60,8 @@ HorizonInput::HorizonInput(vtkDataSet* input, vtkDataArray* region, double colla
     {
       this->Mesh.triangles.push_back(view.connectivity[view.offsets[cell] + k]);
     }
-    this->Mesh.collar.push_back(
-      region && region->GetComponent(static_cast<vtkIdType>(cell), 0) == collarValue);
+    this->Mesh.layer.push_back(
+      region && region->GetComponent(static_cast<vtkIdType>(cell), 0) == layerValue);
   }
 }
 

@@ -27,9 +27,9 @@ public:
    *
    * Vertices and lines are left out; other cells, surfaces in space and an input without triangles
    * throw Error.
-   * @param region cell array, may be null; @param collarValue its value in the collar
+   * @param region cell array, may be null; @param layerValue its value in the interaction layer
    */
-  HorizonInput(vtkDataSet* input, vtkDataArray* region, double collarValue, int threads);
+  HorizonInput(vtkDataSet* input, vtkDataArray* region, double layerValue, int threads);
 
   const HorizonMesh& mesh() const { return this->Mesh; }
   /// Marks the points where the continuous linear basis is given: those where the array is not 0.

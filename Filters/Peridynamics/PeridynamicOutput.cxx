@@ -241,7 +241,7 @@ void fillSpectrum(const PeridynamicSystem& system, const Spectrum* spectrum, vtk
   whole("Rows", system.matrix.size);
   whole("Nonzeros", system.matrix.nonzeros());
   real("Asymmetry", system.asymmetry);
-  real("CollarDeficit", system.collarDeficit);
+  real("LayerDeficit", system.layerDeficit);
   whole("IntegratedPairs", system.integratedPairs);
   real("Memory", system.memory);
 }

@@ -71,7 +71,7 @@ int vtkInteractionLayer::RequestData(
   try
   {
     const tautline::HorizonInput taken(input, nullptr, 0.0, this->Threads);
-    tautline::CollarOptions options;
+    tautline::InteractionLayerOptions options;
     options.width = this->Width;
     options.elementSize = this->ElementSize;
     options.threads = this->Threads;
@@ -80,7 +80,7 @@ int vtkInteractionLayer::RequestData(
       this->UpdateProgress(done);
       return !this->GetAbortExecute();
     };
-    const tautline::HorizonMesh made = tautline::addCollar(taken.mesh(), options);
+    const tautline::HorizonMesh made = tautline::addInteractionLayer(taken.mesh(), options);
 
     vtkNew<vtkPoints> points;
     points->SetDataType(VTK_DOUBLE);
@@ -105,7 +105,7 @@ int vtkInteractionLayer::RequestData(
         static_cast<vtkIdType>(made.triangles[3 * t + 1]),
         static_cast<vtkIdType>(made.triangles[3 * t + 2]) };
       output->InsertNextCell(VTK_TRIANGLE, 3, ids);
-      reference->InsertNextValue(made.collar[t] ? 2 : 1);
+      reference->InsertNextValue(made.layer[t] ? 2 : 1);
     }
     const vtkIdType oldPoints = input->GetNumberOfPoints();
     const auto oldTriangles = static_cast<vtkIdType>(taken.mesh().numberOfTriangles());

@@ -1,39 +1,39 @@
 /**
  * @class vtkInteractionLayer
- * @brief Puts a collar of triangles around a planar mesh, for the volume constraint of nonlocal
- * models.
+ * @brief Puts an interaction layer of triangles around a planar mesh, for the volume constraint of
+ * nonlocal models.
  *
  * A nonlocal (peridynamic) problem is given its solution not on the boundary but in a region around
  * the domain that is as wide as the horizon (dissertation section 4.2, Figure 4.3). This filter
- * adds that region: outside the mesh and in its holes, up to Width from it. The collar has the
- * edges and points of the boundary.
+ * adds that region: outside the mesh and in its holes, up to Width from it. The interaction layer
+ * has the edges and points of the boundary.
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane. Other cells but vertices and lines are refused.
  *
  * @par Output:
- * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the collar. Points
- * of the input come first and keep their numbers. Point and cell data of the input pass, with zeros
- * in the collar. The cell array `Reference` (int) is 1 in the domain, 2 in the collar:
- * vtkPeridynamicStiffness takes it.
+ * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the interaction
+ * layer. Points of the input come first and keep their numbers. Point and cell data of the input
+ * pass, with zeros in the interaction layer. The cell array `Reference` (int) is 1 in the domain, 2
+ * in the interaction layer: vtkPeridynamicStiffness takes it.
  *
  * @par Limitations:
- * Elements of the collar are about equally large (ElementSize). Where the boundary's edges are much
- * longer or shorter than that, elements next to it are flat: no matter for the matrix in exact
- * discretization.
+ * Elements of the interaction layer are about equally large (ElementSize). Where the boundary's
+ * edges are much longer or shorter than that, elements next to it are flat: no matter for the
+ * matrix in exact discretization.
  *
  * @par Example:
  * @code
- * vtkNew<vtkInteractionLayer> collar;
- * collar->SetInputConnection(reader->GetOutputPort());
- * collar->SetWidth(0.2);
+ * vtkNew<vtkInteractionLayer> interaction layer;
+ * interaction layer->SetInputConnection(reader->GetOutputPort());
+ * interaction layer->SetWidth(0.2);
  * vtkNew<vtkPeridynamicStiffness> stiffness;
- * stiffness->SetInputConnection(collar->GetOutputPort());
+ * stiffness->SetInputConnection(interaction layer->GetOutputPort());
  * stiffness->SetHorizon(0.2);
  * @endcode
  *
- * @sa tautline::addCollar (Filters/Kernel/HorizonCollar.h), vtkPeridynamicStiffness,
- * vtkDomainSource
+ * @sa tautline::addInteractionLayer (Filters/Kernel/Peridynamics/InteractionLayer.h),
+ * vtkPeridynamicStiffness, vtkDomainSource
  */
 
 #ifndef vtkInteractionLayer_h
@@ -51,7 +51,7 @@ public:
 
   ///@{
   /**
-   * Least width of the collar, above 0, in the unit of the mesh. The default is 0.2.
+   * Least width of the interaction layer, above 0, in the unit of the mesh. The default is 0.2.
    */
   vtkSetMacro(Width, double);
   vtkGetMacro(Width, double);
@@ -59,7 +59,8 @@ public:
 
   ///@{
   /**
-   * Edge of the collar's triangles; 0, the default, is the mean length of the boundary's edges.
+   * Edge of the interaction layer's triangles; 0, the default, is the mean length of the boundary's
+   * edges.
    */
   vtkSetMacro(ElementSize, double);
   vtkGetMacro(ElementSize, double);

@@ -133,7 +133,7 @@ void vtkPeridynamicStiffness::Fill(tautline::PeridynamicOptions& options)
   options.rules = static_cast<tautline::RuleSet>(this->Rules);
   options.tolerance = this->Tolerance;
   options.constrained = this->Constrained;
-  options.allowThinCollar = this->AllowThinCollar;
+  options.allowThinLayer = this->AllowThinLayer;
   options.memoryLimit = this->MemoryLimit * MebiByte;
   options.timeLimit = this->TimeLimit;
   options.threads = this->Threads;
@@ -169,9 +169,9 @@ int vtkPeridynamicStiffness::RequestData(
     if (options.constrained &&
       (!name || std::string(name) != "Reference" || input->GetCellData()->GetArray(name)))
     {
-      region = tautline::chosenArray(choice, input, "collar", onPoints);
+      region = tautline::chosenArray(choice, input, "interaction layer", onPoints);
     }
-    tautline::HorizonInput taken(input, region, this->CollarValue, this->Threads);
+    tautline::HorizonInput taken(input, region, this->LayerValue, this->Threads);
     if (vtkDataArray* points =
           tautline::chosenArray(this->GetInputArrayInformation(3), input, "given points", onPoints))
     {
@@ -310,9 +310,9 @@ void vtkPeridynamicStiffness::Report(
         << spectrum->smallestBound << " and " << spectrum->largestBound);
     }
   }
-  if (system.collarDeficit > 0.0)
+  if (system.layerDeficit > 0.0)
   {
-    text << "\nThe collar is too thin by " << system.collarDeficit << ".";
+    text << "\nThe interaction layer is too thin by " << system.layerDeficit << ".";
   }
   this->Summary = text.str();
 }
@@ -331,9 +331,9 @@ void vtkPeridynamicStiffness::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Discretization: " << this->Discretization << "\n";
   os << indent << "Rules: " << this->Rules << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "CollarValue: " << this->CollarValue << "\n";
+  os << indent << "LayerValue: " << this->LayerValue << "\n";
   os << indent << "Constrained: " << this->Constrained << "\n";
-  os << indent << "AllowThinCollar: " << this->AllowThinCollar << "\n";
+  os << indent << "AllowThinLayer: " << this->AllowThinLayer << "\n";
   os << indent << "ComputeSpectrum: " << this->ComputeSpectrum << "\n";
   os << indent << "SpectrumTolerance: " << this->SpectrumTolerance << "\n";
   os << indent << "Solve: " << this->Solve << "\n";

@@ -3,14 +3,15 @@
  * @brief The stiffness matrix of a nonlocal (peridynamic) model: its condition number, its rows,
  * its solution.
  *
- * Assembles the bond-based model of dissertation chapter 4 on a planar triangle mesh with a collar:
+ * Assembles the bond-based model of dissertation chapter 4 on a planar triangle mesh with an
+ * interaction layer:
  *
  *     a(u, w) = s int w(x) int_{|x - y| < delta} (u(x) - u(y)) k(|x - y|) dy dx,
  *     k(r) = r^-p,  s = 1 / delta^(4-p)
  *
  * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel. The
- * solution is given in the collar, the cells whose region is CollarValue. Two readings of the
- * integrals:
+ * solution is given in the interaction layer, the cells whose region is LayerValue. Two readings of
+ * the integrals:
  * - EXACT: geometry and singularity of the inner integral are exact; converges; symmetric.
  * - DISSERTATION: the rules of section 4.3. With Rules at TABLES it reproduces Tables 4.1 to 4.3.
  *
@@ -18,35 +19,36 @@
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds a
- * collar; vtkDomainSource's square has one.
+ * interaction layer; vtkDomainSource's square has one.
  *
  * @par Input arrays (SetInputArrayToProcess):
- * - 0, region: cell array with one component; cells where it is CollarValue are the collar.
+ * - 0, region: cell array with one component; cells where it is LayerValue are the interaction
+ * layer.
  * - 1, source b: on points or cells, one component (elastic: two or three). None: UniformSource.
- * - 2, given g: in the collar; on points, or with discontinuous bases on cells. None: 0.
+ * - 2, given g: in the interaction layer; on points, or with discontinuous bases on cells. None: 0.
  * - 3, given points: point array, not 0 where the continuous linear basis is given. None: the
- *   points of collar cells.
+ *   points of interaction layer cells.
  *
  * @par Output port 0 `Mesh`:
  * The input with arrays on the points (continuous linear basis) or cells (others; the discontinuous
  * linear one has a component per corner): `Unknown` (1 or 0), `Neighbors` (unknown functions a row
- * couples with), `RowSum` (of the unknown part: what of the diagonal goes to the collar),
- * `Diagonal`; `SmallestMode` and `LargestMode`, eigenvectors of norm 1, if ComputeSpectrum;
+ * couples with), `RowSum` (of the unknown part: what of the diagonal goes to the interaction
+ * layer), `Diagonal`; `SmallestMode` and `LargestMode`, eigenvectors of norm 1, if ComputeSpectrum;
  * `Solution` if Solve. Elastic vectors have three components per function, in space.
  *
  * @par Output port 1 `Spectrum`:
  * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`,
  * `Largest`, `SmallestBound`, `LargestBound` (absolute error bounds), `Definite`, `Converged`,
  * `Iterations`, `Rows`, `Nonzeros`, `Asymmetry` (of the dissertation's discretization: norm of the
- * part that is dropped, relative), `CollarDeficit`, `IntegratedPairs`, `Memory` (bytes, estimated).
+ * part that is dropped, relative), `LayerDeficit`, `IntegratedPairs`, `Memory` (bytes, estimated).
  *
  * @par Output port 2 `Sparsity`:
  * vtkImageData with `Entries` per pixel, as Figure 4.2; empty unless SparsityPixels is above 0.
  *
  * @par Errors:
- * Whatever tautline::assemblePeridynamics refuses, by name and with the remedy: no collar or too
- * thin a one, an exponent at the singular limit, inverted or degenerate triangles, too little
- * memory, time over.
+ * Whatever tautline::assemblePeridynamics refuses, by name and with the remedy: no interaction
+ * layer or too thin a one, an exponent at the singular limit, inverted or degenerate triangles, too
+ * little memory, time over.
  *
  * @par Example:
  * @code
@@ -210,17 +212,17 @@ public:
 
   ///@{
   /**
-   * Value of the region array in the collar. The default is 2, as vtkInteractionLayer and
-   * vtkDomainSource give it.
+   * Value of the region array in the interaction layer. The default is 2, as vtkInteractionLayer
+   * and vtkDomainSource give it.
    */
-  vtkSetMacro(CollarValue, double);
-  vtkGetMacro(CollarValue, double);
+  vtkSetMacro(LayerValue, double);
+  vtkGetMacro(LayerValue, double);
   ///@}
 
   ///@{
   /**
-   * Whether the solution is given in the collar. If not, every function is unknown, and constants
-   * are in the null space. The default is true.
+   * Whether the solution is given in the interaction layer. If not, every function is unknown, and
+   * constants are in the null space. The default is true.
    */
   vtkSetMacro(Constrained, bool);
   vtkGetMacro(Constrained, bool);
@@ -229,12 +231,12 @@ public:
 
   ///@{
   /**
-   * Whether a collar narrower than the horizon is accepted; what lies beyond the mesh then does not
-   * count. The default is false.
+   * Whether an interaction layer narrower than the horizon is accepted; what lies beyond the mesh
+   * then does not count. The default is false.
    */
-  vtkSetMacro(AllowThinCollar, bool);
-  vtkGetMacro(AllowThinCollar, bool);
-  vtkBooleanMacro(AllowThinCollar, bool);
+  vtkSetMacro(AllowThinLayer, bool);
+  vtkGetMacro(AllowThinLayer, bool);
+  vtkBooleanMacro(AllowThinLayer, bool);
   ///@}
 
   ///@{
@@ -256,7 +258,7 @@ public:
 
   ///@{
   /**
-   * Whether to solve a(u, w) = int b w with u = g in the collar. The default is false.
+   * Whether to solve a(u, w) = int b w with u = g in the interaction layer. The default is false.
    */
   vtkSetMacro(Solve, bool);
   vtkGetMacro(Solve, bool);
@@ -346,9 +348,9 @@ private:
   int Discretization = EXACT;
   int Rules = TABLES;
   double Tolerance = 1e-5;
-  double CollarValue = 2.0;
+  double LayerValue = 2.0;
   bool Constrained = true;
-  bool AllowThinCollar = false;
+  bool AllowThinLayer = false;
   bool ComputeSpectrum = true;
   double SpectrumTolerance = 1e-8;
   bool Solve = false;

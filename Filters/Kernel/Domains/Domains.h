@@ -48,7 +48,7 @@ struct StructuredMesh
   std::vector<double> points;      ///< x y z each
   std::vector<Index> triangles;    ///< three points each, counter-clockwise
   std::vector<int> pointMarkers;   ///< 0 inside, else the boundary a point lies on
-  std::vector<int> cellReferences; ///< 1 in the domain, 2 in its collar
+  std::vector<int> cellReferences; ///< 1 in the domain, 2 in its interaction layer
 };
 
 /// How a domain comes to its mesh.
@@ -88,15 +88,15 @@ TAUTLINE_KERNEL_EXPORT SolidBoundary solidBoundary(const std::string& name, doub
 TAUTLINE_KERNEL_EXPORT StructuredMesh structuredRectangle(Index cells);
 
 /**
- * @brief The square (0,1)^2 of right triangles of Figures 4.6 and 4.7 with a collar of width
- * `collar`.
+ * @brief The square (0,1)^2 of right triangles of Figures 4.6 and 4.7 with an interaction layer of
+ * width `interaction layer`.
  *
  * The legs of a triangle are h sqrt(r) and h / sqrt(r), so that the number of triangles in the
  * square is 2 / h^2 for every aspect ratio r. 1 / (h sqrt(r)) and sqrt(r) / h must be whole
- * numbers; the collar has as many whole layers as are needed to be at least `collar` wide. Throws
- * Error otherwise.
+ * numbers; the interaction layer has as many whole layers as are needed to be at least `layer`
+ * wide. Throws Error otherwise.
  */
-TAUTLINE_KERNEL_EXPORT StructuredMesh structuredSquare(double h, double aspectRatio, double collar);
+TAUTLINE_KERNEL_EXPORT StructuredMesh structuredSquare(double h, double aspectRatio, double layer);
 
 /**
  * @brief Where a boundary point goes: its displacement at the end of the motion, times `amount`.

@@ -83,18 +83,18 @@ StructuredMesh structuredRectangle(Index cells)
 }
 
 //------------------------------------------------------------------------------
-StructuredMesh structuredSquare(double h, double aspectRatio, double collar)
+StructuredMesh structuredSquare(double h, double aspectRatio, double layer)
 {
-  if (!(aspectRatio >= 1.0) || !(collar >= 0.0) || !(collar <= 10.0))
+  if (!(aspectRatio >= 1.0) || !(layer >= 0.0) || !(layer <= 10.0))
   {
-    throw Error("the aspect ratio must be at least 1 and the collar from 0 to 10 wide");
+    throw Error("the aspect ratio must be at least 1 and the interaction layer from 0 to 10 wide");
   }
   const double root = std::sqrt(aspectRatio);
   const Index nx = wholeNumber(1.0 / (h * root), "1/(h sqrt(r))");
   const Index ny = wholeNumber(root / h, "sqrt(r)/h");
   const double dx = 1.0 / static_cast<double>(nx), dy = 1.0 / static_cast<double>(ny);
-  const auto layersX = static_cast<Index>(std::ceil(collar / dx - 1e-9));
-  const auto layersY = static_cast<Index>(std::ceil(collar / dy - 1e-9));
+  const auto layersX = static_cast<Index>(std::ceil(layer / dx - 1e-9));
+  const auto layersY = static_cast<Index>(std::ceil(layer / dy - 1e-9));
   const Grid grid = { nx + 2 * layersX, ny + 2 * layersY, -static_cast<double>(layersX) * dx,
     -static_cast<double>(layersY) * dy, dx, dy, false };
   StructuredMesh mesh = makeGrid(grid);

@@ -102,7 +102,7 @@ double noise(Index i, Index j, int what)
   return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
 }
 
-void proceed(const CollarOptions& options, double part)
+void proceed(const InteractionLayerOptions& options, double part)
 {
   if (options.progress && !options.progress(part))
   {
@@ -110,9 +110,9 @@ void proceed(const CollarOptions& options, double part)
   }
 }
 
-/// Points of the lattice around the mesh that become part of the collar.
+/// Points of the lattice around the mesh that become part of the interaction layer.
 std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<Edge>& edges,
-  double size, const CollarOptions& options)
+  double size, const InteractionLayerOptions& options)
 {
   Vec2 low = { 1e300, 1e300 }, high = { -1e300, -1e300 };
   for (Index t = 0; t < mesh.size(); ++t)
@@ -126,7 +126,7 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
   const double rows = std::ceil((high[1] + reach - from[1]) / rise) + 1.0;
   if (!(columns * rows <= MostPoints))
   {
-    throw Error("a collar of this width with elements of size " + std::to_string(size) +
+    throw Error("an interaction layer of this width with elements of size " + std::to_string(size) +
       " has too many of them: give a larger element size");
   }
   const auto m = static_cast<Index>(columns), n = static_cast<Index>(rows);
@@ -162,17 +162,17 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
 }
 
 //------------------------------------------------------------------------------
-HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options)
+HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerOptions& options)
 {
   if (!(options.width > 0.0) || !std::isfinite(options.width))
   {
-    throw Error(
-      "the width of the collar is " + std::to_string(options.width) + "; it has to be above 0");
+    throw Error("the width of the interaction layer is " + std::to_string(options.width) +
+      "; it has to be above 0");
   }
   if (!(options.elementSize >= 0.0) || !std::isfinite(options.elementSize))
   {
-    throw Error("the element size of the collar is " + std::to_string(options.elementSize) +
-      "; it has to be 0 or more");
+    throw Error("the element size of the interaction layer is " +
+      std::to_string(options.elementSize) + "; it has to be 0 or more");
   }
   const PlanarTriangles triangles(mesh);
   const std::vector<Edge> edges = boundaryEdges(triangles);
@@ -242,7 +242,7 @@ HorizonMesh addCollar(const HorizonMesh& mesh, const CollarOptions& options)
       const int turned = triangles.flipped ? (3 - k) % 3 : k;
       result.triangles.push_back(globalOf[t[turned]]);
     }
-    result.collar.push_back(1);
+    result.layer.push_back(1);
   }
   if (!result.givenPoints.empty())
   {

@@ -1,21 +1,21 @@
 /**
- * @file HorizonCollar.h
- * @brief Puts a collar of triangles around a planar mesh, for the volume constraint of nonlocal
- * models.
+ * @file InteractionLayer.h
+ * @brief Puts an interaction layer of triangles around a planar mesh, for the volume constraint of
+ * nonlocal models.
  */
-#ifndef tautline_HorizonCollar_h
-#define tautline_HorizonCollar_h
+#ifndef tautline_InteractionLayer_h
+#define tautline_InteractionLayer_h
 
 #include "PeridynamicOptions.h"
 #include "tautline/SolversExport.h"
 
 namespace tautline
 {
-struct CollarOptions
+struct InteractionLayerOptions
 {
   double width = 0.2; ///< least width, in the unit of the mesh; above 0
   double elementSize =
-    0.0;           ///< edge of the triangles of the collar; 0: the mean edge of the boundary
+    0.0; ///< edge of the triangles of the interaction layer; 0: the mean edge of the boundary
   int threads = 0; ///< 0 is all cores; the result does not depend on it
   std::function<bool(double)>
     progress; ///< told a fraction done; ends with an Error when it returns false
@@ -24,15 +24,16 @@ struct CollarOptions
 /**
  * @brief The mesh with triangles added all around it, and in its holes, up to `width` from it.
  *
- * Points and triangles of the mesh stay as they are, and come first; the collar is conforming: it
- * has the edges of the boundary. Its points lie on a lattice of equilateral triangles, slightly
- * shaken, joined with those of the boundary by a constrained Delaunay triangulation. Triangles that
- * already are collar stay so, and count as part of the mesh the collar is put around.
+ * Points and triangles of the mesh stay as they are, and come first; the interaction layer is
+ * conforming: it has the edges of the boundary. Its points lie on a lattice of equilateral
+ * triangles, slightly shaken, joined with those of the boundary by a constrained Delaunay
+ * triangulation. Triangles that already belong to an interaction layer keep doing so, and count as
+ * part of the mesh the interaction layer is put around.
  *
  * Throws Error for a width that is not above 0, a mesh PeridynamicOptions would refuse, a boundary
- * that crosses or touches itself, and a collar of more than ten million triangles.
+ * that crosses or touches itself, and an interaction layer of more than ten million triangles.
  */
-TAUTLINE_SOLVERS_EXPORT HorizonMesh addCollar(
-  const HorizonMesh& mesh, const CollarOptions& options);
+TAUTLINE_SOLVERS_EXPORT HorizonMesh addInteractionLayer(
+  const HorizonMesh& mesh, const InteractionLayerOptions& options);
 }
 #endif

@@ -12,14 +12,14 @@
 
 namespace tautline
 {
-/// A triangle mesh in the plane, with its collar.
+/// A triangle mesh in the plane, with its interaction layer.
 struct HorizonMesh
 {
-  std::vector<double> points;        ///< x y each
-  std::vector<Index> triangles;      ///< three points each, all of one orientation
-  std::vector<unsigned char> collar; ///< per triangle, not 0 where the solution is given
-  /// Per point, not 0 where the continuous linear basis is given. Empty: at the points of collar
-  /// triangles, so also on the boundary of the domain.
+  std::vector<double> points;       ///< x y each
+  std::vector<Index> triangles;     ///< three points each, all of one orientation
+  std::vector<unsigned char> layer; ///< per triangle, not 0 where the solution is given
+  /// Per point, not 0 where the continuous linear basis is given. Empty: at the points of
+  /// interaction layer triangles, so also on the boundary of the domain.
   std::vector<unsigned char> givenPoints;
 
   Index numberOfPoints() const { return static_cast<Index>(this->points.size()) / 2; }
@@ -89,11 +89,12 @@ struct PeridynamicOptions
   RuleSet rules = RuleSet::Tables;
   /// Exact: wanted relative error of the integral over each pair of triangles, 1e-10 to 0.1.
   double tolerance = 1e-5;
-  /// Whether functions of the collar are given. False: all are unknown, nothing is constrained, and
-  /// constants (Elastic: rigid motions) are in the null space.
+  /// Whether functions of the interaction layer are given. False: all are unknown, nothing is
+  /// constrained, and constants (Elastic: rigid motions) are in the null space.
   bool constrained = true;
-  /// Whether a collar that is too thin is accepted: what lies beyond the mesh then does not count.
-  bool allowThinCollar = false;
+  /// Whether an interaction layer that is too thin is accepted: what lies beyond the mesh then does
+  /// not count.
+  bool allowThinLayer = false;
   /// Exact: whether pairs of triangles that are congruent up to a translation are integrated once.
   bool reuseCongruent = true;
   double memoryLimit = 0.0; ///< bytes the result may take; 0: as many as the machine has free
@@ -117,8 +118,8 @@ struct PeridynamicSystem
   /// Of the dissertation's discretization: Frobenius norm of the unsymmetric part, which is
   /// dropped, over all.
   double asymmetry = 0.0;
-  /// By how much the collar is narrower than the horizon; 0 if it is wide enough.
-  double collarDeficit = 0.0;
+  /// By how much the interaction layer is narrower than the horizon; 0 if it is wide enough.
+  double layerDeficit = 0.0;
   double memory = 0.0;       ///< bytes, estimated before starting
   Index integratedPairs = 0; ///< Exact: pairs of triangles integrated (not reused)
 };

@@ -172,19 +172,19 @@ void checkMemory(double needed, const PeridynamicOptions& options)
   }
 }
 
-void checkCollar(const HorizonMesh& mesh, const PeridynamicOptions& options, double deficit)
+void checkLayer(const HorizonMesh& mesh, const PeridynamicOptions& options, double deficit)
 {
-  if (!options.constrained || options.allowThinCollar || deficit == 0.0)
+  if (!options.constrained || options.allowThinLayer || deficit == 0.0)
   {
     return;
   }
   const bool none =
-    std::all_of(mesh.collar.begin(), mesh.collar.end(), [](unsigned char c) { return c == 0; });
-  throw Error(none ? "the mesh has no collar; one of width " + number(options.horizon) +
-        " around the domain is needed: add it with Horizon Collar"
-                   : "the collar is " + number(options.horizon - deficit) +
-        " wide and the horizon is " + number(options.horizon) + ": a collar of width " +
-        number(options.horizon) + " is needed (Horizon Collar makes it), or allow a thin one");
+    std::all_of(mesh.layer.begin(), mesh.layer.end(), [](unsigned char c) { return c == 0; });
+  throw Error(none ? "the mesh has no interaction layer; one of width " + number(options.horizon) +
+        " around the domain is needed: add it with Interaction Layer"
+                   : "the interaction layer is " + number(options.horizon - deficit) +
+        " wide and the horizon is " + number(options.horizon) + ": an interaction layer of width " +
+        number(options.horizon) + " is needed (Interaction Layer makes it), or allow a thin one");
 }
 
 /// Stops an assembly, from any thread, for the first reason there is.
@@ -372,11 +372,11 @@ FunctionSpace::FunctionSpace(
     for (int k = 0; k < this->perTriangle(); ++k)
     {
       const Index f = this->function(triangles, t, k);
-      // A vertex of any collar triangle is given: those on the boundary of the domain are not
-      // unknown.
+      // A vertex of any interaction layer triangle is given: those on the boundary of the domain
+      // are not unknown.
       const bool byPoint = this->basis == PeridynamicBasis::Linear && !mesh.givenPoints.empty();
       const bool fixed =
-        options.constrained && (byPoint ? mesh.givenPoints[f] != 0 : mesh.collar[t] != 0);
+        options.constrained && (byPoint ? mesh.givenPoints[f] != 0 : mesh.layer[t] != 0);
       this->unknownOf[f] = fixed || this->unknownOf[f] == given ? given : unknown;
       this->low[f] = { std::min(this->low[f][0], triangles.low[t][0]),
         std::min(this->low[f][1], triangles.low[t][1]) };
@@ -398,9 +398,9 @@ FunctionSpace::FunctionSpace(
   }
   if (this->unknowns == 0)
   {
-    throw Error(
-      "there is no unknown: every function belongs to the collar. The domain has to be larger, or "
-      "the elements smaller");
+    throw Error("there is no unknown: every function belongs to the interaction layer. The domain "
+                "has to be larger, or "
+                "the elements smaller");
   }
 }
 
@@ -445,9 +445,9 @@ PeridynamicSystem assemblePeridynamics(
   const PlanarTriangles triangles(mesh);
   PeridynamicSystem system;
   system.components = options.model == PeridynamicModel::Elastic ? 2 : 1;
-  system.collarDeficit =
-    options.constrained ? collarDeficit(mesh, options.horizon, options.threads) : 0.0;
-  checkCollar(mesh, options, system.collarDeficit);
+  system.layerDeficit =
+    options.constrained ? layerDeficit(mesh, options.horizon, options.threads) : 0.0;
+  checkLayer(mesh, options, system.layerDeficit);
   const FunctionSpace space(mesh, triangles, options);
   if (given && static_cast<Index>(given->size()) != space.functions * system.components)
   {

@@ -10,8 +10,8 @@
  * one of the others of KernelShape with s = 1 / delta^4. The linearised elastic model (4.4)-(4.5)
  * has the tensor kernel (y-x) (y-x)^T k(|x - y|) and s divided by delta^2 once more, so that both
  * have a local limit: s a -> pi / (2 (4-p)) times the Laplacian's form. The solution is given in a
- * collar of width delta around the domain Omega (the volume constraint); unknowns are those of
- * Omega.
+ * interaction layer of width delta around the domain Omega (the volume constraint); unknowns are
+ * those of Omega.
  *
  * Two readings of the integrals:
  * - Dissertation: the rules of its section 4.3. The disc is centred at each outer quadrature point,
@@ -43,15 +43,15 @@ namespace tautline
 {
 /**
  * @brief The square (0,1)^2 of right triangles with legs h sqrt(r) and h / sqrt(r), r the aspect
- * ratio, with a collar from -delta to 1 + delta, as the dissertation's tables need it.
+ * ratio, with an interaction layer from -delta to 1 + delta, as the dissertation's tables need it.
  *
  * The grid starts exactly at -delta, also where then the sides of the square are no mesh lines (r =
  * 4, h = 0.1, delta = 0.3; the text does not say so, its numbers do): a triangle is of the domain
- * if its centroid is, and the linear basis is unknown at the points strictly inside. The collar is
- * then too thin for those next to a side. See also structuredSquare(), whose collar has whole
- * layers. Throws Error where the extent is no whole number of elements.
- * @param extraLayers layers of elements added on each side, for a collar that is wide enough all
- * the same
+ * if its centroid is, and the linear basis is unknown at the points strictly inside. The
+ * interaction layer is then too thin for those next to a side. See also structuredSquare(), whose
+ * interaction layer has whole layers. Throws Error where the extent is no whole number of elements.
+ * @param extraLayers layers of elements added on each side, for an interaction layer that is wide
+ * enough all the same
  */
 TAUTLINE_SOLVERS_EXPORT HorizonMesh horizonSquare(
   double h, double aspectRatio, double delta, Index extraLayers = 0);
@@ -59,14 +59,14 @@ TAUTLINE_SOLVERS_EXPORT HorizonMesh horizonSquare(
 /**
  * @brief Assembles the stiffness matrix.
  *
- * @param given values in the collar, one per function and component of the basis (those of unknown
- * functions do not matter), for PeridynamicSystem::constraintLoad; may be null
+ * @param given values in the interaction layer, one per function and component of the basis (those
+ * of unknown functions do not matter), for PeridynamicSystem::constraintLoad; may be null
  *
  * Throws Error, with the remedy, for: a horizon that is not above 0; an exponent at or above the
  * singular limit (singularLimit()); triangles that are inverted, degenerate, of mixed orientation
- * or have coordinates that are not finite; a missing collar, one narrower than the horizon; no
- * unknown; in the dissertation's discretization, a horizon so small that a function meets no
- * triangle; more memory than allowed; time up; progress() said stop.
+ * or have coordinates that are not finite; a missing interaction layer, one narrower than the
+ * horizon; no unknown; in the dissertation's discretization, a horizon so small that a function
+ * meets no triangle; more memory than allowed; time up; progress() said stop.
  */
 TAUTLINE_SOLVERS_EXPORT PeridynamicSystem assemblePeridynamics(const HorizonMesh& mesh,
   const PeridynamicOptions& options, const std::vector<double>* given = nullptr);
@@ -87,9 +87,9 @@ TAUTLINE_SOLVERS_EXPORT double estimatePeridynamicMemory(
 
 /**
  * @brief By how much the mesh falls short of reaching `horizon` beyond the domain, 0 if it does;
- * the domain is what is not collar.
+ * the domain is what is not interaction layer.
  */
-TAUTLINE_SOLVERS_EXPORT double collarDeficit(
+TAUTLINE_SOLVERS_EXPORT double layerDeficit(
   const HorizonMesh& mesh, double horizon, int threads = 0);
 
 /**

@@ -75,10 +75,10 @@ PlanarTriangles::PlanarTriangles(const HorizonMesh& mesh)
 {
   const Index points = mesh.numberOfPoints(), count = mesh.numberOfTriangles();
   if (mesh.points.size() % 2 != 0 || mesh.triangles.size() % 3 != 0 ||
-    static_cast<Index>(mesh.collar.size()) != count)
+    static_cast<Index>(mesh.layer.size()) != count)
   {
-    throw Error(
-      "a mesh has two coordinates per point, and three points and a collar flag per triangle");
+    throw Error("a mesh has two coordinates per point, and three points and an interaction layer "
+                "flag per triangle");
   }
   if (!mesh.givenPoints.empty() && static_cast<Index>(mesh.givenPoints.size()) != points)
   {
@@ -245,7 +245,7 @@ void BoxGrid::near(Vec2 low, Vec2 high, double reach, std::vector<std::int32_t>&
 }
 
 //------------------------------------------------------------------------------
-double collarDeficit(const HorizonMesh& mesh, double horizon, int threads)
+double layerDeficit(const HorizonMesh& mesh, double horizon, int threads)
 {
   // Edges by their two points: how many triangles and how many of the domain use them.
   struct Use
@@ -260,7 +260,7 @@ double collarDeficit(const HorizonMesh& mesh, double horizon, int threads)
       const Index a = mesh.triangles[3 * t + k], b = mesh.triangles[3 * t + (k + 1) % 3];
       Use& use = edges[{ std::min(a, b), std::max(a, b) }];
       ++use.all;
-      use.domain += mesh.collar[t] == 0;
+      use.domain += mesh.layer[t] == 0;
     }
   }
   const auto point = [&](Index i) { return Vec2{ mesh.points[2 * i], mesh.points[2 * i + 1] }; };
@@ -299,8 +299,9 @@ HorizonMesh horizonSquare(double h, double aspectRatio, double delta, Index extr
   if (!(h > 0.0) || !(aspectRatio > 0.0) || !(delta >= 0.0) ||
     !std::isfinite(h + delta + aspectRatio))
   {
-    throw Error("the square needs an element size and an aspect ratio above 0 and a collar of "
-                "width 0 or more");
+    throw Error(
+      "the square needs an element size and an aspect ratio above 0 and an interaction layer of "
+      "width 0 or more");
   }
   const double steps[] = { h * std::sqrt(aspectRatio), h / std::sqrt(aspectRatio) };
   Index cells[2];
@@ -343,7 +344,7 @@ HorizonMesh horizonSquare(double h, double aspectRatio, double delta, Index extr
           x += mesh.points[2 * id] / 3.0;
           y += mesh.points[2 * id + 1] / 3.0;
         }
-        mesh.collar.push_back(!(inside(x) && inside(y)));
+        mesh.layer.push_back(!(inside(x) && inside(y)));
       }
     }
   }

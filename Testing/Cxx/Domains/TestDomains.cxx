@@ -140,8 +140,8 @@ void checkMotion()
     std::abs(tautline::domainDisplacement("gate", { 1, 0.6, 0 }, 2, 1.0)[1] + 0.4) < 1e-15);
 }
 
-/// h = 0.1, collar 0.2: 14 x 14 squares; aspect ratio 4: 5 x 20 rectangles with 1 and 4 layers
-/// around.
+/// h = 0.1, interaction layer 0.2: 14 x 14 squares; aspect ratio 4: 5 x 20 rectangles with 1 and 4
+/// layers around.
 void checkSquare()
 {
   const tautline::StructuredMesh isotropic = tautline::structuredSquare(0.1, 1.0, 0.2);

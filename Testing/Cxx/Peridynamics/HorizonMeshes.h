@@ -1,6 +1,7 @@
 /**
  * @file HorizonMeshes.h
- * @brief Meshes with a collar, and the values of the notes, for the tests of nonlocal models.
+ * @brief Meshes with an interaction layer, and the values of the notes, for the tests of nonlocal
+ * models.
  */
 #ifndef tautline_HorizonMeshes_h
 #define tautline_HorizonMeshes_h
@@ -12,8 +13,8 @@
 
 namespace tautline
 {
-/** A square (0,1)^2 with a collar of whole layers; inner points moved by up to `shake` element
- * sizes. */
+/** A square (0,1)^2 with an interaction layer of whole layers; inner points moved by up to `shake`
+ * element sizes. */
 inline HorizonMesh shakenSquare(int n, int layers, double shake, unsigned seed = 5)
 {
   HorizonMesh mesh;
@@ -40,7 +41,7 @@ inline HorizonMesh shakenSquare(int n, int layers, double shake, unsigned seed =
         mesh.triangles.push_back(id);
       }
       const bool inside = i >= layers && i < m - layers && j >= layers && j < m - layers;
-      mesh.collar.insert(mesh.collar.end(), 2, inside ? 0 : 1);
+      mesh.layer.insert(mesh.layer.end(), 2, inside ? 0 : 1);
     }
   }
   return mesh;
@@ -111,7 +112,7 @@ inline PeridynamicOptions optionsOf(const TableCell& cell, Discretization discre
   options.kernel.exponent = cell.table == 3 ? 2.5 : 1.0;
   options.basis = cell.table == 1 ? PeridynamicBasis::Constant : PeridynamicBasis::Linear;
   options.discretization = discretization;
-  options.allowThinCollar = true;
+  options.allowThinLayer = true;
   return options;
 }
 

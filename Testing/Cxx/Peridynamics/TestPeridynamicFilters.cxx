@@ -19,12 +19,12 @@ using namespace tautline;
 
 namespace
 {
-vtkSmartPointer<vtkUnstructuredGrid> squareWithCollar(double h = 0.1, double collar = 0.2)
+vtkSmartPointer<vtkUnstructuredGrid> squareWithLayer(double h = 0.1, double layer = 0.2)
 {
   vtkNew<vtkDomainSource> source;
   source->SetDomainByName("square");
   source->SetElementSize(h);
-  source->SetCollarWidth(collar);
+  source->SetLayerWidth(layer);
   source->Update();
   return vtkUnstructuredGrid::SafeDownCast(source->GetOutputDataObject(0));
 }
@@ -72,7 +72,7 @@ double column(vtkAlgorithm* filter, const char* name)
 //------------------------------------------------------------------------------
 void testStiffness()
 {
-  const auto mesh = squareWithCollar();
+  const auto mesh = squareWithLayer();
   vtkNew<vtkPeridynamicStiffness> filter;
   filter->SetInputData(mesh);
   filter->SetSparsityPixels(40);
@@ -140,10 +140,10 @@ void testStiffness()
 }
 
 //------------------------------------------------------------------------------
-/// u = 1 + x in the collar and no source: u = 1 + x everywhere.
+/// u = 1 + x in the interaction layer and no source: u = 1 + x everywhere.
 void testGiven()
 {
-  const auto mesh = squareWithCollar();
+  const auto mesh = squareWithLayer();
   vtkNew<vtkDoubleArray> given, onCells;
   given->SetName("g");
   for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
@@ -178,8 +178,8 @@ void testGiven()
 }
 
 //------------------------------------------------------------------------------
-/// A mesh in any plane, of any precision, of any class; and its collar.
-void testCollar()
+/// A mesh in any plane, of any precision, of any class; and its interaction layer.
+void testInteractionLayer()
 {
   double first = 0.0;
   for (const bool slanted : { false, true })
@@ -187,16 +187,16 @@ void testCollar()
     for (const int precision : { VTK_DOUBLE, VTK_FLOAT })
     {
       const auto bare = bareSquare(8, slanted, precision);
-      vtkNew<vtkInteractionLayer> collar;
-      collar->SetInputData(bare);
-      collar->SetWidth(0.25);
+      vtkNew<vtkInteractionLayer> layer;
+      layer->SetInputData(bare);
+      layer->SetWidth(0.25);
       vtkNew<vtkPeridynamicStiffness> filter;
-      filter->SetInputConnection(collar->GetOutputPort());
+      filter->SetInputConnection(layer->GetOutputPort());
       filter->SetHorizon(0.25);
       filter->Update();
       first = first > 0.0 ? first : filter->GetCondition();
       TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), first, 2e-4);
-      vtkUnstructuredGrid* made = collar->GetOutput();
+      vtkUnstructuredGrid* made = layer->GetOutput();
       vtkDataArray* reference = made->GetCellData()->GetArray("Reference");
       for (vtkIdType cell = 0; cell < made->GetNumberOfCells(); ++cell)
       {
@@ -230,7 +230,7 @@ void testCollar()
 void testNeighbors()
 {
   vtkNew<vtkHorizonNeighbors> filter;
-  filter->SetInputData(squareWithCollar());
+  filter->SetInputData(squareWithLayer());
   filter->SetCenter(0.43, 0.51, 0.0);
   filter->Update();
   vtkCellData* cells = filter->GetOutput()->GetCellData();
@@ -268,14 +268,14 @@ void testErrors()
   };
   vtkNew<vtkPeridynamicStiffness> filter;
   filter->SetInputData(bareSquare(4, false));
-  check(filter, "add it with Horizon Collar");
-  filter->SetInputData(squareWithCollar());
+  check(filter, "add it with Interaction Layer");
+  filter->SetInputData(squareWithLayer());
   filter->SetHorizon(0.3);
-  check(filter, "a collar of width 0.3 is needed");
-  filter->AllowThinCollarOn();
+  check(filter, "an interaction layer of width 0.3 is needed");
+  filter->AllowThinLayerOn();
   filter->Update();
-  TAUTLINE_CHECK_RELATIVE(column(filter, "CollarDeficit"), 0.1, 1e-9);
-  filter->AllowThinCollarOff();
+  TAUTLINE_CHECK_RELATIVE(column(filter, "LayerDeficit"), 0.1, 1e-9);
+  filter->AllowThinLayerOff();
   filter->SetHorizon(0.2);
   filter->SetExponent(4.0);
   check(filter, "to below 4");
@@ -297,12 +297,12 @@ void testErrors()
   curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[0] * p[1] }; });
   filter->SetInputData(toGrid(curved));
   check(filter, "do not lie in a plane");
-  vtkNew<vtkInteractionLayer> collar;
-  collar->SetInputData(toGrid(curved));
-  check(collar, "do not lie in a plane");
-  collar->SetInputData(bareSquare(4, false));
-  collar->SetWidth(0.0);
-  check(collar, "above 0");
+  vtkNew<vtkInteractionLayer> layer;
+  layer->SetInputData(toGrid(curved));
+  check(layer, "do not lie in a plane");
+  layer->SetInputData(bareSquare(4, false));
+  layer->SetWidth(0.0);
+  check(layer, "above 0");
 }
 }
 
@@ -310,7 +310,7 @@ int TestPeridynamicFilters(int, char*[])
 {
   testStiffness();
   testGiven();
-  testCollar();
+  testInteractionLayer();
   testNeighbors();
   testErrors();
   return exitCode();

@@ -40,12 +40,12 @@ void testExact()
     const Context context("exact 4." + std::to_string(cell.table) + " AR " +
       std::to_string(cell.aspectRatio) + " n " + std::to_string(cell.n) + " delta " +
       std::to_string(cell.delta));
-    // The one grid whose lines miss the square's sides needs a further layer for a collar that is
-    // wide enough.
+    // The one grid whose lines miss the square's sides needs a further layer for an interaction
+    // layer that is wide enough.
     const bool off = cell.aspectRatio == 4 && cell.n == 10 && cell.delta == 0.3;
     const HorizonMesh mesh = horizonSquare(1.0 / cell.n, cell.aspectRatio, cell.delta, off ? 1 : 0);
     PeridynamicOptions options = optionsOf(cell, Discretization::Exact);
-    options.allowThinCollar = false;
+    options.allowThinLayer = false;
     TAUTLINE_CHECK_RELATIVE(
       conditionOf(mesh, options), cell.reference, cell.table == 3 ? 2e-3 : 1e-3);
   }

@@ -1,5 +1,6 @@
 // The nonlocal matrices: formulas, symmetry, definiteness, null spaces, the local limit, kernels,
-// threads, whatever is refused; the collar, the disc, the eigenvalues and the solver they need.
+// threads, whatever is refused; the interaction layer, the disc, the eigenvalues and the solver
+// they need.
 #include "Check.h"
 #include "HorizonMeshes.h"
 
@@ -358,16 +359,16 @@ void testThreads()
 }
 
 //------------------------------------------------------------------------------
-void testCollar()
+void testInteractionLayer()
 {
-  // The matrix of the exact discretization does not depend on how the collar is cut, as the
-  // functions are 0 there.
+  // The matrix of the exact discretization does not depend on how the interaction layer is cut, as
+  // the functions are 0 there.
   const HorizonMesh regular = horizonSquare(0.1, 1, 0.2);
   HorizonMesh bare;
   std::vector<Index> newId(regular.numberOfPoints(), -1);
   for (Index t = 0; t < regular.numberOfTriangles(); ++t)
   {
-    for (int k = 0; !regular.collar[t] && k < 3; ++k)
+    for (int k = 0; !regular.layer[t] && k < 3; ++k)
     {
       Index& id = newId[regular.triangles[3 * t + k]];
       if (id < 0)
@@ -379,8 +380,8 @@ void testCollar()
       bare.triangles.push_back(id);
     }
   }
-  bare.collar.assign(bare.numberOfTriangles(), 0);
-  CollarOptions collar;
+  bare.layer.assign(bare.numberOfTriangles(), 0);
+  InteractionLayerOptions layer;
   HorizonMesh reversed = bare;
   for (std::size_t t = 0; t < reversed.triangles.size(); t += 3)
   {
@@ -391,33 +392,33 @@ void testCollar()
   const double condition = conditionOf(regular, options);
   for (const HorizonMesh* inner : { &bare, &reversed })
   {
-    const HorizonMesh made = addCollar(*inner, collar);
-    TAUTLINE_CHECK_EQUAL(collarDeficit(made, collar.width), 0.0);
+    const HorizonMesh made = addInteractionLayer(*inner, layer);
+    TAUTLINE_CHECK_EQUAL(layerDeficit(made, layer.width), 0.0);
     TAUTLINE_CHECK(std::equal(inner->points.begin(), inner->points.end(), made.points.begin()));
     TAUTLINE_CHECK(
       std::equal(inner->triangles.begin(), inner->triangles.end(), made.triangles.begin()));
     TAUTLINE_CHECK_RELATIVE(conditionOf(made, options), condition, 1e-5);
-    collar.threads = 1;
-    TAUTLINE_CHECK(addCollar(*inner, collar).points == made.points);
-    collar.threads = 0;
+    layer.threads = 1;
+    TAUTLINE_CHECK(addInteractionLayer(*inner, layer).points == made.points);
+    layer.threads = 0;
   }
   // Around a hole as well; the area is that of what it covers.
   HorizonMesh ring = shakenSquare(12, 0, 0.0);
   HorizonMesh cut = ring;
   cut.triangles.clear();
-  cut.collar.clear();
+  cut.layer.clear();
   for (Index t = 0; t < ring.numberOfTriangles(); ++t)
   {
     const Index cell = t / 2, i = cell % 12, j = cell / 12;
     if (i < 4 || i >= 8 || j < 4 || j >= 8)
     {
       cut.triangles.insert(cut.triangles.end(), &ring.triangles[3 * t], &ring.triangles[3 * t] + 3);
-      cut.collar.push_back(0);
+      cut.layer.push_back(0);
     }
   }
-  collar.width = 0.1;
-  const HorizonMesh made = addCollar(cut, collar);
-  TAUTLINE_CHECK_EQUAL(collarDeficit(made, 0.1), 0.0);
+  layer.width = 0.1;
+  const HorizonMesh made = addInteractionLayer(cut, layer);
+  TAUTLINE_CHECK_EQUAL(layerDeficit(made, 0.1), 0.0);
   double area = 0.0;
   for (Index t = cut.numberOfTriangles(); t < made.numberOfTriangles(); ++t)
   {
@@ -430,7 +431,8 @@ void testCollar()
   }
   const double least = 4 * 0.1 + M_PI * 0.01 + 1.0 / 9.0 - std::pow(1.0 / 3.0 - 0.2, 2);
   TAUTLINE_CHECK(area > least && area < 2.0 * least);
-  // In the bay of a concave domain nothing is bridged: no triangle of the collar is long.
+  // In the bay of a concave domain nothing is bridged: no triangle of the interaction layer is
+  // long.
   HorizonMesh bay = ring;
   bay.triangles.clear();
   for (Index t = 0; t < ring.numberOfTriangles(); ++t)
@@ -441,9 +443,9 @@ void testCollar()
       bay.triangles.insert(bay.triangles.end(), &ring.triangles[3 * t], &ring.triangles[3 * t] + 3);
     }
   }
-  bay.collar.assign(bay.numberOfTriangles(), 0);
-  const HorizonMesh held = addCollar(bay, collar);
-  TAUTLINE_CHECK_EQUAL(collarDeficit(held, 0.1), 0.0);
+  bay.layer.assign(bay.numberOfTriangles(), 0);
+  const HorizonMesh held = addInteractionLayer(bay, layer);
+  TAUTLINE_CHECK_EQUAL(layerDeficit(held, 0.1), 0.0);
   for (Index t = bay.numberOfTriangles(); t < held.numberOfTriangles(); ++t)
   {
     for (int k = 0; k < 3; ++k)
@@ -453,14 +455,14 @@ void testCollar()
       TAUTLINE_CHECK(std::hypot(a[0] - b[0], a[1] - b[1]) < 2.5 / 12);
     }
   }
-  collar.width = 0.0;
-  TAUTLINE_CHECK_THROWS(addCollar(bare, collar), "width of the collar is 0");
-  collar.width = 0.2;
-  collar.elementSize = 1e-7;
-  TAUTLINE_CHECK_THROWS(addCollar(bare, collar), "larger element size");
-  collar.elementSize = 0.0;
-  collar.progress = [](double) { return false; };
-  TAUTLINE_CHECK_THROWS(addCollar(bare, collar), "stopped");
+  layer.width = 0.0;
+  TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), "width of the interaction layer is 0");
+  layer.width = 0.2;
+  layer.elementSize = 1e-7;
+  TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), "larger element size");
+  layer.elementSize = 0.0;
+  layer.progress = [](double) { return false; };
+  TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), "stopped");
 }
 
 //------------------------------------------------------------------------------
@@ -562,13 +564,14 @@ void testRefusals()
       o.kernel.exponent = 6.0;
       o.model = PeridynamicModel::Elastic;
     });
-  refuse("a collar of width 0.3 is needed", [](Mesh2, Options o) { o.horizon = 0.3; });
-  refuse("has no collar", [](Mesh2 m, Options) { std::fill(m.collar.begin(), m.collar.end(), 0); });
+  refuse("an interaction layer of width 0.3 is needed", [](Mesh2, Options o) { o.horizon = 0.3; });
+  refuse("has no interaction layer",
+    [](Mesh2 m, Options) { std::fill(m.layer.begin(), m.layer.end(), 0); });
   refuse("no unknown",
     [](Mesh2 m, Options)
     {
       m.givenPoints.clear();
-      std::fill(m.collar.begin(), m.collar.end(), 1);
+      std::fill(m.layer.begin(), m.layer.end(), 1);
     });
   refuse("1 of 72 triangles are inverted (the first is triangle 5)",
     [](Mesh2 m, Options) { std::swap(m.triangles[15], m.triangles[16]); });
@@ -594,8 +597,8 @@ void testRefusals()
       o.horizon = 0.01;
     });
   TAUTLINE_CHECK_THROWS(horizonSquare(0.1, 3, 0.2), "whole number");
-  TAUTLINE_CHECK_EQUAL(collarDeficit(mesh, 0.25), 0.0);
-  TAUTLINE_CHECK_NEAR(collarDeficit(mesh, 0.4), 0.15, 1e-12);
+  TAUTLINE_CHECK_EQUAL(layerDeficit(mesh, 0.25), 0.0);
+  TAUTLINE_CHECK_NEAR(layerDeficit(mesh, 0.4), 0.15, 1e-12);
 
   // A mesh reversed throughout is as good as any.
   HorizonMesh reversed = mesh;
@@ -628,7 +631,7 @@ int TestPeridynamics(int, char*[])
   testLocalLimit();
   testKernels();
   testThreads();
-  testCollar();
+  testInteractionLayer();
   testDisc();
   testEigenvalues();
   testRefusals();
