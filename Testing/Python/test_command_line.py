@@ -25,7 +25,7 @@ def run(*arguments, code: int = 0) -> str:
 # help and usage
 text = run("--help")
 assert all(f"    {verb} " in text for verb in ("quality", "perturb", "compare", "field", "metrics")), text
-assert "VERB" in run(code=2) and "invalid choice: 'paint'" in run("paint", code=2)
+assert "COMMAND" in run(code=2) and "invalid choice: 'paint'" in run("paint", code=2)
 assert "required: FILE" in run("quality", code=2)
 assert "invalid float value: 'x'" in run("perturb", PLATE, "-o", OUT / "cli.vtu", "--fraction", "x", code=2)
 

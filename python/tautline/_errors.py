@@ -7,16 +7,18 @@ from typing import Any
 
 from vtkmodules.vtkCommonCore import vtkCommand
 
+# VTK puts file, line, class and address before the text of a message.
 _PREAMBLE = re.compile(r"^(ERROR|Warning): In .*?, line \d+\s*\n?\w+ \(.*?\): ", re.DOTALL)
-_AFTERMATH = ("returned failure for request", "Algorithm vtk")
+# Parts of the executive's message that follows the message of a filter.
+_CONSEQUENCE = ("returned failure for request", "Algorithm vtk")
 
 
 class Error(RuntimeError):
-    """What every verb raises: bad arguments, files that cannot be read, errors of a filter."""
+    """Raised by every function of the package: wrong arguments, unreadable files, errors of a filter."""
 
 
 class Messages:
-    """Keeps the errors and warnings of VTK objects, which then print nothing.
+    """Collects the errors and warnings of VTK objects, which are then not printed.
 
     >>> messages = Messages(filter, filter.GetExecutive())
     >>> filter.Update()
@@ -27,19 +29,19 @@ class Messages:
         self.errors: list[str] = []
         self.warnings: list[str] = []
         for source in objects:
-            source.AddObserver(vtkCommand.ErrorEvent, _keeper(self.errors))
-            source.AddObserver(vtkCommand.WarningEvent, _keeper(self.warnings))
+            source.AddObserver(vtkCommand.ErrorEvent, _collector(self.errors))
+            source.AddObserver(vtkCommand.WarningEvent, _collector(self.warnings))
 
     def raise_errors(self) -> None:
-        """Raise Error with all messages, if there are any; what the executive says of them is left out."""
+        """Raise Error with all messages, if there are any, without the consequential ones of the executive."""
         if not self.errors:
             return
-        own = [text for text in self.errors if not all(part in text for part in _AFTERMATH)]
-        raise Error("\n".join(dict.fromkeys(own or self.errors)))
+        causes = [text for text in self.errors if not all(part in text for part in _CONSEQUENCE)]
+        raise Error("\n".join(dict.fromkeys(causes or self.errors)))
 
 
 def run(algorithm: Any, messages: Messages | None = None) -> Messages:
-    """Update a filter, raise Error with its messages if it fails; returns the messages."""
+    """Update a filter; returns its messages. Raises Error with them if it fails."""
     messages = messages or watch(algorithm)
     messages.raise_errors()
     algorithm.Update()
@@ -48,7 +50,7 @@ def run(algorithm: Any, messages: Messages | None = None) -> Messages:
 
 
 def watch(algorithm: Any) -> Messages:
-    """Messages of a filter and of its executive."""
+    """The messages of a filter and of its executive, from now on."""
     return Messages(algorithm, algorithm.GetExecutive())
 
 
@@ -57,9 +59,9 @@ def plain(text: str) -> str:
     return _PREAMBLE.sub("", text).strip()
 
 
-def _keeper(texts: list[str]):
-    def keep(_caller, _event, text):
+def _collector(texts: list[str]):
+    def collect(_caller, _event, text):
         texts.append(plain(text))
 
-    keep.CallDataType = "string0"
-    return keep
+    collect.CallDataType = "string0"
+    return collect

@@ -1,36 +1,21 @@
-"""The verbs read and write."""
+"""Meshes as arguments, from files and to files."""
 
 from __future__ import annotations
 
-from importlib import import_module
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import Any, Union
 
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
 
 from ._errors import Error, plain, run, watch
-from ._mesh import Mesh, as_mesh
+from ._formats import FORMATS, Format
+from ._mesh import from_arrays
 
-try:
-    from . import _inputs  # formats of mesh generators
-except ImportError:
-    _inputs = None
-
-# VTK's own formats by ending: module, reader, writer, the class it holds (None: any).
-_FORMATS = {
-    ".vtk": ("vtkIOLegacy", "vtkGenericDataObjectReader", "vtkGenericDataObjectWriter", None),
-    ".vtu": ("vtkIOXML", "vtkXMLUnstructuredGridReader", "vtkXMLUnstructuredGridWriter", "vtkUnstructuredGrid"),
-    ".vtp": ("vtkIOXML", "vtkXMLPolyDataReader", "vtkXMLPolyDataWriter", "vtkPolyData"),
-    ".vti": ("vtkIOXML", "vtkXMLImageDataReader", "vtkXMLImageDataWriter", "vtkImageData"),
-    ".vtr": ("vtkIOXML", "vtkXMLRectilinearGridReader", "vtkXMLRectilinearGridWriter", "vtkRectilinearGrid"),
-    ".vts": ("vtkIOXML", "vtkXMLStructuredGridReader", "vtkXMLStructuredGridWriter", "vtkStructuredGrid"),
-    ".vtm": ("vtkIOXML", "vtkXMLMultiBlockDataReader", "vtkXMLMultiBlockDataWriter", "vtkMultiBlockDataSet"),
-    ".ply": ("vtkIOPLY", "vtkPLYReader", "vtkPLYWriter", "vtkPolyData"),
-    ".stl": ("vtkIOGeometry", "vtkSTLReader", "vtkSTLWriter", "vtkPolyData"),
-    ".obj": ("vtkIOGeometry", "vtkOBJReader", None, "vtkPolyData"),
-}
+#: What every function takes as a mesh: a vtkDataSet, a composite data set, a file name, the result of another function,
+#: or (points, cells), see from_arrays().
+Mesh = Union[vtkDataObject, str, PathLike, "tuple[Any, Any]", Any]
 
 # VTK 9.1 and 9.2 with the expat of today's Debian 12 (VTK issue 19258).
 _APPENDED = (
@@ -39,28 +24,95 @@ _APPENDED = (
 )
 
 
-def read(file: str | PathLike, **options: Any) -> vtkDataObject:
-    """Read a mesh, in the format of the ending of its name.
+def as_mesh(mesh: Mesh) -> vtkDataObject:
+    """The VTK data object of a mesh given in any way; a file is read. Raises Error for anything that is not a mesh."""
+    if isinstance(mesh, (vtkDataSet, vtkCompositeDataSet)):
+        return mesh
+    if isinstance(mesh, (str, PathLike)):
+        return read(mesh)
+    if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
+        return from_arrays(*mesh)
+    inner = getattr(mesh, "mesh", None)  # of a result
+    if isinstance(inner, (vtkDataSet, vtkCompositeDataSet)):
+        return inner
+    raise Error(f"a mesh is a vtkDataSet, a file name or (points, cells), not {type(mesh).__name__}")
 
-    VTK's formats (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl .obj) take no options. Returns a
-    vtkDataSet, of .vtm and some .vtk a composite data set. Raises Error if the file cannot be read.
+
+def read(file: str | PathLike, **options: Any) -> vtkDataObject:
+    """Read a mesh. The ending of the file name decides on the format.
+
+    file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl .obj), or, where the module of readers was built, TetGen and
+        Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++ (.msh), OFF (.off .coff
+        .noff .cnoff).
+    options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles. Not for
+        formats of VTK.
+
+    Returns a vtkDataSet; of .vtm and some .vtk files a composite data set. Raises Error, with file and line where they
+    are known, if the file cannot be read.
+
+    >>> mesh = tautline.read("part.msh", lower_cells=True)
     """
     name, ending = fspath(file), Path(file).suffix.lower()
-    if ending not in _FORMATS:
-        if _inputs:
-            return _inputs.read(name, **options)
-        raise Error(f"{name}: no reader for '{ending}'; there are {' '.join(sorted(_FORMATS))}")
-    if options:
-        raise Error(f"{name}: '{ending}' has no options, not {', '.join(options)}")
+    if ending not in FORMATS:
+        raise Error(f"{name}: no reader for '{ending}'; there are {' '.join(sorted(FORMATS))}")
+    form = FORMATS[ending]
+    _check_options(name, ending, options, "lower_cells" if form.own else None)
+    if form.own:
+        reader = form.make_reader()
+        reader.SetLowerCells(options.get("lower_cells", False))
+        reader.SetFileName(name)
+        run(reader)
+        return reader.GetOutput()
+    return _read_vtk(name, form)
+
+
+def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
+    """Write a mesh. The ending of the file name decides on the format.
+
+    mesh: a vtkDataSet, a composite data set, the result of another function, a file name or (points, cells).
+    file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl), always binary and compressed where the format can be; or,
+        where the module of readers was built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh),
+        Gmsh (.msh), OFF (.off).
+    options: binary (False): write .msh as bytes. Not for formats of VTK.
+
+    Returns the names of the files written. Raises Error if the format cannot hold the mesh, or if a file cannot be
+    written.
+    """
+    name, ending = fspath(file), Path(file).suffix.lower()
+    data = as_mesh(mesh)
+    if ending not in FORMATS or not FORMATS[ending].writer:
+        known = " ".join(sorted(key for key, form in FORMATS.items() if form.writer))
+        raise Error(f"{name}: no writer for '{ending}'; there are {known}")
+    form = FORMATS[ending]
+    _check_options(name, ending, options, "binary" if form.own else None)
+    if not _holds(form, data):
+        able = [key for key, other in FORMATS.items() if other.writer and not other.own and _holds(other, data)]
+        raise Error(f"{name}: '{ending}' cannot hold a {data.GetClassName()}; {' '.join(able)} can")
+    if form.own:
+        return _write_own(data, name, form, options.get("binary", False))
+    return _write_vtk(data, name, form)
+
+
+def _check_options(name: str, ending: str, options: dict[str, Any], known: str | None) -> None:
+    unknown = [option for option in options if option != known]
+    if unknown:
+        raise Error(f"{name}: '{ending}' has {f'the option {known}' if known else 'no options'}, not {', '.join(unknown)}")
+
+
+def _holds(form: Format, data: vtkDataObject) -> bool:
+    return form.holds is None or bool(data.IsA(form.holds))
+
+
+def _read_vtk(name: str, form: Format) -> vtkDataObject:
     if not Path(name).is_file():
         raise Error(f"{name}: there is no such file")
-    reader = _make(ending, 1)
+    reader = form.make_reader()
     reader.SetFileName(name)
-    with _Quiet() as said:
+    with _CapturedOutput() as captured:
         try:
             run(reader)
         except Error as error:
-            details = [text for text in said() if text not in str(error)]
+            details = [text for text in captured() if text not in str(error)]
             details += [_APPENDED] if b"<AppendedData" in Path(name).read_bytes() else []
             raise Error("\n".join([f"{name}: {error}", *details])) from None
         mesh = reader.GetOutputDataObject(0)
@@ -69,33 +121,14 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
     return mesh
 
 
-def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
-    """Write a mesh in the format of the ending of the file's name; returns the files written.
-
-    VTK's formats (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl) are written binary, compressed where the
-    format can be, and take no options. Raises Error if the format cannot hold the mesh or if the
-    file cannot be written.
-    """
-    name, ending = fspath(file), Path(file).suffix.lower()
-    data = as_mesh(mesh)
-    if ending not in _FORMATS and _inputs:
-        return _inputs.write(data, name, **options)
-    if ending not in _FORMATS or not _FORMATS[ending][2]:
-        known = " ".join(sorted(key for key, value in _FORMATS.items() if value[2]))
-        raise Error(f"{name}: no writer for '{ending}'; there are {known}")
-    if options:
-        raise Error(f"{name}: '{ending}' has no options, not {', '.join(options)}")
-    wanted = _FORMATS[ending][3]
-    if wanted and not data.IsA(wanted):
-        ours = [e for e, f in _FORMATS.items() if f[2] and (f[3] is None or data.IsA(f[3]))]
-        raise Error(f"{name}: '{ending}' cannot hold a {data.GetClassName()}; {' '.join(ours)} can")
-    writer = _make(ending, 2)
-    for binary in ("SetFileTypeToBinary", "SetDataModeToBinary"):  # appended data: see _APPENDED
+def _write_vtk(data: vtkDataObject, name: str, form: Format) -> list[str]:
+    writer = form.make_writer()
+    for binary in ("SetFileTypeToBinary", "SetDataModeToBinary"):  # not appended data: see _APPENDED
         getattr(writer, binary, int)()
     writer.SetInputData(data)
     writer.SetFileName(name)
     messages = watch(writer)
-    with _Quiet():
+    with _CapturedOutput():
         written = writer.Write()
     if messages.errors or not written or not Path(name).is_file():
         reason = "; ".join(messages.errors) or "the directory does not exist or cannot be written to"
@@ -103,12 +136,24 @@ def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
     return [name]
 
 
-def _make(ending: str, which: int) -> Any:
-    return getattr(import_module(f"vtkmodules.{_FORMATS[ending][0]}"), _FORMATS[ending][which])()
+def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[str]:
+    writer = form.make_writer()
+    if hasattr(writer, "SetBinary"):
+        writer.SetBinary(binary)
+    elif binary:
+        raise Error(f"{name}: '{Path(name).suffix}' is always text")
+    writer.SetInputData(data)
+    writer.SetFileName(name)
+    messages = watch(writer)
+    written = writer.Write()
+    messages.raise_errors()
+    if not written:
+        raise Error(f"{name}: cannot be written")
+    return [writer.GetFileWritten(i) for i in range(writer.GetNumberOfFilesWritten())]
 
 
-class _Quiet:
-    """Keeps what VTK's helper objects, which nobody can watch, would print; gives it as a list."""
+class _CapturedOutput:
+    """Captures the output of VTK's internal helper objects, which cannot be observed, as a list of texts."""
 
     def __enter__(self):
         self.window = vtkStringOutputWindow()

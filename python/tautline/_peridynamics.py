@@ -1,7 +1,8 @@
-"""The verbs peridynamics and collar: nonlocal models on planar triangle meshes."""
+"""The functions peridynamics and interaction_layer: nonlocal models on planar triangle meshes."""
 
 from __future__ import annotations
 
+import argparse
 from dataclasses import dataclass
 from typing import Any, Sequence
 
@@ -9,51 +10,52 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 
-import tautline
-
+from . import _commands, _vtk
+from ._arguments import pick, set_threads, set_time_limit, within
+from ._arrays import POINTS, InputArrays, columns, snake
 from ._errors import Error, run
-from ._mesh import Mesh, as_mesh, columns, with_array
-from ._metrics import pick, within
-from ._quality import snake
+from ._io import Mesh, as_mesh
 
 BASES = ("constant", "linear", "discontinuous linear")
 KERNELS = ("power", "constant", "gaussian", "conical", "table")
 MODELS = ("scalar", "elastic")
 READINGS = ("dissertation", "exact")
 RULES = ("tables", "literal", "1/1", "3/3", "3/1")
-_MOST_THREADS = 1024
-_REGION, _SOURCE, _GIVEN, _GIVEN_POINTS = range(4)  # the filter's input arrays
+_REGION, _SOURCE, _GIVEN, _GIVEN_POINTS = range(4)  # input arrays of vtkPeridynamicStiffness
+_DEFAULT_REGION = "Reference"  # the filter's default
+_MAX_PIXELS = 4096
+_RENAMED = {"collar_deficit": "layer_deficit"}  # columns of the filter's table
 
 
 @dataclass(frozen=True)
-class Peridynamics:
-    """What peridynamics() found."""
+class PeridynamicsResult:
+    """The result of peridynamics()."""
 
-    #: The mesh with `Unknown`, `Neighbors`, `RowSum`, `Diagonal`, the extreme eigenvectors and `Solution`, on points
-    #: (linear basis) or cells.
+    #: The mesh with `Unknown`, `Neighbors`, `RowSum`, `Diagonal`, the extreme eigenvectors and `Solution`, on the points
+    #: (linear basis) or the cells.
     mesh: vtkDataSet
-    #: Largest over smallest eigenvalue; nan where the matrix is not positive definite or no spectrum was asked for.
+    #: Largest over smallest eigenvalue; nan where the matrix is not positive definite or no spectrum was computed.
     condition: float
-    #: The eigenvalues and their absolute error bounds.
+    #: The extreme eigenvalues and their absolute error bounds.
     smallest: float
     largest: float
     smallest_bound: float
     largest_bound: float
-    #: Whether the smallest eigenvalue is positive beyond its bound, and whether both bounds meet the tolerance.
+    #: Whether the smallest eigenvalue is positive beyond its bound, and whether both bounds are within the tolerance.
     definite: bool
     converged: bool
-    #: Unknowns and entries of the matrix.
+    #: Number of unknowns, and of nonzero entries of the matrix.
     rows: int
     nonzeros: int
-    #: Of the dissertation's reading: norm of the unsymmetric part, which is dropped, over that of the matrix.
+    #: Of the dissertation's discretization: norm of the skew-symmetric part, which is dropped, over that of the matrix.
     asymmetry: float
-    #: By how much the collar is narrower than the horizon.
-    collar_deficit: float
-    #: All of the table `Spectrum`, by name in snake case.
+    #: Horizon minus width of the interaction layer, where the layer is narrower; else 0.
+    layer_deficit: float
+    #: All columns of the table `Spectrum` by name in snake case.
     statistics: dict[str, Any]
-    #: The solution per point (linear basis) or cell, or None.
+    #: The solution per point (linear basis) or cell, elastic with 3 components; None if not computed.
     solution: np.ndarray | None
-    #: Entries of the matrix per pixel, first row on top, or None.
+    #: Number of entries of the matrix per pixel, with the first row on top; None if not computed.
     sparsity: np.ndarray | None
     #: The result in words.
     summary: str
@@ -72,11 +74,11 @@ def peridynamics(
     reading: str = "exact",
     rules: str = "tables",
     tolerance: float = 1e-5,
-    region: str | Sequence | None = "Reference",
-    collar_value: float = 2,
+    region: str | Sequence | None = _DEFAULT_REGION,
+    layer_value: float = 2,
     given_points: str | Sequence | None = None,
     constrained: bool = True,
-    allow_thin_collar: bool = False,
+    allow_thin_layer: bool = False,
     spectrum: bool = True,
     spectrum_tolerance: float = 1e-8,
     solve: bool = False,
@@ -86,96 +88,98 @@ def peridynamics(
     memory_limit: float = 0.0,
     time_limit: float = 0.0,
     threads: int = 0,
-) -> Peridynamics:
-    """Condition number, rows and solution of a nonlocal (bond-based peridynamic) model.
+) -> PeridynamicsResult:
+    """Assemble the stiffness matrix of a nonlocal (bond-based peridynamic) model; compute its condition number and solve.
 
-    mesh: triangles in a plane with a collar of width delta (see collar()), given by `region`.
-    delta: the horizon, above 0, in the unit of the mesh.
-    p: exponent of the kernel r^-p: 0 to below 4 (linear basis) or 3 (the others); elastic: 6 or 5.
+    mesh: triangles in a plane with an interaction layer (collar) of width delta, where the solution is given, see
+        interaction_layer(): a vtkDataSet, a file name or (points, cells). It is not changed.
+    delta: the horizon, above 0, in the mesh's unit.
+    p: exponent of the kernel r^-p: 0 to below 4 (linear basis) or 3 (the others); of the elastic model below 6 or 5.
     basis: "constant", "linear" or "discontinuous linear".
     kernel: "power"; "constant"; "gaussian", exp(-(r / (width delta))^2); "conical", 1 - r / delta; "table", linear
-        between `values` at equal distances from 0 to delta.
-    model: "scalar", diffusion, dissertation (4.6); "elastic", (4.4) with its tensor kernel.
-    reading: "exact", to the tolerance for each pair of triangles; "dissertation", with `rules`: "tables" reproduces
-        its tables, "literal" is what its text says, or numbers of outer/inner points: "1/1", "3/3", "3/1".
-    region: name or values of a cell array, collar_value in the collar; None: there is no collar.
-    given_points: name or values of a point array, not 0 where the linear basis is given; None: at the points of the
-        collar's cells.
-    constrained: False: everything is unknown.
-    allow_thin_collar: take a collar narrower than delta; what lies beyond the mesh then does not count.
-    solve: solve for a `source` (a number, or name or values of an array) and the solution `given` in the collar
-        (name or values of an array; None is 0).
-    sparsity: largest width of the picture of the matrix in pixels, 0 for none.
-    memory_limit: MiB; 0 is what is free. time_limit: seconds; 0 is none.
-    threads: 0 is all cores. The result does not depend on it.
+        between `values`.
+    width: of the Gaussian kernel, in horizons.
+    values: of the kernel "table", at equal distances from 0 to delta.
+    model: "scalar" (diffusion, dissertation (4.6)) or "elastic" ((4.4) with its tensor kernel).
+    reading: the discretization: "exact" (each pair of triangles is integrated to the tolerance) or "dissertation" (by
+        the quadrature `rules`).
+    rules: "tables" reproduces the dissertation's tables, "literal" is what its text says, or the numbers of outer/inner
+        points: "1/1", "3/3", "3/1".
+    tolerance: relative, of the exact integrals.
+    region: name or values of a cell array that is layer_value in the interaction layer; None: there is no layer.
+    given_points: name or values of a point array, not 0 where the solution of the linear basis is given; None: at the
+        points of the layer's cells.
+    constrained: whether the solution in the layer is given; False: all values are unknown.
+    allow_thin_layer: whether the layer may be narrower than delta; what lies beyond the mesh is then left out.
+    spectrum: whether to compute the extreme eigenvalues.
+    spectrum_tolerance: relative, of the eigenvalues, 1e-14 to 0.1.
+    solve: whether to solve for `source` and the solution `given` in the layer.
+    source: a number, or name or values of an array.
+    given: name or values of an array; None is 0.
+    sparsity: largest width of the picture of the matrix, pixels, 0 (no picture) to 4096.
+    memory_limit: MiB; 0 is the free memory.
+    time_limit: seconds; 0 is no limit.
+    threads: number of threads; 0 is all cores. The result does not depend on it.
 
-    Raises Error for wrong arguments and whatever cannot be done, with the remedy: no collar or one too thin, an
-    exponent at the singular limit, inverted triangles, too little memory, time over.
+    Raises Error, with the remedy, for wrong arguments and where a model cannot be assembled: no layer or too thin a one,
+    an exponent at the singular limit, inverted triangles, too little memory, the time limit.
+
+    >>> mesh = tautline.interaction_layer(tautline.domain("rectangle", cells=400), width=0.2)
+    >>> tautline.peridynamics(mesh, delta=0.2, p=1).condition
     """
-    data = as_mesh(mesh)
-    stiffness = tautline.vtkPeridynamicStiffness()
-    stiffness.SetHorizon(float(delta))
-    stiffness.SetExponent(float(p))
-    stiffness.SetBasis(pick("basis", basis, BASES))
-    stiffness.SetKernel(pick("kernel", kernel, KERNELS))
-    stiffness.SetGaussianWidth(float(width))
+    filter_ = _vtk.vtkPeridynamicStiffness()
+    inputs = InputArrays(filter_, as_mesh(mesh))
+    filter_.SetHorizon(float(delta))
+    filter_.SetExponent(float(p))
+    filter_.SetBasis(pick("basis", basis, BASES))
+    filter_.SetKernel(pick("kernel", kernel, KERNELS))
+    filter_.SetGaussianWidth(float(width))
     for value in values:
-        stiffness.AddKernelValue(float(value))
-    stiffness.SetElastic(bool(pick("model", model, MODELS)))
-    stiffness.SetReading(pick("reading", reading, READINGS))
-    stiffness.SetRules(pick("rules", rules, RULES))
-    stiffness.SetTolerance(float(tolerance))
-    stiffness.SetCollarValue(float(collar_value))
-    stiffness.SetConstrained(bool(constrained))
-    stiffness.SetAllowThinCollar(bool(allow_thin_collar))
-    stiffness.SetComputeSpectrum(bool(spectrum))
-    stiffness.SetSpectrumTolerance(within("spectrum_tolerance", spectrum_tolerance, 1e-14, 0.1))
-    stiffness.SetSolve(bool(solve))
-    stiffness.SetSparsityPixels(int(within("sparsity", sparsity, 0, 4096)))
-    stiffness.SetMemoryLimit(within("memory_limit", memory_limit, 0, 1e12))
-    stiffness.SetTimeLimit(within("time_limit", time_limit, 0, 1e9))
-    stiffness.SetThreads(int(within("threads", threads, 0, _MOST_THREADS)))
-
-    def use(slot: int, array: Any, name: str, **options: Any) -> None:
-        nonlocal data
-        data, where, found = with_array(data, array, name, **options)
-        stiffness.SetInputArrayToProcess(slot, 0, 0, where, found)
-
+        filter_.AddKernelValue(float(value))
+    filter_.SetElastic(bool(pick("model", model, MODELS)))
+    filter_.SetReading(pick("reading", reading, READINGS))
+    filter_.SetRules(pick("rules", rules, RULES))
+    filter_.SetTolerance(float(tolerance))
+    filter_.SetCollarValue(float(layer_value))
+    filter_.SetConstrained(bool(constrained))
+    filter_.SetAllowThinCollar(bool(allow_thin_layer))
+    filter_.SetComputeSpectrum(bool(spectrum))
+    filter_.SetSpectrumTolerance(within("spectrum_tolerance", spectrum_tolerance, 1e-14, 0.1))
+    filter_.SetSolve(bool(solve))
+    filter_.SetSparsityPixels(int(within("sparsity", sparsity, 0, _MAX_PIXELS)))
+    filter_.SetMemoryLimit(within("memory_limit", memory_limit, 0, np.inf))
+    set_time_limit(filter_, time_limit)
+    set_threads(filter_, threads)
     if region is None:
-        stiffness.SetInputArrayToProcess(_REGION, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "None")
-    elif not (isinstance(region, str) and region == "Reference"):  # that is the filter's own default
-        use(_REGION, region, "given region")
+        filter_.SetInputArrayToProcess(_REGION, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "None")
+    elif not (isinstance(region, str) and region == _DEFAULT_REGION):
+        inputs.use(_REGION, region, "region")
     if np.ndim(source) == 0 and not isinstance(source, str):
-        stiffness.SetUniformSource(float(source))
+        filter_.SetUniformSource(float(source))
     else:
-        use(_SOURCE, source, "given source")
-    if given is not None:
-        use(_GIVEN, given, "given solution")
-    if given_points is not None:
-        use(_GIVEN_POINTS, given_points, "given points", points_only=True)
-    stiffness.SetInputDataObject(data)
-    run(stiffness)
-    return _result(stiffness, basis, solve, sparsity)
-
-
-def _result(stiffness: Any, basis: str, solve: bool, sparsity: int) -> Peridynamics:
-    output = stiffness.GetOutputDataObject(0)
+        inputs.use(_SOURCE, source, "source")
+    inputs.use(_GIVEN, given, "solution")
+    inputs.use(_GIVEN_POINTS, given_points, "points", POINTS)
+    filter_.SetInputDataObject(inputs.mesh)
+    run(filter_)
+    output = inputs.remove_from(filter_.GetOutputDataObject(0))
     if output.GetNumberOfCells() == 0:
         raise Error("the mesh has no triangle")
-    for fields in (output.GetPointData(), output.GetCellData()):
-        for name in ("given region", "given source", "given solution", "given points"):
-            fields.RemoveArray(name)
-    table = columns(stiffness.GetOutputDataObject(1))
-    facts = {snake(name): values[0].item() for name, values in table.items()}
+    return _result(filter_, output, basis, solve, sparsity)
+
+
+def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity: int) -> PeridynamicsResult:
+    table = columns(filter_.GetOutputDataObject(1))
+    facts = {_RENAMED.get(name, name): values[0].item() for name, values in zip(map(snake, table), table.values())}
     solution = picture = None
     if solve:
         fields = output.GetPointData() if basis == "linear" else output.GetCellData()
         solution = vtk_to_numpy(fields.GetArray("Solution"))
     if sparsity:
-        image = stiffness.GetOutputDataObject(2)
+        image = filter_.GetOutputDataObject(2)
         width = image.GetDimensions()[0]
         picture = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(width, width)[::-1]
-    return Peridynamics(
+    return PeridynamicsResult(
         mesh=output,
         condition=facts["condition"] or float("nan"),
         smallest=facts["smallest"],
@@ -187,37 +191,49 @@ def _result(stiffness: Any, basis: str, solve: bool, sparsity: int) -> Peridynam
         rows=facts["rows"],
         nonzeros=facts["nonzeros"],
         asymmetry=facts["asymmetry"],
-        collar_deficit=facts["collar_deficit"],
+        layer_deficit=facts["layer_deficit"],
         statistics=facts,
         solution=solution,
         sparsity=picture,
-        summary=stiffness.GetSummary(),
+        summary=filter_.GetSummary(),
     )
 
 
-def collar(mesh: Mesh, width: float = 0.2, *, element_size: float = 0.0, threads: int = 0) -> vtkDataSet:
-    """The mesh with a collar of triangles around it and in its holes, for peridynamics().
+def interaction_layer(mesh: Mesh, width: float = 0.2, *, element_size: float = 0.0, threads: int = 0) -> vtkDataSet:
+    """Add an interaction layer (collar, nonlocal boundary layer) of triangles around a mesh and in its holes.
 
-    mesh: triangles in a plane; its points and triangles come first in the result, unchanged.
-    width: least width of the collar, above 0.
-    element_size: edge of the collar's triangles; 0 is the mean edge of the boundary.
+    A nonlocal model has its boundary condition not on the boundary but in this layer, see peridynamics() and
+    dissertation section 4.2.
 
-    The cell array `Reference` is 1 in the mesh and 2 in the collar. Raises Error for wrong arguments and a
-    boundary that crosses itself.
+    mesh: triangles in a plane: a vtkDataSet, a file name or (points, cells). It is not changed; its points and triangles
+        come first in the result, with the same numbers.
+    width: least width of the layer, above 0, in the mesh's unit.
+    element_size: edge length of the layer's triangles; 0 is the mean edge length of the boundary.
+    threads: number of threads; 0 is all cores. The result does not depend on it.
+
+    The cell array `Reference` of the result is 1 in the mesh and 2 in the layer. Raises Error for wrong arguments and for
+    a boundary that crosses itself.
+
+    >>> tautline.interaction_layer("plate.vtu", width=0.1).GetNumberOfCells()
     """
-    made = tautline.vtkHorizonCollar()
-    made.SetWidth(float(width))
-    made.SetElementSize(float(element_size))
-    made.SetThreads(int(within("threads", threads, 0, _MOST_THREADS)))
-    made.SetInputDataObject(as_mesh(mesh))
-    run(made)
-    return made.GetOutput()
+    filter_ = _vtk.vtkHorizonCollar()
+    filter_.SetWidth(float(width))
+    filter_.SetElementSize(float(element_size))
+    set_threads(filter_, threads)
+    filter_.SetInputDataObject(as_mesh(mesh))
+    run(filter_)
+    return filter_.GetOutput()
+
+
+# --- the shell ----------------------------------------------------------------------------------------------
 
 
 def add_commands(commands: Any) -> None:
-    """Add `peridynamics` and `collar` to the subparsers of the command line; each sets `run`."""
-    made = commands.add_parser("peridynamics", help="condition number of a nonlocal stiffness matrix")
-    made.add_argument("mesh", metavar="FILE", help="triangles in a plane with a collar, see the verb collar")
+    """Add `peridynamics` and `interaction-layer` to the subparsers of the command line."""
+    made = _commands.add_command(
+        commands, "peridynamics", _run_peridynamics, "compute the condition number of a nonlocal stiffness matrix"
+    )
+    made.add_argument("mesh", metavar="FILE", help="triangles in a plane with an interaction layer (collar)")
     made.add_argument("-o", "--output", metavar="FILE", help="write the mesh with the data of the rows")
     made.add_argument("--delta", type=float, default=0.2, help="the horizon (default: 0.2)")
     made.add_argument("-p", type=float, default=1.0, help="exponent of the kernel (default: 1)")
@@ -225,42 +241,40 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--kernel", choices=KERNELS[:-1], default="power")
     made.add_argument("--width", type=float, default=0.5, help="of the Gaussian, in horizons (default: 0.5)")
     made.add_argument("--model", choices=MODELS, default="scalar")
-    made.add_argument("--reading", choices=READINGS, default="exact")
-    made.add_argument("--rules", choices=RULES, default="tables", help="of the dissertation's reading")
-    made.add_argument("--tolerance", type=float, default=1e-5, help="of the exact reading (default: 1e-5)")
-    made.add_argument("--region", default="Reference", metavar="ARRAY", help="cell array, 2 in the collar")
-    made.add_argument("--collar", action="store_true", help="put a collar of width delta around the mesh first")
-    made.add_argument("--allow-thin-collar", action="store_true")
-    made.add_argument("--solve", action="store_true", help="solve for a source of 1 and 0 in the collar")
-    made.add_argument("--memory-limit", type=float, default=0.0, metavar="MIB")
-    made.add_argument("--time-limit", type=float, default=0.0, metavar="SECONDS")
-    made.add_argument("--threads", type=int, default=0, help="0, the default, is all cores")
-    made.set_defaults(run=_run_peridynamics)
+    made.add_argument("--reading", choices=READINGS, default="exact", help="the discretization")
+    made.add_argument("--rules", choices=RULES, default="tables", help="of the dissertation's discretization")
+    made.add_argument("--tolerance", type=float, default=1e-5, help="of the exact integrals (default: 1e-5)")
+    made.add_argument("--region", default=_DEFAULT_REGION, metavar="ARRAY",
+                      help="cell array, 2 in the interaction layer (default: %(default)s)")  # fmt: skip
+    made.add_argument("--add-layer", action="store_true",
+                      help="first add an interaction layer of width delta around the mesh")  # fmt: skip
+    made.add_argument("--allow-thin-layer", action="store_true", help="the layer may be narrower than delta")
+    made.add_argument("--solve", action="store_true", help="solve for a source of 1, and 0 in the layer")
+    made.add_argument("--memory-limit", type=float, default=0.0, metavar="MIB", help="0, the default, is the free memory")
+    _commands.add_time_limit(made)
 
-    made = commands.add_parser("collar", help="put a collar around a planar triangle mesh")
+    made = _commands.add_command(
+        commands, "interaction-layer", _run_layer, "add an interaction layer (collar) around a planar triangle mesh"
+    )
     made.add_argument("mesh", metavar="FILE")
     made.add_argument("-o", "--output", metavar="FILE", required=True)
     made.add_argument("--width", type=float, default=0.2, help="least width (default: 0.2)")
-    made.add_argument("--element-size", type=float, default=0.0, help="edge of its triangles (default: the boundary's)")
-    made.add_argument("--threads", type=int, default=0, help="0, the default, is all cores")
-    made.set_defaults(run=_run_collar)
+    made.add_argument("--element-size", type=float, default=0.0,
+                      help="edge length of its triangles (default: that of the boundary)")  # fmt: skip
 
 
-def _run_peridynamics(arguments: Any) -> int:
+def _run_peridynamics(arguments: argparse.Namespace) -> None:
     mesh = as_mesh(arguments.mesh)
-    if arguments.collar:
-        mesh = collar(mesh, arguments.delta, threads=arguments.threads)
-    names = ("delta", "p", "basis", "kernel", "width", "model", "reading", "rules", "tolerance", "region")
-    names += ("allow_thin_collar", "solve", "memory_limit", "time_limit", "threads")
-    result = peridynamics(mesh, **{name: getattr(arguments, name) for name in names})
+    if arguments.add_layer:
+        mesh = interaction_layer(mesh, arguments.delta, threads=arguments.threads)
+    names = ("delta", "p", "basis", "kernel", "width", "model", "reading", "rules", "tolerance", "region",
+             "allow_thin_layer", "solve", "memory_limit", "time_limit", "threads")  # fmt: skip
+    result = peridynamics(mesh, **_commands.given(arguments, names))
     print(result.summary)
-    if arguments.output:
-        print("\n".join(tautline.write(result, arguments.output)))
-    return 0
+    _commands.save(result, arguments)
 
 
-def _run_collar(arguments: Any) -> int:
-    made = collar(arguments.mesh, arguments.width, element_size=arguments.element_size, threads=arguments.threads)
-    print(f"{made.GetNumberOfCells()} triangles, {made.GetNumberOfPoints()} points")
-    print("\n".join(tautline.write(made, arguments.output)))
-    return 0
+def _run_layer(arguments: argparse.Namespace) -> None:
+    made = interaction_layer(arguments.mesh, **_commands.given(arguments, ("width", "element_size", "threads")))
+    print(_commands.counts(made))
+    _commands.save(made, arguments)

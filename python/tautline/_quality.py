@@ -1,53 +1,54 @@
-"""The verb quality: measure every element of a mesh."""
+"""The function quality: measures every element of a mesh."""
 
 from __future__ import annotations
 
-import re
+import argparse
 from dataclasses import dataclass
 from typing import Any, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
-import tautline
+from . import _commands, _vtk
+from ._arguments import COMBINATIONS, TARGETS, pick, set_threads, within
+from ._arrays import InputArrays, cell_array, columns, point_array, snake
+from ._errors import Error, run
+from ._io import Mesh, as_mesh
+from ._metrics import Metrics, choose, metrics as known_metrics
+from ._tables import quality_rows, quality_text
 
-from ._errors import Error, run, watch
-from ._mesh import Mesh, as_mesh, cell_array, columns, leaves, point_array, with_array
-from ._metrics import Metrics, choose, metrics as known_metrics, pick, within
-
-COMBINATIONS = ("mean", "worst", "power mean")
-TARGETS = ("ideal", "reference", "size", "tensor")
 REVERSED = ("measure as given", "measure flipped", "flip output")
-_MOST_THREADS = 1024
+
+_SIZE, _TENSOR = range(2)  # input arrays of vtkElementQuality
 _NOT_NUMBERS = ("Metric", "WorstCells", "WorstPositions")  # columns of the statistics
-_OWN = "given target"  # the name of the array a target given in numbers goes to the filter in
+_MAX_WORST = 10  # elements listed per metric
 
 
 @dataclass(frozen=True)
-class Quality:
-    """What quality() found. Dicts are by the names of the metrics, in the order they were asked for."""
+class QualityResult:
+    """The result of quality(). Dicts are by the names of the metrics, in the order in which they were given."""
 
     #: The mesh with a cell array per metric and `Validity`; shares the other arrays with the input.
     mesh: vtkDataObject
-    #: Values per cell (of composite data, block after block); 0 where a metric is not defined.
+    #: Per metric its value on each cell, m; of composite data the blocks concatenated. 0 where it is not defined.
     values: dict[str, np.ndarray]
-    #: Per cell 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
+    #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to
-    #: quantile_99, outside_acceptable, acceptable_low, acceptable_high, inverted, degenerate,
-    #: not_measured, non_finite; worst (the worst value; nan if nothing was measured), and arrays of at
-    #: most ten, worst first: worst_cells (k), worst_values (k), worst_positions (k x 3).
+    #: Per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to quantile_99,
+    #: outside_acceptable, acceptable_low, acceptable_high, inverted, degenerate, not_measured, non_finite; worst (the
+    #: worst value; nan if nothing was measured); and of the k worst elements, at most ten, the worst first:
+    #: worst_cells (k), worst_values (k), worst_positions (k x 3).
     statistics: dict[str, dict[str, Any]]
-    #: Per metric the histogram of valid elements: value (middles of the bins) and count.
+    #: Per metric the histogram of the valid elements: value (centers of the bins) and count.
     distribution: dict[str, dict[str, np.ndarray]]
-    #: Angles (dihedral angles of volumes) in the five bins of Table 2.7: from, to (degrees), count, percent.
+    #: Angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
     angles: dict[str, np.ndarray]
-    #: A point at the centre of each of the worst elements: arrays Metric, Rank, CellId, Value, Validity.
+    #: A point at the center of each of the worst elements, with the arrays Metric, Rank, CellId, Value, Validity.
     worst: vtkPolyData
-    #: How many elements are inverted, and how many have no area or volume.
+    #: Number of inverted elements, and of elements without area or volume.
     inverted: int
     degenerate: int
-    #: What is to be known of how the mesh was taken (orientation, cells left out), or "".
+    #: A note on the mesh (reversed orientation, cells left out), or "".
     notice: str
     #: The result in a few lines.
     summary: str
@@ -68,54 +69,51 @@ def quality(
     reversed_mesh: str = "measure flipped",
     histogram_bins: int = 32,
     threads: int = 0,
-) -> Quality:
-    """Measure every element of a mesh by one or more metrics.
+) -> QualityResult:
+    """Measure every element of a mesh by one or several metrics.
 
-    mesh: a vtkDataSet, a file name or (points, cells); see from_arrays(). It is not changed.
-    metrics: names, labels, symbols or aliases; see metrics(). The default is the inverse mean ratio.
-    combination: how target metrics combine the corners of cells other than simplices: "mean",
-        "worst" or "power mean" with the exponent power, from 1 to 100.
-    target: what the wanted element is, for target metrics: "ideal", "reference", "size" or "tensor".
-        Giving one of the next three chooses it.
-    reference: a mesh with the same cells: each is the target of its twin.
-    size: the area or volume wanted: a number, a row per cell or point, or the name of an array.
-    tensor: the metric tensor in which the ideal shape has edges of length 1: 6 numbers
-        (xx yy zz xy yz xz) or 9 per cell or point, or the name of an array.
-    beta: of the untangling metric, the area or volume every element should have at least, length^n.
-    epsilon: of mu_211 and mu_311, above 0.
-    reversed_mesh: if all cells list their points in the opposite order: "measure as given" (all
+    mesh: a vtkDataSet, a composite data set, a file name or (points, cells), see from_arrays(). It is not changed.
+    metrics: names, labels, symbols or aliases, see metrics(). The default is the inverse mean ratio.
+    combination: how target metrics combine the values at the corners of cells other than simplices: "mean", "worst" or
+        "power mean".
+    power: exponent of the power mean, 1 to 100.
+    target: the target element of target metrics: "ideal", "reference", "size" or "tensor". It follows from the next
+        three, of which at most one may be given.
+    reference: a mesh with the same cells: each cell is the target of the corresponding one.
+    size: target area or volume: a number, one per cell or point, or the name of an array.
+    tensor: metric tensor in which the edges of the target element have length 1: one row of 6 (xx yy zz xy yz xz) or 9
+        numbers per cell or point, or the name of an array.
+    beta: parameter of the untangling metric, the least area or volume of a valid element, in the mesh's unit.
+    epsilon: parameter of mu_211 and mu_311, above 0.
+    reversed_mesh: for a mesh whose cells all list their points in the opposite order: "measure as given" (all
         inverted), "measure flipped" or "flip output".
-    histogram_bins: from 1 to 100000.
-    threads: 0 is all cores. Results do not depend on it.
+    histogram_bins: number of bins, 1 to 100000.
+    threads: number of threads; 0 is all cores. The result does not depend on it.
 
-    Raises Error for wrong arguments and whatever the filter refuses.
+    Raises Error for wrong arguments and for meshes that the filter refuses.
 
     >>> result = tautline.quality("part.vtu", ["imr", "scaled_jacobian"])
     >>> result.statistics["imr"]["worst"], result.inverted
     """
-    data = as_mesh(mesh)
-    measure = tautline.vtkElementQuality()
-    messages = watch(measure)
-    choose(measure, metrics)
-    messages.raise_errors()
-    measure.SetCombination(pick("combination", combination, COMBINATIONS))
-    measure.SetPower(within("power", power, 1, 100))
-    measure.SetBeta(within("beta", beta, -np.inf, np.inf))
-    measure.SetEpsilon(within("epsilon", epsilon, np.nextafter(0, 1), np.inf))
-    measure.SetReversedMesh(pick("reversed_mesh", reversed_mesh, REVERSED))
-    measure.SetHistogramBins(int(within("histogram_bins", histogram_bins, 1, 100000)))
-    measure.SetThreads(int(within("threads", threads, 0, _MOST_THREADS)))
-    data = _set_target(measure, data, target, {"reference": reference, "size": size, "tensor": tensor})
-    measure.SetInputDataObject(0, data)
-    run(measure, messages)
-    for fields in ("GetCellData", "GetPointData"):
-        for leaf in leaves(measure.GetOutputDataObject(0)):
-            getattr(leaf, fields)().RemoveArray(_OWN)
-    return _result(measure)
+    filter_ = _vtk.vtkElementQuality()
+    inputs = InputArrays(filter_, as_mesh(mesh))
+    messages = choose(filter_, metrics)
+    filter_.SetCombination(pick("combination", combination, COMBINATIONS))
+    filter_.SetPower(within("power", power, 1, 100))
+    filter_.SetBeta(within("beta", beta, -np.inf, np.inf))
+    filter_.SetEpsilon(within("epsilon", epsilon, np.nextafter(0, 1), np.inf))
+    filter_.SetReversedMesh(pick("reversed_mesh", reversed_mesh, REVERSED))
+    filter_.SetHistogramBins(int(within("histogram_bins", histogram_bins, 1, 100000)))
+    set_threads(filter_, threads)
+    _set_target(filter_, inputs, target, {"reference": reference, "size": size, "tensor": tensor})
+    filter_.SetInputDataObject(0, inputs.mesh)
+    run(filter_, messages)
+    inputs.remove_from(filter_.GetOutputDataObject(0))
+    return _result(filter_)
 
 
-def _set_target(measure: Any, data: vtkDataObject, target: str, given: dict[str, Any]) -> vtkDataObject:
-    """Set the target on the filter; returns the mesh, with the array of the target if there is one."""
+def _set_target(filter_: Any, inputs: InputArrays, target: str, given: dict[str, Any]) -> None:
+    """Set the type of the target and its mesh or array."""
     pick("target", target, TARGETS)
     chosen = [name for name, value in given.items() if value is not None]
     if len(chosen) > 1:
@@ -125,37 +123,35 @@ def _set_target(measure: Any, data: vtkDataObject, target: str, given: dict[str,
     if not chosen and target != "ideal":
         raise Error(f"the target is {target!r} but {target!r} is not given")
     if not chosen:
-        return data
+        return
     kind, value = chosen[0], given[chosen[0]]
-    measure.SetTargetType(TARGETS.index(kind))
+    filter_.SetTargetType(TARGETS.index(kind))
     if kind == "reference":
-        measure.SetInputDataObject(1, as_mesh(value))
-        return data
+        filter_.SetInputDataObject(1, as_mesh(value))
+        return
     if kind == "size" and not isinstance(value, str) and np.ndim(value) == 0:
-        value = np.full(data.GetNumberOfCells(), value)
-    data, where, name = with_array(data, value, _OWN)
-    measure.SetInputArrayToProcess(0 if kind == "size" else 1, 0, 0, where, name)
-    return data
+        value = np.full(inputs.mesh.GetNumberOfCells(), value)
+    inputs.use(_SIZE if kind == "size" else _TENSOR, value, "target")
 
 
-def _result(measure: Any) -> Quality:
-    mesh = measure.GetOutputDataObject(0)
-    worst = measure.GetWorst()
-    statistics = _statistics(columns(measure.GetStatistics()), worst)
-    bins = columns(measure.GetDistribution())
+def _result(filter_: Any) -> QualityResult:
+    mesh = filter_.GetOutputDataObject(0)
+    worst = filter_.GetWorst()
+    statistics = _statistics(columns(filter_.GetStatistics()), worst)
+    bins = columns(filter_.GetDistribution())
     totals = next(iter(statistics.values()))
-    return Quality(
+    return QualityResult(
         mesh=mesh,
         values={name: cell_array(mesh, name) for name in statistics},
         validity=cell_array(mesh, "Validity"),
         statistics=statistics,
         distribution={n: {"value": bins[f"{n} value"], "count": bins[f"{n} count"]} for n in statistics},
-        angles={name.lower(): column for name, column in columns(measure.GetAngles()).items()},
+        angles={name.lower(): column for name, column in columns(filter_.GetAngles()).items()},
         worst=worst,
         inverted=totals["inverted"],
         degenerate=totals["degenerate"],
-        notice=measure.GetNotice(),
-        summary=measure.GetSummary(),
+        notice=filter_.GetNotice(),
+        summary=filter_.GetSummary(),
     )
 
 
@@ -175,10 +171,45 @@ def _statistics(table: dict[str, Any], worst: vtkPolyData) -> dict[str, dict[str
     return result
 
 
-def snake(name: str) -> str:
-    """A VTK column name in snake case: StandardDeviation is standard_deviation, Quantile01 quantile_01."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z0-9])", "_", name).lower()
-
-
 def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
+
+
+# --- the shell ----------------------------------------------------------------------------------------------
+
+
+def add_commands(commands: Any) -> None:
+    """Add `quality` to the subparsers of the command line."""
+    parser = _commands.add_command(commands, "quality", _run, "measure every element of a mesh")
+    parser.add_argument("mesh", metavar="FILE")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write the mesh with a cell array per metric")
+    parser.add_argument("--csv", metavar="FILE", help="write the statistics, a row per metric")
+    _commands.add_metrics(parser)
+    parser.add_argument("--worst", type=int, choices=range(_MAX_WORST + 1), default=0, metavar=f"0..{_MAX_WORST}",
+                        help="list this many of the worst elements (default: 0)")  # fmt: skip
+    parser.add_argument("--combination", choices=COMBINATIONS, default="mean", help="of the values at the corners")
+    parser.add_argument("--power", type=float, default=2.0, help="exponent of the power mean (default: 2)")
+    target = parser.add_mutually_exclusive_group()
+    target.add_argument("--reference", metavar="FILE", help="target: the same cells of this mesh")
+    target.add_argument("--size", metavar="VALUE|ARRAY", help="target: this area or volume, or that in an array")
+    target.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array of the mesh")
+    parser.add_argument("--beta", type=float, default=0.0, help="parameter of the untangling metric (default: 0)")
+    parser.add_argument("--epsilon", type=float, default=1e-4, help="parameter of mu_211 and mu_311 (default: 1e-4)")
+    parser.add_argument("--reversed-mesh", choices=REVERSED, default="measure flipped",
+                        help="if all cells are of opposite orientation")  # fmt: skip
+    parser.add_argument("--histogram-bins", type=int, default=32, help=argparse.SUPPRESS)
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    names = ("combination", "power", "reference", "tensor", "beta", "epsilon", "reversed_mesh", "histogram_bins")
+    options = _commands.given(arguments, (*names, "threads"))
+    result = quality(arguments.mesh, arguments.metrics, size=_number_or_name(arguments.size), **options)
+    print(quality_text(result, arguments.worst))
+    _commands.save(result, arguments, quality_rows(result))
+
+
+def _number_or_name(text: str | None) -> float | str | None:
+    try:
+        return None if text is None else float(text)
+    except ValueError:
+        return text

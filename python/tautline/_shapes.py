@@ -1,7 +1,8 @@
-"""The verbs silhouette, match and retrieval, and their commands."""
+"""The functions silhouette, match and retrieval: deformable shapes in images."""
 
 from __future__ import annotations
 
+import argparse
 from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
@@ -21,16 +22,16 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkIOImage import vtkImageReader2Factory
 
-import tautline
-
+from . import _commands, _vtk
+from ._arguments import check_options, number, pick
+from ._arrays import cell_array, columns, point_array, table_rows
 from ._errors import Error, run, watch
-from ._mesh import cell_array, point_array
-from ._metrics import pick
 
 FOREGROUNDS = ("automatic", "bright", "dark")
 LOCATIONS = ("grid", "near grid", "contour")
 REFLECTIONS = ("forbidden", "whole", "free")
 SETTINGS = ("custom", "dissertation", "felzenszwalb", "highest")
+#: The properties of vtkShapeAlgorithm by option.
 _OPTIONS = {
     "lambda_": "Lambda", "a": "DeformationWeight", "b": "DistortionWeight", "signed_distortion": "SignedDistortion",
     "smoothing": "Smoothing", "directed_edges": "DirectedEdges", "rotation": "RotationWeight",
@@ -41,9 +42,10 @@ _OPTIONS = {
 
 
 def as_image(image: Any) -> vtkImageData:
-    """A vtkImageData of an image, a file name or an array [row, column] or [row, column, channel].
+    """The vtkImageData of a vtkImageData, a file name, or an array [row, column] or [row, column, channel].
 
-    The first row of an array is at y = 0, the lower edge. Raises Error for what is none of these.
+    The first row of an array is at y = 0, the lower edge of the image. Raises Error for anything else, and for a file
+    that cannot be read.
     """
     if isinstance(image, vtkImageData):
         return image
@@ -72,17 +74,17 @@ def as_image(image: Any) -> vtkImageData:
 
 
 @dataclass(frozen=True)
-class SilhouetteMesh:
-    """What silhouette() made."""
+class SilhouetteResult:
+    """The result of silhouette()."""
 
     #: The triangulated polygon, with `BoundaryOrder`, `EliminationOrder` and `EliminationStep`.
     mesh: vtkUnstructuredGrid
     #: The traced outline.
     outline: vtkPolyData
-    #: Centre of mass of the area inside the outline, and the largest distance of the outline from it.
+    #: Center of mass of the area inside the outline, 3, and the largest distance of the outline from it, pixels.
     centre: np.ndarray
     max_distance: float
-    #: Components of the foreground, and holes in the largest one; both are ignored.
+    #: Number of components of the foreground, of which the largest is taken, and of its holes, which are ignored.
     components: int
     holes: int
     #: The result in words.
@@ -91,29 +93,32 @@ class SilhouetteMesh:
 
 def silhouette(
     image: Any, spacing: float = 25.0, *, threshold: float | None = None, foreground: str = "automatic"
-) -> SilhouetteMesh:
-    """The triangulated polygon around what an image shows (dissertation sections 5.2.1 and 5.2.2).
+) -> SilhouetteResult:
+    """Trace the silhouette in an image and triangulate a polygon around it (dissertation sections 5.2.1 and 5.2.2).
 
-    image: a vtkImageData, a file name or an array, see as_image().
-    spacing: ideal distance of vertices along the outline, pixels, above 0.
-    threshold: grey value between the shape and its surroundings; None: midway between the extremes.
-    foreground: "bright", "dark", or "automatic": the side that fewer pixels of the border are on.
+    image: a vtkImageData, a file name or an array [row, column] or [row, column, channel].
+    spacing: ideal distance between vertices along the outline, pixels, above 0.
+    threshold: grey value between the shape and the background; None: midway between the extremes.
+    foreground: "bright", "dark", or "automatic": the side with fewer pixels on the border of the image.
 
     Raises Error for wrong arguments, and for images without a shape.
+
+    >>> shape = tautline.silhouette("fish.png", spacing=12)
+    >>> shape.mesh.GetNumberOfCells(), shape.centre
     """
-    mesher = tautline.vtkSilhouetteMesher()
-    mesher.SetSpacing(_number("spacing", spacing))
+    mesher = _vtk.vtkSilhouetteMesher()
+    mesher.SetSpacing(number("spacing", spacing))
     mesher.SetForeground(pick("foreground", foreground, FOREGROUNDS))
     if threshold is not None:
         mesher.SetUseThreshold(True)
-        mesher.SetThreshold(_number("threshold", threshold))
+        mesher.SetThreshold(number("threshold", threshold))
     mesher.SetInputData(as_image(image))
     run(mesher)
     mesh = mesher.GetOutputDataObject(0)
     fields = mesh.GetFieldData()
     if not mesh.GetNumberOfPoints():
         raise Error("the image is empty")
-    return SilhouetteMesh(
+    return SilhouetteResult(
         mesh=mesh,
         outline=mesher.GetOutputDataObject(1),
         centre=vtk_to_numpy(fields.GetArray("CentreOfMass"))[0].copy(),
@@ -125,20 +130,20 @@ def silhouette(
 
 
 @dataclass(frozen=True)
-class Match:
-    """What match() found."""
+class MatchResult:
+    """The result of match()."""
 
-    #: The source's triangles in the target, with `Displacement` and, per triangle, the terms of the energy.
+    #: The triangles of the source in the target, with `Displacement` and, per triangle, the terms of the energy.
     mesh: vtkUnstructuredGrid
-    #: Places of the vertices in the target, n x 3, and where they came from: place minus source.
+    #: Positions of the vertices in the target, n x 3, and these minus their positions in the source, n x 3.
     points: np.ndarray
     displacement: np.ndarray
-    #: The least energy, and everything in the filter's table by name (see vtkShapeMatcher).
+    #: The least energy, and all columns of the filter's table by name (see vtkShapeMatcher).
     energy: float
     statistics: dict[str, float]
-    #: Per triangle, unweighted: edge_cost, deformation, distortion; and their weighted sum, energy.
+    #: Per triangle, m, without weights: edge_cost, deformation, distortion; and their weighted sum, energy.
     triangles: dict[str, np.ndarray]
-    #: Rank of the solution taken (1: the least energy); whether no placement is better.
+    #: Rank of the solution by its energy (1: the least), and whether no placement of the vertices is better.
     rank: int
     exact: bool
     #: The result in words.
@@ -156,27 +161,37 @@ def match(
     foreground: str = "automatic",
     grey_gradient: bool = False,
     **options: Any,
-) -> Match:
+) -> MatchResult:
     """Find a deformable shape in an image: the placement of least energy (dissertation chapter 5).
 
-    source: what silhouette() gave, its mesh, or an image, see as_image().
+    source: the result of silhouette(), its mesh, or an image: a vtkImageData, a file name or an array.
     target: an image.
-    spacing: distance of vertices, pixels, if the source is an image.
-    locations: "grid" over the image, "near grid" (only near the outline) or "contour" (points on it, fastest).
-    grid: columns and rows. reflection: "forbidden", "whole" or "free". foreground: see silhouette().
-    grey_gradient: take the gradient of the grey values, not of the silhouette.
-    options: a (12), b (3), lambda_ (0.1), centre_tolerance (1/3; 0: no rule), contour_points (60), smoothing (1.5),
-        max_solutions, signed_distortion, directed_edges, rotation, descriptor, ordering, coarse_to_fine, rotations,
-        scales, time_limit, threads: the properties of vtkShapeAlgorithm.
+    spacing: ideal distance between vertices, pixels, above 0, if the source is an image.
+    locations: candidate positions: "grid" over the image, "near grid" (near the outline only) or "contour" (points on
+        the outline, fastest).
+    grid: number of columns and rows of the grid, at least 2.
+    reflection: "forbidden" (reflected triangles count as flat), "whole" (the shape or its mirror image) or "free"
+        (triangles may be reflected at no cost).
+    foreground: see silhouette().
+    grey_gradient: use the gradient of the grey values instead of that of the silhouette.
+    options: properties of vtkShapeAlgorithm: a (weight of the deformation, 12), b (weight of the distortion, 3), lambda_
+        (constant of the edge cost, 0.1), signed_distortion (False), smoothing (standard deviation of the Gaussian filter,
+        pixels, 1.5), directed_edges (False), weights rotation, descriptor and ordering (0 each), contour_points (60),
+        centre_tolerance (theta / d_max, 1/3; 0: no rule), max_solutions (to try for this rule, 1000), coarse_to_fine
+        (fast, not exact; False), rotations and scales (to try, 1 each), time_limit (seconds; 0: none), threads (0: all
+        cores).
 
     Raises Error for wrong arguments, and for images without a shape.
+
+    >>> found = tautline.match("fish.png", "fish-bent.png", locations="contour")
+    >>> found.energy, found.displacement
     """
-    matcher = tautline.vtkShapeMatcher()
+    matcher = _vtk.vtkShapeMatcher()
     messages = watch(matcher)
-    matcher.SetSpacing(_number("spacing", spacing))
+    matcher.SetSpacing(number("spacing", spacing))
     matcher.SetGreyGradient(bool(grey_gradient))
     _configure(matcher, locations, grid, reflection, foreground, options)
-    if isinstance(source, SilhouetteMesh):
+    if isinstance(source, SilhouetteResult):
         source = source.mesh
     is_mesh = isinstance(source, vtkDataSet) and not isinstance(source, vtkImageData)
     matcher.SetInputDataObject(0, source if is_mesh else as_image(source))
@@ -187,7 +202,7 @@ def match(
         raise Error("the source or the target is empty")
     table = matcher.GetOutputDataObject(1)
     names = {"EdgeCost": "edge_cost", "Deformation": "deformation", "Distortion": "distortion", "Energy": "energy"}
-    return Match(
+    return MatchResult(
         mesh=mesh,
         points=vtk_to_numpy(mesh.GetPoints().GetData()).copy(),
         displacement=point_array(mesh, "Displacement"),
@@ -203,20 +218,21 @@ def match(
 
 
 @dataclass(frozen=True)
-class Retrieved:
-    """What retrieval() found."""
+class RetrievalResult:
+    """The result of retrieval()."""
 
-    #: Names and classes of the shapes.
+    #: Names and classes of the n shapes.
     names: list[str]
     labels: list[str]
-    #: Distance of each query (row) to each target; -1 where the run ended before.
+    #: Distance of each query (row) to each target (column), n x n; -1 where the run ended before.
     distances: np.ndarray
-    #: Per query the numbers of the others, nearest first.
+    #: Per query the numbers of the other shapes, the nearest first, n x (n - 1).
     ranking: np.ndarray
-    #: Percentage of the best matches that are of the query's class, and the queries right at each rank.
+    #: Percentage of the best matches that have the class of the query, and per rank the number of queries for which the
+    #: match has their class.
     rate: float
     correct_at: np.ndarray
-    #: Percentage of the best matches of each class (row) that are of each class, in the order of `classes`.
+    #: Percentage of the best matches of each class (row) that have each class (column), in the order of `classes`.
     classes: list[str]
     confusion: np.ndarray
     #: The filter's tables by name: Distances, Ranking, Statistics, Confusion.
@@ -226,11 +242,19 @@ class Retrieved:
 
 
 def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
-    """The images of a folder, or of the list folder/labels.csv if there is one, or of another list (.csv)."""
+    """Read a set of images with their classes.
+
+    folder: a folder with a list labels.csv; a folder of images without one, whose classes are their file names up to the
+        first digit or blank; or another list (.csv). A list has the columns file (relative to the list, or to the folder
+        images beside it) and class.
+
+    Returns a block per image, with the field arrays `Label` and `File`. Raises Error for a list or an image that cannot
+    be read.
+    """
     path = Path(fspath(folder))
     if path.is_dir() and (path / "labels.csv").is_file():
         path = path / "labels.csv"
-    reader = tautline.vtkSilhouetteSetReader()
+    reader = _vtk.vtkSilhouetteSetReader()
     reader.SetFileName(str(path))
     run(reader)
     return reader.GetOutputDataObject(0)
@@ -249,23 +273,29 @@ def retrieval(
     reflection: str = "forbidden",
     foreground: str = "automatic",
     **options: Any,
-) -> Retrieved:
-    """Match each of a set of silhouettes with each other one (dissertation section 5.3).
+) -> RetrievalResult:
+    """Match each of a set of silhouettes with each other one and rank them by similarity (dissertation section 5.3).
 
-    shapes: a folder or list, see read_silhouettes(), a multiblock of images, or a sequence of images, see as_image().
-    labels: the class of each shape, if the set does not tell.
-    setting: "highest" (rate, and the fastest), "dissertation", "felzenszwalb", or "custom": the options below.
-    best: matches per query that count.
-    The others are those of match(); symmetric: count both directions.
+    shapes: a folder or list, see read_silhouettes(), a multiblock data set of images, or a sequence of images.
+    labels: the class of each shape, if the set does not have them.
+    setting: "highest" (highest recognition rate, and the fastest), "dissertation", "felzenszwalb", or "custom", which uses
+        the arguments below.
+    spacing: see match().
+    symmetric: whether the distance is the sum of both directions.
+    best: number of matches per query that count, at least 1.
+    locations, grid, reflection, foreground, options: see match().
 
     Raises Error for wrong arguments, and for images without a shape (with its name).
+
+    >>> result = tautline.retrieval("silhouettes.csv", best=1)
+    >>> result.rate
     """
-    found = tautline.vtkShapeRetrieval()
+    found = _vtk.vtkShapeRetrieval()
     messages = watch(found)
     found.SetSetting(pick("setting", setting, SETTINGS))
-    found.SetSpacing(_number("spacing", spacing))
+    found.SetSpacing(number("spacing", spacing))
     found.SetSymmetric(bool(symmetric))
-    found.SetBestMatches(int(_number("best", best)))
+    found.SetBestMatches(int(number("best", best)))
     _configure(found, locations, grid, reflection, foreground, options)
     found.SetInputDataObject(0, _as_set(shapes, labels))
     run(found, messages)
@@ -275,7 +305,7 @@ def retrieval(
     distances = np.array([_numbers(tables["Distances"], i + 2) for i in range(len(names))]).T
     order = np.where(distances < 0, np.inf, distances)
     np.fill_diagonal(order, -1.0)
-    return Retrieved(
+    return RetrievalResult(
         names=names,
         labels=_texts(tables["Distances"], "Label"),
         distances=distances,
@@ -323,26 +353,15 @@ def _configure(
     algorithm.SetReflection(pick("reflection", reflection, REFLECTIONS))
     algorithm.SetForeground(pick("foreground", foreground, FOREGROUNDS))
     try:
-        columns, rows = (int(n) for n in grid)
+        grid_columns, grid_rows = (int(n) for n in grid)
     except (TypeError, ValueError):
         raise Error(f"grid is {grid!r}; columns and rows are expected") from None
-    algorithm.SetGridSize(columns, rows)
+    algorithm.SetGridSize(grid_columns, grid_rows)
+    check_options(options, _OPTIONS)
     for name, value in options.items():
-        if name not in _OPTIONS:
-            raise Error(f"there is no option '{name}'; there are {', '.join(sorted(_OPTIONS))}")
-        number = _number(name, value)
+        checked = number(name, value)
         whole = isinstance(getattr(algorithm, f"Get{_OPTIONS[name]}")(), int)
-        getattr(algorithm, f"Set{_OPTIONS[name]}")(int(number) if whole else number)
-
-
-def _number(name: str, value: Any) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise Error(f"{name} is {value!r}; a number is expected") from None
-    if not np.isfinite(number):
-        raise Error(f"{name} is {number}; it must be finite")
-    return number
+        getattr(algorithm, f"Set{_OPTIONS[name]}")(int(checked) if whole else checked)
 
 
 def _texts(table: vtkTable, name: str) -> list[str]:
@@ -354,82 +373,60 @@ def _numbers(table: vtkTable, column: int) -> np.ndarray:
     return vtk_to_numpy(table.GetColumn(column)).astype(float)
 
 
+# --- the shell ----------------------------------------------------------------------------------------------
+
+
 def add_commands(commands: Any) -> None:
-    """Add `silhouette`, `match` and `retrieval` to the subparsers of the command line; each sets `run`."""
-    parser = commands.add_parser("silhouette", help="the triangulated polygon around what an image shows")
+    """Add `silhouette`, `match` and `retrieval` to the subparsers of the command line."""
+    parser = _commands.add_command(
+        commands, "silhouette", _run_silhouette, "trace the silhouette in an image, triangulate it", threads=False
+    )
     parser.add_argument("image")
-    parser.add_argument("--spacing", type=float, default=25.0, help="of the vertices, pixels (default: 25)")
-    parser.add_argument("--threshold", type=float, help="grey value between the shape and its surroundings")
+    _add_spacing(parser)
+    parser.add_argument("--threshold", type=float, help="grey value between the shape and the background")
     parser.add_argument("--foreground", choices=FOREGROUNDS, default="automatic")
     parser.add_argument("-o", "--output", required=True, help="mesh to write")
-    parser.set_defaults(run=_run_silhouette)
 
-    parser = commands.add_parser("match", help="find a shape in an image")
+    parser = _commands.add_command(commands, "match", _run_match, "find a deformable shape in an image")
     parser.add_argument("source", help="an image")
     parser.add_argument("target", help="an image")
-    parser.add_argument("--spacing", type=float, default=25.0, help="of the vertices, pixels (default: 25)")
+    _add_spacing(parser)
     parser.add_argument("--locations", choices=LOCATIONS, default="grid")
     parser.add_argument("--grid", type=int, nargs=2, default=(30, 30), metavar=("COLUMNS", "ROWS"))
-    _add_energy(parser)
-    parser.add_argument("-o", "--output", help="write the detected mesh")
-    parser.set_defaults(run=_run_match)
-
-    parser = commands.add_parser("retrieval", help="match each of a set of silhouettes with each other one")
-    parser.add_argument("shapes", help="a folder of images, or a list (.csv) with the columns file and class")
-    parser.add_argument("--setting", choices=SETTINGS, default="highest")
-    parser.add_argument("--best", type=int, default=10, help="matches per query that count (default: 10)")
-    parser.add_argument("--threads", type=int, default=0, help="0, the default, is all cores")
-    parser.add_argument("--csv", metavar="FILE", help="write the best matches of each shape")
-    parser.set_defaults(run=_run_retrieval)
-
-
-def _add_energy(parser: Any) -> None:
     parser.add_argument("-a", type=float, default=12.0, help="weight of the deformation (default: 12)")
     parser.add_argument("-b", type=float, default=3.0, help="weight of the distortion (default: 3)")
-    parser.add_argument("--centre-tolerance", type=float, default=1 / 3, help="theta / d_max; 0: no rule")
-    parser.add_argument("--threads", type=int, default=0, help="0, the default, is all cores")
+    parser.add_argument("--centre-tolerance", type=float, default=1 / 3, help="theta / d_max; 0: no rule (default: 1/3)")
+    parser.add_argument("-o", "--output", help="write the detected mesh")
 
-
-def _run_silhouette(arguments: Any) -> int:
-    result = silhouette(
-        arguments.image, arguments.spacing, threshold=arguments.threshold, foreground=arguments.foreground
+    parser = _commands.add_command(
+        commands, "retrieval", _run_retrieval, "rank a set of silhouettes by similarity, compute the recognition rate"
     )
+    parser.add_argument("shapes", help="a folder of images, or a list (.csv) with the columns file and class")
+    parser.add_argument("--setting", choices=SETTINGS, default="highest")
+    parser.add_argument("--best", type=int, default=10, help="number of matches per query that count (default: 10)")
+    parser.add_argument("--csv", metavar="FILE", help="write the best matches of each shape")
+
+
+def _add_spacing(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--spacing", type=float, default=25.0, help="of the vertices, pixels (default: 25)")
+
+
+def _run_silhouette(arguments: argparse.Namespace) -> None:
+    options = _commands.given(arguments, ("spacing", "threshold", "foreground"))
+    result = silhouette(arguments.image, **options)
     print(result.summary)
-    print(" ".join(tautline.write(result, arguments.output)))
-    return 0
+    _commands.save(result, arguments)
 
 
-def _run_match(arguments: Any) -> int:
-    result = match(
-        arguments.source,
-        arguments.target,
-        spacing=arguments.spacing,
-        locations=arguments.locations,
-        grid=tuple(arguments.grid),
-        a=arguments.a,
-        b=arguments.b,
-        centre_tolerance=arguments.centre_tolerance,
-        threads=arguments.threads,
-    )
+def _run_match(arguments: argparse.Namespace) -> None:
+    names = ("spacing", "locations", "grid", "a", "b", "centre_tolerance", "threads")
+    result = match(arguments.source, arguments.target, **_commands.given(arguments, names))
     print(result.summary)
-    if arguments.output:
-        print(" ".join(tautline.write(result, arguments.output)))
-    return 0
+    _commands.save(result, arguments)
 
 
-def _run_retrieval(arguments: Any) -> int:
-    result = retrieval(arguments.shapes, setting=arguments.setting, best=arguments.best, threads=arguments.threads)
+def _run_retrieval(arguments: argparse.Namespace) -> None:
+    result = retrieval(arguments.shapes, **_commands.given(arguments, ("setting", "best", "threads")))
     print(result.summary)
     print("right at rank " + ", ".join(f"{k}: {n}" for k, n in enumerate(result.correct_at, 1)))
-    if arguments.csv:
-        table = result.tables["Ranking"]
-        names = [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())]
-        rows = [
-            ",".join(table.GetValue(r, c).ToString() for c in range(len(names))) for r in range(table.GetNumberOfRows())
-        ]
-        try:
-            Path(arguments.csv).write_text("\n".join([",".join(names), *rows]) + "\n", encoding="utf-8")
-        except OSError as error:
-            raise Error(f"{arguments.csv}: cannot be written: {error.strerror}") from None
-        print(arguments.csv)
-    return 0
+    _commands.save(result, arguments, table_rows(columns(result.tables["Ranking"])))

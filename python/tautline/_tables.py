@@ -5,19 +5,20 @@ from __future__ import annotations
 import csv
 import io
 import math
-from typing import Any, Sequence
+from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
 
-from ._quality import Quality
-from ._verbs import Comparison
+if TYPE_CHECKING:
+    from ._comparison import CompareResult
+    from ._quality import QualityResult
 
 _STATISTICS = ("minimum", "mean", "maximum", "standard_deviation", "outside_acceptable", "worst")
 _HEADINGS = {"standard_deviation": "std dev", "outside_acceptable": "unacceptable"}
 
 
 def align(rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> str:
-    """Columns of equal width: text to the left, numbers to the right."""
+    """Columns of equal width: text aligned left, numbers aligned right."""
     cells = [list(headings), *([_text(value) for value in row] for row in rows)]
     widths = [max(map(len, column)) for column in zip(*cells)]
     numeric = [any(isinstance(row[i], (int, float)) for row in rows) for i in range(len(headings))]
@@ -28,8 +29,8 @@ def align(rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> str:
     return "\n".join([lines[0], "-" * (sum(widths) + 2 * len(widths) - 2), *lines[1:]])
 
 
-def quality_text(result: Quality, worst: int = 0) -> str:
-    """Counts, a row per metric, the angles and, if asked for, the worst elements."""
+def quality_text(result: QualityResult, worst: int = 0) -> str:
+    """Counts, a row per metric, the distribution of angles and, per metric, this many of the worst elements."""
     total = next(iter(result.statistics.values()))
     counts = f"{len(result.validity)} cells: {np.count_nonzero(result.validity == 1)} valid, "
     counts += f"{result.inverted} inverted, {result.degenerate} degenerate"
@@ -50,7 +51,7 @@ def quality_text(result: Quality, worst: int = 0) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def comparison_text(result: Comparison) -> str:
+def comparison_text(result: CompareResult) -> str:
     """A row per metric."""
     shown = ("better", "worse", "equal", "mean_before", "mean_after")
     rows = [[name, *(facts[key] for key in shown)] for name, facts in result.statistics.items()]
@@ -60,8 +61,8 @@ def comparison_text(result: Comparison) -> str:
     return f"{table}\n\n{inverted}\nlargest displacement: {first['largest_displacement']:.6g}"
 
 
-def quality_rows(result: Quality) -> list[dict[str, Any]]:
-    """A dict per metric of all statistics that are numbers or text, and the worst cell."""
+def quality_rows(result: QualityResult) -> list[dict[str, Any]]:
+    """A dict per metric with all statistics that are numbers or text, and the worst cell."""
     rows = []
     for name, facts in result.statistics.items():
         row = {"metric": name, **{key: value for key, value in facts.items() if not isinstance(value, np.ndarray)}}
@@ -70,22 +71,22 @@ def quality_rows(result: Quality) -> list[dict[str, Any]]:
     return rows
 
 
-def comparison_rows(result: Comparison) -> list[dict[str, Any]]:
+def comparison_rows(result: CompareResult) -> list[dict[str, Any]]:
     """A dict per metric."""
     return [{"metric": name, **facts} for name, facts in result.statistics.items()]
 
 
 def csv_text(rows: list[dict[str, Any]]) -> str:
-    """A line of names and a line per row; numbers in full precision."""
+    """A line of names and a line per row, with numbers in full precision; rows have the same keys."""
     out = io.StringIO()
-    writer = csv.DictWriter(out, rows[0].keys(), lineterminator="\n")
+    writer = csv.DictWriter(out, rows[0].keys() if rows else (), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return out.getvalue()
 
 
 def metrics_text(facts: list[dict[str, Any]]) -> str:
-    """Name, label, dimensions, acceptable range, direction, of every metric."""
+    """A row per metric: name, label, dimensions, acceptable ranges, direction."""
     rows = []
     for f in facts:
         ranges = [_range(f[key]) for key in ("acceptable_2d", "acceptable_3d")]
@@ -107,7 +108,7 @@ def metrics_markdown(facts: list[dict[str, Any]]) -> str:
 
 
 def finite(value: Any) -> Any:
-    """The same with infinite numbers as text: JSON has none."""
+    """The value with numbers that are not finite, which JSON does not have, as text."""
     if isinstance(value, dict):
         return {key: finite(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):

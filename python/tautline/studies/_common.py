@@ -19,7 +19,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 import tautline
 from tautline import _optimization
 from tautline._errors import Error, run, watch
-from tautline._metrics import pick
+from tautline._arguments import pick
 from tautline._tables import align
 
 try:

@@ -1,0 +1,86 @@
+"""Arguments of the functions: checks, enumerations, keyword options of filters."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Mapping
+
+import numpy as np
+
+from ._arrays import snake
+from ._errors import Error
+
+#: How the values at the corners of a cell are combined, in the filters' numbering.
+COMBINATIONS = ("mean", "worst", "power mean")
+#: What the target element is, in the filters' numbering.
+TARGETS = ("ideal", "reference", "size", "tensor")
+
+_MAX_THREADS = 1024
+
+#: Sets an option of a filter from the value of a keyword.
+Setter = Callable[[Any, Any], None]
+
+
+def pick(option: str, value: str, allowed: tuple[str, ...]) -> int:
+    """The index of a value in the allowed ones. Raises Error, which lists them, if it is none of them."""
+    if value not in allowed:
+        raise Error(f"{option} is {value!r}; there are {', '.join(map(repr, allowed))}")
+    return allowed.index(value)
+
+
+def within(option: str, value: float, low: float, high: float) -> float:
+    """The value. Raises Error if it is not a number from low to high; VTK would clamp it without a message."""
+    try:
+        if low <= value <= high:
+            return value
+    except TypeError:
+        pass
+    raise Error(f"{option} is {value!r}; it must be a number from {low:g} to {high:g}")
+
+
+def number(option: str, value: Any) -> float:
+    """The value as a float. Raises Error if it is not a finite number."""
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise Error(f"{option} is {value!r}; a number is expected") from None
+    if not np.isfinite(result):
+        raise Error(f"{option} is {result}; it must be finite")
+    return result
+
+
+def set_threads(algorithm: Any, threads: int) -> None:
+    """Set the number of threads; 0 is all cores."""
+    algorithm.SetThreads(int(within("threads", threads, 0, _MAX_THREADS)))
+
+
+def set_time_limit(algorithm: Any, seconds: float) -> None:
+    """Set the time limit; 0 is no limit."""
+    algorithm.SetTimeLimit(within("time_limit", seconds, 0, np.inf))
+
+
+def number_option(setter: str, low: float, high: float, kind: type = float) -> Setter:
+    """A setter of a filter for the numbers from low to high."""
+
+    def set_number(algorithm: Any, value: Any) -> None:
+        getattr(algorithm, setter)(kind(within(snake(setter[3:]), value, low, high)))
+
+    return set_number
+
+
+def flag_option(setter: str) -> Setter:
+    """A setter of a filter for True and False."""
+    return lambda algorithm, value: getattr(algorithm, setter)(bool(value))
+
+
+def check_options(options: Mapping[str, Any], known: Mapping[str, Any]) -> None:
+    """Raise Error for a keyword that is not known."""
+    for name in options:
+        if name not in known:
+            raise Error(f"there is no option {name!r}; there are {', '.join(known)}")
+
+
+def set_options(algorithm: Any, options: Mapping[str, Any], known: Mapping[str, Setter]) -> None:
+    """Set keyword options on a filter by a table of setters."""
+    check_options(options, known)
+    for name, value in options.items():
+        known[name](algorithm, value)

@@ -1,0 +1,82 @@
+"""What the commands of the shell share: options, types of their values, output."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any, Callable, Iterable
+
+from ._errors import Error
+from ._io import write
+from ._tables import csv_text
+
+#: A command: runs with the parsed arguments; the exit code is 0 for None.
+Run = Callable[[argparse.Namespace], "int | None"]
+
+
+def add_command(commands: Any, name: str, run: Run, text: str, *, threads: bool = True) -> argparse.ArgumentParser:
+    """Add a command to the subparsers `commands`; `text` is its help."""
+    parser = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+    parser.set_defaults(run=run)
+    if threads:
+        parser.add_argument("--threads", type=int, default=0, help="number of threads; 0, the default, is all cores")
+    return parser
+
+
+def add_metrics(parser: argparse.ArgumentParser) -> None:
+    """Add the option of the metrics."""
+    parser.add_argument("--metrics", type=_names, default=["imr"], metavar="NAME,...",
+                        help="names of metrics, see the command metrics (default: imr)")  # fmt: skip
+
+
+def add_time_limit(parser: argparse.ArgumentParser, default: float = 0.0) -> None:
+    """Add the option of the time limit."""
+    parser.add_argument("--time-limit", type=float, default=default, metavar="SECONDS",
+                        help=f"0 is no limit (default: {default:g})")  # fmt: skip
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def numbers(text: str) -> list[float]:
+    """Numbers with commas between them, for argparse."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers with commas between them") from None
+
+
+def numbers_or_text(text: str, kind: type = float) -> Any:
+    """A list of numbers if the text is numbers with commas between them, else the text."""
+    try:
+        return [kind(part) for part in text.split(",")]
+    except ValueError:
+        return text
+
+
+def given(arguments: argparse.Namespace, names: Iterable[str]) -> dict[str, Any]:
+    """The values of options by name."""
+    return {name: getattr(arguments, name) for name in names}
+
+
+def counts(mesh: Any) -> str:
+    """The size of a mesh in words."""
+    return f"{mesh.GetNumberOfPoints()} points, {mesh.GetNumberOfCells()} cells"
+
+
+def save_text(file: str, text: str) -> None:
+    """Write a text file and print its name. Raises Error if that fails."""
+    try:
+        with open(file, "w", encoding="utf-8", newline="") as out:
+            out.write(text)
+    except OSError as error:
+        raise Error(f"{file}: cannot be written: {error.strerror}") from None
+    print(file)
+
+
+def save(mesh: Any, arguments: argparse.Namespace, rows: list[dict[str, Any]] | None = None) -> None:
+    """Write the mesh to the file --output and the rows to the file --csv, where given, and print their names."""
+    if getattr(arguments, "output", None):
+        print("\n".join(write(mesh, arguments.output)))
+    if getattr(arguments, "csv", None):
+        save_text(arguments.csv, csv_text(rows or []))

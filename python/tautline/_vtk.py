@@ -1,0 +1,52 @@
+"""The compiled modules of the package and their VTK classes.
+
+Every compiled module that was built (TautlineQuality, ...) stands beside this file. Its classes become attributes of
+this module: `_vtk.vtkElementQuality()`. An optional module that was not built is skipped; a module that exists but
+cannot be imported raises ImportError.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+from typing import Any
+
+_PREFIX = "Tautline"
+
+#: The compiled modules that were built.
+MODULES = frozenset(found.name for found in iter_modules([str(Path(__file__).parent)]) if found.name.startswith(_PREFIX))
+
+#: The files with functions and commands, in the order of the command line's help, and the compiled module of each.
+CAPABILITIES = {
+    "_quality": "TautlineQuality",
+    "_perturbation": "TautlineQuality",
+    "_comparison": "TautlineQuality",
+    "_metric_field": "TautlineQuality",
+    "_metrics": "TautlineQuality",
+    "_optimization": "TautlineOptimization",
+    "_deformation": "TautlineDeformation",
+    "_shapes": "TautlineShapes",
+    "_conditioning": "TautlineConditioning",
+    "_peridynamics": "TautlinePeridynamics",
+    "_domains": "TautlineDomains",
+    "_conversion": "TautlineReaders",
+}
+
+#: The compiled classes by name.
+CLASSES = {
+    name: value
+    for module in sorted(MODULES)
+    for name, value in vars(import_module(f".{module}", __package__)).items()
+    if name.startswith("vtk")
+}
+globals().update(CLASSES)
+
+
+def available(capability: str) -> bool:
+    """Whether the compiled module of a file in CAPABILITIES was built."""
+    return CAPABILITIES[capability] in MODULES
+
+
+def __getattr__(name: str) -> Any:
+    raise AttributeError(f"{name} is in none of the compiled modules that were built: {', '.join(sorted(MODULES))}")
