@@ -1,30 +1,17 @@
-"""python3 -m tautline: exit codes, tables and files against the results of the verbs."""
+"""python3 -m tautline: exit codes, tables and files against the results of the functions."""
 
 import csv
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import tautline as tl
+from checks import DATA, OUT, shell as run
 
-DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
 MESH, PLATE = DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
-
-
-def run(*arguments, code: int = 0) -> str:
-    """What the command prints, on stderr if it fails; its exit code is checked."""
-    command = [sys.executable, "-m", "tautline", *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == code, (arguments, done.returncode, done.stdout, done.stderr)
-    assert code or not done.stderr, done.stderr
-    return done.stderr if code else done.stdout
 
 
 # help and usage
 text = run("--help")
-assert all(f"    {verb} " in text for verb in ("quality", "perturb", "compare", "field", "metrics")), text
+assert all(f"    {name} " in text for name in ("quality", "perturb", "compare", "field", "metrics")), text
 assert "COMMAND" in run(code=2) and "invalid choice: 'paint'" in run("paint", code=2)
 assert "required: FILE" in run("quality", code=2)
 assert "invalid float value: 'x'" in run("perturb", PLATE, "-o", OUT / "cli.vtu", "--fraction", "x", code=2)

@@ -1,44 +1,21 @@
-"""The verbs solve, condition and solver_study, and their commands."""
+"""The functions solve, condition and solver_study, and their commands."""
 
 import csv
 import math
-import os
-import subprocess
-import sys
-from pathlib import Path
 
+import checks
 import numpy as np
 import tautline as tl
+from checks import DATA, points, refused, run_tests, shell, square
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-OUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "conditioning"
+OUT = checks.OUT / "conditioning"
 OUT.mkdir(parents=True, exist_ok=True)
-DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
-
-
-def refused(text, verb, *arguments, **options):
-    try:
-        verb(*arguments, **options)
-    except tl.Error as error:
-        assert text in str(error), f"'{error}' does not say '{text}'"
-    else:
-        raise AssertionError(f"{verb.__name__} took {arguments} {options}")
-
-
-def square(n=12):
-    x, y = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
-    a = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
-    cells = np.stack([a, a + 1, a + n + 2, a, a + n + 2, a + n + 1], axis=1).reshape(-1, 3)
-    return tl.from_arrays(np.column_stack([x.ravel(), y.ravel()]), {"triangle": cells})
-
-
-def coordinates(mesh):
-    return vtk_to_numpy(mesh.GetPoints().GetData())
 
 
 def test_solve():
-    mesh = square()
-    x, y, _ = coordinates(mesh).T
+    mesh = square(12)
+    x, y, _ = points(mesh).T
     result = tl.solve(mesh)
     assert abs(result.solution.max() - 0.0737) < 1e-3  # of -laplace u = 1 on the unit square
     assert result.converged and result.unknowns == 121 and result.gradient.shape == (288, 3)
@@ -51,7 +28,7 @@ def test_solve():
             found = tl.solve(mesh, "poisson", solver, preconditioner, **tight).solution
             assert np.abs(found - exact).max() < 1e-8, (solver, preconditioner)
 
-    # One source in every way it can be told; the given solution, and where.
+    # One source given in every way; the given solution, and where.
     wanted = tl.solve(mesh, source="x*y", **tight).solution
     for source in (x * y, (x * y).tolist()):
         again = tl.solve(mesh, source=source, **tight)
@@ -75,8 +52,8 @@ def test_solve():
 
 
 def test_elasticity():
-    mesh = square()
-    x, y, _ = coordinates(mesh).T
+    mesh = square(12)
+    x, y, _ = points(mesh).T
     for plane, stress in (("strain", (1.2, 0.4, 0.4)), ("stress", (16 / 15, 4 / 15, 0))):
         result = tl.solve(mesh, "elasticity", source=0, given="x*iHat + 0*y*jHat", poisson_ratio=0.25, plane=plane,
                           relative_tolerance=1e-12)  # fmt: skip
@@ -89,7 +66,7 @@ def test_elasticity():
 
 
 def test_condition():
-    mesh = square()
+    mesh = square(12)
     result = tl.condition(mesh, preconditioner="jacobi")
     known = math.tan(math.pi / 24) ** -2  # of the five-point matrix
     assert abs(result.condition / known - 1) < 1e-6 and abs(result.preconditioned_condition / known - 1) < 1e-6
@@ -106,12 +83,12 @@ def test_condition():
 
 
 def test_study():
-    study = tl.solver_study(square())
+    study = tl.solver_study(square(12))
     assert [row["number"] for row in study.rows] == list(range(1, 17)) and study.rows[9]["name"] == "GMRES + ILU(0)"
     best = min(study.rows, key=lambda row: row["seconds"])
     assert study.recommended == best["name"] and study.why.startswith(best["name"])
     assert all(row["converged"] and row["result"].endswith(" s") and row["condition"] >= 1 for row in study.rows)
-    few = tl.solver_study(square(), "elasticity", [17, "CG + GAMG", 1], maximum_iterations=1)
+    few = tl.solver_study(square(12), "elasticity", [17, "CG + GAMG", 1], maximum_iterations=1)
     assert [row["number"] for row in few.rows] == [17, 19, 1]
     assert [row["result"] == "*" for row in few.rows] == [False, True, True] and math.isnan(few.rows[1]["seconds"])
     assert few.recommended == tl.solver_combinations()[17] and len(tl.solver_combinations()) == 25
@@ -126,29 +103,22 @@ def test_misled():
 
 
 def test_refusals():
-    mesh = square()
+    mesh = square(12)
     refused("there are 'poisson', 'elliptic', 'elasticity'", tl.solve, mesh, "heat")
     refused("there are 'cg'", tl.solve, mesh, solver="lu")
     refused("Undefined symbol: 'q'", tl.solve, mesh, source="q")
     refused("of elasticity it is a vector", tl.solve, mesh, "elasticity", source=2.0)
-    refused("12 rows; there are 288 cells and 169 points", tl.solve, mesh, source=np.ones(12))
+    refused("source has the shape (12,); one row for each of the 169 points", tl.solve, mesh, source=np.ones(12))
     refused("without a fixed point", tl.solve, mesh, fixed="x > 5")
     refused("-nonsense", tl.solve, mesh, petsc_options="-nonsense 1")
     refused("-nonsense", tl.condition, mesh, petsc_options="-nonsense 1")
     refused("must be a number from", tl.solve, mesh, time_limit=-1)
     refused("there is no combination 99", tl.solver_study, mesh, combinations=[99])
     tangled = DATA / "bracket-tangled.vtu"
-    for verb in (tl.solve, tl.condition, tl.solver_study):
-        refused("inverted", verb, tangled)
+    for function in (tl.solve, tl.condition, tl.solver_study):
+        refused("inverted", function, tangled)
     stopped = tl.solve(mesh, preconditioner="none", maximum_iterations=3)
     assert not stopped.converged and stopped.iterations == 3 and "limit of iterations" in stopped.reason
-
-
-def shell(*arguments, code=0):
-    done = subprocess.run([sys.executable, "-m", "tautline", *map(str, arguments)], stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True)  # fmt: skip
-    assert done.returncode == code, done.stdout
-    return done.stdout
 
 
 def test_commands():
@@ -168,7 +138,4 @@ def test_commands():
     assert "inverted" in shell("solve", DATA / "bracket-tangled.vtu", code=1)
 
 
-for name, test in list(globals().items()):
-    if name.startswith("test_"):
-        test()
-        print(name, flush=True)
+run_tests(globals())

@@ -1,33 +1,15 @@
-"""The verb warp and its command: motions, targets, coefficients, results, errors."""
+"""The function warp and its command: motions, targets, coefficients, results, errors."""
 
 import csv
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import tautline as tl
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from checks import DATA, OUT, points, refused, run_tests, shell
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
-DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
 PLATE, BRACKET = DATA / "plate.vtu", DATA / "bracket.vtu"
-
-
-def refused(text, *arguments, **options):
-    try:
-        tl.warp(*arguments, **options)
-    except tl.Error as error:
-        assert text in str(error), error
-    else:
-        raise AssertionError(f"nothing raised, expected {text!r}")
-
-
-def points(mesh):
-    return vtk_to_numpy(mesh.GetPoints().GetData())
 
 
 def box_in_box(n=7):
@@ -164,49 +146,38 @@ def test_methods():
 
 
 def test_refused():
-    refused("nothing is given", PLATE)
-    refused("displacement and transform are given", PLATE, "d", transform={"rotate": 1})
-    refused("method is 'magic'", PLATE, method="magic")
-    refused("no point array 'd'", PLATE, "d")
-    refused("has the shape (3, 3)", PLATE, np.zeros((3, 3)))
-    refused("amount is -1", PLATE, amount=-1)
-    refused("no option 'speed'", PLATE, speed=3)
-    refused("transform has to have one of", PLATE, transform={"turn": 30})
-    refused("no 'center'", PLATE, transform={"translate": (1, 0, 0), "center": (0, 0, 0)})
-    refused("rotate is 'far'", PLATE, transform={"rotate": "far"})
-    refused("16 finite numbers", PLATE, transform=[1, 2, 3])
-    refused("no boundary part 7", PLATE, transform={"rotate": 30}, moved=7)
-    refused("run Untangle Mesh first", DATA / "bracket-tangled.vtu", transform={"rotate": 30})
-    refused("NaN or infinite at 179 of 179", PLATE, np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan))
-    refused("regions are", PLATE, transform={"rotate": 1}, regions="region")
-    refused("mirrors", PLATE, transform=np.diag([-1.0, 1, 1, 1]))
+    refused("nothing is given", tl.warp, PLATE)
+    refused("displacement and transform are given", tl.warp, PLATE, "d", transform={"rotate": 1})
+    refused("method is 'magic'", tl.warp, PLATE, method="magic")
+    refused("no point array 'd'", tl.warp, PLATE, "d")
+    refused("has the shape (3, 3)", tl.warp, PLATE, np.zeros((3, 3)))
+    refused("amount is -1", tl.warp, PLATE, amount=-1)
+    refused("no option 'speed'", tl.warp, PLATE, speed=3)
+    refused("transform has to have one of", tl.warp, PLATE, transform={"turn": 30})
+    refused("no 'center'", tl.warp, PLATE, transform={"translate": (1, 0, 0), "center": (0, 0, 0)})
+    refused("rotate is 'far'", tl.warp, PLATE, transform={"rotate": "far"})
+    refused("16 finite numbers", tl.warp, PLATE, transform=[1, 2, 3])
+    refused("no boundary part 7", tl.warp, PLATE, transform={"rotate": 30}, moved=7)
+    refused("run Untangle Mesh first", tl.warp, DATA / "bracket-tangled.vtu", transform={"rotate": 30})
+    refused("NaN or infinite at 179 of 179", tl.warp, PLATE, np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan))
+    refused("regions are", tl.warp, PLATE, transform={"rotate": 1}, regions="region")
+    refused("mirrors", tl.warp, PLATE, transform=np.diag([-1.0, 1, 1, 1]))
 
 
-def shell(*arguments):
-    command = [sys.executable, "-m", "tautline", "warp", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True)
-
-
-def test_shell():
+def test_command():
     output, table = OUT / "warped.vtu", OUT / "warped.csv"
-    done = shell(PLATE, "--rotate", 30, "-o", output, "--csv", table)
-    assert done.returncode == 0 and "all 1913 elements are valid" in done.stdout, done
+    text = shell("warp", PLATE, "--rotate", 30, "-o", output, "--csv", table)
+    assert "all 1913 elements are valid" in text, text
     moved = tl.read(output)
     assert (points(moved) == points(tl.warp(PLATE, transform={"rotate": 30}).mesh)).all()
     with open(table, encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     assert rows[0]["stage"] == "warp" and rows[-1]["inverted"] == "0"
-    done = shell(output, "--target", PLATE, "-o", OUT / "back.vtu", "--method", "femwarp", "--coefficients", "1,2,1")
-    assert done.returncode == 0 and "as the same mesh" in done.stdout, done
-    done = shell(PLATE, "--bend", 60, "--moved", "1,2", "--direction", "0,1,0", "-o", OUT / "bent.vtu")
-    assert done.returncode == 0, done
-    assert shell(PLATE, "-o", output).returncode == 2
-    done = shell(PLATE, "--translate", "1", "-o", output)
-    assert done.returncode == 1 and "translate" in done.stderr, done
+    options = ("-o", OUT / "back.vtu", "--method", "femwarp", "--coefficients", "1,2,1")
+    assert "as the same mesh" in shell("warp", output, "--target", PLATE, *options)
+    shell("warp", PLATE, "--bend", 60, "--moved", "1,2", "--direction", "0,1,0", "-o", OUT / "bent.vtu")
+    shell("warp", PLATE, "-o", output, code=2)
+    assert "translate" in shell("warp", PLATE, "--translate", "1", "-o", output, code=1)
 
 
-if __name__ == "__main__":
-    for name, test in list(globals().items()):
-        if name.startswith("test_"):
-            test()
-            print(name)
+run_tests(globals())

@@ -1,32 +1,13 @@
-"""The verbs optimize and untangle, and their commands; untangles every mesh in ../shared/data/tangled, if it is there."""
+"""The functions optimize and untangle, and their commands."""
 
 import csv
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import tautline as tl
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from checks import DATA, OUT, points, refused, run_tests, shell as run
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
 
-DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
 BRACKET, TANGLED, PLATE = DATA / "bracket.vtu", DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
-SHARED = DATA.parent.parent / "shared" / "data" / "tangled"
-
-
-def refused(text, verb, *arguments, **options):
-    try:
-        verb(*arguments, **options)
-    except tl.Error as error:
-        assert text in str(error), error
-    else:
-        raise AssertionError(f"nothing raised, expected {text!r}")
-
-
-def points(mesh):
-    return vtk_to_numpy(mesh.GetPoints().GetData())
 
 
 def test_optimize():
@@ -165,12 +146,6 @@ def test_untangle():
 
 
 def test_commands():
-    def run(*arguments, code=0):
-        command = [sys.executable, "-m", "tautline", *map(str, arguments)]
-        done = subprocess.run(command, capture_output=True, text=True)
-        assert done.returncode == code, (arguments, done.returncode, done.stdout, done.stderr)
-        return done.stdout + done.stderr
-
     mesh, table = OUT / "cli-optimized.vtu", OUT / "cli-optimized.csv"
     options = ("--objective", "imr", "--objective", "size,weight=2", "--scalarization", "weighted sum")
     text = run("optimize", PLATE, "-o", mesh, "--csv", table, *options, "--iterations", 3)
@@ -186,16 +161,4 @@ def test_commands():
     assert "invalid choice: 'x'" in run("untangle", PLATE, "-o", mesh, "--effort", "x", code=2)
 
 
-def test_tangled_meshes():
-    files = sorted(SHARED.glob("*.vtk"))
-    if not files:
-        print(f"skipped: there are no meshes in {SHARED}")
-    for file in files:
-        result = tl.untangle(file)
-        assert result.inverted_before > 0 == result.inverted == tl.quality(result).inverted, (file, result.summary)
-        print(f"{file.name}: {result.inverted_before} inverted, now none")
-
-
-for name, test in list(globals().items()):
-    if name.startswith("test_"):
-        test()
+run_tests(globals())

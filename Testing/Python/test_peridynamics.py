@@ -1,40 +1,23 @@
-"""The verbs peridynamics and collar, their commands, and the studies of nonlocal models in the small size."""
+"""The functions peridynamics and interaction_layer, their commands, and the studies of nonlocal models in the small size."""
 
 import csv
 import math
-import os
-import subprocess
-import sys
-from pathlib import Path
 
+import checks
 import numpy as np
 import tautline as tl
+from checks import points, refused, run_tests, shell, square
 from tautline.studies import _horizon, names
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-OUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "peridynamics"
+OUT = checks.OUT / "peridynamics"
 OUT.mkdir(parents=True, exist_ok=True)
+REMEDY = "add it with Horizon Collar"  # of a mesh without an interaction layer
 
 
-def refused(text, verb, *arguments, **options):
-    try:
-        verb(*arguments, **options)
-    except tl.Error as error:
-        assert text in str(error), f"'{error}' does not say '{text}'"
-    else:
-        raise AssertionError(f"{verb.__name__} took {arguments} {options}")
-
-
-def square(n=10):
-    x, y = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
-    a = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
-    cells = np.stack([a, a + 1, a + n + 2, a, a + n + 2, a + n + 1], axis=1).reshape(-1, 3)
-    return tl.from_arrays(np.column_stack([x.ravel(), y.ravel()]), {"triangle": cells})
-
-
-def test_verb():
-    bare = square()
-    mesh = tl.collar(bare, 0.2)
+def test_functions():
+    bare = square(10)
+    mesh = tl.interaction_layer(bare, 0.2)
     assert mesh.GetNumberOfCells() > 300 and bare.GetNumberOfCells() == 200
     result = tl.peridynamics(mesh, 0.2, sparsity=30, solve=True)
     assert abs(result.condition / 9.2827 - 1) < 1e-3 and result.definite and result.converged
@@ -47,7 +30,7 @@ def test_verb():
     assert tl.peridynamics(mesh, threads=1).condition == tl.peridynamics(mesh, threads=2).condition
 
     region = vtk_to_numpy(mesh.GetCellData().GetArray("Reference"))
-    again = tl.peridynamics(mesh, region=np.where(region == 2, 7.0, 0.0), collar_value=7)
+    again = tl.peridynamics(mesh, region=np.where(region == 2, 7.0, 0.0), layer_value=7)
     assert again.condition == result.condition and again.mesh.GetCellData().GetArray("given region") is None
     x = vtk_to_numpy(mesh.GetPoints().GetData())[:, 0]
     linear = tl.peridynamics(mesh, solve=True, source=np.zeros(len(x)), given=x, spectrum=False)
@@ -61,45 +44,34 @@ def test_verb():
     literal = tl.peridynamics(mesh, 0.2, 2.5, reading="dissertation", rules="literal")
     assert literal.asymmetry < 1e-12 and not literal.condition < 100, "far from 12, or indefinite"
 
-    refused("add it with Horizon Collar", tl.peridynamics, bare)
+    refused(REMEDY, tl.peridynamics, bare)
     refused("has no collar", tl.peridynamics, mesh, region=None)
     refused("a collar of width", tl.peridynamics, mesh, 0.5)
     refused("to below 4", tl.peridynamics, mesh, p=4)
     refused("to below 3", tl.peridynamics, mesh, p=3, basis="constant")
     refused("basis is 'quadratic'", tl.peridynamics, mesh, basis="quadratic")
     refused("no array 'absent'", tl.peridynamics, mesh, region="absent")
-    refused("above 0", tl.collar, bare, 0)
-    assert tl.peridynamics(mesh, 0.5, allow_thin_collar=True).collar_deficit > 0.2
+    refused("above 0", tl.interaction_layer, bare, 0)
+    assert tl.peridynamics(mesh, 0.5, allow_thin_layer=True).layer_deficit > 0.2
 
 
 def test_commands():
-    tl.write(square(), OUT / "square.vtu")
+    tl.write(square(10), OUT / "square.vtu")
 
-    def run(*arguments):
-        command = [sys.executable, "-m", "tautline", *map(str, arguments)]
-        return subprocess.run(command, capture_output=True, text=True)
-
-    done = run("collar", OUT / "square.vtu", "--width", 0.2, "-o", OUT / "collar.vtu")
-    assert done.returncode == 0, done.stderr
-    done = run("peridynamics", OUT / "collar.vtu", "-p", 2.5, "--solve", "-o", OUT / "rows.vtu")
-    assert "Condition number 12.13" in done.stdout, done
+    shell("interaction-layer", OUT / "square.vtu", "--width", 0.2, "-o", OUT / "layer.vtu")
+    text = shell("peridynamics", OUT / "layer.vtu", "-p", 2.5, "--solve", "-o", OUT / "rows.vtu")
+    assert "Condition number 12.13" in text, text
     assert tl.read(OUT / "rows.vtu").GetPointData().GetArray("Solution") is not None
-    assert "Condition number 9.28" in run("peridynamics", OUT / "square.vtu", "--collar").stdout
-    done = run("peridynamics", OUT / "square.vtu")
-    assert done.returncode == 1 and "Horizon Collar" in done.stderr
-    done = run("study", "list")
-    assert all(name in done.stdout for name in names()) and "peridynamics_tables" in names()
-    done = run("study", "absent")
-    assert done.returncode == 1 and "there is no study" in done.stderr
+    assert "Condition number 9.28" in shell("peridynamics", OUT / "square.vtu", "--add-layer")
+    assert REMEDY in shell("peridynamics", OUT / "square.vtu", code=1)
+    listed = shell("study", "list")
+    assert all(name in listed for name in names()) and "peridynamics_tables" in names()
+    assert "there is no study" in shell("study", "absent", code=1)
 
 
 def test_studies():
     def rows(name):
-        done = subprocess.run(
-            [sys.executable, "-m", "tautline", "study", name, "--size", "small", "--threads", "1", "--out", str(OUT / name)],
-            capture_output=True, text=True,
-        )  # fmt: skip
-        assert done.returncode == 0, done.stderr
+        shell("study", name, "--size", "small", "--threads", 1, "--out", OUT / name)
         assert "Finding" in (OUT / name / f"{name}.txt").read_text()
         with open(OUT / name / f"{name}.csv", newline="") as file:
             return list(csv.DictReader(file))
@@ -116,5 +88,4 @@ def test_studies():
     assert kernel == sorted(kernel), "cond grows with p"
 
 
-for test in (test_verb, test_commands, test_studies):
-    test()
+run_tests(globals())

@@ -1,29 +1,15 @@
-"""The verbs quality, perturb, compare, metric_field, metrics, read and write, with numbers."""
-
-import os
-from pathlib import Path
+"""The functions quality and metrics, meshes given as arguments, errors."""
 
 import numpy as np
 import tautline as tl
+from checks import DATA, refused, run_tests
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
-
-DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 BRACKET, TANGLED, PLATE = (DATA / f"{name}.vtu" for name in ("bracket", "bracket-tangled", "plate"))
 ROOT3 = 3**0.5
 TET = np.array([[0, 0, 0], [1, 0, 0], [0.5, ROOT3 / 2, 0], [0.5, ROOT3 / 6, (2 / 3) ** 0.5]])
 ONE = (TET, [[0, 1, 2, 3]])
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
-
-
-def refused(text: str, verb, *arguments, **options) -> None:
-    """Check that the call raises tautline.Error with the text in its message."""
-    try:
-        verb(*arguments, **options)
-    except tl.Error as error:
-        assert text in str(error), f"'{error}' does not say '{text}'"
-    else:
-        raise AssertionError(f"{verb.__name__} took {arguments} {options}")
 
 
 def snapshot(mesh):
@@ -113,47 +99,6 @@ def test_input_untouched():
     assert tl.quality(mirrored).inverted == 0 and tl.quality(mirrored, reversed_mesh="measure as given").inverted == 1
 
 
-def test_perturb_and_compare():
-    mesh = tl.read(BRACKET)
-    first, again, other = (tl.perturb(mesh, seed=seed) for seed in (1, 1, 2))
-    assert first.inverted == 0 and first.moved > 0.4 * first.movable > 0
-    assert (first.displacement == again.displacement).all() and (first.displacement != other.displacement).any()
-    assert np.isclose(np.linalg.norm(first.displacement, axis=1).max(), first.largest_displacement)
-    tangled = tl.perturb(mesh, tangle=0.02)
-    assert tangled.inverted == tl.quality(tangled).inverted == round(0.02 * 8140) and abs(tangled.tangled - 0.02) < 1e-4
-    still = tl.perturb(mesh, fixed=np.ones(mesh.GetNumberOfPoints(), bool))
-    assert still.moved == 0 and still.mesh.GetPointData().GetNumberOfArrays() == 1
-    refused("each of the 2343 points", tl.perturb, mesh, fixed=[1, 2])
-    refused("no point array 'x'", tl.perturb, mesh, fixed="x")
-    refused("implicit", tl.perturb, vtkImageData())
-    refused("fraction is 1.5", tl.perturb, mesh, 1.5)
-    refused("tangle is nan", tl.perturb, mesh, tangle=float("nan"))
-
-    result = tl.compare(mesh, first, ["imr", "size"])
-    facts, change = result.statistics["imr"], result.difference["imr"]
-    assert facts["better"] + facts["worse"] + facts["equal"] == 8140
-    assert np.isclose(change.mean(), facts["mean_after"] - facts["mean_before"])
-    assert (result.displacement == first.displacement).all()
-    assert set(np.unique(result.change)) == {-1, 0, 1}
-    assert (tl.compare(mesh, mesh).change == 0).all()
-    refused("", tl.compare, mesh, PLATE)
-    refused("there is no such file", tl.compare, mesh, "absent.vtu")
-
-
-def test_metric_field():
-    field = tl.metric_field(["imr", "size"], bounds=(0, 1, 0, ROOT3), dimensions=(3, 3))
-    assert field.values["imr"].shape == (3, 3) and field.mesh.GetDimensions() == (3, 3, 1)
-    assert abs(field.values["imr"][1, 1] - 1) < 1e-12, "the apex of the equilateral triangle"
-    assert np.allclose(field.values["size"][2], ROOT3 / 2) and (field.validity[0] == 0).all()
-    solid = tl.metric_field("size", "tetrahedron", vertices=np.eye(3), bounds=(0, 1, 0, 1, 0, 1), dimensions=(2, 3, 4))
-    assert solid.values["size"].shape == (4, 3, 2)
-    assert abs(solid.values["size"][-1, -1, -1] - 1 / 3) < 1e-14, "(1, 1, 1) above the face of the unit simplex"
-    refused("there are 'triangle', 'tetrahedron'", tl.metric_field, cell="prism")
-    refused("vertices have the shape (1, 3)", tl.metric_field, vertices=[[0, 0, 0]])
-    refused("whole numbers from 1", tl.metric_field, dimensions=(0, 1, 1))
-    refused("no metric 'nope'", tl.metric_field, "nope")
-
-
 def test_metrics():
     facts = tl.metrics()
     assert [f["number"] for f in facts] == list(range(len(facts))) and len(facts) >= 38
@@ -180,26 +125,4 @@ def test_errors():
     refused("points are not an array of numbers", tl.quality, (["a", "b"], [[0, 1, 2]]))
 
 
-def test_files():
-    mesh = tl.perturb(PLATE).mesh
-    for name in ("plate.vtu", "plate.vtk"):
-        file = OUT / f"verbs-{name}"
-        assert tl.write(mesh, file) == [str(file)]
-        assert (tl.quality(file).values["imr"] == tl.quality(mesh).values["imr"]).all()
-    image = tl.metric_field(dimensions=(4, 5, 1)).mesh
-    tl.write(image, OUT / "verbs-field.vti")
-    assert tl.read(OUT / "verbs-field.vti").GetDimensions() == (4, 5, 1)
-    refused("'.vtp' cannot hold a vtkUnstructuredGrid; .vtk .vtu can", tl.write, mesh, OUT / "verbs.vtp")
-    refused("no writer for '.obj'", tl.write, mesh, OUT / "verbs.obj")
-    refused("cannot be written", tl.write, mesh, OUT / "no-such-directory" / "verbs.vtu")
-    refused("there is no such file", tl.read, OUT / "absent.vtu")
-    refused(".xyz", tl.read, "mesh.xyz")
-    broken = OUT / "verbs-broken.vtu"
-    broken.write_text("<VTKFile type='UnstructuredGrid'><oops>")
-    refused("Error parsing", tl.read, broken)
-
-
-for name, test in sorted(globals().items()):
-    if name.startswith("test_"):
-        test()
-        print(f"{name} passed")
+run_tests(globals())

@@ -1,34 +1,18 @@
-"""The verbs silhouette, match and retrieval, their commands, and the study on a small synthetic set."""
+"""The functions silhouette, match and retrieval, their commands, and the study on a small synthetic set."""
 
 import csv
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import tautline as tl
+from checks import OUT, refused, run_tests, shell
 from tautline.studies import _silhouettes
 
-OUTPUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "shapes"
-KIMIA = Path(os.environ["TAUTLINE_DATA_DIR"]).parent.parent / "shared" / "data" / "kimia99"
-
-
-def raises(part, action, *arguments, **options):
-    try:
-        action(*arguments, **options)
-    except tl.Error as error:
-        assert part in str(error), error
-    else:
-        raise AssertionError(f"no error with '{part}'")
+OUTPUT = OUT / "shapes"
+OUTPUT.mkdir(parents=True, exist_ok=True)
 
 
 def run(*arguments, code=0):
-    done = subprocess.run(
-        [sys.executable, "-m", "tautline", *map(str, arguments)], cwd=OUTPUT, capture_output=True, text=True
-    )
-    assert done.returncode == code, done.stdout + done.stderr
-    return done.stdout + done.stderr
+    return shell(*arguments, code=code, folder=OUTPUT)
 
 
 def write_png(file, image):
@@ -55,11 +39,11 @@ def test_silhouette():
     y, x = np.nonzero(images[2])
     assert np.allclose(shape.centre, [x.mean(), y.mean()], atol=0.15), (shape.centre, x.mean(), y.mean())
     assert shape.components == 1 and shape.holes == 0
-    raises("one value", tl.silhouette, np.ones((9, 9)))
-    raises("spacing", tl.silhouette, images[0], 0)
-    raises("no such file", tl.silhouette, "nowhere.png")
-    raises("axes", tl.silhouette, np.ones(9))
-    raises("foreground", tl.silhouette, images[0], foreground="pink")
+    refused("one value", tl.silhouette, np.ones((9, 9)))
+    refused("spacing", tl.silhouette, images[0], 0)
+    refused("no such file", tl.silhouette, "nowhere.png")
+    refused("axes", tl.silhouette, np.ones(9))
+    refused("foreground", tl.silhouette, images[0], foreground="pink")
 
 
 def test_match():
@@ -78,9 +62,9 @@ def test_match():
     assert plain.energy < like.energy
     one, two = (tl.match(images[2], images[3], threads=threads, grid=(12, 12)) for threads in (1, 2))
     assert one.energy == two.energy and (one.points == two.points).all()
-    raises("no option 'c'", tl.match, images[2], images[3], c=1)
-    raises("finite", tl.match, images[2], images[3], a=float("nan"))
-    raises("too small", tl.match, images[2], images[3], grid=(1, 1))
+    refused("no option 'c'", tl.match, images[2], images[3], c=1)
+    refused("finite", tl.match, images[2], images[3], a=float("nan"))
+    refused("too small", tl.match, images[2], images[3], grid=(1, 1))
 
 
 def test_retrieval():
@@ -92,8 +76,8 @@ def test_retrieval():
     hits = sum(found.labels[t] == found.labels[q] for q in range(12) for t in found.ranking[q, :2])
     assert np.isclose(found.rate, 100 * hits / 24) and found.correct_at.sum() == hits
     assert np.allclose(found.confusion.sum(axis=1), 100)
-    raises("labels for", tl.retrieval, images, labels[:3])
-    raises("setting", tl.retrieval, images, labels, setting="best")
+    refused("labels for", tl.retrieval, images, labels[:3])
+    refused("setting", tl.retrieval, images, labels, setting="best")
 
 
 def test_commands():
@@ -120,34 +104,14 @@ def test_commands():
 
 
 def test_study():
-    options = ["--synthetic", "--size", "small", "--locations", "contour", "--no-pictures", "--out", "study"]
+    options = ["--size", "small", "--locations", "contour", "--no-pictures", "--out", "study"]
     told = run("study", "shapes", *options)
     rows = {row["method"]: row for row in csv.DictReader(open(OUTPUT / "study" / "table_5_1.csv"))}
     assert rows["dissertation"]["dissertation"] == "72.2" and rows["felzenszwalb"]["dissertation"] == "64.4"
     assert 100 > float(rows["dissertation"]["rate"]) > float(rows["felzenszwalb"]["rate"]) > 30, rows
+    assert "synthetic silhouettes" in told
+    assert "labels.csv" in run("study", "shapes", "--data", "nowhere", code=1)
     assert "holds, by" in (OUTPUT / "study" / "findings.txt").read_text(), told
 
 
-def test_kimia():
-    """A sixth of the queries' classes of the real set: two classes that are easily told apart from the others."""
-    if not (KIMIA / "labels.csv").is_file():
-        print("Kimia's silhouettes are not there: skipped")
-        return
-    shapes = tl.read_silhouettes(KIMIA)
-    assert shapes.GetNumberOfBlocks() == 99
-    some = [i for i in range(99) if i % 11 in (0, 3, 6, 9)]
-    labels = [shapes.GetBlock(i).GetFieldData().GetAbstractArray("Label").GetValue(0) for i in some]
-    assert len(set(labels)) == 9
-    images = [shapes.GetBlock(i) for i in some]
-    options = dict(setting="custom", locations="contour", best=3)
-    ours = tl.retrieval(images, labels, **options)
-    theirs = tl.retrieval(images, labels, **options, b=0, centre_tolerance=0)
-    assert ours.rate > 80 and ours.rate > theirs.rate, (ours.summary, theirs.summary)
-
-
-if __name__ == "__main__":
-    OUTPUT.mkdir(parents=True, exist_ok=True)
-    for name, test in list(globals().items()):
-        if name.startswith("test_"):
-            test()
-            print(name)
+run_tests(globals())

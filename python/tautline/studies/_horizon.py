@@ -73,7 +73,7 @@ def solve(
         return None
     mesh, region, given = made
     return tautline.peridynamics(
-        mesh, delta, p, basis, reading=reading, region=region, given_points=given, allow_thin_collar=True,
+        mesh, delta, p, basis, reading=reading, region=region, given_points=given, allow_thin_layer=True,
         threads=threads, **more,
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Sets of silhouettes for the studies: Kimia's 99 where they are, else families made here by a seed."""
+"""Sets of silhouettes for the studies: a set from the user's folder, or families generated from a seed."""
 
 from __future__ import annotations
 
@@ -6,12 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
-SOURCE = (
-    "Kimia's set was not found or not wanted. Its 99 silhouettes are those of T. Sebastian, P. "
-    "Klein and B. Kimia (Brown University); a list labels.csv with the columns file and class, and the images in a "
-    "folder images beside it, are expected; --data names the folder."
+import tautline
+
+from .._errors import Error
+
+_NOTE = (
+    "The dissertation's set are the 99 silhouettes of T. Sebastian, P. Klein and B. Kimia (Brown University). Give a "
+    "folder with them by --data: it has a list labels.csv with the columns file and class, and the images in its folder "
+    "images."
 )
 _SIZE = 128
+_BEST = 10  # matches of a query that count
 
 
 def _mask(curve: np.ndarray) -> np.ndarray:
@@ -62,7 +67,7 @@ def families(per_class: int = 11, classes: int = 9, seed: int = 1) -> tuple[list
             curve = np.stack([c * x - s * y, s * x + c * y], axis=1) * scale
             curve += _SIZE / 2 - 0.5 * (curve.min(axis=0) + curve.max(axis=0))
             image = _mask(curve)
-            if member % 4 == 3:  # something in front: a strip of the image is lost
+            if member % 4 == 3:  # occluded: a strip of the image is lost
                 cut = int(_SIZE / 2 + random.uniform(0.55, 0.75) * scale)
                 image = image.copy()
                 image[:, cut:] = 0.0
@@ -72,14 +77,15 @@ def families(per_class: int = 11, classes: int = 9, seed: int = 1) -> tuple[list
 
 
 def data_set(folder: str | None, size: str, seed: int):
-    """Shapes, labels or None, matches that count, description: Kimia's set if there, else the families."""
-    candidates = [Path(folder)] if folder else [Path.cwd().parent / "shared" / "data" / "kimia99", Path("kimia99")]
-    for candidate in candidates:
-        if (candidate / "labels.csv").is_file():
-            import tautline
+    """Shapes, labels or None, number of matches that count, description: those of a folder, or the families if None.
 
-            return tautline.read_silhouettes(candidate), None, 10, f"Kimia's silhouettes in {candidate.name}"
+    folder: has a list labels.csv, see tautline.read_silhouettes(). size: of the families, "small", "medium" or "full".
+    """
+    if folder is not None:
+        if not (Path(folder) / "labels.csv").is_file():
+            raise Error(f"{folder}: there is no list labels.csv in it")
+        return tautline.read_silhouettes(folder), None, _BEST, f"The silhouettes in {Path(folder).name}"
     per_class, classes = {"small": (4, 5), "medium": (8, 9), "full": (11, 9)}[size]
     shapes, labels = families(per_class, classes, seed)
-    text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed}. {SOURCE}"
-    return shapes, labels, min(10, per_class - 1), text
+    text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed}. {_NOTE}"
+    return shapes, labels, min(_BEST, per_class - 1), text

@@ -213,10 +213,9 @@ def _figures(out: Path, shapes: Any, results: dict[str, Any], options: Any) -> N
 
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python3 -m tautline study shapes", description=__doc__)
-    parser.add_argument("--data", help="folder with labels.csv and images")
+    parser.add_argument("--data", metavar="FOLDER", help="with labels.csv and images (default: a synthetic set)")
     parser.add_argument("--size", choices=("small", "medium", "full"), default="full", help="of the synthetic set")
     parser.add_argument("--seed", type=int, default=1, help="of the synthetic set")
-    parser.add_argument("--synthetic", action="store_true", help="the synthetic set even if another is there")
     parser.add_argument("--locations", choices=("grid", "near grid", "contour"), default="near grid",
                         help="of the dissertation's setting; grid takes hours on 99 shapes")  # fmt: skip
     parser.add_argument("--sweep", action="store_true", help="also sweep a / b, theta, grid and spacing")
@@ -224,9 +223,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--no-pictures", action="store_true")
     parser.add_argument("--out", type=Path, default=Path("study-shapes"))
     options = parser.parse_args(argv)
+    shapes, labels, best, text = _silhouettes.data_set(options.data, options.size, options.seed)
     options.out.mkdir(parents=True, exist_ok=True)
-    folder = str(options.out / "none") if options.synthetic else options.data
-    shapes, labels, best, text = _silhouettes.data_set(folder, options.size, options.seed)
     print(text)
     results, rows = {}, []
     for key, setting in _settings(options.locations).items():

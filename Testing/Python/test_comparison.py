@@ -1,0 +1,24 @@
+"""The function compare against the two meshes' qualities, and its errors."""
+
+import numpy as np
+import tautline as tl
+from checks import DATA, refused, run_tests
+
+BRACKET, PLATE = (DATA / f"{name}.vtu" for name in ("bracket", "plate"))
+
+
+def test_compare():
+    mesh = tl.read(BRACKET)
+    first = tl.perturb(mesh)
+    result = tl.compare(mesh, first, ["imr", "size"])
+    facts, change = result.statistics["imr"], result.difference["imr"]
+    assert facts["better"] + facts["worse"] + facts["equal"] == 8140
+    assert np.isclose(change.mean(), facts["mean_after"] - facts["mean_before"])
+    assert (result.displacement == first.displacement).all()
+    assert set(np.unique(result.change)) == {-1, 0, 1}
+    assert (tl.compare(mesh, mesh).change == 0).all()
+    refused("", tl.compare, mesh, PLATE)
+    refused("there is no such file", tl.compare, mesh, "absent.vtu")
+
+
+run_tests(globals())

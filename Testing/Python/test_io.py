@@ -1,0 +1,77 @@
+"""The functions read and write, the command convert: formats, options, errors."""
+
+from pathlib import Path
+
+import tautline as tl
+from checks import DATA, OUT, refused, run_tests, shell
+
+OUTPUT = OUT / "io"
+PLATE = DATA / "plate.vtu"
+OUTPUT.mkdir(parents=True, exist_ok=True)
+
+
+def test_vtk():
+    mesh = tl.perturb(PLATE).mesh
+    for name in ("plate.vtu", "plate.vtk"):
+        file = OUTPUT / name
+        assert tl.write(mesh, file) == [str(file)]
+        assert (tl.quality(file).values["imr"] == tl.quality(mesh).values["imr"]).all()
+    image = tl.metric_field(dimensions=(4, 5, 1)).mesh
+    tl.write(image, OUTPUT / "field.vti")
+    assert tl.read(OUTPUT / "field.vti").GetDimensions() == (4, 5, 1)
+    refused("'.vtp' cannot hold a vtkUnstructuredGrid; .vtk .vtu can", tl.write, mesh, OUTPUT / "plate.vtp")
+    refused("no writer for '.obj'", tl.write, mesh, OUTPUT / "plate.obj")
+    refused("cannot be written", tl.write, mesh, OUTPUT / "no-such-directory" / "plate.vtu")
+    refused("there is no such file", tl.read, OUTPUT / "absent.vtu")
+    refused(".xyz", tl.read, "mesh.xyz")
+    broken = OUTPUT / "broken.vtu"
+    broken.write_text("<VTKFile type='UnstructuredGrid'><oops>")
+    refused("Error parsing", tl.read, broken)
+    refused("has no options, not binary", tl.write, mesh, OUTPUT / "plate.vtu", binary=True)
+
+
+def test_mesh_generators():
+    cube = tl.read(DATA / "cube.1.node")
+    assert cube.GetNumberOfCells() == 171
+    everything = tl.read(DATA / "cube.1.node", lower_cells=True)
+    assert everything.GetNumberOfCells() > 171 + 132
+
+    # every ending that can be written comes back with as many points and cells
+    surface = tl.read(DATA / "house.off")
+    for ending in (".node", ".mesh", ".msh"):
+        files = tl.write(cube, OUTPUT / f"cube{ending}")
+        assert files and all(Path(file).is_file() for file in files), files
+        again = tl.read(OUTPUT / f"cube{ending}")
+        assert (again.GetNumberOfPoints(), again.GetNumberOfCells()) == (73, 171), ending
+    for ending in (".off", ".smesh"):
+        tl.write(surface, OUTPUT / f"house{ending}")
+        assert tl.read(OUTPUT / f"house{ending}").GetNumberOfCells() == 7, ending
+    text, binary = (OUTPUT / name for name in ("text.msh", "binary.msh"))
+    tl.write(cube, text)
+    tl.write(cube, binary, binary=True)
+    assert b"4.1 0 8" in text.read_bytes() and b"4.1 1 8" in binary.read_bytes()
+
+    assert tl.read(binary).GetNumberOfCells() == 171
+    assert tl.read(DATA / "cube.1.ele", lower_cells=True).GetNumberOfCells() > 171
+
+    (OUTPUT / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n")
+    refused("broken.off:6: vertex is 7, from 0 to 2 are allowed", tl.read, OUTPUT / "broken.off")
+    refused("cannot be opened", tl.read, OUTPUT / "none.msh")
+    refused("no reader for '.docx'", tl.read, "thesis.docx")
+    refused("no writer for '.docx'", tl.write, cube, "thesis.docx")
+    refused("171 tetrahedra", tl.write, cube, OUTPUT / "cube.poly")
+    refused("tetrahedra", tl.write, cube, OUTPUT / "cube.off")
+    refused("cannot be written", tl.write, cube, OUTPUT / "no" / "such" / "folder.mesh")
+    refused("not int", tl.write, 7, OUTPUT / "seven.mesh")
+    refused("always text", tl.write, cube, OUTPUT / "cube.mesh", binary=True)
+
+
+def test_convert():
+    text = shell("convert", DATA / "part.msh", OUTPUT / "part.mesh", "--lower-cells")
+    assert tl.read(OUTPUT / "part.mesh", lower_cells=True).GetNumberOfCells() == 295 and "295 cells" in text
+    shell("convert", DATA / "cube.1.node", OUTPUT / "cube.msh", "--binary")
+    assert (OUTPUT / "cube.msh").read_bytes() == (OUTPUT / "binary.msh").read_bytes()
+    assert "no reader" in shell("convert", "thesis.docx", OUTPUT / "x.vtu", code=1)
+
+
+run_tests(globals())

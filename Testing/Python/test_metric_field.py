@@ -1,0 +1,24 @@
+"""The function metric_field on a triangle and a tetrahedron, and its errors."""
+
+import numpy as np
+import tautline as tl
+from checks import refused, run_tests
+
+ROOT3 = 3**0.5
+
+
+def test_metric_field():
+    field = tl.metric_field(["imr", "size"], bounds=(0, 1, 0, ROOT3), dimensions=(3, 3))
+    assert field.values["imr"].shape == (3, 3) and field.mesh.GetDimensions() == (3, 3, 1)
+    assert abs(field.values["imr"][1, 1] - 1) < 1e-12, "the apex of the equilateral triangle"
+    assert np.allclose(field.values["size"][2], ROOT3 / 2) and (field.validity[0] == 0).all()
+    solid = tl.metric_field("size", "tetrahedron", vertices=np.eye(3), bounds=(0, 1, 0, 1, 0, 1), dimensions=(2, 3, 4))
+    assert solid.values["size"].shape == (4, 3, 2)
+    assert abs(solid.values["size"][-1, -1, -1] - 1 / 3) < 1e-14, "(1, 1, 1) above the face of the unit simplex"
+    refused("there are 'triangle', 'tetrahedron'", tl.metric_field, cell="prism")
+    refused("vertices have the shape (1, 3)", tl.metric_field, vertices=[[0, 0, 0]])
+    refused("whole numbers from 1", tl.metric_field, dimensions=(0, 1, 1))
+    refused("no metric 'nope'", tl.metric_field, "nope")
+
+
+run_tests(globals())

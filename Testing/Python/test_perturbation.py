@@ -1,0 +1,28 @@
+"""The function perturb: displacements, seeds, tangled and fixed points, errors."""
+
+import numpy as np
+import tautline as tl
+from checks import DATA, refused, run_tests
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+BRACKET = DATA / "bracket.vtu"
+
+
+def test_perturb():
+    mesh = tl.read(BRACKET)
+    first, again, other = (tl.perturb(mesh, seed=seed) for seed in (1, 1, 2))
+    assert first.inverted == 0 and first.moved > 0.4 * first.movable > 0
+    assert (first.displacement == again.displacement).all() and (first.displacement != other.displacement).any()
+    assert np.isclose(np.linalg.norm(first.displacement, axis=1).max(), first.largest_displacement)
+    tangled = tl.perturb(mesh, tangle=0.02)
+    assert tangled.inverted == tl.quality(tangled).inverted == round(0.02 * 8140) and abs(tangled.tangled - 0.02) < 1e-4
+    still = tl.perturb(mesh, fixed=np.ones(mesh.GetNumberOfPoints(), bool))
+    assert still.moved == 0 and still.mesh.GetPointData().GetNumberOfArrays() == 1
+    refused("each of the 2343 points", tl.perturb, mesh, fixed=[1, 2])
+    refused("no point array 'x'", tl.perturb, mesh, fixed="x")
+    refused("implicit", tl.perturb, vtkImageData())
+    refused("fraction is 1.5", tl.perturb, mesh, 1.5)
+    refused("tangle is nan", tl.perturb, mesh, tangle=float("nan"))
+
+
+run_tests(globals())

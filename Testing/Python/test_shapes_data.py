@@ -1,0 +1,18 @@
+"""Retrieval on part of Kimia's 99 silhouettes, the folder kimia99 of TAUTLINE_TEST_DATA; skipped where that is absent.
+
+Every class is there, with four of its eleven shapes.
+"""
+
+import tautline as tl
+from checks import test_data
+
+shapes = tl.read_silhouettes(test_data("kimia99"))
+assert shapes.GetNumberOfBlocks() == 99
+some = [i for i in range(99) if i % 11 in (0, 3, 6, 9)]
+labels = [shapes.GetBlock(i).GetFieldData().GetAbstractArray("Label").GetValue(0) for i in some]
+assert len(set(labels)) == 9
+images = [shapes.GetBlock(i) for i in some]
+options = dict(setting="custom", locations="contour", best=3)
+ours = tl.retrieval(images, labels, **options)
+theirs = tl.retrieval(images, labels, **options, b=0, centre_tolerance=0)
+assert ours.rate > 80 and ours.rate > theirs.rate, (ours.summary, theirs.summary)
