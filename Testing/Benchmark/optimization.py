@@ -1,8 +1,8 @@
 """The benchmark of the optimizer: what BenchmarkOptimization measures, against what it must reach.
 
-Figures are passes of CPU time of one thread (see Yardstick.h) unless their name says otherwise. The meshes
-of ../shared/data beside the source tree are used where they are; the others are made by the domain
-source and the perturbation filter and kept in the output directory.
+Figures are passes of CPU time of one thread (see Yardstick.h) unless their name says otherwise. Meshes in the folders
+meshes and tangled of the directory that the environment variable TAUTLINE_TEST_DATA names are used where they exist; the
+others are made by the domain source and the perturbation filter and kept in the output directory.
 """
 
 import lzma
@@ -11,7 +11,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
+DATA = os.environ.get("TAUTLINE_TEST_DATA")
 Row = tuple[str, float, str]
 
 # Mesh, its best known sum of squared inverse mean ratios (0: found by hundreds of sweeps), passes to 95 % of the
@@ -50,7 +50,8 @@ class Optimization:
         """One part on one mesh; None, with a message, where there is no such mesh."""
         file = self.find(mesh)
         if file is None:
-            print(f"{part} {mesh}: left out, it is not in {DATA}")
+            where = f"it is not in {DATA}" if DATA else "TAUTLINE_TEST_DATA is not set"
+            print(f"{part} {mesh}: left out, {where}")
             return None
         result = self.run(part, file, *arguments)
         self.measured |= {f"{part} {mesh}: {key}": value for key, value in result.items()}
@@ -65,8 +66,8 @@ class Optimization:
                 self.run("make", mesh, CELLS[mesh][self.quick], part)
                 part.rename(file)
             return file
-        for folder in () if self.quick else ("meshes", "tangled"):
-            file = DATA / folder / f"{mesh}.vtk"
+        for folder in ("meshes", "tangled") if DATA and not self.quick else ():
+            file = Path(DATA, folder, f"{mesh}.vtk")
             if file.exists():
                 return file
             packed, unpacked = Path(f"{file}.xz"), self.output / file.name

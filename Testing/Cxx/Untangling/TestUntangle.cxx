@@ -19,6 +19,8 @@
 #include "vtkUnstructuredGridReader.h"
 
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -26,6 +28,8 @@ using namespace tautline;
 
 namespace
 {
+constexpr int Skipped = 77; // exit code, see CMakeLists.txt
+
 bool isFlat(CellType type)
 {
   return topology(type).dimension == 2;
@@ -247,16 +251,15 @@ void testLocality()
 }
 
 /// Mesquite's tangled meshes and ours, with their own flags and with the boundary fixed.
-void testFiles(const std::string& dataDirectory)
+void testFiles(const std::string& directory)
 {
-  const std::string directory = dataDirectory + "/../../shared/data/tangled/";
   for (const char* name : { "rotsq", "tangled_quad", "tangled_tri", "inverted-hole-1",
          "hex_5_tangled", "tet_4_tangled", "pave2.e", "disk2d_20k_t1", "disk3d_50k_t1" })
   {
-    const std::string file = directory + name + ".vtk";
-    if (!std::ifstream(file))
+    const Context context(name);
+    const std::string file = directory + "/" + name + ".vtk";
+    if (!TAUTLINE_CHECK(std::ifstream(file).good()))
     {
-      std::cout << "Skipped: there is no " << file << "\n";
       continue;
     }
     vtkNew<vtkUnstructuredGridReader> reader;
@@ -605,8 +608,21 @@ void testLinearPrograms()
 }
 }
 
-int TestUntangle(int, char* argv[])
+int TestUntangle(int argc, char* argv[])
 {
+  if (argc > 3 && argv[3] == std::string("files"))
+  {
+    // Meshes that are not part of the repository.
+    const char* data = std::getenv("TAUTLINE_TEST_DATA");
+    const std::string directory = std::string(data ? data : "") + "/tangled";
+    if (!data || !std::filesystem::is_directory(directory))
+    {
+      std::cout << (data ? "There is no " + directory : "TAUTLINE_TEST_DATA is not set.") << "\n";
+      return Skipped;
+    }
+    testFiles(directory);
+    return exitCode();
+  }
   const auto timed = [](const char* name, auto&& test)
   {
     const auto start = std::chrono::steady_clock::now();
@@ -619,7 +635,6 @@ int TestUntangle(int, char* argv[])
   timed("cell types", testCellTypes);
   timed("turned holes", testTurnedHoles);
   timed("locality", testLocality);
-  timed("files", [&] { testFiles(argv[1]); });
   timed("frames", testFrames);
   timed("threads", testThreads);
   timed("obstacles", testObstacles);
