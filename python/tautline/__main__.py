@@ -18,8 +18,8 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for capability in filter(_vtk.available, _vtk.CAPABILITIES):
         import_module(f".{capability}", __package__).add_commands(commands)
-    study = commands.add_parser("study", add_help=False,
-                                help="regenerate tables and figures of the dissertation; `study list` lists the studies")  # fmt: skip
+    text = "regenerate tables and figures of the dissertation; `study list` lists the studies"
+    study = commands.add_parser("study", add_help=False, help=text)
     study.add_argument("arguments", nargs=argparse.REMAINDER)
     study.set_defaults(run=_run_study)
     return parser

@@ -83,11 +83,11 @@ class ConditionResult:
     #: Condition numbers of A and of P^-1 A, of composite data the largest; nan where they are unknown.
     condition: float
     preconditioned_condition: float
-    #: A row (dict) for A and one for P^-1 A: matrix, smallest, largest, condition, smallest_error, largest_error (relative
-    #: bounds; nan: unknown), converged, iterations, seconds, method, message; of composite data also block.
+    #: A row (dict) for A and one for P^-1 A: matrix, smallest, largest, condition, smallest_error, largest_error
+    #: (relative bounds; nan: unknown), converged, iterations, seconds, method, message; of composite data also block.
     spectrum: list[dict[str, Any]]
-    #: Per cell, m: the largest eigenvalue of its matrix, and its share of the largest eigenvalue of A; the shares add up to
-    #: 1. `share` is empty if not computed.
+    #: Per cell, m: the largest eigenvalue of its matrix, and its share of the largest eigenvalue of A; the shares add
+    #: up to 1. `share` is empty if not computed.
     largest_eigenvalue: np.ndarray
     share: np.ndarray
     #: Number of unknowns.
@@ -100,9 +100,9 @@ class ConditionResult:
 class SolverStudyResult:
     """The result of solver_study()."""
 
-    #: A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it failed), result
-    #: (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds, iterations, condition
-    #: (of P^-1 A; nan: unknown), true_residual, converged, reason; of composite data also block.
+    #: A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it failed),
+    #: result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds, iterations,
+    #: condition (of P^-1 A; nan: unknown), true_residual, converged, reason; of composite data also block.
     rows: list[dict[str, Any]]
     #: The name of the recommended combination, "" if none converged, and the reason for it.
     recommended: str
@@ -149,8 +149,8 @@ def solve(
     problem: further options, the same for solve(), condition() and solver_study():
         source: f, by default 1 (elasticity: (1, 0, 0)).
         given: the solution at fixed points, by default 0.
-            Both are a number (elasticity: 2 or 3 of them), the name or the values of a point array, or an expression of x,
-            y, z and point arrays: "sin(x)*y" (elasticity: "x*iHat - jHat").
+            Both are a number (elasticity: 2 or 3 of them), the name or the values of a point array, or an expression of
+            x, y, z and point arrays: "sin(x)*y" (elasticity: "x*iHat - jHat").
         fixed: the points with a given solution. None: the boundary. An expression: the points of the boundary where it
             holds, such as "x < 0.1". Name or values of a point or cell array: where it is not 0 (at the points of these
             cells), and nowhere else.
@@ -288,7 +288,8 @@ def solver_study(
     for chosen in known if combinations is None else combinations:
         number = {name.lower(): key for key, name in known.items()}.get(str(chosen).lower(), chosen)
         if number not in known:
-            raise Error(f"there is no combination {chosen!r}; there are {', '.join(f'{k}: {v}' for k, v in known.items())}")
+            listed = ", ".join(f"{k}: {v}" for k, v in known.items())
+            raise Error(f"there is no combination {chosen!r}; there are {listed}")
         if combinations is not None or number <= _TABLE_2_5:
             filter_.AddCombination(number)
     _set_tolerances(filter_, relative_tolerance, absolute_tolerance, maximum_iterations, restart)
@@ -456,7 +457,8 @@ def _add_problem(commands: Any, name: str, run_command: _commands.Run, text: str
     made = _commands.add_command(commands, name, run_command, text)
     made.add_argument("mesh", metavar="FILE")
     made.add_argument("--pde", choices=PDES, default="poisson")
-    made.add_argument("--source", type=_function, metavar="F", help="numbers, a point array or an expression (default: 1)")
+    made.add_argument("--source", type=_function, metavar="F",
+                      help="numbers, a point array or an expression (default: 1)")  # fmt: skip
     made.add_argument("--fixed", metavar="WHERE", help="expression on the boundary, or array (default: the boundary)")
     made.add_argument("--given", type=_function, default=0.0, metavar="U", help="the solution there (default: 0)")
     for coefficient in ("alpha", "beta", "gamma", "reaction"):

@@ -71,9 +71,9 @@ class WarpResult:
     #: also block.
     history: dict[str, Any]
     #: elements, boundary_points, moved_points, largest_displacement, amount, inverted_after_warp, inverted, impossible,
-    #: crossings, worst_shape, mean_shape, worst_imr_before, mean_imr_before, worst_imr, mean_imr, cxx to cxz, decoupled,
-    #: regularization, reused, and assemble_, set_up_, solve_, improve_ and total_seconds. Of composite data a dict of
-    #: these per block.
+    #: crossings, worst_shape, mean_shape, worst_imr_before, mean_imr_before, worst_imr, mean_imr, cxx to cxz,
+    #: decoupled, regularization, reused, and assemble_, set_up_, solve_, improve_ and total_seconds. Of composite data
+    #: a dict of these per block.
     statistics: dict[str, Any]
     #: New minus old position, n x 3.
     displacement: np.ndarray
@@ -106,7 +106,7 @@ def warp(
     threads: int = 0,
     **options: Any,
 ) -> WarpResult:
-    """Deform the interior of a mesh to follow a prescribed motion of its boundary; elements stay valid and keep their shapes.
+    """Deform the interior of a mesh to follow a prescribed boundary motion, with valid elements of similar shapes.
 
     mesh: a vtkDataSet with explicit points, a composite data set, a file name or (points, cells), without inverted
         elements. It is not changed.
@@ -115,24 +115,24 @@ def warp(
             ignored.
         target: the mesh or its boundary in the new position, or any surface (in the plane a curve) to project it to.
         transform: of the part `moved`: {"translate": (x, y, z)}, {"rotate": degrees, "axis": (0, 0, 1)}, {"scale":
-            factor or three of them}, {"bend": degrees, "axis": (0, 0, 1), "direction": (1, 0, 0)}, each about a "center",
-            by default that of the moved points; a 4 x 4 matrix; or a vtkLinearTransform.
-    method: "hybrid" (anisotropic FEMWARP, then an optimization of shape and validity), "femwarp", "anisotropic femwarp",
-        "small-step femwarp", "femwarp and untangling", "iterative stiffening", "jacobian stiffening", "biharmonic",
-        "inverse distance", "radial basis", "weighted laplacian".
+            factor or three of them}, {"bend": degrees, "axis": (0, 0, 1), "direction": (1, 0, 0)}, each about a
+            "center", by default that of the moved points; a 4 x 4 matrix; or a vtkLinearTransform.
+    method: "hybrid" (anisotropic FEMWARP, then an optimization of shape and validity), "femwarp", "anisotropic
+        femwarp", "small-step femwarp", "femwarp and untangling", "iterative stiffening", "jacobian stiffening",
+        "biharmonic", "inverse distance", "radial basis", "weighted laplacian".
     amount: fraction of the motion along its path, from 0, the undeformed mesh; 1 is the whole motion.
     correspondence: of points to those of the target: "automatic", "same mesh", "same boundary", "point ids", "closest
         point".
     target_ids: for "point ids": the name of a point array of the target, or one point number of the mesh per point of
         the target.
-    moved: the part that a transform or projection moves; the rest of the boundary stays in place. "automatic" (the inner
-        boundaries, or the whole boundary if there are none), "whole boundary", "inner boundaries"; numbers of boundary
-        parts, of which 1 is the largest; the name of a point or cell array; or one value per point.
+    moved: the part that a transform or projection moves; the rest of the boundary stays in place. "automatic" (the
+        inner boundaries, or the whole boundary if there are none), "whole boundary", "inner boundaries"; numbers of
+        boundary parts, of which 1 is the largest; the name of a point or cell array; or one value per point.
     values: values of the array `moved` on the moved part; the default is all but 0.
     fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
     coefficients: of "hybrid" and "anisotropic femwarp": "displacement sums", "principal directions", 3 or 6 numbers
-        (alpha beta gamma, or xx yy zz xy yz xz), the name of a cell array of tensors, or one row of 1, 3, 6 or 9 numbers
-        per cell.
+        (alpha beta gamma, or xx yy zz xy yz xz), the name of a cell array of tensors, or one row of 1, 3, 6 or 9
+        numbers per cell.
     regions: (cell array, {value: (alpha, beta, gamma)}), the array by name or by one value per cell. Cells with other
         values have the `coefficients`, if these are numbers.
     solver: of the linear systems: "automatic", "conjugate gradients", "gmres", "minres", "bicgstab", "direct".
@@ -199,7 +199,13 @@ _OPTIONS = {
 
 
 def _set_motion(
-    filter_: Any, inputs: InputArrays, displacement: Any, target: Any, transform: Any, correspondence: str, target_ids: Any
+    filter_: Any,
+    inputs: InputArrays,
+    displacement: Any,
+    target: Any,
+    transform: Any,
+    correspondence: str,
+    target_ids: Any,
 ) -> None:
     """Set the motion of the boundary, of which exactly one has to be given."""
     given = {"displacement": displacement, "target": target, "transform": transform}
@@ -362,7 +368,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--csv", metavar="FILE", help="write the history, a row per stage")
     motion = parser.add_mutually_exclusive_group(required=True)
     motion.add_argument("--displacement", metavar="ARRAY", help="point array with the motion of the boundary")
-    motion.add_argument("--target", metavar="FILE", help="the boundary in its new position, or a surface to project it to")
+    motion.add_argument("--target", metavar="FILE", help="the boundary in its new position, or a surface")
     motion.add_argument("--translate", metavar="X,Y,Z", type=numbers)
     motion.add_argument("--rotate", metavar="DEGREES", type=float)
     motion.add_argument("--scale", metavar="FACTOR[,FACTOR,FACTOR]", type=numbers)

@@ -69,7 +69,8 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--amount", type=float, default=1.0, help="fraction of the boundary's motion (default: 1)")
     parser.add_argument("--element-size", type=float, default=0.1, help="square: leg of the isotropic triangle")
     parser.add_argument("--aspect-ratio", type=float, default=1.0, help="square: ratio of the legs")
-    parser.add_argument("--layer-width", type=float, default=0.2, help="square: width of the interaction layer (collar)")
+    parser.add_argument("--layer-width", type=float, default=0.2,
+                        help="square: width of the interaction layer (collar)")  # fmt: skip
     parser.add_argument("-o", "--output", required=True, help="file to write; its ending decides on the format")
 
 

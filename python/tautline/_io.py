@@ -96,7 +96,8 @@ def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
 def _check_options(name: str, ending: str, options: dict[str, Any], known: str | None) -> None:
     unknown = [option for option in options if option != known]
     if unknown:
-        raise Error(f"{name}: '{ending}' has {f'the option {known}' if known else 'no options'}, not {', '.join(unknown)}")
+        options_of = f"the option {known}" if known else "no options"
+        raise Error(f"{name}: '{ending}' has {options_of}, not {', '.join(unknown)}")
 
 
 def _holds(form: Format, data: vtkDataObject) -> bool:

@@ -91,7 +91,7 @@ def _block(name: str | None, array: Any, flat: bool, points: int) -> tuple[int, 
         known = _FLAT if flat else _SOLID
         if cells.ndim != 2 or cells.shape[1] not in known:
             sizes = " or ".join(str(size) for size in known)
-            raise Error(f"cells have the shape {cells.shape}; m x {sizes} is expected, or a dict by the names of the cells")
+            raise Error(f"cells have the shape {cells.shape}; m x {sizes} is expected, or a dict by names of cells")
         name = known[cells.shape[1]]
     full = _ALIASES.get(name, name)
     if full not in _CELLS:

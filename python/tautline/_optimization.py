@@ -138,8 +138,8 @@ def optimize(
         reciprocals", "sum", "power mean", "maximum"), "weight" (above 0; 1) and "target" ("ideal", "reference", "size",
         "tensor"; the default is the one given below, if it is one, else "ideal"). The default is ["imr"].
     preset: "fast clean-up", "best shape", "uniform size", "low interpolation error", "untangle then improve", "preserve
-        shape" (of the reference) or "worst element". It replaces objectives, scalarization, optimizer and options, which
-        cannot be given with it. "best shape" is the default if none of them and no target is given.
+        shape" (of the reference) or "worst element". It replaces objectives, scalarization, optimizer and options,
+        which cannot be given with it. "best shape" is the default if none of them and no target is given.
     scalarization: how several objectives are combined into one: "exponential sum" (the default), "objective product",
         "equal sum", "weighted sum", "weighted min-max", "exponential weighted", "lexicographic", "rao".
     optimizer: "automatic" (the default), "local newton", "local conjugate gradient", "fletcher-reeves",
@@ -298,8 +298,8 @@ class UntangleResult:
     history: dict[str, Any]
     #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no position
-    #: between the fixed points around makes it valid, 4 a fixed point is not finite.
+    #: Per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no
+    #: position between the fixed points around makes it valid, 4 a fixed point is not finite.
     obstacle: np.ndarray
     #: Number of inverted or degenerate elements before and after, and of those that fixed points make infeasible.
     inverted_before: int

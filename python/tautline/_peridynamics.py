@@ -31,8 +31,8 @@ _RENAMED = {"collar_deficit": "layer_deficit"}  # columns of the filter's table
 class PeridynamicsResult:
     """The result of peridynamics()."""
 
-    #: The mesh with `Unknown`, `Neighbors`, `RowSum`, `Diagonal`, the extreme eigenvectors and `Solution`, on the points
-    #: (linear basis) or the cells.
+    #: The mesh with `Unknown`, `Neighbors`, `RowSum`, `Diagonal`, the extreme eigenvectors and `Solution`, on the
+    #: points (linear basis) or the cells.
     mesh: vtkDataSet
     #: Largest over smallest eigenvalue; nan where the matrix is not positive definite or no spectrum was computed.
     condition: float
@@ -89,7 +89,7 @@ def peridynamics(
     time_limit: float = 0.0,
     threads: int = 0,
 ) -> PeridynamicsResult:
-    """Assemble the stiffness matrix of a nonlocal (bond-based peridynamic) model; compute its condition number and solve.
+    """Assemble the matrix of a nonlocal (bond-based peridynamic) model, compute its condition number, and solve.
 
     mesh: triangles in a plane with an interaction layer (collar) of width delta, where the solution is given, see
         interaction_layer(): a vtkDataSet, a file name or (points, cells). It is not changed.
@@ -121,8 +121,8 @@ def peridynamics(
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
 
-    Raises Error, with the remedy, for wrong arguments and where a model cannot be assembled: no layer or too thin a one,
-    an exponent at the singular limit, inverted triangles, too little memory, the time limit.
+    Raises Error, with the remedy, for wrong arguments and where a model cannot be assembled: no layer or too thin a
+    one, an exponent at the singular limit, inverted triangles, too little memory, the time limit.
 
     >>> mesh = tautline.interaction_layer(tautline.domain("rectangle", cells=400), width=0.2)
     >>> tautline.peridynamics(mesh, delta=0.2, p=1).condition
@@ -205,14 +205,14 @@ def interaction_layer(mesh: Mesh, width: float = 0.2, *, element_size: float = 0
     A nonlocal model has its boundary condition not on the boundary but in this layer, see peridynamics() and
     dissertation section 4.2.
 
-    mesh: triangles in a plane: a vtkDataSet, a file name or (points, cells). It is not changed; its points and triangles
-        come first in the result, with the same numbers.
+    mesh: triangles in a plane: a vtkDataSet, a file name or (points, cells). It is not changed; its points and
+        triangles come first in the result, with the same numbers.
     width: least width of the layer, above 0, in the mesh's unit.
     element_size: edge length of the layer's triangles; 0 is the mean edge length of the boundary.
     threads: number of threads; 0 is all cores. The result does not depend on it.
 
-    The cell array `Reference` of the result is 1 in the mesh and 2 in the layer. Raises Error for wrong arguments and for
-    a boundary that crosses itself.
+    The cell array `Reference` of the result is 1 in the mesh and 2 in the layer. Raises Error for wrong arguments and
+    for a boundary that crosses itself.
 
     >>> tautline.interaction_layer("plate.vtu", width=0.1).GetNumberOfCells()
     """
@@ -250,7 +250,8 @@ def add_commands(commands: Any) -> None:
                       help="first add an interaction layer of width delta around the mesh")  # fmt: skip
     made.add_argument("--allow-thin-layer", action="store_true", help="the layer may be narrower than delta")
     made.add_argument("--solve", action="store_true", help="solve for a source of 1, and 0 in the layer")
-    made.add_argument("--memory-limit", type=float, default=0.0, metavar="MIB", help="0, the default, is the free memory")
+    made.add_argument("--memory-limit", type=float, default=0.0, metavar="MIB",
+                      help="0, the default, is the free memory")  # fmt: skip
     _commands.add_time_limit(made)
 
     made = _commands.add_command(

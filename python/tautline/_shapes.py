@@ -174,12 +174,12 @@ def match(
         (triangles may be reflected at no cost).
     foreground: see silhouette().
     grey_gradient: use the gradient of the grey values instead of that of the silhouette.
-    options: properties of vtkShapeAlgorithm: a (weight of the deformation, 12), b (weight of the distortion, 3), lambda_
-        (constant of the edge cost, 0.1), signed_distortion (False), smoothing (standard deviation of the Gaussian filter,
-        pixels, 1.5), directed_edges (False), weights rotation, descriptor and ordering (0 each), contour_points (60),
-        centre_tolerance (theta / d_max, 1/3; 0: no rule), max_solutions (to try for this rule, 1000), coarse_to_fine
-        (fast, not exact; False), rotations and scales (to try, 1 each), time_limit (seconds; 0: none), threads (0: all
-        cores).
+    options: properties of vtkShapeAlgorithm: a (weight of the deformation, 12), b (weight of the distortion, 3),
+        lambda_ (constant of the edge cost, 0.1), signed_distortion (False), smoothing (standard deviation of the
+        Gaussian filter, pixels, 1.5), directed_edges (False), weights rotation, descriptor and ordering (0 each),
+        contour_points (60), centre_tolerance (theta / d_max, 1/3; 0: no rule), max_solutions (to try for this rule,
+        1000), coarse_to_fine (fast, not exact; False), rotations and scales (to try, 1 each), time_limit (seconds; 0:
+        none), threads (0: all cores).
 
     Raises Error for wrong arguments, and for images without a shape.
 
@@ -244,9 +244,9 @@ class RetrievalResult:
 def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
     """Read a set of images with their classes.
 
-    folder: a folder with a list labels.csv; a folder of images without one, whose classes are their file names up to the
-        first digit or blank; or another list (.csv). A list has the columns file (relative to the list, or to the folder
-        images beside it) and class.
+    folder: a folder with a list labels.csv; a folder of images without one, whose classes are their file names up to
+        the first digit or blank; or another list (.csv). A list has the columns file (relative to the list, or to the
+        folder images beside it) and class.
 
     Returns a block per image, with the field arrays `Label` and `File`. Raises Error for a list or an image that cannot
     be read.
@@ -278,8 +278,8 @@ def retrieval(
 
     shapes: a folder or list, see read_silhouettes(), a multiblock data set of images, or a sequence of images.
     labels: the class of each shape, if the set does not have them.
-    setting: "highest" (highest recognition rate, and the fastest), "dissertation", "felzenszwalb", or "custom", which uses
-        the arguments below.
+    setting: "highest" (highest recognition rate, and the fastest), "dissertation", "felzenszwalb", or "custom", which
+        uses the arguments below.
     spacing: see match().
     symmetric: whether the distance is the sum of both directions.
     best: number of matches per query that count, at least 1.
@@ -395,7 +395,8 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--grid", type=int, nargs=2, default=(30, 30), metavar=("COLUMNS", "ROWS"))
     parser.add_argument("-a", type=float, default=12.0, help="weight of the deformation (default: 12)")
     parser.add_argument("-b", type=float, default=3.0, help="weight of the distortion (default: 3)")
-    parser.add_argument("--centre-tolerance", type=float, default=1 / 3, help="theta / d_max; 0: no rule (default: 1/3)")
+    parser.add_argument("--centre-tolerance", type=float, default=1 / 3,
+                        help="theta / d_max; 0: no rule (default: 1/3)")  # fmt: skip
     parser.add_argument("-o", "--output", help="write the detected mesh")
 
     parser = _commands.add_command(

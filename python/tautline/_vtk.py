@@ -15,7 +15,9 @@ from typing import Any
 _PREFIX = "Tautline"
 
 #: The compiled modules that were built.
-MODULES = frozenset(found.name for found in iter_modules([str(Path(__file__).parent)]) if found.name.startswith(_PREFIX))
+MODULES = frozenset(
+    found.name for found in iter_modules([str(Path(__file__).parent)]) if found.name.startswith(_PREFIX)
+)
 
 #: The files with functions and commands, in the order of the command line's help, and the compiled module of each.
 CAPABILITIES = {

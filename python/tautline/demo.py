@@ -1,9 +1,9 @@
-"""The main job in one script: measure a mesh, make it valid and better, write meshes, table and pictures by quality.
+"""The demo: measure a mesh, untangle and optimize it, write the meshes, a table and pictures colored by quality.
 
 usage: pvpython demo.py OUTPUT_DIRECTORY [MESH]
 
-Without a mesh it makes one: the bore of the dissertation, perturbed and slightly tangled; where the meshers
-are not built, the bracket in Data.
+The default mesh is the bore of the dissertation, perturbed and slightly tangled; where the meshers were not built, the
+bracket in Data.
 """
 
 import sys
@@ -21,24 +21,24 @@ WORST = 3  # elements listed
 LOW_PRIORITY = -1.0  # of settings: below those of the site and the user
 DOMAIN, CELL_COUNT = "bore", 8000
 SIZE = [1200, 800]
-FROM, ABOVE, UP, ZOOM = [0.75, -1.0, 0.55], [0, 0, 1], [0, 0, 1], 1.1  # where the camera looks from
+FROM, ABOVE, UP, ZOOM = [0.75, -1.0, 0.55], [0, 0, 1], [0, 0, 1], 1.1  # the camera
 BLACK, WHITE, SHADOW = [0, 0, 0], [1, 1, 1], [0.2, 0.3, 0.4]
 EDGED = {"Representation": "Surface With Edges", "EdgeColor": [0.3, 0.3, 0.3], "LineWidth": 1.0}
 
 
 def start(output: Path) -> Path:
-    """A domain made here, with elements of all qualities, or the sample mesh if there are no meshers."""
+    """A generated domain with elements of all qualities, or the sample mesh if there are no meshers."""
     try:
         made = tautline.perturb(tautline.domain(DOMAIN, CELL_COUNT), fraction=0.9, seed=1, tangle=0.005)
     except (AttributeError, tautline.Error) as error:
-        print(f"no domain can be made here ({error}); the bracket is used")
+        print(f"the domain cannot be meshed ({error}); the bracket is used")
         return Path(__file__).resolve().parents[2] / "Data" / "bracket-tangled.vtu"
     tautline.write(made, output / "domain.vtu")
     return output / "domain.vtu"
 
 
 def measure(mesh: Path, output: Path) -> list[Path]:
-    """Measure with the Python verb; print the table, write mesh and table."""
+    """Measure with the Python function; print the table, write mesh and table."""
     result = tautline.quality(mesh, METRICS)
     print(f"{mesh}\n{_tables.quality_text(result, WORST)}\n")
     written = [output / "quality.vtu", output / "quality.csv"]
@@ -48,7 +48,7 @@ def measure(mesh: Path, output: Path) -> list[Path]:
 
 
 def improve(mesh: Path, output: Path) -> Path:
-    """Untangle and optimise with the Python verbs; print what they say, write the mesh."""
+    """Untangle and optimize with the Python functions; print their summaries, write the mesh."""
     valid = tautline.untangle(mesh)
     better = tautline.optimize(valid)
     print(f"{valid.summary}\n{better.summary}\n")
@@ -57,7 +57,7 @@ def improve(mesh: Path, output: Path) -> Path:
 
 
 def show(proxy, view, **options):
-    """Show a mesh in the colours of its quality, which ParaView's ColorBy would stretch."""
+    """Show a mesh colored by quality with the range of the metric, to which ColorBy would not keep."""
     display = simple.Show(proxy, view)
     display.SetScalarColoring(SHOWN, CELLS)
     display.Ambient, display.Diffuse = 0.35, 0.75
@@ -67,7 +67,7 @@ def show(proxy, view, **options):
 
 
 def cut_open(quality, view, middle: list[float]) -> None:
-    """Half of the elements, the other half as a shadow, and in it the inverted elements."""
+    """Show half of the elements, the other half transparent with the inverted elements in it."""
     for half, options in ((0, EDGED), (1, {"Opacity": 0.08})):
         clip = simple.Clip(Input=quality, ClipType="Plane", Crinkleclip=1, Invert=half)
         clip.ClipType.Origin, clip.ClipType.Normal = middle, [0, 1, 0]
@@ -121,7 +121,7 @@ def picture(mesh: Path, file: Path) -> None:
 
 
 def main(mesh: Path | None, output: Path) -> None:
-    """Write quality.vtu, quality.csv and quality.png of a mesh to a directory, better.vtu and better.png of the improved one."""
+    """Write quality.vtu, quality.csv and quality.png of a mesh, better.vtu and better.png of the improved one."""
     output.mkdir(parents=True, exist_ok=True)
     mesh = mesh or start(output)
     # The colours of the plugin, which need not be built for the demo.

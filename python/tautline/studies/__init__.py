@@ -1,7 +1,7 @@
 """Studies that regenerate the tables and figures of the dissertation: python3 -m tautline study NAME.
 
-A study is a module of this package with `main(arguments)` and a docstring whose first line says what it
-does; the name of the module is that of the study.
+A study is a module of this package with `main(arguments)`; its name is that of the module, and the first line of its
+docstring describes it.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from .._errors import Error
 
 
 def names() -> list[str]:
-    """The studies there are."""
+    """The names of the studies."""
     return sorted(found.name for found in iter_modules(__path__) if not found.name.startswith("_"))
 
 
 def main(arguments: list[str]) -> int:
-    """Run a study with its own arguments; `list` prints the names and what each does."""
+    """Run a study with its own arguments; `list` prints the names and descriptions."""
     if not arguments or arguments[0] in ("list", "-h", "--help"):
         for name in names():
             text = (import_module(f"{__name__}.{name}").__doc__ or "").strip().split("\n")[0]

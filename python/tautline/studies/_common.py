@@ -1,4 +1,4 @@
-"""What the studies of mesh optimization share: methods, runs measured iteration by iteration, reports."""
+"""Shared by the studies of mesh optimization: methods, runs measured iteration by iteration, reports."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 from tautline import _optimization
-from tautline._errors import Error, run, watch
+from tautline._errors import Error, Messages, run, watch
 from tautline._arguments import pick
 from tautline._tables import align
 
@@ -28,16 +28,16 @@ try:
     matplotlib.use("Agg")
     from matplotlib import pyplot
     from matplotlib.collections import PolyCollection
-except ImportError:  # pictures are left out, and the report says so
+except ImportError:  # the report then has no pictures, and a note
     pyplot = None
 
-#: Inner steps per patch of Mesquite's nonlinear conjugate gradients unless told otherwise.
+#: Default inner steps per patch of Mesquite's nonlinear conjugate gradients.
 MESQUITE_PATCH_ITERATIONS = 5
 #: c of (3.8), the upper end of the dissertation's typical values.
 TYPICAL_C = 1e6
-#: A curve that exceeds so many times its start would hide the others.
+#: A curve that exceeds this multiple of its start would flatten the others; the axis ends below.
 BEYOND = 3.0
-#: So many cells take long enough to tell what is going on.
+#: From this number of cells on, progress is printed.
 LARGE = 200_000
 OPTIMIZERS = {"nlcg": "local conjugate gradient", "newton": "local newton"}
 
@@ -47,7 +47,7 @@ OPTIMIZERS = {"nlcg": "local conjugate gradient", "newton": "local newton"}
 
 @dataclass(frozen=True)
 class Method:
-    """A column or row of the dissertation's tables: objectives and how they become one."""
+    """A column or row of the dissertation's tables: objectives and their scalarization."""
 
     name: str
     label: str
@@ -84,7 +84,7 @@ class Run:
     kept: dict[int, vtkDataSet] = field(default_factory=dict)
 
     def at(self, quantity: str, iteration: int) -> float:
-        """The value after an iteration; after the last one where it stopped earlier."""
+        """The value after an iteration, or after the last one if the run stopped earlier."""
         series = self.seconds if quantity == "seconds" else self.values[quantity]
         return float(series[min(iteration, len(series) - 1)])
 
@@ -98,7 +98,7 @@ class Run:
         return float(self.seconds[-1])
 
 
-#: What is measured: name: (metric, how its values on the valid elements become a number).
+#: What is measured: name: (metric, aggregation of its values over the valid elements).
 QUANTITIES: dict[str, tuple[str, Callable[[np.ndarray], float]]] = {
     "imr_mean": ("imr", np.mean),
     "imr_worst": ("imr", np.max),
@@ -113,12 +113,15 @@ QUANTITIES: dict[str, tuple[str, Callable[[np.ndarray], float]]] = {
 
 def measure(mesh: vtkDataSet, quantities: Iterable[str]) -> dict[str, float]:
     """The quantities of a mesh over its valid elements, and `inverted`, the number of all others."""
-    wanted = list(quantities)
-    names = list(dict.fromkeys(QUANTITIES[q][0] for q in wanted))
+    quantities = list(quantities)
+    names = list(dict.fromkeys(QUANTITIES[q][0] for q in quantities))
     threads = 0 if mesh.GetNumberOfCells() >= LARGE else 1
     found = tautline.quality(mesh, names, reversed_mesh="measure as given", threads=threads)
     valid = found.validity == 1
-    result = {q: float(QUANTITIES[q][1](found.values[QUANTITIES[q][0]][valid])) if valid.any() else 0.0 for q in wanted}
+    result = {}
+    for quantity in quantities:
+        metric, aggregate = QUANTITIES[quantity]
+        result[quantity] = float(aggregate(found.values[metric][valid])) if valid.any() else 0.0
     return {**result, "inverted": float(np.count_nonzero(~valid))}
 
 
@@ -129,61 +132,18 @@ def improve(
     quantities: Iterable[str],
     *,
     optimizer: str = "nlcg",
-    patch_iterations: int = 1,
-    beta: float = 0.0,
-    c: float = 0.0,
-    allow_inversion: bool = False,
-    two_digits: bool = False,
-    relative_change: float = 0.0,
-    reduction: float = 1.0,
-    best_known: float = 0.0,
     keep: Sequence[int] = (),
-    weights: Sequence[tuple[str, float]] = (),
-    template: str = "default",
     trace: bool = True,
-    threads: int = 0,
+    **options: Any,
 ) -> Run:
-    """Run vtkMeshOptimizer, boundary fixed, no culling, and measure each iteration (or, without trace, the end).
+    """Run vtkMeshOptimizer, and measure the mesh after each iteration, or without trace at the start and the end.
 
-    weights: further objectives and their weights; the scalarization is then the weighted sum, the others weigh 1.
+    keep: iterations after which the mesh is kept. options: see _configured().
     """
-    filter_ = tautline.vtkMeshOptimizer()
-    messages = watch(filter_)
-    form = _optimization.TEMPLATES.index(template) - 1
-    for name in method.objectives:
-        filter_.AddObjectiveByName(name, form)
-    for name, weight in weights:
-        filter_.AddObjectiveByName(name, filter_.DEFAULT_TEMPLATE, weight)
-    filter_.SetScalarization(
-        pick("scalarization", "weighted sum" if weights else method.scalarization, _optimization.SCALARIZATIONS),
-    )
-    filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), _optimization.OPTIMIZERS))
-    filter_.SetMaximumIterations(iterations)
-    filter_.SetPatchIterations(patch_iterations)
-    filter_.SetBeta(beta)
-    filter_.SetC(c)
-    filter_.SetAllowInversion(allow_inversion)
-    filter_.SetUntangleFirst(False)
-    filter_.SetTwoDigits(two_digits)
-    filter_.SetRelativeChange(relative_change)
-    filter_.SetGradientNorm(0.0)
-    filter_.SetReduction(reduction)
-    filter_.SetBestKnown(best_known)
-    filter_.SetCulling(0.0)
-    filter_.SetTimeLimit(0.0)
-    filter_.SetThreads(threads)
+    filter_, messages = _configured(mesh, method, iterations, optimizer, **options)
     filter_.SetAnimation(trace)
-    filter_.SetInputDataObject(0, mesh)
-    stamps: list[tuple[float, float]] = []
-    tag = filter_.AddObserver("ProgressEvent", lambda *_: stamps.append((filter_.GetProgress(), time.process_time())))
-    began = time.process_time()
-    run(filter_, messages)
-    filter_.RemoveObserver(tag)
-    history = filter_.GetHistory()
-    count = history.GetNumberOfRows()
-    seconds = np.array([stamp - began for _, stamp in stamps])
-    # The pipeline itself reports progress too: 0 before and 1 after the filter's own.
-    seconds = seconds[len(seconds) - 1 - count : -1] if len(seconds) > count else np.resize(seconds, count)
+    seconds = _timed(filter_, messages)
+    count = len(seconds)
     rows, kept = [], {}
     for step in range(count) if trace else (0, count - 1):
         if trace:
@@ -197,13 +157,77 @@ def improve(
             kept[step] = _copy(shown)
     values = {key: np.array([row[key] for row in rows]) for key in rows[0]}
     steps = np.arange(count) if trace else np.array([0, count - 1])
+    history = filter_.GetHistory()
     values["objective"] = np.array([history.GetValueByName(int(i), "Objective").ToDouble() for i in steps])
     final = _copy(filter_.GetOutputDataObject(0))
     if mesh.GetNumberOfCells() >= LARGE:
-        print(
-            f"{method.name}, {optimizer}: {count - 1} iterations, {seconds[-1]:.1f} CPU s", file=sys.stderr, flush=True,
-        )
+        text = f"{method.name}, {optimizer}: {count - 1} iterations, {seconds[-1]:.1f} CPU s"
+        print(text, file=sys.stderr, flush=True)
     return Run(method, optimizer, steps, seconds, values, final, filter_.GetReason(), kept)
+
+
+def _configured(
+    mesh: vtkDataSet,
+    method: Method,
+    iterations: int,
+    optimizer: str,
+    *,
+    patch_iterations: int = 1,
+    beta: float = 0.0,
+    c: float = 0.0,
+    allow_inversion: bool = False,
+    two_digits: bool = False,
+    relative_change: float = 0.0,
+    reduction: float = 1.0,
+    best_known: float | None = None,
+    weights: Sequence[tuple[str, float]] = (),
+    template: str = "default",
+    threads: int = 0,
+) -> tuple[Any, Messages]:
+    """A vtkMeshOptimizer of a method, with fixed boundary and without culling, and its messages.
+
+    weights: further objectives and their weights; the scalarization is then the weighted sum, with 1 for the others.
+    template: aggregation of the objectives of the method.
+    """
+    filter_ = tautline.vtkMeshOptimizer()
+    messages = watch(filter_)
+    for name in method.objectives:
+        filter_.AddObjectiveByName(name, pick("template", template, _optimization.TEMPLATES) - 1)
+    for name, weight in weights:
+        filter_.AddObjectiveByName(name, filter_.DEFAULT_TEMPLATE, weight)
+    scalarization = "weighted sum" if weights else method.scalarization
+    filter_.SetScalarization(pick("scalarization", scalarization, _optimization.SCALARIZATIONS))
+    filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), _optimization.OPTIMIZERS))
+    filter_.SetMaximumIterations(iterations)
+    filter_.SetPatchIterations(patch_iterations)
+    filter_.SetBeta(beta)
+    filter_.SetC(c)
+    filter_.SetAllowInversion(allow_inversion)
+    filter_.SetUntangleFirst(False)
+    filter_.SetTwoDigits(two_digits)
+    filter_.SetRelativeChange(relative_change)
+    filter_.SetGradientNorm(0.0)
+    filter_.SetReduction(reduction)
+    if best_known is not None:
+        filter_.SetBestKnown(best_known)
+    filter_.SetCulling(0.0)
+    filter_.SetTimeLimit(0.0)
+    filter_.SetThreads(threads)
+    filter_.SetInputDataObject(0, mesh)
+    return filter_, messages
+
+
+def _timed(filter_: Any, messages: Messages) -> np.ndarray:
+    """Run a vtkMeshOptimizer; the CPU seconds from its start to the end of each iteration, 0 is the set-up."""
+    stamps: list[float] = []
+    tag = filter_.AddObserver("ProgressEvent", lambda *_: stamps.append(time.process_time()))
+    began = time.process_time()
+    run(filter_, messages)
+    filter_.RemoveObserver(tag)
+    count = filter_.GetHistory().GetNumberOfRows()
+    seconds = np.array(stamps) - began
+    # The pipeline itself reports progress, too: 0 before and 1 after the filter's own.
+    return seconds[len(seconds) - 1 - count : -1] if len(seconds) > count else np.resize(seconds, count)
 
 
 def _copy(mesh: vtkDataSet) -> vtkDataSet:
@@ -255,14 +279,14 @@ def scaled(mesh: vtkDataSet, factor: float) -> vtkDataSet:
 def parser(name: str, text: str | None, cells: int = 0, threads: bool = True) -> argparse.ArgumentParser:
     """The options every study has; without threads, those that always use one."""
     made = argparse.ArgumentParser(prog=f"python3 -m tautline study {name}", description=(text or "").split("\n")[0])
-    made.add_argument("--small", action="store_true", help="a small mesh, for a look or a test: seconds")
+    made.add_argument("--small", action="store_true", help="a small mesh, for a test: seconds")
     made.add_argument(
-        "--out", type=Path, default=Path(f"study-{name}"), metavar="DIR", help="where files go (%(default)s)",
+        "--out", type=Path, default=Path(f"study-{name}"), metavar="DIR", help="directory of the output (%(default)s)",
     )
     if threads:
         made.add_argument("--threads", type=int, default=1, help="0 is all cores (%(default)s, for comparable times)")
     if cells:
-        made.add_argument("--cells", type=int, default=0, help=f"about how many (default: {cells:,})")
+        made.add_argument("--cells", type=int, default=0, help=f"approximate number (default: {cells:,})")
     return made
 
 
@@ -289,7 +313,7 @@ class Report:
 
     def beside(self, file: str, title: str, columns: Sequence[Any], ours: dict[str, Sequence[float]],
                theirs: dict[str, Sequence[float]], head: str = "method") -> None:
-        """Our numbers, the dissertation's in brackets where it has any; in the CSV they have columns of their own."""
+        """Our numbers, with those of the dissertation in brackets; the CSV file has separate columns for them."""
         rows, shown = [], []
         for label, values in ours.items():
             known = list(theirs.get(label, [])) or [math.nan] * len(values)
@@ -298,7 +322,8 @@ class Report:
             shown.append([label, *(_short(v) + ("" if math.isnan(k) else f" ({_short(k)})") for v, k in pairs)])
         names = [str(column) for column in columns]
         self.csv(file, [head, *names, *(f"{name} dissertation" for name in names)], rows)
-        self.parts.append(f"{title}; in brackets the dissertation's  [{file}.csv]\n{align(shown, [head, *names])}")
+        title = f"{title}; in brackets those of the dissertation  [{file}.csv]"
+        self.parts.append(f"{title}\n{align(shown, [head, *names])}")
 
     def csv(self, file: str, headings: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
         with open(self.out / f"{file}.csv", "w", encoding="utf-8", newline="") as stream:
@@ -307,7 +332,7 @@ class Report:
             writer.writerows([["" if _missing(value) else value for value in row] for row in rows])
 
     def curves(self, file: str, runs: Sequence[Run]) -> None:
-        """Every quantity of every run after every iteration, as CSV."""
+        """A CSV file of every quantity of every run after every iteration."""
         names = list(runs[0].values)
         rows = [
             [r.method.name, r.optimizer, int(r.iterations[i]), r.seconds[i], *(r.values[name][i] for name in names)]
@@ -317,7 +342,7 @@ class Report:
         self.csv(file, ["method", "optimizer", "iteration", "cpu_seconds", *names], rows)
 
     def finding(self, source: str, sentence: str, holds: bool, figures: str) -> None:
-        """A sentence of the dissertation, whether our numbers agree, and the numbers."""
+        """Add a statement of the dissertation, whether our numbers agree with it, and the numbers."""
         self.findings.append((source, sentence, bool(holds), figures))
 
     def plot(self, file: str, runs: Sequence[Run], panels: Sequence[tuple[str, str, bool]]) -> None:
@@ -347,12 +372,9 @@ class Report:
         """A picture of meshes of triangles, inverted ones filled; window: xmin xmax ymin ymax."""
         if not self._pictures():
             return
-        columns = min(columns, len(shown))
-        rows = -(-len(shown) // columns)
-        figure, axes = pyplot.subplots(rows, columns, figsize=(4.2 * columns, 4.7 * rows), squeeze=False)
-        for axis in axes.flat:
+        figure, axes = _panels(len(shown), columns, (4.2, 4.7))
+        for axis, (title, mesh) in zip(axes, shown):
             axis.set_axis_off()
-        for axis, (title, mesh) in zip(axes.flat, shown):
             p, cells, wrong = points_of(mesh)[:, :2], cells_of(mesh), sizes_of(mesh) <= 0
             if window is not None:
                 near = p[cells]
@@ -372,20 +394,16 @@ class Report:
         """A picture of curves; a panel is (title, label of x, label of y, {label of a curve: (x, y)})."""
         if not self._pictures():
             return
-        columns = min(columns, len(panels))
-        rows = -(-len(panels) // columns)
-        figure, axes = pyplot.subplots(rows, columns, figsize=(5.6 * columns, 4.2 * rows), squeeze=False)
-        for axis in axes.flat[len(panels):]:
-            axis.set_axis_off()
-        for axis, (title, x_label, y_label, curves) in zip(axes.flat, panels):
+        figure, axes = _panels(len(panels), columns, (5.6, 4.2))
+        for axis, (title, x_label, y_label, curves) in zip(axes, panels):
             for number, (label, (x, y)) in enumerate(curves.items()):
-                # Ten colours; beyond, they come back dashed.
+                # There are ten colors; further curves are dashed.
                 axis.plot(x, y, "-" if number < 10 else "--", marker="osv^D<>*xp"[number % 10], markersize=4,
                           linewidth=1.2, label=label)
             axis.set(title=title, xlabel=x_label, ylabel=y_label)
             places = np.concatenate([np.asarray(x, float) for x, _ in curves.values()])
             margin = 0.05 * np.ptp(places)
-            axis.set_xlim(places.min() - margin, places.max() + margin)  # of values that are missing, too
+            axis.set_xlim(places.min() - margin, places.max() + margin)  # also of missing values
             axis.set_ylim(bottom=0)
             axis.grid(alpha=0.3)
             axis.legend(fontsize=7)
@@ -393,7 +411,7 @@ class Report:
 
     def grid(self, file: str, title: str, rows: Sequence[str], columns: Sequence[str],
              values: Sequence[Sequence[float]]) -> None:
-        """A picture of a table of counts, darker where there are more; 0 stays white."""
+        """A picture of a table of counts, darker for larger counts; 0 is white."""
         if not self._pictures():
             return
         figure, axis = pyplot.subplots(figsize=(1.6 + 0.95 * len(columns), 1.2 + 0.32 * len(rows)))
@@ -413,7 +431,7 @@ class Report:
         if not self._pictures():
             return
         rows = -(-len(drawings) // columns)
-        # Rows as high as what they show.
+        # The heights of the rows follow from their contents.
         frames = [window or _frame(pieces) for (pieces, _), window in zip(drawings, windows)]
         ratios = [(top - bottom) / (right - left) for left, right, bottom, top in frames]
         heights = [4.2 * max(ratios[r * columns : (r + 1) * columns]) + 0.5 for r in range(rows)]
@@ -435,15 +453,11 @@ class Report:
 
     def bars(self, file: str, bins: Sequence[str], axis_label: str, label: str,
              panels: dict[str, dict[str, Sequence[float]]], columns: int = 3) -> None:
-        """A picture of distributions, logarithmic: a panel has a row of bars for each of its series."""
+        """A picture of distributions on a logarithmic axis: a panel has a row of bars for each of its series."""
         if not self._pictures():
             return
-        columns = min(columns, len(panels))
-        rows = -(-len(panels) // columns)
-        figure, axes = pyplot.subplots(rows, columns, figsize=(6.4 * columns, 4.6 * rows), squeeze=False)
-        for axis in axes.flat[len(panels):]:
-            axis.set_axis_off()
-        for axis, (title, series) in zip(axes.flat, panels.items()):
+        figure, axes = _panels(len(panels), columns, (6.4, 4.6))
+        for axis, (title, series) in zip(axes, panels.items()):
             width = 0.8 / len(series)
             for number, (name, values) in enumerate(series.items()):
                 axis.bar(np.arange(len(bins)) + (number - 0.5 * (len(series) - 1)) * width, values, width, label=name)
@@ -451,15 +465,15 @@ class Report:
                 title=title, xlabel=axis_label, ylabel=label, yscale="log", xticks=range(len(bins)), xticklabels=bins,
             )
             axis.grid(alpha=0.3, axis="y")
-        axes[0][0].legend(fontsize=8)
+        axes[0].legend(fontsize=8)
         self.save(figure, file)
 
     def aligned(self, title: str, headings: Sequence[Any], rows: Sequence[Sequence[str]]) -> None:
-        """A table of texts, in the text only."""
+        """A table of texts in the report, without a CSV file."""
         self.parts.append(f"{title}\n{align(rows, [str(heading) for heading in headings])}")
 
     def finish(self, heading: str = "Findings of the dissertation") -> int:
-        """Write and print everything; the heading is that of the findings."""
+        """Write and print the report; `heading` is that of the findings."""
         holding = sum(holds for _, _, holds, _ in self.findings)
         lines = [f"{heading}: {holding} of {len(self.findings)} hold"]
         for source, sentence, holds, figures in self.findings:
@@ -480,10 +494,20 @@ class Report:
         return pyplot is not None
 
     def save(self, figure: Any, file: str) -> None:
-        """A picture of one's own."""
+        """Save a figure of pyplot."""
         figure.tight_layout()
         figure.savefig(self.out / f"{file}.png", dpi=110, bbox_inches="tight")
         pyplot.close(figure)
+
+
+def _panels(count: int, columns: int, size: tuple[float, float]) -> tuple[Any, Sequence[Any]]:
+    """A figure of panels in at most `columns` columns, and their axes; unused panels are hidden."""
+    columns = min(columns, count)
+    rows = -(-count // columns)
+    figure, axes = pyplot.subplots(rows, columns, figsize=(size[0] * columns, size[1] * rows), squeeze=False)
+    for axis in axes.flat[count:]:
+        axis.set_axis_off()
+    return figure, axes.flat
 
 
 def _frame(pieces: Sequence[np.ndarray]) -> tuple[float, float, float, float]:

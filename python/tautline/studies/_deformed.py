@@ -1,4 +1,4 @@
-"""Meshes whose boundary has moved, and what the studies of chapter 4 measure and draw of them."""
+"""Shared by the studies of chapter 4: moving domains, deformed meshes, their measures and pictures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ._common import Report, cells_of, parser, points_of, sizes_of
 
 @dataclass(frozen=True)
 class Example:
-    """One of the six examples of section 4.10 and what the dissertation says of it."""
+    """One of the six examples of section 4.10, with the numbers of the dissertation."""
 
     domain: str
     title: str
@@ -48,13 +48,13 @@ EXAMPLES = (
     Example("bending-bar", "Bending bar", "4.10.5", (1, 4), 159, 48, 63.2, None, 96.0, None, (0.4, 0.9, 0.4, 1.0)),
     Example("sphere", "Sphere in a cube", "4.10.6", (0, 0, 1), 120, None, None, 71.1, 86.2, None, (0.2, 0.8, 0.4, 1.0)),
 )
-#: Names of tables and charts, and the options of the verb `warp`.
+#: Names in tables and charts, and the options of warp().
 METHODS: dict[str, tuple[str, dict]] = {
     "femwarp": ("FEMWARP", {"method": "femwarp"}),
     "anisotropic": ("anisotropic FEMWARP", {"method": "anisotropic femwarp"}),
     "hybrid": ("hybrid", {"method": "hybrid"}),
-    "hybrid-steps": ("hybrid, as many steps as it takes", {"method": "hybrid", "steps": 0}),
-    "hybrid-literal": ("hybrid, (4.24) to the letter", {"method": "hybrid", "untangle_first": False}),
+    "hybrid-steps": ("hybrid, as many steps as needed", {"method": "hybrid", "steps": 0}),
+    "hybrid-literal": ("hybrid, literally (4.24)", {"method": "hybrid", "untangle_first": False}),
     "small-steps": ("small-step FEMWARP", {"method": "small-step femwarp"}),
     "untangled": ("FEMWARP, untangled", {"method": "femwarp and untangling"}),
     "ubn": ("iterative stiffening (UBN)", {"method": "iterative stiffening"}),
@@ -71,19 +71,19 @@ _WARM, _COLD = "#d62728", "#1f4e79"
 
 @dataclass
 class Warped:
-    """A mesh after its boundary, and what there is to know of it."""
+    """A deformed mesh and its measures."""
 
     mesh: vtkDataSet
     inverted: int  # elements that are not valid
-    impossible: int  # elements no place of the interior makes valid
-    seconds: float  # CPU seconds of all, the quickest of the repetitions
-    reached: float  # part of the motion made: less than 1 where no step further was possible
+    impossible: int  # elements that no positions of interior points make valid
+    seconds: float  # CPU seconds, the fastest of the repetitions
+    reached: float  # fraction of the motion: less than 1 where no further step was possible
     coefficients: tuple[float, float, float]
     shapes: np.ndarray  # (4.22) of every element, inverted ones too
 
     @property
     def complete(self) -> bool:
-        """All of the motion made and nothing inverted."""
+        """Whether the whole motion was made and no element is inverted."""
         return self.inverted == 0 and self.reached >= 1.0
 
     @property
@@ -94,7 +94,7 @@ class Warped:
 def parse(name: str, text: str | None, arguments: Sequence[str], repeats: int = 3) -> argparse.Namespace:
     made = parser(name, text, threads=False)
     made.add_argument("--repeats", type=int, default=repeats, metavar="N",
-                      help="times are the quickest of so many runs (default: %(default)s)")
+                      help="number of runs, of which the fastest counts (default: %(default)s)")
     given = made.parse_args(arguments)
     if given.repeats < 1:
         raise Error(f"--repeats is {given.repeats}; at least one run is needed")
@@ -104,7 +104,7 @@ def parse(name: str, text: str | None, arguments: Sequence[str], repeats: int = 
 
 
 class Moving:
-    """A domain whose boundary moves, and its motion at any amount (bending and turning are not proportional to it)."""
+    """A domain with a moving boundary, and its motion at any amount (bending and rotation are not proportional)."""
 
     def __init__(self, domain: str, cells: int = 0) -> None:
         self.domain, self.cells = domain, cells
@@ -147,7 +147,7 @@ def deform(initial: vtkDataSet, displacement: np.ndarray, method: str, *, repeat
 
 
 def distribution(warped: Warped) -> list[float]:
-    """Elements of the mesh by TMP shape, in the bins of BINS, above them, and inverted ones."""
+    """Numbers of elements by TMP shape: in the bins of BINS, above them, and inverted."""
     valid = warped.shapes[sizes_of(warped.mesh) > 0]
     counts = np.histogram(valid, [0, *BINS, np.inf])[0]
     return [*(float(c) for c in counts), float(warped.inverted)]
@@ -158,7 +158,7 @@ def bin_names() -> list[str]:
 
 
 def less(ours: float, other: float) -> float:
-    """By how much ours is below the other, in percent of it."""
+    """The difference of the other value and ours, in percent of the other one."""
     return 0.0 if other == 0 else 100 * (1 - ours / other)
 
 
@@ -166,7 +166,7 @@ def less(ours: float, other: float) -> float:
 
 
 def section(mesh: vtkDataSet, axis: int, at: float) -> tuple[list[np.ndarray], np.ndarray]:
-    """The polygons in which the plane cuts the tetrahedra of a mesh, and of which cell each is."""
+    """The polygons in which a plane cuts the tetrahedra of a mesh, and the cell of each."""
     p, cells = points_of(mesh), cells_of(mesh)
     others = [k for k in range(3) if k != axis]
     height = p[cells, axis] - at
@@ -174,7 +174,7 @@ def section(mesh: vtkDataSet, axis: int, at: float) -> tuple[list[np.ndarray], n
     polygons, owners = [], []
     for cell in np.flatnonzero(above.any(axis=1) & ~above.all(axis=1)):
         up, down = np.flatnonzero(above[cell]), np.flatnonzero(~above[cell])
-        # Edges across the plane, in an order that goes round the polygon.
+        # Edges across the plane, in their order around the polygon.
         pairs = [(a, b) for a in up for b in down]
         if len(pairs) == 4:
             pairs = [pairs[0], pairs[1], pairs[3], pairs[2]]
@@ -190,7 +190,7 @@ def section(mesh: vtkDataSet, axis: int, at: float) -> tuple[list[np.ndarray], n
 
 def strip(report: Report, file: str, rows: Sequence[Sequence[tuple[str, vtkDataSet | Warped]]],
           windows: Sequence[Sequence[float] | None], cut: tuple[int, float] = (1, 0.5)) -> None:
-    """A picture of rows of meshes, inverted elements red; of tetrahedra where the plane (axis, position) cuts them."""
+    """A picture of rows of meshes with inverted elements in red; volume meshes are cut by a plane (axis, position)."""
     drawings, titles = [], []
     for row in rows:
         for title, shown in row:

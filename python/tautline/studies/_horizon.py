@@ -1,4 +1,4 @@
-"""What the studies of nonlocal models share: the dissertation's numbers, its meshes, tables and charts."""
+"""Shared by the studies of nonlocal models: the dissertation's numbers, its meshes, tables and charts."""
 
 from __future__ import annotations
 
@@ -32,11 +32,13 @@ MODELS = {"4.1": ("constant", 1.0), "4.2": ("linear", 1.0), "4.3": ("linear", 2.
 
 
 def square(n: int, aspect_ratio: float, delta: float, extra: int = 0, aligned: bool = True):
-    """The unit square of right triangles with a collar, and the points where the linear basis is given.
+    """The unit square of right triangles with an interaction layer, its regions, and the points with a given solution.
 
-    Aligned, the sides of the square are mesh lines and the collar has whole layers; otherwise the grid starts at
-    -delta, as the numbers of the dissertation's tables need it. `extra` layers are added. None if the
-    aspect ratio does not fit.
+    aligned: the sides of the square are grid lines and the interaction layer has whole layers of cells; otherwise the
+        grid starts at -delta, which the numbers of the dissertation's tables imply.
+    extra: layers of cells that are added.
+
+    None if the aspect ratio does not fit.
     """
     steps = (math.sqrt(aspect_ratio) / n, 1 / (n * math.sqrt(aspect_ratio)))
     axes = []
@@ -65,8 +67,8 @@ def solve(
     n: int, aspect_ratio: float, delta: float, basis: str, p: float, reading: str, threads: int = 0,
     aligned: bool = True, **more: Any,
 ):  # fmt: skip
-    """The result of peridynamics() on such a square, or None where there is none."""
-    # The exact reading is of a collar that is wide enough: the grid of one cell of the tables is not.
+    """The result of peridynamics() on the square, or None if the aspect ratio does not fit."""
+    # The exact discretization needs a wide enough layer, which the grid of one entry of the tables does not have.
     off = not aligned and reading == "exact" and (aspect_ratio, n, delta) == (4, 10, 0.3)
     made = square(n, aspect_ratio, delta, 1 if off else 0, aligned)
     if made is None:
@@ -94,14 +96,14 @@ class Report:
         try:
             self.directory.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise Error(f"{directory}: cannot be made: {error.strerror}") from None
+            raise Error(f"{directory}: cannot be created: {error.strerror}") from None
 
-    def say(self, text: str = "") -> None:
+    def text(self, text: str = "") -> None:
         print(text, flush=True)
         self.lines.append(text)
 
     def table(self, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
-        self.say(align(rows, headings) + "\n")
+        self.text(align(rows, headings) + "\n")
 
     def write_csv(self, file: str, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
         with open(self.directory / file, "w", newline="", encoding="utf-8") as out:
@@ -115,15 +117,15 @@ class Report:
             from matplotlib.backends.backend_agg import FigureCanvasAgg
             from matplotlib.figure import Figure
         except ImportError:
-            self.say(f"{file} is not drawn: there is no matplotlib (Debian: python3-matplotlib)")
+            self.text(f"{file} is not drawn: there is no matplotlib (Debian: python3-matplotlib)")
             return
         figure = Figure(figsize=(5.2 * len(panels), 4.2), layout="constrained")
         FigureCanvasAgg(figure)
         for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
-            colours: dict[str, str] = {}  # one for both readings
+            colors: dict[str, str] = {}  # one for both discretizations
             for label, (x, y, *style) in panel["lines"].items():
-                colour = colours.setdefault(label.split(", dissertation")[0], f"C{len(colours) % 10}")
-                own = {} if style and style[0].startswith("C") else {"color": colour}
+                color = colors.setdefault(label.split(", dissertation")[0], f"C{len(colors) % 10}")
+                own = {} if style and style[0].startswith("C") else {"color": color}
                 axes.plot(x, y, *(style or ["o-"]), label=label, markersize=4, **own)
             axes.set_title(panel["title"])
             axes.set_xlabel(panel["x"])
@@ -135,7 +137,7 @@ class Report:
         figure.savefig(self.directory / file, dpi=90)
 
     def close(self) -> int:
-        self.say(f"{time.time() - self.started:.1f} s")
+        self.text(f"{time.time() - self.started:.1f} s")
         (self.directory / f"{self.name}.txt").write_text("\n".join(self.lines) + "\n", encoding="utf-8")
         print("\n".join(str(path) for path in sorted(self.directory.glob(f"{self.name}*"))))
         return 0
@@ -144,8 +146,8 @@ class Report:
 def parse(name: str, text: str, arguments: Sequence[str]) -> argparse.Namespace:
     """The options every study has."""
     parser = argparse.ArgumentParser(prog=f"python3 -m tautline study {name}", description=text)
-    parser.add_argument("--size", choices=("small", "full"), default="full", help="small: seconds; the trends only")
-    parser.add_argument("--out", default=name, metavar="DIR", help="where the files go (default: ./NAME)")
+    parser.add_argument("--size", choices=("small", "full"), default="full", help="small: seconds, trends only")
+    parser.add_argument("--out", default=name, metavar="DIR", help="directory of the output (default: ./NAME)")
     parser.add_argument("--threads", type=int, default=0, help="0, the default, is all cores")
     return parser.parse_args(arguments)
 

@@ -1,4 +1,4 @@
-"""What the studies of two goals without tangling (sections 3.4.1 and 3.4.2) share."""
+"""Shared by the studies of two goals without inverted elements (sections 3.4.1 and 3.4.2)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PERTURBATION = 0.95
 
 @dataclass(frozen=True)
 class Goals:
-    """Two metrics, and the quantities by which the figures show them."""
+    """Two metrics, and the quantities shown in the figures."""
 
     name: str
     title: str
@@ -59,7 +59,7 @@ def start_mesh(goals: Goals, domain: str, cells: int) -> vtkDataSet:
 
 @dataclass
 class Outcome:
-    """The runs by the methods' names on the first domain (with Local Newton beside), and start and end on all."""
+    """The runs by the names of the methods: on the first domain by both optimizers, start and end on all domains."""
 
     nlcg: dict[str, Run]
     newton: dict[str, Run]
@@ -80,7 +80,7 @@ def experiment(goals: Goals, given: argparse.Namespace, report: Report) -> Outco
         f"Unit of length: that in which {goals.unit[0]} starts at {goals.unit[1]:g} as in the dissertation (the "
         f"exponential and the equal sum depend on it). c = {TYPICAL_C:g}.\n"
         f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and sweep; an iteration "
-        "is a sweep over all vertices. Beside it Local Newton (over-relaxed, one step). Times are CPU seconds of "
+        "is a sweep over all vertices. For comparison Local Newton (over-relaxed, one step). Times are CPU seconds of "
         f"{given.threads or 'all'} thread(s), set-up included; the dissertation's were measured on a Core2 Duo T7500 "
         "at 2.2 GHz."
     )
@@ -110,7 +110,7 @@ def _time_tables(goals: Goals, report: Report, nlcg: dict[str, Run], newton: dic
     for file, runs, what in (("times", nlcg, "local NLCG"), ("times_newton", newton, "Local Newton")):
         ours = {r.method.label: [r.at("seconds", i) for i in TABLE_ITERATIONS] for r in runs.values()}
         theirs = {r.method.label: goals.times[name] for name, r in runs.items()}
-        report.beside(file, f"Smoothing time (CPU s) after so many iterations, {what}", TABLE_ITERATIONS, ours, theirs)
+        report.beside(file, f"Smoothing time (CPU s) by iterations, {what}", TABLE_ITERATIONS, ours, theirs)
 
 
 def _quality_table(goals: Goals, report: Report, runs: dict[str, Run], domain: str) -> None:
@@ -122,7 +122,7 @@ def _quality_table(goals: Goals, report: Report, runs: dict[str, Run], domain: s
 
 
 def _digits(goals: Goals, report: Report, nlcg: dict[str, Run], newton: dict[str, Run]) -> None:
-    """ "Inaccurate smoothing": the first iteration that leaves two decimals of the mean qualities as they are."""
+    """ "Inaccurate smoothing": the first iteration that does not change two decimals of the mean qualities."""
     rows = []
     for name, run in [*nlcg.items(), *((f"{k} newton", r) for k, r in newton.items())]:
         watched = [q for q, metric in zip(goals.means, goals.metrics) if metric in run.method.objectives]
@@ -136,7 +136,7 @@ def _digits(goals: Goals, report: Report, nlcg: dict[str, Run], newton: dict[str
 
 
 def everywhere(others: dict[str, dict[str, Run]], test) -> tuple[bool, str]:
-    """Whether a test of a domain's runs holds on all domains, and where it does not."""
+    """Whether a test of the runs holds on all domains, and a text with the domains where it does and does not."""
     failed = [domain for domain, runs in others.items() if not test(runs)]
     held = [domain for domain in others if domain not in failed]
     return not failed, f"holds on {', '.join(held) or 'none'}" + (f", not on {', '.join(failed)}" if failed else "")

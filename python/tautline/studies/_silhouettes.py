@@ -12,8 +12,7 @@ from .._errors import Error
 
 _NOTE = (
     "The dissertation's set are the 99 silhouettes of T. Sebastian, P. Klein and B. Kimia (Brown University). Give a "
-    "folder with them by --data: it has a list labels.csv with the columns file and class, and the images in its folder "
-    "images."
+    "folder with them by --data: it has a list labels.csv with the columns file and class, and a folder images."
 )
 _SIZE = 128
 _BEST = 10  # matches of a query that count

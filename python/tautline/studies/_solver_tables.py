@@ -1,4 +1,4 @@
-"""The dissertation's numbers on solvers: Tables 2.4 to 2.12 and 3.8 to 3.10. None is a failure, shown as '*'."""
+"""The dissertation's numbers on solvers: Tables 2.4 to 2.12 and 3.8 to 3.10. None is a failure, printed as '*'."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ COMBINATIONS = tuple(range(1, 17))
 METRICS = ("imr", "rr", "si", "ss")
 FRACTIONS = (0.0, 0.05, 0.25, 0.5)  # of the interior vertices, perturbed; the columns of Tables 2.9 and 2.12
 
-#: Table 2.4: triangles of the mesh with about so many vertices.
+#: Table 2.4: number of triangles by the approximate number of vertices.
 CELLS = {
     "wrench": {10_000: 19_796, 50_000: 99_197, 100_000: 199_055, 200_000: 397_764, 500_000: 995_496},
     "hinge": {10_000: 18_359, 50_000: 96_483, 100_000: 195_131, 200_000: 394_743, 500_000: 987_162},
@@ -19,7 +19,7 @@ def _row(text: str) -> tuple[float | None, ...]:
 
 
 def _rows(keys: tuple, *texts: str) -> dict:
-    """Per key the seconds and the iterations of the 16 combinations."""
+    """Seconds and iterations of the 16 combinations by key."""
     rows = [_row(text) for text in texts]
     assert len(rows) == 2 * len(keys) and all(len(row) == len(COMBINATIONS) for row in rows)
     return {key: (rows[2 * i], rows[2 * i + 1]) for i, key in enumerate(keys)}
@@ -109,8 +109,8 @@ BY_METRIC = {
     ),
 }
 
-#: Tables 2.9 and 2.12: by equation and domain, per fraction of perturbed vertices. The first rows are those of Tables 2.8
-#: and 2.11; where Table 2.9 (b) prints 44.5 iterations for combination 10, Table 2.8 has 445.
+#: Tables 2.9 and 2.12: by equation and domain, per fraction of perturbed vertices. The first rows are those of Tables
+#: 2.8 and 2.11; where Table 2.9 (b) prints 44.5 iterations for combination 10, Table 2.8 has 445.
 BY_PERTURBATION = {
     ("poisson", "wrench"): _rows(
         FRACTIONS,

@@ -1,4 +1,4 @@
-"""What the studies of linear solvers share: meshes of chapter 2, the combinations of Table 2.5, tables and charts."""
+"""Shared by the studies of linear solvers: meshes of chapter 2, the combinations of Table 2.5, tables and charts."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PDES = {
 TITLES = {"poisson": "Poisson's equation (A)", "elliptic": "general second order (B)", "elasticity": "elasticity (C)"}
 SOLVERS = ("CG", "GMRES", "MINRES", "Bi-CGSTAB")
 PRECONDITIONERS = ("Jacobi", "SSOR", "ILU(0)", "AMG")
-#: Beyond Table 2.5, for elasticity: multigrid that knows the rigid body modes.
+#: In addition to Table 2.5, for elasticity: multigrid with the rigid body modes.
 NEAR_NULL_SPACE = (19, 24)
 LABELS = {
     **{n: f"{PRECONDITIONERS[(n - 1) // 4]} + {SOLVERS[(n - 1) % 4]}" for n in COMBINATIONS},
@@ -47,8 +47,8 @@ def options(name: str, text: str | None, pdes: bool = True, full: int = FULL) ->
     made.add_argument("--size", type=vertices, default=0, metavar="N",
                       help=f"vertices of each mesh, 10K to 500K (default: {full // 1000}K)")
     made.add_argument("--domain", choices=DOMAINS, action="append", help="one of the two domains (default: both)")
-    made.add_argument("--time-limit", type=float, default=0.0, metavar="S",
-                      help="seconds after which a combination is given up, shown as '>' (default: none)")
+    made.add_argument("--time-limit", type=float, default=0.0, metavar="SECONDS",
+                      help="of a combination; unfinished ones are shown as '>' (default: none)")
     made.add_argument("--combinations", type=int, nargs="+", default=list(COMBINATIONS), metavar="N",
                       help="numbers of Table 2.5 (default: all)")
     if pdes:
@@ -57,7 +57,7 @@ def options(name: str, text: str | None, pdes: bool = True, full: int = FULL) ->
 
 
 def vertices(text: str) -> int:
-    """A number that may end in K."""
+    """The number of a text that may end in K, for thousands."""
     factor, digits = (1000, text[:-1]) if text[-1:].upper() == "K" else (1, text)
     if not digits.isdigit() or int(digits) == 0:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number of vertices such as 10000 or 500K")
@@ -72,14 +72,14 @@ def size_of(given: argparse.Namespace, full: int = FULL) -> int:
 
 
 def initial_mesh(domain: str, size: int) -> vtkDataSet:
-    """About `size` vertices, half of the interior ones perturbed, as the dissertation's before smoothing."""
-    # A planar mesh has about two triangles per vertex; Table 2.4 says it exactly for its sizes.
+    """A mesh of about `size` vertices, half of the interior ones perturbed, as the dissertation's before smoothing."""
+    # A planar mesh has about two triangles per vertex; Table 2.4 has the exact numbers for its sizes.
     cells = CELLS[domain].get(size, 2 * size)
     return tautline.perturb(tautline.domain(domain, cells), fraction=INITIAL_FRACTION).mesh
 
 
 def smoothed(mesh: vtkDataSet, metric: str, threads: int) -> vtkDataSet:
-    """Smoothed to 95 % of the possible reduction (section 2.4), the best value being that of a converged run."""
+    """The mesh smoothed to 95 % of the possible reduction (section 2.4); the best value is that of a converged run."""
     method = Method(metric, metric, (metric,))
     template = "sum of squared reciprocals" if metric in ("si", "ss") else "sum of squares"
     common = dict(template=template, trace=False, threads=threads)
@@ -94,14 +94,14 @@ def smoothed(mesh: vtkDataSet, metric: str, threads: int) -> vtkDataSet:
 
 @dataclass(frozen=True)
 class Solve:
-    """What a combination did."""
+    """The result of a combination of solver and preconditioner."""
 
     number: int
-    #: Wall seconds with the preconditioner's set-up, as the dissertation's.
+    #: Wall seconds including the set-up of the preconditioner, as in the dissertation.
     seconds: float
     iterations: int
     converged: bool
-    #: Given up at the time limit: neither converged nor failed.
+    #: Stopped at the time limit: neither converged nor failed.
     unfinished: bool
     reason: str
 
@@ -112,11 +112,11 @@ class Solve:
 
 
 def solve(mesh: vtkDataSet, pde: str, given: argparse.Namespace, **more) -> dict[int, Solve]:
-    """All combinations asked for, on one mesh."""
-    asked = {"combinations": list(given.combinations), "combination_time_limit": given.time_limit, "time_limit": 0.0,
-             "conditions": False, "threads": given.threads, **PDES[pde], **more}
+    """Run the chosen combinations on one mesh."""
+    options = {"combinations": list(given.combinations), "combination_time_limit": given.time_limit, "time_limit": 0.0,
+               "conditions": False, "threads": given.threads, **PDES[pde], **more}
     began = time.perf_counter()
-    found = tautline.solver_study(mesh, **asked)
+    found = tautline.solver_study(mesh, **options)
     if mesh.GetNumberOfPoints() >= SIZES[1]:
         print(f"{pde}: {time.perf_counter() - began:.0f} s", file=sys.stderr, flush=True)
     return {row["number"]: _solve(row) for row in found.rows}
@@ -131,7 +131,7 @@ def _solve(row: dict[str, Any]) -> Solve:
 
 
 def table(report: Report, file: str, title: str, found: dict, theirs: dict, head: str) -> None:
-    """Two tables, iterations and seconds, of rows {label: {number: Solve}}; in brackets the dissertation's."""
+    """Two tables, iterations and seconds, of rows {label: {number: Solve}}; in brackets those of the dissertation."""
     numbers = sorted({n for row in found.values() for n in row})
     for what, place in (("iterations", 1), ("seconds", 0)):
         rows, shown = [], []
@@ -150,14 +150,14 @@ def table(report: Report, file: str, title: str, found: dict, theirs: dict, head
             shown.append([label, *texts])
         headings = [h for n in numbers for h in (f"{n} {what}", f"{n} converged", f"{n} reason", f"{n} dissertation")]
         report.csv(f"{file}_{what}", [head, *headings], rows)
-        note = "; in brackets the dissertation's, '*' a failure"
+        note = "; in brackets those of the dissertation, '*' is a failure"
         for part in range(0, len(numbers), 8):
             report.aligned(f"{title}, {what}{note}  [{file}_{what}.csv]", [head, *numbers[part : part + 8]],
                            [[row[0], *row[1 + part : 9 + part]] for row in shown])
 
 
 def within(found: dict[int, Solve], theirs: Sequence[float | None], factor: float) -> tuple[int, int, str]:
-    """How many iteration counts agree within a factor, of how many that both have, and those that do not."""
+    """The number of iteration counts that agree within a factor, the number of all in both, and those that disagree."""
     both = [n for n in found if n in COMBINATIONS and found[n].converged and theirs[n - 1] is not None]
     ratios = {n: found[n].iterations / theirs[n - 1] for n in both}
     off = {n: r for n, r in ratios.items() if not 1 / factor <= r <= factor}
@@ -165,20 +165,21 @@ def within(found: dict[int, Solve], theirs: Sequence[float | None], factor: floa
 
 
 def fastest(row: dict[int, Solve]) -> list[int]:
-    """The numbers of the combinations that converged, fastest first."""
+    """The numbers of the converged combinations, the fastest first."""
     return sorted((n for n, s in row.items() if s.converged), key=lambda n: row[n].seconds)
 
 
 def bars(report: Report, file: str, title: str, series: dict[str, dict[int, float]], label: str,
          logarithmic: bool = False) -> None:
-    """A bar per combination and series, as Figures 2.4 to 2.12; missing ones are failures."""
+    """A chart with a bar per combination and series, as Figures 2.4 to 2.12; a missing bar is a failure."""
     if pyplot is None:
         return
     figure, axis = pyplot.subplots(figsize=(9.0, 4.6))
     width = 0.8 / len(series)
     for i, (name, values) in enumerate(series.items()):
         numbers = sorted(values)
-        axis.bar(np.array(numbers) + (i - 0.5 * (len(series) - 1)) * width, [values[n] for n in numbers], width, label=name)
+        offset = (i - 0.5 * (len(series) - 1)) * width
+        axis.bar(np.array(numbers) + offset, [values[n] for n in numbers], width, label=name)
     axis.set(title=title, xlabel="combination of preconditioner and solver (Table 2.5)", ylabel=label,
              xticks=list(COMBINATIONS), yscale="log" if logarithmic else "linear")
     axis.grid(alpha=0.3, axis="y")
@@ -187,5 +188,5 @@ def bars(report: Report, file: str, title: str, series: dict[str, dict[int, floa
 
 
 def order(sizes: Sequence[float], values: Sequence[float]) -> float:
-    """s of O(N^s) by linear least squares in logarithms."""
+    """s of O(N^s) by linear least squares of the logarithms."""
     return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])

@@ -1,4 +1,4 @@
-"""What the studies of tangled meshes (sections 3.3.3, 3.4.3, 3.4.4 and 3.5) share."""
+"""Shared by the studies of tangled meshes (sections 3.3.3, 3.4.3, 3.4.4 and 3.5)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from tautline._errors import Error
 
 from ._common import TYPICAL_C, Method, Report, Run, cells_of, improve, measure, methods, scaled, sizes_of
 
-#: Of the mean size: up to which size the untangling metric (3.3) counts an element. The dissertation names no value.
+#: Over the mean size: the size below which the untangling metric (3.3) counts an element. The dissertation has no
+#: value.
 BETA = 0.01
 LABELS = {"si": "SI", "size": "size", "untangle_beta": "untangling"}
 NOTE = (
@@ -20,12 +21,11 @@ NOTE = (
     "elements, whose terms are negative.) Steps may invert elements, as with the metrics without a barrier there.\n"
     "The scalarizations combine the objectives' values on the whole mesh, as (3.11) to (3.13) are written. "
     "Mesquite's default for patches evaluates an objective on the patch alone, where values are far below c, so that "
-    "the exponential sum is nearly the equal sum; which of the two the dissertation's figures come from, it does not "
-    "say."
+    "the exponential sum is nearly the equal sum; the dissertation does not state which of them its figures are from."
 )
-#: A weight that leaves the untangling metric without effect: an optimizer is only given tangled meshes with it.
+#: A weight that makes the untangling metric ineffective; without this metric tangled meshes are refused.
 _NEGLIGIBLE = 1e-30
-#: A mesh that is so many times as large as at the start has diverged: sum of 1 / SI is not bounded from below.
+#: Growth of a mesh beyond which it counts as diverged; the sum of 1 / SI has no lower bound.
 _DIVERGED = 100.0
 
 
@@ -37,9 +37,9 @@ def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iter
              keep: Sequence[int] = (), c: float = TYPICAL_C, **options: Any) -> Run:
     """Run a method on a tangled mesh, one iteration at a time while it has inverted elements.
 
-    The optimizer leaves shape terms of elements that are inverted at its start out until its end; starting it anew
-    lets them in as soon as they are valid. A product of objectives one of which is 0 cannot be lowered: the
-    rest of its iterations leaves the mesh as it is.
+    The optimizer excludes the shape terms of elements that are inverted at its start; a restart includes them as soon
+    as they are valid. A product of objectives of which one is 0 cannot be reduced: further iterations do not change the
+    mesh.
     """
     quantities = list(quantities)
     beta = BETA * float(np.mean(np.abs(sizes_of(mesh))))
@@ -69,7 +69,7 @@ def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iter
             break
         if steps < chunk:
             break
-    # Where it ends early, the mesh no longer changes.
+    # After an early end the mesh no longer changes.
     while len(rows) <= iterations:
         rows.append(rows[-1])
         seconds.append(seconds[-1])
@@ -81,7 +81,7 @@ def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iter
 
 
 def _weights(method: Method) -> list[tuple[str, float]]:
-    """Further objectives of no weight, without which tangled meshes are refused."""
+    """Further objectives with negligible weights, without which tangled meshes are refused."""
     return [] if "untangle_beta" in method.objectives else [("untangle_beta", _NEGLIGIBLE)]
 
 
@@ -91,20 +91,20 @@ def counts(runs: dict[str, Run], iterations: Sequence[int]) -> dict[str, list[fl
 
 
 def untangled_after(run: Run) -> float:
-    """The first iteration from which on no element is inverted; infinity if there is none."""
+    """The first iteration after which no element is inverted; infinity if there is none."""
     wrong = np.flatnonzero(run.values["inverted"] > 0)
     first = int(wrong[-1]) + 1 if wrong.size else 0
     return first if first < len(run.iterations) else float("inf")
 
 
 def after(runs: dict[str, Run]) -> str:
-    """When each method was done, for the figures of a finding."""
+    """The iterations after which no element is inverted, by method, for the figures of a finding."""
     return "iterations until all are valid: " + ", ".join(f"{n} {untangled_after(r):g}" for n, r in runs.items())
 
 
 def by_unit(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterations: int, mean_sizes: Sequence[float],
             **options: Any) -> None:
-    """A table of how the scalarizations do in other units of length, told by the mean size of the elements."""
+    """A table of the scalarizations in other units of length, given by the mean size of the elements."""
     dimension = cells_of(mesh).shape[1] - 1
     mean = float(np.mean(np.abs(sizes_of(mesh))))
     every = tangled_methods(*objectives)[len(objectives) :]
@@ -117,11 +117,11 @@ def by_unit(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterati
             done = untangled_after(run)
             valid_after = "never" if np.isinf(done) else f"{done:g}"
             rows.append([size, name, valid_after, int(run.last("inverted")), run.last("si_worst")])
-    title = f"In other units of length, {iterations} iterations: when all are valid, how many are not at the end"
+    title = f"Other units of length, {iterations} iterations: when all elements are valid, inverted ones at the end"
     report.table("units", title, ["mean size", "method", "valid after", "inverted", "worst SI"], rows)
     report.text(
         "Rows repeat where the largest value of the untangling metric is below that of the other metrics: the "
-        "optimizer then rescales it as section 3.3.3 says, which takes the unit out."
+        "optimizer then rescales it as in section 3.3.3, which eliminates the unit."
     )
 
 

@@ -1,4 +1,4 @@
-"""Meshes warped by the motion of their boundary, and what the studies of section 3.5 do with them."""
+"""Shared by the studies of section 3.5: meshes deformed by the motion of their boundary, and their untangling."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ._tangled import NOTE, by_unit, counts, diverged, tangled_methods, untangle
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")
 MULTI = ("exponential-sum", "objective-product", "equal-sum")
 ABOUT = (
-    "Only the boundary's motion is given; the vertices inside follow by one step of FEMWARP."
+    "Only the motion of the boundary is given; interior vertices follow by one step of FEMWARP."
 )
 UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)  # mean sizes of the elements
 _BISECTIONS = 60
@@ -31,22 +31,22 @@ def of_points(mesh: vtkDataSet, name: str) -> np.ndarray:
 
 
 def harmonic(mesh: vtkDataSet, given: np.ndarray) -> np.ndarray:
-    """A motion of the boundary's points (n x 3), extended to the others by FEMWARP."""
+    """A motion of the boundary points (n x 3), extended to the interior points by FEMWARP."""
     return points_of(tautline.warp(mesh, given, method="femwarp").mesh) - points_of(mesh)
 
 
 def warp(
-    mesh: vtkDataSet, points: np.ndarray, motion: np.ndarray, inverted: int, most: float
+    mesh: vtkDataSet, points: np.ndarray, motion: np.ndarray, inverted: int, limit: float
 ) -> tuple[vtkDataSet, float]:
-    """The mesh at points + t motion with the least t up to `most` that inverts as many elements, and t."""
+    """The mesh at points + t motion with the least t up to `limit` that inverts this number of elements, and t."""
 
     def moved(amount: float) -> tuple[vtkDataSet, int]:
         result = with_points(mesh, points + amount * motion)
         return result, int(np.count_nonzero(sizes_of(result) <= 0))
 
-    low, high = 0.0, most
+    low, high = 0.0, limit
     if moved(high)[1] < inverted:
-        raise Error(f"{most:g} times the motion inverts only {moved(high)[1]} elements, {inverted} are wanted")
+        raise Error(f"{limit:g} times the motion inverts {moved(high)[1]} elements only, not {inverted}")
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if moved(middle)[1] >= inverted else (middle, high)
@@ -62,13 +62,13 @@ def options(name: str, text: str | None, arguments: Sequence[str]) -> argparse.N
 
 def experiment(report: Report, mesh: vtkDataSet, motion: str, unit: str, iterations: int, steps: Sequence[int],
                theirs: dict, given: argparse.Namespace) -> dict[str, Run]:
-    """Run every method, write tables and curves; motion says what moved, unit what the unit of length is."""
+    """Run every method, write tables and curves; `motion` and `unit` (of length) are texts for the report."""
     wrong = np.count_nonzero(sizes_of(mesh) <= 0)
     report.text(
         f"{mesh.GetNumberOfCells():,} elements, {wrong} inverted by {motion}. {ABOUT}\n"
         f"{NOTE}\n"
         f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
-        f"{TYPICAL_C:g}. Unit of length: {unit} (the dissertation names none; exponential and equal sum depend on it)."
+        f"{TYPICAL_C:g}. Unit of length: {unit} (the dissertation has none; exponential and equal sum depend on it)."
     )
     common = dict(threads=given.threads)
     every = tangled_methods("si", "untangle_beta")
@@ -79,7 +79,7 @@ def experiment(report: Report, mesh: vtkDataSet, motion: str, unit: str, iterati
     newton = {m.name: untangle(mesh, m, iterations, QUANTITIES, optimizer="newton", **common) for m in every}
     for file, found in (("inverted", runs), ("inverted_newton", newton)):
         known = {r.method.label: theirs.get(n, ()) for n, r in found.items()}
-        title = "Inverted elements after so many iterations, " + ("local NLCG" if found is runs else "Local Newton")
+        title = "Inverted elements by iterations, " + ("local NLCG" if found is runs else "Local Newton")
         report.beside(file, title, steps, counts(found, steps), known)
     if diverged(runs):
         report.text(diverged(runs))
@@ -100,7 +100,7 @@ def experiment(report: Report, mesh: vtkDataSet, motion: str, unit: str, iterati
 
 
 def better_worst(report: Report, runs: dict[str, Run], source: str) -> None:
-    """The finding both studies share."""
+    """Add the finding of both studies."""
     sums = min(runs[n].last("si_worst") for n in ("exponential-sum", "equal-sum"))
     report.finding(source, "Exponential and equal sum have a better worst element than untangling alone",
                    sums > runs["untangle"].last("si_worst"),

@@ -1,4 +1,4 @@
-"""Untangling a bored block after its warp: section 3.5.2, Figure 3.12."""
+"""Untangling a deformed block with a bore: section 3.5.2, Figure 3.12."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CELLS, INVERTED, MOST = 109_535, 13, 2.5
 
 
 def warped_bore(small: bool) -> tuple[vtkDataSet, float]:
-    """The block warped until it has the wanted number of inverted elements, and the multiple of its motion."""
+    """The block, deformed until it has the required number of inverted elements, and the multiple of its motion."""
     initial = tautline.domain("bore", 3_000 if small else CELLS)
     motion = harmonic(initial, of_points(initial, "Displacement"))
     mesh, amount = warp(initial, points_of(initial), motion, 5 if small else INVERTED, MOST)
@@ -27,7 +27,7 @@ def main(arguments: list[str]) -> int:
     given = options("bore", __doc__, arguments)
     report = Report("bore", "Bore in space (section 3.5.2)", given.out)
     report.text(
-        "The dissertation's meshes are those of other authors. This one is the project's domain `bore`, a block with "
+        "The dissertation uses meshes of other authors; this one is the project's domain `bore`, a block with "
         "a bore that widens in the middle. Its condition numbers (Table 3.9) are those of the study conditioning."
     )
     mesh, amount = warped_bore(given.small)

@@ -1,4 +1,4 @@
-"""A box that turns in a box by 30 to 180 degrees: every method, beside published figures of other programs."""
+"""A box that rotates in a box by 30 to 180 degrees: all methods, and published numbers of other programs."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ._deformed import METHODS, Moving, Warped, deform, parse, strip
 
 HALF_TURN = 180.0  # degrees at amount 1
 ANGLES = (30, 60, 90, 120, 180)
-SMALL_ANGLES = ANGLES[:-1]  # a coarse mesh cannot turn further
+SMALL_ANGLES = ANGLES[:-1]  # a coarse mesh cannot be rotated further
 CELLS = 12_000
 SMALL_CELLS = 1500
-SECONDS = 2.0  # that a repair may take
-#: Inverted elements by angle of other programs on a mesh of 12,600 tetrahedra; None: not known.
+SECONDS = 2.0  # limit of a repair
+#: Inverted elements by angle of other programs on a mesh of 12,600 tetrahedra; None: unknown.
 PUBLISHED = {
     "OpenFOAM, displacementLaplacian": (1, 52, 269, 591, None),
     "OpenFOAM, displacementSBRStress": (2, 90, 435, 859, None),
@@ -29,14 +29,14 @@ STEP = 10  # degrees, of FEMWARP along the arc
 SHOWN = (60, 120, 180)  # degrees, in the picture strip
 STRIP = {"femwarp": "FEMWARP", "anisotropic": "anisotropic FEMWARP", "hybrid": "hybrid"}
 QUALITY = ("imr_worst", "imr_mean")
-#: Those that are to leave no inverted element, and those whose figures others have.
+#: Methods that are required to leave no inverted element.
 REPAIRING = ("hybrid", "untangled")
 
 
 def along_the_arc(box: Moving, angle: int) -> tuple[int, float, float]:
-    """FEMWARP in steps that follow the turn, each from the mesh before it, as far as that is valid.
+    """FEMWARP in steps along the arc, each from the mesh of the previous step as long as that is valid.
 
-    Inverted elements, the part of the turn made, CPU seconds.
+    Returns the number of inverted elements, the fraction of the rotation, CPU seconds.
     """
     began = time.process_time()
     mesh, before, left, done = box.mesh, box.at(0.0), 0, 0
@@ -63,10 +63,10 @@ def findings(report: Report, of: dict[str, list[Warped]], angles: tuple[int, ...
     report.finding("4.8.2", "FEMWARP inverts many elements at large angles", of["femwarp"][turn].inverted > 0,
                    counts("femwarp"))
     fewer = [a.inverted <= f.inverted for a, f in zip(of["anisotropic"], of["femwarp"])]
-    report.finding("4.9.1", "Anisotropic FEMWARP inverts no more than FEMWARP, though a turn has no direction",
+    report.finding("4.9.1", "Anisotropic FEMWARP inverts no more than FEMWARP, though a rotation has no direction",
                    all(fewer), counts("anisotropic"))
     early = next((angle for angle, w in zip(angles, of["radial-basis"]) if w.inverted), None)
-    report.finding("published", "Radial basis functions last longer than Laplace's equation, and fail as well later",
+    report.finding("published", "Radial basis functions fail at larger angles than Laplace's equation",
                    early is not None and of["radial-basis"][turn].inverted > 0
                    and of["radial-basis"][0].inverted <= of["femwarp"][0].inverted
                    and of["radial-basis"][1].inverted < of["femwarp"][1].inverted, counts("radial-basis"))
@@ -74,15 +74,15 @@ def findings(report: Report, of: dict[str, list[Warped]], angles: tuple[int, ...
 
 def main(arguments: list[str]) -> int:
     given = parse("box_rotation", __doc__, arguments)
-    report = Report("box_rotation", "A box that turns in a box", given.out)
+    report = Report("box_rotation", "A box that rotates in a box", given.out)
     angles = SMALL_ANGLES if given.small else ANGLES
     box = Moving("box-in-box", SMALL_CELLS if given.small else CELLS)
     report.text(
-        f"{box.mesh.GetNumberOfCells():,} tetrahedra between a fixed box and one that turns about the vertical axis. "
-        "The published figures are of a mesh of 12,600 tetrahedra between boxes of unknown sizes; ours are chosen so "
-        "that a thin plate spline does about as badly (0, 7, 190, 840 inverted at 30 to 120 degrees). Methods get "
-        "where the boundary ends and nothing of its way; those that take steps take them along the chord. Times are "
-        f"CPU seconds of one thread, the quickest of {given.repeats}. IMR is the inverse mean ratio of the valid "
+        f"{box.mesh.GetNumberOfCells():,} tetrahedra between a fixed box and one that rotates about the vertical axis. "
+        "The published numbers are of a mesh of 12,600 tetrahedra between boxes of unknown sizes; ours are chosen so "
+        "that a thin plate spline inverts about as many elements (0, 7, 190, 840 at 30 to 120 degrees). The input of a "
+        "method is the final position of the boundary, not its path; methods with steps follow the chord. Times are "
+        f"CPU seconds of one thread, the fastest of {given.repeats} runs. IMR is the inverse mean ratio of the valid "
         "elements."
     )
     of = {name: [deform(box.mesh, box.at(angle / HALF_TURN), name, repeats=given.repeats)
@@ -94,7 +94,7 @@ def main(arguments: list[str]) -> int:
     rows.append([in_steps, *(float(left) for left, _, _ in arc)])
     rows += [[name, *(math.nan if n is None else float(n) for n in values[: len(angles)])]
              for name, values in PUBLISHED.items()]
-    report.table("inverted", "Inverted elements by angle; published ones below", ["method", *columns], rows)
+    report.table("inverted", "Inverted elements by angle, published numbers below", ["method", *columns], rows)
     quality = {name: [measure(w.mesh, QUALITY) for w in runs] for name, runs in of.items()}
     for quantity in QUALITY:
         report.table(quantity, f"{'Worst' if 'worst' in quantity else 'Mean'} {QUANTITIES[quantity][0].upper()}",
@@ -102,7 +102,7 @@ def main(arguments: list[str]) -> int:
                      [[METHODS[name][0], *(found[quantity] for found in of_name)] for name, of_name in quality.items()])
     report.table("shape", "Worst TMP shape (4.22) of all elements", ["method", *columns],
                  [[METHODS[name][0], *(w.worst for w in runs)] for name, runs in of.items()])
-    report.table("reached", "Part of the motion that was made", ["method", *columns],
+    report.table("reached", "Fraction of the motion reached", ["method", *columns],
                  [*([METHODS[name][0], *(w.reached for w in runs)] for name, runs in of.items()),
                   [in_steps, *(reached for _, reached, _ in arc)]])
     report.table("seconds", "CPU seconds", ["method", *columns],
@@ -112,8 +112,10 @@ def main(arguments: list[str]) -> int:
     curves = {METHODS[name][0]: (angles, [w.inverted if w.reached >= 1 else math.nan for w in runs])
               for name, runs in of.items()}
     peers = {name: (known, values[: len(known)]) for name, values in PUBLISHED.items()}
-    report.lines("inverted", [("Tautline, where all of the turn was made", "degrees", "inverted elements", curves),
-                              ("published", "degrees", "inverted elements", peers)])
+    report.lines("inverted", [
+        ("Tautline, where the whole rotation was reached", "degrees", "inverted elements", curves),
+        ("published", "degrees", "inverted elements", peers),
+    ])
     lines = []
     for angle in [angle for angle in SHOWN if angle in angles]:
         at = angles.index(angle)
@@ -121,4 +123,4 @@ def main(arguments: list[str]) -> int:
             (f"{label}, {angle} degrees", of[name][at]) for name, label in STRIP.items()])
     strip(report, "strip", lines, [None] * len(lines), cut=(2, 0.5))
     findings(report, of, angles)
-    return report.finish("What is expected")
+    return report.finish("Expectations")

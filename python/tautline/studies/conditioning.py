@@ -24,7 +24,7 @@ EXPECTED_ERROR = 1e-3  # relative, of the eigenvalues shown
 
 
 def spectrum(mesh: vtkDataSet, threads: int) -> list[float]:
-    """Extreme eigenvalues and condition number of the Jacobi-preconditioned Poisson matrix, iterations of CG."""
+    """Extreme eigenvalues, condition number and iterations of CG of the Poisson matrix with Jacobi's preconditioner."""
     if np.any(sizes_of(mesh) <= 0):
         return [np.nan] * len(COLUMNS)
     found = tautline.condition(mesh, pde="poisson", preconditioner="jacobi", tolerance=EXPECTED_ERROR, shares=False,
@@ -36,11 +36,11 @@ def spectrum(mesh: vtkDataSet, threads: int) -> list[float]:
 
 def compare(report: Report, file: str, title: str, meshes: dict[str, tuple[str, vtkDataSet]], theirs: dict,
             threads: int) -> dict[str, list[float]]:
-    """The table of a section."""
+    """Write the table of a section; returns its rows by method."""
     found = {name: spectrum(mesh, threads) for name, (_, mesh) in meshes.items()}
     label = {name: text for name, (text, _) in meshes.items()}
     known = {label[n]: [np.nan if v is None else v for v in theirs[n]] for n in meshes if n in theirs}
-    report.beside(file, f"{title}; '-' is no valid solution, for inverted elements", COLUMNS,
+    report.beside(file, f"{title}; '-': no valid solution because of inverted elements", COLUMNS,
                   {label[n]: row for n, row in found.items()}, known)
     return found
 
@@ -94,8 +94,8 @@ def sized(report: Report, given) -> None:
     runs = [improve(mesh, m, DISK_SWEEPS, ("imr_mean",), c=TYPICAL_C, patch_iterations=MESQUITE_PATCH_ITERATIONS,
                     trace=False, threads=given.threads) for m in every]
     meshes = {"start": ("start", mesh), **{r.method.name: (r.method.label, r.mesh) for r in runs}}
-    found = compare(report, "table_3_10", f"Table 3.10, disk, {mesh.GetNumberOfCells():,} triangles", meshes, TABLE_3_10,
-                    given.threads)
+    title = f"Table 3.10, disk, {mesh.GetNumberOfCells():,} triangles"
+    found = compare(report, "table_3_10", title, meshes, TABLE_3_10, given.threads)
     smallest = min((n for n in found if n != "start"), key=lambda n: found[n][2])
     report.finding("Table 3.10", "The exponential sum has the smallest condition number", smallest == "exponential-sum",
                    ", ".join(f"{n} {row[2]:.6g}" for n, row in found.items()))
@@ -109,10 +109,10 @@ def main(arguments: list[str]) -> int:
     given = parser("conditioning", __doc__, DISK_CELLS).parse_args(arguments)
     report = Report("conditioning", "Condition numbers after multiobjective optimization (section 3.5)", given.out)
     report.text(
-        "Poisson's equation with f = 1 and u = 0 on the boundary; P is the diagonal of A (the dissertation does not name "
-        "its preconditioner; the largest eigenvalues it prints, about 2 in the plane, are those of Jacobi); eigenvalues "
+        "Poisson's equation with f = 1 and u = 0 on the boundary; P is the diagonal of A (the dissertation has no "
+        "name of its preconditioner; its largest eigenvalues, about 2 in the plane, are those of Jacobi); eigenvalues "
         f"to a relative error of {EXPECTED_ERROR:g}; iterations of CG to a relative residual of 1e-5. The meshes are "
-        "those of the studies hydrocephalus, bore and shape_size after their last iteration of local conjugate gradients."
+        "those of the studies hydrocephalus, bore and shape_size after the last iteration of local conjugate gradients."
     )
     warped(report, given)
     sized(report, given)

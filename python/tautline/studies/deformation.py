@@ -37,7 +37,7 @@ def untangled_after(moving: Moving, displacement: np.ndarray, repeats: int, **mo
 
 
 def sweep(report: Report, example: Example, moving: Moving, amounts: tuple, repeats: int) -> dict[str, np.ndarray]:
-    """Inverted elements after FEMWARP and anisotropic FEMWARP, and what it takes to untangle each, by amount."""
+    """Inverted elements after FEMWARP and anisotropic FEMWARP, and the cost of untangling each, by amount."""
     rows = []
     for amount in amounts:
         displacement = moving.at(amount)
@@ -51,7 +51,7 @@ def sweep(report: Report, example: Example, moving: Moving, amounts: tuple, repe
     report.table(
         f"sweep_{example.domain}",
         f"{example.title}: inverted elements, iterations of (4.24) until there are none and CPU seconds then, CPU "
-        "seconds with our own second step and elements it leaves inverted",
+        "seconds with our second step and the remaining inverted elements",
         headings, rows,
     )
     return dict(zip(headings, np.array(rows, float).T))
@@ -84,12 +84,12 @@ def findings(report: Report, example: Example, swept: dict[str, np.ndarray], run
     ours = anisotropic.coefficients[: len(example.coefficients)]
     report.text(f"{title}: coefficients there {alpha}, by (4.19) here " + ":".join(f"{c:.3g}" for c in ours) + ".")
     far = runs[f"{STEPS}, amount {FAR:g}"]
-    came = f", as far as {far.reached:.4g} of it" if far.reached < 1 else ""
+    reached = f", up to {far.reached:.4g} of it" if far.reached < 1 else ""
     once = runs[f"hybrid, amount {FAR:g}"].inverted
-    report.finding(source, f"{title}: the hybrid algorithm leaves none (ours: at {FAR:g} times the motion neither)",
+    report.finding(source, f"{title}: the hybrid algorithm leaves none (ours: nor at {FAR:g} times the motion)",
                    hybrid.inverted == far.inverted == 0,
-                   f"{hybrid.inverted} at amount 1; at {FAR:g} {once} in one step, {far.inverted} in as many as it "
-                   f"takes{came}")
+                   f"{hybrid.inverted} at amount 1; at {FAR:g} {once} in one step, {far.inverted} in as many as "
+                   f"needed{reached}")
     report.finding(source, f"{title}: its worst element is better than FEMWARP's (there by {example.than_femwarp:g} %)",
                    hybrid.worst < fem.worst,
                    f"{less(hybrid.worst, fem.worst):.1f} %: {hybrid.worst:.4g} against {fem.worst:.4g}")
@@ -105,7 +105,7 @@ def findings(report: Report, example: Example, swept: dict[str, np.ndarray], run
 
 
 def faster(report: Report, example: Example, swept: dict[str, np.ndarray]) -> None:
-    """What it takes to untangle from either start, at the amounts at which FEMWARP inverts elements."""
+    """Add the finding on the cost of untangling from either start, at the amounts at which FEMWARP inverts elements."""
     at = np.flatnonzero(swept["FEMWARP"] > 0)
     slow, fast = (np.nan_to_num(swept[f"iterations {start}"][at], nan=np.inf) for start in STARTS)
     seconds = [less(swept["s anisotropic"][i], swept["s FEMWARP"][i]) for i in at]
@@ -113,11 +113,11 @@ def faster(report: Report, example: Example, swept: dict[str, np.ndarray]) -> No
     def text(iterations: float) -> str:
         return f"over {TRIALS[-1]}" if math.isinf(iterations) else f"{iterations:.0f}"
 
-    said = [f"{text(f)} instead of {text(s)} iterations at {a:g}" + (f" ({p:.0f} % less time)" if p == p else "")
-            for f, s, a, p in zip(fast, slow, swept["amount"][at], seconds)]
+    figures = [f"{text(f)} instead of {text(s)} iterations at {a:g}" + (f" ({p:.0f} % less time)" if p == p else "")
+               for f, s, a, p in zip(fast, slow, swept["amount"][at], seconds)]
     report.finding(example.section, f"{example.title}: (4.24) needs fewer iterations and less time to untangle it "
                    f"(there by up to {example.faster:g} %)", np.all(fast <= slow) and np.any(fast < slow)
-                   and all(p > 0 for p in seconds if p == p), ", ".join(said))
+                   and all(p > 0 for p in seconds if p == p), ", ".join(figures))
 
 
 def pictures(report: Report, example: Example, moving: Moving, runs: dict[str, Warped]) -> None:
@@ -127,7 +127,7 @@ def pictures(report: Report, example: Example, moving: Moving, runs: dict[str, W
         for a, last in ((1.0, "hybrid"), (FAR, STEPS))
     }
     whole, near, far = ([(title, moving.mesh)] + rows[a] for title, a in (
-        ("before", 1.0), ("before, at the same place", 1.0), ("before", FAR)))
+        ("before", 1.0), ("before, close-up", 1.0), ("before", FAR)))
     strip(report, f"strip_{example.domain}", [whole, near, far], [None, example.window, None])
 
 
@@ -135,12 +135,13 @@ def main(arguments: list[str]) -> int:
     given = parse("deformation", __doc__, arguments)
     report = Report("deformation", "Six moving domains (section 4.10)", given.out)
     report.text(
-        "The domains have the shapes of the dissertation's, which gives no dimensions, and meshes of their own; "
-        "amount 1 is its largest motion as the figures show it. Coefficients come out of (4.19) and (4.21). TMP shape "
-        "is (4.22) against the initial element; worst and mean are over all elements, inverted ones too. The second "
-        "step is tried twice: (4.24) to the letter, as in the dissertation, for as many iterations as it takes until "
-        f"nothing is inverted (at most {TRIALS[-1]}), and ours, which untangles first. UBN is its iterative stiffening "
-        f"only, as there. Times are CPU seconds of warp and second step, the quickest of {given.repeats}."
+        "The domains have the shapes of the dissertation's, which has no dimensions, and other meshes; amount 1 is its "
+        "largest motion according to the figures. Coefficients follow from (4.19) and (4.21). TMP shape "
+        "is (4.22) against the initial element; worst and mean are over all elements, inverted ones too. There "
+        "are two variants of the second step: literally (4.24), as in the dissertation, with as many iterations as "
+        f"needed until no element is inverted (at most {TRIALS[-1]}), and ours, which untangles first. UBN is its "
+        "iterative stiffening only, as there. Times are CPU seconds of deformation and second step, the fastest of "
+        f"{given.repeats} runs."
     )
     amounts = SMALL_AMOUNTS if given.small else AMOUNTS
     inverted, iterations, seconds, qualities = [], [], [], {}
@@ -165,7 +166,8 @@ def main(arguments: list[str]) -> int:
                            f"iterations of (4.24) until untangled (none: over {TRIALS[-1]})",
                            {f"after {label}": (swept["amount"], swept[f"iterations {key}"])
                             for key, label in labels.items()}))
-        seconds.append((f"{example.title} ({example.section})", "amount of the motion", "CPU s of warp and second step",
+        seconds.append((f"{example.title} ({example.section})", "amount of the motion",
+                        "CPU s of deformation and second step",
                         {f"{step}, {label}": (swept["amount"], swept[f"{quantity} {key}"])
                          for quantity, step in (("s", "(4.24)"), ("own s", "ours"))
                          for key, label in labels.items()}))

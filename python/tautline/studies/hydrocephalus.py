@@ -1,4 +1,4 @@
-"""Untangling a brain with ventricles after its warp: section 3.5.1, Table 3.7, Figure 3.11."""
+"""Untangling a deformed brain with ventricles: section 3.5.1, Table 3.7, Figure 3.11."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ TABLE_3_7 = {
 }
 ITERATIONS = 40
 CELLS, INVERTED = 8166, 13
-LENGTH, PIXELS = 2.0, 1000.0  # of the brain, in the domain and in an image as segmentations are made of
+LENGTH, PIXELS = 2.0, 1000.0  # of the brain, in the domain, and in an image for segmentation
 CLOSE = 50.0  # pixels, half the side of the close-up
 FIRST_VENTRICLE = 2  # its boundary marker; 1 is the outline
-MOST = 0.45  # of a length; beyond, a ventricle meets the outline
+MOST = 0.45  # of a length; a larger shift moves a ventricle to the outline
 
 
 def close_up(report: Report, initial: vtkDataSet, warped: vtkDataSet, runs: dict[str, Run]) -> None:
     """Pictures of the domains and, at an inverted element, of the results."""
-    report.meshes("domain", [("initial", initial), ("warped", warped)], columns=2)
+    report.meshes("domain", [("initial", initial), ("deformed", warped)], columns=2)
     start = runs["si"].kept[0]
     x, y = points_of(start)[cells_of(start)[sizes_of(start) <= 0]].mean(axis=1)[0][:2]
     window = [x - CLOSE, x + CLOSE, y - CLOSE, y + CLOSE]
     shown = [(r.method.label, r.mesh) for r in runs.values()]
-    report.meshes("close_up", [("warped", start), *shown], columns=3, window=window)
+    report.meshes("close_up", [("deformed", start), *shown], columns=3, window=window)
 
 
 def warped_brain(small: bool) -> tuple[vtkDataSet, vtkDataSet, float]:
-    """The brain, the same warped until it has the wanted number of inverted elements, and how far it took."""
+    """The brain, the brain deformed until it has the required number of inverted elements, and the shift this needs."""
     initial = tautline.domain("brain", 1_500 if small else CELLS)
     ventricles = (of_points(initial, "BoundaryMarker") >= FIRST_VENTRICLE) & (of_points(initial, "Fixed") != 0)
     shrunk = points_of(initial) + harmonic(initial, of_points(initial, "Displacement"))
@@ -53,10 +53,10 @@ def main(arguments: list[str]) -> int:
     report.text(
         "The dissertation's brain comes from segmented images, which are not published. This one is the project's "
         "parametric domain `brain`: an outline with two ventricles that shrink, more in width than in height, as "
-        "after treatment, and that are displaced sideways as far as it takes to invert elements."
+        "after treatment, and that are shifted sideways until elements are inverted."
     )
     initial, mesh, shift = warped_brain(given.small)
-    motion = "shrinking the ventricles as the domain does and moving them aside by "
+    motion = "shrinking the ventricles as the domain does and shifting them sideways by "
     motion += f"{shift:.3f} (the brain is {LENGTH:g} long)"
     iterations = 12 if given.small else ITERATIONS
     unit = f"the pixel of an image in which the brain is {PIXELS:g} long"

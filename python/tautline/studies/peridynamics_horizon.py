@@ -1,7 +1,7 @@
 """Figures 4.9 to 4.18: condition numbers over the horizon, the element size and the aspect ratio, with fits.
 
-Both readings; the exact one judges. Fits: c in cond = c delta^-2 (p = 1); the exponent of h and that of the aspect
-ratio (p = 2.5), to h = 1/160 and aspect ratio 64 in the full size.
+Both discretizations; findings are judged by the exact one. Fits: c in cond = c delta^-2 (p = 1); the exponent of h and
+that of the aspect ratio (p = 2.5), to h = 1/160 and aspect ratio 64 in the full size.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def _over_delta(report, cond, basis, p, figures, sizes) -> None:
 
 
 def _constants(report, cond, n) -> None:
-    report.say(f"c = cond delta^2 at h = 1/{n}, p = 1 (exact reading)")
+    report.text(f"c = cond delta^2 at h = 1/{n}, p = 1 (exact discretization)")
     rows = []
     for basis in ("constant", "linear"):
         for ar in (a for a in _RATIOS if not math.isnan(cond(n, a, 0.2, basis, 1.0))):
@@ -77,11 +77,13 @@ def _constants(report, cond, n) -> None:
             rows.append([basis, ar, *(f"{v:.3f}" for v in c), f"{rate:.2f}"])
     report.table(rows, ["basis", "AR", *(f"delta {d:g}" for d in _DELTAS), "fitted exponent"])
     limit = 2 * 3 / math.pi**2
-    report.say("Finding: cond <= c delta^-2 with c close to 1 holds as a bound. c is not constant: it grows with delta, so "
-               f"that cond falls slower than delta^-2; for delta to 0 it tends to 2 (4-p) / ((2-p) pi^2) = {limit:.2f}.")  # fmt: skip
+    report.text("Finding: cond <= c delta^-2 with c close to 1 holds as a bound. c is not constant: it grows with "
+                "delta, so that cond decreases more slowly than delta^-2; for delta to 0 it tends to 2 (4-p) / "
+                f"((2-p) pi^2) = {limit:.2f}.")  # fmt: skip
     spread = max(abs(cond(n, a, d, "constant", 1.0) / cond(n, 1, d, "constant", 1.0) - 1)
                  for a in (1, 4) for d in _DELTAS)  # fmt: skip
-    report.say(f"Finding: p = 1, the aspect ratio hardly matters: holds (constant basis, AR 4: within {100 * spread:.1f} %).\n")
+    report.text("Finding: p = 1, the aspect ratio hardly matters: holds (constant basis, AR 4: within "
+                f"{100 * spread:.1f} %).\n")  # fmt: skip
 
 
 def _over_size(report, cond, small) -> None:
@@ -99,13 +101,14 @@ def _over_size(report, cond, small) -> None:
                 style = "o-" if reading == "exact" else "x:"
                 lines[f"p = {p:g}, delta = {delta}" + ("" if reading == "exact" else ", dissertation's rules")] = (
                     [1 / n for n in use], y, style)  # fmt: skip
-    report.say("Growth with 1/h, linear basis, aspect ratio 1")
+    report.text("Growth with 1/h, linear basis, aspect ratio 1")
     report.table(rows, ["p", "delta", "reading", *(f"1/h = {n}" for n in sizes), "exponents of 1/h"])
     chart = {"title": "growth with 1/h", "x": "h", "xscale": "log", "yscale": "log", "lines": lines}
     report.chart("peridynamics_horizon_h.png", [chart])
     rates = next(row[-1] for row in rows if row[0] == 2.5 and row[2] == "exact").split()
-    report.say(f"Finding: p = 1, cond converges as h goes to 0: holds. p = 2.5, cond ~ h^-1: does not hold. The exponent falls, "
-               f"{', '.join(rates)} at delta = {deltas[0]}, towards p - 2 = 0.5; at printed sizes it is near 0.8.\n")  # fmt: skip
+    report.text("Finding: p = 1, cond converges as h goes to 0: holds. p = 2.5, cond ~ h^-1: does not hold. The "
+                f"exponent decreases, {', '.join(rates)} at delta = {deltas[0]}, towards p - 2 = 0.5; at printed "
+                "sizes it is near 0.8.\n")  # fmt: skip
 
 
 def _over_ratio(report, cond, small) -> None:
@@ -121,13 +124,13 @@ def _over_ratio(report, cond, small) -> None:
                              *[""] * (len(_RATIOS) - len(y)), ratios])  # fmt: skip
                 lines[f"p = {p:g}, h = 1/{n}" + ("" if reading == "exact" else ", dissertation's rules")] = (
                     use, y, "o-" if reading == "exact" else "x:")  # fmt: skip
-    report.say("Growth with the aspect ratio, linear basis, delta = 0.2, dx dy fixed")
+    report.text("Growth with the aspect ratio, linear basis, delta = 0.2, dx dy fixed")
     report.table(rows, ["p", "1/h", "reading", *(f"AR {a}" for a in _RATIOS), "per factor 4"])
     chart = {"title": "growth with the aspect ratio", "x": "aspect ratio", "xscale": "log", "yscale": "log",
              "lines": lines}  # fmt: skip
     report.chart("peridynamics_horizon_ratio.png", [chart])
     exact = [row for row in rows if row[0] == 2.5 and row[2] == "exact"]
     grown = "; ".join(f"h = 1/{row[1]}: {row[-1]}" for row in exact)
-    report.say(f"Finding: p = 2.5, anisotropy increases cond: holds. Further anisotropy does not: does not hold. Per factor 4 of "
-               f"the aspect ratio it grows by {grown} (exact); AR^((p-2)/2), the shortest edge to the power -(p-2), is "
-               f"1.41. With the dissertation's rules it grows faster, by their error.")  # fmt: skip
+    report.text("Finding: p = 2.5, anisotropy increases cond: holds. Further anisotropy does not: does not hold. Per "
+                f"factor 4 of the aspect ratio it grows by {grown} (exact); AR^((p-2)/2), the shortest edge to the "
+                "power -(p-2), is 1.41. With the dissertation's rules it grows faster, by their error.")  # fmt: skip

@@ -36,13 +36,14 @@ def main(arguments: Sequence[str]) -> int:
         panels.append({"title": f"Figure 4.19: h = {1 / n:g}", "x": "p", "yscale": "log", "lines": lines})
     report.write_csv("peridynamics_kernel.csv", rows, ["n", "delta", "reading", "p", "condition"])
     shown = [[p, *(f"{v:.3f}" for (_, _, r, q, v) in rows if q == p and r == "exact")] for p in exponents]
-    report.say("Condition number, exact reading, linear basis, aspect ratio 1")
+    report.text("Condition number, exact discretization, linear basis, aspect ratio 1")
     report.table(shown, ["p", *(f"1/h {n}, delta {d}" for n in sizes for d in deltas)])
-    report.say("Slope of ln cond per unit of p")
+    report.text("Slope of ln cond per unit of p")
     report.table(growth, ["1/h", "delta", "reading", "p <= 2", "2 <= p <= 3", "p >= 3"])
     report.chart("peridynamics_kernel.png", panels)
     local = ", ".join(f"{1 / math.tan(math.pi / (2 * n)) ** 2:.1f} at h = 1/{n}" for n in sizes)
-    report.say("Finding: cond grows exponentially in p for p >= 2: holds in quality, and not for ever. The slope of ln cond is "
-               "several times that below 2, but there is no kink at 2 and no one rate: it depends on h and delta. As p goes "
-               f"to 4 the operator becomes local and cond that of the Laplacian, cot^2(pi h / 2): {local}.")  # fmt: skip
+    report.text("Finding: cond grows exponentially in p for p >= 2: holds qualitatively, for a limited range. The "
+                "slope of ln cond is several times that below 2, but there is no kink at 2 and no single rate: it "
+                "depends on h and delta. As p goes to 4 the operator becomes local and cond that of the Laplacian, "
+                f"cot^2(pi h / 2): {local}.")  # fmt: skip
     return report.close()

@@ -11,8 +11,8 @@ from ._deformed import Moving, deform, parse, strip
 CELLS = 800
 AMOUNTS = (0.2, 0.4, 0.6, 0.8, 1.0, 1.1)
 THEIRS = 20  # inverted elements of FEMWARP in Figure 4.20
-EXACT = 1e-8  # what the propositions are to be true to
-GRADING = 1.5  # y^1.5 is the height of a grid line that was at y
+EXACT = 1e-8  # tolerance of the propositions
+GRADING = 1.5  # a grid line at height y moves to y^1.5
 COEFFICIENTS = ((1, 1, 1), (0, 1, 1), (1, 0, 1), (6, 1, 1), (1, 4, 1))  # the last does not matter in the plane
 
 
@@ -29,7 +29,7 @@ def vertically(mesh: vtkDataSet, displacement: np.ndarray) -> np.ndarray:
 
 
 def one_column(mesh: vtkDataSet) -> tuple[float, float]:
-    """One vertex of the top sinks: how far others than its column move, at most, and its column."""
+    """Largest displacements of the other columns and of its own column where one vertex of the top sinks."""
     p = points_of(mesh)
     columns = columns_of(p)
     mine = columns[len(columns) // 3]
@@ -41,7 +41,7 @@ def one_column(mesh: vtkDataSet) -> tuple[float, float]:
 
 
 def spacing(mesh: vtkDataSet, displacement: np.ndarray) -> float:
-    """How far ratios of neighbouring vertical distances are from those of the initial mesh, at most."""
+    """Largest relative change of the ratios of neighboring vertical distances."""
     p = points_of(mesh)
     q = vertically(mesh, displacement)
     worst = 0.0
@@ -59,14 +59,14 @@ def graded(mesh: vtkDataSet) -> vtkDataSet:
 
 
 def affine(mesh: vtkDataSet) -> float:
-    """An affine motion of the boundary: how far interior vertices are from where it puts them, for all coefficients."""
+    """Largest deviation of interior vertices from an affine motion of the boundary, over all coefficients."""
     p = points_of(mesh)
     slope = np.array([[0.4, -0.3, 0.0], [0.7, 0.2, 0.0], [0.0, 0.0, 0.0]])
-    wanted = p @ slope + [3.0, -2.0, 0.0]
+    motion = p @ slope + [3.0, -2.0, 0.0]
     worst = 0.0
     for coefficients in COEFFICIENTS:
-        found = deform(mesh, wanted, "anisotropic", coefficients=coefficients).mesh
-        worst = max(worst, float(np.abs(points_of(found) - p - wanted).max()))
+        found = deform(mesh, motion, "anisotropic", coefficients=coefficients).mesh
+        worst = max(worst, float(np.abs(points_of(found) - p - motion).max()))
     return worst
 
 
@@ -77,7 +77,7 @@ def main(arguments: list[str]) -> int:
     mesh, displacement = rectangle.mesh, rectangle.at(1.0)
     report.text(
         f"A structured mesh of {mesh.GetNumberOfCells()} triangles; the top sinks by 0.85 of the height in the middle, "
-        "times the amount. The dissertation's mesh and motion are known from its figure only."
+        "times the amount. The dissertation's mesh and motion are taken from its figure."
     )
     rows, curves = [], {"FEMWARP": [], "anisotropic FEMWARP": []}
     for amount in AMOUNTS:
@@ -119,6 +119,6 @@ def main(arguments: list[str]) -> int:
     report.finding("Proposition 2", "Uniform spacing stays uniform", uniform <= EXACT, f"{uniform:.2g} of a distance")
     report.finding("Proposition 3", "Relative spacing of a graded mesh stays", relative <= EXACT,
                    f"{relative:.2g} of a distance")
-    report.finding("Proposition 4", "Affine motions are exact whatever the coefficients", exact <= 1e-10,
+    report.finding("Proposition 4", "Affine motions are exact for all coefficients", exact <= 1e-10,
                    f"{exact:.2g} at lengths of 2; alpha, beta = " + ", ".join(f"{a}:{b}" for a, b, _ in COEFFICIENTS))
     return report.finish()

@@ -1,4 +1,4 @@
-"""Shape and interpolation error at once: section 3.4.2, Table 3.3, Figures 3.6 and 3.7."""
+"""Shape and interpolation error simultaneously: section 3.4.2, Table 3.3, Figures 3.6 and 3.7."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ GOALS = Goals(
     labels=("IMR", "SS"),
     means=("imr_mean", "ss_mean"),
     worsts=("imr_worst", "ss_worst"),
-    unit=("ss_mean", 1.9, 1),  # what Figure 3.6 (b) starts at; 1 / SS is a length
+    unit=("ss_mean", 1.9, 1),  # the start of Figure 3.6 (b); 1 / SS is a length
     axes=("Average element quality, shape (IMR)", "Average element quality, interpolation error (1 / SS)"),
     times=TIMES,
 )
@@ -30,38 +30,39 @@ GOALS = Goals(
 def main(arguments: list[str]) -> int:
     given = options(GOALS, __doc__, arguments)
     report = Report(GOALS.name, GOALS.title, given.out)
-    report.text("SS is better the larger it is; shown is 1 / SS, to which the bound of the error is proportional.")
+    report.text("Larger SS are better; the tables have 1 / SS, to which the bound of the error is proportional.")
     found = experiment(GOALS, given, report)
     runs = found.nlcg
     imr, ss = runs["imr"], runs["ss"]
 
-    def say(sentence: str, holds: bool, figures: str, source: str) -> None:
+    def finding(sentence: str, holds: bool, figures: str, source: str) -> None:
         report.finding(source, sentence, holds, figures)
 
     holds, where = everywhere(
         found.others, lambda r: all(r[n].last(q) < r[n].first(q) for n in MULTI for q in GOALS.means),
     )
-    say("The multiobjective methods improve the averages of both metrics", holds, where, "Figure 3.6")
+    finding("The multiobjective methods improve the averages of both metrics", holds, where, "Figure 3.6")
     holds, where = everywhere(found.others, lambda r: r["ss"].last("imr_mean") >= r["ss"].first("imr_mean"))
-    say("SS alone fails to improve the average IMR", holds, f"{where}; {compare(runs, 'imr_mean')}", "Figure 3.6 (a)")
+    finding("SS alone fails to improve the average IMR", holds, f"{where}; {compare(runs, 'imr_mean')}",
+            "Figure 3.6 (a)")
     holds, where = everywhere(
         found.others, lambda r: r["ss"].last("imr_mean") >= max(x.last("imr_mean") for x in r.values()),
     )
-    say("SS alone is the worst method when the average is measured by IMR", holds, where, "Figure 3.6 (a)")
+    finding("SS alone is the worst method when the average is measured by IMR", holds, where, "Figure 3.6 (a)")
     holds, where = everywhere(found.others, lambda r: r["imr"].last("ss_mean") < r["imr"].first("ss_mean"))
-    say("IMR alone improves the average of SS too", holds, f"{where}; {compare(runs, 'ss_mean')}", "Figure 3.6 (b)")
+    finding("IMR alone improves the average of SS too", holds, f"{where}; {compare(runs, 'ss_mean')}", "Figure 3.6 (b)")
     gain = 1 - runs["exponential-sum"].last("imr_worst") / ss.last("imr_worst")
-    say("The exponential sum has a far better worst element by IMR (95.4 %) than SS alone", gain > 0.9,
+    finding("The exponential sum has a far better worst element by IMR (95.4 %) than SS alone", gain > 0.9,
         f"{percent(gain)}, the dissertation's {percent(WORST_GAIN)}; {compare(runs, 'imr_worst')}", "3.4.2")
     half = len(imr.iterations) // 2
-    say("With IMR alone the worst element by SS gets slightly worse after 10 iterations",
+    finding("With IMR alone the worst element by SS gets slightly worse after 10 iterations",
         imr.last("ss_worst") > imr.at("ss_worst", half),
         f"ss_worst: start {imr.first('ss_worst'):.6g}, iteration {half} {imr.at('ss_worst', half):.6g}, "
         f"end {imr.last('ss_worst'):.6g}", "Figure 3.7 (b)")
     seconds = {name: r.last_second() for name, r in runs.items()}
-    say("IMR alone is the fastest", seconds["imr"] == min(seconds.values()),
+    finding("IMR alone is the fastest", seconds["imr"] == min(seconds.values()),
         ", ".join(f"{n} {s:.3g} s" for n, s in seconds.items()), "Table 3.3")
     ratio = seconds["equal-sum"] / seconds["imr"]
-    say("The equal sum takes about four times as long as IMR alone (within 3 to 5)", 3 <= ratio <= 5,
+    finding("The equal sum takes about four times as long as IMR alone (within 3 to 5)", 3 <= ratio <= 5,
         f"{ratio:.2f} times, the dissertation's {TIMES['equal-sum'][-1] / TIMES['imr'][-1]:.2f}", "Table 3.3")
     return report.finish()

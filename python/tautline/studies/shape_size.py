@@ -1,4 +1,4 @@
-"""Shape and size at once: section 3.4.1, Table 3.2, Figures 3.4 and 3.5."""
+"""Shape and size simultaneously: section 3.4.1, Table 3.2, Figures 3.4 and 3.5."""
 
 from __future__ import annotations
 
@@ -34,47 +34,48 @@ def main(arguments: list[str]) -> int:
     runs = found.nlcg
     imr, size = runs["imr"], runs["size"]
 
-    def say(sentence: str, holds: bool, figures: str, source: str = "3.4.1") -> None:
+    def finding(sentence: str, holds: bool, figures: str, source: str = "3.4.1") -> None:
         report.finding(source, sentence, holds, figures)
 
     holds, where = everywhere(
         found.others, lambda r: r["size"].last("imr_mean") >= max(x.last("imr_mean") for x in r.values()),
     )
-    say("Size alone is the worst method when the average is measured by shape (IMR)", holds,
+    finding("Size alone is the worst method when the average is measured by shape (IMR)", holds,
         f"{where}; {compare(runs, 'imr_mean')}", "Figure 3.4 (a)")
     holds, where = everywhere(
         found.others, lambda r: r["imr"].last("size_rms") >= max(x.last("size_rms") for x in r.values()),
     )
-    say("Shape alone is the worst method when the average is measured by size", holds,
+    finding("Shape alone is the worst method when the average is measured by size", holds,
         f"{where}; {compare(runs, 'size_rms')}", "Figure 3.4 (b)")
     holds, where = everywhere(
         found.others,
         lambda r: all(r[n].last(q) < r[n].first(q) for n in MULTI for q in GOALS.means),
     )
-    say("The multiobjective methods improve the averages of both metrics", holds, where, "Figure 3.4")
+    finding("The multiobjective methods improve the averages of both metrics", holds, where, "Figure 3.4")
     middle = min(range(len(size.iterations)), key=lambda i: size.values["imr_worst"][i])
-    say("With size alone the worst element by IMR deteriorates significantly as iterations go on",
+    finding("With size alone the worst element by IMR deteriorates significantly as iterations go on",
         size.last("imr_worst") > 2 * size.values["imr_worst"][middle],
         f"imr_worst: start {size.first('imr_worst'):.4g}, best {size.values['imr_worst'][middle]:.4g} (iteration "
         f"{middle}), "
         f"end {size.last('imr_worst'):.4g}", "Figure 3.5 (a)")
     early = 3
-    say("Shape alone improves the worst size for the first few iterations",
+    finding("Shape alone improves the worst size for the first few iterations",
         imr.at("size_worst", early) < imr.first("size_worst"),
         f"size_worst: start {imr.first('size_worst'):.4g}, iteration {early} {imr.at('size_worst', early):.4g}, "
         f"end {imr.last('size_worst'):.4g}", "Figure 3.5 (b)")
     gain = 1 - runs["exponential-sum"].last("imr_worst") / size.last("imr_worst")
-    say("The exponential sum has a far better worst element by IMR (96.6 %) than size alone", gain > 0.9,
+    finding("The exponential sum has a far better worst element by IMR (96.6 %) than size alone", gain > 0.9,
         f"{percent(gain)}, the dissertation's {percent(WORST_GAIN)}")
     seconds = {name: r.last_second() for name, r in runs.items()}
     timing = ", ".join(f"{n} {s:.3g} s" for n, s in seconds.items())
-    say("Size alone is the fastest", seconds["size"] == min(seconds.values()), timing, "Table 3.2")
+    finding("Size alone is the fastest", seconds["size"] == min(seconds.values()), timing, "Table 3.2")
     ratio = seconds["objective-product"] / seconds["size"]
-    say("The objective product takes about two times as long as size alone (within 1.5 to 2.5)", 1.5 <= ratio <= 2.5,
+    finding("The objective product takes about two times as long as size alone (1.5 to 2.5)", 1.5 <= ratio <= 2.5,
         f"{ratio:.2f} times, the dissertation's {TIMES['objective-product'][-1] / TIMES['size'][-1]:.2f}", "Table 3.2")
-    say("The exponential sum is the slowest", seconds["exponential-sum"] == max(seconds.values()), timing, "Table 3.2")
+    finding("The exponential sum is the slowest", seconds["exponential-sum"] == max(seconds.values()), timing,
+            "Table 3.2")
     others = min(runs[name].last("imr_worst") for name in MULTI[1:])
-    say("Of the multiobjective methods the exponential sum has the best worst shape (by 1 % at least)",
+    finding("Of the multiobjective methods the exponential sum has the best worst shape (by 1 % at least)",
         runs["exponential-sum"].last("imr_worst") <= 0.99 * others,
         compare({n: runs[n] for n in MULTI}, "imr_worst"), "3.6, conclusions")
     return report.finish()

@@ -17,7 +17,7 @@ TABLE_3_6 = {
 }
 OBJECTIVES = ("si", "size", "untangle_beta")
 UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)  # mean sizes of the elements
-SIZE_RMS = 2.7e-3  # what Figure 3.10 (b) starts at, about
+SIZE_RMS = 2.7e-3  # the start of Figure 3.10 (b)
 QUANTITIES = ("si_mean", "size_rms", "si_worst", "imr_mean")
 MULTI = ("exponential-sum", "objective-product", "equal-sum")
 
@@ -35,7 +35,7 @@ def main(arguments: list[str]) -> int:
         f"disk3d: {mesh.GetNumberOfCells():,} elements. {NOTE}\n"
         f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
         f"{TYPICAL_C:g}; unit of length: the size (rms) is {SIZE_RMS:g} at the start, about as in Figure 3.10 (b); "
-        "the untangling metric is then rescaled as section 3.3.3 says. Averages are over the valid elements."
+        "the untangling metric is then rescaled as in section 3.3.3. Averages are over the valid elements."
     )
     every = tangled_methods(*OBJECTIVES)
     options = dict(patch_iterations=given.patch_iterations, threads=given.threads)
@@ -45,7 +45,7 @@ def main(arguments: list[str]) -> int:
     for file, found in (("table_3_6", runs), ("table_3_6_newton", newton)):
         theirs = {r.method.label: TABLE_3_6[name] for name, r in found.items()}
         report.beside(
-            file, f"Inverted elements after so many iterations, {file}", ITERATIONS, counts(found, ITERATIONS), theirs,
+            file, f"Inverted elements by iterations, {file}", ITERATIONS, counts(found, ITERATIONS), theirs,
         )
     by_unit(report, mesh, OBJECTIVES, ITERATIONS[-1], UNITS[::2] if given.small else UNITS, **options)
     if diverged(runs):

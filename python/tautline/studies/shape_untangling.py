@@ -39,7 +39,7 @@ LARGE, LARGE_FRACTION = 1_000_000, 0.01
 
 
 def tangled(domain: str, cells: int, inverted: float) -> vtkDataSet:
-    """A perturbed domain with so many inverted elements (below 1: such a part), in the unit of the dissertation."""
+    """A perturbed domain with this number (below 1: fraction) of inverted elements, in the unit of the dissertation."""
     mesh = tautline.domain(domain, cells)
     part = inverted if inverted < 1 else inverted / mesh.GetNumberOfCells()
     mesh = tautline.perturb(mesh, tangle=part).mesh
@@ -50,7 +50,7 @@ def tangled(domain: str, cells: int, inverted: float) -> vtkDataSet:
 
 def table(report: Report, file: str, runs: dict[str, Run], iterations, theirs: dict, extra: dict | None = None) -> None:
     known = {r.method.label: theirs.get(name, ()) for name, r in runs.items()} | ({SUS: theirs["sus"]} if extra else {})
-    report.beside(file, f"Inverted elements after so many iterations, {file}", iterations,
+    report.beside(file, f"Inverted elements by iterations, {file}", iterations,
                   counts(runs, iterations) | (extra or {}), known)
     gone = diverged(runs)
     if gone:
@@ -59,14 +59,14 @@ def table(report: Report, file: str, runs: dict[str, Run], iterations, theirs: d
 
 def quality(report: Report, file: str, runs: dict[str, Run], iteration: int, extra: list | None = None) -> None:
     rows = [["start", *(next(iter(runs.values())).first(q) for q in QUANTITIES), 0.0]]
-    wanted = (*QUANTITIES, "seconds")
-    rows += [[r.method.label, *(r.at(q, iteration) for q in wanted)] for r in runs.values()]
+    shown = (*QUANTITIES, "seconds")
+    rows += [[r.method.label, *(r.at(q, iteration) for q in shown)] for r in runs.values()]
     report.table(file, f"Quality of the valid elements after {iteration} iterations, {file}",
                  ["method", *QUANTITIES, "CPU s"], rows + (extra or []))
 
 
 def escobar(mesh: vtkDataSet, iterations: int, threads: int) -> tuple[list[float], vtkDataSet]:
-    """Inverted elements by iteration, and the mesh, of the regularised determinant, vertex by vertex."""
+    """Inverted elements by iteration, and the mesh, of the regularized determinant, vertex by vertex."""
     found = tautline.untangle(mesh, "local", threads=threads)
     inverted = [float(n) for n in found.history["inverted"]]
     return [inverted[min(i, len(inverted) - 1)] for i in range(iterations + 1)], found.mesh
@@ -95,9 +95,9 @@ def main(arguments: list[str]) -> int:
         f"{NOTE}\n"
         f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and iteration; c = "
         f"{TYPICAL_C:g}; unit of length: the untangling metric is at most {LARGEST_UNTANGLING} at the start.\n"
-        "The dissertation speaks of 1 % of about 1,000,000 elements, its tables of 543 and of 111 inverted ones, and "
-        "of the mesh with 111 as one of about 50,000: the tables are made with the latter numbers (543 are 1 % of "
-        "54,300), and a mesh of 1,000,000 triangles with 1 % inverted follows."
+        "The text of the dissertation has 1 % of about 1,000,000 elements, its tables have 543 and 111 inverted ones, "
+        "the latter on a mesh of about 50,000: the tables are computed with these numbers (543 are 1 % of 54,300), "
+        "then for a mesh of 1,000,000 triangles with 1 % inverted elements."
     )
     shown = (1, ITERATIONS_3_4[-1])
     runs2 = {m.name: untangle(flat, m, ITERATIONS_3_4[-1], QUANTITIES, keep=shown, **common) for m in every}
@@ -116,7 +116,7 @@ def main(arguments: list[str]) -> int:
     sus = measure(mesh, QUANTITIES)
     table(report, "table_3_5", runs3, ITERATIONS_3_5, TABLE_3_5, {SUS: inverted})
     report.text(
-        f"{SUS}: Untangle Mesh with effort local (Escobar's regularised determinant, around inverted elements only)."
+        f"{SUS}: Untangle Mesh with effort local (Escobar's regularized determinant, around inverted elements only)."
     )
     quality(report, "quality_disk3d", runs3, ITERATIONS, [[SUS, *(sus[q] for q in QUANTITIES), float("nan")]])
     report.curves("curves_disk3d", list(runs3.values()))
@@ -139,40 +139,41 @@ def findings(report: Report, flat: dict[str, Run], solid: dict[str, Run], large:
     when = "; ".join(f"{name}: {after(runs)}" for name, runs in both.items())
     most = {name: max(runs["si"].values["inverted"]) for name, runs in both.items()}
 
-    def say(source: str, sentence: str, holds: bool, figures: str) -> None:
+    def finding(source: str, sentence: str, holds: bool, figures: str) -> None:
         report.finding(source, sentence, holds, figures)
 
-    say("Tables 3.4, 3.5", "SI alone inverts more elements than there were",
+    finding("Tables 3.4, 3.5", "SI alone increases the number of inverted elements",
         all(most[n] > runs["si"].first("inverted") for n, runs in both.items()),
         ", ".join(f"{n}: start {r['si'].first('inverted'):g}, most {most[n]:g}, end {r['si'].last('inverted'):g}"
                   for n, r in both.items()))
-    say("3.4.3", "SI alone does not untangle", all(r["si"].last("inverted") > 0 for r in both.values()), when)
-    say("Tables 3.4, 3.5", "Untangling alone eliminates all inverted elements within three iterations",
+    finding("3.4.3", "SI alone does not untangle", all(r["si"].last("inverted") > 0 for r in both.values()), when)
+    finding("Tables 3.4, 3.5", "Untangling alone eliminates all inverted elements within three iterations",
         all(untangled_after(r["untangle"]) <= 3 for r in both.values()), when)
     for name in MULTI:
         label = flat[name].method.label
-        say("Tables 3.4, 3.5", f"{label} eliminates all within three iterations",
+        finding("Tables 3.4, 3.5", f"{label} eliminates all within three iterations",
             all(untangled_after(r[name]) <= 3 for r in both.values()), when)
-    say("3.4.3", "All three multiobjective methods eliminate them in the end",
+    finding("3.4.3", "All three multiobjective methods eliminate them in the end",
         all(r[n].last("inverted") == 0 for r in both.values() for n in MULTI), when)
-    say("Table 3.4", "Exponential and equal sum need fewer iterations than untangling alone",
+    finding("Table 3.4", "Exponential and equal sum need fewer iterations than untangling alone",
         max(untangled_after(flat[n]) for n in ("exponential-sum", "equal-sum")) < untangled_after(flat["untangle"]),
         when)
-    say("3.4.3", "The exponential sum eliminates them sooner than the objective product (or as soon)",
+    finding("3.4.3", "The exponential sum eliminates them sooner than the objective product (or as soon)",
         all(untangled_after(r["exponential-sum"]) <= untangled_after(r["objective-product"]) for r in both.values()),
         when)
     valid = [n for n, r in flat.items() if r.last("inverted") == 0]
     figures = ", ".join(f"{n} {r.last('si_mean'):.4f}" for n, r in flat.items())
     best = max(valid, key=lambda n: round(flat[n].last("si_mean"), 4)) if valid else ""
     top = flat[best].last("si_mean") if best else 0.0
-    say("Figure 3.8",
+    finding("Figure 3.8",
         "The exponential sum yields the best element shapes (average SI to 4 decimals) of the methods that untangle",
         "exponential-sum" in valid and round(flat["exponential-sum"].last("si_mean"), 4) >= round(top, 4), figures)
     seconds = {f"{name} {n}": runs[n].last_second() for name, runs in both.items() for n in MULTI}
-    say("3.4.3", "Each multiobjective method takes less than a minute", max(seconds.values()) < 60,
+    finding("3.4.3", "Each multiobjective method takes less than a minute", max(seconds.values()) < 60,
         ", ".join(f"{n} {s:.3g} s" for n, s in seconds.items()))
-    say("Table 3.5", f"{SUS} eliminates them in one iteration", inverted[1] == 0, f"inverted by iteration: {inverted}")
+    finding("Table 3.5", f"{SUS} eliminates them in one iteration", inverted[1] == 0,
+            f"inverted by iteration: {inverted}")
     for quantity, word in (("si_mean", "average"), ("si_worst", "worst")):
-        say("Figure 3.9", f"Exponential and equal sum have a better {word} SI than {SUS.lower()}",
+        finding("Figure 3.9", f"Exponential and equal sum have a better {word} SI than {SUS.lower()}",
             all(solid[n].last(quantity) > sus[quantity] for n in ("exponential-sum", "equal-sum")),
             f"{SUS} {sus[quantity]:.4g}, " + ", ".join(f"{n} {solid[n].last(quantity):.4g}" for n in MULTI))

@@ -26,9 +26,9 @@ TITLES = {
 CHOICE = (
     "Highest rate: descriptor, rotation, ordering and b (a = 4 b) were chosen on the odd classes of Kimia's set alone "
     "(97.1 % of their best matches are right); the queries of the even classes, ranked against all 99, reach 97.0 %, "
-    "against their own half 98.9 %, all 97.1 %. A limit of time ended the search; carried on, b = 6 has one hit in 550 "
-    "more on the odd classes, 96.8 % on the even ones, and was not taken over. Spacing, points, directed edges and the sum of both "
-    "directions had been chosen on queries of all classes."
+    "against their own half 98.9 %, all 97.1 %. The search ended at a time limit; continued, b = 6 has one more hit of "
+    "550 on the odd classes and 96.8 % on the even ones; it was not adopted. Spacing, points, directed edges and the "
+    "sum of both directions had been chosen on queries of all classes."
 )
 _BASE = dict(setting="custom", spacing=25.0, locations="near grid", a=12.0, b=3.0, centre_tolerance=1 / 3)
 
@@ -163,7 +163,7 @@ def _correct(result: Any) -> np.ndarray:
 
 
 def _rule_example(images: list, threads: int) -> tuple[int, int] | None:
-    """A pair whose placement of least energy is off the centre, as in Figure 5.3."""
+    """A pair whose placement of least energy violates the rule of the center of mass, as in Figure 5.3."""
     options = dict(locations="near grid", b=0.0, threads=threads)
     for source in range(len(images)):
         for target in range(source % 3, len(images), 3):
@@ -177,7 +177,7 @@ def _rule_example(images: list, threads: int) -> tuple[int, int] | None:
 def _figures(out: Path, shapes: Any, results: dict[str, Any], options: Any) -> None:
     images = _images(shapes)
     ours, theirs = _correct(results["dissertation"]), _correct(results["felzenszwalb"])
-    # Good queries are right in both at most ranks; poor ones are those where ours is worst, one per class.
+    # Good queries have the most correct matches by both methods; poor ones the fewest by ours, one per class.
     labels = results["dissertation"].labels
     members = [[i for i, label in enumerate(labels) if label == name] for name in dict.fromkeys(labels)]
     both = ours + theirs

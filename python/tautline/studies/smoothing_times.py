@@ -44,7 +44,7 @@ def method(metric: str) -> Method:
 
 
 def poor_at_boundary(mesh: vtkDataSet) -> tuple[int, int]:
-    """Triangles with an angle below 20 or above 100 degrees, and how many of them have a fixed vertex."""
+    """Number of triangles with an angle below 20 or above 100 degrees, and of those of them with a boundary vertex."""
     cells = cells_of(mesh)
     p = points_of(mesh)[cells]
     poor = np.zeros(len(p), bool)
@@ -77,11 +77,11 @@ def main(arguments: list[str]) -> int:
         "value is that of a converged run (L-BFGS after Local Newton sweeps, relative change 1e-5). Sum of squares "
         "of IMR and RR, sum of squared reciprocals of SI and SS; boundary fixed; half of the interior vertices "
         "perturbed by up to 0.5 of the distance to inversion. Local conjugate gradients are Polak-Ribiere's, one "
-        "step per vertex and sweep (the dissertation: Fletcher-Reeves, which with one step is the same). Times are "
+        "step per vertex and sweep (the dissertation: Fletcher-Reeves, the same with one step). Times are "
         f"CPU seconds of {given.threads or 'all'} thread(s), set-up included; the dissertation's are of an Intel "
         "Nehalem at 2.66 GHz, 500,000 vertices.\n"
         "Of a triangle, SI = 1 / (4 sqrt(3) IMR): these two objectives differ by a factor only, and so their results "
-        "are the same; that the dissertation's differ must come from where the smoothing stopped."
+        "are the same; that the dissertation's differ must come from the point where the smoothing stopped."
     )
     seconds, newton, shares, boundary = {}, {}, {}, {}
     for domain in DOMAINS:
@@ -121,28 +121,28 @@ def angles(mesh: vtkDataSet) -> list[float]:
 
 
 def findings(report: Report, seconds: dict, shares: dict, boundary: dict) -> None:
-    def say(source: str, sentence: str, holds: bool, figures: str) -> None:
+    def finding(source: str, sentence: str, holds: bool, figures: str) -> None:
         report.finding(source, sentence, holds, figures)
 
     times = "; ".join(f"{d}: " + ", ".join(f"{m} {seconds[d, m]:.3g} s" for m in METRICS) for d in DOMAINS)
     order = [sorted(METRICS, key=lambda m: seconds[d, m]) for d in DOMAINS]
-    say("Table 2.6", "IMR is the fastest to smooth", all(metrics[0] == "imr" for metrics in order), times)
-    say("Table 2.6", "SS is the slowest", all(metrics[-1] == "ss" for metrics in order), times)
+    finding("Table 2.6", "IMR is the fastest to smooth", all(metrics[0] == "imr" for metrics in order), times)
+    finding("Table 2.6", "SS is the slowest", all(metrics[-1] == "ss" for metrics in order), times)
     ratios = [seconds[d, m] / seconds[d, "imr"] for d in DOMAINS for m in METRICS[1:]]
-    say("Table 2.6", "The others take about ten times as long as IMR (within 5 to 20)",
+    finding("Table 2.6", "The others take about ten times as long as IMR (within 5 to 20)",
         all(5 <= r <= 20 for r in ratios),
         f"{min(ratios):.2f} to {max(ratios):.2f} times, the dissertation's 9.1 to 11.5")
     middle = {(d, m): shares[d][m][2] for d in DOMAINS for m in METRICS}
-    say("Table 2.7", "All four metrics make nearly equilateral triangles (90 % of the angles from 40 to 80 degrees)",
+    finding("Table 2.7", "All four metrics make nearly equilateral triangles (90 % of the angles in 40 to 80 degrees)",
         min(middle.values()) > 90, ", ".join(f"{d} {m} {v:.1f} %" for (d, m), v in middle.items()))
     small = {(d, m): shares[d][m][0] + shares[d][m][4] for d in DOMAINS for m in METRICS}
     figures = "below 20 or above 100 degrees: " + ", ".join(f"{d} {m} {v:.4f} %" for (d, m), v in small.items())
     for order, word in ((0, "small angles (below 20 degrees)"), (4, "large angles (above 100)")):
-        say("Table 2.7", f"SS leaves the most {word}",
+        finding("Table 2.7", f"SS leaves the most {word}",
             all(shares[d]["ss"][order] > max(shares[d][m][order] for m in METRICS[:3]) for d in DOMAINS),
             ", ".join(f"{d} {m} {shares[d][m][order]:.4f} %" for d in DOMAINS for m in METRICS))
-    say("Table 2.7", "RR leaves the fewest poorly shaped elements, fewer even than IMR",
+    finding("Table 2.7", "RR leaves the fewest poorly shaped elements, fewer even than IMR",
         all(small[d, "rr"] < min(small[d, m] for m in METRICS if m != "rr") for d in DOMAINS), figures)
     at = {key: (part / whole if whole else 1.0) for key, (whole, part) in boundary.items()}
-    say("2.7.3", "Poorly shaped elements occur most often at the boundary", min(at.values()) > 0.5,
+    finding("2.7.3", "Poorly shaped elements occur most often at the boundary", min(at.values()) > 0.5,
         ", ".join(f"{d} {m} {100 * v:.0f} %" for (d, m), v in at.items()))

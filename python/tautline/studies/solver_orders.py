@@ -53,7 +53,8 @@ def findings(report: Report, pde: str, orders: dict[str, dict[int, float]]) -> N
     where = f"Figure {FIGURES[pde][0]}"
     multigrid = {(d, n): s for d, row in orders.items() for n, s in row.items() if n in AMG}
     if pde != "elasticity":
-        report.finding(where, f"s is below {MULTIGRID_ORDER} with AMG", all(s < MULTIGRID_ORDER for s in multigrid.values()),
+        report.finding(where, f"s is below {MULTIGRID_ORDER} with AMG",
+                       all(s < MULTIGRID_ORDER for s in multigrid.values()),
                        "; ".join(f"{d}, {LABELS[n]}: {s:.3f}" for (d, n), s in multigrid.items()))
     others = {(d, n): s for d, row in orders.items() for n, s in row.items() if n not in (*AMG, JACOBI_GMRES)}
     report.finding(where, f"s is near {ONE_LEVEL_ORDER} with the other combinations (within {NEAR})",

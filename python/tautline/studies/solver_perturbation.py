@@ -28,7 +28,7 @@ def main(arguments: list[str]) -> int:
     report.text(
         "Meshes smoothed by IMR to 95 % of the possible reduction; then 0, 5, 10, 25 and 50 % of the interior vertices "
         "are moved in a random direction by up to half of the distance at which an element would invert. PI = (T_max "
-        "- T_min) / T_min over these meshes, of wall seconds with set-up. '*' is a failure, '>' given up at the limit."
+        "- T_min) / T_min over these meshes, of wall seconds with set-up. '*' is a failure, '>' the time limit."
     )
     for pde in given.pde or PDES:
         for domain in given.domain or DOMAINS:
@@ -64,7 +64,8 @@ def findings(report: Report, pde: str, domain: str, rows: dict, grown: dict[int,
         solved = {name: [grown[n] for n in group if n in grown] for name, group in GROUPS.items()}
         mean = {name: sum(values) / len(values) for name, values in solved.items() if values}
         report.finding(where, "AMG is less affected by perturbation than the other preconditioners",
-                       min(mean, key=mean.get) == "AMG", "mean PI of those that converged: " + ", ".join(f"{k} {v:.2f}" for k, v in mean.items()))
+                       min(mean, key=mean.get) == "AMG",
+                       "mean PI of those that converged: " + ", ".join(f"{k} {v:.2f}" for k, v in mean.items()))
     counts = {n: [rows[f][n].iterations for f in FRACTIONS] for n in AMG if n in rows[0.0] and n in grown}
     if pde != "elasticity" and counts:
         report.finding(where, "The iterations of AMG do not change with perturbation (by at most 1)",

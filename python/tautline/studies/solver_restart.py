@@ -31,7 +31,8 @@ def main(arguments: list[str]) -> int:
     chart(report, sizes, found)
     last = {m: solves[-1] for m, solves in found.items()}
     counts = [last[m].iterations for m in RESTARTS]
-    report.finding("Figure 2.3 (a)", "The larger the restart value, the fewer iterations", counts == sorted(counts, reverse=True),
+    report.finding("Figure 2.3 (a)", "The larger the restart value, the fewer iterations",
+                   counts == sorted(counts, reverse=True),
                    ", ".join(f"{m}: {s.iterations}" for m, s in last.items()))
     quickest = min(last, key=lambda m: last[m].seconds)
     report.finding("Figure 2.3 (b)", "A restart value of 30 takes the least time", quickest == DEFAULT_RESTART,

@@ -12,7 +12,7 @@ from ._tangled import NOTE, tangled_methods, untangle
 
 SQUARES = 6  # along each side of the mesh
 SHIFT = 1.3  # of the vertex in the middle along its row, in edges: past the next vertex
-EDGE = 1.0  # the figure has no axes
+EDGE = 1.0  # not known from the figure, which has no axes
 CONVERGED = 100  # iterations
 UNITS = (0.1, 1.0, 10.0, 20.0, 100.0)
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst", "size_rms")
@@ -88,7 +88,7 @@ def main(arguments: list[str]) -> int:
                        "sensitivity.csv")
     end = {n: int(runs[n].last("inverted")) for n in MULTI}
     source = "Figure 3.2 (f) to (h)"
-    report.finding(source, "Converged, all three have removed them", not any(end.values()),
+    report.finding(source, "At convergence, all three have removed them", not any(end.values()),
                    ", ".join(f"{n} {k}" for n, k in end.items()))
     worst = {n: runs[n].last("si_worst") for n in MULTI}
     report.finding(source, "Converged, exponential and equal sum have better elements than the objective product",
