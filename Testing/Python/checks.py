@@ -24,7 +24,7 @@ def refused(text: str, function, *arguments, **options) -> None:
 
 
 def shell(*arguments, code: int = 0, folder: Path = None) -> str:
-    """What python3 -m tautline prints, on stderr if it fails; checks the exit code, and that success prints no error."""
+    """The output of python3 -m tautline; checks the exit code, and that stderr is empty after success."""
     command = [sys.executable, "-m", "tautline", *map(str, arguments)]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == code, (arguments, done.returncode, done.stdout, done.stderr)

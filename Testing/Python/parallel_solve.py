@@ -1,5 +1,8 @@
-"""parallel_solve.py FILE: for pvbatch on any number of MPI ranks. Solves on a cube whose parts are on all ranks (of more than
-two, the last has nothing) and writes what it finds to FILE as JSON. test_parallel_solve.py compares."""
+"""parallel_solve.py FILE: for pvbatch on any number of MPI ranks, see test_parallel_solve.py.
+
+Solves on a cube whose parts are on all ranks (of more than two, the last has nothing) and writes the results to FILE
+as JSON.
+"""
 
 import json
 import os
@@ -12,7 +15,7 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 
-# Runs on every rank: a cube of N^3 cubes of six tetrahedra each, in slabs; with a layer of ghost cells, with global ids.
+# Runs on every rank: a cube of N^3 cubes of six tetrahedra each, in slabs, with a layer of ghost cells and global ids.
 SLABS = """
 import builtins
 import itertools

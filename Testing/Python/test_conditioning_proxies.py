@@ -1,4 +1,4 @@
-"""Solve PDE, Condition Estimator and Solver Study as ParaView users have them: menus, defaults, outputs, errors, state."""
+"""Solve PDE, Condition Estimator and Solver Study in ParaView: menus, defaults, outputs, errors, state."""
 
 import os
 

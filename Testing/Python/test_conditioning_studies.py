@@ -1,19 +1,14 @@
-"""The studies of linear solvers and condition numbers in small: their files, and what the numbers say."""
+"""The studies of linear solvers and condition numbers in the small size: their files and numbers."""
 
-import contextlib
-import csv
-import io
 import math
-import os
-import shutil
-from pathlib import Path
 
 import numpy as np
 import tautline as tl
-from tautline import __main__ as command_line
+from checks import OUT
+from study_checks import Studies
 from tautline.studies import _solver_tables, _solvers
 
-OUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "studies_conditioning"
+studies = Studies(OUT / "studies_conditioning")
 # Per study: its options, findings, pictures, and rows of its tables.
 STUDIES = {
     "solver_metrics": (["--domain", "wrench"], 13, ("poisson_wrench", "elasticity_wrench"),
@@ -27,23 +22,11 @@ STUDIES = {
 }
 
 
-def rows_of(study, table):
-    with open(OUT / study / f"{table}.csv", encoding="utf-8", newline="") as stream:
-        return list(csv.DictReader(stream))
-
-
-def check_files(study):
-    options, findings, pictures, tables = STUDIES[study]
-    told = io.StringIO()
-    with contextlib.redirect_stdout(told):
-        assert command_line.main(["study", study, "--small", "--out", str(OUT / study), *options]) == 0
-    assert (OUT / study / f"{study}.txt").read_text(encoding="utf-8") in told.getvalue()
-    for table, count in tables.items():
-        assert len(rows_of(study, table)) == count, f"{study}/{table}: {len(rows_of(study, table))} rows"
-    assert len(rows_of(study, "findings")) == findings, f"{study}: {len(rows_of(study, 'findings'))} findings"
-    if _solvers.pyplot is not None:
-        for picture in pictures:
-            assert (OUT / study / f"{picture}.png").stat().st_size > 5000, picture
+def run_all():
+    for study, (options, *expected) in STUDIES.items():
+        printed = studies.run(study, *options)
+        assert (studies.directory / study / f"{study}.txt").read_text(encoding="utf-8") in printed
+        studies.check(study, *expected)
 
 
 def test_tables():
@@ -58,22 +41,22 @@ def test_tables():
 
 
 def test_metrics():
-    """Iterations are those of the verb on the same mesh; those of multigrid are few."""
-    row = {r["metric"]: r for r in rows_of("solver_metrics", "poisson_wrench_iterations")}["imr"]
+    """Iterations are those of solve() on the same mesh; those of multigrid are few."""
+    row = {r["metric"]: r for r in studies.rows("solver_metrics", "poisson_wrench_iterations")}["imr"]
     assert all(row[f"{n} converged"] == "yes" for n in _solver_tables.COMBINATIONS)
     assert all(int(row[f"{n} iterations"]) <= 6 for n in _solvers.AMG)
     assert min(int(row[f"{n} iterations"]) for n in _solvers.JACOBI) > 30
     mesh = _solvers.smoothed(_solvers.initial_mesh("wrench", _solvers.SMALL), "imr", 1)
     solved = tl.solve(mesh, solver="cg", preconditioner="ssor", threads=1)
     assert solved.iterations == int(row["5 iterations"])
-    elastic = {r["metric"]: r for r in rows_of("solver_metrics", "elasticity_wrench_iterations")}["imr"]
+    elastic = {r["metric"]: r for r in studies.rows("solver_metrics", "elasticity_wrench_iterations")}["imr"]
     assert int(elastic["19 iterations"]) < int(elastic["9 iterations"])
 
 
 def test_conditioning():
     """Where CG converged, eigenvalues and condition numbers belong together, and iterations to them."""
     for table in ("table_3_8", "table_3_9", "table_3_10"):
-        for row in rows_of("conditioning", table):
+        for row in studies.rows("conditioning", table):
             largest, smallest, condition, iterations = (
                 float(row[key] or "nan") for key in ("largest", "smallest", "condition", "iterations"))
             if math.isnan(largest):
@@ -97,8 +80,6 @@ def test_arguments():
 
 
 if __name__ == "__main__":
-    shutil.rmtree(OUT, ignore_errors=True)
-    for study in STUDIES:
-        check_files(study)
+    run_all()
     for test in (test_tables, test_metrics, test_conditioning, test_arguments):
         test()

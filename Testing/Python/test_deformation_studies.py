@@ -1,20 +1,13 @@
-"""The studies of mesh deformation in small: their tables, findings and pictures, and what the numbers say."""
-
-import contextlib
-import csv
-import io
-import math
-import os
-import shutil
-from pathlib import Path
+"""The studies of mesh deformation in the small size: their tables, findings, pictures and numbers."""
 
 import numpy as np
 import tautline as tl
-from tautline import __main__ as command_line
+from checks import OUT
+from study_checks import Studies, pictures, refused_command
 from tautline.studies import _common, _deformed, _warped
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-OUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "studies_deformation"
+studies = Studies(OUT / "studies_deformation")
 # Per study: findings, pictures, and rows of its tables.
 STUDIES = {
     "rectangle_warp": (6, ("strip", "inverted"), {"inverted": 6, "propositions": 4}),
@@ -25,53 +18,27 @@ STUDIES = {
 }
 
 
-def rows_of(study, table):
-    with open(OUT / study / f"{table}.csv", encoding="utf-8", newline="") as stream:
-        return list(csv.DictReader(stream))
-
-
-def check_files(study, findings, pictures, tables):
-    for table, count in tables.items():
-        rows = rows_of(study, table)
-        assert len(rows) == count, f"{study}/{table}: {len(rows)} rows, not {count}"
-    for file in (OUT / study).glob("*.csv"):
-        for row in rows_of(study, file.stem):
-            for name, value in row.items():
-                with contextlib.suppress(ValueError):
-                    assert math.isfinite(float(value)), f"{file.name}: {name} is {value}"
-    said = rows_of(study, "findings")
-    assert len(said) == findings, f"{study}: {len(said)} findings, not {findings}"
-    holding = sum(row["holds"] == "yes" for row in said)
-    assert f"{holding} of {findings} hold" in (OUT / study / f"{study}.txt").read_text(encoding="utf-8")
-    if _common.pyplot:
-        for picture in pictures:
-            assert (OUT / study / f"{picture}.png").stat().st_size > 5000, f"{study}/{picture}.png is empty"
-
-
 def run_all():
     for study, expected in STUDIES.items():
-        with contextlib.redirect_stdout(io.StringIO()):
-            assert command_line.main(["study", study, "--small", "--out", str(OUT / study)]) == 0
-        check_files(study, *expected)
-    with contextlib.redirect_stderr(io.StringIO()) as said:
-        assert command_line.main(["study", "deformation", "--repeats", "0"]) == 1
-    assert "at least one run" in said.getvalue()
+        studies.run(study)
+        studies.check(study, *expected)
+    refused_command("at least one run", "study", "deformation", "--repeats", "0")
 
 
 def check_rectangle():
-    whole = next(row for row in rows_of("rectangle_warp", "inverted") if float(row["amount"]) == 1.0)
+    whole = next(row for row in studies.rows("rectangle_warp", "inverted") if float(row["amount"]) == 1.0)
     assert float(whole["FEMWARP"]) > 0 == float(whole["anisotropic"]), whole
-    for row in rows_of("rectangle_warp", "propositions"):
+    for row in studies.rows("rectangle_warp", "propositions"):
         assert float(row["largest"]) <= float(row["to be at most"]), row
-    assert all(row["holds"] == "yes" for row in rows_of("rectangle_warp", "findings"))
+    assert all(row["holds"] == "yes" for row in studies.rows("rectangle_warp", "findings"))
 
 
 def check_examples():
     for domain in ("cylinder", "bar", "sphere"):
-        last = rows_of("deformation", f"sweep_{domain}")[-1]
+        last = studies.rows("deformation", f"sweep_{domain}")[-1]
         assert float(last["FEMWARP"]) > 2 * float(last["anisotropic"]), last
         assert float(last["left FEMWARP"]) == float(last["left anisotropic"]) == 0, last
-        quality = {row["method"]: row for row in rows_of("deformation", f"quality_{domain}")}
+        quality = {row["method"]: row for row in studies.rows("deformation", f"quality_{domain}")}
         worst = {name: float(row["worst"]) for name, row in quality.items()}
         assert worst["hybrid, amount 1"] < min(worst["femwarp, amount 1"], worst["ubn, amount 1"]), worst
         elements = {sum(float(row[b]) for b in _deformed.bin_names()) for row in quality.values()}
@@ -80,14 +47,14 @@ def check_examples():
 
 
 def check_methods():
-    rows = {row["method"]: row for row in rows_of("deformation_methods", "inverted")}
+    rows = {row["method"]: row for row in studies.rows("deformation_methods", "inverted")}
     left = {name: [float(n) for column, n in row.items() if column != "method"] for name, row in rows.items()}
     assert set(left) == {label for label, _ in _deformed.METHODS.values()} and len(left["hybrid"]) == 12
-    assert all(n == 0 for n in left["hybrid, as many steps as it takes"]) and all(n > 0 for n in left["FEMWARP"])
-    reached = {row["method"]: row for row in rows_of("deformation_methods", "reached")}
-    assert all(float(n) == 1 for c, n in reached["hybrid, as many steps as it takes"].items()
+    assert all(n == 0 for n in left["hybrid, as many steps as needed"]) and all(n > 0 for n in left["FEMWARP"])
+    reached = {row["method"]: row for row in studies.rows("deformation_methods", "reached")}
+    assert all(float(n) == 1 for c, n in reached["hybrid, as many steps as needed"].items()
                if c not in ("method", "gate 1.5")), reached
-    turned = {row["method"]: row for row in rows_of("box_rotation", "inverted")}
+    turned = {row["method"]: row for row in studies.rows("box_rotation", "inverted")}
     assert all(float(turned["hybrid"][angle]) == 0 for angle in ("30", "60", "90")), turned["hybrid"]
     assert float(turned["FEMWARP"]["90"]) > 2 * float(turned["radial basis"]["90"]) > 0, turned
     assert float(turned["OpenFOAM, displacementLaplacian"]["120"]) == 591
@@ -133,7 +100,6 @@ def check_harmonic():
 
 
 if __name__ == "__main__":
-    shutil.rmtree(OUT, ignore_errors=True)
     check_similarity()
     check_section()
     check_harmonic()
@@ -141,4 +107,4 @@ if __name__ == "__main__":
     check_rectangle()
     check_examples()
     check_methods()
-    print("pictures" if _common.pyplot else "no pictures: matplotlib is missing")
+    print(pictures())

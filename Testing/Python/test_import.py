@@ -1,5 +1,6 @@
-"""The compiled classes and the verbs are in the package tautline."""
+"""The compiled classes and the functions are in the package tautline, in python3 and in pvpython."""
 
 import tautline
 
 assert tautline.vtkElementQuality().IsA("vtkDataObjectAlgorithm")
+assert callable(tautline.quality)

@@ -1,4 +1,4 @@
-"""test_parallel_solve.py PVBATCH: pvbatch on 1, 2 and 4 MPI ranks finds the same solutions. Skipped (77) without mpirun."""
+"""test_parallel_solve.py PVBATCH: pvbatch on 1, 2 and 4 MPI ranks finds the same solutions; skipped without mpirun."""
 
 import json
 import os
@@ -40,7 +40,8 @@ def close(a, b, tolerance=CLOSE) -> bool:
 
 one = run(1)
 assert one["unknowns 0 0"] == 343 and one["ranks"] == 1
-assert max(one["poisson 0 0"]) > 0.01 and one["flattest 0 0"] > 0 and len(one["poisson 0 0"]) == 729 and len(one["elastic"]) == 729
+assert max(one["poisson 0 0"]) > 0.01 and one["flattest 0 0"] > 0
+assert len(one["poisson 0 0"]) == 729 and len(one["elastic"]) == 729
 for ranks in (1, 2, 4):
     found = one if ranks == 1 else run(ranks)
     assert found["ranks"] == ranks
