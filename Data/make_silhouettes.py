@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 from tautline._shapes import as_image
-from tautline.studies._silhouettes import _mask
+from tautline.studies._silhouettes import mask
 from vtkmodules.vtkImagingCore import vtkImageCast
 from vtkmodules.vtkIOImage import vtkPNGWriter
 
@@ -32,7 +32,7 @@ def main() -> None:
     shapes = {"fish": fish(0), "fish-bent": fish(9), "clover": clover(0), "clover-turned": clover(0.6)}
     for name, curve in shapes.items():
         cast = vtkImageCast()
-        cast.SetInputData(as_image(_mask(curve)))
+        cast.SetInputData(as_image(mask(curve)))
         cast.SetOutputScalarTypeToUnsignedChar()
         writer = vtkPNGWriter()
         writer.SetInputConnection(cast.GetOutputPort())

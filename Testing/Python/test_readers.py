@@ -1,4 +1,4 @@
-"""Files written by Debian's tetgen and gmsh are read, ours are read by them; skipped where they are absent."""
+"""test_readers.py PROGRAM: files of Debian's tetgen or gmsh are read, and ours by it; skipped where it is absent."""
 
 import os
 import re
@@ -8,10 +8,11 @@ import sys
 from pathlib import Path
 
 import tautline
+from checks import SKIPPED
 from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
 
 DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
-OUTPUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / "interoperability"
+OUTPUT = Path(os.environ["TAUTLINE_TEST_DIR"]) / f"interoperability-{sys.argv[1]}"
 VOLUME = 1.0  # of cube.smesh and of part.msh
 
 
@@ -100,11 +101,8 @@ def test_gmsh():
 
 
 OUTPUT.mkdir(parents=True, exist_ok=True)
-skipped = 0
-for program, test in (("tetgen", test_tetgen), ("gmsh", test_gmsh)):
-    if shutil.which(program):
-        test()
-    else:
-        print(f"no {program} on this machine: apt-get install {program}")
-        skipped += 1
-sys.exit(77 if skipped == 2 else 0)
+program = sys.argv[1]
+if not shutil.which(program):
+    print(f"skipped: no {program} on this machine: apt-get install {program}")
+    sys.exit(SKIPPED)
+{"tetgen": test_tetgen, "gmsh": test_gmsh}[program]()

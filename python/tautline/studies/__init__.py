@@ -23,7 +23,7 @@ def main(arguments: list[str]) -> int:
     if not arguments or arguments[0] in ("list", "-h", "--help"):
         for name in names():
             text = (import_module(f"{__name__}.{name}").__doc__ or "").strip().split("\n")[0]
-            print(f"{name:20} {text}")
+            print(f"{name:22} {text}")
         return 0
     if arguments[0] not in names():
         raise Error(f"there is no study '{arguments[0]}'; there are {', '.join(names())}")

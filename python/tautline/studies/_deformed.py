@@ -70,7 +70,7 @@ _WARM, _COLD = "#d62728", "#1f4e79"
 
 
 @dataclass
-class Warped:
+class Deformed:
     """A deformed mesh and its measures."""
 
     mesh: vtkDataSet
@@ -131,7 +131,7 @@ def similarity(initial: vtkDataSet, points: np.ndarray) -> np.ndarray:
     return np.sum((size * t - cofactors) ** 2, axis=(1, 2))
 
 
-def deform(initial: vtkDataSet, displacement: np.ndarray, method: str, *, repeats: int = 1, **more) -> Warped:
+def deform(initial: vtkDataSet, displacement: np.ndarray, method: str, *, repeats: int = 1, **more) -> Deformed:
     """The initial mesh with its boundary moved by a method of METHODS, by one thread."""
     options = {"threads": 1, **METHODS[method][1], **more}
     seconds = []
@@ -140,13 +140,13 @@ def deform(initial: vtkDataSet, displacement: np.ndarray, method: str, *, repeat
         result = tautline.warp(initial, displacement, **options)
         seconds.append(time.process_time() - began)
     known = result.statistics
-    return Warped(
+    return Deformed(
         result.mesh, result.inverted, result.impossible, min(seconds), known["amount"],
         tuple(known[f"c{k}{k}"] for k in "xyz"), similarity(initial, points_of(result.mesh)),
     )
 
 
-def distribution(warped: Warped) -> list[float]:
+def distribution(warped: Deformed) -> list[float]:
     """Numbers of elements by TMP shape: in the bins of BINS, above them, and inverted."""
     valid = warped.shapes[sizes_of(warped.mesh) > 0]
     counts = np.histogram(valid, [0, *BINS, np.inf])[0]
@@ -188,13 +188,13 @@ def section(mesh: vtkDataSet, axis: int, at: float) -> tuple[list[np.ndarray], n
     return polygons, np.array(owners, int)
 
 
-def strip(report: Report, file: str, rows: Sequence[Sequence[tuple[str, vtkDataSet | Warped]]],
+def strip(report: Report, file: str, rows: Sequence[Sequence[tuple[str, vtkDataSet | Deformed]]],
           windows: Sequence[Sequence[float] | None], cut: tuple[int, float] = (1, 0.5)) -> None:
     """A picture of rows of meshes with inverted elements in red; volume meshes are cut by a plane (axis, position)."""
     drawings, titles = [], []
     for row in rows:
         for title, shown in row:
-            mesh = shown.mesh if isinstance(shown, Warped) else shown
+            mesh = shown.mesh if isinstance(shown, Deformed) else shown
             wrong = sizes_of(mesh) <= 0
             if cells_of(mesh).shape[1] == 4:
                 polygons, owners = section(mesh, *cut)

@@ -18,7 +18,7 @@ _SIZE = 128
 _BEST = 10  # matches of a query that count
 
 
-def _mask(curve: np.ndarray) -> np.ndarray:
+def mask(curve: np.ndarray) -> np.ndarray:
     """255 inside a closed curve (n x 2), by counting crossings of each row."""
     y = np.arange(_SIZE, dtype=float)
     image = np.zeros((_SIZE, _SIZE))
@@ -65,7 +65,7 @@ def families(per_class: int = 11, classes: int = 9, seed: int = 1) -> tuple[list
             c, s = np.cos(angle), np.sin(angle)
             curve = np.stack([c * x - s * y, s * x + c * y], axis=1) * scale
             curve += _SIZE / 2 - 0.5 * (curve.min(axis=0) + curve.max(axis=0))
-            image = _mask(curve)
+            image = mask(curve)
             if member % 4 == 3:  # occluded: a strip of the image is lost
                 cut = int(_SIZE / 2 + random.uniform(0.55, 0.75) * scale)
                 image = image.copy()

@@ -12,14 +12,14 @@ from ._tangled import after, untangled_after
 from ._warped import better_worst, experiment, harmonic, of_points, options, warp
 
 STEPS = (0, 1, 2, 5, 10, 20)
-CELLS, INVERTED, MOST = 109_535, 13, 2.5
+CELLS, INVERTED, MAX_AMOUNT = 109_535, 13, 2.5
 
 
 def warped_bore(small: bool) -> tuple[vtkDataSet, float]:
     """The block, deformed until it has the required number of inverted elements, and the multiple of its motion."""
     initial = tautline.domain("bore", 3_000 if small else CELLS)
     motion = harmonic(initial, of_points(initial, "Displacement"))
-    mesh, amount = warp(initial, points_of(initial), motion, 5 if small else INVERTED, MOST)
+    mesh, amount = warp(initial, points_of(initial), motion, 5 if small else INVERTED, MAX_AMOUNT)
     return scaled(mesh, float(np.mean(np.abs(sizes_of(mesh)))) ** (-1.0 / 3.0)), amount
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import tautline
 
 from ._common import QUANTITIES, Report, measure, sizes_of
-from ._deformed import METHODS, Moving, Warped, deform, parse, strip
+from ._deformed import METHODS, Moving, Deformed, deform, parse, strip
 
 HALF_TURN = 180.0  # degrees at amount 1
 ANGLES = (30, 60, 90, 120, 180)
@@ -48,7 +48,7 @@ def along_the_arc(box: Moving, angle: int) -> tuple[int, float, float]:
     return left, done / angle, time.process_time() - began
 
 
-def findings(report: Report, of: dict[str, list[Warped]], angles: tuple[int, ...]) -> None:
+def findings(report: Report, of: dict[str, list[Deformed]], angles: tuple[int, ...]) -> None:
     def counts(name: str) -> str:
         return ", ".join(f"{w.inverted} at {angle}" + (f" (to {w.reached:.3g} of it)" if w.reached < 1 else "")
                          for angle, w in zip(angles, of[name]))

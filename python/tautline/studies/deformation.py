@@ -9,7 +9,7 @@ import numpy as np
 import tautline
 
 from ._common import Report
-from ._deformed import EXAMPLES, Example, Moving, Warped, bin_names, deform, distribution, less, parse, strip
+from ._deformed import EXAMPLES, Example, Moving, Deformed, bin_names, deform, distribution, less, parse, strip
 
 AMOUNTS = (0.25, 0.5, 0.75, 1.0, 1.25)
 SMALL_AMOUNTS = (0.5, 1.0)
@@ -57,7 +57,7 @@ def sweep(report: Report, example: Example, moving: Moving, amounts: tuple, repe
     return dict(zip(headings, np.array(rows, float).T))
 
 
-def quality(report: Report, example: Example, runs: dict[str, Warped]) -> None:
+def quality(report: Report, example: Example, runs: dict[str, Deformed]) -> None:
     """The distribution of TMP shape over the elements: Figures 4.25, 4.28, 4.31, 4.34, 4.36, 4.38."""
     rows = [[name, *distribution(w), float(np.mean(w.shapes)), w.worst] for name, w in runs.items()]
     report.table(f"quality_{example.domain}",
@@ -65,7 +65,7 @@ def quality(report: Report, example: Example, runs: dict[str, Warped]) -> None:
                  ["method", *bin_names(), "mean", "worst"], rows)
 
 
-def findings(report: Report, example: Example, swept: dict[str, np.ndarray], runs: dict[str, Warped],
+def findings(report: Report, example: Example, swept: dict[str, np.ndarray], runs: dict[str, Deformed],
              cells: int) -> None:
     source = example.section
     fem, anisotropic, hybrid, ubn = (runs[f"{name}, amount 1"] for name in RUNS)
@@ -120,7 +120,7 @@ def faster(report: Report, example: Example, swept: dict[str, np.ndarray]) -> No
                    and all(p > 0 for p in seconds if p == p), ", ".join(figures))
 
 
-def pictures(report: Report, example: Example, moving: Moving, runs: dict[str, Warped]) -> None:
+def pictures(report: Report, example: Example, moving: Moving, runs: dict[str, Deformed]) -> None:
     names = {"femwarp": "FEMWARP", "anisotropic": "anisotropic FEMWARP"}
     rows = {
         a: [(f"{label}, amount {a:g}", runs[f"{n}, amount {a:g}"]) for n, label in {**names, last: "hybrid"}.items()]

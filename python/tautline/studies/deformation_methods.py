@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Callable
+
 import numpy as np
 
 from ._common import Report
-from ._deformed import EXAMPLES, METHODS, Moving, Warped, deform, parse, strip
+from ._deformed import EXAMPLES, METHODS, Moving, Deformed, deform, parse, strip
 
 AMOUNTS = (1.0, 1.5)
 SMALL_CELLS = (400, 1500)  # triangles, tetrahedra
@@ -15,13 +17,15 @@ PANELS = 4  # in a row of it
 REPAIRING = ("hybrid", "hybrid-steps", "hybrid-literal", "small-steps", "untangled")
 
 
-def table(report: Report, file: str, title: str, columns: list[str], of: dict[str, list[Warped]], value) -> list[list]:
-    rows = [[METHODS[name][0], *(float(value(warped)) for warped in runs)] for name, runs in of.items()]
+def table(
+    report: Report, file: str, title: str, columns: list[str], of: dict[str, list[Deformed]], value: Callable
+) -> list[list]:
+    rows = [[METHODS[name][0], *(float(value(deformed)) for deformed in runs)] for name, runs in of.items()]
     report.table(file, title, ["method", *columns], rows)
     return rows
 
 
-def findings(report: Report, of: dict[str, list[Warped]], columns: list[str]) -> None:
+def findings(report: Report, of: dict[str, list[Deformed]], columns: list[str]) -> None:
     def left(name: str) -> str:
         """Domains with remaining inverted elements, or with a part of the motion only."""
         return ", ".join(f"{c} {w.inverted}" + (f" (to {w.reached:.3g} of it)" if w.reached < 1 else "")

@@ -24,7 +24,7 @@ CELLS, INVERTED = 8166, 13
 LENGTH, PIXELS = 2.0, 1000.0  # of the brain, in the domain, and in an image for segmentation
 CLOSE = 50.0  # pixels, half the side of the close-up
 FIRST_VENTRICLE = 2  # its boundary marker; 1 is the outline
-MOST = 0.45  # of a length; a larger shift moves a ventricle to the outline
+MAX_SHIFT = 0.45  # of a length; a larger shift moves a ventricle to the outline
 
 
 def close_up(report: Report, initial: vtkDataSet, warped: vtkDataSet, runs: dict[str, Run]) -> None:
@@ -43,7 +43,7 @@ def warped_brain(small: bool) -> tuple[vtkDataSet, vtkDataSet, float]:
     ventricles = (of_points(initial, "BoundaryMarker") >= FIRST_VENTRICLE) & (of_points(initial, "Fixed") != 0)
     shrunk = points_of(initial) + harmonic(initial, of_points(initial, "Displacement"))
     aside = harmonic(initial, np.outer(ventricles, (1.0, 0.0, 0.0)))
-    mesh, shift = warp(initial, shrunk, aside, 5 if small else INVERTED, MOST)
+    mesh, shift = warp(initial, shrunk, aside, 5 if small else INVERTED, MAX_SHIFT)
     return initial, scaled(mesh, PIXELS / LENGTH), shift
 
 

@@ -1,4 +1,4 @@
-"""Shape, size and untangling at once: section 3.4.4, Table 3.6, Figure 3.10."""
+"""Shape, size and untangling simultaneously: section 3.4.4, Table 3.6, Figure 3.10."""
 
 from __future__ import annotations
 

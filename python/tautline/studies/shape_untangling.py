@@ -1,4 +1,4 @@
-"""Shape and untangling at once: section 3.4.3, Tables 3.4 and 3.5, Figures 3.8 and 3.9."""
+"""Shape and untangling simultaneously: section 3.4.3, Tables 3.4 and 3.5, Figures 3.8 and 3.9."""
 
 from __future__ import annotations
 
