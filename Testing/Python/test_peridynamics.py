@@ -42,12 +42,12 @@ def test_functions():
     kernels = {"constant": {}, "gaussian": {"width": 0.4}, "conical": {}, "table": {"values": [2, 1]}}
     for kernel, options in kernels.items():
         assert tl.peridynamics(mesh, kernel=kernel, **options).definite
-    literal = tl.peridynamics(mesh, 0.2, 2.5, reading="dissertation", rules="literal")
+    literal = tl.peridynamics(mesh, 0.2, 2.5, discretization="dissertation", rules="literal")
     assert literal.asymmetry < 1e-12 and not literal.condition < 100, "far from 12, or indefinite"
 
     refused(REMEDY, tl.peridynamics, bare)
-    refused("has no collar", tl.peridynamics, mesh, region=None)
-    refused("a collar of width", tl.peridynamics, mesh, 0.5)
+    refused("has no interaction layer", tl.peridynamics, mesh, region=None)
+    refused("an interaction layer of width", tl.peridynamics, mesh, 0.5)
     refused("to below 4", tl.peridynamics, mesh, p=4)
     refused("to below 3", tl.peridynamics, mesh, p=3, basis="constant")
     refused("basis is 'quadratic'", tl.peridynamics, mesh, basis="quadratic")

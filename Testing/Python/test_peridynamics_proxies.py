@@ -37,15 +37,15 @@ condition.KernelValues = [1, 0.5, 0]
 update(condition)
 assert condition.Condition > 1
 
-# without a collar: an error, an empty output; then with one
+# without an interaction layer: an error, an empty output; then with one
 wrench = MeshDomain(Domain="Rectangle, Structured", NumberOfCells=200)
 bare = PeridynamicCondition(Input=wrench, Horizon=0.3)
 bare.UpdatePipeline()
 assert bare.GetDataInformation().GetNumberOfCells() == 0
-collar = HorizonCollar(Input=wrench, Width=0.3)
-held = PeridynamicCondition(Input=collar, Horizon=0.3)
+layer = InteractionLayer(Input=wrench, Width=0.3)
+held = PeridynamicCondition(Input=layer, Horizon=0.3)
 update(held)
-assert held.Condition > 1 and "Reference" in collar.CellData.keys()
+assert held.Condition > 1 and "Reference" in layer.CellData.keys()
 
 horizon = HorizonNeighbors(Input=source, Center=[0.43, 0.51, 0], Horizon=0.2)
 horizon.UpdatePipeline()

@@ -197,14 +197,14 @@ def sphere(resolution=160):
 
 
 @functools.cache
-def collared_square(size=0.02):
-    """The unit square with a collar, in right triangles with legs of this size."""
-    return tl.domain("square", element_size=size, collar_width=0.1)
+def layered_square(size=0.02):
+    """The unit square with an interaction layer, in right triangles with legs of this size."""
+    return tl.domain("square", element_size=size, layer_width=0.1)
 
 
 @functools.cache
-def collared_rectangle():
-    return tl.collar(tl.domain("rectangle", 1600), 0.06, threads=1)
+def layered_rectangle():
+    return tl.interaction_layer(tl.domain("rectangle", 1600), 0.06, threads=1)
 
 
 def coordinates(mesh):
@@ -318,7 +318,7 @@ OPERATIONS = {
     "write": lambda _: written(),
     "domains as in the examples": lambda _: domains(0),
     "domains of 50,000 cells": lambda _: domains(CELLS),
-    "square": lambda _: tl.domain("square", element_size=0.05, aspect_ratio=4, collar_width=0.3),
+    "square": lambda _: tl.domain("square", element_size=0.05, aspect_ratio=4, layer_width=0.3),
     "triangle mesher": lambda _: outputs(
         "vtkTriangleMesher", tl.read(DATA / "plate.poly"), Size=0.012, MinimumAngle=30.0),
     "triangle mesher, sizes": lambda _: outputs(
@@ -409,20 +409,20 @@ OPERATIONS = {
     "solver study, 50,000 triangles": lambda t: without_times(
         tl.solver_study(wrench(), "elliptic", [5, 6, 9, 13, 18, 19], reaction=10.0, threads=t)),
     # nonlocal models
-    "collar": lambda t: tl.collar(tl.domain("rectangle", 5000), 0.1, threads=t),
-    "collar, coarse": lambda t: tl.collar(tl.domain("wrench", 4000), 0.3, element_size=0.2, threads=t),
+    "collar": lambda t: tl.interaction_layer(tl.domain("rectangle", 5000), 0.1, threads=t),
+    "collar, coarse": lambda t: tl.interaction_layer(tl.domain("wrench", 4000), 0.3, element_size=0.2, threads=t),
     "horizon neighbors": lambda _: outputs(
-        "vtkHorizonNeighbors", collared_square(), Center=(0.4, 0.5, 0.0), Horizon=0.13),
-    "peridynamics": lambda t: tl.peridynamics(collared_square(0.04), 0.1, 2.5, solve=True, sparsity=64, threads=t),
+        "vtkHorizonNeighbors", layered_square(), Center=(0.4, 0.5, 0.0), Horizon=0.13),
+    "peridynamics": lambda t: tl.peridynamics(layered_square(0.04), 0.1, 2.5, solve=True, sparsity=64, threads=t),
     "peridynamics, 45,000 triangles": lambda t: tl.peridynamics(
-        collared_square(0.008), 0.03, 1, kernel="constant", reading="dissertation", spectrum=False, solve=True,
+        layered_square(0.008), 0.03, 1, kernel="constant", discretization="dissertation", spectrum=False, solve=True,
         threads=t),
     "peridynamics, elastic": lambda t: tl.peridynamics(
-        collared_rectangle(), 0.06, 3, model="elastic", solve=True, tolerance=1e-3, threads=t),
+        layered_rectangle(), 0.06, 3, model="elastic", solve=True, tolerance=1e-3, threads=t),
     "peridynamics, discontinuous": lambda t: tl.peridynamics(
-        collared_square(0.1), 0.1, 1, "discontinuous linear", kernel="gaussian", threads=t),
+        layered_square(0.1), 0.1, 1, "discontinuous linear", kernel="gaussian", threads=t),
     "peridynamics, constant": lambda t: tl.peridynamics(
-        collared_square(0.05), 0.1, 1, "constant", kernel="conical", reading="dissertation", rules="3/3", threads=t),
+        layered_square(0.05), 0.1, 1, "constant", kernel="conical", discretization="dissertation", rules="3/3", threads=t),
     # shapes
     "silhouette": lambda _: [tl.silhouette(image, spacing=9) for image in (FISH, BENT, CLOVER)],
     "match": lambda t: tl.match(FISH, BENT, spacing=12, grid=(14, 14), threads=t),

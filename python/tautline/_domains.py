@@ -53,7 +53,7 @@ def domain(
     source.SetAmount(amount)
     source.SetElementSize(element_size)
     source.SetAspectRatio(aspect_ratio)
-    source.SetCollarWidth(layer_width)
+    source.SetLayerWidth(layer_width)
     run(source, messages)
     return source.GetOutputDataObject(1 if deformed_boundary else 0)
 

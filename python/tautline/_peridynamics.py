@@ -19,12 +19,11 @@ from ._io import Mesh, as_mesh
 BASES = ("constant", "linear", "discontinuous linear")
 KERNELS = ("power", "constant", "gaussian", "conical", "table")
 MODELS = ("scalar", "elastic")
-READINGS = ("dissertation", "exact")
+DISCRETIZATIONS = ("dissertation", "exact")
 RULES = ("tables", "literal", "1/1", "3/3", "3/1")
 _REGION, _SOURCE, _GIVEN, _GIVEN_POINTS = range(4)  # input arrays of vtkPeridynamicStiffness
 _DEFAULT_REGION = "Reference"  # the filter's default
 _MAX_PIXELS = 4096
-_RENAMED = {"collar_deficit": "layer_deficit"}  # columns of the filter's table
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ def peridynamics(
     width: float = 0.5,
     values: Sequence[float] = (),
     model: str = "scalar",
-    reading: str = "exact",
+    discretization: str = "exact",
     rules: str = "tables",
     tolerance: float = 1e-5,
     region: str | Sequence | None = _DEFAULT_REGION,
@@ -101,7 +100,7 @@ def peridynamics(
     width: of the Gaussian kernel, in horizons.
     values: of the kernel "table", at equal distances from 0 to delta.
     model: "scalar" (diffusion, dissertation (4.6)) or "elastic" ((4.4) with its tensor kernel).
-    reading: the discretization: "exact" (each pair of triangles is integrated to the tolerance) or "dissertation" (by
+    discretization: "exact" (each pair of triangles is integrated to the tolerance) or "dissertation" (by
         the quadrature `rules`).
     rules: "tables" reproduces the dissertation's tables, "literal" is what its text says, or the numbers of outer/inner
         points: "1/1", "3/3", "3/1".
@@ -137,12 +136,12 @@ def peridynamics(
     for value in values:
         filter_.AddKernelValue(float(value))
     filter_.SetElastic(bool(pick("model", model, MODELS)))
-    filter_.SetReading(pick("reading", reading, READINGS))
+    filter_.SetDiscretization(pick("discretization", discretization, DISCRETIZATIONS))
     filter_.SetRules(pick("rules", rules, RULES))
     filter_.SetTolerance(float(tolerance))
-    filter_.SetCollarValue(float(layer_value))
+    filter_.SetLayerValue(float(layer_value))
     filter_.SetConstrained(bool(constrained))
-    filter_.SetAllowThinCollar(bool(allow_thin_layer))
+    filter_.SetAllowThinLayer(bool(allow_thin_layer))
     filter_.SetComputeSpectrum(bool(spectrum))
     filter_.SetSpectrumTolerance(within("spectrum_tolerance", spectrum_tolerance, 1e-14, 0.1))
     filter_.SetSolve(bool(solve))
@@ -170,7 +169,7 @@ def peridynamics(
 
 def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity: int) -> PeridynamicsResult:
     table = columns(filter_.GetOutputDataObject(1))
-    facts = {_RENAMED.get(name, name): values[0].item() for name, values in zip(map(snake, table), table.values())}
+    facts = {name: values[0].item() for name, values in zip(map(snake, table), table.values())}
     solution = picture = None
     if solve:
         fields = output.GetPointData() if basis == "linear" else output.GetCellData()
@@ -216,7 +215,7 @@ def interaction_layer(mesh: Mesh, width: float = 0.2, *, element_size: float = 0
 
     >>> tautline.interaction_layer("plate.vtu", width=0.1).GetNumberOfCells()
     """
-    filter_ = _vtk.vtkHorizonCollar()
+    filter_ = _vtk.vtkInteractionLayer()
     filter_.SetWidth(float(width))
     filter_.SetElementSize(float(element_size))
     set_threads(filter_, threads)
@@ -241,7 +240,8 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--kernel", choices=KERNELS[:-1], default="power")
     made.add_argument("--width", type=float, default=0.5, help="of the Gaussian, in horizons (default: 0.5)")
     made.add_argument("--model", choices=MODELS, default="scalar")
-    made.add_argument("--reading", choices=READINGS, default="exact", help="the discretization")
+    made.add_argument("--discretization", choices=DISCRETIZATIONS, default="exact",
+                      help="exact integration, or the rules of the dissertation")  # fmt: skip
     made.add_argument("--rules", choices=RULES, default="tables", help="of the dissertation's discretization")
     made.add_argument("--tolerance", type=float, default=1e-5, help="of the exact integrals (default: 1e-5)")
     made.add_argument("--region", default=_DEFAULT_REGION, metavar="ARRAY",
@@ -268,7 +268,7 @@ def _run_peridynamics(arguments: argparse.Namespace) -> None:
     mesh = as_mesh(arguments.mesh)
     if arguments.add_layer:
         mesh = interaction_layer(mesh, arguments.delta, threads=arguments.threads)
-    names = ("delta", "p", "basis", "kernel", "width", "model", "reading", "rules", "tolerance", "region",
+    names = ("delta", "p", "basis", "kernel", "width", "model", "discretization", "rules", "tolerance", "region",
              "allow_thin_layer", "solve", "memory_limit", "time_limit", "threads")  # fmt: skip
     result = peridynamics(mesh, **_commands.given(arguments, names))
     print(result.summary)

@@ -64,18 +64,18 @@ def square(n: int, aspect_ratio: float, delta: float, extra: int = 0, aligned: b
 
 
 def solve(
-    n: int, aspect_ratio: float, delta: float, basis: str, p: float, reading: str, threads: int = 0,
+    n: int, aspect_ratio: float, delta: float, basis: str, p: float, discretization: str, threads: int = 0,
     aligned: bool = True, **more: Any,
 ):  # fmt: skip
     """The result of peridynamics() on the square, or None if the aspect ratio does not fit."""
     # The exact discretization needs a wide enough layer, which the grid of one entry of the tables does not have.
-    off = not aligned and reading == "exact" and (aspect_ratio, n, delta) == (4, 10, 0.3)
+    off = not aligned and discretization == "exact" and (aspect_ratio, n, delta) == (4, 10, 0.3)
     made = square(n, aspect_ratio, delta, 1 if off else 0, aligned)
     if made is None:
         return None
     mesh, region, given = made
     return tautline.peridynamics(
-        mesh, delta, p, basis, reading=reading, region=region, given_points=given, allow_thin_layer=True,
+        mesh, delta, p, basis, discretization=discretization, region=region, given_points=given, allow_thin_layer=True,
         threads=threads, **more,
     )  # fmt: skip
 

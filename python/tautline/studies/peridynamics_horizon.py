@@ -21,10 +21,10 @@ def main(arguments: Sequence[str]) -> int:
     small = options.size == "small"
     known: dict[tuple, float] = {}
 
-    def cond(n: int, ar: int, delta: float, basis: str, p: float, reading: str = "exact") -> float:
-        key = (n, ar, delta, basis, p, reading)
+    def cond(n: int, ar: int, delta: float, basis: str, p: float, discretization: str = "exact") -> float:
+        key = (n, ar, delta, basis, p, discretization)
         if key not in known:
-            known[key] = condition(n, ar, delta, basis, p, reading, options.threads)
+            known[key] = condition(n, ar, delta, basis, p, discretization, options.threads)
         return known[key]
 
     sizes = (5, 10) if small else (10, 20, 40)
@@ -36,16 +36,16 @@ def main(arguments: Sequence[str]) -> int:
     _over_size(report, cond, small)
     _over_ratio(report, cond, small)
     rows = [[*key, value] for key, value in known.items() if not math.isnan(value)]
-    headings = ["n", "aspect_ratio", "delta", "basis", "p", "reading", "condition"]
+    headings = ["n", "aspect_ratio", "delta", "basis", "p", "discretization", "condition"]
     report.write_csv("peridynamics_horizon.csv", rows, headings)
     return report.close()
 
 
 def _over_delta(report, cond, basis, p, figures, sizes) -> None:
     """Four panels: fixed h with the aspect ratio varied, fixed aspect ratio with h varied."""
-    def line(n, ar, reading="exact", square=False):
-        y = [cond(n, ar, d, basis, p, reading) for d in _DELTAS]
-        return ([d**-2 for d in _DELTAS] if square else _DELTAS), y, "o-" if reading == "exact" else "x:"
+    def line(n, ar, discretization="exact", square=False):
+        y = [cond(n, ar, d, basis, p, discretization) for d in _DELTAS]
+        return ([d**-2 for d in _DELTAS] if square else _DELTAS), y, "o-" if discretization == "exact" else "x:"
 
     def fits(n, ar):
         return not math.isnan(cond(n, ar, 0.2, basis, p))
@@ -92,17 +92,17 @@ def _over_size(report, cond, small) -> None:
     rows, lines = [], {}
     for p in (1.0, 2.5):
         for delta in deltas:
-            for reading in ("exact", "dissertation"):
+            for discretization in ("exact", "dissertation"):
                 use = [n for n in sizes if n <= (160 if delta == 0.2 else 80)]
-                y = [cond(n, 1, delta, "linear", p, reading) for n in use]
+                y = [cond(n, 1, delta, "linear", p, discretization) for n in use]
                 rates = [math.log2(b / a) for a, b in zip(y, y[1:])]
-                rows.append([p, delta, reading, *(f"{v:.3f}" for v in y), *[""] * (len(sizes) - len(y)),
+                rows.append([p, delta, discretization, *(f"{v:.3f}" for v in y), *[""] * (len(sizes) - len(y)),
                              " ".join(f"{r:.2f}" for r in rates)])  # fmt: skip
-                style = "o-" if reading == "exact" else "x:"
-                lines[f"p = {p:g}, delta = {delta}" + ("" if reading == "exact" else ", dissertation's rules")] = (
+                style = "o-" if discretization == "exact" else "x:"
+                lines[f"p = {p:g}, delta = {delta}" + ("" if discretization == "exact" else ", dissertation's rules")] = (
                     [1 / n for n in use], y, style)  # fmt: skip
     report.text("Growth with 1/h, linear basis, aspect ratio 1")
-    report.table(rows, ["p", "delta", "reading", *(f"1/h = {n}" for n in sizes), "exponents of 1/h"])
+    report.table(rows, ["p", "delta", "discretization", *(f"1/h = {n}" for n in sizes), "exponents of 1/h"])
     chart = {"title": "growth with 1/h", "x": "h", "xscale": "log", "yscale": "log", "lines": lines}
     report.chart("peridynamics_horizon_h.png", [chart])
     rates = next(row[-1] for row in rows if row[0] == 2.5 and row[2] == "exact").split()
@@ -116,16 +116,16 @@ def _over_ratio(report, cond, small) -> None:
     rows, lines = [], {}
     for p in (1.0, 2.5):
         for n in sizes:
-            for reading in ("exact", "dissertation"):
+            for discretization in ("exact", "dissertation"):
                 use = [a for a in _RATIOS if not math.isnan(cond(n, a, 0.2, "linear", p))]
-                y = [cond(n, a, 0.2, "linear", p, reading) for a in use]
+                y = [cond(n, a, 0.2, "linear", p, discretization) for a in use]
                 ratios = " ".join(f"{b / a:.2f}" for a, b in zip(y, y[1:]))
-                rows.append([p, n, reading, *("indefinite" if math.isnan(v) else f"{v:.3f}" for v in y),
+                rows.append([p, n, discretization, *("indefinite" if math.isnan(v) else f"{v:.3f}" for v in y),
                              *[""] * (len(_RATIOS) - len(y)), ratios])  # fmt: skip
-                lines[f"p = {p:g}, h = 1/{n}" + ("" if reading == "exact" else ", dissertation's rules")] = (
-                    use, y, "o-" if reading == "exact" else "x:")  # fmt: skip
+                lines[f"p = {p:g}, h = 1/{n}" + ("" if discretization == "exact" else ", dissertation's rules")] = (
+                    use, y, "o-" if discretization == "exact" else "x:")  # fmt: skip
     report.text("Growth with the aspect ratio, linear basis, delta = 0.2, dx dy fixed")
-    report.table(rows, ["p", "1/h", "reading", *(f"AR {a}" for a in _RATIOS), "per factor 4"])
+    report.table(rows, ["p", "1/h", "discretization", *(f"AR {a}" for a in _RATIOS), "per factor 4"])
     chart = {"title": "growth with the aspect ratio", "x": "aspect ratio", "xscale": "log", "yscale": "log",
              "lines": lines}  # fmt: skip
     report.chart("peridynamics_horizon_ratio.png", [chart])
