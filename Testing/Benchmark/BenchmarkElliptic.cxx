@@ -2,7 +2,7 @@
 // and wall time on one and on two; and what BoomerAMG takes for its set-up on the same matrix.
 // Lines `key<tab>number`.
 //
-// usage: BenchmarkConditioning [CELLS [TURNS]]
+// usage: BenchmarkElliptic [CELLS [TURNS]]
 
 #include "Clocks.h"
 #include "KuhnMesh.h"

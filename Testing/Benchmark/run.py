@@ -169,7 +169,7 @@ def run_quality(build: Path, output: Path, size: int, repeats: int) -> None:
     elements = min(40, max(5, 2 * size // 3))  # 1 / h of the nonlocal matrices
     nonlocal_times = peridynamics(build / "bin" / "BenchmarkPeridynamics", elements, min(repeats, 3))
     times |= nonlocal_times
-    elliptic = conditioning(build / "bin" / "BenchmarkConditioning", 6 * size**3, min(repeats, 5))
+    elliptic = conditioning(build / "bin" / "BenchmarkElliptic", 6 * size**3, min(repeats, 5))
     times |= elliptic
     summary = ratios(times) + shape_ratios(times) + conditioning_ratios(elliptic)
     summary += [(key, number, ">= 1.7" if "two threads" in key else "") for key, number in speedups(nonlocal_times)]

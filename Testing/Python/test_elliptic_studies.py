@@ -8,7 +8,7 @@ from checks import OUT
 from study_checks import Studies
 from tautline.studies import _solver_tables, _solvers
 
-studies = Studies(OUT / "studies_conditioning")
+studies = Studies(OUT / "studies_elliptic")
 # Per study: its options, findings, pictures, and rows of its tables.
 STUDIES = {
     "solver_metrics": (["--domain", "wrench"], 13, ("poisson_wrench", "elasticity_wrench"),

@@ -17,14 +17,17 @@ from ._io import Mesh, read, write
 from ._mesh import from_arrays
 from ._metric_field import MetricFieldResult, metric_field
 from ._metrics import metrics
-from ._perturbation import PerturbResult, perturb
 from ._quality import QualityResult, quality
 
 globals().update(_vtk.CLASSES)
 
 # What needs a compiled module that is optional. One that was built but cannot be imported raises ImportError.
 if _vtk.available("_optimization"):
-    from ._optimization import OptimizeResult, UntangleResult, optimize, untangle
+    from ._optimization import OptimizeResult, optimize
+if _vtk.available("_untangling"):
+    from ._untangling import UntangleResult, untangle
+if _vtk.available("_perturbation"):
+    from ._perturbation import PerturbResult, perturb
 if _vtk.available("_domains"):
     from ._domains import domain, domains
 if _vtk.available("_deformation"):
@@ -39,8 +42,8 @@ if _vtk.available("_shapes"):
         retrieval,
         silhouette,
     )
-if _vtk.available("_conditioning"):
-    from ._conditioning import (
+if _vtk.available("_elliptic"):
+    from ._elliptic import (
         ConditionResult,
         SolveResult,
         SolverStudyResult,

@@ -15,6 +15,8 @@ from ._errors import Error
 #: What an array belongs to.
 ANY, CELLS, POINTS = "any", "cells", "points"
 
+#: Columns of histories whose names differ in the results.
+_HISTORY_COLUMNS = {"Time (s)": "seconds", "N moving": "moving", "N gradient": "gradient_norm"}
 _GIVEN = "given "  # prefix of the names under which arrays of numbers are added to a copy of the mesh
 
 
@@ -171,3 +173,16 @@ def with_array(
         raise Error(f"{name}: {len(numbers)} rows; there are {cells} cells and {points} points")
     count = places[0].count(data)
     raise Error(f"{name} has the shape {np.shape(values)}; one row for each of the {count} {on} is expected")
+
+
+def history_of(filter_: Any) -> dict[str, Any]:
+    """The history of a filter that moves points: iteration, objective, inverted, moving, seconds, ..."""
+    table = columns(filter_.GetHistory())
+    found = {_HISTORY_COLUMNS.get(name, name.lower().replace(" ", "_")): column for name, column in table.items()}
+    rows = len(found.get("objective", ()))
+    blocks = found.get("block", [""] * rows)
+    iteration = [row - blocks.index(blocks[row]) for row in range(rows)]
+    history = {"iteration": np.array(iteration, int), **found}
+    for name in ("inverted", "moving"):
+        history[name] = np.asarray(history.get(name, ())).astype(int)
+    return history

@@ -80,3 +80,12 @@ def save(mesh: Any, arguments: argparse.Namespace, rows: list[dict[str, Any]] | 
         print("\n".join(write(mesh, arguments.output)))
     if getattr(arguments, "csv", None):
         save_text(arguments.csv, csv_text(rows or []))
+
+
+def add_moving_points(parser: argparse.ArgumentParser) -> None:
+    """Add what the commands share that move points."""
+    parser.add_argument("mesh", metavar="FILE")
+    parser.add_argument("-o", "--output", metavar="FILE", required=True)
+    parser.add_argument("--csv", metavar="FILE", help="write the history, a row per iteration")
+    parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
+    add_time_limit(parser)

@@ -1,4 +1,4 @@
-"""The functions optimize and untangle: move points so that elements become better, or valid."""
+"""The function optimize: move points so that elements become better."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ._arguments import (
     set_time_limit,
     within,
 )
-from ._arrays import ANY, CELLS, POINTS, InputArrays, cell_array, columns, point_array, snake, table_rows
+from ._arrays import ANY, CELLS, POINTS, InputArrays, cell_array, columns, history_of, point_array, snake, table_rows
 from ._errors import Error, run, watch
 from ._io import Mesh, as_mesh
 
@@ -65,12 +65,9 @@ OPTIMIZERS = (
     "newton-cg",
 )
 BOUNDARIES = ("fixed", "sliding", "free", "on surface")
-EFFORTS = ("local", "normal", "thorough")
 
 _MAX_ITERATIONS = 1000000
 _SIZE, _TENSOR, _FIXED, _LIMITS, _WEIGHTS = range(5)  # input arrays of vtkMeshOptimizer
-_UNTANGLER_FIXED = 0  # input array of vtkMeshUntangler
-_COLUMNS = {"Time (s)": "seconds", "N moving": "moving", "N gradient": "gradient_norm"}  # of the history
 
 #: An objective: the name of a metric, or (name, {"template": ..., "weight": ..., "target": ...}).
 Objective = Union[str, "tuple[str, dict[str, Any]]"]
@@ -200,7 +197,7 @@ def optimize(
     output = inputs.remove_from(filter_.GetOutputDataObject(0))
     return OptimizeResult(
         mesh=output,
-        history=_history(filter_),
+        history=history_of(filter_),
         statistics=_statistics(columns(filter_.GetStatistics())),
         reason=filter_.GetReason(),
         inverted_before=filter_.GetInvertedBefore(),
@@ -287,92 +284,6 @@ _OPTIONS = {
 }
 
 
-@dataclass(frozen=True)
-class UntangleResult:
-    """The result of untangle(). Of composite data, numbers are of all blocks."""
-
-    #: The mesh with the new points, `Displacement`, `Validity` and `Obstacle`.
-    mesh: vtkDataObject
-    #: Per iteration (0 is the input): iteration, objective (the energy), inverted, gradient_norm, moving, seconds; of
-    #: composite data also block.
-    history: dict[str, Any]
-    #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
-    validity: np.ndarray
-    #: Per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no
-    #: position between the fixed points around makes it valid, 4 a fixed point is not finite.
-    obstacle: np.ndarray
-    #: Number of inverted or degenerate elements before and after, and of those that fixed points make infeasible.
-    inverted_before: int
-    inverted: int
-    impossible: int
-    #: The stopping criterion that ended the run.
-    reason: str
-    #: New minus old position, n x 3.
-    displacement: np.ndarray
-    #: The result in words: which elements remain invalid, where and why.
-    summary: str
-
-
-def untangle(
-    mesh: Mesh,
-    effort: str = "normal",
-    *,
-    fixed: str | Sequence | None = None,
-    fix_boundary: bool = True,
-    time_limit: float = 0.0,
-    threads: int = 0,
-) -> UntangleResult:
-    """Make the elements of a mesh valid by moving its points; the number of inverted elements never grows.
-
-    mesh: a vtkDataSet with explicit points, a composite data set, a file name or (points, cells). It is not changed.
-    effort: "local" (moves points around inverted elements only), "normal" (then all points) or "thorough".
-    fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
-    fix_boundary: whether the points of the boundary stay in place.
-    time_limit: seconds; 0 is no limit.
-    threads: number of threads; 0 is all cores. The result does not depend on it.
-
-    Raises Error for wrong arguments and for meshes that the filter refuses. Elements that remain inverted are not an
-    error: see inverted, obstacle and summary of the result.
-
-    >>> result = tautline.untangle("tangled.vtu")
-    >>> result.inverted_before, result.inverted
-    """
-    filter_ = _vtk.vtkMeshUntangler()
-    inputs = InputArrays(filter_, as_mesh(mesh))
-    filter_.SetEffort(pick("effort", effort, EFFORTS))
-    filter_.SetFixBoundary(bool(fix_boundary))
-    set_time_limit(filter_, time_limit)
-    set_threads(filter_, threads)
-    inputs.use(_UNTANGLER_FIXED, fixed, "fixed", POINTS)
-    filter_.SetInputDataObject(0, inputs.mesh)
-    run(filter_)
-    output = inputs.remove_from(filter_.GetOutputDataObject(0))
-    return UntangleResult(
-        mesh=output,
-        history=_history(filter_),
-        validity=cell_array(output, "Validity"),
-        obstacle=cell_array(output, "Obstacle"),
-        inverted_before=filter_.GetInvertedBefore(),
-        inverted=filter_.GetInvertedAfter(),
-        impossible=filter_.GetImpossible(),
-        reason=filter_.GetReason(),
-        displacement=point_array(output, "Displacement"),
-        summary=filter_.GetSummary(),
-    )
-
-
-def _history(filter_: Any) -> dict[str, Any]:
-    table = columns(filter_.GetHistory())
-    found = {_COLUMNS.get(name, name.lower().replace(" ", "_")): column for name, column in table.items()}
-    rows = len(found.get("objective", ()))
-    blocks = found.get("block", [""] * rows)
-    iteration = [row - blocks.index(blocks[row]) for row in range(rows)]
-    history = {"iteration": np.array(iteration, int), **found}
-    for name in ("inverted", "moving"):
-        history[name] = np.asarray(history.get(name, ())).astype(int)
-    return history
-
-
 def _statistics(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
     counts = ("outside_acceptable", "inverted", "degenerate")
     result = {}
@@ -392,9 +303,9 @@ def _statistics(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 def add_commands(commands: Any) -> None:
-    """Add `optimize` and `untangle` to the subparsers of the command line."""
+    """Add `optimize` to the subparsers of the command line."""
     parser = _commands.add_command(commands, "optimize", _run_optimize, "move points so that elements become better")
-    _add_common(parser)
+    _commands.add_moving_points(parser)
     parser.add_argument("--preset", choices=PRESETS[1:], help="without --objective, the default is best shape")
     parser.add_argument("--objective", action="append", type=_objective, metavar="NAME[,KEY=VALUE...]",
                         help="a metric, optionally with template=, weight= and target=; may be repeated")  # fmt: skip
@@ -405,17 +316,6 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--size", metavar="ARRAY", help="target: the size in this array")
     parser.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array")
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
-    parser = _commands.add_command(commands, "untangle", _run_untangle, "move points so that elements become valid")
-    _add_common(parser)
-    parser.add_argument("--effort", choices=EFFORTS, default="normal")
-
-
-def _add_common(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("mesh", metavar="FILE")
-    parser.add_argument("-o", "--output", metavar="FILE", required=True)
-    parser.add_argument("--csv", metavar="FILE", help="write the history, a row per iteration")
-    parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
-    _commands.add_time_limit(parser)
 
 
 def _objective(text: str) -> Objective:
@@ -438,10 +338,3 @@ def _run_optimize(arguments: argparse.Namespace) -> None:
     result = optimize(arguments.mesh, arguments.objective, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))
-
-
-def _run_untangle(arguments: argparse.Namespace) -> int:
-    result = untangle(arguments.mesh, **_commands.given(arguments, ("effort", "fixed", "time_limit", "threads")))
-    print(result.summary)
-    _commands.save(result, arguments, table_rows(result.history))
-    return 1 if result.inverted else 0

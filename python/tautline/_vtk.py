@@ -22,14 +22,15 @@ MODULES = frozenset(
 #: The files with functions and commands, in the order of the command line's help, and the compiled module of each.
 CAPABILITIES = {
     "_quality": "TautlineQuality",
-    "_perturbation": "TautlineQuality",
+    "_perturbation": "TautlineDomains",
     "_comparison": "TautlineQuality",
     "_metric_field": "TautlineQuality",
     "_metrics": "TautlineQuality",
     "_optimization": "TautlineOptimization",
+    "_untangling": "TautlineUntangling",
     "_deformation": "TautlineDeformation",
     "_shapes": "TautlineShapes",
-    "_conditioning": "TautlineConditioning",
+    "_elliptic": "TautlineElliptic",
     "_peridynamics": "TautlinePeridynamics",
     "_domains": "TautlineDomains",
     "_conversion": "TautlineReaders",

@@ -1,0 +1,110 @@
+"""The function untangle: move points so that elements become valid."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from typing import Any, Sequence
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+
+from . import _commands, _vtk
+from ._arguments import pick, set_threads, set_time_limit
+from ._arrays import POINTS, InputArrays, cell_array, history_of, point_array, table_rows
+from ._errors import run
+from ._io import Mesh, as_mesh
+
+EFFORTS = ("local", "normal", "thorough")
+_FIXED = 0  # input array of vtkMeshUntangler
+
+
+@dataclass(frozen=True)
+class UntangleResult:
+    """The result of untangle(). Of composite data, numbers are of all blocks."""
+
+    #: The mesh with the new points, `Displacement`, `Validity` and `Obstacle`.
+    mesh: vtkDataObject
+    #: Per iteration (0 is the input): iteration, objective (the energy), inverted, gradient_norm, moving, seconds; of
+    #: composite data also block.
+    history: dict[str, Any]
+    #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
+    validity: np.ndarray
+    #: Per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no
+    #: position between the fixed points around makes it valid, 4 a fixed point is not finite.
+    obstacle: np.ndarray
+    #: Number of inverted or degenerate elements before and after, and of those that fixed points make infeasible.
+    inverted_before: int
+    inverted: int
+    impossible: int
+    #: The stopping criterion that ended the run.
+    reason: str
+    #: New minus old position, n x 3.
+    displacement: np.ndarray
+    #: The result in words: which elements remain invalid, where and why.
+    summary: str
+
+
+def untangle(
+    mesh: Mesh,
+    effort: str = "normal",
+    *,
+    fixed: str | Sequence | None = None,
+    fix_boundary: bool = True,
+    time_limit: float = 0.0,
+    threads: int = 0,
+) -> UntangleResult:
+    """Make the elements of a mesh valid by moving its points; the number of inverted elements never grows.
+
+    mesh: a vtkDataSet with explicit points, a composite data set, a file name or (points, cells). It is not changed.
+    effort: "local" (moves points around inverted elements only), "normal" (then all points) or "thorough".
+    fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
+    fix_boundary: whether the points of the boundary stay in place.
+    time_limit: seconds; 0 is no limit.
+    threads: number of threads; 0 is all cores. The result does not depend on it.
+
+    Raises Error for wrong arguments and for meshes that the filter refuses. Elements that remain inverted are not an
+    error: see inverted, obstacle and summary of the result.
+
+    >>> result = tautline.untangle("tangled.vtu")
+    >>> result.inverted_before, result.inverted
+    """
+    filter_ = _vtk.vtkMeshUntangler()
+    inputs = InputArrays(filter_, as_mesh(mesh))
+    filter_.SetEffort(pick("effort", effort, EFFORTS))
+    filter_.SetFixBoundary(bool(fix_boundary))
+    set_time_limit(filter_, time_limit)
+    set_threads(filter_, threads)
+    inputs.use(_FIXED, fixed, "fixed", POINTS)
+    filter_.SetInputDataObject(0, inputs.mesh)
+    run(filter_)
+    output = inputs.remove_from(filter_.GetOutputDataObject(0))
+    return UntangleResult(
+        mesh=output,
+        history=history_of(filter_),
+        validity=cell_array(output, "Validity"),
+        obstacle=cell_array(output, "Obstacle"),
+        inverted_before=filter_.GetInvertedBefore(),
+        inverted=filter_.GetInvertedAfter(),
+        impossible=filter_.GetImpossible(),
+        reason=filter_.GetReason(),
+        displacement=point_array(output, "Displacement"),
+        summary=filter_.GetSummary(),
+    )
+
+
+# --- the shell ----------------------------------------------------------------------------------------------
+
+
+def add_commands(commands: Any) -> None:
+    """Add `untangle` to the subparsers of the command line."""
+    parser = _commands.add_command(commands, "untangle", _run_untangle, "move points so that elements become valid")
+    _commands.add_moving_points(parser)
+    parser.add_argument("--effort", choices=EFFORTS, default="normal")
+
+
+def _run_untangle(arguments: argparse.Namespace) -> int:
+    result = untangle(arguments.mesh, **_commands.given(arguments, ("effort", "fixed", "time_limit", "threads")))
+    print(result.summary)
+    _commands.save(result, arguments, table_rows(result.history))
+    return 1 if result.inverted else 0
