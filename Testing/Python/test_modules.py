@@ -1,6 +1,7 @@
-"""Copies of the package: an optional compiled module that is missing is skipped, a broken one raises ImportError."""
+"""Files of the package import from lower floors only; a missing optional module is skipped, a broken one raises."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -8,10 +9,33 @@ from pathlib import Path
 
 import tautline
 from checks import OUT
+from tautline import _vtk
 
 PACKAGE = Path(tautline.__file__).parent
 LIBRARIES = PACKAGE.parents[2]  # lib/ of lib/python3/dist-packages/tautline: the compiled modules need its libraries
 LIST = "import tautline; print(*(n for n in ('warp', 'match', 'vtkShapeMatcher', 'quality') if hasattr(tautline, n)))"
+#: The floors of the package below the capabilities, which do not import each other; _metrics serves three of them.
+FLOORS = (
+    ("_errors", "_vtk"),
+    ("_arrays", "_formats", "_mesh", "_tables"),
+    ("_arguments", "_io"),
+    ("_commands",),
+    ("_metrics",),
+)
+TYPE_CHECKING = re.compile(r"^if TYPE_CHECKING:\n(    .*\n)+", re.MULTILINE)
+IMPORT = re.compile(r"^\s*from \.(\w*) import (.*)$", re.MULTILINE)
+
+
+def check_floors() -> None:
+    floor = {file: number for number, files in enumerate(FLOORS) for file in files}
+    floor = {file: len(FLOORS) for file in _vtk.CAPABILITIES} | floor
+    files = [path for path in PACKAGE.glob("_*.py") if not path.stem.startswith("__")]
+    assert {path.stem for path in files} == set(floor), "list new files in FLOORS or in CAPABILITIES"
+    for path in files:
+        text = TYPE_CHECKING.sub("", path.read_text(encoding="utf-8"))
+        for module, names in IMPORT.findall(text):
+            for imported in [module] if module else names.split(", "):
+                assert floor[imported] < floor[path.stem], f"{path.name} must not import {imported}"
 
 
 def copy_package(name: str) -> Path:
@@ -73,6 +97,7 @@ def spoil_library(package: Path) -> None:
     (package / "TautlineShapes.so").write_bytes(b"not a library")
 
 
+check_floors()
 check_complete()
 check_missing()
 check_broken("import", "No module named 'no_such_module'", add_line("_shapes.py", "import no_such_module"))

@@ -123,8 +123,8 @@ def warp(
     amount: fraction of the motion along its path, from 0, the undeformed mesh; 1 is the whole motion.
     correspondence: of points to those of the target: "automatic", "same mesh", "same boundary", "point ids", "closest
         point".
-    target_ids: for "point ids": the name of a point array of the target, or one point number of the mesh per point of
-        the target.
+    target_ids: for "point ids": the name of a point array of the target, with values of the mesh's point array of the
+        same name or with point numbers of the mesh; or such point numbers, one per point of the target.
     moved: the part that a transform or projection moves; the rest of the boundary stays in place. "automatic" (the
         inner boundaries, or the whole boundary if there are none), "whole boundary", "inner boundaries"; numbers of
         boundary parts, of which 1 is the largest; the name of a point or cell array; or one value per point.

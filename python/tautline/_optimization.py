@@ -147,7 +147,8 @@ def optimize(
         "on surface" (also points on curved but smooth parts, see feature_angle); or "free".
     flat_angle: largest angle, in degrees, between facets of a flat part, 0 to 90.
     feature_angle: least angle, in degrees, between facets at a feature, 0 to 180.
-    limits: largest displacement of points: a number, one per point (negative: no limit), or the name of a point array.
+    limits: largest displacement of points, in the mesh's unit: a number (0: no limit), one per point (negative: no
+        limit), or the name of a point array.
     element_weights: weights of the elements, at least 0: one per cell, or the name of a cell array.
     project_to_surface: whether the points of a surface in space stay on it.
     untangle_first: whether a mesh with inverted elements is untangled first where the objectives cannot repair it.

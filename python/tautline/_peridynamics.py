@@ -104,7 +104,7 @@ def peridynamics(
         the quadrature `rules`).
     rules: "tables" reproduces the dissertation's tables, "literal" is what its text says, or the numbers of outer/inner
         points: "1/1", "3/3", "3/1".
-    tolerance: relative, of the exact integrals.
+    tolerance: relative, of the integral over each pair of triangles ("exact"), 1e-10 to 0.1.
     region: name or values of a cell array that is layer_value in the interaction layer; None: there is no layer.
     given_points: name or values of a point array, not 0 where the solution of the linear basis is given; None: at the
         points of the layer's cells.
