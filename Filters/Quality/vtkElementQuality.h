@@ -213,7 +213,7 @@ public:
   static std::string GetKnownMetricFields();
   ///@}
 
-  /// ParaView's settings, as JSON text, that give the arrays of the metrics and Validity their colours.
+  /// ParaView settings, as JSON text: the colour maps of the arrays of the metrics and of Validity.
   static std::string GetColorMapSettings();
 
   /// What the user should know of how the last mesh was taken (orientation, cells left out), or "".

@@ -125,7 +125,7 @@ def field(metric: dict):
 
 
 def picture(metric: dict):
-    """RGB of one metric: bands of equal area, pale is good; magenta is inverted, where the metric says so by its sign."""
+    """RGB of one metric: bands of equal area, pale is good; magenta is inverted, where the metric's sign shows it."""
     import numpy as np
 
     values, validity = field(metric)

@@ -34,7 +34,8 @@ def complaint(page: Path, link: str, proxies: set):
 
 
 def main(top: Path) -> int:
-    proxies = {n for xml in (top / "ServerManager").glob("*.xml*") for n in re.findall(r'Proxy class="\w+" name="(\w+)"', xml.read_text())}
+    texts = (xml.read_text() for xml in (top / "ServerManager").glob("*.xml*"))
+    proxies = {name for text in texts for name in re.findall(r'Proxy class="\w+" name="(\w+)"', text)}
     pages = [*top.glob("*.md"), *(top / "Data").glob("*.md"), *(top / "Plugin/Documentation").glob("*.html")]
     links = [(page, a or b) for page in pages for a, b in LINK.findall(page.read_text(encoding="utf-8"))]
     wrong = [f"{page}: {link} {said}" for page, link in links if (said := complaint(page, link, proxies))]

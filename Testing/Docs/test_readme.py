@@ -12,13 +12,17 @@ import subprocess
 import sys
 from pathlib import Path
 
-BLOCK = re.compile(r"^(?:<!-- test: (?P<how>[^>]+?) -->\n)?```(?P<language>\w*)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(
+    r"^(?:<!-- test: (?P<how>[^>]+?) -->\n)?```(?P<language>\w*)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL
+)
 WRONG = re.compile(r"Traceback|ERR\||ERROR")  # pvpython does not fail when a filter does
-LOOK = 'for path in "$PYTHONPATH/tautline" "$PV_PLUGIN_PATH"/Tautline "$CMAKE_PREFIX_PATH"/include; do ls -d "$path"; done'
+PATHS = '"$PYTHONPATH/tautline" "$PV_PLUGIN_PATH"/Tautline "$CMAKE_PREFIX_PATH"/include'
+LOOK = f'for path in {PATHS}; do ls -d "$path"; done'
 
 
 def run(command: list, work: Path, environment: dict) -> None:
-    done = subprocess.run(command, cwd=work, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    out, err = subprocess.PIPE, subprocess.STDOUT
+    done = subprocess.run(command, cwd=work, env=environment, stdout=out, stderr=err, text=True)
     print(done.stdout, flush=True)
     if done.returncode != 0 or WRONG.search(done.stdout):
         sys.exit(f"this example does not work (exit code {done.returncode})")
@@ -51,7 +55,8 @@ def main(source: Path, build: Path, work: Path, pvpython: list) -> None:
             (work / name).write_text(code, encoding="utf-8")
             continue
         script = work / f"example.{kind}"
-        script.write_text({"install": code.replace("install build", f"install '{build}'"), "prefix": code + LOOK}.get(kind, code))
+        changed = {"install": code.replace("install build", f"install '{build}'"), "prefix": code + LOOK}
+        script.write_text(changed.get(kind, code))
         interpreters = {"python3": [sys.executable], "pvpython": pvpython}
         run([*interpreters.get(kind, ["bash", "-eu"]), str(script)], work, environment)
         ran += 1

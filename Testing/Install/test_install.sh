@@ -22,17 +22,29 @@ if grep -rlF --include='*.cmake' -e "$build" -e "$work/first" "$tree"; then
 fi
 
 echo "--- a C++ program finds the package, first without VTK, then with a module"
-for program in kernel_consumer module_consumer; do
+for program in kernel_consumer solvers_consumer module_consumer; do
   "$cmake" -S "$here/$program" -B "$work/$program" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$tree" >"$work/$program.log"
   "$cmake" --build "$work/$program" >>"$work/$program.log"
   "$work/$program/$program"
 done
 
-echo "--- every public header of the kernel compiles alone"
-for header in "$tree"/include/tautline/*.h; do
+echo "--- a program that evaluates a metric loads the kernel and the compiler's own libraries, nothing else"
+expected='TautlineKernel|stdc\+\+|m|gomp|gcc_s|c|pthread|dl'
+others="$(ldd "$work/kernel_consumer/kernel_consumer" | awk '{ print $1 }' |
+  grep -vE "^(lib($expected)\.so|linux-vdso|/lib.*/ld-linux|libasan|libubsan)" || true)"
+if [[ -n $others ]]; then echo "Tautline::Kernel links $others" >&2; exit 1; fi
+if ! ldd "$work/solvers_consumer/solvers_consumer" | grep -q petsc; then
+  echo "the look at linked libraries finds nothing: Tautline::Solvers does link PETSc" >&2; exit 1
+fi
+
+echo "--- every public header of the kernel compiles alone, and no header of ours lies outside our directories"
+while IFS= read -r -d '' header; do
   "$compiler" -std=c++17 -Wall -Wextra -Werror -fsyntax-only -x c++ -I "$tree/include" "$header"
-done
+done < <(find "$tree/include/tautline" -name '*.h' -print0)
+strays="$(find "$tree/include" -name '*.h' -not -path '*/include/tautline/*' \
+  -not -name 'vtk*.h' -not -name 'Tautline*.h' -printf '%f ')"
+if [[ -n $strays ]]; then echo "installed headers without prefix or directory: $strays" >&2; exit 1; fi
 
 if [[ -d $tree/lib/python3 ]]; then
   echo "--- the Python package is found in the moved tree"

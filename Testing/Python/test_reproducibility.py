@@ -422,7 +422,8 @@ OPERATIONS = {
     "peridynamics, discontinuous": lambda t: tl.peridynamics(
         layered_square(0.1), 0.1, 1, "discontinuous linear", kernel="gaussian", threads=t),
     "peridynamics, constant": lambda t: tl.peridynamics(
-        layered_square(0.05), 0.1, 1, "constant", kernel="conical", discretization="dissertation", rules="3/3", threads=t),
+        layered_square(0.05), 0.1, 1, "constant", kernel="conical", discretization="dissertation", rules="3/3",
+        threads=t),
     # shapes
     "silhouette": lambda _: [tl.silhouette(image, spacing=9) for image in (FISH, BENT, CLOVER)],
     "match": lambda t: tl.match(FISH, BENT, spacing=12, grid=(14, 14), threads=t),

@@ -1,4 +1,4 @@
-"""check_files.py SOURCE_TREE: line ends, tabs, trailing space, length, clang-format of our sources."""
+"""check_files.py SOURCE_TREE: line ends, tabs, trailing space, lengths of files and lines, clang-format."""
 
 import shutil
 import subprocess
@@ -9,6 +9,7 @@ DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "pyth
 CODE = {".h", ".cxx", ".py", ".cmake", ".in", ".sh"}
 TEXT = CODE | {".xml", ".md", ".qrc", ".svg", ".txt", ".module", ".plugin"}
 MAX_LINES = 700
+MAX_COLUMNS = {".h": 100, ".cxx": 100, ".py": 120}  # clang-format leaves comments and texts as they are
 
 
 def sources(top: Path):
@@ -31,6 +32,10 @@ def complaints(path: Path):
     lines = content.split(b"\n")
     if any(line.endswith(b" ") for line in lines) and path.suffix != ".md":
         yield "has spaces at a line's end"
+    columns = MAX_COLUMNS.get(path.suffix)
+    for number, line in enumerate(lines, 1):
+        if columns and len(line.decode()) > columns:
+            yield f"has {len(line.decode())} columns in line {number}, {columns} are allowed"
     if len(lines) - 1 > MAX_LINES and path.suffix in CODE:
         yield f"has {len(lines) - 1} lines, {MAX_LINES} are allowed"
 

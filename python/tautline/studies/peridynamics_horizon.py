@@ -98,9 +98,8 @@ def _over_size(report, cond, small) -> None:
                 rates = [math.log2(b / a) for a, b in zip(y, y[1:])]
                 rows.append([p, delta, discretization, *(f"{v:.3f}" for v in y), *[""] * (len(sizes) - len(y)),
                              " ".join(f"{r:.2f}" for r in rates)])  # fmt: skip
-                style = "o-" if discretization == "exact" else "x:"
-                lines[f"p = {p:g}, delta = {delta}" + ("" if discretization == "exact" else ", dissertation's rules")] = (
-                    [1 / n for n in use], y, style)  # fmt: skip
+                style, rules = ("o-", "") if discretization == "exact" else ("x:", ", dissertation's rules")
+                lines[f"p = {p:g}, delta = {delta}{rules}"] = [1 / n for n in use], y, style
     report.text("Growth with 1/h, linear basis, aspect ratio 1")
     report.table(rows, ["p", "delta", "discretization", *(f"1/h = {n}" for n in sizes), "exponents of 1/h"])
     chart = {"title": "growth with 1/h", "x": "h", "xscale": "log", "yscale": "log", "lines": lines}
