@@ -14,7 +14,7 @@ def cells(proxy, port=0):
     return proxy[port].GetDataInformation().GetNumberOfCells()
 
 
-domain = MeshDomain(Domain="Square with Collar, Structured")
+domain = MeshDomain(Domain="Square with Interaction Layer, Structured")
 assert cells(domain) == 392
 domain.Domain = "Rectangle, Structured"
 domain.NumberOfCells = 3200

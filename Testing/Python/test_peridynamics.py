@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 OUT = checks.OUT / "peridynamics"
 OUT.mkdir(parents=True, exist_ok=True)
-REMEDY = "add it with Horizon Collar"  # of a mesh without an interaction layer
+REMEDY = "add it with Interaction Layer"  # of a mesh without an interaction layer
 
 
 def test_functions():
@@ -82,10 +82,10 @@ def test_studies():
         assert float(row["printed"]) == _horizon.TABLES[row["table"]][key]
         if row["table"] == "4.3":
             assert abs(float(row["a"]) / float(row["printed"]) - 1) < 0.005, row
-    found = {(r["n"], r["aspect_ratio"], r["delta"], r["basis"], r["p"], r["reading"]): float(r["condition"])
+    found = {(r["n"], r["aspect_ratio"], r["delta"], r["basis"], r["p"], r["discretization"]): float(r["condition"])
              for r in rows("peridynamics_horizon")}  # fmt: skip
     assert abs(found["20", "1", "0.2", "linear", "2.5", "exact"] / 21.3645 - 1) < 2e-3
-    exact = [r for r in rows("peridynamics_kernel") if r["reading"] == "exact" and r["delta"] == "0.2"]
+    exact = [r for r in rows("peridynamics_kernel") if r["discretization"] == "exact" and r["delta"] == "0.2"]
     kernel = [float(r["condition"]) for r in exact]
     assert kernel == sorted(kernel), "cond grows with p"
 

@@ -13,7 +13,7 @@ def update(filter_):
     filter_.UpdatePropertyInformation()
 
 
-source = MeshDomain(Domain="Square with Collar, Structured", ElementSize=0.1, CollarWidth=0.2)
+source = MeshDomain(Domain="Square with Interaction Layer, Structured", ElementSize=0.1, LayerWidth=0.2)
 condition = PeridynamicCondition(Input=source)
 update(condition)
 assert abs(condition.Condition / 9.2827 - 1) < 1e-3, condition.Condition
@@ -23,7 +23,7 @@ table = servermanager.Fetch(condition, idx=1)
 assert table.GetNumberOfRows() == 1 and table.GetValueByName(0, "Rows").ToInt() == 81
 
 condition.Basis = "Piecewise Constant"
-condition.Reading = "Dissertation"
+condition.Discretization = "Dissertation"
 condition.SparsityPixels = 50
 condition.Solve = 1
 update(condition)
