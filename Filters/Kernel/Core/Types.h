@@ -18,6 +18,8 @@ namespace tautline
 /// Point, cell and connectivity indices; the type of VTK's 64-bit cell arrays.
 using Index = std::int64_t;
 
+constexpr double Pi = 3.14159265358979323846;
+
 /// A point or vector of the plane, x y.
 using Vec2 = std::array<double, 2>;
 

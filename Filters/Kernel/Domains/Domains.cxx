@@ -6,8 +6,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 // One list: registry, menu, documentation and tests take it from here.
 const std::vector<DomainInfo> Domains = {
   { "wrench", "Wrench", "Figure 2.2 (a), Table 2.4", DomainKind::Planar, 19796, false, 8.8 },

@@ -8,7 +8,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr int Outer = 1;
 constexpr int Inner = 2;
 constexpr int Third = 3;

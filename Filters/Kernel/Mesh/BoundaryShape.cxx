@@ -8,8 +8,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// The directions (normals of faces, or edges) of the facets around one point: two, or too many.
 struct Directions
 {

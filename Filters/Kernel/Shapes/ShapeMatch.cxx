@@ -13,7 +13,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double MemoryLimit = 4.0 * 1024 * 1024 * 1024;
 /// Targets smaller than this need no first solution on fewer locations.
 constexpr std::size_t SmallTarget = 30;

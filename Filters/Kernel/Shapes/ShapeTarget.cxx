@@ -11,7 +11,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 /// Radii of the discs of a descriptor, as parts of d_max.
 constexpr double DescriptorRadii[4] = { 0.12, 0.25, 0.45, 0.8 };
 /// A coarse set has every third location.

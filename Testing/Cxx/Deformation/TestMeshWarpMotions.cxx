@@ -13,8 +13,6 @@ using namespace tautline;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// The point where another takes it, over the paths of all kinds of transforms.
 void testPaths()
 {

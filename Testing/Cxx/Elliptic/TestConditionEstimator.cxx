@@ -11,8 +11,6 @@ using namespace tautline;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 vtkDataSet* meshOf(vtkConditionEstimator* filter)
 {
   return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
