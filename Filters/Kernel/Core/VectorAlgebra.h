@@ -13,15 +13,26 @@
 
 namespace tautline
 {
+/// In which order the sums that run side by side are added at the end of a chunk.
+enum class LaneOrder
+{
+  Sequential, ///< one after the other, to the entries beyond the last full set of lanes
+  Halves      ///< by halves, then those entries
+};
+
 class VectorAlgebra
 {
 public:
-  VectorAlgebra(std::size_t size, int threads)
+  /// For vectors of `size` entries; threads as in Parallel.h.
+  VectorAlgebra(std::size_t size, int threads, LaneOrder order = LaneOrder::Sequential)
     : Size(static_cast<Index>(size))
     , Threads(threads)
+    , Order(order)
     , Partial(numberOfChunks(Size))
   {
   }
+
+  std::size_t size() const { return static_cast<std::size_t>(this->Size); }
 
   /// Calls work(i) for each entry.
   template <class Work>
@@ -45,22 +56,22 @@ public:
       [&](Index chunk, Index begin, Index end)
       {
         // Several sums side by side, for the vector units.
-        constexpr int width = 8;
-        double sums[width] = {};
+        double sums[Lanes] = {};
         Index i = begin;
-        for (; i + width <= end; i += width)
+        for (; i + Lanes <= end; i += Lanes)
         {
-          for (int k = 0; k < width; ++k)
+          for (int k = 0; k < Lanes; ++k)
           {
             sums[k] += term(i + k);
           }
         }
-        double total = 0;
+        const bool halves = this->Order == LaneOrder::Halves;
+        double total = halves ? sumByHalves(sums) : 0.0;
         for (; i < end; ++i)
         {
           total += term(i);
         }
-        this->Partial[chunk] = std::accumulate(sums, sums + width, total);
+        this->Partial[chunk] = halves ? total : std::accumulate(sums, sums + Lanes, total);
       });
     return std::accumulate(this->Partial.begin(), this->Partial.end(), 0.0);
   }
@@ -70,9 +81,50 @@ public:
     return this->sum([=](Index i) { return a[i] * b[i]; });
   }
 
+  /**
+   * @brief Sets a[i] = update(a[i], i) and returns a . b: with sequential lanes in one pass over
+   * memory.
+   */
+  template <class Update>
+  double updateAndDot(const Update& update, double* a, const double* b) const
+  {
+    if (this->Order == LaneOrder::Halves)
+    {
+      this->each([=](Index i) { a[i] = update(a[i], i); });
+      return this->dot(a, b);
+    }
+    return this->sum(
+      [=](Index i)
+      {
+        a[i] = update(a[i], i);
+        return a[i] * b[i];
+      });
+  }
+
+  /// y = x + a z, where y may be x.
+  void addScaled(const double* x, double a, const double* z, double* y) const
+  {
+    this->each([=](Index i) { y[i] = x[i] + a * z[i]; });
+  }
+
 private:
+  static constexpr int Lanes = 8;
+
+  static double sumByHalves(double* sums)
+  {
+    for (int half = Lanes / 2; half > 0; half /= 2)
+    {
+      for (int k = 0; k < half; ++k)
+      {
+        sums[k] += sums[k + half];
+      }
+    }
+    return sums[0];
+  }
+
   Index Size;
   int Threads;
+  LaneOrder Order;
   mutable std::vector<double> Partial;
 };
 }

@@ -1,6 +1,7 @@
 #include "Minimize.h"
 
-#include "tautline/Core/VectorAlgebra.h"
+#include "tautline/Core/LimitedMemory.h"
+#include "tautline/Core/LineSearch.h"
 
 #include <cmath>
 #include <utility>
@@ -13,8 +14,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 using Vector = std::vector<double>;
 
 // Line search.
-constexpr double sufficientDecrease = 1e-4; // Armijo
-constexpr double curvatureNewton = 0.9;     // of the slope that may remain
+constexpr double curvatureNewton = 0.9; // of the slope that may remain
 constexpr double curvatureConjugate = 0.2;
 constexpr int mostTrials = 40;
 constexpr double longestExtension = 100; // of the first trial step
@@ -28,10 +28,8 @@ constexpr int mostStalled = 3;
 constexpr double rounding = 1e-15;
 
 // Directions.
-constexpr int memoryLength = 8;          // pairs of L-BFGS
-constexpr double leastCurvature = 1e-10; // cosine between s and y of a pair
-constexpr double leastDescent = 1e-8;    // cosine between -g and a direction
-constexpr double restartOverlap = 0.2;   // of successive gradients (Powell)
+constexpr double leastDescent = 1e-8;  // cosine between -g and a direction
+constexpr double restartOverlap = 0.2; // of successive gradients (Powell)
 // Early steps change the Hessian most: linearize() at iterations 0, 1, 3, 9, ...
 constexpr int refreshGrowth = 2;
 constexpr int mostInnerIterations = 200;
@@ -47,6 +45,7 @@ public:
     , Options(options)
     , Size(function.size())
     , Algebra(this->Size, options.threads)
+    , Memory(this->Algebra)
     , X(x)
     , G(this->Size)
     , D(this->Size)
@@ -56,11 +55,6 @@ public:
   MinimizeResult run();
 
 private:
-  struct Pair
-  {
-    Vector s, y;
-    double sy, yy;
-  };
   struct Trial
   {
     double t = 0, f = infinity, slope = 0;
@@ -81,13 +75,13 @@ private:
   void conjugate();
   void newton();
   void hessianTimes(const Vector& d, Vector& product);
-  void remember();
   bool iterate();
 
   SmoothFunction& Function;
   const MinimizeOptions& Options;
   std::size_t Size;
   VectorAlgebra Algebra;
+  LimitedMemory Memory; ///< of L-BFGS
   double* X;
   Vector G, D;                    ///< gradient and direction
   Vector OldG, TrialX, TrialG, Z; ///< gradient before the last step; work space
@@ -95,8 +89,7 @@ private:
   double Step = 0, StepSlope = 0; ///< of the last step
   double First = 1;               ///< first trial step along D
   bool Preconditioned = false;
-  bool Fresh = true;       ///< D does not use the history
-  std::vector<Pair> Pairs; ///< oldest first
+  bool Fresh = true; ///< D does not use the history
   MinimizeResult Result;
 };
 
@@ -161,8 +154,7 @@ bool Minimizer::search(double first, double curvature, bool strong)
   for (int trial = 0; trial < mostTrials && !found; ++trial)
   {
     this->evaluate(now);
-    const bool low =
-      now.f <= this->F + sufficientDecrease * now.t * this->Slope && now.f <= this->F;
+    const bool low = now.f <= this->F + ArmijoConstant * now.t * this->Slope && now.f <= this->F;
     if (low && now.f < best.f)
     {
       best = now;
@@ -242,92 +234,23 @@ bool Minimizer::steepest()
   return this->Slope < 0 && std::isfinite(this->Slope);
 }
 
-/// The pair of the last step, if the function curves upwards along it.
-void Minimizer::remember()
-{
-  Pair pair;
-  if (this->Pairs.size() == memoryLength)
-  {
-    pair = std::move(this->Pairs.front());
-    this->Pairs.erase(this->Pairs.begin());
-  }
-  pair.s.resize(this->Size);
-  pair.y.resize(this->Size);
-  const double t = this->Step;
-  double *s = pair.s.data(), *y = pair.y.data();
-  this->Algebra.each(
-    [&](Index i)
-    {
-      s[i] = t * this->D[i];
-      y[i] = this->G[i] - this->OldG[i];
-    });
-  pair.sy = this->Algebra.dot(s, y);
-  pair.yy = this->Algebra.dot(y, y);
-  const double ss = this->Algebra.dot(s, s);
-  if (pair.sy > leastCurvature * std::sqrt(ss * pair.yy))
-  {
-    this->Pairs.push_back(std::move(pair));
-  }
-}
-
-/// The two loops of L-BFGS; the update of each loop and the product of the next are one pass.
+/// The direction of L-BFGS.
 void Minimizer::quasiNewton()
 {
-  const int pairs = static_cast<int>(this->Pairs.size());
-  double* q = this->D.data();
-  double product = 0;
-  if (pairs > 0)
-  {
-    const double* s = this->Pairs.back().s.data();
-    product = this->Algebra.sum(
-      [&](Index i)
-      {
-        q[i] = -this->G[i];
-        return q[i] * s[i];
-      });
-  }
-  double alpha[memoryLength];
-  for (int k = pairs - 1; k >= 0; --k)
-  {
-    alpha[k] = product / this->Pairs[k].sy;
-    const double a = alpha[k];
-    const double* y = this->Pairs[k].y.data();
-    const double* s = this->Pairs[std::max(k - 1, 0)].s.data();
-    product = this->Algebra.sum(
-      [=](Index i)
-      {
-        q[i] -= a * y[i];
-        return q[i] * s[i];
-      });
-  }
-  double gamma = this->Pairs.back().sy / this->Pairs.back().yy;
-  if (this->precondition(this->Pairs.back().y, this->Z))
-  {
-    gamma = this->Pairs.back().sy / this->dot(this->Pairs.back().y, this->Z);
-    this->precondition(this->D, this->Z);
-    std::swap(this->D, this->Z);
-    q = this->D.data();
-  }
-  const double* y = this->Pairs.front().y.data();
-  product = this->Algebra.sum(
-    [=](Index i)
+  this->Slope = this->Memory.direction(this->G, this->D,
+    [this](Vector& q)
     {
-      q[i] *= gamma;
-      return q[i] * y[i];
-    });
-  for (int k = 0; k < pairs; ++k)
-  {
-    const double a = alpha[k] - product / this->Pairs[k].sy;
-    const double* s = this->Pairs[k].s.data();
-    const double* next = k + 1 < pairs ? this->Pairs[k + 1].y.data() : this->G.data();
-    product = this->Algebra.sum(
-      [=](Index i)
+      // The preconditioner, or the identity, scaled to fit the newest pair.
+      const LimitedMemory::Pair& newest = this->Memory.newest();
+      double gamma = newest.sy / newest.yy;
+      if (this->precondition(newest.y, this->Z))
       {
-        q[i] += a * s[i];
-        return q[i] * next[i];
-      });
-  }
-  this->Slope = product;
+        gamma = newest.sy / this->dot(newest.y, this->Z);
+        this->precondition(q, this->Z);
+        std::swap(q, this->Z);
+      }
+      return gamma;
+    });
   this->First = 1;
   this->Fresh = false;
 }
@@ -437,7 +360,7 @@ bool Minimizer::iterate()
   {
     this->conjugate();
   }
-  else if (!conjugateGradient && !this->Pairs.empty())
+  else if (!conjugateGradient && !this->Memory.empty())
   {
     this->quasiNewton();
   }
@@ -451,12 +374,12 @@ bool Minimizer::iterate()
     this->search(this->First, curvature, conjugateGradient);
   if (!moved && !this->Fresh)
   {
-    this->Pairs.clear();
+    this->Memory.clear();
     moved = this->steepest() && this->search(this->First, curvature, conjugateGradient);
   }
   if (moved && method == Optimizer::LimitedMemoryBFGS)
   {
-    this->remember();
+    this->Memory.add(this->Step, this->D.data(), this->OldG.data(), this->G.data());
   }
   return moved;
 }
@@ -492,7 +415,7 @@ MinimizeResult Minimizer::run()
       this->Function.linearize(this->X);
       if (this->Preconditioned)
       {
-        this->Pairs.clear(); // they speak of a Hessian that the new preconditioner knows better
+        this->Memory.clear(); // its pairs belong to the old preconditioner
       }
       next = this->Result.iterations +
         std::min(std::max(1, refreshGrowth * this->Result.iterations), this->Options.refresh);

@@ -1,12 +1,13 @@
 #include "VertexOptimizer.h"
 
+#include "tautline/Core/LineSearch.h"
+
 #include <cmath>
 
 namespace tautline
 {
 namespace
 {
-constexpr double sufficientDecrease = 1e-4; // Armijo's constant
 constexpr int maximumHalvings = 12;
 /// Part of the way to the first inversion that a step may go.
 constexpr double safety = 0.9;
@@ -546,7 +547,7 @@ bool VertexOptimizer<Dim>::moveVertex(
       {
         to[c] = d[c] + t * direction[c];
       }
-      if (this->changeAt(scalarizer, w, to) <= sufficientDecrease * t * slope &&
+      if (this->changeAt(scalarizer, w, to) <= ArmijoConstant * t * slope &&
         (!this->Guarded || staysValid<Dim>(w.patch.simplices, d, to)))
       {
         found = true;

@@ -11,6 +11,7 @@
 #define tautline_Patch_h
 
 #include "tautline/Core/Packet.h"
+#include "tautline/Core/SmallCholesky.h"
 #include "SimplexMesh.h"
 
 #include <limits>
@@ -409,66 +410,29 @@ double stepToInversion(const Patch<Dim>& patch, const double* d, const double* s
 template <int Dim>
 void newtonDirection(const PatchSum<Dim>& sum, double* s)
 {
-  double trace = 0, square = 0;
+  double square = 0;
   for (int r = 0; r < Dim; ++r)
   {
-    trace += sum.H[r][r];
     for (int c = 0; c < Dim; ++c)
     {
       square += sum.H[r][c] * sum.H[r][c];
     }
   }
-  constexpr double smallPivot = 1e-8;
+  constexpr double smallPivot = 1e-8, growth = 10.0;
+  using Factor = SmallCholesky<Dim, CholeskyDiagonal::Root>;
   const double norm = std::sqrt(square);
-  for (double shift = 0.0;;
-       shift = shift > 0.0 ? 10.0 * shift : norm + std::numeric_limits<double>::min())
+  double L[Factor::Entries];
+  // The shift of the second try exceeds every negative eigenvalue.
+  double shift = 0.0;
+  while (!Factor::factor(sum.H, shift, smallPivot * norm, L) && std::isfinite(shift))
   {
-    // Cholesky factors; the shift of the second try exceeds every negative eigenvalue.
-    double L[Dim][Dim];
-    bool definite = true;
-    for (int r = 0; r < Dim && definite; ++r)
-    {
-      for (int c = 0; c <= r; ++c)
-      {
-        double x = sum.H[r][c] + (r == c ? shift : 0.0);
-        for (int k = 0; k < c; ++k)
-        {
-          x -= L[r][k] * L[c][k];
-        }
-        if (r == c)
-        {
-          definite = x > smallPivot * norm;
-          L[r][r] = std::sqrt(x);
-        }
-        else
-        {
-          L[r][c] = x / L[c][c];
-        }
-      }
-    }
-    if (!definite && std::isfinite(shift))
-    {
-      continue;
-    }
-    for (int r = 0; r < Dim; ++r)
-    {
-      s[r] = -sum.g[r];
-      for (int k = 0; k < r; ++k)
-      {
-        s[r] -= L[r][k] * s[k];
-      }
-      s[r] /= L[r][r];
-    }
-    for (int r = Dim - 1; r >= 0; --r)
-    {
-      for (int k = r + 1; k < Dim; ++k)
-      {
-        s[r] -= L[k][r] * s[k];
-      }
-      s[r] /= L[r][r];
-    }
-    return;
+    shift = shift > 0.0 ? growth * shift : norm + std::numeric_limits<double>::min();
   }
+  for (int r = 0; r < Dim; ++r)
+  {
+    s[r] = -sum.g[r];
+  }
+  Factor::solve(L, s);
 }
 }
 #endif
