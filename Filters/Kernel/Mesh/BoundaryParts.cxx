@@ -1,5 +1,6 @@
 #include "BoundaryParts.h"
 
+#include "tautline/Core/UnionFind.h"
 #include "FacetTable.h"
 
 #include <limits>
@@ -9,34 +10,6 @@ namespace tautline
 {
 namespace
 {
-/// Disjoint sets of points; the root is the smallest member.
-class Groups
-{
-public:
-  explicit Groups(Index n)
-    : Parent(n)
-  {
-    std::iota(this->Parent.begin(), this->Parent.end(), Index(0));
-  }
-  Index root(Index i)
-  {
-    while (this->Parent[i] != i)
-    {
-      i = this->Parent[i] = this->Parent[this->Parent[i]];
-    }
-    return i;
-  }
-  void join(Index i, Index j)
-  {
-    i = this->root(i);
-    j = this->root(j);
-    this->Parent[std::max(i, j)] = std::min(i, j);
-  }
-
-private:
-  std::vector<Index> Parent;
-};
-
 struct Box
 {
   Vec3 low = { std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
@@ -66,7 +39,7 @@ BoundaryParts boundaryParts(const Mesh& mesh)
   const MeshView& view = mesh.view();
   BoundaryParts result;
   result.part.assign(view.numberOfPoints, 0);
-  Groups facets(view.numberOfPoints), pieces(view.numberOfPoints);
+  UnionFind facets(view.numberOfPoints), pieces(view.numberOfPoints);
   std::vector<char> onBoundary(view.numberOfPoints, 0);
   FacetTable table(mesh);
   table.forEachFacet(
@@ -91,7 +64,7 @@ BoundaryParts boundaryParts(const Mesh& mesh)
   {
     if (onBoundary[p])
     {
-      boxes[facets.root(p)].add(pointOf(view, p));
+      boxes[facets.find(p)].add(pointOf(view, p));
     }
   }
   std::vector<Part> parts;
@@ -107,13 +80,13 @@ BoundaryParts boundaryParts(const Mesh& mesh)
   for (const Part& part : parts)
   {
     number[part.root] = ++result.parts;
-    bool& met = seen[pieces.root(part.root)];
+    bool& met = seen[pieces.find(part.root)];
     result.outer.push_back(!met);
     met = true;
   }
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
-    result.part[p] = onBoundary[p] ? number[facets.root(p)] : 0;
+    result.part[p] = onBoundary[p] ? number[facets.find(p)] : 0;
   }
   return result;
 }

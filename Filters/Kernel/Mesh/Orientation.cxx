@@ -1,5 +1,6 @@
 #include "Mesh.h"
 
+#include "tautline/Core/UnionFind.h"
 #include "FacetTable.h"
 
 namespace tautline
@@ -80,23 +81,14 @@ Orientation Mesh::orientation(const signed char* validity) const
   }
 
   // Signs differ (a tangled or a mixed mesh), or there are none (a surface): look at neighbours.
-  std::vector<Index> parent(this->View.numberOfCells);
-  std::iota(parent.begin(), parent.end(), Index(0));
-  auto find = [&](Index cell)
-  {
-    while (parent[cell] != cell)
-    {
-      cell = parent[cell] = parent[parent[cell]];
-    }
-    return cell;
-  };
+  UnionFind sets(this->View.numberOfCells);
   FacetTable(*this).forEachFacet(
     [&](Index, const FacetUse* uses, Index count)
     {
       if (count == 2)
       {
         result.disagreeing += uses[0].forward == uses[1].forward;
-        parent[find(uses[0].cell)] = find(uses[1].cell);
+        sets.join(uses[0].cell, uses[1].cell);
       }
     });
 
@@ -128,12 +120,12 @@ Orientation Mesh::orientation(const signed char* validity) const
         {
           const double size = signedSize(*this, topology(block.type),
             this->View.connectivity + this->View.offsets[cell], origin);
-          Part& part = parts[find(cell)];
+          Part& part = parts[sets.find(cell)];
           part.sum += size;
           part.magnitude += std::abs(size);
           part.majority += validity[cell]; // 1, 0 or -1
         }
-        result.parts += find(cell) == cell;
+        result.parts += sets.find(cell) == cell;
       }
     }
   }

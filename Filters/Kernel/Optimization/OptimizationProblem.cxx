@@ -208,11 +208,11 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
 
 //------------------------------------------------------------------------------
 OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options,
-  std::vector<double>& points, std::chrono::steady_clock::time_point began)
+  std::vector<double>& points, const Stopwatch& clock)
   : TheMesh(mesh)
   , Options(options)
   , Points(points)
-  , Began(began)
+  , Clock(clock)
 {
   checkOptions(mesh, options);
   MeshView view = mesh.view();
@@ -601,7 +601,7 @@ IterationRecord OptimizationProblem::record(int iteration)
   record.objective = this->TheScalarizer && record.objectives.size() > 1
     ? this->TheScalarizer->value(record.objectives)
     : record.objectives[0];
-  record.seconds = this->elapsed();
+  record.seconds = this->Clock.seconds();
   return record;
 }
 
@@ -652,15 +652,8 @@ void OptimizationProblem::start(const IterationRecord& first)
 }
 
 //------------------------------------------------------------------------------
-double OptimizationProblem::elapsed() const
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Began).count();
-}
-
-//------------------------------------------------------------------------------
 bool OptimizationProblem::outOfTime() const
 {
-  const double limit = this->Options.stopping.maximumSeconds;
-  return limit > 0 && this->elapsed() >= limit;
+  return this->Clock.reached(this->Options.stopping.maximumSeconds);
 }
 }

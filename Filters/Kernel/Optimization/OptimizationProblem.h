@@ -6,9 +6,9 @@
 #ifndef tautline_OptimizationProblem_h
 #define tautline_OptimizationProblem_h
 
+#include "tautline/Core/Stopwatch.h"
 #include "LocalSweep.h"
 
-#include <chrono>
 #include <memory>
 
 namespace tautline
@@ -18,11 +18,11 @@ class OptimizationProblem
 public:
   /**
    * @param points where the optimization starts; moved in place
-   * @param began when the user began to wait
+   * @param clock started with the run; the time limit counts from there
    * Throws Error on options that do not fit the mesh.
    */
   OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points,
-    std::chrono::steady_clock::time_point began);
+    const Stopwatch& clock);
 
   const Mesh& moving() const { return *this->Moving; }
   SimplexMesh& simplices() { return *this->Simplices; }
@@ -52,7 +52,7 @@ public:
   double worstMovable() const;
   /// Prepares the scalarization with the objectives of the start.
   void start(const IterationRecord& first);
-  double elapsed() const;
+  /// Whether the time limit is reached.
   bool outOfTime() const;
   const OptimizeOptions& options() const { return this->Options; }
   std::vector<double>& points() { return this->Points; }
@@ -79,7 +79,7 @@ private:
   std::vector<std::vector<double>> Weights; ///< of each objective, if not all 1
   std::unique_ptr<Scalarizer> TheScalarizer;
   std::vector<double> Start; ///< coordinates of the simplex mesh at the start
-  std::chrono::steady_clock::time_point Began;
+  Stopwatch Clock;
 };
 }
 #endif

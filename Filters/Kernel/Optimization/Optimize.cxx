@@ -504,10 +504,10 @@ Index countInvalid(const Mesh& mesh, int threads)
 //------------------------------------------------------------------------------
 /// Optimises from result.points on; returns whether there is more to do, with elements that have
 /// become valid.
-bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options,
-  std::chrono::steady_clock::time_point began, OptimizeResult& result)
+bool optimizeStage(
+  const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
 {
-  OptimizationProblem problem(mesh, options, result.points, began);
+  OptimizationProblem problem(mesh, options, result.points, clock);
   result.freeVertices = problem.simplices().freeVertices();
   const StoppingTest watch(problem);
   const bool again = !result.history.empty();
@@ -659,8 +659,8 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& given)
   }
 
   // Elements left out join the objective as soon as they are valid: another stage.
-  const auto began = std::chrono::steady_clock::now();
-  while (optimizeStage(mesh, options, began, result))
+  const Stopwatch clock;
+  while (optimizeStage(mesh, options, clock, result))
   {
   }
   return result;

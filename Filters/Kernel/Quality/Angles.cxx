@@ -30,7 +30,7 @@ struct AngleCounter
   {
     for (int i = 0; i < InnerEnds; ++i)
     {
-      const double c = std::cos(angleBins[i + 1] * M_PI / 180);
+      const double c = std::cos(angleBins[i + 1] * Pi / 180);
       this->signedSquares[i] = broadcast(c * std::abs(c));
     }
   }

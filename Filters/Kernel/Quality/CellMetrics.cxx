@@ -332,7 +332,7 @@ double cornerAngle(const Cell& cell, int corner, Gradient g)
   double sign = 1;
   if (cell.topology.nodes == 4 && dot(cross(a, b), FaceNormal(p, allNodes, 4).normal) < 0)
   {
-    angle = 2 * M_PI - angle;
+    angle = 2 * Pi - angle;
     sign = -1;
   }
   if (g)

@@ -55,7 +55,7 @@ std::vector<MetricInfo> makeRegistry()
   const double root3 = std::sqrt(3.0);
   const double si2 = root3 / 12, si3 = 2 * std::sqrt(2.0) * std::sqrt(root3) / 9;
   const double ss2 = root3 / 4, ss3 = std::sqrt(2.0) / 12 * std::pow(root3 / 1.125, 0.75);
-  const double dihedral = std::acos(1.0 / 3.0) * 180 / M_PI;
+  const double dihedral = std::acos(1.0 / 3.0) * 180 / Pi;
   const Range any = atLeast(0), one = atLeast(1), shape = { 0, 2 }, ratio = { 1, 3 };
   const Range unit = { 0, 1 };
   return {
