@@ -64,7 +64,7 @@ void storeMoved(const SimplexMesh& simplices, const std::vector<double>& start, 
 //------------------------------------------------------------------------------
 /// Says of each cell that is not valid, why.
 void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
-  const std::vector<signed char>& validity, const std::vector<std::int32_t>& impossible,
+  const std::vector<signed char>& validity, const std::vector<std::int32_t>& infeasible,
   UntangleResult& result)
 {
   const MeshView& view = mesh.view();
@@ -74,7 +74,7 @@ void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
     free[simplices.point(v)] = 1;
   }
   std::vector<char> held(view.numberOfCells, 0);
-  for (std::int32_t s : impossible)
+  for (std::int32_t s : infeasible)
   {
     held[simplices.cell(s)] = 1;
   }
@@ -133,13 +133,13 @@ void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
 
 template <int Dim>
 void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
-  const std::vector<signed char>& before, Clock::time_point began, UntangleResult& result)
+  const std::vector<signed char>& before, const Stopwatch& clock, UntangleResult& result)
 {
   const std::vector<double> start(simplices.coordinates(),
     simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices());
   const std::vector<double> input = result.points;
   std::vector<signed char> validity = before;
-  Untangler<Dim> untangler(mesh, simplices, options, began, result);
+  Untangler<Dim> untangler(mesh, simplices, options, clock, result);
   // The judge sees rounded coordinates: if it does not agree, with a wider margin.
   for (const double margin : { 1e-12, 1e-9, 1e-6 })
   {
@@ -155,19 +155,19 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
       result.points = points;
       validity = after;
     }
-    if (untangler.stopped() || !untangler.untangled() || invalid <= untangler.cells())
+    if (untangler.stopped() || !untangler.untangled() || invalid <= untangler.invalidCells())
     {
       break;
     }
   }
-  findObstacles(mesh, simplices, validity, untangler.impossible(), result);
+  findObstacles(mesh, simplices, validity, untangler.infeasible(), result);
 }
 }
 
 //------------------------------------------------------------------------------
 UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options)
 {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch clock;
   const MeshView& view = mesh.view();
   UntangleResult result;
   result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
@@ -195,11 +195,11 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options)
   result.reason = StopReason::NoProgress;
   if (simplices.dimension() == 3)
   {
-    untangleSimplices<3>(mesh, simplices, options, validity, start, result);
+    untangleSimplices<3>(mesh, simplices, options, validity, clock, result);
   }
   else
   {
-    untangleSimplices<2>(mesh, simplices, options, validity, start, result);
+    untangleSimplices<2>(mesh, simplices, options, validity, clock, result);
   }
   if (result.invertedAfter == 0)
   {

@@ -602,7 +602,7 @@ void testLinearPrograms()
       }
     }
     std::array<double, 2> place;
-    const double radius = widestPlace<2>(planes, 100, place);
+    const double radius = chebyshevCenter<2>(planes, 100, place);
     TAUTLINE_CHECK_NEAR(radius, best, 1e-8);
   }
 }
