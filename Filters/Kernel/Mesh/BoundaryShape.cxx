@@ -14,9 +14,9 @@ struct Directions
   Vec3 first = { 0, 0, 0 }, second = { 0, 0, 0 }; ///< unit: the first seen of each kind
   Vec3 firstSum = { 0, 0, 0 }, secondSum = { 0, 0, 0 };
   Vec3 sum = { 0, 0, 0 };
-  double leastCosine = 1; ///< between a facet and the sum
-  bool faulty = false;    ///< a facet without size, or of three cells
-  int kinds = 0;          ///< 3: three or more, or something that forbids to slide
+  double minCosine = 1; ///< between a facet and the sum
+  bool faulty = false;  ///< a facet without size, or of three cells
+  int kinds = 0;        ///< 3: three or more, or something that forbids to slide
   int facets = 0;
 };
 
@@ -147,8 +147,8 @@ BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle, double featureAn
       [](Directions& here, const Vec3& along, Index)
       {
         const double lengths = norm(along) * norm(here.sum);
-        here.leastCosine =
-          std::min(here.leastCosine, lengths > 0 ? dot(along, here.sum) / lengths : -1.0);
+        here.minCosine =
+          std::min(here.minCosine, lengths > 0 ? dot(along, here.sum) / lengths : -1.0);
       });
   }
 
@@ -176,7 +176,7 @@ BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle, double featureAn
       set(shape.lines, i, d.firstSum);
       ++shape.onLines;
     }
-    else if (smooth && !d.faulty && (volume || d.facets == 2) && d.leastCosine >= smoothCosine)
+    else if (smooth && !d.faulty && (volume || d.facets == 2) && d.minCosine >= smoothCosine)
     {
       shape.surface[i] = 1;
       ++shape.onSurface;

@@ -3,18 +3,47 @@
  * @brief The cell types Tautline computes with: local numbering, edges, faces, corners, ideal
  * shape.
  *
- * Local numbering and type codes are VTK's, so that a VTK cell array is used as it is.
+ * Local numbering and type codes are VTK's, so that a VTK cell array is used as it is. z points up.
  *
- *     triangle   quadrilateral   tetrahedron    hexahedron      wedge          pyramid
- *        2          3---2             3           7----6        3----5            4
- *       / \         |   |            /|\         /|   /|        |\  /|           /|\
- *      0---1        0---1           0-|-2       4----5 |        | 4  |          3-|-2
- *                                    \|/        | 3--|-2        0-|--2         /  | /
- *                                     1         |/   |/          \| /         0---1
- *                                               0----1            1
+ *     Triangle                          Quadrilateral
  *
- * (The wedge is drawn with its inward-looking order: VTK's wedge has 0 1 2 counter-clockwise seen
- * from outside, so the corner Jacobian of a valid wedge takes the edges in the order listed here.)
+ *          2                              3 ----- 2
+ *         / \                             |       |
+ *        /   \                            |       |
+ *       0 --- 1                           0 ----- 1
+ *
+ *     edges 01 12 20                    edges 01 12 23 30
+ *
+ *     Tetrahedron                       Hexahedron
+ *
+ *              3                               7 ------ 6
+ *             /|\                             /|       /|
+ *            / | \                           4 ------ 5 |
+ *           /  |  \                          | |      | |
+ *          0 --|-- 2                         | 3 -----|-2
+ *           \  |  /                          |/       |/
+ *             \|/                            0 ------ 1
+ *              1
+ *
+ *     edges 01 12 20 03 13 23           edges 01 12 23 30  45 56 67 74  04 15 26 37
+ *     faces 013 123 203 021             faces 0473 1265 0154 3762 0321 4567
+ *
+ *     Wedge                             Pyramid
+ *
+ *          4                                      4
+ *        / | \                                   /|\ `.
+ *       3 --- 5                                 / | \  `.
+ *       |  |  |                                /  3 -\--- 2
+ *       |  1  |                               /  /    \  /
+ *       |/   \|                              0 ------- 1
+ *       0 --- 2
+ *
+ *     edges 01 12 20  34 45 53          edges 01 12 23 30  04 14 24 34
+ *           03 14 25                    faces 0321 014 124 234 304
+ *     faces 012 354 0341 1452 2530
+ *
+ * Nodes 0 1 2 of a wedge run counter-clockwise seen from below, from outside, unlike those of a
+ * pyramid or hexahedron: the Jacobian at corner 0 of a valid wedge takes the edges to 2, 1 and 3.
  */
 #ifndef tautline_CellTopology_h
 #define tautline_CellTopology_h

@@ -93,7 +93,7 @@ private:
             nodes[k] = node[dimension == 3 ? t.faceNodes[f][k] : t.edgeNodes[f][k]];
             smallest = nodes[k] < nodes[smallest] ? k : smallest;
           }
-          // The sense of walking is told by the neighbours of the smallest node; for an edge, by
+          // The sense of walking follows from the neighbours of the smallest node; for an edge, by
           // whether the smallest node comes first.
           const Index next = nodes[(smallest + 1) % size];
           const Index previous = nodes[(smallest + size - 1) % size];

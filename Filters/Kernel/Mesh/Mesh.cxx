@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// A mesh is planar when no vertex leaves its plane by more than this part of the mesh's diagonal.
+/// A mesh is planar when no vertex leaves its plane by more than this fraction of the mesh's diagonal.
 constexpr double planarTolerance = 1e-6;
 
 std::string cellMessage(Index cell, const std::string& what)
@@ -99,10 +99,10 @@ Mesh::Mesh(const MeshView& view, int threads)
             const Index node = view.connectivity[first + k];
             good = node >= 0 && node < view.numberOfPoints;
           }
-          Index least = wrong; // of several the one with the smallest id is reported
-          while (!good && (least < 0 || cell < least))
+          Index smallest = wrong; // of several the one with the smallest id is reported
+          while (!good && (smallest < 0 || cell < smallest))
           {
-            good = wrong.compare_exchange_weak(least, cell);
+            good = wrong.compare_exchange_weak(smallest, cell);
           }
         }
       });
@@ -129,12 +129,12 @@ Mesh::Mesh(const MeshView& view, int threads)
   this->Dim = solid ? Dimension::Volume : flat ? Dimension::Surface : Dimension::None;
   if (this->Dim == Dimension::Surface)
   {
-    this->findPlane(threads);
+    this->findPlane();
   }
 }
 
 //------------------------------------------------------------------------------
-void Mesh::findPlane(int threads)
+void Mesh::findPlane()
 {
   // Principal directions of the corners of the cells; unused and non-finite points do not count.
   Vec3 low, high;
@@ -222,7 +222,6 @@ void Mesh::findPlane(int threads)
       return;
     }
   }
-  (void)threads;
 
   int largest = 0;
   for (int c = 1; c < 3; ++c)

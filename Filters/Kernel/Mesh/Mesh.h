@@ -162,7 +162,7 @@ public:
   Vec3 center(Index cell, CellType type) const;
 
 private:
-  void findPlane(int threads);
+  void findPlane();
 
   MeshView View;
   std::vector<CellBlock> Blocks;

@@ -92,7 +92,7 @@ Orientation Mesh::orientation(const signed char* validity) const
       }
     });
 
-  // The signed size of a part tells, tangled or not; where it is lost to rounding (a vertex far
+  // The signed size of a part decides, tangled or not; where it is lost to rounding (a vertex far
   // out), the majority.
   struct Part
   {
