@@ -271,7 +271,7 @@ double aspectRatio(const Cell& cell, Gradient g)
   return q;
 }
 
-/// W / w: sides of the rectangle round the triangle, flush with the edge that makes it least long.
+/// W / w: sides of the least elongated rectangle around the triangle with a side on an edge.
 double widthRatio(const Cell& cell, Gradient g)
 {
   const Vec3* p = cell.points;

@@ -72,7 +72,7 @@ void compareMetric(const MetricInfo& info, int dimension, const CellValues& befo
   const CellValues& after, double tolerance, signed char* change, MetricChange& total)
 {
   const double ideal = info.ideal(dimension);
-  const double least = ideal == 0 && info.unit[0] == '\0' ? 1.0 : 0.0;
+  const double smallest = ideal == 0 && info.unit[0] == '\0' ? 1.0 : 0.0;
   const int sense = info.direction == Direction::LargerIsBetter ? 1
     : info.direction == Direction::SmallerIsBetter              ? -1
                                                                 : 0;
@@ -85,7 +85,7 @@ void compareMetric(const MetricInfo& info, int dimension, const CellValues& befo
     }
     const double low = before.values[i], high = after.values[i];
     const bool ordered = is == Valid || (is == Inverted && info.inverted == InvertedValue::Larger);
-    const double magnitude = std::max({ std::abs(low), std::abs(high), least });
+    const double magnitude = std::max({ std::abs(low), std::abs(high), smallest });
     return !ordered || std::abs(high - low) <= tolerance * magnitude ? 0
       : high > low                                                   ? sense
                                                                      : -sense;

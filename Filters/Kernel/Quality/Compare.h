@@ -32,7 +32,7 @@ struct MetricChange
 };
 
 /**
- * @brief Tells for each cell whether its metric became better (1), worse (-1) or neither (0), and
+ * @brief Finds for each cell whether its metric became better (1), worse (-1) or neither (0), and
  * adds up the counts.
  *
  * Validity decides first: a cell that becomes valid is better, one that becomes degenerate or

@@ -70,7 +70,7 @@ std::vector<MetricInfo> makeRegistry()
     { Metric::RadiusRatio, "rr", "Radius ratio", "RR", "radius_ratio",
       "sqrt(R / r) of the circumscribed and inscribed circles or spheres, with the sign of the "
       "size",
-      "dissertation Table 2.2 (the printed range does not fit its formula)", Simplex, true, true,
+      "dissertation Table 2.2 (printed range corrected, see the notes)", Simplex, true, true,
       simplices, atLeast(std::sqrt(2.0)), atLeast(root3), { std::sqrt(2.0), std::sqrt(6.0) },
       { root3, 3 }, std::sqrt(2.0), root3, Smaller, Negative, barrier, smooth, scaleFree, rotates,
       "" },
@@ -103,7 +103,7 @@ std::vector<MetricInfo> makeRegistry()
       any, any, any, sizeDecides, sizeDecides, Direction::Neutral, Negative, noBarrier, smooth,
       sized, rotates, "length^n" },
     { Metric::UntangleBeta, "untangle_beta", "Untangling beta", "beta", "untangling,untangle",
-      "(|V - beta| - (V - beta)) / 2, V the signed size seen from a corner",
+      "(|V - beta| - (V - beta)) / 2, V the signed size at a corner",
       "dissertation (3.3); Knupp, Hexahedral and tetrahedral mesh untangling, Eng. Comput. 17 "
       "(2001)",
       Target, true, true, all, any, any, { 0, 0 }, { 0, 0 }, 0, 0, Smaller, Growing, noBarrier,
@@ -112,12 +112,13 @@ std::vector<MetricInfo> makeRegistry()
       "longest edge / shortest edge", verdict, Cell, true, true, all, one, one, ratio, ratio, 1, 1,
       Smaller, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
     { Metric::AspectRatio, "aspect_ratio", "Aspect ratio", "AR", "",
-      "simplex: longest edge / inradius, 1 if regular; quadrilateral and hexahedron: longest / "
+      "simplex: longest edge / inradius, scaled to 1 for the regular simplex; quadrilateral and "
+      "hexahedron: longest / "
       "shortest principal axis",
       verdict, Cell, true, true, flat | tets | hexes, one, one, ratio, ratio, 1, 1, Smaller,
       Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
     { Metric::WidthRatio, "width_ratio", "Aspect ratio W/w", "W/w", "",
-      "longer / shorter side of the least elongated rectangle flush with an edge",
+      "longer / shorter side of the least elongated enclosing rectangle with a side on an edge",
       "dissertation Figure 4.8", Cell, true, false, triangles, one, one, { 1, 4 }, { 1, 4 },
       2 / root3, 2 / root3, Smaller, Unsigned, barrier, kinked, scaleFree, rotates, "" },
     { Metric::MinimumAngle, "min_angle", "Minimum angle", "theta_min", "minimum_angle",
@@ -139,9 +140,8 @@ std::vector<MetricInfo> makeRegistry()
       "|T| |T^-1| / n, with the sign of det T", knupp2001, Target, true, true, all, one, one, ratio,
       ratio, 1, 1, Smaller, Negative, barrier, smooth, scaleFree, rotates, "" },
     { Metric::ScaledJacobian, "scaled_jacobian", "Scaled Jacobian", "J_s", "jacobian",
-      "smallest over the corners of det A / product of its edge lengths, 1 if ideal (not pyramids: "
-      "their "
-      "apex has no Jacobian)",
+      "minimum over the corners of det A / product of its edge lengths, scaled to 1 for the ideal "
+      "cell (not for pyramids: their apex has no Jacobian)",
       verdict, Cell, true, true, flat | tets | hexes | wedges, unit, unit, { 0.3, 1 }, { 0.3, 1 },
       1, 1, Larger, Negative, noBarrier, kinked, scaleFree, rotates, "" },
     { Metric::ShapeBarrier, "mu_shape", "Shape, barrier", "mu_2 / mu_303", "mu_2,mu_303",

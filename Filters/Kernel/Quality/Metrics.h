@@ -78,7 +78,7 @@ enum class InvertedValue
 {
   Negative, ///< below zero, where every valid element is above
   Larger,   ///< finite and worse than that of a valid element: the metric can untangle
-  Unsigned  ///< in the range of valid elements; only `Validity` tells
+  Unsigned  ///< in the range of valid elements; only `Validity` differs
 };
 
 /// How a metric is built, which decides what options it takes.

@@ -162,7 +162,7 @@ std::vector<WorstElement> worstElements(const MetricInfo& info, const CellValues
 {
   const auto defined = definedTypes(info);
   auto worse = [&](const WorstElement& a, const WorstElement& b) { return isWorse(info, a, b); };
-  std::vector<WorstElement> heap; // its front is the least bad of those kept
+  std::vector<WorstElement> heap; // its front is the best of those kept
   for (Index i = 0; i < data.cells; ++i)
   {
     const signed char v = data.validity[i];
@@ -257,10 +257,10 @@ MetricStatistics summarize(
   const OrderStatistics sorted(measured, position);
   for (std::size_t i = 0; i < position.size(); ++i)
   {
-    const double part = position[i] - std::floor(position[i]);
+    const double fraction = position[i] - std::floor(position[i]);
     const double below = sorted.at(static_cast<Index>(position[i]));
-    const double above = part > 0 ? sorted.at(static_cast<Index>(position[i]) + 1) : below;
-    result.quantiles[i] = (1 - part) * below + part * above;
+    const double above = fraction > 0 ? sorted.at(static_cast<Index>(position[i]) + 1) : below;
+    result.quantiles[i] = (1 - fraction) * below + fraction * above;
   }
   return result;
 }
@@ -284,8 +284,8 @@ Histogram histogram(const std::vector<double>& measured, int bins)
   result.edges.resize(bins + 1);
   for (int i = 0; i <= bins; ++i)
   {
-    const double part = static_cast<double>(i) / bins;
-    result.edges[i] = (1 - part) * low + part * high;
+    const double fraction = static_cast<double>(i) / bins;
+    result.edges[i] = (1 - fraction) * low + fraction * high;
   }
   const double width = high / bins - low / bins;
   for (double q : measured)
