@@ -133,7 +133,7 @@ void vtkMeshOptimizer::Setup::setObjectives(
     {
       const Row& row = self->Rows[i];
       objectives[i].metric = static_cast<tautline::Metric>(row.metric);
-      objectives[i].form = static_cast<tautline::ObjectiveTemplate>(row.form);
+      objectives[i].objectiveTemplate = static_cast<tautline::ObjectiveTemplate>(row.form);
       objectives[i].weight = row.weight;
       objectives[i].evaluation.targets = this->target(self, block, row.target);
     }

@@ -13,7 +13,7 @@ const char* describe(StopReason reason)
     case StopReason::TwoDigits:
       return "The mean qualities keep two decimals.";
     case StopReason::Reduction:
-      return "The wanted part of the possible reduction is reached.";
+      return "The requested fraction of the possible reduction is reached.";
     case StopReason::AllValid:
       return "All elements are valid.";
     case StopReason::IterationLimit:

@@ -19,7 +19,7 @@ enum class StopReason : int
   GradientNorm = 0,   ///< the gradient is small enough
   RelativeChange = 1, ///< the objective hardly changes any more
   TwoDigits = 2,      ///< mean qualities agree with the previous iteration's to two decimals
-  Reduction = 3,      ///< the wanted fraction of the possible reduction is reached
+  Reduction = 3,      ///< the requested fraction of the possible reduction is reached
   AllValid = 4,       ///< no element is inverted or degenerate
   IterationLimit = 5,
   TimeLimit = 6,
@@ -44,7 +44,7 @@ struct IterationRecord
   Index moving = 0;        ///< vertices that still move (local algorithms with culling)
 };
 
-/// What an observer is told after each iteration.
+/// What observers receive after each iteration.
 struct IterationState
 {
   const IterationRecord& record;

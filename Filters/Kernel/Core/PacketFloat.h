@@ -106,7 +106,7 @@ inline bool anyOf(FloatMask mask)
 #endif
 }
 
-/// The least element.
+/// The smallest element.
 inline float least(FloatPacket x)
 {
 #if defined(__AVX512F__)

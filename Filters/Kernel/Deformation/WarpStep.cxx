@@ -261,9 +261,9 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   optimization.objectives.assign(2, Objective());
   Objective &shape = optimization.objectives[0], &other = optimization.objectives[1];
   shape.metric = Metric::ShapeSimilarity;
-  shape.form = ObjectiveTemplate::SumOfSquares;
+  shape.objectiveTemplate = ObjectiveTemplate::SumOfSquares;
   shape.evaluation.targets = &targets;
-  other.form = ObjectiveTemplate::SumOfSquares;
+  other.objectiveTemplate = ObjectiveTemplate::SumOfSquares;
   if (aim == Aim::Barrier)
   {
     constexpr int few = 10, enough = 20;

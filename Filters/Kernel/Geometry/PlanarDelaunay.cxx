@@ -160,7 +160,7 @@ int Triangulation::cornerOf(Index t, Index p) const
   return points[0] == p ? 0 : points[1] == p ? 1 : 2;
 }
 
-/// Tells a neighbour that the triangle beside it is another one now.
+/// Replaces a triangle in the list of a neighbour.
 void Triangulation::link(Index t, Index other, Index formerly)
 {
   if (other >= 0)

@@ -19,7 +19,7 @@ enum class Fault
   None,
   Zero,        ///< q = 0
   NotPositive, ///< q <= 0
-  Jacobian     ///< a corner Jacobian that is not positive, which q does not tell
+  Jacobian     ///< a corner Jacobian that is not positive, which q does not show
 };
 
 /// The lanes with a corner Jacobian that is not positive, by the measure of Mesh::classifyCells().
@@ -88,7 +88,7 @@ struct ScaledSums
 /// The terms of an objective on the elements of a mesh.
 struct ElementFunction
 {
-  ObjectiveTemplate form;
+  ObjectiveTemplate objectiveTemplate;
   double power;
   double sign; ///< -1 where larger is better
   Fault fault;
@@ -121,16 +121,16 @@ struct ElementFunction
   }
 
   /// The term of a sum and its derivative by q.
-  template <ObjectiveTemplate Form>
+  template <ObjectiveTemplate Template>
   void term(const BatchContext& context, const Batch& batch, Packet& value, Packet& slope) const
   {
     const Packet q = batch.value;
-    if constexpr (Form == ObjectiveTemplate::SumOfSquares)
+    if constexpr (Template == ObjectiveTemplate::SumOfSquares)
     {
       value = q * q;
       slope = 2.0 * q;
     }
-    else if constexpr (Form == ObjectiveTemplate::Sum)
+    else if constexpr (Template == ObjectiveTemplate::Sum)
     {
       value = this->sign * q;
       slope = broadcast(this->sign);
@@ -138,15 +138,15 @@ struct ElementFunction
     else
     {
       const Packet inverse = 1.0 / q;
-      const bool squared = Form == ObjectiveTemplate::SumOfSquaredReciprocals;
+      const bool squared = Template == ObjectiveTemplate::SumOfSquaredReciprocals;
       value = squared ? Packet(inverse * inverse) : inverse;
       slope = squared ? Packet(-2.0 * value * inverse) : Packet(-inverse * inverse);
     }
     if (this->fault != Fault::None)
     {
-      const Mask bad = this->faults(context, batch);
-      value = select(bad, broadcast(HUGE_VAL), value);
-      slope = select(bad, Packet{}, slope);
+      const Mask faulty = this->faults(context, batch);
+      value = select(faulty, broadcast(HUGE_VAL), value);
+      slope = select(faulty, Packet{}, slope);
     }
     if (this->weights)
     {
@@ -159,11 +159,11 @@ struct ElementFunction
 
   /// What is averaged by PowerMean (|q|^s) or put into the exponent by Maximum (k s q), and its
   /// derivative by q.
-  template <ObjectiveTemplate Form>
+  template <ObjectiveTemplate Template>
   void exponent(const BatchContext& context, const Batch& batch, Packet& y, Packet& dy) const
   {
     const Packet q = batch.value;
-    if constexpr (Form == ObjectiveTemplate::Maximum)
+    if constexpr (Template == ObjectiveTemplate::Maximum)
     {
       y = this->power * this->sign * q;
       dy = broadcast(this->power * this->sign);
@@ -178,16 +178,16 @@ struct ElementFunction
       y = 1.0 / abs(q);
       dy = -y * y * signOf(q);
     }
-    const Mask bad = this->faults(context, batch);
-    y = select(bad, broadcast(HUGE_VAL), y);
-    dy = select(bad, Packet{}, finiteOrZero(dy));
+    const Mask faulty = this->faults(context, batch);
+    y = select(faulty, broadcast(HUGE_VAL), y);
+    dy = select(faulty, Packet{}, finiteOrZero(dy));
   }
 
   /// The factor a term takes when the unit of the others changes.
-  template <ObjectiveTemplate Form>
+  template <ObjectiveTemplate Template>
   Packet scaled(Packet y, Packet unit) const
   {
-    if constexpr (Form == ObjectiveTemplate::Maximum)
+    if constexpr (Template == ObjectiveTemplate::Maximum)
     {
       return select(y > -HUGE_VAL, each(y - unit, [](double x) { return std::exp(x); }), Packet{});
     }
@@ -198,24 +198,25 @@ struct ElementFunction
   }
 
   /// Adds the terms of PowerMean and Maximum, in units of the largest so far.
-  template <ObjectiveTemplate Form>
+  template <ObjectiveTemplate Template>
   void addScaled(const BatchContext& context, const Batch& batch, ScaledSums& total) const
   {
     Packet y, dy;
-    this->exponent<Form>(context, batch, y, dy);
+    this->exponent<Template>(context, batch, y, dy);
     const Packet w = onlyCells(batch, this->weightsOf(batch));
     y = select(w > 0.0, y, broadcast(-HUGE_VAL));
     if (any(y > total.unit))
     {
       const Packet unit = max(total.unit, y);
-      total.sum *= select(unit > total.unit, this->scaled<Form>(total.unit, unit), broadcast(1.0));
+      total.sum *=
+        select(unit > total.unit, this->scaled<Template>(total.unit, unit), broadcast(1.0));
       total.unit = unit;
     }
-    total.sum += select(w > 0.0, w * this->scaled<Form>(y, total.unit), Packet{});
+    total.sum += select(w > 0.0, w * this->scaled<Template>(y, total.unit), Packet{});
   }
 
   /// The objective, from the scaled sums of its chunks in their order.
-  template <ObjectiveTemplate Form>
+  template <ObjectiveTemplate Template>
   double combine(const std::vector<ScaledSums>& totals) const
   {
     double unit = -HUGE_VAL;
@@ -233,9 +234,9 @@ struct ElementFunction
     LaneSums sum;
     for (const ScaledSums& t : totals)
     {
-      sum.lanes += t.sum * this->scaled<Form>(t.unit, broadcast(unit));
+      sum.lanes += t.sum * this->scaled<Template>(t.unit, broadcast(unit));
     }
-    if constexpr (Form == ObjectiveTemplate::Maximum)
+    if constexpr (Template == ObjectiveTemplate::Maximum)
     {
       return (unit + std::log(sum.sum())) / this->power;
     }
@@ -243,16 +244,16 @@ struct ElementFunction
   }
 
   /// dF/dq of PowerMean or Maximum whose value is F.
-  template <ObjectiveTemplate Form>
+  template <ObjectiveTemplate Template>
   Packet slopeOf(const BatchContext& context, const Batch& batch, double F) const
   {
     Packet y, dy;
-    this->exponent<Form>(context, batch, y, dy);
+    this->exponent<Template>(context, batch, y, dy);
     const Packet w = this->weightsOf(batch);
     Packet factor; // dF/dy
-    if constexpr (Form == ObjectiveTemplate::Maximum)
+    if constexpr (Template == ObjectiveTemplate::Maximum)
     {
-      factor = 1.0 / this->power * this->scaled<Form>(y, broadcast(this->power * F));
+      factor = 1.0 / this->power * this->scaled<Template>(y, broadcast(this->power * F));
     }
     else
     {
@@ -266,16 +267,16 @@ struct ElementFunction
    * @brief The share of each element in a PowerMean or Maximum of value F, and its derivative by q:
    * the shares add up to 1 where the mean is F.
    */
-  template <ObjectiveTemplate Form>
+  template <ObjectiveTemplate Template>
   void share(
     const BatchContext& context, const Batch& batch, double F, Packet& value, Packet& slope) const
   {
     Packet y, dy;
-    this->exponent<Form>(context, batch, y, dy);
+    this->exponent<Template>(context, batch, y, dy);
     const Packet w = this->weightsOf(batch);
-    if constexpr (Form == ObjectiveTemplate::Maximum)
+    if constexpr (Template == ObjectiveTemplate::Maximum)
     {
-      value = this->scaled<Form>(y, broadcast(this->power * F));
+      value = this->scaled<Template>(y, broadcast(this->power * F));
       slope = value * dy;
     }
     else
@@ -290,17 +291,18 @@ struct ElementFunction
   }
 
   /// dF/dq of any template; F is only looked at by PowerMean and Maximum.
-  template <ObjectiveTemplate Form>
+  template <ObjectiveTemplate Template>
   Packet slope(const BatchContext& context, const Batch& batch, double F) const
   {
-    if constexpr (Form == ObjectiveTemplate::PowerMean || Form == ObjectiveTemplate::Maximum)
+    if constexpr (Template == ObjectiveTemplate::PowerMean ||
+      Template == ObjectiveTemplate::Maximum)
     {
-      return this->slopeOf<Form>(context, batch, F);
+      return this->slopeOf<Template>(context, batch, F);
     }
     else
     {
       Packet value, slope;
-      this->term<Form>(context, batch, value, slope);
+      this->term<Template>(context, batch, value, slope);
       return slope;
     }
   }
@@ -308,10 +310,10 @@ struct ElementFunction
 
 /// Calls work with the template as a compile-time constant.
 template <class Work>
-auto withTemplate(ObjectiveTemplate form, const Work& work)
+auto withTemplate(ObjectiveTemplate objectiveTemplate, const Work& work)
 {
   using T = ObjectiveTemplate;
-  switch (form)
+  switch (objectiveTemplate)
   {
     case T::SumOfSquares:
       return work(std::integral_constant<T, T::SumOfSquares>());

@@ -134,7 +134,7 @@ void rotate(Packet (&a)[Rows][Rows], Packet (&v)[Rows][Rows], int p, int q)
 template <int Rows>
 void project(Packet* h)
 {
-  constexpr int mostSweeps = 12;
+  constexpr int maxSweeps = 12;
   constexpr double offDiagonal = 1e-8; // what is left beside the diagonal, relative to the whole
   Packet a[Rows][Rows], v[Rows][Rows] = {}, size2 = {};
   for (int i = 0; i < Rows; ++i)
@@ -146,7 +146,7 @@ void project(Packet* h)
       size2 += a[i][j] * a[i][j];
     }
   }
-  for (int sweep = 0; sweep < mostSweeps; ++sweep)
+  for (int sweep = 0; sweep < maxSweeps; ++sweep)
   {
     Packet rest2 = {};
     for (int i = 1; i < Rows; ++i)
@@ -176,13 +176,13 @@ void project(Packet* h)
   }
   // The columns of v are orthonormal however far the sweeps came: what they give is never
   // indefinite.
-  Packet positive[Rows], least = {};
+  Packet positive[Rows], smallest = {};
   for (int k = 0; k < Rows; ++k)
   {
-    least = min(least, a[k][k]);
+    smallest = min(smallest, a[k][k]);
     positive[k] = max(a[k][k], Packet{});
   }
-  const Mask indefinite = least < 0.0;
+  const Mask indefinite = smallest < 0.0;
   for (int i = 0; i < Rows; ++i)
   {
     for (int j = 0; j <= i; ++j)
@@ -285,16 +285,18 @@ void makeHessians(const ObjectiveSum& objective, const Place& place, const Work&
 {
   const ObjectiveSumState& sum = objective.state();
   const ElementSum& elements = sum.elements;
-  const ObjectiveTemplate form = sum.function.form;
-  const bool scaled = form == ObjectiveTemplate::PowerMean || form == ObjectiveTemplate::Maximum;
+  const ObjectiveTemplate objectiveTemplate = sum.function.objectiveTemplate;
+  const bool scaled = objectiveTemplate == ObjectiveTemplate::PowerMean ||
+    objectiveTemplate == ObjectiveTemplate::Maximum;
   const double F = scaled ? objective.value() : 0.0;
   // Called through a pointer: one body for all templates.
-  using SlopeOfForm = Packet (ElementFunction::*)(const BatchContext&, const Batch&, double) const;
-  const SlopeOfForm slopeOfForm = withTemplate(form,
-    [](auto formOfSum) -> SlopeOfForm
+  using SlopeOfTemplate =
+    Packet (ElementFunction::*)(const BatchContext&, const Batch&, double) const;
+  const SlopeOfTemplate slopeOfTemplate = withTemplate(objectiveTemplate,
+    [](auto formOfSum) -> SlopeOfTemplate
     { return &ElementFunction::slope<decltype(formOfSum)::value>; });
   const auto slope = [&](const BatchContext& context, const Batch& batch)
-  { return (sum.function.*slopeOfForm)(context, batch, F); };
+  { return (sum.function.*slopeOfTemplate)(context, batch, F); };
   elements.forEachChunk(
     [&](Index i)
     {

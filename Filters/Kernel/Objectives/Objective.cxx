@@ -7,9 +7,9 @@ namespace tautline
 {
 namespace
 {
-bool isIn(ObjectiveTemplate form, std::initializer_list<ObjectiveTemplate> forms)
+bool isIn(ObjectiveTemplate objectiveTemplate, std::initializer_list<ObjectiveTemplate> templates)
 {
-  return std::find(forms.begin(), forms.end(), form) != forms.end();
+  return std::find(templates.begin(), templates.end(), objectiveTemplate) != templates.end();
 }
 }
 
@@ -30,12 +30,14 @@ bool canUntangle(const Objective& objective)
 {
   using T = ObjectiveTemplate;
   const MetricInfo& info = metricInfo(objective.metric);
-  const T form = objective.form == T::Default ? defaultTemplate(objective.metric) : objective.form;
+  const T objectiveTemplate = objective.objectiveTemplate == T::Default
+    ? defaultTemplate(objective.metric)
+    : objective.objectiveTemplate;
   if (info.inverted == InvertedValue::Larger)
   {
-    return isIn(form, { T::SumOfSquares, T::Sum, T::PowerMean, T::Maximum });
+    return isIn(objectiveTemplate, { T::SumOfSquares, T::Sum, T::PowerMean, T::Maximum });
   }
   return info.inverted == InvertedValue::Negative && info.direction == Direction::LargerIsBetter &&
-    isIn(form, { T::Sum, T::Maximum });
+    isIn(objectiveTemplate, { T::Sum, T::Maximum });
 }
 }

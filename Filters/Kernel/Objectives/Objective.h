@@ -55,7 +55,7 @@ enum class ObjectiveTemplate : int
 struct Objective
 {
   Metric metric = Metric::InverseMeanRatio;
-  ObjectiveTemplate form = ObjectiveTemplate::Default;
+  ObjectiveTemplate objectiveTemplate = ObjectiveTemplate::Default;
   /// Weight of the objective in the scalarizations that take weights; above 0.
   double weight = 1.0;
   /// p of PowerMean (at least 1), k of Maximum (above 0, in the inverse unit of the metric).

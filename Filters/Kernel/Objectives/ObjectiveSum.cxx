@@ -10,16 +10,16 @@ namespace tautline
 {
 namespace
 {
-bool isIn(ObjectiveTemplate form, std::initializer_list<ObjectiveTemplate> forms)
+bool isIn(ObjectiveTemplate objectiveTemplate, std::initializer_list<ObjectiveTemplate> templates)
 {
-  return std::find(forms.begin(), forms.end(), form) != forms.end();
+  return std::find(templates.begin(), templates.end(), objectiveTemplate) != templates.end();
 }
 
 Objective resolved(Objective objective, int threads)
 {
-  if (objective.form == ObjectiveTemplate::Default)
+  if (objective.objectiveTemplate == ObjectiveTemplate::Default)
   {
-    objective.form = defaultTemplate(objective.metric);
+    objective.objectiveTemplate = defaultTemplate(objective.metric);
   }
   objective.evaluation.threads = threads > 0 ? threads : objective.evaluation.threads;
   return objective;
@@ -30,18 +30,18 @@ void checkForm(const Objective& objective)
   const MetricInfo& info = metricInfo(objective.metric);
   const std::string label = info.label;
   using T = ObjectiveTemplate;
-  const int number = static_cast<int>(objective.form);
+  const int number = static_cast<int>(objective.objectiveTemplate);
   if (number < 0 || number > static_cast<int>(T::Maximum))
   {
     throw Error("There is no objective template number " + std::to_string(number) + ".");
   }
-  if (objective.form == T::SumOfSquares && info.direction == Direction::LargerIsBetter)
+  if (objective.objectiveTemplate == T::SumOfSquares && info.direction == Direction::LargerIsBetter)
   {
     throw Error("A larger value of \"" + label +
       "\" is better: lowering the sum of its squares would spoil the mesh. Choose a sum of "
       "reciprocals.");
   }
-  if (isIn(objective.form, { T::SumOfReciprocals, T::SumOfSquaredReciprocals }) &&
+  if (isIn(objective.objectiveTemplate, { T::SumOfReciprocals, T::SumOfSquaredReciprocals }) &&
     info.direction == Direction::SmallerIsBetter)
   {
     throw Error("A smaller value of \"" + label +
@@ -52,11 +52,13 @@ void checkForm(const Objective& objective)
   {
     throw Error("The weight of an objective must be above 0 and finite.");
   }
-  if (objective.form == T::PowerMean && !(objective.power >= 1 && std::isfinite(objective.power)))
+  if (objective.objectiveTemplate == T::PowerMean &&
+    !(objective.power >= 1 && std::isfinite(objective.power)))
   {
     throw Error("The power of a power mean must be at least 1 and finite.");
   }
-  if (objective.form == T::Maximum && !(objective.power > 0 && std::isfinite(objective.power)))
+  if (objective.objectiveTemplate == T::Maximum &&
+    !(objective.power > 0 && std::isfinite(objective.power)))
   {
     throw Error("The sharpness of a smooth maximum must be above 0 and finite.");
   }
@@ -68,18 +70,18 @@ Fault faultOf(const Objective& objective)
   using T = ObjectiveTemplate;
   if (info.barrier)
   {
-    // Only a sign tells inverted elements where no valid element comes near 0.
+    // Only the sign shows inverted elements where no valid element comes near 0.
     const bool separated =
       (!info.in2D || info.full2D.low > 0) && (!info.in3D || info.full3D.low > 0);
     return separated && info.inverted == InvertedValue::Negative ? Fault::NotPositive
                                                                  : Fault::Jacobian;
   }
-  if (objective.form == T::SumOfSquaredReciprocals ||
-    (objective.form == T::PowerMean && info.direction == Direction::LargerIsBetter))
+  if (objective.objectiveTemplate == T::SumOfSquaredReciprocals ||
+    (objective.objectiveTemplate == T::PowerMean && info.direction == Direction::LargerIsBetter))
   {
     return Fault::NotPositive;
   }
-  return objective.form == T::SumOfReciprocals ? Fault::Zero : Fault::None;
+  return objective.objectiveTemplate == T::SumOfReciprocals ? Fault::Zero : Fault::None;
 }
 }
 
@@ -118,7 +120,7 @@ ObjectiveSumState::ObjectiveSumState(const Mesh& mesh, const Objective& given, i
   {
     throw Error("The weights of all elements are 0: nothing is left to minimise.");
   }
-  this->function = { this->objective.form, this->objective.power,
+  this->function = { this->objective.objectiveTemplate, this->objective.power,
     info.direction == Direction::LargerIsBetter ? -1.0 : 1.0, faultOf(this->objective), weights,
     total };
 }
@@ -128,21 +130,22 @@ template <bool WithGradient>
 double ObjectiveSumState::run(double scale, double* gradient) const
 {
   const ElementFunction& f = this->function;
-  return withTemplate(f.form,
-    [&](auto form)
+  return withTemplate(f.objectiveTemplate,
+    [&](auto objectiveTemplate)
     {
-      constexpr ObjectiveTemplate Form = decltype(form)::value;
-      if constexpr (Form == ObjectiveTemplate::PowerMean || Form == ObjectiveTemplate::Maximum)
+      constexpr ObjectiveTemplate Template = decltype(objectiveTemplate)::value;
+      if constexpr (Template == ObjectiveTemplate::PowerMean ||
+        Template == ObjectiveTemplate::Maximum)
       {
-        const double F = f.combine<Form>(this->elements.run<false, ScaledSums>(
+        const double F = f.combine<Template>(this->elements.run<false, ScaledSums>(
           [&f](const BatchContext& context, const Batch& batch, ScaledSums& total, Packet&)
-          { f.addScaled<Form>(context, batch, total); },
+          { f.addScaled<Template>(context, batch, total); },
           nullptr));
         if (WithGradient && std::isfinite(F))
         {
           this->elements.run<true, LaneSums>([&f, F, scale](const BatchContext& context,
                                                const Batch& batch, LaneSums&, Packet& slope)
-            { slope = scale * f.slopeOf<Form>(context, batch, F); },
+            { slope = scale * f.slopeOf<Template>(context, batch, F); },
             gradient);
         }
         return F;
@@ -154,7 +157,7 @@ double ObjectiveSumState::run(double scale, double* gradient) const
             const BatchContext& context, const Batch& batch, LaneSums& total, Packet& slope)
           {
             Packet value;
-            f.term<Form>(context, batch, value, slope);
+            f.term<Template>(context, batch, value, slope);
             slope *= scale;
             total.lanes += onlyCells(batch, value);
           },

@@ -7,9 +7,9 @@ namespace tautline
 {
 namespace
 {
-constexpr int mostRounds = 20;
+constexpr int maxRounds = 20;
 constexpr int sweepsPerRound = 4;
-/// A round that lowers the worst value by less than this part is the last.
+/// A round that lowers the worst value by less than this fraction is the last.
 constexpr double worthwhile = 1e-3;
 /// p: elements at 0.8 of the worst value have a thousandth of its share.
 constexpr double power = 32;
@@ -29,7 +29,7 @@ public:
       return;
     }
     Objective mean = problem.sum(0).objective();
-    mean.form = ObjectiveTemplate::PowerMean;
+    mean.objectiveTemplate = ObjectiveTemplate::PowerMean;
     mean.power = power;
     this->Sum = &problem.sum(0);
     this->Mean = std::make_unique<ObjectiveSum>(problem.moving(), mean, problem.options().threads);
@@ -76,7 +76,7 @@ void improveWorst(OptimizationProblem& problem, double allowance,
   const Direction direction = metricInfo(problem.options().objectives[0].metric).direction;
   const bool larger = direction == Direction::LargerIsBetter;
   const IterationRecord start = problem.record(0);
-  double worst = problem.worstMovable(); // elements that cannot move hold nobody up
+  double worst = problem.worstMovable(); // elements that cannot move do not count
   if (!std::isfinite(worst))
   {
     return;
@@ -88,7 +88,7 @@ void improveWorst(OptimizationProblem& problem, double allowance,
   SimplexMesh& simplices = problem.simplices();
   const std::size_t size = VertexStride * static_cast<std::size_t>(simplices.freeVertices());
   std::vector<double> best(simplices.coordinates(), simplices.coordinates() + size);
-  for (int round = 0; round < mostRounds && !problem.outOfTime(); ++round)
+  for (int round = 0; round < maxRounds && !problem.outOfTime(); ++round)
   {
     const WorstObjectives objectives(problem, worst);
     LocalOptions options = problem.localOptions();

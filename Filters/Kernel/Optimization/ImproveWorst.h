@@ -14,7 +14,7 @@ namespace tautline
  * elements near the worst feel the second sum. Stops when the worst value no longer falls, or the
  * mean has risen by `allowance` of itself. The first objective's metric is q; meshes of cells with
  * several corners and other metrics take the p-mean in place of the second sum.
- * @param report is told of each sweep that helped; returns false to stop
+ * @param report called after each round that improved the mesh; returns false to stop
  */
 void improveWorst(OptimizationProblem& problem, double allowance,
   const std::function<bool(const IterationRecord&)>& report);

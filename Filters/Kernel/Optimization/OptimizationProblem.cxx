@@ -192,10 +192,10 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
       total.valid = end - begin - total.invalid;
       total.shape = sumOf(shape);
       total.shape2 = sumOf(shape2);
-      total.worst = -leastOf(-worst);
+      total.worst = -minOf(-worst);
       total.size = sumOf(size);
       total.size2 = sumOf(size2);
-      total.largest = -leastOf(-largest);
+      total.largest = -minOf(-largest);
     });
   SimplexTotals total;
   for (const SimplexTotals& t : ofChunk)
@@ -226,9 +226,9 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   const Targets* targets = nullptr;
   for (Objective& objective : this->Resolved)
   {
-    objective.form = objective.form == ObjectiveTemplate::Default
+    objective.objectiveTemplate = objective.objectiveTemplate == ObjectiveTemplate::Default
       ? defaultTemplate(objective.metric)
-      : objective.form;
+      : objective.objectiveTemplate;
     objective.evaluation.threads = options.threads;
     if (!targets && objective.evaluation.targets &&
       objective.evaluation.targets->metricRoots.empty())
@@ -309,16 +309,20 @@ LocalTerm OptimizationProblem::fastTerm(const Objective& objective) const
     return term;
   }
   using T = ObjectiveTemplate;
-  const T form = objective.form;
+  const T objectiveTemplate = objective.objectiveTemplate;
   if (objective.metric == Metric::InverseMeanRatio)
   {
-    term.shapePower = form == T::SumOfSquares ? 2 : form == T::Sum ? 1 : 0;
+    term.shapePower = objectiveTemplate == T::SumOfSquares ? 2
+      : objectiveTemplate == T::Sum                        ? 1
+                                                           : 0;
   }
   else if (objective.metric == Metric::MeanRatio)
   {
-    term.shapePower = form == T::SumOfSquaredReciprocals ? 2 : form == T::SumOfReciprocals ? 1 : 0;
+    term.shapePower = objectiveTemplate == T::SumOfSquaredReciprocals ? 2
+      : objectiveTemplate == T::SumOfReciprocals                      ? 1
+                                                                      : 0;
   }
-  else if (objective.metric == Metric::Size && form == T::SumOfSquares &&
+  else if (objective.metric == Metric::Size && objectiveTemplate == T::SumOfSquares &&
     !objective.evaluation.targets && this->Simplices->uniform() && !this->Simplices->surface())
   {
     // V = size of the ideal cell x D, in units of the simplices' scale.
@@ -424,7 +428,7 @@ void OptimizationProblem::rescaleUntangling()
     constexpr double margin = 1.1;
     const double factor = margin * others / own;
     const double weight =
-      objective.form == ObjectiveTemplate::SumOfSquares ? factor * factor : factor;
+      objective.objectiveTemplate == ObjectiveTemplate::SumOfSquares ? factor * factor : factor;
     this->Weights[i].resize(cells);
     for (Index cell = 0; cell < cells; ++cell)
     {

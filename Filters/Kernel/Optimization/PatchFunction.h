@@ -95,7 +95,7 @@ public:
 
   double objective(double value, double change) const override
   {
-    switch (this->Sum.function.form)
+    switch (this->Sum.function.objectiveTemplate)
     {
       case ObjectiveTemplate::PowerMean: // the patch sum is in units of value^p
         return value * std::pow(std::max(0.0, 1.0 + change), 1.0 / this->Sum.function.power);
@@ -109,9 +109,9 @@ public:
   double slope(double value) const override
   {
     const ElementFunction& function = this->Sum.function;
-    return function.form == ObjectiveTemplate::PowerMean ? value / function.power
-      : function.form == ObjectiveTemplate::Maximum      ? 1.0 / function.power
-                                                         : 1.0;
+    return function.objectiveTemplate == ObjectiveTemplate::PowerMean ? value / function.power
+      : function.objectiveTemplate == ObjectiveTemplate::Maximum      ? 1.0 / function.power
+                                                                      : 1.0;
   }
 
   double value(const VertexPatch<Dim>& patch, const double* d) const override
@@ -137,10 +137,10 @@ public:
     PatchSum<Dim> result = this->gradient(patch, d);
     if (hessian)
     {
-      // By differences of the gradient, over a small part of the patch's size; one-sided ones are
+      // By differences of the gradient, over a small fraction of the patch's size; one-sided ones are
       // enough for a direction.
-      constexpr double part = 1e-6;
-      const double h = part * sizeOf(patch.simplices);
+      constexpr double fraction = 1e-6;
+      const double h = fraction * sizeOf(patch.simplices);
       for (int r = 0; r < Dim; ++r)
       {
         double forth[Dim];
@@ -193,17 +193,18 @@ private:
     evaluator(context, batch);
     batch.value = finiteOrZero(batch.value);
     const ElementFunction& function = this->Sum.function;
-    withTemplate(function.form,
-      [&](auto form)
+    withTemplate(function.objectiveTemplate,
+      [&](auto objectiveTemplate)
       {
-        constexpr ObjectiveTemplate Form = decltype(form)::value;
-        if constexpr (Form == ObjectiveTemplate::PowerMean || Form == ObjectiveTemplate::Maximum)
+        constexpr ObjectiveTemplate Template = decltype(objectiveTemplate)::value;
+        if constexpr (Template == ObjectiveTemplate::PowerMean ||
+          Template == ObjectiveTemplate::Maximum)
         {
-          function.template share<Form>(context, batch, this->Current, value, slope);
+          function.template share<Template>(context, batch, this->Current, value, slope);
         }
         else
         {
-          function.template term<Form>(context, batch, value, slope);
+          function.template term<Template>(context, batch, value, slope);
         }
       });
     value = onlyCells(batch, value);

@@ -9,21 +9,21 @@ namespace tautline
 namespace
 {
 constexpr int maximumHalvings = 12;
-/// Part of the way to the first inversion that a step may go.
+/// Fraction of the way to the first inversion that a step may go.
 constexpr double safety = 0.9;
-/// Changes above this part of an objective are seen by the scalarization itself, not by its slope.
+/// Changes above this fraction of an objective are seen by the scalarization itself, not by its slope.
 constexpr double visibleChange = 1e-6;
 
 /// A unit vector at a right angle to n, and the third.
 void tangentsOf(const Vec3& n, Vec3* tangents)
 {
-  int least = 0;
+  int smallest = 0;
   for (int c = 1; c < 3; ++c)
   {
-    least = std::abs(n[c]) < std::abs(n[least]) ? c : least;
+    smallest = std::abs(n[c]) < std::abs(n[smallest]) ? c : smallest;
   }
   Vec3 axis = { 0, 0, 0 };
-  axis[least] = 1.0;
+  axis[smallest] = 1.0;
   const Vec3 t = cross(n, axis);
   tangents[0] = (1.0 / norm(t)) * t;
   tangents[1] = cross(n, tangents[0]);
@@ -466,8 +466,8 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
   {
     return 0.0;
   }
-  constexpr double part = 1e-4;
-  const double h = part * sizeOf(w.patch.simplices) / std::sqrt(length2);
+  constexpr double fraction = 1e-4;
+  const double h = fraction * sizeOf(w.patch.simplices) / std::sqrt(length2);
   double probe[Dim], slopeHere = 0, slopeThere = 0;
   for (int c = 0; c < Dim; ++c)
   {
@@ -483,7 +483,7 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
     slopeThere += direction[c] * there.g[c];
   }
   const double curvature = (slopeThere - slopeHere) / h;
-  return good && curvature > 0 ? -slopeHere / curvature : h / part;
+  return good && curvature > 0 ? -slopeHere / curvature : h / fraction;
 }
 
 //------------------------------------------------------------------------------
@@ -637,13 +637,13 @@ bool VertexOptimizer<Dim>::placeOnSurface(
     w.sums[i].f = old[i];
   }
   const double infinity = std::numeric_limits<double>::infinity();
-  double least = infinity;
+  double smallest = infinity;
   for (int i = 0; i < w.patch.simplices.count; ++i)
   {
     const PatchPacket<Dim>& p = w.patch.simplices.packets[i];
-    least = std::min(least, leastOf(p.D0));
+    smallest = std::min(smallest, minOf(p.D0));
   }
-  const bool upright = this->Options.allowInversion || least > 0;
+  const bool upright = this->Options.allowInversion || smallest > 0;
   if (!upright || !(this->changeAt(scalarizer, w, zero) < 0))
   {
     this->place(v, before);

@@ -101,14 +101,14 @@ inline double sumOf(Packet x)
   return two[0] + two[1];
 }
 
-inline double leastOf(Packet x)
+inline double minOf(Packet x)
 {
-  double least = x[0];
+  double smallest = x[0];
   for (int l = 1; l < PacketWidth; ++l)
   {
-    least = x[l] < least ? x[l] : least;
+    smallest = x[l] < smallest ? x[l] : smallest;
   }
-  return least;
+  return smallest;
 }
 
 /// A length of the patch's size: of its first simplex that counts, some edge lengths.
@@ -391,7 +391,7 @@ double valueOver(const Patch<Dim>& patch, const double* d, const Energy& energy)
 template <int Dim>
 double stepToInversion(const Patch<Dim>& patch, const double* d, const double* s)
 {
-  Packet least = broadcast(std::numeric_limits<double>::infinity());
+  Packet smallest = broadcast(std::numeric_limits<double>::infinity());
   for (int i = 0; i < patch.count; ++i)
   {
     const PatchPacket<Dim>& p = patch.packets[i];
@@ -401,9 +401,9 @@ double stepToInversion(const Patch<Dim>& patch, const double* d, const double* s
       rate += s[c] * p.n[c];
       D -= d[c] * p.n[c];
     }
-    least = select((rate > 0.0) & (D > 0.0) & (D < least * rate), D / rate, least);
+    smallest = select((rate > 0.0) & (D > 0.0) & (D < smallest * rate), D / rate, smallest);
   }
-  return leastOf(least);
+  return minOf(smallest);
 }
 
 /// The Newton direction -H^-1 g, with H made positive definite where it is not.

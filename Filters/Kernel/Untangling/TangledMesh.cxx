@@ -85,7 +85,7 @@ template <int Dim>
 PatchState TangledMesh<Dim>::examine(const Patch<Dim>& patch, const double* d) const
 {
   Packet invalid = {}, size = {}, count = {};
-  Packet least = broadcast(std::numeric_limits<double>::infinity());
+  Packet smallest = broadcast(std::numeric_limits<double>::infinity());
   for (int i = 0; i < patch.count; ++i)
   {
     const PatchPacket<Dim>& p = patch.packets[i];
@@ -94,13 +94,13 @@ PatchState TangledMesh<Dim>::examine(const Patch<Dim>& patch, const double* d) c
     const Mask counts = p.weight > 0.0;
     const Mask isInvalid = ~(D > this->Margin * sizeOf<Dim>(N)) & counts;
     invalid += select(isInvalid, broadcast(1.0), Packet{});
-    least = select((D < least) & counts, D, least);
+    smallest = select((D < smallest) & counts, D, smallest);
     size += p.weight * abs(D);
     count += p.weight;
   }
   PatchState state;
   state.invalid = static_cast<int>(sumOf(invalid));
-  state.minDeterminant = leastOf(least);
+  state.minDeterminant = minOf(smallest);
   state.meanDeterminant = sumOf(size) / std::max(1.0, sumOf(count));
   return state;
 }
@@ -325,7 +325,7 @@ bool TangledMesh<Dim>::relax(
 }
 
 //------------------------------------------------------------------------------
-/// The Chebyshev centre of the places where all simplices of the patch are valid, or of the least
+/// The Chebyshev centre of the places where all simplices of the patch are valid, or of the smallest
 /// violation; as a displacement, 0 if nothing bounds it.
 template <int Dim>
 void TangledMesh<Dim>::patchCenter(const Patch<Dim>& patch, std::array<double, Dim>& center) const

@@ -368,13 +368,13 @@ void Untangler<Dim>::untangleGlobally()
 {
   constexpr double ofWorst = 0.1, few = 0.002;
   const std::vector<double> before = this->coordinates();
-  const double depth = ofWorst * std::abs(this->State.minDeterminant);
+  const double relativeEps = ofWorst * std::abs(this->State.minDeterminant);
 
   // A few invalid simplices: a short try that leaves the others about where they are.
   if (this->invalidFraction() < few)
   {
     Schedule brief;
-    brief.eps = std::max(depth, this->Tangled.margin());
+    brief.eps = std::max(relativeEps, this->Tangled.margin());
     brief.factor = 1.0;
     brief.solves = 2;
     brief.iterations = 8;
@@ -393,13 +393,13 @@ void Untangler<Dim>::untangleGlobally()
   {
     this->setCoordinates(before);
     Schedule usual;
-    usual.eps = std::max(usual.eps, depth);
+    usual.eps = std::max(usual.eps, relativeEps);
     this->descend(usual);
   }
   if (this->Options.effort == Effort::Thorough)
   {
     constexpr double larger = 10.0;
-    this->untangleThoroughly(before, std::max(larger * Schedule().eps, depth));
+    this->untangleThoroughly(before, std::max(larger * Schedule().eps, relativeEps));
   }
 }
 

@@ -16,11 +16,11 @@ constexpr CellType types[] = { CellType::Triangle, CellType::Quadrilateral, Cell
   CellType::Hexahedron, CellType::Wedge, CellType::Pyramid };
 using Vector = std::vector<double>;
 
-Objective make(Metric metric, ObjectiveTemplate form = ObjectiveTemplate::Default)
+Objective make(Metric metric, ObjectiveTemplate objectiveTemplate = ObjectiveTemplate::Default)
 {
   Objective objective;
   objective.metric = metric;
-  objective.form = form;
+  objective.objectiveTemplate = objectiveTemplate;
   objective.evaluation.threads = 1;
   return objective;
 }
@@ -60,7 +60,7 @@ void testDifferences()
   struct Case
   {
     Metric metric;
-    ObjectiveTemplate form;
+    ObjectiveTemplate objectiveTemplate;
   };
   using T = ObjectiveTemplate;
   const Case cases[] = { { Metric::InverseMeanRatio, T::SumOfSquares },
@@ -88,7 +88,7 @@ void testDifferences()
         }
         Mesh mesh(data.view());
         mesh.setMirrored(mirrored);
-        const ObjectiveSum sum(mesh, make(c.metric, c.form));
+        const ObjectiveSum sum(mesh, make(c.metric, c.objectiveTemplate));
         TAUTLINE_CHECK(std::isfinite(sum.value()));
         ElementHessian hessian(sum, false);
         hessian.assemble();
@@ -155,15 +155,16 @@ void testTangled()
       {
         continue;
       }
-      for (int form = 0; form <= static_cast<int>(ObjectiveTemplate::Maximum); ++form)
+      for (int objectiveTemplate = 0;
+           objectiveTemplate <= static_cast<int>(ObjectiveTemplate::Maximum); ++objectiveTemplate)
       {
         const Context name(std::string(topology(type).plural) + ", " + info.name + ", template " +
-          std::to_string(form));
+          std::to_string(objectiveTemplate));
         std::unique_ptr<ObjectiveSum> sum;
         try
         {
           sum = std::make_unique<ObjectiveSum>(
-            mesh, make(info.metric, static_cast<ObjectiveTemplate>(form)));
+            mesh, make(info.metric, static_cast<ObjectiveTemplate>(objectiveTemplate)));
         }
         catch (const Error&)
         {

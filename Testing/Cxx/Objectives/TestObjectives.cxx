@@ -66,7 +66,7 @@ std::vector<NamedMesh> makeMeshes(double amplitude)
 }
 
 /// Whether the metric is defined on some cell of the mesh and the template fits its direction.
-bool applies(const MetricInfo& info, ObjectiveTemplate form, const Mesh& mesh)
+bool applies(const MetricInfo& info, ObjectiveTemplate objectiveTemplate, const Mesh& mesh)
 {
   bool defined = false;
   for (const CellBlock& block : mesh.blocks())
@@ -77,16 +77,17 @@ bool applies(const MetricInfo& info, ObjectiveTemplate form, const Mesh& mesh)
   }
   const bool larger = info.direction == Direction::LargerIsBetter;
   const bool smaller = info.direction == Direction::SmallerIsBetter;
-  const bool reciprocal = form == ObjectiveTemplate::SumOfSquaredReciprocals ||
-    form == ObjectiveTemplate::SumOfReciprocals;
-  return defined && (form == ObjectiveTemplate::SumOfSquares ? !larger : !reciprocal || !smaller);
+  const bool reciprocal = objectiveTemplate == ObjectiveTemplate::SumOfSquaredReciprocals ||
+    objectiveTemplate == ObjectiveTemplate::SumOfReciprocals;
+  return defined &&
+    (objectiveTemplate == ObjectiveTemplate::SumOfSquares ? !larger : !reciprocal || !smaller);
 }
 
-Objective make(Metric metric, ObjectiveTemplate form)
+Objective make(Metric metric, ObjectiveTemplate objectiveTemplate)
 {
   Objective objective;
   objective.metric = metric;
-  objective.form = form;
+  objective.objectiveTemplate = objectiveTemplate;
   objective.evaluation.parameters.beta = 0.3;
   objective.evaluation.threads = 1;
   return objective;
@@ -133,8 +134,10 @@ struct ByHand
       total += weight(i);
       largest = weight(i) > 0 ? std::max<long double>(largest, p * s * q) : largest;
       const bool fault = (info.barrier && validity[i] != Valid) ||
-        (q <= 0 && (o.form == T::SumOfSquaredReciprocals || (o.form == T::PowerMean && larger))) ||
-        (q == 0 && o.form == T::SumOfReciprocals);
+        (q <= 0 &&
+          (o.objectiveTemplate == T::SumOfSquaredReciprocals ||
+            (o.objectiveTemplate == T::PowerMean && larger))) ||
+        (q == 0 && o.objectiveTemplate == T::SumOfReciprocals);
       if (weight(i) > 0 && fault)
       {
         this->value = infinity;
@@ -153,7 +156,7 @@ struct ByHand
           continue;
         }
         long double slope = 0;
-        switch (o.form)
+        switch (o.objectiveTemplate)
         {
           case T::SumOfSquares:
             sum += w * q * q;
@@ -194,9 +197,10 @@ struct ByHand
         }
       }
     }
-    this->value = static_cast<double>(o.form == T::PowerMean ? std::pow(sum / total, 1 / p)
-        : o.form == T::Maximum                               ? (largest + std::log(sum)) / p
-                                                             : sum);
+    this->value =
+      static_cast<double>(o.objectiveTemplate == T::PowerMean ? std::pow(sum / total, 1 / p)
+          : o.objectiveTemplate == T::Maximum                 ? (largest + std::log(sum)) / p
+                                                              : sum);
   }
 };
 
@@ -215,13 +219,13 @@ void forEachObjective(const Mesh& mesh, const Work& work)
 {
   for (const MetricInfo& info : metricRegistry())
   {
-    for (ObjectiveTemplate form : templates)
+    for (ObjectiveTemplate objectiveTemplate : templates)
     {
-      if (applies(info, form, mesh))
+      if (applies(info, objectiveTemplate, mesh))
       {
-        const Context name(
-          std::string(info.name) + ", template " + std::to_string(static_cast<int>(form)));
-        work(make(info.metric, form), info);
+        const Context name(std::string(info.name) + ", template " +
+          std::to_string(static_cast<int>(objectiveTemplate)));
+        work(make(info.metric, objectiveTemplate), info);
       }
     }
   }
@@ -291,7 +295,7 @@ void testDifferences(MeshData data, double scale, int& compared, int& skipped)
     {
       objective.evaluation.parameters.beta *=
         std::pow(scale, topology(mesh.blocks()[0].type).dimension);
-      if (objective.form == ObjectiveTemplate::Maximum)
+      if (objective.objectiveTemplate == ObjectiveTemplate::Maximum)
       {
         objective.power =
           8 / std::max(1e-300, largestOf(valuesOf(mesh, objective.metric, objective.evaluation)));
@@ -342,13 +346,13 @@ void testThreads()
     for (Metric metric : { Metric::InverseMeanRatio, Metric::ConditioningScaleInvariant,
            Metric::ScaledJacobian, Metric::UntangleBeta, Metric::SizeBarrierSquared })
     {
-      for (ObjectiveTemplate form : templates)
+      for (ObjectiveTemplate objectiveTemplate : templates)
       {
-        if (!applies(metricInfo(metric), form, view))
+        if (!applies(metricInfo(metric), objectiveTemplate, view))
         {
           continue;
         }
-        const Objective objective = make(metric, form);
+        const Objective objective = make(metric, objectiveTemplate);
         std::vector<double> first(mesh.points.size(), 0.0);
         const ObjectiveSum one(view, objective, 1);
         const double value = one.addGradient(1, first.data()), firstValue = one.value();
@@ -368,11 +372,12 @@ void testThreads()
 /// What the header says of inverted and degenerate elements.
 void testFaults()
 {
-  auto value = [](const std::vector<Vec3>& corners, Metric metric, ObjectiveTemplate form)
+  auto value =
+    [](const std::vector<Vec3>& corners, Metric metric, ObjectiveTemplate objectiveTemplate)
   {
     const MeshData data = singleCell(CellType::Tetrahedron, corners);
     const Mesh mesh(data.view());
-    return ObjectiveSum(mesh, make(metric, form)).value();
+    return ObjectiveSum(mesh, make(metric, objectiveTemplate)).value();
   };
   using T = ObjectiveTemplate;
   const std::vector<Vec3> ideal = idealCell(CellType::Tetrahedron);
@@ -384,13 +389,13 @@ void testFaults()
          Metric::SizeBarrierSquared, Metric::ShapeSizeLogarithm, Metric::ShapeCubic })
   {
     const Context name(metricInfo(metric).name);
-    for (T form : { T::SumOfSquares, T::Sum, T::PowerMean, T::Maximum })
+    for (T objectiveTemplate : { T::SumOfSquares, T::Sum, T::PowerMean, T::Maximum })
     {
       // The ideal element of some has q = 0 up to rounding, and is not at fault.
-      TAUTLINE_CHECK(std::isfinite(value(ideal, metric, form)));
+      TAUTLINE_CHECK(std::isfinite(value(ideal, metric, objectiveTemplate)));
       for (const auto& bad : { inverted, flat, broken })
       {
-        TAUTLINE_CHECK_EQUAL(value(bad, metric, form), infinity);
+        TAUTLINE_CHECK_EQUAL(value(bad, metric, objectiveTemplate), infinity);
       }
     }
   }
@@ -408,21 +413,22 @@ void testFaults()
   int untangling = 0;
   for (const MetricInfo& info : metricRegistry())
   {
-    for (T form : templates)
+    for (T objectiveTemplate : templates)
     {
-      const Objective objective = make(info.metric, form);
+      const Objective objective = make(info.metric, objectiveTemplate);
       if (!canUntangle(objective) || !info.definedOn(CellType::Tetrahedron))
       {
         continue;
       }
-      const Context name(std::string(info.name) + " " + std::to_string(static_cast<int>(form)));
+      const Context name(
+        std::string(info.name) + " " + std::to_string(static_cast<int>(objectiveTemplate)));
       ++untangling;
       double last = -infinity;
       for (double height : { 0.7, 0.0, -0.2, -0.5 })
       {
         std::vector<Vec3> corners = ideal;
         corners[3][2] = height;
-        const double now = value(corners, info.metric, form);
+        const double now = value(corners, info.metric, objectiveTemplate);
         TAUTLINE_CHECK(std::isfinite(now) && now > last);
         last = now;
       }
@@ -458,7 +464,7 @@ void testStability()
     const double maximum = ObjectiveSum(mesh, objective).value();
     TAUTLINE_CHECK(
       maximum >= worst * (1 - 1e-14) && maximum <= worst + std::log(count) / power * (1 + 1e-14));
-    objective.form = ObjectiveTemplate::PowerMean;
+    objective.objectiveTemplate = ObjectiveTemplate::PowerMean;
     std::vector<double> gradient(data.points.size(), 0.0);
     const double mean = ObjectiveSum(mesh, objective).addGradient(1, gradient.data());
     TAUTLINE_CHECK(
@@ -473,9 +479,9 @@ void testErrors()
   const MeshData tets = movedBlock(CellType::Tetrahedron, 1, 0),
                  quads = movedBlock(CellType::Quadrilateral, 2, 0);
   const Mesh mesh(tets.view()), flat(quads.view());
-  auto make1 = [&](Metric metric, T form, double power = 8)
+  auto make1 = [&](Metric metric, T objectiveTemplate, double power = 8)
   {
-    Objective objective = make(metric, form);
+    Objective objective = make(metric, objectiveTemplate);
     objective.power = power;
     ObjectiveSum(mesh, objective);
   };

@@ -131,7 +131,7 @@ void testCustom()
   }();
   OptimizeOptions options;
   options.objectives.resize(2);
-  options.objectives[0].form = ObjectiveTemplate::PowerMean;
+  options.objectives[0].objectiveTemplate = ObjectiveTemplate::PowerMean;
   options.objectives[1].metric = Metric::RadiusRatio;
   options.objectives[1].weight = 3;
   for (Objective& objective : options.objectives)

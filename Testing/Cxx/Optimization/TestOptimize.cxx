@@ -223,15 +223,15 @@ void testMetrics()
         TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
       }
     }
-    for (ObjectiveTemplate form :
+    for (ObjectiveTemplate objectiveTemplate :
       { ObjectiveTemplate::Sum, ObjectiveTemplate::PowerMean, ObjectiveTemplate::Maximum })
     {
-      const Context context("template " + std::to_string(static_cast<int>(form)));
+      const Context context("template " + std::to_string(static_cast<int>(objectiveTemplate)));
       OptimizeOptions options;
-      options.objectives[0].form = form;
+      options.objectives[0].objectiveTemplate = objectiveTemplate;
       const OptimizeResult result = run(data, options);
       TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
-      if (form == ObjectiveTemplate::Maximum)
+      if (objectiveTemplate == ObjectiveTemplate::Maximum)
       {
         TAUTLINE_CHECK(result.history.back().worst[0] < result.history.front().worst[0]);
       }
@@ -382,7 +382,7 @@ void testUntanglingObjectives()
   // Beside it a shape metric: what was inverted ends as well-shaped as the rest.
   options.objectives.resize(2);
   options.objectives[1].metric = Metric::ConditioningScaleInvariant;
-  options.objectives[1].form = ObjectiveTemplate::SumOfSquaredReciprocals;
+  options.objectives[1].objectiveTemplate = ObjectiveTemplate::SumOfSquaredReciprocals;
   options.scalarization.method = Scalarization::EqualSum;
   options.stopping.relativeChange = 1e-10;
   result = run(data, options);
