@@ -16,7 +16,7 @@ using Vector = std::vector<double>;
 // Line search.
 constexpr double curvatureNewton = 0.9; // of the slope that may remain
 constexpr double curvatureConjugate = 0.2;
-constexpr int mostTrials = 40;
+constexpr int maxTrials = 40;
 constexpr double longestExtension = 100; // of the first trial step
 constexpr double extendAtLeast = 1.5, extendAtMost = 5.0;
 constexpr double bracketMargin = 0.1; // of a bracket, at its ends, that interpolation keeps off
@@ -24,15 +24,15 @@ constexpr double bracketEnd = 1e-12;
 constexpr double firstDecrease = 0.1; // of the value, that the first step of all aims at
 
 // Iterations in a row that change the value by rounding only, before there is no progress.
-constexpr int mostStalled = 3;
+constexpr int maxStalled = 3;
 constexpr double rounding = 1e-15;
 
 // Directions.
-constexpr double leastDescent = 1e-8;  // cosine between -g and a direction
+constexpr double minDescent = 1e-8;    // cosine between -g and a direction
 constexpr double restartOverlap = 0.2; // of successive gradients (Powell)
 // Early steps change the Hessian most: linearize() at iterations 0, 1, 3, 9, ...
 constexpr int refreshGrowth = 2;
-constexpr int mostInnerIterations = 200;
+constexpr int maxInnerIterations = 200;
 constexpr double loosestForcing = 0.25; // of the inner residual
 constexpr double differenceStep = 1e-7;
 
@@ -151,7 +151,7 @@ bool Minimizer::search(double first, double curvature, bool strong)
   hi.t = infinity;
   now.t = std::min(first, limit);
   bool found = false;
-  for (int trial = 0; trial < mostTrials && !found; ++trial)
+  for (int trial = 0; trial < maxTrials && !found; ++trial)
   {
     this->evaluate(now);
     const bool low = now.f <= this->F + ArmijoConstant * now.t * this->Slope && now.f <= this->F;
@@ -309,7 +309,7 @@ void Minimizer::newton()
   const double forcing = std::min(loosestForcing, std::sqrt(this->Norm / this->FirstNorm));
   this->First = 1;
   this->Fresh = false;
-  const int most = static_cast<int>(std::min<std::size_t>(2 * this->Size, mostInnerIterations));
+  const int most = static_cast<int>(std::min<std::size_t>(2 * this->Size, maxInnerIterations));
   for (int i = 0; i < most; ++i)
   {
     this->hessianTimes(d, product);
@@ -369,7 +369,7 @@ bool Minimizer::iterate()
     return false;
   }
   const double length = std::sqrt(this->dot(this->D, this->D));
-  const bool descent = this->Slope < -leastDescent * length * this->Norm;
+  const bool descent = this->Slope < -minDescent * length * this->Norm;
   bool moved = (descent || this->Fresh) && this->Slope < 0 && std::isfinite(length) &&
     this->search(this->First, curvature, conjugateGradient);
   if (!moved && !this->Fresh)
@@ -443,7 +443,7 @@ MinimizeResult Minimizer::run()
       this->Result.reason = StopReason::GradientNorm;
       return this->Result;
     }
-    if (stalled == mostStalled)
+    if (stalled == maxStalled)
     {
       this->Result.reason = StopReason::NoProgress;
       return this->Result;
@@ -463,15 +463,9 @@ MinimizeResult Minimizer::run()
 //------------------------------------------------------------------------------
 MinimizeResult minimize(SmoothFunction& function, double* x, const MinimizeOptions& options)
 {
-  switch (options.method)
+  if (!isGlobal(options.method))
   {
-    case Optimizer::ConjugateGradientFletcherReeves:
-    case Optimizer::ConjugateGradientPolakRibiere:
-    case Optimizer::LimitedMemoryBFGS:
-    case Optimizer::NewtonConjugateGradient:
-      break;
-    default:
-      throw Error("This optimizer works on one vertex at a time; choose a global one.");
+    throw Error("This optimizer works on one vertex at a time; choose a global one.");
   }
   if (options.maximumIterations < 0 || options.refresh < 1 || !(options.gradientNorm >= 0) ||
     !(options.relativeChange >= 0))

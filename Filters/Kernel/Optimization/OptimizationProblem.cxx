@@ -51,7 +51,7 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
     throw Error("Patch iterations must be at least 1; culling and the mean's allowance for the "
                 "worst element must not be negative.");
   }
-  const bool global = options.optimizer >= Optimizer::ConjugateGradientFletcherReeves;
+  const bool global = isGlobal(options.optimizer);
   if (global && options.slideSurface)
   {
     throw Error(

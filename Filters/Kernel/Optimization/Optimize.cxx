@@ -16,7 +16,7 @@ namespace
 /// Sums of element values differ in the last digits from sums of patches; so much is no loss.
 constexpr double roundingOfSums = 1e-12;
 
-/// Says when to stop, and why.
+/// The stopping criteria.
 class StoppingTest
 {
 public:
@@ -106,7 +106,7 @@ private:
   const StoppingCriteria& Stop;
 };
 
-/// Adds a record to the history and tells the observer; false if it wants to stop.
+/// Adds a record to the history and calls the observer; false if that asks to stop.
 bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result,
   const IterationRecord& record)
 {
@@ -453,7 +453,7 @@ StopReason optimizeGlobally(
     MinimizeOptions options;
     // After sweeps, an iteration may lower little at first.
     constexpr double afterSweeps = 0.1;
-    const bool alone = problem.options().optimizer >= Optimizer::ConjugateGradientFletcherReeves;
+    const bool alone = isGlobal(problem.options().optimizer);
     options.method = alone ? problem.options().optimizer : Optimizer::LimitedMemoryBFGS;
     options.maximumIterations = stop.maximumIterations - before;
     options.gradientNorm = stop.gradientNorm;
@@ -531,16 +531,16 @@ bool optimizeStage(
     return false;
   }
   bool failed = false, repaired = false;
-  if (options.optimizer <= Optimizer::LocalConjugateGradient)
+  if (isGlobal(options.optimizer))
   {
-    const bool onlyLocal = options.optimizer != Optimizer::Automatic || options.limits ||
-      options.slideSurface || mesh.dimension() == Dimension::Surface;
-    result.reason = optimizeLocally(problem, watch, result, failed, repaired);
-    result.reason = failed && !onlyLocal ? optimizeGlobally(problem, watch, result) : result.reason;
+    result.reason = optimizeGlobally(problem, watch, result);
   }
   else
   {
-    result.reason = optimizeGlobally(problem, watch, result);
+    const bool onlyLocal = isLocal(options.optimizer) || options.limits || options.slideSurface ||
+      mesh.dimension() == Dimension::Surface;
+    result.reason = optimizeLocally(problem, watch, result, failed, repaired);
+    result.reason = failed && !onlyLocal ? optimizeGlobally(problem, watch, result) : result.reason;
   }
   const bool going =
     result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit && !repaired;
@@ -570,50 +570,41 @@ bool optimizeStage(
   }
   return repaired;
 }
+
+//------------------------------------------------------------------------------
+/// Runs untangle() with the time that is left; false if the observer asked to stop.
+bool untangleFirst(
+  const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
+{
+  UntangleOptions untangling;
+  untangling.fixed = options.fixed;
+  untangling.threads = options.threads;
+  if (options.stopping.maximumSeconds > 0)
+  {
+    // 0 would be no limit.
+    untangling.maximumSeconds = std::max(
+      std::numeric_limits<double>::min(), options.stopping.maximumSeconds - clock.seconds());
+  }
+  bool proceed = true;
+  untangling.observer = [&](const IterationState& state)
+  {
+    IterationRecord record = state.record;
+    record.objectives.assign(options.objectives.size(), 0.0);
+    record.mean = record.worst = record.objectives;
+    return proceed = !options.observer || options.observer({ record, 0.0, state.points });
+  };
+  UntangleResult untangled = untangle(mesh, untangling);
+  result.points = std::move(untangled.points);
+  result.invertedAfter = untangled.invertedAfter;
+  result.untangled = true;
+  return proceed;
+}
 }
 
 //------------------------------------------------------------------------------
-void applyPreset(Preset preset, OptimizeOptions& options)
+OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
 {
-  if (preset == Preset::Custom)
-  {
-    return;
-  }
-  Objective shape;
-  options.objectives = { shape };
-  options.scalarization = ScalarizationOptions();
-  options.optimizer = Optimizer::Automatic;
-  options.stopping = StoppingCriteria();
-  options.improveWorst = 0.0;
-  options.untangleFirst = true;
-  Objective second;
-  switch (preset)
-  {
-    case Preset::FastCleanUp:
-      options.stopping.maximumIterations = 10;
-      options.stopping.reduction = 0.95;
-      break;
-    case Preset::UniformSize:
-      second.metric = Metric::Size;
-      options.objectives.push_back(second);
-      options.scalarization.method = Scalarization::ObjectiveProduct;
-      break;
-    case Preset::LowInterpolationError:
-      second.metric = Metric::InterpolationSizeShape;
-      options.objectives.push_back(second);
-      options.scalarization.method = Scalarization::ObjectiveProduct;
-      break;
-    case Preset::WorstElement:
-      options.improveWorst = 0.01;
-      break;
-    default: // BestShape, UntangleThenImprove, PreserveShape
-      break;
-  }
-}
-
-//------------------------------------------------------------------------------
-OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& given)
-{
+  const Stopwatch clock;
   OptimizeResult result;
   const MeshView& view = mesh.view();
   result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
@@ -622,7 +613,6 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& given)
     result.reason = StopReason::NoFreeVertices;
     return result;
   }
-  OptimizeOptions options = given;
   result.invertedBefore = result.invertedAfter = countInvalid(mesh, options.threads);
   const bool repairs =
     std::any_of(options.objectives.begin(), options.objectives.end(), canUntangle);
@@ -635,23 +625,7 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& given)
         "add the "
         "untangling metric.");
     }
-    UntangleOptions untangling;
-    untangling.fixed = options.fixed;
-    untangling.threads = options.threads;
-    untangling.maximumSeconds = options.stopping.maximumSeconds;
-    bool goOn = true;
-    untangling.observer = [&](const IterationState& state)
-    {
-      IterationRecord record = state.record;
-      record.objectives.assign(options.objectives.size(), 0.0);
-      record.mean = record.worst = record.objectives;
-      return goOn = !options.observer || options.observer({ record, 0.0, state.points });
-    };
-    UntangleResult untangled = untangle(mesh, untangling);
-    result.points = std::move(untangled.points);
-    result.invertedAfter = untangled.invertedAfter;
-    result.untangled = true;
-    if (!goOn)
+    if (!untangleFirst(mesh, options, clock, result))
     {
       result.reason = StopReason::Aborted;
       return result;
@@ -659,7 +633,6 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& given)
   }
 
   // Elements left out join the objective as soon as they are valid: another stage.
-  const Stopwatch clock;
   while (optimizeStage(mesh, options, clock, result))
   {
   }

@@ -31,13 +31,6 @@ struct OptimizeResult
 };
 
 /**
- * @brief Sets objectives, scalarization, optimizer and stopping criteria to those of a preset; the
- * rest stays. For PreserveShape, set objectives[0].evaluation.targets afterwards
- * (referenceTargets()).
- */
-TAUTLINE_KERNEL_EXPORT void applyPreset(Preset preset, OptimizeOptions& options);
-
-/**
  * @brief Optimises. Elements that are not valid at the start are left out of the objectives that
  * cannot repair them, and join as soon as they are valid; the objective in the history rises by
  * their share then. The result is never worse than the input in the scalarized objective, and

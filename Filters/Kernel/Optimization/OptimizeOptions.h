@@ -26,11 +26,19 @@ enum class Optimizer : int
   NewtonConjugateGradient = 6          ///< all vertices at once; truncated Newton
 };
 
+/// Whether an optimizer always moves one vertex at a time. Throws Error for an unknown number.
+TAUTLINE_KERNEL_EXPORT bool isLocal(Optimizer optimizer);
+
+/// Whether an optimizer always moves all vertices at once; Automatic is neither local nor global.
+/// Throws Error for an unknown number.
+TAUTLINE_KERNEL_EXPORT bool isGlobal(Optimizer optimizer);
+
 struct StoppingCriteria
 {
   /// Sweeps of the local algorithms, iterations of the others; at least 0.
   int maximumIterations = 100;
-  /// Seconds of wall time; 0: no limit. Honoured within two iterations.
+  /// Seconds of wall time for the whole run, untangling included; 0: no limit. Honoured within two
+  /// iterations.
   double maximumSeconds = 0.0;
   /// Stop when the gradient's norm has fallen by this factor; 0: never.
   double gradientNorm = 1e-6;
@@ -44,7 +52,8 @@ struct StoppingCriteria
    * iterations so far.
    */
   double reduction = 1.0;
-  /// The objective of the completely smoothed mesh, if known.
+  /// The objective of the completely smoothed mesh; NaN: not known. 0 is that of untangling
+  /// objectives.
   double bestKnown = std::numeric_limits<double>::quiet_NaN();
   /// Stop when every element is valid.
   bool allValid = false;
@@ -61,7 +70,7 @@ enum class Preset : int
     4, ///< shape (IMR) and SS of section 3.2.1 at once, by the objective product
   UntangleThenImprove = 5, ///< untangle(), then BestShape
   PreserveShape = 6, ///< sum of squared IMR against the elements of a reference mesh (targets)
-  WorstElement = 7   ///< BestShape, then the worst IMR without giving up the mean
+  WorstElement = 7   ///< BestShape, then the worst IMR with the mean kept
 };
 
 struct OptimizeOptions
@@ -93,7 +102,7 @@ struct OptimizeOptions
   /// Lets steps invert elements that are valid. Off: they are shortened.
   bool allowInversion = false;
   /**
-   * @brief What to do with an input that has inverted elements and objectives none of which orders
+   * @brief What to do with an input that has inverted elements and objectives none of which repairs
    * them: untangle() first (on), or refuse with an Error (off).
    */
   bool untangleFirst = true;
@@ -114,7 +123,7 @@ struct OptimizeOptions
   double relaxation = 1.4;
   /**
    * @brief WorstElement: after the objective has converged, lowers the largest value of the first
-   * objective's metric as long as its mean does not rise by more than this part of it; 0: off.
+   * objective's metric as long as its mean does not rise by more than this fraction of it; 0: off.
    */
   double improveWorst = 0.0;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
@@ -125,5 +134,12 @@ struct OptimizeOptions
    */
   std::function<bool(const IterationState&)> observer;
 };
+
+/**
+ * @brief Sets objectives, scalarization, optimizer and stopping criteria to those of a preset; the
+ * rest stays. For PreserveShape, set objectives[0].evaluation.targets afterwards
+ * (referenceTargets()).
+ */
+TAUTLINE_KERNEL_EXPORT void applyPreset(Preset preset, OptimizeOptions& options);
 }
 #endif

@@ -3,7 +3,10 @@
 
 #include "tautline/Quality/Targets.h"
 
+#include <chrono>
 #include <cstring>
+#include <iterator>
+#include <thread>
 
 using namespace tautline;
 
@@ -342,6 +345,85 @@ void testStopping()
   }
 }
 
+/// One time limit holds for untangling and optimization together: where untangling has used it up,
+/// no iteration follows.
+void testTimeLimitOfWholeRun()
+{
+  MeshData data = perturbedBlock(CellType::Tetrahedron, 6, 0.1);
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  for (Index i = 0; i < data.numberOfPoints(); i += 2)
+  {
+    if (!boundary[i])
+    {
+      data.setPoint(i, data.point(i) + Vec3{ 1.5, 0, 0 });
+    }
+  }
+  TAUTLINE_CHECK(invalid(data, data.points) > 0);
+  for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::LimitedMemoryBFGS })
+  {
+    constexpr double limit = 0.1;
+    OptimizeOptions options;
+    options.optimizer = optimizer;
+    options.stopping.maximumSeconds = limit;
+    int calls = 0;
+    options.observer = [&](const IterationState&)
+    {
+      // The first call comes from untangle().
+      std::this_thread::sleep_for(std::chrono::duration<double>(calls++ == 0 ? limit : 0.0));
+      return true;
+    };
+    const OptimizeResult result = run(data, options);
+    TAUTLINE_CHECK(result.untangled);
+    TAUTLINE_CHECK(result.reason == StopReason::TimeLimit);
+    TAUTLINE_CHECK_EQUAL(result.iterations, 0);
+    TAUTLINE_CHECK_EQUAL(result.history.size(), std::size_t(1));
+    TAUTLINE_CHECK(result.history[0].seconds >= limit);
+  }
+}
+
+/// The classes of the optimizers do not depend on the order of their numbers.
+void testReachOfOptimizers()
+{
+  for (Optimizer optimizer : optimizers)
+  {
+    const bool global = optimizer == Optimizer::ConjugateGradientFletcherReeves ||
+      optimizer == Optimizer::ConjugateGradientPolakRibiere ||
+      optimizer == Optimizer::LimitedMemoryBFGS || optimizer == Optimizer::NewtonConjugateGradient;
+    TAUTLINE_CHECK_EQUAL(isGlobal(optimizer), global);
+    TAUTLINE_CHECK_EQUAL(isLocal(optimizer), !global && optimizer != Optimizer::Automatic);
+  }
+  // `optimizers` has all numbers: those beside its own are refused.
+  TAUTLINE_CHECK_THROWS(isGlobal(static_cast<Optimizer>(-1)), "no optimizer -1");
+  TAUTLINE_CHECK_THROWS(isLocal(static_cast<Optimizer>(std::size(optimizers))), "no optimizer 7");
+  const MeshData data = perturbedBlock(CellType::Triangle, 4, 0.1);
+  OptimizeOptions options;
+  options.optimizer = static_cast<Optimizer>(std::size(optimizers));
+  TAUTLINE_CHECK_THROWS(run(data, options), "no optimizer 7");
+}
+
+/// 0 is a best known objective like any other: that of an untangling objective.
+void testBestKnownOfZero()
+{
+  const MeshData data = perturbedBlock(CellType::Triangle, 12, 0.8);
+  TAUTLINE_CHECK(invalid(data, data.points) > 0);
+  constexpr double reduction = 0.5;
+  OptimizeOptions options;
+  options.objectives[0].metric = Metric::UntangleBeta;
+  options.stopping.relativeChange = 0;
+  options.stopping.reduction = reduction;
+  options.stopping.bestKnown = 0;
+  const OptimizeResult result = run(data, options);
+  TAUTLINE_CHECK(result.reason == StopReason::Reduction);
+  const std::size_t n = result.history.size();
+  TAUTLINE_CHECK(n > 1);
+  const double goal = (1 - reduction) * result.history[0].objective;
+  TAUTLINE_CHECK(result.history[n - 1].objective <= goal);
+  for (std::size_t i = 0; i + 1 < n; ++i)
+  {
+    TAUTLINE_CHECK(result.history[i].objective > goal);
+  }
+}
+
 /// The worst element gets better, and the mean hardly worse.
 void testWorst()
 {
@@ -461,6 +543,9 @@ int TestOptimize(int, char*[])
   testMetrics();
   testTargetsAndWeights();
   testStopping();
+  testTimeLimitOfWholeRun();
+  testReachOfOptimizers();
+  testBestKnownOfZero();
   testWorst();
   testUntanglingObjectives();
   testFaulty();
