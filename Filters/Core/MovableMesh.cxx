@@ -1,30 +1,20 @@
 #include "MovableMesh.h"
 
+#include "Blocks.h"
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Patches/SimplexMesh.h"
 
-#include "vtkAlgorithm.h"
 #include "vtkCellData.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
-#include "vtkExtractSelection.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkSelection.h"
-#include "vtkStringArray.h"
-#include "vtkTable.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
-#include <sstream>
 
 namespace tautline
 {
@@ -169,13 +159,7 @@ std::string MovableMesh::move(vtkPointSet* output, const std::vector<double>& po
     }
   }
   output->SetPoints(makePoints(points, like));
-  vtkNew<vtkDoubleArray> displacement;
-  displacement->SetName("Displacement");
-  displacement->SetNumberOfComponents(3);
-  displacement->SetNumberOfTuples(mesh.view().numberOfPoints);
-  std::transform(points.begin(), points.end(), mesh.view().points, displacement->GetPointer(0),
-    [](double now, double then) { return std::isfinite(now - then) ? now - then : 0.0; });
-  output->GetPointData()->AddArray(displacement);
+  addDisplacement(output, mesh.view().points, points);
   return note;
 }
 
@@ -192,112 +176,6 @@ std::vector<signed char> MovableMesh::validityAt(const std::vector<double>& poin
 }
 
 //------------------------------------------------------------------------------
-void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selected,
-  vtkDataObject* output, const std::function<void(const InputBlock&)>& visit)
-{
-  const bool composite = vtkCompositeDataSet::SafeDownCast(input);
-  if (reference && composite != (vtkCompositeDataSet::SafeDownCast(reference) != nullptr))
-  {
-    throw Error(composite
-        ? "The mesh has blocks but the reference has none: give a reference of the same "
-          "structure, or merge the blocks first (Merge Blocks)."
-        : "The mesh is a single data set but the reference has blocks: extract the block that is "
-          "the reference (Extract Block).");
-  }
-  if (!composite)
-  {
-    visit({ vtkDataSet::SafeDownCast(input), vtkDataSet::SafeDownCast(reference),
-      vtkDataSet::SafeDownCast(selected), vtkDataSet::SafeDownCast(output), 0, "", 0 });
-    return;
-  }
-  auto* blocks = vtkCompositeDataSet::SafeDownCast(input);
-  auto* references = vtkCompositeDataSet::SafeDownCast(reference);
-  auto* selections = vtkCompositeDataSet::SafeDownCast(selected);
-  auto* results = vtkCompositeDataSet::SafeDownCast(output);
-  results->CopyStructure(blocks);
-  auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
-  int number = 0;
-  for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem())
-  {
-    auto* block = vtkDataSet::SafeDownCast(walk->GetCurrentDataObject());
-    if (!block)
-    {
-      continue;
-    }
-    const unsigned int index = walk->GetCurrentFlatIndex();
-    const std::string name = "block " + std::to_string(index);
-    const auto at = [&walk](vtkCompositeDataSet* set)
-    { return set ? vtkDataSet::SafeDownCast(set->GetDataSet(walk)) : nullptr; };
-    auto result = vtkSmartPointer<vtkDataSet>::Take(block->NewInstance());
-    results->SetDataSet(walk, result);
-    try
-    {
-      visit({ block, at(references), at(selections), result, number++, name, index });
-    }
-    catch (const Error& error)
-    {
-      throw Error("In " + name + ": " + error.what());
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-void forEachLeaf(vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit)
-{
-  auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
-  if (auto* single = vtkDataSet::SafeDownCast(data))
-  {
-    visit(0, single);
-  }
-  if (!blocks)
-  {
-    return;
-  }
-  auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
-  for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem())
-  {
-    if (auto* leaf = vtkDataSet::SafeDownCast(walk->GetCurrentDataObject()))
-    {
-      visit(walk->GetCurrentFlatIndex(), leaf);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data)
-{
-  const bool composite = vtkCompositeDataSet::SafeDownCast(data);
-  vtkDataSet* found = nullptr;
-  forEachLeaf(data,
-    [&](unsigned int index, vtkDataSet* leaf)
-    { found = !composite || index == block.flatIndex ? leaf : found; });
-  return found;
-}
-
-//------------------------------------------------------------------------------
-int countBlocks(vtkDataObject* input)
-{
-  int count = 0;
-  forEachLeaf(input, [&count](unsigned int, vtkDataSet*) { ++count; });
-  return std::max(count, 1);
-}
-
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkDataObject> markSelected(vtkDataObject* input, vtkSelection* selection)
-{
-  if (!selection || selection->GetNumberOfNodes() == 0)
-  {
-    return nullptr;
-  }
-  vtkNew<vtkExtractSelection> extract;
-  extract->PreserveTopologyOn();
-  extract->SetInputDataObject(0, input);
-  extract->SetInputDataObject(1, selection);
-  extract->Update();
-  return extract->GetOutputDataObject(0);
-}
-
-//------------------------------------------------------------------------------
 void fixSelected(MovableMesh& mesh, vtkDataSet* selected)
 {
   if (selected)
@@ -310,155 +188,14 @@ void fixSelected(MovableMesh& mesh, vtkDataSet* selected)
 }
 
 //------------------------------------------------------------------------------
-vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* what)
+void addDisplacement(vtkDataSet* output, const double* before, const std::vector<double>& after)
 {
-  vtkInformation* choice = algorithm->GetInputArrayInformation(index);
-  const char* name = choice->Get(vtkDataObject::FIELD_NAME());
-  if (!name || !*name || std::string(name) == "None")
-  {
-    return nullptr;
-  }
-  const bool ofCells =
-    choice->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
-  vtkDataArray* array =
-    ofCells ? input->GetCellData()->GetArray(name) : input->GetPointData()->GetArray(name);
-  if (!array)
-  {
-    throw Error(std::string("There is no ") + (ofCells ? "cell" : "point") + " array '" + name +
-      "' " + what + ": choose another one, or None.");
-  }
-  return array;
-}
-
-//------------------------------------------------------------------------------
-void declareInput(vtkInformation* info, bool selection, bool optional)
-{
-  // The composite type first, so that the tables are those of all blocks.
-  info->Set(
-    vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), selection ? "vtkSelection" : "vtkCompositeDataSet");
-  if (!selection)
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  }
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), optional);
-}
-
-//------------------------------------------------------------------------------
-void provideOutputs(vtkDataObject* input, vtkInformationVector* outputs)
-{
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-  {
-    const auto made = vtkSmartPointer<vtkDataObject>::Take(
-      port == 0 ? input->NewInstance() : static_cast<vtkDataObject*>(vtkTable::New()));
-    vtkInformation* info = outputs->GetInformationObject(port);
-    vtkDataObject* output = vtkDataObject::GetData(info);
-    if (!output || std::string(output->GetClassName()) != made->GetClassName())
-    {
-      info->Set(vtkDataObject::DATA_OBJECT(), made);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-TableRows::Column& TableRows::next(const std::string& name)
-{
-  if (this->Next == this->Columns.size())
-  {
-    this->Columns.push_back({ name, {}, {} });
-  }
-  return this->Columns[this->Next++];
-}
-
-//------------------------------------------------------------------------------
-void TableRows::add(const std::string& column, double value)
-{
-  this->next(column).values.push_back(value);
-}
-
-//------------------------------------------------------------------------------
-void TableRows::addText(const std::string& column, const std::string& value)
-{
-  this->next(column).texts.push_back(value);
-}
-
-//------------------------------------------------------------------------------
-void TableRows::fill(vtkTable* table)
-{
-  table->Initialize();
-  for (const Column& column : this->Columns)
-  {
-    if (column.texts.empty())
-    {
-      vtkNew<vtkDoubleArray> array;
-      array->SetName(column.name.c_str());
-      array->SetNumberOfValues(static_cast<vtkIdType>(column.values.size()));
-      std::copy(column.values.begin(), column.values.end(), array->GetPointer(0));
-      table->AddColumn(array);
-      continue;
-    }
-    vtkNew<vtkStringArray> array;
-    array->SetName(column.name.c_str());
-    for (const std::string& text : column.texts)
-    {
-      array->InsertNextValue(text);
-    }
-    table->AddColumn(array);
-  }
-}
-
-//------------------------------------------------------------------------------
-void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
-  const std::vector<std::string>& names, const std::string& block)
-{
-  const auto at = [](const std::vector<double>& values, std::size_t i)
-  { return i < values.size() ? values[i] : 0.0; };
-  for (const IterationRecord& record : history)
-  {
-    rows.begin();
-    if (!block.empty())
-    {
-      rows.addText("Block", block);
-    }
-    rows.add("Objective", record.objective);
-    for (std::size_t i = 0; i < names.size(); ++i)
-    {
-      if (names.size() > 1)
-      {
-        rows.add(names[i] + " objective", at(record.objectives, i));
-      }
-      rows.add(names[i] + " mean", at(record.mean, i));
-      rows.add(names[i] + " worst", at(record.worst, i));
-    }
-    rows.add("Inverted", static_cast<double>(record.inverted));
-    rows.add("N gradient", record.gradientNorm);
-    rows.add("N moving", static_cast<double>(record.moving));
-    rows.add("Time (s)", record.seconds);
-  }
-}
-
-//------------------------------------------------------------------------------
-std::string summarize(
-  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block)
-{
-  std::ostringstream text;
-  text << (block.empty() ? "" : "In " + block + ": ") << describe(result.reason) << "\n";
-  text << result.iterations << " iterations";
-  if (!result.history.empty())
-  {
-    const IterationRecord &first = result.history.front(), &last = result.history.back();
-    text << ", " << last.seconds << " s. Objective: " << first.objective << " to "
-         << last.objective;
-  }
-  text << ".\n"
-       << result.freeVertices << " of " << mesh.mesh().view().numberOfPoints
-       << " points were free to move.\nInverted elements: " << result.invertedBefore << " before, "
-       << result.invertedAfter << " after, of " << mesh.mesh().view().numberOfCells
-       << (result.untangled ? "; it was untangled first." : ".");
-  if (result.surfaceError > 0)
-  {
-    text << "\nLargest distance of the elements from the input surface: " << result.surfaceError
-         << ".";
-  }
-  return text.str();
+  vtkNew<vtkDoubleArray> displacement;
+  displacement->SetName("Displacement");
+  displacement->SetNumberOfComponents(3);
+  displacement->SetNumberOfTuples(output->GetNumberOfPoints());
+  std::transform(after.begin(), after.end(), before, displacement->GetPointer(0),
+    [](double now, double then) { return std::isfinite(now - then) ? now - then : 0.0; });
+  output->GetPointData()->AddArray(displacement);
 }
 }

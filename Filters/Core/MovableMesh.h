@@ -1,7 +1,7 @@
 /**
  * @file MovableMesh.h
- * @brief What the filters that move points share: the mesh and its orientation, which points are
- * fixed, blocks, new points, tables.
+ * @brief The mesh of a filter that moves points: its orientation, its fixed points and its new
+ * points.
  */
 #ifndef tautline_MovableMesh_h
 #define tautline_MovableMesh_h
@@ -9,23 +9,13 @@
 #include "TautlineCoreModule.h" // for export macro
 
 #include "MeshAdapter.h"
-#include "tautline/Optimization/Optimize.h"
 
-#include "vtkSmartPointer.h"
-
-#include <functional>
 #include <string>
 #include <vector>
 
-class vtkAlgorithm;
 class vtkDataArray;
-class vtkDataObject;
 class vtkDataSet;
-class vtkInformation;
-class vtkInformationVector;
 class vtkPointSet;
-class vtkSelection;
-class vtkTable;
 
 namespace tautline
 {
@@ -85,91 +75,11 @@ private:
   std::string Notice;
 };
 
-/// A data set of the input, with its counterparts.
-struct InputBlock
-{
-  vtkDataSet* input;
-  vtkDataSet* reference; ///< or null
-  vtkDataSet* selected;  ///< the input with the array of markSelected(), or null
-  vtkDataSet* output;
-  int number;             ///< counts through the data sets, from 0
-  std::string name;       ///< "block 3", or "" if the input is a single data set
-  unsigned int flatIndex; ///< of composite data; 0 if the input is a single data set
-};
-
-/**
- * @brief Gives a composite output the structure of the input and calls visit for each data set, or
- * once. Throws Error if reference and input do not have the same structure.
- */
-TAUTLINECORE_EXPORT void forEachBlock(vtkDataObject* input, vtkDataObject* reference,
-  vtkDataObject* selected, vtkDataObject* output,
-  const std::function<void(const InputBlock&)>& visit);
-
-/// The number of data sets, at least 1.
-TAUTLINECORE_EXPORT int countBlocks(vtkDataObject* input);
-
-/// Calls visit(flat index, data set) for the data sets of composite data, or with 0 for a single
-/// one.
-TAUTLINECORE_EXPORT void forEachLeaf(
-  vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit);
-
-/// The data set of `data` that belongs to a block of the input: at its place, or `data` itself;
-/// null: none.
-TAUTLINECORE_EXPORT vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data);
-
-/// The array of marks, of points or cells, in what markSelected() returns.
-constexpr const char* SelectedArray = "vtkInsidedness"; // the name vtkExtractSelection gives it
-
-/// A copy of the input with marks on what is selected; null without a selection.
-TAUTLINECORE_EXPORT vtkSmartPointer<vtkDataObject> markSelected(
-  vtkDataObject* input, vtkSelection* selection);
-
-/// Marks the points that markSelected() found, and those of cells it found.
+/// Fixes the points that markSelected() found, and those of the cells it found.
 TAUTLINECORE_EXPORT void fixSelected(MovableMesh& mesh, vtkDataSet* selected);
 
-/// A point or cell array named by an algorithm's input array choice; null if none is. Throws Error.
-TAUTLINECORE_EXPORT vtkDataArray* chosenArray(
-  vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* what);
-
-/// Sets what an input port takes: data sets and composite ones, or a selection of what stays.
-TAUTLINECORE_EXPORT void declareInput(vtkInformation* info, bool selection, bool optional);
-
-/// Makes the outputs: like the input on port 0, tables on the others.
-TAUTLINECORE_EXPORT void provideOutputs(vtkDataObject* input, vtkInformationVector* outputs);
-
-/// Columns that grow by rows; the names of the first row decide.
-class TAUTLINECORE_EXPORT TableRows
-{
-public:
-  void begin() { this->Next = 0; }
-  void add(const std::string& column, double value);
-  void addText(const std::string& column, const std::string& value);
-  /// Moves everything to a table.
-  void fill(vtkTable* table);
-
-private:
-  struct Column
-  {
-    std::string name;
-    std::vector<double> values;
-    std::vector<std::string> texts;
-  };
-  Column& next(const std::string& name);
-  std::vector<Column> Columns;
-  std::size_t Next = 0;
-};
-
-/**
- * @brief Adds a row per iteration: `Block` (composite input), `Objective`, for each name `<name>
- * objective` (if there are several), `<name> mean`, `<name> worst`; `Inverted`, `N gradient`, `N
- * moving`, `Time (s)`. Row i is iteration i of the block; row 0 is the input. ParaView's charts
- * leave out the last two.
- */
-TAUTLINECORE_EXPORT void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
-  const std::vector<std::string>& names, const std::string& block);
-
-/// Reason, iterations, seconds, free points and inverted elements, in sentences.
-TAUTLINECORE_EXPORT std::string summarize(
-  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block);
+/// Adds the point array `Displacement`, new minus old position; 0 where that is not finite.
+TAUTLINECORE_EXPORT void addDisplacement(
+  vtkDataSet* output, const double* before, const std::vector<double>& after);
 }
 #endif

@@ -1,6 +1,6 @@
 #include "Processes.h"
 
-#include "MovableMesh.h"
+#include "Blocks.h"
 
 #include "vtkDataSet.h"
 #include "vtkMultiProcessController.h"

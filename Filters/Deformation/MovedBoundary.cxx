@@ -1,5 +1,6 @@
 #include "MovedBoundary.h"
 
+#include "Blocks.h"
 #include "tautline/Patches/SimplexMesh.h"
 
 #include "vtkCellData.h"

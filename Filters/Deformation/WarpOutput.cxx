@@ -48,11 +48,7 @@ void addHistory(const WarpResult& result, const std::string& block, TableRows& r
 {
   for (const WarpRecord& record : result.history)
   {
-    rows.begin();
-    if (!block.empty())
-    {
-      rows.addText("Block", block);
-    }
+    rows.begin(block);
     rows.add("Amount", record.amount);
     rows.add("Inverted", static_cast<double>(record.inverted));
     rows.add("Worst shape", record.worstShape);
@@ -72,11 +68,7 @@ struct Qualities
 void addStatistics(const WarpResult& result, const WarpFacts& facts, const Qualities& q,
   const std::string& block, TableRows& rows)
 {
-  rows.begin();
-  if (!block.empty())
-  {
-    rows.addText("Block", block);
-  }
+  rows.begin(block);
   rows.add("Elements", static_cast<double>(q.elements));
   rows.add("Boundary points", static_cast<double>(facts.boundaryPoints));
   rows.add("Moved points", static_cast<double>(facts.movedPoints));

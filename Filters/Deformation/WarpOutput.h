@@ -5,7 +5,9 @@
 #ifndef tautline_WarpOutput_h
 #define tautline_WarpOutput_h
 
+#include "Blocks.h"
 #include "MovedBoundary.h"
+#include "TableRows.h"
 #include "tautline/Deformation/Warp.h"
 
 namespace tautline

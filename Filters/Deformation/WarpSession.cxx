@@ -1,39 +1,24 @@
 #include "WarpSession.h"
 
 #include "Processes.h"
-#include "TargetMatch.h"
-#include "tautline/Deformation/PointMotion.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
-#include "vtkLinearTransform.h"
-#include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
-#include "vtkSelection.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-using namespace tautline;
-
+namespace tautline
+{
 namespace
 {
-// Arrays to process. All are of the mesh: ParaView's pipeline takes those of one port at
-// consecutive indices only.
-enum Arrays
-{
-  DisplacementArray = 0,
-  MovedArray = 1,
-  FixedArray = 2,
-  TensorArray = 3,
-  RegionArray = 4
-};
-
-// Points of all time steps kept: 2^27 numbers, 1 GiB, of a data set.
-constexpr std::size_t MostNumbersKept = std::size_t(1) << 27;
+// Coordinates of the time steps that are kept: 2^27 numbers, 1 GiB, of a data set.
+constexpr std::size_t MaximumNumbersKept = std::size_t(1) << 27;
 
 constexpr std::array<const char*, 11> MethodNames = { "Hybrid", "FEMWARP", "Anisotropic FEMWARP",
   "Small-step FEMWARP", "FEMWARP and untangling", "Elasticity, iterative stiffening",
@@ -135,12 +120,6 @@ bool staysAtRest(const WarpTask& task)
   constexpr double somewhere = 1.0 / 3;
   return allZero(task.displacement) && (!task.path || allZero(task.path(somewhere)));
 }
-
-bool chosenOfCells(vtkAlgorithm* algorithm, int index)
-{
-  return algorithm->GetInputArrayInformation(index)->Get(vtkDataObject::FIELD_ASSOCIATION()) ==
-    vtkDataObject::FIELD_ASSOCIATION_CELLS;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -215,25 +194,25 @@ void RestingMesh::takeElements(int threads)
 }
 
 //------------------------------------------------------------------------------
-bool vtkMeshWarp::Session::sequence() const
+bool WarpSession::sequence() const
 {
   return !this->times.empty() &&
-    (this->Self->Motion == TIME_STEPS ||
-      (this->Self->StartFrom == PREVIOUS_STEP && this->Self->Motion != TRANSFORM));
+    (this->settings.motion == MotionSource::TimeSteps ||
+      (this->settings.fromPreviousStep && this->settings.motion != MotionSource::Transform));
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
+void WarpSession::plan(double time, vtkMTimeType upstream, vtkMTimeType own)
 {
   // The last time step that is not later, as readers choose it.
   const auto later = std::upper_bound(this->times.begin(), this->times.end(), time);
-  this->wanted = std::max<int>(0, int(later - this->times.begin()) - 1);
+  this->requested = std::max<int>(0, int(later - this->times.begin()) - 1);
   if (this->looping)
   {
     return;
   }
-  const bool changed = upstreamTime != this->upstream;
-  for (auto& [number, kept] : this->blocks)
+  const bool changed = upstream != this->Upstream;
+  for (auto& [number, kept] : this->Blocks)
   {
     if (changed)
     {
@@ -241,23 +220,23 @@ void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
     }
     const bool stopped = std::any_of(kept.frames.begin(), kept.frames.end(),
       [](const auto& frame) { return frame.second.aborted; });
-    if (changed || stopped || this->Self->GetMTime() > this->own)
+    if (changed || stopped || own > this->Own)
     {
       kept.frames.clear();
     }
   }
-  this->upstream = upstreamTime;
-  this->own = this->Self->GetMTime();
+  this->Upstream = upstream;
+  this->Own = own;
 
   this->begun = this->begun && !changed &&
-    std::all_of(this->blocks.begin(), this->blocks.end(),
+    std::all_of(this->Blocks.begin(), this->Blocks.end(),
       [](const auto& entry) { return entry.second.first != nullptr; });
-  this->current = this->begun ? this->wanted : 0;
-  for (const auto& [number, kept] : this->blocks)
+  this->current = this->begun ? this->requested : 0;
+  for (const auto& [number, kept] : this->Blocks)
   {
-    if (this->Self->StartFrom == PREVIOUS_STEP)
+    if (this->settings.fromPreviousStep)
     {
-      const auto after = kept.frames.upper_bound(this->wanted);
+      const auto after = kept.frames.upper_bound(this->requested);
       const int last = after == kept.frames.begin() ? -1 : std::prev(after)->first;
       this->current = std::min(this->current, last + 1);
     }
@@ -267,33 +246,28 @@ void vtkMeshWarp::Session::plan(double time, vtkMTimeType upstreamTime)
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshWarp::Session::visit(const InputBlock& block, vtkDataObject* target,
-  vtkDataObject* selected, TableRows& history, TableRows& statistics, WarpTotals& totals)
+void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataObject* selected,
+  TableRows& history, TableRows& statistics, WarpTotals& totals)
 {
   const auto start = std::chrono::steady_clock::now();
-  block.output->ShallowCopy(block.input);
-  if (block.input->GetNumberOfPoints() == 0 || block.input->GetNumberOfCells() == 0)
-  {
-    return;
-  }
   auto* input = vtkPointSet::SafeDownCast(block.input);
   if (!input)
   {
-    MovableMesh refused(block.input, this->Self->Threads); // throws and says what to do
+    MovableMesh refused(block.input, this->settings.options.threads); // throws and says what to do
   }
-  WarpBlock& kept = this->blocks[block.number];
+  WarpBlock& kept = this->Blocks[block.number];
   const bool inSequence = this->sequence();
   if (inSequence && !kept.first)
   {
     kept.first = structureOf(input);
     kept.frames.clear();
   }
-  const bool last = !inSequence || this->current == this->wanted;
-  if (!last && this->Self->StartFrom == FIRST_STEP)
+  const bool last = !inSequence || this->current == this->requested;
+  if (!last && !this->settings.fromPreviousStep)
   {
     return; // only the mesh at the first time step was asked for
   }
-  kept.rest.take(inSequence ? kept.first.Get() : input, this->Self->Threads);
+  kept.rest.take(inSequence ? kept.first.Get() : input, this->settings.options.threads);
   const MeshView& view = kept.rest.mesh->mesh().view();
   if (view.numberOfPoints != input->GetNumberOfPoints() ||
     view.numberOfCells != input->GetNumberOfCells())
@@ -310,13 +284,12 @@ void vtkMeshWarp::Session::visit(const InputBlock& block, vtkDataObject* target,
   {
     return;
   }
-  const bool anisotropic =
-    this->Self->Method == HYBRID || this->Self->Method == ANISOTROPIC_FEMWARP;
-  facts.method = MethodNames[this->Self->Method];
+  facts.method = MethodNames[static_cast<std::size_t>(this->settings.options.method)];
   facts.motion = todo.correspondence;
-  facts.coefficients = anisotropic && todo.tensors.empty() && this->Self->Amount > 0;
-  facts.amount = this->Self->Amount;
-  facts.threads = this->Self->Threads;
+  facts.coefficients =
+    this->settings.anisotropic() && todo.tensors.empty() && this->settings.amount > 0;
+  facts.amount = this->settings.amount;
+  facts.threads = this->settings.options.threads;
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
     const double length = norm3(&todo.displacement[3 * i]);
@@ -329,195 +302,184 @@ void vtkMeshWarp::Session::visit(const InputBlock& block, vtkDataObject* target,
 }
 
 //------------------------------------------------------------------------------
-WarpTask vtkMeshWarp::Session::task(const InputBlock& block, const RestingMesh& rest,
-  vtkDataObject* target, vtkDataObject* selected) const
+void WarpSession::forgetFrom(int block)
 {
-  vtkMeshWarp* self = this->Self;
-  const Mesh& mesh = rest.mesh->mesh();
-  WarpTask task;
-  this->move(block, rest, target, selected, task);
+  this->Blocks.erase(this->Blocks.lower_bound(block), this->Blocks.end());
+}
 
-  PointFlags& stay = task.stay;
-  stay.assign(rest.boundary.size(), 0);
-  markPoints(mesh, chosenArray(self, FixedArray, block.input, "to tell what stays"), false, stay);
-  markPoints(mesh, block.selected, stay);
-  markGhosts(block.input, stay);
-  task.prescribed = rest.boundary;
-  for (std::size_t i = 0; i < stay.size(); ++i)
+//------------------------------------------------------------------------------
+void WarpSession::clear()
+{
+  this->looping = this->begun = false;
+  this->Blocks.clear();
+}
+
+//------------------------------------------------------------------------------
+WarpTask WarpSession::task(const InputBlock& block, const RestingMesh& rest, vtkDataObject* target,
+  vtkDataObject* selected) const
+{
+  const WarpSettings& set = this->settings;
+  WarpTask task;
+  switch (set.motion)
   {
-    if (stay[i])
+    case MotionSource::Displacement:
+      task.displacement =
+        displacementsOf(displacementArray(set.arrays, block.input), rest.boundary);
+      break;
+    case MotionSource::TimeSteps:
+      this->moveOverTime(block, rest, task);
+      break;
+    case MotionSource::Target:
+      this->moveToTarget(block, rest, target, this->movedPart(block, rest, selected), task);
+      break;
+    case MotionSource::Transform:
+      this->moveByTransform(rest, this->movedPart(block, rest, selected), task);
+      break;
+  }
+  if (!task.path) // the way is straight
+  {
+    for (double& d : task.displacement)
     {
-      task.prescribed[i] = 1;
-      std::fill_n(&task.displacement[3 * i], 3, 0.0);
+      d *= set.amount;
     }
   }
-
-  if (self->Method == HYBRID || self->Method == ANISOTROPIC_FEMWARP)
+  this->prescribe(block, rest, task);
+  if (set.anisotropic() && set.tensorsByRegion)
   {
-    if (self->Coefficients == PER_CELL)
-    {
-      task.tensors = tensorsOf(chosenArray(self, TensorArray, block.input, "of coefficients"));
-    }
-    else if (self->Coefficients == PER_REGION)
-    {
-      task.tensors = tensorsOf(
-        chosenArray(self, RegionArray, block.input, "of regions"), self->Regions, self->Tensor);
-    }
+    task.tensors = tensorsOf(chosenArray(set.arrays, RegionArray, block.input, "of regions"),
+      set.regions, set.options.tensor.data());
+  }
+  else if (set.anisotropic() && set.options.coefficients == WarpCoefficients::PerCell)
+  {
+    task.tensors = tensorsOf(chosenArray(set.arrays, TensorArray, block.input, "of coefficients"));
   }
   return task;
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshWarp::Session::move(const InputBlock& block, const RestingMesh& rest,
-  vtkDataObject* target, vtkDataObject* selected, WarpTask& task) const
+void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, WarpTask& task) const
 {
-  vtkMeshWarp* self = this->Self;
   const Mesh& mesh = rest.mesh->mesh();
-  const MeshView& view = mesh.view();
-  const auto scaleByAmount = [&]
+  task.stay.assign(rest.boundary.size(), 0);
+  markPoints(mesh, chosenArray(this->settings.arrays, FixedArray, block.input, "of fixed points"),
+    false, task.stay);
+  markPoints(mesh, block.selected, task.stay);
+  markGhosts(block.input, task.stay);
+  task.prescribed = rest.boundary;
+  for (std::size_t i = 0; i < task.stay.size(); ++i)
   {
-    for (double& d : task.displacement)
+    if (task.stay[i])
     {
-      d *= self->Amount;
+      task.prescribed[i] = 1;
+      std::fill_n(&task.displacement[3 * i], 3, 0.0);
     }
-  };
-  if (self->Motion == DISPLACEMENT)
-  {
-    task.displacement = displacementsOf(displacementArray(self, block.input), rest.boundary);
-    scaleByAmount();
-    return;
   }
-  if (self->Motion == TIME_STEPS)
-  {
-    if (this->times.empty())
-    {
-      throw Error(
-        "The input has no time steps its boundary could move over: choose another Motion.");
-    }
-    task.displacement.assign(3 * view.numberOfPoints, 0.0);
-    for (Index i = 0; i < view.numberOfPoints; ++i)
-    {
-      if (rest.boundary[i])
-      {
-        double now[3];
-        block.input->GetPoint(i, now);
-        std::transform(
-          now, now + 3, view.points + 3 * i, &task.displacement[3 * i], std::minus<>());
-      }
-    }
-    scaleByAmount();
-    return;
-  }
+}
 
+//------------------------------------------------------------------------------
+void WarpSession::moveOverTime(
+  const InputBlock& block, const RestingMesh& rest, WarpTask& task) const
+{
+  if (this->times.empty())
+  {
+    throw Error("The input has no time steps its boundary could move over: choose another Motion.");
+  }
+  const MeshView& view = rest.mesh->mesh().view();
+  task.displacement.assign(3 * view.numberOfPoints, 0.0);
+  for (Index i = 0; i < view.numberOfPoints; ++i)
+  {
+    if (rest.boundary[i])
+    {
+      double now[3];
+      block.input->GetPoint(i, now);
+      std::transform(now, now + 3, view.points + 3 * i, &task.displacement[3 * i], std::minus<>());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+PointFlags WarpSession::movedPart(
+  const InputBlock& block, const RestingMesh& rest, vtkDataObject* selected) const
+{
+  const WarpSettings& set = this->settings;
   PartChoice choice;
   choice.parts = [&rest]() -> const BoundaryParts& { return rest.parts(); };
-  choice.part = static_cast<tautline::MovedPart>(self->MovedPart);
-  choice.numbers = self->Parts;
-  choice.values = self->Values;
+  choice.part = set.part == MovedPart::Automatic ? MovedPart::Inner : set.part;
+  choice.numbers = set.partNumbers;
+  choice.values = set.partValues;
   choice.selected = counterpartOf(block, selected);
   choice.elsewhere = selected && !block.name.empty();
-  if (self->MovedPart == ARRAY_VALUES)
+  if (set.part == MovedPart::Values)
   {
-    choice.array = chosenArray(self, MovedArray, block.input, "to tell what moves");
-    choice.ofCells = chosenOfCells(self, MovedArray);
+    choice.array = chosenArray(set.arrays, MovedArray, block.input, "of what moves");
+    choice.ofCells = chosenOfCells(set.arrays, MovedArray);
   }
-  const bool automatic = self->MovedPart == AUTOMATIC_PART;
-  choice.part = automatic ? tautline::MovedPart::Inner : choice.part;
-  const PointFlags moved = movedPoints(mesh, rest.boundary, choice);
-  if (self->Motion == TARGET)
+  return movedPoints(rest.mesh->mesh(), rest.boundary, choice);
+}
+
+//------------------------------------------------------------------------------
+void WarpSession::moveToTarget(const InputBlock& block, const RestingMesh& rest,
+  vtkDataObject* target, const PointFlags& moved, WarpTask& task) const
+{
+  const WarpSettings& set = this->settings;
+  TargetRequest request;
+  request.mesh = block.input;
+  request.view = &rest.mesh->mesh();
+  request.target = targetOf(block, target);
+  request.correspondence = set.correspondence;
+  request.ids = targetIds(request.target, set.targetIds);
+  request.projected = &moved;
+  request.matched = set.part == MovedPart::Automatic ? &rest.boundary : &moved;
+  request.threads = set.options.threads;
+  TargetPlaces places = placesOf(request);
+  task.displacement = std::move(places.displacement);
+  task.correspondence = places.how;
+}
+
+//------------------------------------------------------------------------------
+void WarpSession::moveByTransform(
+  const RestingMesh& rest, const PointFlags& moved, WarpTask& task) const
+{
+  task.path = [motion = this->settings.transform, view = rest.mesh->mesh().view(), moved,
+                amount = this->settings.amount](double fraction)
   {
-    TargetRequest request;
-    request.mesh = block.input;
-    request.view = &mesh;
-    request.target = targetOf(block, target);
-    request.correspondence = static_cast<tautline::Correspondence>(self->Correspondence);
-    request.ids = targetIds(request.target, self->TargetIds);
-    request.projected = &moved;
-    request.matched = automatic ? &rest.boundary : &moved;
-    request.threads = self->Threads;
-    TargetPlaces places = placesOf(request);
-    task.displacement = std::move(places.displacement);
-    task.correspondence = places.how;
-    scaleByAmount();
-    return;
-  }
-  PointMotion motion;
-  motion.kind = static_cast<MotionKind>(self->TransformKind);
-  if (self->Transform)
-  {
-    const double* matrix = self->Transform->GetMatrix()->GetData();
-    std::copy_n(matrix, motion.matrix.size(), motion.matrix.begin());
-  }
-  std::copy_n(self->Translation, 3, motion.translation.begin());
-  motion.angle = self->Angle;
-  std::copy_n(self->Axis, 3, motion.axis.begin());
-  std::copy_n(self->ScaleFactors, 3, motion.factors.begin());
-  std::copy_n(self->Direction, 3, motion.direction.begin());
-  motion.ownCenter = self->OwnCenter;
-  std::copy_n(self->Center, 3, motion.center.begin());
-  task.path = [motion, view, moved, amount = self->Amount](double part)
-  { return displacements(motion, part * amount, view.numberOfPoints, view.points, moved.data()); };
+    return displacements(motion, fraction * amount, view.numberOfPoints, view.points, moved.data());
+  };
   task.displacement = task.path(1.0);
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> vtkMeshWarp::Session::options() const
+std::vector<double> WarpSession::optionValues() const
 {
-  const vtkMeshWarp* self = this->Self;
-  std::vector<double> values = { double(self->Method), double(self->Coefficients),
-    double(self->Steps), double(self->MaximumSteps), double(self->AutomaticSolver),
-    double(self->Solver), double(self->Preconditioner), self->Tolerance, self->PoissonRatio,
-    self->StiffeningPower, self->StiffeningFactor, double(self->MaximumStiffenings),
-    self->DistancePower, self->SupportRadius, self->FitTolerance, double(self->UntangleFirst),
-    self->UntanglingBeta, double(self->MaximumIterations), self->TimeLimit, double(self->Threads) };
-  values.insert(values.end(), self->Tensor, self->Tensor + 6);
+  const WarpOptions& o = this->settings.options;
+  std::vector<double> values = { double(o.method), double(o.coefficients), double(o.steps),
+    double(o.maximumSteps), double(o.automaticSolver), double(o.solver.method),
+    double(o.solver.preconditioner), o.tolerance, o.poissonRatio, o.stiffeningPower,
+    o.stiffeningFactor, double(o.maximumStiffenings), o.distancePower, o.supportRadius,
+    o.fitTolerance, double(o.untangleFirst), o.untanglingBeta,
+    double(o.optimization.stopping.maximumIterations), o.maximumSeconds, double(o.threads) };
+  values.insert(values.end(), o.tensor.begin(), o.tensor.end());
   return values;
 }
 
 //------------------------------------------------------------------------------
-WarpOptions vtkMeshWarp::Session::optionsFor(const RestingMesh& rest, int blockNumber)
+WarpOptions WarpSession::optionsFor(const RestingMesh& rest, int blockNumber)
 {
-  const vtkMeshWarp* self = this->Self;
-  WarpOptions options;
-  options.method = static_cast<WarpMethod>(self->Method);
-  options.coefficients = static_cast<WarpCoefficients>(std::min<int>(self->Coefficients, PER_CELL));
-  std::copy_n(self->Tensor, 6, options.tensor.begin());
+  WarpOptions options = this->settings.options;
   options.tensors = rest.tensors.empty() ? nullptr
     : rest.elements                      ? rest.elementTensors.data()
                                          : rest.tensors.data();
   options.prescribed = rest.prescribed.data();
-  options.steps = self->Steps;
-  options.maximumSteps = self->MaximumSteps;
-  options.automaticSolver = self->AutomaticSolver;
-  options.solver.method = static_cast<KrylovMethod>(self->Solver);
-  options.solver.preconditioner = static_cast<tautline::Preconditioner>(self->Preconditioner);
-  options.solver.threads = self->Threads;
-  options.tolerance = self->Tolerance;
-  options.poissonRatio = self->PoissonRatio;
-  options.stiffeningPower = self->StiffeningPower;
-  options.stiffeningFactor = self->StiffeningFactor;
-  options.maximumStiffenings = self->MaximumStiffenings;
-  options.distancePower = self->DistancePower;
-  options.supportRadius = self->SupportRadius;
-  options.fitTolerance = self->FitTolerance;
-  options.untangleFirst = self->UntangleFirst;
-  options.untanglingBeta = self->UntanglingBeta;
-  options.optimization.stopping.maximumIterations = self->MaximumIterations;
-  options.maximumSeconds = self->TimeLimit;
-  options.threads = self->Threads;
   options.progress = [this, blockNumber](double fraction)
-  {
-    this->Self->UpdateProgress((blockNumber + fraction) / this->numberOfBlocks);
-    return !this->Self->GetAbortExecute();
-  };
+  { return this->settings.progress(blockNumber, fraction); };
   return options;
 }
 
 //------------------------------------------------------------------------------
 /// Whether the warper there was can go on; makes a new one if not.
-bool vtkMeshWarp::Session::prepare(RestingMesh& rest, WarpTask& task, int blockNumber)
+bool WarpSession::prepare(RestingMesh& rest, WarpTask& task, int blockNumber)
 {
-  const std::vector<double> values = this->options();
+  const std::vector<double> values = this->optionValues();
   if (rest.warper && rest.options == values && rest.prescribed == task.prescribed &&
     rest.tensors == task.tensors)
   {
@@ -538,12 +500,11 @@ bool vtkMeshWarp::Session::prepare(RestingMesh& rest, WarpTask& task, int blockN
 }
 
 //------------------------------------------------------------------------------
-WarpResult vtkMeshWarp::Session::warp(
-  WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused)
+WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused)
 {
   RestingMesh& rest = kept.rest;
   const MeshView& view = rest.mesh->mesh().view();
-  const bool stepwise = this->sequence() && this->Self->StartFrom == PREVIOUS_STEP;
+  const bool stepwise = this->sequence() && this->settings.fromPreviousStep;
   const auto done = stepwise ? kept.frames.find(this->current) : kept.frames.end();
   WarpResult result;
   reused = false;
@@ -566,27 +527,7 @@ WarpResult vtkMeshWarp::Session::warp(
   }
   else
   {
-    auto previous = structureOf(rest.data);
-    previous->SetPoints(makePoints(before->second.points, nullptr));
-    RestingMesh step;
-    std::string note;
-    try
-    {
-      step.take(previous, this->Self->Threads);
-    }
-    catch (const Error&) // tangled; the step goes the whole way from the mesh at rest
-    {
-      note = "The time step before was not valid, so this one started from the first.";
-    }
-    WarpTask rise = task;
-    for (std::size_t i = 0; note.empty() && i < rise.displacement.size(); ++i)
-    {
-      rise.displacement[i] += atRest[i] - before->second.points[i];
-    }
-    RestingMesh& from = note.empty() ? step : rest;
-    this->prepare(from, rise, blockNumber);
-    result = this->run(*from.warper, rise);
-    result.message += (result.message.empty() || note.empty() ? "" : " ") + note;
+    result = this->warpFromPrevious(rest, before->second, task, blockNumber);
   }
   if (rest.elements && result.message.find("cell ") != std::string::npos)
   {
@@ -594,14 +535,43 @@ WarpResult vtkMeshWarp::Session::warp(
   }
   if (stepwise)
   {
-    this->forget(kept);
+    this->limitMemory(kept);
     kept.frames[this->current] = result;
   }
   return result;
 }
 
 //------------------------------------------------------------------------------
-WarpResult vtkMeshWarp::Session::run(Warper& warper, const WarpTask& task) const
+WarpResult WarpSession::warpFromPrevious(
+  RestingMesh& rest, const WarpResult& previous, const WarpTask& task, int blockNumber)
+{
+  const double* atRest = rest.mesh->mesh().view().points;
+  auto data = structureOf(rest.data);
+  data->SetPoints(makePoints(previous.points, nullptr));
+  RestingMesh step;
+  std::string note;
+  try
+  {
+    step.take(data, this->settings.options.threads);
+  }
+  catch (const Error&) // tangled; the step goes the whole way from the mesh at rest
+  {
+    note = "The time step before was not valid, so this one started from the first.";
+  }
+  WarpTask rise = task;
+  for (std::size_t i = 0; note.empty() && i < rise.displacement.size(); ++i)
+  {
+    rise.displacement[i] += atRest[i] - previous.points[i];
+  }
+  RestingMesh& from = note.empty() ? step : rest;
+  this->prepare(from, rise, blockNumber);
+  WarpResult result = this->run(*from.warper, rise);
+  result.message += (result.message.empty() || note.empty() ? "" : " ") + note;
+  return result;
+}
+
+//------------------------------------------------------------------------------
+WarpResult WarpSession::run(Warper& warper, const WarpTask& task) const
 {
   if (!task.path)
   {
@@ -619,11 +589,12 @@ WarpResult vtkMeshWarp::Session::run(Warper& warper, const WarpTask& task) const
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshWarp::Session::forget(WarpBlock& kept) const
+void WarpSession::limitMemory(WarpBlock& kept) const
 {
   const auto numbers = 3 * static_cast<std::size_t>(kept.rest.data->GetNumberOfPoints());
-  if ((kept.frames.size() + 1) * numbers > MostNumbersKept)
+  if ((kept.frames.size() + 1) * numbers > MaximumNumbersKept)
   {
     kept.frames.clear(); // going back starts from the first, and ends in the same place
   }
+}
 }

@@ -1,65 +1,113 @@
 /**
  * @file WarpSession.h
- * @brief What vtkMeshWarp keeps between executions: meshes at rest, matrices, time steps.
+ * @brief What Warp Mesh keeps between executions: meshes at rest, matrices, time steps.
  */
 #ifndef tautline_WarpSession_h
 #define tautline_WarpSession_h
 
+#include "Blocks.h"
 #include "MovedBoundary.h"
+#include "TargetMatch.h"
 #include "WarpOutput.h"
+#include "tautline/Deformation/PointMotion.h"
 #include "tautline/Deformation/Warp.h"
-#include "vtkMeshWarp.h"
 
 #include "vtkPointSet.h"
 
 #include <functional>
 #include <map>
+#include <memory>
+
+namespace tautline
+{
+/// How the boundary moves; the numbers of vtkMeshWarp::Motions.
+enum class MotionSource : int
+{
+  Displacement = 0,
+  Target = 1,
+  Transform = 2,
+  TimeSteps = 3
+};
+
+/// Indices of SetInputArrayToProcess(). All arrays are of the mesh: ParaView's pipeline takes those
+/// of one port at consecutive indices only.
+enum WarpArrays
+{
+  DisplacementArray = 0,
+  MovedArray = 1,
+  FixedArray = 2,
+  TensorArray = 3,
+  RegionArray = 4
+};
+
+/// The properties of the filter.
+struct WarpSettings
+{
+  MotionSource motion = MotionSource::Transform;
+  double amount = 1.0;           ///< of the motion, along its path; at least 0
+  bool fromPreviousStep = false; ///< whether a time step starts from the one before
+  Correspondence correspondence = Correspondence::Automatic;
+  std::string targetIds; ///< a point array of the target; "" or "None": none
+  MovedPart part = MovedPart::Automatic;
+  std::vector<int> partNumbers;               ///< from 1
+  std::vector<double> partValues;             ///< of the array at MovedArray
+  PointMotion transform;                      ///< of MotionSource::Transform
+  bool tensorsByRegion = false;               ///< PerCell: from `regions`, not from TensorArray
+  std::vector<std::array<double, 4>> regions; ///< value, alpha, beta, gamma
+  WarpOptions options;                        ///< all that needs no data set
+  vtkAlgorithm* arrays = nullptr;             ///< whose input arrays are chosen
+  std::function<bool(int, double)> progress;  ///< block, fraction; false stops
+
+  /// Whether the method has coefficients.
+  bool anisotropic() const
+  {
+    return this->options.method == WarpMethod::Hybrid ||
+      this->options.method == WarpMethod::AnisotropicFemwarp;
+  }
+};
 
 /// A mesh at rest, and what was made of it.
 struct RestingMesh
 {
   vtkSmartPointer<vtkPointSet> data;
   vtkMTimeType time = 0; ///< of data when it was taken
-  std::unique_ptr<tautline::MovableMesh> mesh;
-  tautline::PointFlags boundary;
+  std::unique_ptr<MovableMesh> mesh;
+  PointFlags boundary;
   // The elements alone, if there are other cells (lines, vertices, the triangles around a volume).
   std::vector<unsigned char> types;
-  std::vector<tautline::Index> offsets, connectivity, cells;
-  std::unique_ptr<tautline::Mesh> elements;
+  std::vector<Index> offsets, connectivity, cells;
+  std::unique_ptr<Mesh> elements;
   // What the warper was made with, and looks at.
-  tautline::PointFlags prescribed;
+  PointFlags prescribed;
   std::vector<double> tensors, options, elementTensors;
-  std::unique_ptr<tautline::Warper> warper;
+  std::unique_ptr<Warper> warper;
 
   /// Takes a data set, unless it is the one that is here. Throws Error if nothing can be warped.
   void take(vtkPointSet* input, int threads);
   /// What is warped.
-  const tautline::Mesh& warped() const
-  {
-    return this->elements ? *this->elements : this->mesh->mesh();
-  }
+  const Mesh& warped() const { return this->elements ? *this->elements : this->mesh->mesh(); }
 
   /// Of its boundary; found when first asked for.
-  const tautline::BoundaryParts& parts() const;
+  const BoundaryParts& parts() const;
 
 private:
   void takeElements(int threads);
 
-  mutable std::unique_ptr<tautline::BoundaryParts> Parts;
+  mutable std::unique_ptr<BoundaryParts> Parts;
 };
 
 /// A data set of the input.
 struct WarpBlock
 {
   RestingMesh rest;
-  vtkSmartPointer<vtkPointSet> first;         ///< at the first time step
-  std::map<int, tautline::WarpResult> frames; ///< at time steps, each warped from the one before
+  vtkSmartPointer<vtkPointSet> first; ///< at the first time step
+  std::map<int, WarpResult> frames;   ///< at time steps, each warped from the one before
 };
 
 /// The motion of a data set as it is asked for.
 struct WarpTask
 {
-  tautline::PointFlags prescribed, stay;
+  PointFlags prescribed, stay;
   std::vector<double> displacement; ///< at the amount, from the mesh at rest
   /// The same after a part (0 to 1) of the way, where it is not straight; or empty.
   std::function<std::vector<double>(double)> path;
@@ -67,43 +115,58 @@ struct WarpTask
   std::string correspondence;  ///< or ""
 };
 
-struct vtkMeshWarp::Session
+/**
+ * @class tautline::WarpSession
+ * @brief The executions of a filter: for each data set the mesh at rest with its matrices and, of
+ * motions over time, the time steps that others start from.
+ */
+class WarpSession
 {
-  explicit Session(vtkMeshWarp* self)
-    : Self(self)
-  {
-  }
+public:
+  WarpSettings settings; ///< set them before each call
 
-  std::map<int, WarpBlock> blocks; ///< by number
   // Time steps one after the other, if the motion is one over time.
   std::vector<double> times;
   bool looping = false; ///< another pass of the same execution
   bool begun = false;   ///< the first time step is known (or this process has nothing of it)
-  int wanted = 0, current = 0;
-  vtkMTimeType upstream = 0, own = 0;
-  // One execution.
-  double numberOfBlocks = 1;
+  int requested = 0, current = 0; ///< numbers of time steps
 
   /// Whether a result needs more than the data at its time.
   bool sequence() const;
-  /// Chooses the time step to ask for.
-  void plan(double time, vtkMTimeType upstreamTime);
-  /// What there is to do with this data set at this time step; warps it if it is the one wanted.
-  void visit(const tautline::InputBlock& block, vtkDataObject* target, vtkDataObject* selected,
-    tautline::TableRows& history, tautline::TableRows& statistics, tautline::WarpTotals& totals);
+  /**
+   * @brief Chooses the time step to ask for. Collective.
+   * @param own the modification time of the filter
+   */
+  void plan(double time, vtkMTimeType upstream, vtkMTimeType own);
+  /// Does what this time step needs of a data set; warps it if it is the one requested.
+  void visit(const InputBlock& block, vtkDataObject* target, vtkDataObject* selected,
+    TableRows& history, TableRows& statistics, WarpTotals& totals);
+  /// Forgets the data sets from a number on.
+  void forgetFrom(int block);
+  /// Forgets everything, after an error.
+  void clear();
 
 private:
-  WarpTask task(const tautline::InputBlock& block, const RestingMesh& rest, vtkDataObject* target,
+  WarpTask task(const InputBlock& block, const RestingMesh& rest, vtkDataObject* target,
     vtkDataObject* selected) const;
-  void move(const tautline::InputBlock& block, const RestingMesh& rest, vtkDataObject* target,
-    vtkDataObject* selected, WarpTask& task) const;
-  std::vector<double> options() const;
-  tautline::WarpOptions optionsFor(const RestingMesh& rest, int blockNumber);
+  void moveOverTime(const InputBlock& block, const RestingMesh& rest, WarpTask& task) const;
+  PointFlags movedPart(
+    const InputBlock& block, const RestingMesh& rest, vtkDataObject* selected) const;
+  void moveToTarget(const InputBlock& block, const RestingMesh& rest, vtkDataObject* target,
+    const PointFlags& moved, WarpTask& task) const;
+  void moveByTransform(const RestingMesh& rest, const PointFlags& moved, WarpTask& task) const;
+  void prescribe(const InputBlock& block, const RestingMesh& rest, WarpTask& task) const;
+  std::vector<double> optionValues() const;
+  WarpOptions optionsFor(const RestingMesh& rest, int blockNumber);
   bool prepare(RestingMesh& rest, WarpTask& task, int blockNumber);
-  tautline::WarpResult warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused);
-  tautline::WarpResult run(tautline::Warper& warper, const WarpTask& task) const;
-  void forget(WarpBlock& kept) const;
+  WarpResult warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused);
+  WarpResult warpFromPrevious(
+    RestingMesh& rest, const WarpResult& previous, const WarpTask& task, int blockNumber);
+  WarpResult run(Warper& warper, const WarpTask& task) const;
+  void limitMemory(WarpBlock& kept) const;
 
-  vtkMeshWarp* Self;
+  std::map<int, WarpBlock> Blocks; ///< by number
+  vtkMTimeType Upstream = 0, Own = 0;
 };
+}
 #endif

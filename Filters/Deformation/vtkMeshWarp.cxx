@@ -7,6 +7,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLinearTransform.h"
+#include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
 #include "vtkSelection.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -23,12 +24,10 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 enum Ports
 {
-  MeshPort = 0,
   TargetPort = 1, // input
   MovedPort = 2,  // input
   FixedPort = 3,  // input
   NumberOfInputPorts = 4,
-  HistoryPort = 1,
   StatisticsPort = 2,
   NumberOfOutputPorts = 3
 };
@@ -48,10 +47,9 @@ std::vector<double> timeStepsOf(vtkInformationVector* input)
 
 //------------------------------------------------------------------------------
 vtkMeshWarp::vtkMeshWarp()
-  : Kept(std::make_unique<Session>(this))
+  : Session(std::make_unique<tautline::WarpSession>())
 {
-  this->SetNumberOfInputPorts(NumberOfInputPorts);
-  this->SetNumberOfOutputPorts(NumberOfOutputPorts);
+  this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { MovedPort, FixedPort });
 }
 
 //------------------------------------------------------------------------------
@@ -134,42 +132,69 @@ vtkMTimeType vtkMeshWarp::GetMTime()
 }
 
 //------------------------------------------------------------------------------
-vtkTable* vtkMeshWarp::GetHistory()
-{
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(HistoryPort));
-}
-
-//------------------------------------------------------------------------------
 vtkTable* vtkMeshWarp::GetStatistics()
 {
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(StatisticsPort));
+  return this->GetOutputTable(StatisticsPort);
 }
 
 //------------------------------------------------------------------------------
-int vtkMeshWarp::FillInputPortInformation(int port, vtkInformation* info)
+tautline::WarpSettings vtkMeshWarp::GetSettings()
 {
-  tautline::declareInput(info, port == MovedPort || port == FixedPort, port != MeshPort);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshWarp::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == MeshPort ? "vtkDataObject" : "vtkTable");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshWarp::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-  if (!input)
+  const auto vector = [](const double* v) { return tautline::Vec3{ v[0], v[1], v[2] }; };
+  tautline::WarpSettings settings;
+  settings.motion = static_cast<tautline::MotionSource>(this->Motion);
+  settings.amount = this->Amount;
+  settings.fromPreviousStep = this->StartFrom == PREVIOUS_STEP;
+  settings.correspondence = static_cast<tautline::Correspondence>(this->Correspondence);
+  settings.targetIds = this->TargetIds;
+  settings.part = static_cast<tautline::MovedPart>(this->MovedPart);
+  settings.partNumbers = this->Parts;
+  settings.partValues = this->Values;
+  tautline::PointMotion& motion = settings.transform;
+  motion.kind = static_cast<tautline::MotionKind>(this->TransformKind);
+  if (this->Transform)
   {
-    return 0;
+    std::copy_n(
+      this->Transform->GetMatrix()->GetData(), motion.matrix.size(), motion.matrix.begin());
   }
-  tautline::provideOutputs(input, outputVector);
-  return 1;
+  motion.translation = vector(this->Translation);
+  motion.angle = this->Angle;
+  motion.axis = vector(this->Axis);
+  motion.factors = vector(this->ScaleFactors);
+  motion.direction = vector(this->Direction);
+  motion.ownCenter = this->OwnCenter;
+  motion.center = vector(this->Center);
+  settings.tensorsByRegion = this->Coefficients == PER_REGION;
+  settings.regions = this->Regions;
+
+  tautline::WarpOptions& options = settings.options;
+  options.method = static_cast<tautline::WarpMethod>(this->Method);
+  options.coefficients =
+    static_cast<tautline::WarpCoefficients>(std::min<int>(this->Coefficients, PER_CELL));
+  std::copy_n(this->Tensor, options.tensor.size(), options.tensor.begin());
+  options.steps = this->Steps;
+  options.maximumSteps = this->MaximumSteps;
+  options.automaticSolver = this->AutomaticSolver;
+  options.solver.method = static_cast<tautline::KrylovMethod>(this->Solver);
+  options.solver.preconditioner = static_cast<tautline::Preconditioner>(this->Preconditioner);
+  options.solver.threads = this->Threads;
+  options.tolerance = this->Tolerance;
+  options.poissonRatio = this->PoissonRatio;
+  options.stiffeningPower = this->StiffeningPower;
+  options.stiffeningFactor = this->StiffeningFactor;
+  options.maximumStiffenings = this->MaximumStiffenings;
+  options.distancePower = this->DistancePower;
+  options.supportRadius = this->SupportRadius;
+  options.fitTolerance = this->FitTolerance;
+  options.untangleFirst = this->UntangleFirst;
+  options.untanglingBeta = this->UntanglingBeta;
+  options.optimization.stopping.maximumIterations = this->MaximumIterations;
+  options.maximumSeconds = this->TimeLimit;
+  options.threads = this->Threads;
+  settings.arrays = this;
+  settings.progress = [this](int block, double fraction)
+  { return this->ProceedInBlock(block, fraction); };
+  return settings;
 }
 
 //------------------------------------------------------------------------------
@@ -183,10 +208,10 @@ int vtkMeshWarp::RequestInformation(
     const std::vector<double> more = timeStepsOf(inputVector[TargetPort]);
     steps.insert(more.begin(), more.end());
   }
-  this->Kept->times.assign(steps.begin(), steps.end());
+  this->Session->times.assign(steps.begin(), steps.end());
   for (int port = 0; !steps.empty() && port < NumberOfOutputPorts; ++port)
   {
-    const std::vector<double>& times = this->Kept->times;
+    const std::vector<double>& times = this->Session->times;
     const double range[2] = { times.front(), times.back() };
     vtkInformation* info = outputVector->GetInformationObject(port);
     info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
@@ -199,7 +224,8 @@ int vtkMeshWarp::RequestInformation(
 int vtkMeshWarp::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (!this->Kept->sequence())
+  this->Session->settings = this->GetSettings();
+  if (!this->Session->sequence())
   {
     return 1;
   }
@@ -212,7 +238,7 @@ int vtkMeshWarp::RequestUpdateExtent(
       upstream = std::max(upstream, producer ? producer->GetPipelineMTime() : 0);
     }
   }
-  double time = this->Kept->times.front();
+  double time = this->Session->times.front();
   for (int port = 0; port < NumberOfOutputPorts; ++port)
   {
     vtkInformation* info = outputVector->GetInformationObject(port);
@@ -222,13 +248,13 @@ int vtkMeshWarp::RequestUpdateExtent(
       break;
     }
   }
-  this->Kept->plan(time, upstream);
-  for (int port : { MeshPort, TargetPort })
+  this->Session->plan(time, upstream, this->GetMTime());
+  for (int port : { int(MeshPort), int(TargetPort) })
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
       inputVector[port]->GetInformationObject(i)->Set(
-        Pipeline::UPDATE_TIME_STEP(), this->Kept->times[this->Kept->current]);
+        Pipeline::UPDATE_TIME_STEP(), this->Session->times[this->Session->current]);
     }
   }
   return 1;
@@ -238,49 +264,40 @@ int vtkMeshWarp::RequestUpdateExtent(
 int vtkMeshWarp::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  Session& session = *this->Kept;
+  tautline::WarpSession& session = *this->Session;
+  session.settings = this->GetSettings();
   vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
   vtkDataObject* target = vtkDataObject::GetData(inputVector[TargetPort]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   tautline::TableRows history, statistics;
   tautline::WarpTotals totals;
-  std::string failure;
-  try
-  {
-    tautline::requireOneProcess(input);
-    const auto moved = tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
-    const auto fixed = tautline::markSelected(input, vtkSelection::GetData(inputVector[FixedPort]));
-    session.numberOfBlocks = tautline::countBlocks(input);
-    tautline::forEachBlock(input, nullptr, fixed, output,
-      [&](const tautline::InputBlock& block)
-      { session.visit(block, target, moved, history, statistics, totals); });
-    session.blocks.erase(
-      session.blocks.lower_bound(static_cast<int>(session.numberOfBlocks)), session.blocks.end());
-  }
-  catch (const std::bad_alloc&)
-  {
-    failure =
-      "Not enough memory: choose conjugate gradients with BoomerAMG (Automatic Solver off), or "
-      "warp the mesh in parts.";
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
+  this->ClearResult();
+  std::string failure = FailureOf("choose conjugate gradients with BoomerAMG (Automatic Solver "
+                                  "off), or warp the mesh in parts",
+    [&]
+    {
+      tautline::requireOneProcess(input);
+      const auto moved =
+        tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
+      this->ForEachBlock(inputVector, outputVector, nullptr, FixedPort,
+        [&](const tautline::InputBlock& block)
+        { session.visit(block, target, moved, history, statistics, totals); });
+      session.forgetFrom(this->GetNumberOfBlocks());
+    });
   // Processes fail together: those that did would execute again alone, and wait for the others.
   if (tautline::minimumOverProcesses(failure.empty()) == 0)
   {
-    vtkErrorMacro(<< (failure.empty()
-                      ? "Another process could not warp its data set, see its error."
-                      : failure));
-    return this->Fail(outputVector, request);
+    request->Remove(Pipeline::CONTINUE_EXECUTING());
+    session.clear();
+    return this->Fail(outputVector,
+      failure.empty() ? "Another process could not warp its data set, see its error." : failure);
   }
   session.begun = session.sequence();
-  // Time steps before the one wanted, which the result needs: again, with the next of them.
-  if (session.sequence() && session.current < session.wanted)
+  // Time steps before the one requested, which the result needs: again, with the next of them.
+  if (session.sequence() && session.current < session.requested)
   {
     session.looping = true;
-    session.current = this->StartFrom == PREVIOUS_STEP ? session.current + 1 : session.wanted;
+    session.current = this->StartFrom == PREVIOUS_STEP ? session.current + 1 : session.requested;
     request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
     return 1;
   }
@@ -291,7 +308,8 @@ int vtkMeshWarp::RequestData(
   }
   if (session.sequence())
   {
-    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), session.times[session.wanted]);
+    output->GetInformation()->Set(
+      vtkDataObject::DATA_TIME_STEP(), session.times[session.requested]);
   }
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
@@ -309,20 +327,12 @@ int vtkMeshWarp::RequestData(
 }
 
 //------------------------------------------------------------------------------
-int vtkMeshWarp::Fail(vtkInformationVector* outputs, vtkInformation* request)
+void vtkMeshWarp::ClearResult()
 {
-  request->Remove(Pipeline::CONTINUE_EXECUTING());
-  for (int port = 0; port < NumberOfOutputPorts; ++port)
-  {
-    vtkDataObject::GetData(outputs, port)->Initialize();
-  }
-  this->Kept->looping = this->Kept->begun = false;
-  this->Kept->blocks.clear();
   this->Summary.clear();
   this->InvertedAfterWarp = this->Inverted = this->Impossible = 0;
   this->WorstShape = 0.0;
   this->Reused = 0;
-  return 0;
 }
 
 //------------------------------------------------------------------------------
@@ -341,7 +351,4 @@ void vtkMeshWarp::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Steps: " << this->Steps << "\n";
   os << indent << "AutomaticSolver: " << this->AutomaticSolver << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
 }

@@ -72,22 +72,27 @@
 #define vtkMeshWarp_h
 
 #include "TautlineDeformationModule.h" // for export macro
-#include "vtkDataObjectAlgorithm.h"
+#include "vtkMeshMotionAlgorithm.h"
 #include "vtkSmartPointer.h" // for Transform
 
 #include <array>  // for RegionCoefficients
 #include <memory> // for Session
-#include <string> // for Summary
+#include <string> // for TargetIds
 #include <vector> // for lists
 
 class vtkLinearTransform;
-class vtkTable;
 
-class TAUTLINEDEFORMATION_EXPORT vtkMeshWarp : public vtkDataObjectAlgorithm
+namespace tautline
+{
+class WarpSession;
+struct WarpSettings;
+}
+
+class TAUTLINEDEFORMATION_EXPORT vtkMeshWarp : public vtkMeshMotionAlgorithm
 {
 public:
   static vtkMeshWarp* New();
-  vtkTypeMacro(vtkMeshWarp, vtkDataObjectAlgorithm);
+  vtkTypeMacro(vtkMeshWarp, vtkMeshMotionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Motions
@@ -384,28 +389,12 @@ public:
   vtkGetMacro(MaximumIterations, int);
   ///@}
 
-  ///@{
-  /// Seconds per data set and time step; 0 is no limit. The default is 600.
-  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(TimeLimit, double);
-  ///@}
-
-  ///@{
-  /// Number of threads; 0 is all cores. The result does not depend on it. The default is 0.
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
-  ///@{
-  /// The outputs other than the mesh.
-  vtkTable* GetHistory();
+  /// The table of output port 2.
   vtkTable* GetStatistics();
-  ///@}
 
   ///@{
   /// The result of the last execution, of all blocks together; the names are those of the
   /// statistics.
-  const char* GetSummary() const { return this->Summary.c_str(); }
   vtkIdType GetInvertedAfterWarp() const { return this->InvertedAfterWarp; }
   vtkIdType GetInverted() const { return this->Inverted; }
   vtkIdType GetImpossible() const { return this->Impossible; }
@@ -421,10 +410,6 @@ protected:
   vtkMeshWarp();
   ~vtkMeshWarp() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
@@ -436,8 +421,8 @@ private:
   vtkMeshWarp(const vtkMeshWarp&) = delete;
   void operator=(const vtkMeshWarp&) = delete;
 
-  struct Session; ///< what is kept between executions, and what one execution needs
-  int Fail(vtkInformationVector* outputs, vtkInformation* request);
+  tautline::WarpSettings GetSettings();
+  void ClearResult();
 
   int Motion = TRANSFORM;
   double Amount = 1.0;
@@ -476,11 +461,8 @@ private:
   bool UntangleFirst = true;
   double UntanglingBeta = 0.0;
   int MaximumIterations = 50;
-  double TimeLimit = 600.0;
-  int Threads = 0;
 
-  std::unique_ptr<Session> Kept;
-  std::string Summary;
+  std::unique_ptr<tautline::WarpSession> Session; ///< what is kept between executions
   vtkIdType InvertedAfterWarp = 0;
   vtkIdType Inverted = 0;
   vtkIdType Impossible = 0;

@@ -1,6 +1,8 @@
 #include "vtkMeshPerturbation.h"
 
+#include "Blocks.h"
 #include "MeshAdapter.h"
+#include "MovableMesh.h"
 #include "tautline/Domains/Perturb.h"
 
 #include "vtkDataArray.h"
@@ -23,6 +25,8 @@ vtkStandardNewMacro(vtkMeshPerturbation);
 
 namespace
 {
+constexpr int FixedArray = 0;
+
 /// Marks the points of the ghost cells and those where the chosen array, if any, is not 0.
 std::vector<unsigned char> fixedPoints(
   vtkDataArray* chosen, const tautline::MeshAdapter& adapter, vtkIdType count)
@@ -43,23 +47,6 @@ std::vector<unsigned char> fixedPoints(
   return fixed;
 }
 
-/// The chosen point array; throws if one is named that the input has not.
-vtkDataArray* chosenArray(vtkInformation* choice, vtkDataSet* input)
-{
-  const char* name = choice->Get(vtkDataObject::FIELD_NAME());
-  if (!name || !*name || std::string(name) == "None")
-  {
-    return nullptr;
-  }
-  vtkDataArray* array = input->GetPointData()->GetArray(name);
-  if (!array)
-  {
-    throw tautline::Error(std::string("There is no point array '") + name +
-      "' to tell the fixed points by: choose another one, or None.");
-  }
-  return array;
-}
-
 /// A mesh reversed throughout is treated as its mirror image.
 void settleOrientation(tautline::Mesh& mesh, int threads)
 {
@@ -67,18 +54,25 @@ void settleOrientation(tautline::Mesh& mesh, int threads)
   mesh.classifyCells(validity.data(), threads);
   mesh.setMirrored(mesh.orientation(validity.data()).state == tautline::Orientation::Reversed);
 }
-
-void addDisplacement(
-  vtkPointSet* output, const tautline::MeshView& before, const std::vector<double>& after)
-{
-  vtkNew<vtkDoubleArray> displacement;
-  displacement->SetName("Displacement");
-  displacement->SetNumberOfComponents(3);
-  displacement->SetNumberOfTuples(before.numberOfPoints);
-  std::transform(after.begin(), after.end(), before.points, displacement->GetPointer(0),
-    [](double now, double then) { return std::isfinite(now) ? now - then : 0.0; });
-  output->GetPointData()->AddArray(displacement);
 }
+
+//------------------------------------------------------------------------------
+vtkMeshPerturbation::vtkMeshPerturbation() = default;
+
+//------------------------------------------------------------------------------
+vtkMeshPerturbation::~vtkMeshPerturbation() = default;
+
+//------------------------------------------------------------------------------
+vtkDataSet* vtkMeshPerturbation::GetOutput()
+{
+  return vtkDataSet::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshPerturbation::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
+  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -111,44 +105,35 @@ int vtkMeshPerturbation::RequestData(
   {
     return 1;
   }
-  try
-  {
-    tautline::MeshAdapter adapter(input, this->Threads);
-    tautline::Mesh& mesh = adapter.mesh();
-    if (mesh.dimension() == tautline::Dimension::None)
+  return this->Attempt(outputVector, "perturb the mesh in parts",
+    [&]
     {
-      throw tautline::Error("There is no element to perturb. " + adapter.notice());
-    }
-    settleOrientation(mesh, this->Threads);
-    const std::vector<unsigned char> fixed = fixedPoints(
-      chosenArray(this->GetInputArrayInformation(0), input), adapter, input->GetNumberOfPoints());
-    const int type = points->GetPoints()->GetDataType();
+      tautline::MeshAdapter adapter(input, this->Threads);
+      tautline::Mesh& mesh = adapter.mesh();
+      if (mesh.dimension() == tautline::Dimension::None)
+      {
+        throw tautline::Error("There is no element to perturb. " + adapter.notice());
+      }
+      settleOrientation(mesh, this->Threads);
+      const std::vector<unsigned char> fixed =
+        fixedPoints(tautline::chosenArray(this, FixedArray, input, "of fixed points"), adapter,
+          input->GetNumberOfPoints());
+      const int type = points->GetPoints()->GetDataType();
 
-    tautline::PerturbOptions options;
-    options.percentage = this->Percentage;
-    options.fraction = this->Fraction;
-    options.tangledFraction = this->TangledFraction;
-    options.seed = static_cast<std::uint64_t>(this->Seed);
-    options.singlePrecision = type == VTK_FLOAT;
-    options.threads = this->Threads;
-    options.progress = [this](double done)
-    {
-      this->UpdateProgress(done);
-      return !this->GetAbortExecute();
-    };
-    const tautline::Perturbation result = tautline::perturb(mesh, fixed.data(), options);
-    moved->SetPoints(
-      tautline::makePoints(result.points, type == VTK_FLOAT ? points->GetPoints() : nullptr));
-    addDisplacement(moved, mesh.view(), result.points);
-    this->Report(result);
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-    output->Initialize();
-    return 0;
-  }
-  return 1;
+      tautline::PerturbOptions options;
+      options.percentage = this->Percentage;
+      options.fraction = this->Fraction;
+      options.tangledFraction = this->TangledFraction;
+      options.seed = static_cast<std::uint64_t>(this->Seed);
+      options.singlePrecision = type == VTK_FLOAT;
+      options.threads = this->Threads;
+      options.progress = [this](double fraction) { return this->Proceed(fraction); };
+      const tautline::Perturbation result = tautline::perturb(mesh, fixed.data(), options);
+      moved->SetPoints(
+        tautline::makePoints(result.points, type == VTK_FLOAT ? points->GetPoints() : nullptr));
+      tautline::addDisplacement(moved, mesh.view().points, result.points);
+      this->Report(result);
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -178,6 +163,4 @@ void vtkMeshPerturbation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Fraction: " << this->Fraction << "\n";
   os << indent << "TangledFraction: " << this->TangledFraction << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
 }

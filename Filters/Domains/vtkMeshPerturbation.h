@@ -65,20 +65,20 @@
 #define vtkMeshPerturbation_h
 
 #include "TautlineDomainsModule.h" // for export macro
-#include "vtkDataSetAlgorithm.h"
+#include "vtkTautlineAlgorithm.h"
 
-#include <string> // for Summary
+class vtkDataSet;
 
 namespace tautline
 {
 struct Perturbation;
 }
 
-class TAUTLINEDOMAINS_EXPORT vtkMeshPerturbation : public vtkDataSetAlgorithm
+class TAUTLINEDOMAINS_EXPORT vtkMeshPerturbation : public vtkTautlineAlgorithm
 {
 public:
   static vtkMeshPerturbation* New();
-  vtkTypeMacro(vtkMeshPerturbation, vtkDataSetAlgorithm);
+  vtkTypeMacro(vtkMeshPerturbation, vtkTautlineAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -117,18 +117,9 @@ public:
 
   ///@{
   /**
-   * Number of threads; 0, the default, is all cores. The vertices move one after the other: threads
-   * speed up the look at the input only, and do not change the result.
-   */
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
-  ///@{
-  /**
    * Results of the last execution (for multiblock data, of its last block): vertices inside the
    * mesh that were free to move; those that did; the elements inverted before and after, and the
-   * fraction of the elements that the latter are; the largest displacement; all of it in words.
+   * fraction of the elements that the latter are; the largest displacement.
    */
   vtkGetMacro(NumberOfMovablePoints, vtkIdType);
   vtkGetMacro(NumberOfMovedPoints, vtkIdType);
@@ -136,14 +127,17 @@ public:
   vtkGetMacro(InvertedAfter, vtkIdType);
   vtkGetMacro(TangledFractionReached, double);
   vtkGetMacro(LargestDisplacement, double);
-  const char* GetSummary() const { return this->Summary.c_str(); }
   ///@}
 
+  /// The mesh with other points.
+  vtkDataSet* GetOutput();
+
 protected:
-  vtkMeshPerturbation() = default;
-  ~vtkMeshPerturbation() override = default;
+  vtkMeshPerturbation();
+  ~vtkMeshPerturbation() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
@@ -156,7 +150,6 @@ private:
   double Fraction = 0.5;
   double TangledFraction = 0.0;
   int Seed = 0;
-  int Threads = 0;
 
   vtkIdType NumberOfMovablePoints = 0;
   vtkIdType NumberOfMovedPoints = 0;
@@ -164,7 +157,6 @@ private:
   vtkIdType InvertedAfter = 0;
   double TangledFractionReached = 0.0;
   double LargestDisplacement = 0.0;
-  std::string Summary;
 };
 
 #endif

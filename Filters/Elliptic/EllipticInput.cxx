@@ -1,6 +1,6 @@
 #include "EllipticInput.h"
 
-#include "MovableMesh.h"
+#include "Blocks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -223,8 +223,7 @@ void EllipticInput::markFixed(
       {
         return;
       }
-      vtkDataArray* array =
-        chosenArray(algorithm, choice.fixedArray, data, "to tell the fixed points by");
+      vtkDataArray* array = chosenArray(algorithm, choice.fixedArray, data, "of fixed points");
       flag(array, array && data->GetCellData()->GetArray(array->GetName()) == array, view, chosen);
       if (this->Local.selected)
       {

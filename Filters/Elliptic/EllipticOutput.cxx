@@ -1,6 +1,6 @@
 #include "EllipticOutput.h"
 
-#include "MovableMesh.h"
+#include "TableRows.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -88,11 +88,7 @@ void addResiduals(TableRows& rows, const std::vector<double>& residuals, const s
     const double relative = std::isfinite(residual / first)
       ? std::max(residual / first, std::numeric_limits<double>::epsilon())
       : 1.0;
-    rows.begin();
-    if (!block.empty())
-    {
-      rows.addText("Block", block);
-    }
+    rows.begin(block);
     rows.add("Log10 residual", std::log10(relative));
     rows.add("N residual", std::isfinite(residual) ? residual : 0.0);
   }

@@ -1,6 +1,6 @@
 #include "PointFunction.h"
 
-#include "MovableMesh.h"
+#include "Blocks.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkDataArray.h"

@@ -2,7 +2,7 @@
 
 #include "EllipticInput.h"
 #include "EllipticOutput.h"
-#include "MovableMesh.h"
+#include "TableRows.h"
 
 #include "tautline/Elliptic/ElementContributions.h"
 #include "tautline/Solvers/ConditionEstimate.h"
@@ -155,7 +155,7 @@ vtkConditionEstimator::~vtkConditionEstimator() = default;
 //------------------------------------------------------------------------------
 vtkTable* vtkConditionEstimator::GetSpectrum()
 {
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(SpectrumPort));
+  return this->GetOutputTable(SpectrumPort);
 }
 
 //------------------------------------------------------------------------------
@@ -186,11 +186,7 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
 
   const std::string name =
     plain ? "A" : std::string("P^-1 A (") + tautline::nameOf(options.preconditioner) + ")";
-  table.begin();
-  if (!mesh.name.empty())
-  {
-    table.addText("Block", mesh.name);
-  }
+  table.begin(mesh.name);
   table.addText("Matrix", name);
   table.add("Smallest", found.smallest);
   table.add("Largest", found.largest);
@@ -272,7 +268,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
     }
     text << "largest eigenvalue " << element.eigenvalue << ".";
   }
-  this->Say(mesh, text.str());
+  this->Describe(mesh, text.str());
 }
 
 //------------------------------------------------------------------------------

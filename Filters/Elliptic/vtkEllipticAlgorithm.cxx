@@ -1,10 +1,10 @@
 #include "vtkEllipticAlgorithm.h"
 
+#include "Blocks.h"
 #include "EllipticInput.h"
-#include "MovableMesh.h"
+#include "TableRows.h"
 
 #include "vtkDataObject.h"
-#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkSelection.h"
 #include "vtkTable.h"
@@ -34,39 +34,11 @@ enum Arrays
 //------------------------------------------------------------------------------
 vtkEllipticAlgorithm::vtkEllipticAlgorithm()
 {
-  this->SetNumberOfInputPorts(NumberOfPorts);
-  this->SetNumberOfOutputPorts(NumberOfPorts);
+  this->DeclarePorts(NumberOfPorts, NumberOfPorts, { SelectionPort });
 }
 
 //------------------------------------------------------------------------------
 vtkEllipticAlgorithm::~vtkEllipticAlgorithm() = default;
-
-//------------------------------------------------------------------------------
-int vtkEllipticAlgorithm::FillInputPortInformation(int port, vtkInformation* info)
-{
-  tautline::declareInput(info, port == SelectionPort, port != MeshPort);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkEllipticAlgorithm::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == MeshPort ? "vtkDataObject" : "vtkTable");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkEllipticAlgorithm::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-  if (!input)
-  {
-    return 0;
-  }
-  tautline::provideOutputs(input, outputVector);
-  return 1;
-}
 
 //------------------------------------------------------------------------------
 tautline::EllipticChoice vtkEllipticAlgorithm::GetChoice() const
@@ -101,53 +73,42 @@ int vtkEllipticAlgorithm::RequestData(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
-  vtkTable* table = vtkTable::GetData(outputVector, TablePort);
   this->Summary.clear();
   this->Failed = false;
   this->Unknowns = 0;
   this->AssemblySeconds = 0.0;
   this->Reset();
-  try
-  {
-    const tautline::Processes processes;
-    const tautline::EllipticChoice choice = this->GetChoice();
-    tautline::TableRows rows;
-    vtkSmartPointer<vtkDataObject> selected;
-    processes.together(
-      [&]() {
-        selected = tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
-      });
-    tautline::forEachMesh(input, selected, output, processes,
-      [&](tautline::LocalMesh& mesh)
-      {
-        const tautline::EllipticInput problem(mesh, choice, this, processes, this->Threads);
-        this->Unknowns += problem.system().unknowns();
-        this->AssemblySeconds += problem.system().assembleSeconds();
-        this->Compute(problem, mesh, processes, rows);
-        this->Say(mesh, problem.notice());
-      });
-    if (processes.rank() == 0)
+  const int succeeded = this->Attempt(outputVector, "solve on a coarser mesh, or on more processes",
+    [&]
     {
-      rows.fill(table);
-    }
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro("Not enough memory: solve on a coarser mesh, or on more processes.");
-    output->Initialize();
-    return 0;
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-    output->Initialize();
-    return 0;
-  }
-  if (this->Failed)
+      const tautline::Processes processes;
+      const tautline::EllipticChoice choice = this->GetChoice();
+      tautline::TableRows rows;
+      vtkSmartPointer<vtkDataObject> selected;
+      processes.together(
+        [&]() {
+          selected =
+            tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
+        });
+      tautline::forEachMesh(input, selected, output, processes,
+        [&](tautline::LocalMesh& mesh)
+        {
+          const tautline::EllipticInput problem(mesh, choice, this, processes, this->Threads);
+          this->Unknowns += problem.system().unknowns();
+          this->AssemblySeconds += problem.system().assembleSeconds();
+          this->Compute(problem, mesh, processes, rows);
+          this->Describe(mesh, problem.notice());
+        });
+      if (processes.rank() == 0)
+      {
+        rows.fill(vtkTable::GetData(outputVector, TablePort));
+      }
+    });
+  if (succeeded && this->Failed)
   {
     vtkWarningMacro(<< this->Summary);
   }
-  return 1;
+  return succeeded;
 }
 
 //------------------------------------------------------------------------------
@@ -156,20 +117,18 @@ void vtkEllipticAlgorithm::Reset()
 }
 
 //------------------------------------------------------------------------------
-void vtkEllipticAlgorithm::Say(const tautline::LocalMesh& mesh, const std::string& text)
+void vtkEllipticAlgorithm::Describe(const tautline::LocalMesh& mesh, const std::string& text)
 {
   if (!text.empty())
   {
-    this->Summary += (this->Summary.empty() ? "" : "\n") +
-      (mesh.name.empty() ? "" : "In " + mesh.name + ": ") + text;
+    this->AddToSummary((mesh.name.empty() ? "" : "In " + mesh.name + ": ") + text);
   }
 }
 
 //------------------------------------------------------------------------------
 bool vtkEllipticAlgorithm::Report(const tautline::LocalMesh& mesh, double fraction)
 {
-  this->UpdateProgress((mesh.number + fraction) / mesh.meshes);
-  return !this->GetAbortExecute();
+  return this->Proceed((mesh.number + fraction) / mesh.meshes);
 }
 
 //------------------------------------------------------------------------------
@@ -181,7 +140,4 @@ void vtkEllipticAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FixedPart: " << this->FixedPart << "\n";
   os << indent << "GivenType: " << this->GivenType << "\n";
   os << indent << "PETScOptions: " << this->PETScOptions << "\n";
-  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
 }

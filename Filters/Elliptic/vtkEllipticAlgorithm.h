@@ -31,11 +31,9 @@
 #define vtkEllipticAlgorithm_h
 
 #include "TautlineEllipticModule.h" // for export macro
-#include "vtkDataObjectAlgorithm.h"
+#include "vtkTautlineTimedAlgorithm.h"
 
 #include <string> // for expressions
-
-class vtkTable;
 
 namespace tautline
 {
@@ -46,10 +44,10 @@ struct EllipticChoice;
 struct LocalMesh;
 }
 
-class TAUTLINEELLIPTIC_EXPORT vtkEllipticAlgorithm : public vtkDataObjectAlgorithm
+class TAUTLINEELLIPTIC_EXPORT vtkEllipticAlgorithm : public vtkTautlineTimedAlgorithm
 {
 public:
-  vtkTypeMacro(vtkEllipticAlgorithm, vtkDataObjectAlgorithm);
+  vtkTypeMacro(vtkEllipticAlgorithm, vtkTautlineTimedAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// Numbers of the equations; those of tautline::Pde.
@@ -206,21 +204,6 @@ public:
   vtkGetMacro(PETScOptions, std::string);
   ///@}
 
-  ///@{
-  /// Seconds after which the best so far is returned; 0 is no limit. The default is 600.
-  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(TimeLimit, double);
-  ///@}
-
-  ///@{
-  /// Number of threads of the assembly; 0, the default, is all cores. The result does not depend on
-  /// it.
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
-  /// The last result in words.
-  const char* GetSummary() const { return this->Summary.c_str(); }
   /// Unknowns of the last system, on all processes, of all blocks together.
   vtkIdType GetUnknowns() const { return this->Unknowns; }
   /// Seconds the last assembly took, of all blocks together.
@@ -230,10 +213,6 @@ protected:
   vtkEllipticAlgorithm();
   ~vtkEllipticAlgorithm() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -244,16 +223,14 @@ protected:
     const tautline::Processes& processes, tautline::TableRows& table) = 0;
 
   /// Adds a paragraph to the summary, which begins with the block's name.
-  void Say(const tautline::LocalMesh& mesh, const std::string& text);
-  /// Tells that something did not succeed; becomes a warning with the summary.
+  void Describe(const tautline::LocalMesh& mesh, const std::string& text);
+  /// Something did not succeed: RequestData() ends with a warning, the summary.
   void Warn() { this->Failed = true; }
   /// Reports a fraction of the work on a mesh. @return false to stop
   bool Report(const tautline::LocalMesh& mesh, double fraction);
 
   double Omega = 1.0;
   std::string PETScOptions;
-  double TimeLimit = 600.0;
-  int Threads = 0;
   int Equation = POISSON;
 
 private:
@@ -279,7 +256,6 @@ private:
   double GivenValue = 0.0;
   double GivenDisplacement[3] = { 0.0, 0.0, 0.0 };
   std::string GivenExpression;
-  std::string Summary;
   bool Failed = false;
   vtkIdType Unknowns = 0;
   double AssemblySeconds = 0.0;

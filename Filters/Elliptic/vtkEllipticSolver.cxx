@@ -2,7 +2,7 @@
 
 #include "EllipticInput.h"
 #include "EllipticOutput.h"
-#include "MovableMesh.h"
+#include "TableRows.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -28,92 +28,15 @@ double fractionOf(double first, double residual, double tolerance)
   }
   return std::clamp(std::log(residual / first) / std::log(tolerance), 0.0, 1.0);
 }
-}
 
-//------------------------------------------------------------------------------
-vtkEllipticSolver::vtkEllipticSolver() = default;
-
-//------------------------------------------------------------------------------
-vtkEllipticSolver::~vtkEllipticSolver() = default;
-
-//------------------------------------------------------------------------------
-vtkTable* vtkEllipticSolver::GetHistory()
+/// @param outside the number of points in no element
+std::string summaryOf(const tautline::LinearSolution& solved,
+  const tautline::SolverOptions& options, const tautline::EllipticSystem& system,
+  tautline::Index outside)
 {
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(HistoryPort));
-}
-
-//------------------------------------------------------------------------------
-void vtkEllipticSolver::Reset()
-{
-  this->Converged = true;
-  this->Reason.clear();
-  this->Iterations = 0;
-  this->SetupSeconds = this->SolveSeconds = 0.0;
-}
-
-//------------------------------------------------------------------------------
-void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-  const tautline::Processes&, tautline::TableRows& table)
-{
-  const tautline::EllipticSystem& system = input.system();
-  tautline::SolverOptions options;
-  options.method = static_cast<tautline::KrylovMethod>(this->Solver);
-  options.preconditioner = static_cast<tautline::Preconditioner>(this->Preconditioner);
-  options.relativeTolerance = this->RelativeTolerance;
-  options.absoluteTolerance = this->AbsoluteTolerance;
-  options.maximumIterations = this->MaximumIterations;
-  options.restart = this->Restart;
-  options.omega = this->Omega;
-  options.maximumSeconds = this->TimeLimit;
-  options.petscOptions = this->PETScOptions;
-  options.threads = this->Threads;
-  // The user's options go before, and an option without effect would be an error.
-  const std::string& own = this->PETScOptions;
-  if (this->FastMultigrid && this->Preconditioner == AMG && this->Solver != DIRECT &&
-    own.find("-pc_") == std::string::npos)
-  {
-    options.petscOptions = tautline::fastMultigridOptions() + (" " + own);
-  }
-  double first = 0.0;
-  options.observer = [&](int iteration, double residual)
-  {
-    first = iteration == 0 ? residual : first;
-    return this->Report(mesh, fractionOf(first, residual, this->RelativeTolerance));
-  };
-
-  tautline::LinearSystem linear = system.linearSystem();
-  linear.coordinates = this->RigidBodyModes ? linear.coordinates : nullptr;
-  tautline::LinearSolver solver(linear, options);
-  std::vector<double> x(system.freePoints().size() * system.blockSize(), 0.0);
-  const tautline::LinearSolution solved = solver.solve(system.rightHandSide().data(), x.data());
-  const tautline::EllipticSolution solution = system.fields(x);
-
-  const bool elastic = this->Equation == ELASTICITY;
-  const std::string name = !this->SolutionName.empty() ? this->SolutionName
-    : elastic                                          ? "Displacement"
-                                                       : "Solution";
-  if (this->ComputeGradient && elastic)
-  {
-    tautline::addStress(mesh.output, solution.gradients);
-  }
-  else if (this->ComputeGradient)
-  {
-    tautline::addArray(mesh.output, true, "Gradient", solution.gradients, 3);
-  }
-  const tautline::Index outside =
-    tautline::addArray(mesh.output, false, name, solution.values, solution.components);
-  mesh.output->GetCellData()->SetActiveScalars(nullptr); // the solution is looked at first
-  tautline::addResiduals(table, solved.residuals, mesh.name);
-
-  const bool converged = tautline::converged(solved.reason);
-  this->Converged = this->Converged && converged;
-  this->Reason = tautline::sentence(tautline::describe(solved.reason));
-  this->Iterations += solved.iterations;
-  this->SetupSeconds += solved.setupSeconds;
-  this->SolveSeconds += solved.solveSeconds;
   std::ostringstream text;
-  text << this->Reason << (solved.message.empty() ? "" : " ") << tautline::sentence(solved.message)
-       << "\n"
+  text << tautline::sentence(tautline::describe(solved.reason))
+       << (solved.message.empty() ? "" : " ") << tautline::sentence(solved.message) << "\n"
        << system.unknowns() << " unknowns, ";
   if (options.method == tautline::KrylovMethod::Direct)
   {
@@ -131,11 +54,109 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
   {
     text << "\n" << outside << " points are in no element; their solution is 0.";
   }
-  this->Say(mesh, text.str());
+  return text.str();
+}
+}
+
+//------------------------------------------------------------------------------
+vtkEllipticSolver::vtkEllipticSolver() = default;
+
+//------------------------------------------------------------------------------
+vtkEllipticSolver::~vtkEllipticSolver() = default;
+
+//------------------------------------------------------------------------------
+vtkTable* vtkEllipticSolver::GetHistory()
+{
+  return this->GetOutputTable(HistoryPort);
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticSolver::Reset()
+{
+  this->Converged = true;
+  this->Reason.clear();
+  this->Iterations = 0;
+  this->SetupSeconds = this->SolveSeconds = 0.0;
+}
+
+//------------------------------------------------------------------------------
+tautline::SolverOptions vtkEllipticSolver::GetSolverOptions() const
+{
+  tautline::SolverOptions options;
+  options.method = static_cast<tautline::KrylovMethod>(this->Solver);
+  options.preconditioner = static_cast<tautline::Preconditioner>(this->Preconditioner);
+  options.relativeTolerance = this->RelativeTolerance;
+  options.absoluteTolerance = this->AbsoluteTolerance;
+  options.maximumIterations = this->MaximumIterations;
+  options.restart = this->Restart;
+  options.omega = this->Omega;
+  options.maximumSeconds = this->TimeLimit;
+  options.petscOptions = this->PETScOptions;
+  options.threads = this->Threads;
+  // The user's options override others, and an option without effect would be an error.
+  const std::string& own = this->PETScOptions;
+  if (this->FastMultigrid && this->Preconditioner == AMG && this->Solver != DIRECT &&
+    own.find("-pc_") == std::string::npos)
+  {
+    options.petscOptions = tautline::fastMultigridOptions() + (" " + own);
+  }
+  return options;
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
+  const tautline::Processes&, tautline::TableRows& table)
+{
+  const tautline::EllipticSystem& system = input.system();
+  tautline::SolverOptions options = this->GetSolverOptions();
+  double first = 0.0;
+  options.observer = [&](int iteration, double residual)
+  {
+    first = iteration == 0 ? residual : first;
+    return this->Report(mesh, fractionOf(first, residual, this->RelativeTolerance));
+  };
+
+  tautline::LinearSystem linear = system.linearSystem();
+  linear.coordinates = this->RigidBodyModes ? linear.coordinates : nullptr;
+  tautline::LinearSolver solver(linear, options);
+  std::vector<double> x(system.freePoints().size() * system.blockSize(), 0.0);
+  const tautline::LinearSolution solved = solver.solve(system.rightHandSide().data(), x.data());
+  const tautline::Index outside = this->AddSolution(system.fields(x), mesh.output);
+  tautline::addResiduals(table, solved.residuals, mesh.name);
+
+  const bool converged = tautline::converged(solved.reason);
+  this->Converged = this->Converged && converged;
+  this->Reason = tautline::sentence(tautline::describe(solved.reason));
+  this->Iterations += solved.iterations;
+  this->SetupSeconds += solved.setupSeconds;
+  this->SolveSeconds += solved.solveSeconds;
+  this->Describe(mesh, summaryOf(solved, options, system, outside));
   if (!converged)
   {
     this->Warn();
   }
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkEllipticSolver::AddSolution(
+  const tautline::EllipticSolution& solution, vtkDataSet* output) const
+{
+  const bool elastic = this->Equation == ELASTICITY;
+  const std::string name = !this->SolutionName.empty() ? this->SolutionName
+    : elastic                                          ? "Displacement"
+                                                       : "Solution";
+  if (this->ComputeGradient && elastic)
+  {
+    tautline::addStress(output, solution.gradients);
+  }
+  else if (this->ComputeGradient)
+  {
+    tautline::addArray(output, true, "Gradient", solution.gradients, 3);
+  }
+  const tautline::Index outside =
+    tautline::addArray(output, false, name, solution.values, solution.components);
+  output->GetCellData()->SetActiveScalars(nullptr); // the solution is looked at first
+  return outside;
 }
 
 //------------------------------------------------------------------------------

@@ -30,6 +30,14 @@
 
 #include "vtkEllipticAlgorithm.h"
 
+class vtkDataSet;
+
+namespace tautline
+{
+struct EllipticSolution;
+struct SolverOptions;
+}
+
 class TAUTLINEELLIPTIC_EXPORT vtkEllipticSolver : public vtkEllipticAlgorithm
 {
 public:
@@ -155,6 +163,10 @@ protected:
 private:
   vtkEllipticSolver(const vtkEllipticSolver&) = delete;
   void operator=(const vtkEllipticSolver&) = delete;
+
+  tautline::SolverOptions GetSolverOptions() const;
+  /// Adds the arrays. @return the number of points in no element
+  vtkIdType AddSolution(const tautline::EllipticSolution& solution, vtkDataSet* output) const;
 
   int Solver = CG;
   int Preconditioner = AMG;

@@ -2,7 +2,7 @@
 
 #include "EllipticInput.h"
 #include "EllipticOutput.h"
-#include "MovableMesh.h"
+#include "TableRows.h"
 
 #include "tautline/Elliptic/SolverStudy.h"
 
@@ -63,7 +63,7 @@ vtkSolverStudy::~vtkSolverStudy() = default;
 //------------------------------------------------------------------------------
 vtkTable* vtkSolverStudy::GetStudy()
 {
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(StudyPort));
+  return this->GetOutputTable(StudyPort);
 }
 
 //------------------------------------------------------------------------------
@@ -154,11 +154,7 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
     const bool converged = row.run && tautline::converged(row.linear.reason);
     failed += row.run && !converged;
     skipped += !row.run;
-    table.begin();
-    if (!mesh.name.empty())
-    {
-      table.addText("Block", mesh.name);
-    }
+    table.begin(mesh.name);
     table.addText("Combination", GetCombinationName(numbers[i]));
     table.add("N combination", numbers[i]);
     table.add("Total time (s)", converged ? row.seconds : 0.0);
@@ -193,7 +189,7 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
     text << ", " << skipped << " not run (" << NotRunMark << "): there was no time left";
   }
   text << ".";
-  this->Say(mesh, text.str());
+  this->Describe(mesh, text.str());
   if (this->Recommended.empty())
   {
     this->Warn();

@@ -120,11 +120,7 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
       addCellArray(output, what.name + "_before")->GetPointer(0));
     const Measurement after = measure(moved, what, validity->GetPointer(0), mesh.skipped(),
       addCellArray(output, what.name)->GetPointer(0));
-    rows.begin();
-    if (!block.empty())
-    {
-      rows.addText("Block", block);
-    }
+    rows.begin(block);
     rows.addText("Metric", what.name);
     rows.addText("Label", metricInfo(what.metric).label);
     addStatistics(rows, "Before", before);

@@ -6,6 +6,8 @@
 #define tautline_BeforeAfter_h
 
 #include "MovableMesh.h"
+#include "TableRows.h"
+#include "tautline/Objectives/Objective.h"
 
 #include <string>
 #include <vector>

@@ -1,185 +1,188 @@
 #include "OptimizerSetup.h"
 
-#include "TargetChoice.h"
-
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
+namespace tautline
+{
 namespace
 {
-enum Arrays
+/// The values of an array of one component, or none; throws if it has more components.
+std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
 {
-  SizeArray = 0,
-  TensorArray = 1,
-  FixedArray = 2,
-  LimitArray = 3,
-  WeightArray = 4
-};
-
-/// Throws if an array does not have one component.
-vtkDataArray* oneComponent(vtkDataArray* array, const char* what)
-{
+  std::vector<double> values;
   if (array && array->GetNumberOfComponents() != 1)
   {
-    throw tautline::Error(std::string("The array of ") + what + " has " +
+    throw Error(std::string("The array of ") + purpose + " has " +
       std::to_string(array->GetNumberOfComponents()) + " components; one is expected.");
   }
-  return array;
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    values.push_back(array->GetComponent(i, 0));
+  }
+  return values;
 }
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshOptimizer::Setup::setFixed(vtkMeshOptimizer* self, const tautline::InputBlock& block)
+OptimizerSetup::OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block)
+  : TheMesh(block.input, settings.options.threads)
+  , Options(settings.options)
 {
-  const auto points = static_cast<std::size_t>(this->mesh.mesh().view().numberOfPoints);
-  this->mesh.fix(
-    tautline::chosenArray(self, FixedArray, block.input, "to tell the fixed points by"), false);
-  tautline::fixSelected(this->mesh, block.selected);
-  if (self->Boundary == FIXED)
+  this->setFixed(settings, block);
+  this->setLimits(settings, block);
+  this->setObjectives(settings, block);
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBlock& block)
+{
+  MovableMesh& mesh = this->TheMesh;
+  const auto points = static_cast<std::size_t>(mesh.mesh().view().numberOfPoints);
+  mesh.fix(chosenArray(settings.arrays, FixedArray, block.input, "of fixed points"), false);
+  fixSelected(mesh, block.selected);
+  const bool onSurface = settings.boundary == BoundaryMotion::OnSurface;
+  if (settings.boundary == BoundaryMotion::Fixed)
   {
-    this->mesh.fixBoundary();
+    mesh.fixBoundary();
   }
-  else if (self->Boundary == SLIDING || self->Boundary == ON_SURFACE)
+  else if (settings.boundary == BoundaryMotion::Sliding || onSurface)
   {
-    this->shape = tautline::boundaryShape(
-      this->mesh.mesh(), self->FlatAngle, self->Boundary == ON_SURFACE ? self->FeatureAngle : 0.0);
-    this->mesh.fixCorners(this->shape);
+    this->Shape =
+      boundaryShape(mesh.mesh(), settings.flatAngle, onSurface ? settings.featureAngle : 0.0);
+    mesh.fixCorners(this->Shape);
     for (std::size_t i = 0; i < 3 * points; ++i)
     {
-      if (this->mesh.fixed()[i / 3])
+      if (mesh.fixed()[i / 3])
       {
-        this->shape.planes[i] = this->shape.lines[i] = 0;
+        this->Shape.planes[i] = this->Shape.lines[i] = 0;
       }
     }
     for (std::size_t i = 0; i < points; ++i)
     {
-      this->shape.surface[i] &= !this->mesh.fixed()[i];
+      this->Shape.surface[i] &= !mesh.fixed()[i];
     }
-    this->options.slideSurface = this->shape.onSurface > 0 ? this->shape.surface.data() : nullptr;
-    this->options.slidePlanes = this->shape.planes.data();
-    this->options.slideLines = this->shape.lines.data();
+    this->Options.slideSurface = this->Shape.onSurface > 0 ? this->Shape.surface.data() : nullptr;
+    this->Options.slidePlanes = this->Shape.planes.data();
+    this->Options.slideLines = this->Shape.lines.data();
   }
-
-  const double infinite = std::numeric_limits<double>::infinity();
-  if (vtkDataArray* array =
-        oneComponent(tautline::chosenArray(self, LimitArray, block.input, "of limits"), "limits"))
-  {
-    for (std::size_t i = 0; i < points; ++i)
-    {
-      const double limit = array->GetComponent(static_cast<vtkIdType>(i), 0);
-      this->limits.push_back(limit < 0 ? infinite : limit);
-    }
-  }
-  else if (self->MaximumDisplacement > 0)
-  {
-    this->limits.assign(points, self->MaximumDisplacement);
-  }
-  this->options.limits = this->limits.empty() ? nullptr : this->limits.data();
+  this->Options.fixed = mesh.fixed().data();
 }
 
 //------------------------------------------------------------------------------
-const tautline::Targets* vtkMeshOptimizer::Setup::target(
-  vtkMeshOptimizer* self, const tautline::InputBlock& block, int type)
+void OptimizerSetup::setLimits(const OptimizerSettings& settings, const InputBlock& block)
 {
-  tautline::Targets& made = this->targets[type];
-  if (type == IDEAL || !made.offsets.empty())
+  vtkDataArray* array = chosenArray(settings.arrays, LimitArray, block.input, "of limits");
+  this->Limits = scalarsOf(array, "limits");
+  for (double& limit : this->Limits)
   {
-    return type == IDEAL ? nullptr : &made;
+    limit = limit < 0 ? std::numeric_limits<double>::infinity() : limit;
   }
-  tautline::TargetChoice choice;
-  choice.type = static_cast<tautline::TargetType>(type);
+  if (!array && settings.maximumDisplacement > 0)
+  {
+    this->Limits.assign(this->TheMesh.mesh().view().numberOfPoints, settings.maximumDisplacement);
+  }
+  this->Options.limits = this->Limits.empty() ? nullptr : this->Limits.data();
+}
+
+//------------------------------------------------------------------------------
+const Targets* OptimizerSetup::target(
+  const OptimizerSettings& settings, const InputBlock& block, TargetType type)
+{
+  Targets& made = this->MadeTargets[static_cast<std::size_t>(type)];
+  if (type == TargetType::Ideal || !made.offsets.empty())
+  {
+    return type == TargetType::Ideal ? nullptr : &made;
+  }
+  TargetChoice choice;
+  choice.type = type;
   choice.reference = block.reference;
-  if (type == SIZE || type == TENSOR)
+  if (type == TargetType::Size || type == TargetType::Tensor)
   {
-    tautline::ChosenArray& chosen = type == SIZE ? choice.size : choice.tensor;
-    chosen.array = self->GetInputArrayToProcess(
-      type == SIZE ? SizeArray : TensorArray, block.input, chosen.association);
+    const bool size = type == TargetType::Size;
+    (size ? choice.size : choice.tensor) =
+      settings.targetArray(size ? SizeArray : TensorArray, block.input);
   }
-  made = tautline::makeTargets(this->mesh.mesh(), choice, self->Threads);
+  made = makeTargets(this->TheMesh.mesh(), choice, this->Options.threads);
   return &made;
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshOptimizer::Setup::setObjectives(
-  vtkMeshOptimizer* self, const tautline::InputBlock& block)
+void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const InputBlock& block)
 {
-  std::vector<tautline::Objective>& objectives = this->options.objectives;
-  if (vtkDataArray* array = oneComponent(
-        tautline::chosenArray(self, WeightArray, block.input, "of element weights"), "weights"))
+  std::vector<Objective>& objectives = this->Options.objectives;
+  this->Weights = scalarsOf(
+    chosenArray(settings.arrays, WeightArray, block.input, "of element weights"), "weights");
+  if (settings.preset != Preset::Custom)
   {
-    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+    for (Objective& objective : objectives)
     {
-      this->weights.push_back(array->GetComponent(i, 0));
-    }
-  }
-  if (self->Preset != CUSTOM)
-  {
-    tautline::applyPreset(static_cast<tautline::Preset>(self->Preset), this->options);
-    for (tautline::Objective& objective : objectives)
-    {
-      const auto family = tautline::metricInfo(objective.metric).family;
-      if (self->Preset == PRESERVE_SHAPE && family == tautline::MetricFamily::Target)
+      const auto family = metricInfo(objective.metric).family;
+      if (settings.preset == Preset::PreserveShape && family == MetricFamily::Target)
       {
-        objective.evaluation.targets = this->target(self, block, REFERENCE);
+        objective.evaluation.targets = this->target(settings, block, TargetType::Reference);
       }
     }
   }
   else
   {
-    objectives.resize(std::max(self->Objectives, 1));
-    for (int i = 0; i < self->Objectives; ++i)
+    objectives.resize(std::max<std::size_t>(settings.objectives.size(), 1));
+    for (std::size_t i = 0; i < settings.objectives.size(); ++i)
     {
-      const Row& row = self->Rows[i];
-      objectives[i].metric = static_cast<tautline::Metric>(row.metric);
-      objectives[i].objectiveTemplate = static_cast<tautline::ObjectiveTemplate>(row.form);
+      const ObjectiveRow& row = settings.objectives[i];
+      objectives[i].metric = static_cast<Metric>(row.metric);
+      objectives[i].objectiveTemplate = static_cast<ObjectiveTemplate>(row.objectiveTemplate);
       objectives[i].weight = row.weight;
-      objectives[i].evaluation.targets = this->target(self, block, row.target);
+      objectives[i].evaluation.targets = this->target(settings, block, row.target);
     }
-    for (tautline::Objective& objective : objectives)
+    for (Objective& objective : objectives)
     {
-      objective.power = self->Power;
-      objective.evaluation.parameters.beta = self->Beta;
-      objective.evaluation.combination = static_cast<tautline::Combination>(self->Combination);
+      objective.power = settings.power;
+      objective.evaluation.parameters.beta = settings.beta;
+      objective.evaluation.combination = settings.combination;
     }
   }
-  for (tautline::Objective& objective : objectives)
+  for (Objective& objective : objectives)
   {
-    objective.evaluation.threads = self->Threads;
-    objective.elementWeights = this->weights.empty() ? nullptr : this->weights.data();
+    objective.evaluation.threads = this->Options.threads;
+    objective.elementWeights = this->Weights.empty() ? nullptr : this->Weights.data();
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshOptimizer::Setup::setAlgorithm(vtkMeshOptimizer* self)
+void OptimizerRun::keep(const IterationState& state, std::size_t coordinates, double megabytes)
 {
-  if (self->Preset == CUSTOM)
+  if (this->iterations % this->stride != 0)
   {
-    tautline::ScalarizationOptions& s = this->options.scalarization;
-    s.method = static_cast<tautline::Scalarization>(self->Scalarization);
-    s.c = self->C;
-    s.exponent = self->Exponent;
-    s.tolerance = self->Tolerance;
-    s.utopia = self->Utopia;
-    tautline::StoppingCriteria& stop = this->options.stopping;
-    stop.maximumIterations = self->MaximumIterations;
-    stop.gradientNorm = self->GradientNorm;
-    stop.relativeChange = self->RelativeChange;
-    stop.twoDigits = self->TwoDigits;
-    stop.reduction = self->Reduction;
-    stop.bestKnown = self->BestKnown != 0 ? self->BestKnown : vtkMath::Nan();
-    stop.allValid = self->StopWhenValid;
-    this->options.optimizer = static_cast<tautline::Optimizer>(self->Optimizer);
-    this->options.rescaleUntangling = self->RescaleUntangling;
-    this->options.culling = self->Culling;
-    this->options.patchIterations = self->PatchIterations;
-    this->options.relaxation = self->Relaxation;
-    this->options.improveWorst = self->ImproveWorst;
+    return;
   }
-  this->options.stopping.maximumSeconds = self->TimeLimit;
-  this->options.surface.project = self->ProjectToSurface;
-  this->options.allowInversion = self->AllowInversion;
-  this->options.untangleFirst = self->UntangleFirst;
-  this->options.threads = self->Threads;
+  this->frames.push_back({ this->iterations, std::vector<double>(coordinates) });
+  state.points(this->frames.back().points.data());
+  const auto bytes = static_cast<double>(this->frames.size() * coordinates * sizeof(double));
+  if (bytes > megabytes * 1e6)
+  {
+    this->stride *= 2;
+    const auto dropped = std::remove_if(this->frames.begin(), this->frames.end(),
+      [this](const Frame& frame) { return frame.iteration % this->stride != 0; });
+    this->frames.erase(dropped, this->frames.end());
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> OptimizerRun::at(double time, const MeshView& input) const
+{
+  if (std::isnan(time) || time >= this->iterations)
+  {
+    return this->result.points;
+  }
+  const auto later = std::find_if(this->frames.begin(), this->frames.end(),
+    [time](const Frame& frame) { return frame.iteration > time; });
+  return later == this->frames.begin()
+    ? std::vector<double>(input.points, input.points + 3 * input.numberOfPoints)
+    : (later - 1)->points;
+}
 }

@@ -1,104 +1,119 @@
 /**
  * @file OptimizerSetup.h
- * @brief The parts of vtkMeshOptimizer: a row of its objectives, what it hands to the kernel, what
- * comes back. Internal.
+ * @brief From the properties of Optimize Mesh to the options of the kernel for one data set, and what
+ * is kept of a run.
  */
 #ifndef tautline_OptimizerSetup_h
 #define tautline_OptimizerSetup_h
 
-#include "vtkMeshOptimizer.h"
-
+#include "Blocks.h"
 #include "MovableMesh.h"
+#include "TargetChoice.h"
 #include "tautline/Mesh/BoundaryShape.h"
+#include "tautline/Optimization/Optimize.h"
 
-#include "vtkMath.h"
-
-#include <algorithm>
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
-/// One objective.
-struct vtkMeshOptimizer::Row
+namespace tautline
 {
-  int metric = static_cast<int>(tautline::Metric::InverseMeanRatio);
-  int form = DEFAULT_TEMPLATE;
-  double weight = 1.0;
-  int target = IDEAL;
+/// An objective of CUSTOM.
+struct ObjectiveRow
+{
+  int metric = static_cast<int>(Metric::InverseMeanRatio);
+  int objectiveTemplate = static_cast<int>(ObjectiveTemplate::Default);
+  double weight = 1.0; ///< above 0
+  TargetType target = TargetType::Ideal;
 };
 
-/// What became of one data set.
-struct vtkMeshOptimizer::Run
+/// What the points of the boundary do; the numbers of vtkMeshOptimizer::Boundaries.
+enum class BoundaryMotion : int
+{
+  Fixed = 0,
+  Sliding = 1,
+  Free = 2,
+  OnSurface = 3
+};
+
+/// The properties of the filter that depend on no data set.
+struct OptimizerSettings
+{
+  Preset preset = Preset::Custom;
+  std::vector<ObjectiveRow> objectives; ///< of CUSTOM
+  double power = 8.0;                   ///< of the templates p-mean and maximum
+  double beta = 0.0;                    ///< of the untangling metric
+  Combination combination = Combination::Mean;
+  BoundaryMotion boundary = BoundaryMotion::Fixed;
+  double flatAngle = 1.0;           ///< degrees
+  double featureAngle = 30.0;       ///< degrees
+  double maximumDisplacement = 0.0; ///< 0: any distance
+  /// All that needs no data set. Of CUSTOM, too, what a preset replaces.
+  OptimizeOptions options;
+  vtkAlgorithm* arrays = nullptr; ///< whose input arrays are chosen, see OptimizerArrays
+  /// The array for a target, by index; of points or cells, by default the active scalars.
+  std::function<ChosenArray(int, vtkDataSet*)> targetArray;
+};
+
+/// Indices of SetInputArrayToProcess().
+enum OptimizerArrays
+{
+  SizeArray = 0,
+  TensorArray = 1,
+  FixedArray = 2,
+  LimitArray = 3,
+  WeightArray = 4
+};
+
+/**
+ * @class tautline::OptimizerSetup
+ * @brief The options of the kernel for one data set, and all that they point to. Throws Error for
+ * arrays that are missing or do not fit.
+ */
+class OptimizerSetup
+{
+public:
+  OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block);
+  OptimizerSetup(const OptimizerSetup&) = delete;
+  OptimizerSetup& operator=(const OptimizerSetup&) = delete;
+
+  const MovableMesh& mesh() const { return this->TheMesh; }
+  OptimizeOptions& options() { return this->Options; }
+
+private:
+  void setFixed(const OptimizerSettings& settings, const InputBlock& block);
+  void setLimits(const OptimizerSettings& settings, const InputBlock& block);
+  void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
+  const Targets* target(
+    const OptimizerSettings& settings, const InputBlock& block, TargetType type);
+
+  MovableMesh TheMesh;
+  std::array<Targets, 4> MadeTargets; ///< by type
+  std::vector<double> Weights, Limits;
+  BoundaryShape Shape;
+  OptimizeOptions Options;
+};
+
+/// The result for one data set.
+struct OptimizerRun
 {
   struct Frame
   {
     int iteration;
     std::vector<double> points;
   };
-  tautline::OptimizeResult result;
+  OptimizeResult result;
   std::vector<Frame> frames; ///< of the animation, every stride-th iteration
   int stride = 1;
   int iterations = 0;
   std::string summary;
 
-  /// Keeps the points of an iteration, and fewer of the others when memory ends.
-  void keep(const tautline::IterationState& state, std::size_t coordinates, double megabytes)
-  {
-    if (this->iterations % this->stride != 0)
-    {
-      return;
-    }
-    this->frames.push_back({ this->iterations, std::vector<double>(coordinates) });
-    state.points(this->frames.back().points.data());
-    const auto bytes = static_cast<double>(this->frames.size() * coordinates * sizeof(double));
-    if (bytes > megabytes * 1e6)
-    {
-      this->stride *= 2;
-      const auto dropped = std::remove_if(this->frames.begin(), this->frames.end(),
-        [this](const Frame& frame) { return frame.iteration % this->stride != 0; });
-      this->frames.erase(dropped, this->frames.end());
-    }
-  }
+  /// Keeps the points of an iteration; drops every second frame when the memory is used up.
+  void keep(const IterationState& state, std::size_t coordinates, double megabytes);
 
   /// The points at a time; those of the input before the first iteration that is kept.
-  std::vector<double> at(double time, const tautline::MeshView& input) const
-  {
-    if (vtkMath::IsNan(time) || time >= this->iterations)
-    {
-      return this->result.points;
-    }
-    const auto later = std::find_if(this->frames.begin(), this->frames.end(),
-      [time](const Frame& frame) { return frame.iteration > time; });
-    return later == this->frames.begin()
-      ? std::vector<double>(input.points, input.points + 3 * input.numberOfPoints)
-      : (later - 1)->points;
-  }
+  std::vector<double> at(double time, const MeshView& input) const;
 };
-
-/// Options of the kernel for one data set, and all that they point to.
-struct vtkMeshOptimizer::Setup
-{
-  tautline::MovableMesh mesh;
-  std::array<tautline::Targets, 4> targets; ///< by type
-  std::vector<double> weights, limits;
-  tautline::BoundaryShape shape;
-  tautline::OptimizeOptions options;
-
-  Setup(vtkMeshOptimizer* self, const tautline::InputBlock& block)
-    : mesh(block.input, self->Threads)
-  {
-    this->setFixed(self, block);
-    this->setObjectives(self, block);
-    this->setAlgorithm(self);
-    this->options.fixed = this->mesh.fixed().data();
-  }
-
-private:
-  void setFixed(vtkMeshOptimizer* self, const tautline::InputBlock& block);
-  void setObjectives(vtkMeshOptimizer* self, const tautline::InputBlock& block);
-  void setAlgorithm(vtkMeshOptimizer* self);
-  const tautline::Targets* target(
-    vtkMeshOptimizer* self, const tautline::InputBlock& block, int type);
-};
-
+}
 #endif

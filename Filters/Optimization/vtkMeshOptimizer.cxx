@@ -1,6 +1,7 @@
 #include "vtkMeshOptimizer.h"
 
 #include "BeforeAfter.h"
+#include "IterationHistory.h"
 #include "OptimizerSetup.h"
 
 #include "vtkDataSet.h"
@@ -9,7 +10,6 @@
 #include "vtkMath.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
-#include "vtkSelection.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
@@ -21,31 +21,27 @@ namespace
 {
 enum Ports
 {
-  MeshPort = 0,
   ReferencePort = 1, // input
   SelectionPort = 2, // input
-  HistoryPort = 1,
   StatisticsPort = 2,
   NumberOfPorts = 3
 };
 
 // More time steps than this are of no use to an animation.
-constexpr int MostTimeSteps = 1000;
-
+constexpr int MaximumTimeSteps = 1000;
 }
 
 //------------------------------------------------------------------------------
 vtkMeshOptimizer::vtkMeshOptimizer()
 {
-  this->SetNumberOfInputPorts(NumberOfPorts);
-  this->SetNumberOfOutputPorts(NumberOfPorts);
+  this->DeclarePorts(NumberOfPorts, NumberOfPorts, { SelectionPort });
 }
 
 //------------------------------------------------------------------------------
 vtkMeshOptimizer::~vtkMeshOptimizer() = default;
 
 //------------------------------------------------------------------------------
-vtkMeshOptimizer::Row& vtkMeshOptimizer::RowAt(int index)
+tautline::ObjectiveRow& vtkMeshOptimizer::RowAt(int index)
 {
   this->Rows.resize(std::max(this->Rows.size(), static_cast<std::size_t>(index) + 1));
   return this->Rows[index];
@@ -62,7 +58,8 @@ void vtkMeshOptimizer::AddObjective(int metric, int form, double weight, int tar
       throw tautline::Error("There is no template " + std::to_string(form) + " or no target type " +
         std::to_string(target) + "; see the enumerations of vtkMeshOptimizer.");
     }
-    this->RowAt(this->Objectives++) = { metric, form, weight, target };
+    this->RowAt(
+      this->Objectives++) = { metric, form, weight, static_cast<tautline::TargetType>(target) };
     this->Preset = CUSTOM;
     this->Modified();
   }
@@ -106,78 +103,78 @@ void vtkMeshOptimizer::SetNumberOfObjectives(int count)
 
 //------------------------------------------------------------------------------
 template <class Value>
-void vtkMeshOptimizer::SetPart(Value& part, Value value)
+void vtkMeshOptimizer::SetRowValue(Value& current, Value value)
 {
-  if (part != value)
+  if (current != value)
   {
-    part = value;
+    current = value;
     this->Modified();
   }
 }
 
 void vtkMeshOptimizer::SetMetric1(int metric)
 {
-  this->SetPart(this->RowAt(0).metric, metric);
+  this->SetRowValue(this->RowAt(0).metric, metric);
 }
 void vtkMeshOptimizer::SetMetric2(int metric)
 {
-  this->SetPart(this->RowAt(1).metric, metric);
+  this->SetRowValue(this->RowAt(1).metric, metric);
 }
 void vtkMeshOptimizer::SetMetric3(int metric)
 {
-  this->SetPart(this->RowAt(2).metric, metric);
+  this->SetRowValue(this->RowAt(2).metric, metric);
 }
 void vtkMeshOptimizer::SetMetric4(int metric)
 {
-  this->SetPart(this->RowAt(3).metric, metric);
+  this->SetRowValue(this->RowAt(3).metric, metric);
 }
 void vtkMeshOptimizer::SetTemplate1(int form)
 {
-  this->SetPart(this->RowAt(0).form, form);
+  this->SetRowValue(this->RowAt(0).objectiveTemplate, form);
 }
 void vtkMeshOptimizer::SetTemplate2(int form)
 {
-  this->SetPart(this->RowAt(1).form, form);
+  this->SetRowValue(this->RowAt(1).objectiveTemplate, form);
 }
 void vtkMeshOptimizer::SetTemplate3(int form)
 {
-  this->SetPart(this->RowAt(2).form, form);
+  this->SetRowValue(this->RowAt(2).objectiveTemplate, form);
 }
 void vtkMeshOptimizer::SetTemplate4(int form)
 {
-  this->SetPart(this->RowAt(3).form, form);
+  this->SetRowValue(this->RowAt(3).objectiveTemplate, form);
 }
 void vtkMeshOptimizer::SetWeight1(double weight)
 {
-  this->SetPart(this->RowAt(0).weight, weight);
+  this->SetRowValue(this->RowAt(0).weight, weight);
 }
 void vtkMeshOptimizer::SetWeight2(double weight)
 {
-  this->SetPart(this->RowAt(1).weight, weight);
+  this->SetRowValue(this->RowAt(1).weight, weight);
 }
 void vtkMeshOptimizer::SetWeight3(double weight)
 {
-  this->SetPart(this->RowAt(2).weight, weight);
+  this->SetRowValue(this->RowAt(2).weight, weight);
 }
 void vtkMeshOptimizer::SetWeight4(double weight)
 {
-  this->SetPart(this->RowAt(3).weight, weight);
+  this->SetRowValue(this->RowAt(3).weight, weight);
 }
 void vtkMeshOptimizer::SetTarget1(int target)
 {
-  this->SetPart(this->RowAt(0).target, target);
+  this->SetRowValue(this->RowAt(0).target, static_cast<tautline::TargetType>(target));
 }
 void vtkMeshOptimizer::SetTarget2(int target)
 {
-  this->SetPart(this->RowAt(1).target, target);
+  this->SetRowValue(this->RowAt(1).target, static_cast<tautline::TargetType>(target));
 }
 void vtkMeshOptimizer::SetTarget3(int target)
 {
-  this->SetPart(this->RowAt(2).target, target);
+  this->SetRowValue(this->RowAt(2).target, static_cast<tautline::TargetType>(target));
 }
 void vtkMeshOptimizer::SetTarget4(int target)
 {
-  this->SetPart(this->RowAt(3).target, target);
+  this->SetRowValue(this->RowAt(3).target, static_cast<tautline::TargetType>(target));
 }
 
 //------------------------------------------------------------------------------
@@ -195,55 +192,19 @@ void vtkMeshOptimizer::RemoveAllUtopias()
 }
 
 //------------------------------------------------------------------------------
-vtkTable* vtkMeshOptimizer::GetHistory()
-{
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(HistoryPort));
-}
-
-//------------------------------------------------------------------------------
 vtkTable* vtkMeshOptimizer::GetStatistics()
 {
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(StatisticsPort));
+  return this->GetOutputTable(StatisticsPort);
 }
 
 //------------------------------------------------------------------------------
-int vtkMeshOptimizer::FillInputPortInformation(int port, vtkInformation* info)
+int vtkMeshOptimizer::EffectiveIterations()
 {
-  tautline::declareInput(info, port == SelectionPort, port != MeshPort);
-  return 1;
+  return this->GetSettings().options.stopping.maximumIterations;
 }
 
 //------------------------------------------------------------------------------
-int vtkMeshOptimizer::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == MeshPort ? "vtkDataObject" : "vtkTable");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshOptimizer::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-  if (!input)
-  {
-    return 0;
-  }
-  tautline::provideOutputs(input, outputVector);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshOptimizer::EffectiveIterations() const
-{
-  tautline::OptimizeOptions options;
-  options.stopping.maximumIterations = this->MaximumIterations;
-  tautline::applyPreset(static_cast<tautline::Preset>(this->Preset), options);
-  return options.stopping.maximumIterations;
-}
-
-//------------------------------------------------------------------------------
-std::vector<double> vtkMeshOptimizer::TimeSteps() const
+std::vector<double> vtkMeshOptimizer::TimeSteps()
 {
   // How many there are is known after the run only; until then the last ones repeat the result.
   int last = 0;
@@ -252,7 +213,7 @@ std::vector<double> vtkMeshOptimizer::TimeSteps() const
     last = std::max(last, run->iterations);
   }
   last = this->Runs.empty() ? this->EffectiveIterations() : last;
-  const int step = 1 + (last - 1) / MostTimeSteps;
+  const int step = 1 + (last - 1) / MaximumTimeSteps;
   std::vector<double> steps;
   for (int i = 0; i < last; i += step)
   {
@@ -314,57 +275,106 @@ bool vtkMeshOptimizer::HasRunFor(
 }
 
 //------------------------------------------------------------------------------
+tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
+{
+  tautline::OptimizerSettings settings;
+  settings.preset = static_cast<tautline::Preset>(this->Preset);
+  settings.objectives.assign(this->Rows.begin(), this->Rows.begin() + this->Objectives);
+  settings.power = this->Power;
+  settings.beta = this->Beta;
+  settings.combination = static_cast<tautline::Combination>(this->Combination);
+  settings.boundary = static_cast<tautline::BoundaryMotion>(this->Boundary);
+  settings.flatAngle = this->FlatAngle;
+  settings.featureAngle = this->FeatureAngle;
+  settings.maximumDisplacement = this->MaximumDisplacement;
+  settings.arrays = this;
+  settings.targetArray = [this](int index, vtkDataSet* input)
+  {
+    tautline::ChosenArray chosen;
+    chosen.array = this->GetInputArrayToProcess(index, input, chosen.association);
+    return chosen;
+  };
+  tautline::OptimizeOptions& options = settings.options;
+  if (this->Preset == CUSTOM)
+  {
+    options.scalarization.method = static_cast<tautline::Scalarization>(this->Scalarization);
+    options.scalarization.c = this->C;
+    options.scalarization.exponent = this->Exponent;
+    options.scalarization.tolerance = this->Tolerance;
+    options.scalarization.utopia = this->Utopia;
+    options.optimizer = static_cast<tautline::Optimizer>(this->Optimizer);
+    options.stopping.maximumIterations = this->MaximumIterations;
+    options.stopping.gradientNorm = this->GradientNorm;
+    options.stopping.relativeChange = this->RelativeChange;
+    options.stopping.twoDigits = this->TwoDigits;
+    options.stopping.reduction = this->Reduction;
+    options.stopping.bestKnown = this->UseBestKnown ? this->BestKnown : vtkMath::Nan();
+    options.stopping.allValid = this->StopWhenValid;
+    options.rescaleUntangling = this->RescaleUntangling;
+    options.culling = this->Culling;
+    options.patchIterations = this->PatchIterations;
+    options.relaxation = this->Relaxation;
+    options.improveWorst = this->ImproveWorst;
+  }
+  tautline::applyPreset(settings.preset, options);
+  options.stopping.maximumSeconds = this->TimeLimit;
+  options.surface.project = this->ProjectToSurface;
+  options.allowInversion = this->AllowInversion;
+  options.untangleFirst = this->UntangleFirst;
+  options.threads = this->Threads;
+  return settings;
+}
+
+//------------------------------------------------------------------------------
 int vtkMeshOptimizer::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
   vtkDataObject* reference = vtkDataObject::GetData(inputVector[ReferencePort]);
-  auto* selection = vtkSelection::GetData(inputVector[SelectionPort]);
-  vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   vtkInformation* info = outputVector->GetInformationObject(MeshPort);
   const double time = this->Animation && info->Has(Pipeline::UPDATE_TIME_STEP())
     ? info->Get(Pipeline::UPDATE_TIME_STEP())
     : vtkMath::Nan();
-  const bool done = this->HasRunFor(input, reference, selection);
+  const bool done = this->HasRunFor(vtkDataObject::GetData(inputVector[MeshPort]), reference,
+    vtkDataObject::GetData(inputVector[SelectionPort]));
+  if (!done)
+  {
+    this->Runs.clear();
+  }
   tautline::TableRows history, statistics;
-  try
-  {
-    if (!done)
-    {
-      this->Runs.clear();
-    }
-    const auto selected = tautline::markSelected(input, selection);
-    const double blocks = tautline::countBlocks(input);
-    tautline::forEachBlock(input, reference, selected, output,
-      [&](const tautline::InputBlock& block)
+  const int succeeded =
+    this->Attempt(outputVector, "optimise the mesh in parts, or reduce Animation Memory",
+      [&]
       {
-        if (!done)
-        {
-          this->Runs.push_back(std::make_unique<Run>());
-        }
-        this->Improve(block, *this->Runs[block.number], !done, blocks, time, history, statistics);
+        const tautline::OptimizerSettings settings = this->GetSettings();
+        this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
+          [&](const tautline::InputBlock& block)
+          {
+            while (this->Runs.size() <= static_cast<std::size_t>(block.number))
+            {
+              this->Runs.push_back(std::make_unique<tautline::OptimizerRun>());
+            }
+            this->Optimize(
+              settings, block, *this->Runs[block.number], done, time, history, statistics);
+          });
       });
-    this->RunTime.Modified();
-  }
-  catch (const std::bad_alloc&)
+  if (!succeeded)
   {
-    vtkErrorMacro("Not enough memory: optimise the mesh in parts, or lower Animation Memory.");
-    return this->Fail(output);
+    this->Runs.clear();
+    this->Report();
+    return 0;
   }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-    return this->Fail(output);
-  }
+  this->RunTime.Modified();
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Report();
   if (this->Animation)
   {
     this->RequestInformation(nullptr, inputVector, outputVector);
-    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
-      vtkMath::IsNan(time) ? info->Get(Pipeline::TIME_RANGE())[1] : time);
+    vtkDataObject::GetData(outputVector, MeshPort)
+      ->GetInformation()
+      ->Set(vtkDataObject::DATA_TIME_STEP(),
+        vtkMath::IsNan(time) ? info->Get(Pipeline::TIME_RANGE())[1] : time);
   }
   else
   {
@@ -378,53 +388,41 @@ int vtkMeshOptimizer::RequestData(
 }
 
 //------------------------------------------------------------------------------
-int vtkMeshOptimizer::Fail(vtkDataObject* output)
+void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
+  const tautline::InputBlock& block, tautline::OptimizerRun& run, bool done, double time,
+  tautline::TableRows& history, tautline::TableRows& statistics)
 {
-  output->Initialize();
-  this->Runs.clear();
-  this->Report();
-  return 0;
-}
-
-//------------------------------------------------------------------------------
-void vtkMeshOptimizer::Improve(const tautline::InputBlock& block, Run& run, bool optimize,
-  double blocks, double time, tautline::TableRows& history, tautline::TableRows& statistics)
-{
-  block.output->ShallowCopy(block.input);
-  if (block.input->GetNumberOfPoints() == 0 || block.input->GetNumberOfCells() == 0)
-  {
-    return;
-  }
-  Setup setup(this, block);
-  const tautline::MeshView& view = setup.mesh.mesh().view();
-  if (optimize)
+  tautline::OptimizerSetup setup(settings, block);
+  const tautline::MovableMesh& mesh = setup.mesh();
+  tautline::OptimizeOptions& options = setup.options();
+  const tautline::MeshView& view = mesh.mesh().view();
+  if (!done)
   {
     const auto coordinates = static_cast<std::size_t>(3 * view.numberOfPoints);
-    setup.options.observer = [&](const tautline::IterationState& state)
+    options.observer = [&](const tautline::IterationState& state)
     {
       ++run.iterations; // -1 at the start, 0 for the input
       if (this->Animation)
       {
-        run.keep(state, coordinates, this->AnimationMemory / blocks);
+        run.keep(state, coordinates, this->AnimationMemory / this->GetNumberOfBlocks());
       }
-      this->UpdateProgress((block.number + state.progress) / blocks);
-      return !this->GetAbortExecute();
+      return this->ProceedInBlock(block.number, state.progress);
     };
     run.iterations = -1;
-    run.result = tautline::optimize(setup.mesh.mesh(), setup.options);
+    run.result = tautline::optimize(mesh.mesh(), options);
     run.iterations = std::max(run.iterations, run.result.iterations);
   }
   const std::vector<double> points = run.at(time, view);
-  const std::string note = setup.mesh.move(vtkPointSet::SafeDownCast(block.output), points);
-  const auto metrics = tautline::measuredMetrics(setup.options.objectives);
+  const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), points);
+  const auto metrics = tautline::measuredMetrics(options.objectives);
   const std::string qualities = tautline::addBeforeAfter(
-    setup.mesh, points, metrics, this->Threads, block.name, block.output, statistics);
+    mesh, points, metrics, this->Threads, block.name, block.output, statistics);
   tautline::addHistory(
-    history, run.result.history, tautline::objectiveNames(setup.options.objectives), block.name);
-  if (optimize)
+    history, run.result.history, tautline::objectiveNames(options.objectives), block.name);
+  if (!done)
   {
-    run.summary = tautline::summarize(run.result, setup.mesh, block.name) + qualities;
-    for (const std::string& sentence : { note, setup.mesh.notice() })
+    run.summary = tautline::summarize(run.result, mesh, block.name) + qualities;
+    for (const std::string& sentence : { note, mesh.notice() })
     {
       run.summary += (sentence.empty() ? "" : "\n") + sentence;
     }
@@ -454,7 +452,7 @@ void vtkMeshOptimizer::Report()
     this->InvertedBefore += result.invertedBefore;
     this->InvertedAfter += result.invertedAfter;
     this->SurfaceError = std::max(this->SurfaceError, result.surfaceError);
-    this->Summary += (this->Summary.empty() ? "" : "\n") + run->summary;
+    this->AddToSummary(run->summary);
   }
 }
 
@@ -465,9 +463,9 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Preset: " << this->Preset << "\n";
   for (int i = 0; i < this->Objectives; ++i)
   {
-    const Row& row = this->Rows[i];
-    os << indent << "Objective: metric " << row.metric << ", template " << row.form << ", weight "
-       << row.weight << ", target " << row.target << "\n";
+    const tautline::ObjectiveRow& row = this->Rows[i];
+    os << indent << "Objective: metric " << row.metric << ", template " << row.objectiveTemplate
+       << ", weight " << row.weight << ", target " << static_cast<int>(row.target) << "\n";
   }
   os << indent << "Power: " << this->Power << "\n";
   os << indent << "Combination: " << this->Combination << "\n";
@@ -479,11 +477,11 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Utopia values: " << this->Utopia.size() << "\n";
   os << indent << "Optimizer: " << this->Optimizer << "\n";
   os << indent << "MaximumIterations: " << this->MaximumIterations << "\n";
-  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
   os << indent << "GradientNorm: " << this->GradientNorm << "\n";
   os << indent << "RelativeChange: " << this->RelativeChange << "\n";
   os << indent << "TwoDigits: " << this->TwoDigits << "\n";
   os << indent << "Reduction: " << this->Reduction << "\n";
+  os << indent << "UseBestKnown: " << this->UseBestKnown << "\n";
   os << indent << "BestKnown: " << this->BestKnown << "\n";
   os << indent << "StopWhenValid: " << this->StopWhenValid << "\n";
   os << indent << "Boundary: " << this->Boundary << "\n";
@@ -500,6 +498,4 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ImproveWorst: " << this->ImproveWorst << "\n";
   os << indent << "Animation: " << this->Animation << "\n";
   os << indent << "AnimationMemory: " << this->AnimationMemory << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
 }

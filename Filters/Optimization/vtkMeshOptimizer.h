@@ -67,26 +67,27 @@
 #define vtkMeshOptimizer_h
 
 #include "TautlineOptimizationModule.h" // for export macro
-#include "vtkDataObjectAlgorithm.h"
+#include "vtkMeshMotionAlgorithm.h"
 #include "vtkTimeStamp.h" // for RunTime
 
-#include <memory> // for Rows, Runs
-#include <string> // for Summary
+#include <memory> // for Runs
+#include <string> // for Reason
 #include <vector> // for Rows, Runs
-
-class vtkTable;
 
 namespace tautline
 {
 class TableRows;
 struct InputBlock;
+struct ObjectiveRow;
+struct OptimizerRun;
+struct OptimizerSettings;
 }
 
-class TAUTLINEOPTIMIZATION_EXPORT vtkMeshOptimizer : public vtkDataObjectAlgorithm
+class TAUTLINEOPTIMIZATION_EXPORT vtkMeshOptimizer : public vtkMeshMotionAlgorithm
 {
 public:
   static vtkMeshOptimizer* New();
-  vtkTypeMacro(vtkMeshOptimizer, vtkDataObjectAlgorithm);
+  vtkTypeMacro(vtkMeshOptimizer, vtkMeshMotionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Presets
@@ -273,12 +274,6 @@ public:
   ///@}
 
   ///@{
-  /// Seconds; 0 is no limit. Also with presets. The default is 600.
-  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(TimeLimit, double);
-  ///@}
-
-  ///@{
   /// Stop when the gradient's norm has fallen by this factor; 0: never. The default is 1e-6.
   vtkSetClampMacro(GradientNorm, double, 0.0, 1.0);
   vtkGetMacro(GradientNorm, double);
@@ -300,11 +295,22 @@ public:
 
   ///@{
   /**
-   * Section 2.4: stop when this part of the possible reduction of the objective is reached; 1, the
-   * default: never. The possible reduction is that to BestKnown or, if this is 0, an estimate.
+   * Section 2.4: stop when this fraction of the possible reduction of the objective is reached, 0
+   * to 1; 1, the default: never. The possible reduction is that to BestKnown, or an estimate.
    */
   vtkSetClampMacro(Reduction, double, 0.0, 1.0);
   vtkGetMacro(Reduction, double);
+  ///@}
+
+  ///@{
+  /**
+   * The objective of the completely smoothed mesh, for Reduction, in the unit of the objective; any
+   * number, also 0, the optimum of untangling. It counts if UseBestKnown is on; off, the default:
+   * it is not known and Reduction estimates it.
+   */
+  vtkSetMacro(UseBestKnown, bool);
+  vtkGetMacro(UseBestKnown, bool);
+  vtkBooleanMacro(UseBestKnown, bool);
   vtkSetMacro(BestKnown, double);
   vtkGetMacro(BestKnown, double);
   ///@}
@@ -448,17 +454,8 @@ public:
   vtkGetMacro(AnimationMemory, double);
   ///@}
 
-  ///@{
-  /// Number of threads; 0 is all cores. The result does not depend on it. The default is 0.
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
-  ///@{
-  /// The outputs other than the mesh.
-  vtkTable* GetHistory();
+  /// The table of output port 2.
   vtkTable* GetStatistics();
-  ///@}
 
   ///@{
   /**
@@ -474,17 +471,12 @@ public:
   vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
   /// Largest distance of the output's surface from the input's, where points move on it.
   double GetSurfaceError() const { return this->SurfaceError; }
-  const char* GetSummary() const { return this->Summary.c_str(); }
   ///@}
 
 protected:
   vtkMeshOptimizer();
   ~vtkMeshOptimizer() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
@@ -496,22 +488,19 @@ private:
   vtkMeshOptimizer(const vtkMeshOptimizer&) = delete;
   void operator=(const vtkMeshOptimizer&) = delete;
 
-  struct Row;
-  struct Setup;
-  struct Run;
-
-  Row& RowAt(int index);
+  tautline::ObjectiveRow& RowAt(int index);
   template <class Value>
-  void SetPart(Value& part, Value value);
-  int EffectiveIterations() const;
-  std::vector<double> TimeSteps() const;
+  void SetRowValue(Value& current, Value value);
+  int EffectiveIterations();
+  std::vector<double> TimeSteps();
   bool HasRunFor(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selection);
-  void Improve(const tautline::InputBlock& block, Run& run, bool optimize, double blocks,
-    double time, tautline::TableRows& history, tautline::TableRows& statistics);
-  int Fail(vtkDataObject* output);
+  tautline::OptimizerSettings GetSettings();
+  void Optimize(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
+    tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
+    tautline::TableRows& statistics);
   void Report();
 
-  std::vector<Row> Rows;
+  std::vector<tautline::ObjectiveRow> Rows;
   int Objectives = 0;
   std::vector<double> Utopia;
   int Preset = BEST_SHAPE;
@@ -524,11 +513,11 @@ private:
   double Tolerance = 0.01;
   int Optimizer = AUTOMATIC;
   int MaximumIterations = 100;
-  double TimeLimit = 600.0;
   double GradientNorm = 1e-6;
   double RelativeChange = 1e-5;
   bool TwoDigits = false;
   double Reduction = 1.0;
+  bool UseBestKnown = false;
   double BestKnown = 0.0;
   bool StopWhenValid = false;
   int Boundary = FIXED;
@@ -545,10 +534,9 @@ private:
   double ImproveWorst = 0.0;
   bool Animation = false;
   double AnimationMemory = 1000.0;
-  int Threads = 0;
 
-  std::vector<std::unique_ptr<Run>> Runs; ///< per data set of the last execution
-  vtkTimeStamp RunTime;                   ///< of Runs that can be shown again
+  std::vector<std::unique_ptr<tautline::OptimizerRun>> Runs; ///< per data set of the last execution
+  vtkTimeStamp RunTime;                                      ///< of Runs that can be shown again
   std::string Reason;
   int StopReason = -1;
   int Iterations = 0;
@@ -556,7 +544,6 @@ private:
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;
   double SurfaceError = 0.0;
-  std::string Summary;
 };
 
 #endif

@@ -23,11 +23,139 @@ vtkStandardNewMacro(vtkHorizonNeighbors);
 namespace
 {
 constexpr int CirclePieces = 256;
+constexpr double NegligibleArea = 1e-14; // relative to the square of the horizon
+
+/// The horizon, in the plane of the mesh.
+struct Disc
+{
+  std::array<double, 2> center;
+  double radius;
+};
 
 /// 1, 2, 3 for three, two, one corner inside; 0 for none.
 int caseOf(int corners)
 {
   return corners > 0 ? 4 - corners : 0;
+}
+
+void fillCircle(const tautline::HorizonInput& taken, const Disc& disc, vtkPolyData* circle)
+{
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> line;
+  line->InsertNextCell(CirclePieces + 1);
+  for (int i = 0; i < CirclePieces; ++i)
+  {
+    const double angle = 2.0 * M_PI * i / CirclePieces;
+    line->InsertCellPoint(
+      points->InsertNextPoint(taken
+                                .lift(disc.center[0] + disc.radius * std::cos(angle),
+                                  disc.center[1] + disc.radius * std::sin(angle))
+                                .data()));
+  }
+  line->InsertCellPoint(0);
+  circle->SetPoints(points);
+  circle->SetLines(line);
+}
+
+/// Triangles with cell arrays, for an output.
+class TriangleCollector
+{
+public:
+  explicit TriangleCollector(bool withAreas)
+    : WithAreas(withAreas)
+  {
+    this->Points->SetDataType(VTK_DOUBLE);
+  }
+
+  vtkIdType addPoint(const tautline::Vec3& p) { return this->Points->InsertNextPoint(p.data()); }
+
+  void addTriangle(const vtkIdType* points, int number, vtkIdType cell)
+  {
+    this->Cells->InsertNextCell(3, points);
+    this->Cases->InsertNextValue(number);
+    this->Ids->InsertNextValue(cell);
+  }
+
+  /// Areas of a triangle within the disc: exact, and by chords.
+  void addAreas(double exact, double chord)
+  {
+    this->Area->InsertNextValue(exact);
+    this->Chord->InsertNextValue(chord);
+    this->Missed->InsertNextValue(exact - chord);
+  }
+
+  void fill(vtkPolyData* output)
+  {
+    output->SetPoints(this->Points);
+    output->SetPolys(this->Cells);
+    add(output, this->Cases, "Case");
+    add(output, this->Ids, "CellId");
+    if (this->WithAreas)
+    {
+      add(output, this->Area, "Area");
+      add(output, this->Chord, "ChordArea");
+      add(output, this->Missed, "Missed");
+    }
+    output->GetCellData()->SetActiveScalars("Case");
+  }
+
+private:
+  static void add(vtkPolyData* output, vtkDataArray* array, const char* name)
+  {
+    array->SetName(name);
+    output->GetCellData()->AddArray(array);
+  }
+
+  bool WithAreas;
+  vtkNew<vtkPoints> Points;
+  vtkNew<vtkCellArray> Cells;
+  vtkNew<vtkIntArray> Cases;
+  vtkNew<vtkIdTypeArray> Ids;
+  vtkNew<vtkDoubleArray> Area, Chord, Missed;
+};
+
+/// The triangles that meet the disc, and the triangles that stand for their parts in it.
+void collectTriangles(const tautline::HorizonInput& taken, const Disc& disc,
+  TriangleCollector& triangles, TriangleCollector& pieces)
+{
+  const tautline::HorizonMesh& mesh = taken.mesh();
+  std::map<tautline::Index, vtkIdType> newId;
+  for (tautline::Index t = 0; t < mesh.numberOfTriangles(); ++t)
+  {
+    const tautline::Index* corners = &mesh.triangles[3 * t];
+    double xy[6];
+    for (int k = 0; k < 3; ++k)
+    {
+      xy[2 * k] = mesh.points[2 * corners[k]];
+      xy[2 * k + 1] = mesh.points[2 * corners[k] + 1];
+    }
+    const tautline::DiscIntersection met =
+      tautline::intersectDisc(xy, disc.center[0], disc.center[1], disc.radius);
+    if (met.exactArea <= NegligibleArea * disc.radius * disc.radius)
+    {
+      continue;
+    }
+    vtkIdType points[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      const auto [known, fresh] = newId.emplace(corners[k], 0);
+      if (fresh)
+      {
+        known->second = triangles.addPoint(taken.lift(xy[2 * k], xy[2 * k + 1]));
+      }
+      points[k] = known->second;
+    }
+    triangles.addTriangle(points, caseOf(met.corners), taken.cell(t));
+    triangles.addAreas(met.exactArea, met.chordArea);
+    for (std::size_t i = 0; i < met.chords.size(); i += 6)
+    {
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        points[k] = pieces.addPoint(taken.lift(met.chords[i + 2 * k], met.chords[i + 2 * k + 1]));
+      }
+      pieces.addTriangle(points, caseOf(met.corners), taken.cell(t));
+    }
+  }
 }
 }
 
@@ -63,92 +191,13 @@ int vtkHorizonNeighbors::RequestData(
       throw tautline::Error("the horizon has to be above 0");
     }
     const tautline::HorizonInput taken(input, nullptr, 0.0, 0);
-    const tautline::HorizonMesh& mesh = taken.mesh();
-    const auto centre = taken.project({ this->Center[0], this->Center[1], this->Center[2] });
-    const auto place = [&](vtkPoints* points, double x, double y)
-    { return points->InsertNextPoint(taken.lift(x, y).data()); };
-
-    vtkNew<vtkPoints> round;
-    vtkNew<vtkCellArray> line;
-    line->InsertNextCell(CirclePieces + 1);
-    for (int i = 0; i < CirclePieces; ++i)
-    {
-      const double angle = 2.0 * M_PI * i / CirclePieces;
-      line->InsertCellPoint(place(round, centre[0] + this->Horizon * std::cos(angle),
-        centre[1] + this->Horizon * std::sin(angle)));
-    }
-    line->InsertCellPoint(0);
-    circle->SetPoints(round);
-    circle->SetLines(line);
-
-    vtkNew<vtkPoints> corners, ends;
-    corners->SetDataType(VTK_DOUBLE);
-    ends->SetDataType(VTK_DOUBLE);
-    vtkNew<vtkCellArray> cells, parts;
-    vtkNew<vtkIntArray> cases, partCases;
-    vtkNew<vtkIdTypeArray> ids, partIds;
-    vtkNew<vtkDoubleArray> area, chord, missed;
-    std::map<tautline::Index, vtkIdType> newId;
-    for (tautline::Index t = 0; t < mesh.numberOfTriangles(); ++t)
-    {
-      double xy[6];
-      for (int k = 0; k < 3; ++k)
-      {
-        xy[2 * k] = mesh.points[2 * mesh.triangles[3 * t + k]];
-        xy[2 * k + 1] = mesh.points[2 * mesh.triangles[3 * t + k] + 1];
-      }
-      const tautline::DiscIntersection met =
-        tautline::intersectDisc(xy, centre[0], centre[1], this->Horizon);
-      if (met.exactArea <= 1e-14 * this->Horizon * this->Horizon)
-      {
-        continue;
-      }
-      vtkIdType points[3];
-      for (int k = 0; k < 3; ++k)
-      {
-        const auto [known, fresh] = newId.emplace(mesh.triangles[3 * t + k], 0);
-        if (fresh)
-        {
-          known->second = place(corners, xy[2 * k], xy[2 * k + 1]);
-        }
-        points[k] = known->second;
-      }
-      cells->InsertNextCell(3, points);
-      cases->InsertNextValue(caseOf(met.corners));
-      ids->InsertNextValue(taken.cell(t));
-      area->InsertNextValue(met.exactArea);
-      chord->InsertNextValue(met.chordArea);
-      missed->InsertNextValue(met.exactArea - met.chordArea);
-      for (std::size_t i = 0; i < met.chords.size(); i += 6)
-      {
-        vtkIdType part[3];
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-          part[k] = place(ends, met.chords[i + 2 * k], met.chords[i + 2 * k + 1]);
-        }
-        parts->InsertNextCell(3, part);
-        partCases->InsertNextValue(caseOf(met.corners));
-        partIds->InsertNextValue(taken.cell(t));
-      }
-    }
-    const auto add = [](vtkPolyData* to, vtkDataArray* array, const char* name)
-    {
-      array->SetName(name);
-      to->GetCellData()->AddArray(array);
-    };
-    triangles->SetPoints(corners);
-    triangles->SetPolys(cells);
-    add(triangles, cases, "Case");
-    add(triangles, ids, "CellId");
-    add(triangles, area, "Area");
-    add(triangles, chord, "ChordArea");
-    add(triangles, missed, "Missed");
-    triangles->GetCellData()->SetActiveScalars("Case");
-    pieces->SetPoints(ends);
-    pieces->SetPolys(parts);
-    add(pieces, partCases, "Case");
-    add(pieces, partIds, "CellId");
-    pieces->GetCellData()->SetActiveScalars("Case");
+    const Disc disc = { taken.project({ this->Center[0], this->Center[1], this->Center[2] }),
+      this->Horizon };
+    fillCircle(taken, disc, circle);
+    TriangleCollector met(true), chords(false);
+    collectTriangles(taken, disc, met, chords);
+    met.fill(triangles);
+    chords.fill(pieces);
   }
   catch (const std::exception& error)
   {

@@ -30,7 +30,16 @@ enum Ports
   NumberOfPorts
 };
 
-// Parts of the progress: until the matrix is there, and until its eigenvalues are.
+enum Arrays
+{
+  RegionArray = 0,
+  SourceArray = 1,
+  GivenArray = 2,
+  GivenPointArray = 3
+};
+constexpr const char* DefaultRegion = "Reference";
+
+// Fractions of the progress: until the matrix is there, and until its eigenvalues are.
 constexpr double AssemblyShare = 0.7, SpectrumShare = 0.9;
 constexpr double MebiByte = 1048576.0;
 }
@@ -39,8 +48,15 @@ constexpr double MebiByte = 1048576.0;
 vtkPeridynamicStiffness::vtkPeridynamicStiffness()
 {
   this->SetNumberOfOutputPorts(NumberOfPorts);
-  // The region array, where there is one; an input without is told so.
-  this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Reference");
+  this->TimeLimit = 0.0;
+  this->SetInputArrayToProcess(
+    RegionArray, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, DefaultRegion);
+}
+
+//------------------------------------------------------------------------------
+vtkDataSet* vtkPeridynamicStiffness::GetOutput()
+{
+  return vtkDataSet::SafeDownCast(this->GetOutputDataObject(MeshPort));
 }
 
 //------------------------------------------------------------------------------
@@ -75,31 +91,6 @@ int vtkPeridynamicStiffness::FillOutputPortInformation(int port, vtkInformation*
 }
 
 //------------------------------------------------------------------------------
-int vtkPeridynamicStiffness::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
-  if (!input)
-  {
-    return 0;
-  }
-  const auto provide = [&](int port, vtkDataObject* made)
-  {
-    const auto object = vtkSmartPointer<vtkDataObject>::Take(made);
-    vtkInformation* info = outputVector->GetInformationObject(port);
-    vtkDataObject* output = vtkDataObject::GetData(info);
-    if (!output || std::string(output->GetClassName()) != object->GetClassName())
-    {
-      info->Set(vtkDataObject::DATA_OBJECT(), object);
-    }
-  };
-  provide(MeshPort, input->NewInstance());
-  provide(SpectrumPort, vtkTable::New());
-  provide(SparsityPort, vtkImageData::New());
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 int vtkPeridynamicStiffness::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
@@ -112,15 +103,15 @@ int vtkPeridynamicStiffness::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
-bool vtkPeridynamicStiffness::Proceed(double from, double to, double part)
+bool vtkPeridynamicStiffness::ProceedWithin(double from, double to, double fraction)
 {
-  this->UpdateProgress(from + (to - from) * part);
-  return !this->GetAbortExecute();
+  return this->Proceed(from + (to - from) * fraction);
 }
 
 //------------------------------------------------------------------------------
-void vtkPeridynamicStiffness::Fill(tautline::PeridynamicOptions& options)
+tautline::PeridynamicOptions vtkPeridynamicStiffness::GetOptions()
 {
+  tautline::PeridynamicOptions options;
   options.horizon = this->Horizon;
   options.kernel.shape = static_cast<tautline::KernelShape>(this->Kernel);
   options.kernel.exponent = this->Exponent;
@@ -137,7 +128,8 @@ void vtkPeridynamicStiffness::Fill(tautline::PeridynamicOptions& options)
   options.memoryLimit = this->MemoryLimit * MebiByte;
   options.timeLimit = this->TimeLimit;
   options.threads = this->Threads;
-  options.progress = [this](double part) { return this->Proceed(0.0, AssemblyShare, part); };
+  options.progress = [this](double part) { return this->ProceedWithin(0.0, AssemblyShare, part); };
+  return options;
 }
 
 //------------------------------------------------------------------------------
@@ -157,83 +149,89 @@ int vtkPeridynamicStiffness::RequestData(
   {
     return 1;
   }
-  try
+  return this->Attempt(outputVector, "choose a smaller horizon or a coarser mesh",
+    [&] { this->Compute(input, output, table, picture); });
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* vtkPeridynamicStiffness::GetRegion(vtkDataSet* input)
+{
+  vtkInformation* choice = this->GetInputArrayInformation(RegionArray);
+  const char* name = choice->Get(vtkDataObject::FIELD_NAME());
+  // The default is an array that the input need not have.
+  const bool chosen = !name || std::string(name) != DefaultRegion;
+  if (!this->Constrained || (!chosen && !input->GetCellData()->GetArray(name)))
   {
-    tautline::PeridynamicOptions options;
-    this->Fill(options);
-    bool onPoints;
-    vtkDataArray* region = nullptr;
-    vtkInformation* choice = this->GetInputArrayInformation(0);
-    // "Reference" is the default, not a demand.
-    const char* name = choice->Get(vtkDataObject::FIELD_NAME());
-    if (options.constrained &&
-      (!name || std::string(name) != "Reference" || input->GetCellData()->GetArray(name)))
-    {
-      region = tautline::chosenArray(choice, input, "interaction layer", onPoints);
-    }
-    tautline::HorizonInput taken(input, region, this->LayerValue, this->Threads);
-    if (vtkDataArray* points =
-          tautline::chosenArray(this->GetInputArrayInformation(3), input, "given points", onPoints))
-    {
-      if (!onPoints)
-      {
-        throw tautline::Error("the given points are to be told by a point array");
-      }
-      taken.setGivenPoints(points);
-    }
-    const tautline::Index components = this->Elastic ? 2 : 1;
-    std::vector<double> given;
-    if (vtkDataArray* array = tautline::chosenArray(
-          this->GetInputArrayInformation(2), input, "given solution", onPoints);
-        array && this->Solve)
-    {
-      given = tautline::onFunctions(taken, options.basis, components, array, onPoints);
-    }
-    const tautline::PeridynamicSystem system =
-      tautline::assemblePeridynamics(taken.mesh(), options, given.empty() ? nullptr : &given);
-    tautline::Spectrum spectrum;
-    if (this->ComputeSpectrum)
-    {
-      tautline::LanczosOptions lanczos;
-      lanczos.tolerance = this->SpectrumTolerance;
-      lanczos.timeLimit = this->TimeLimit;
-      lanczos.threads = this->Threads;
-      lanczos.progress = [this](double part)
-      { return this->Proceed(AssemblyShare, SpectrumShare, part); };
-      spectrum = tautline::extremeEigenvalues(system.matrix, lanczos);
-    }
-    const tautline::PeridynamicResult result = { taken, options.basis, system };
-    tautline::addRowData(result, output);
-    if (this->ComputeSpectrum)
-    {
-      tautline::addRowVector(result, spectrum.smallestVector, "SmallestMode", nullptr, output);
-      tautline::addRowVector(result, spectrum.largestVector, "LargestMode", nullptr, output);
-    }
-    if (this->Solve)
-    {
-      this->SolveSystem(taken, system, given, output);
-    }
-    const char* shown = this->Solve ? "Solution" : "Neighbors";
-    vtkDataSetAttributes* data = this->Basis == PIECEWISE_LINEAR
-      ? static_cast<vtkDataSetAttributes*>(output->GetPointData())
-      : output->GetCellData();
-    data->SetActiveScalars(shown);
-    tautline::fillSpectrum(system, this->ComputeSpectrum ? &spectrum : nullptr, table);
-    if (this->SparsityPixels > 0)
-    {
-      tautline::drawSparsity(system.matrix, this->SparsityPixels, picture);
-    }
-    this->Report(system, this->ComputeSpectrum ? &spectrum : nullptr);
+    return nullptr;
   }
-  catch (const std::exception& error)
+  bool onPoints = false;
+  return tautline::chosenArray(choice, input, "interaction layer", onPoints);
+}
+
+//------------------------------------------------------------------------------
+tautline::Spectrum vtkPeridynamicStiffness::FindSpectrum(const tautline::PeridynamicSystem& system)
+{
+  tautline::LanczosOptions options;
+  options.tolerance = this->SpectrumTolerance;
+  options.timeLimit = this->TimeLimit;
+  options.threads = this->Threads;
+  options.progress = [this](double fraction)
+  { return this->ProceedWithin(AssemblyShare, SpectrumShare, fraction); };
+  return tautline::extremeEigenvalues(system.matrix, options);
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::Compute(
+  vtkDataSet* input, vtkDataSet* output, vtkTable* table, vtkImageData* picture)
+{
+  const tautline::PeridynamicOptions options = this->GetOptions();
+  tautline::HorizonInput taken(input, this->GetRegion(input), this->LayerValue, this->Threads);
+  bool onPoints = false;
+  if (vtkDataArray* points = tautline::chosenArray(
+        this->GetInputArrayInformation(GivenPointArray), input, "given points", onPoints))
   {
-    vtkErrorMacro(<< error.what());
-    output->Initialize();
-    table->Initialize();
-    picture->Initialize();
-    return 0;
+    if (!onPoints)
+    {
+      throw tautline::Error("the given points have to be a point array");
+    }
+    taken.setGivenPoints(points);
   }
-  return 1;
+  const tautline::Index components = this->Elastic ? 2 : 1;
+  std::vector<double> given;
+  if (vtkDataArray* array = tautline::chosenArray(
+        this->GetInputArrayInformation(GivenArray), input, "given solution", onPoints);
+      array && this->Solve)
+  {
+    given = tautline::onFunctions(taken, options.basis, components, array, onPoints);
+  }
+
+  const tautline::PeridynamicSystem system =
+    tautline::assemblePeridynamics(taken.mesh(), options, given.empty() ? nullptr : &given);
+  const tautline::Spectrum found =
+    this->ComputeSpectrum ? this->FindSpectrum(system) : tautline::Spectrum();
+  const tautline::Spectrum* spectrum = this->ComputeSpectrum ? &found : nullptr;
+
+  const tautline::PeridynamicResult result = { taken, options.basis, system };
+  tautline::addRowData(result, output);
+  if (spectrum)
+  {
+    tautline::addRowVector(result, spectrum->smallestVector, "SmallestMode", nullptr, output);
+    tautline::addRowVector(result, spectrum->largestVector, "LargestMode", nullptr, output);
+  }
+  if (this->Solve)
+  {
+    this->SolveSystem(taken, system, given, output);
+  }
+  vtkDataSetAttributes* data = this->Basis == PIECEWISE_LINEAR
+    ? static_cast<vtkDataSetAttributes*>(output->GetPointData())
+    : output->GetCellData();
+  data->SetActiveScalars(this->Solve ? "Solution" : "Neighbors");
+  tautline::fillSpectrum(system, spectrum, table);
+  if (this->SparsityPixels > 0)
+  {
+    tautline::drawSparsity(system.matrix, this->SparsityPixels, picture);
+  }
+  this->Report(system, spectrum);
 }
 
 //------------------------------------------------------------------------------
@@ -243,7 +241,7 @@ void vtkPeridynamicStiffness::SolveSystem(const tautline::HorizonInput& input,
   const auto basis = static_cast<tautline::PeridynamicBasis>(this->Basis);
   const tautline::Index components = system.components;
   bool onPoints = false;
-  vtkDataArray* array = tautline::chosenArray(this->GetInputArrayInformation(1),
+  vtkDataArray* array = tautline::chosenArray(this->GetInputArrayInformation(SourceArray),
     vtkDataSet::SafeDownCast(this->GetInputDataObject(0, 0)), "source", onPoints);
   std::vector<double> source;
   if (array)
@@ -267,7 +265,7 @@ void vtkPeridynamicStiffness::SolveSystem(const tautline::HorizonInput& input,
   options.maxIterations = std::max<tautline::Index>(1000, 4 * system.matrix.size);
   options.timeLimit = this->TimeLimit;
   options.threads = this->Threads;
-  options.progress = [this](double part) { return this->Proceed(SpectrumShare, 1.0, part); };
+  options.progress = [this](double part) { return this->ProceedWithin(SpectrumShare, 1.0, part); };
   std::vector<double> solution;
   const tautline::SolveReport report =
     tautline::solveConjugateGradients(system.matrix, load, solution, 1e-10, options);
@@ -340,7 +338,4 @@ void vtkPeridynamicStiffness::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "UniformSource: " << this->UniformSource << "\n";
   os << indent << "SparsityPixels: " << this->SparsityPixels << "\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
-  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
 }

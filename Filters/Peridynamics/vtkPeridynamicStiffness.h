@@ -69,10 +69,14 @@
 #define vtkPeridynamicStiffness_h
 
 #include "TautlinePeridynamicsModule.h" // for export macro
-#include "vtkDataSetAlgorithm.h"
+#include "vtkTautlineTimedAlgorithm.h"
 
-#include <string> // for Summary
 #include <vector> // for KernelValues
+
+class vtkDataArray;
+class vtkDataSet;
+class vtkImageData;
+class vtkTable;
 
 namespace tautline
 {
@@ -82,11 +86,11 @@ struct PeridynamicSystem;
 struct Spectrum;
 }
 
-class TAUTLINEPERIDYNAMICS_EXPORT vtkPeridynamicStiffness : public vtkDataSetAlgorithm
+class TAUTLINEPERIDYNAMICS_EXPORT vtkPeridynamicStiffness : public vtkTautlineTimedAlgorithm
 {
 public:
   static vtkPeridynamicStiffness* New();
-  vtkTypeMacro(vtkPeridynamicStiffness, vtkDataSetAlgorithm);
+  vtkTypeMacro(vtkPeridynamicStiffness, vtkTautlineTimedAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -293,38 +297,22 @@ public:
 
   ///@{
   /**
-   * Seconds the assembly may take, then as many the eigenvalues; 0, the default, is no limit. The
-   * assembly ends with an error; the eigenvalues with the best so far and a warning.
-   */
-  vtkSetClampMacro(TimeLimit, double, 0.0, 1e9);
-  vtkGetMacro(TimeLimit, double);
-  ///@}
-
-  ///@{
-  /**
-   * Number of threads; 0, the default, is all cores. The result does not depend on it.
-   */
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
-  ///@{
-  /**
-   * Results of the last execution: condition number (0: none, or not positive definite), extreme
-   * eigenvalues, all in words.
+   * Results of the last execution: condition number (0: none, or not positive definite) and extreme
+   * eigenvalues.
    */
   vtkGetMacro(Condition, double);
   vtkGetMacro(SmallestEigenvalue, double);
   vtkGetMacro(LargestEigenvalue, double);
-  const char* GetSummary() const { return this->Summary.c_str(); }
   ///@}
+
+  /// The mesh with the results.
+  vtkDataSet* GetOutput();
 
 protected:
   vtkPeridynamicStiffness();
   ~vtkPeridynamicStiffness() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -332,11 +320,14 @@ private:
   vtkPeridynamicStiffness(const vtkPeridynamicStiffness&) = delete;
   void operator=(const vtkPeridynamicStiffness&) = delete;
 
-  void Fill(tautline::PeridynamicOptions& options);
+  tautline::PeridynamicOptions GetOptions();
+  void Compute(vtkDataSet* input, vtkDataSet* output, vtkTable* table, vtkImageData* picture);
+  vtkDataArray* GetRegion(vtkDataSet* input);
+  tautline::Spectrum FindSpectrum(const tautline::PeridynamicSystem& system);
   void Report(const tautline::PeridynamicSystem& system, const tautline::Spectrum* spectrum);
   void SolveSystem(const tautline::HorizonInput& input, const tautline::PeridynamicSystem& system,
     const std::vector<double>& given, vtkDataSet* output);
-  bool Proceed(double from, double to, double part);
+  bool ProceedWithin(double from, double to, double fraction);
 
   double Horizon = 0.2;
   int Kernel = POWER;
@@ -357,12 +348,9 @@ private:
   double UniformSource = 1.0;
   int SparsityPixels = 0;
   double MemoryLimit = 0.0;
-  double TimeLimit = 0.0;
-  int Threads = 0;
   double Condition = 0.0;
   double SmallestEigenvalue = 0.0;
   double LargestEigenvalue = 0.0;
-  std::string Summary;
 };
 
 #endif

@@ -172,25 +172,44 @@ Array* addColumn(vtkTable* table, const std::string& name, vtkIdType rows, int c
 void QualityTotals::tabulate(
   vtkTable* statistics, int bins, vtkTable* distribution, vtkTable* angles, vtkPolyData* worst)
 {
-  const vtkIdType rows = static_cast<vtkIdType>(this->Metrics.size());
+  const auto rows = static_cast<vtkIdType>(this->Metrics.size());
   auto* names = addColumn<vtkStringArray>(statistics, "Metric", rows);
   auto* labels = addColumn<vtkStringArray>(statistics, "Label", rows);
   for (vtkIdType m = 0; m < rows; ++m)
   {
     const MetricInfo& info = metricInfo(this->Metrics[m]);
-    PerMetric& result = this->Results[m];
     names->SetValue(m, info.name);
     labels->SetValue(m, info.label);
-    const Histogram h = histogram(result.measured, bins);
-    auto* at = addColumn<vtkDoubleArray>(distribution, std::string(info.name) + " value", bins);
-    auto* count = addColumn<vtkIdTypeArray>(distribution, std::string(info.name) + " count", bins);
+    this->Results[m].statistics = summarize(info, this->Dimension, this->Results[m].measured);
+  }
+  this->fillDistribution(bins, distribution);
+  this->fillStatistics(statistics);
+  this->fillWorstColumns(statistics);
+  this->fillWorstPoints(worst);
+  this->fillAngles(angles);
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::fillDistribution(int bins, vtkTable* table)
+{
+  for (std::size_t m = 0; m < this->Metrics.size(); ++m)
+  {
+    const std::string name = metricInfo(this->Metrics[m]).name;
+    const Histogram h = histogram(this->Results[m].measured, bins);
+    auto* middle = addColumn<vtkDoubleArray>(table, name + " value", bins);
+    auto* count = addColumn<vtkIdTypeArray>(table, name + " count", bins);
     for (int b = 0; b < bins; ++b)
     {
-      at->SetValue(b, 0.5 * h.edges[b] + 0.5 * h.edges[b + 1]);
+      middle->SetValue(b, 0.5 * h.edges[b] + 0.5 * h.edges[b + 1]);
       count->SetValue(b, h.counts[b]);
     }
-    result.statistics = summarize(info, this->Dimension, result.measured);
   }
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::fillStatistics(vtkTable* statistics) const
+{
+  const auto rows = static_cast<vtkIdType>(this->Metrics.size());
   const auto fill = [&](auto* column, auto value)
   {
     for (vtkIdType m = 0; m < rows; ++m)
@@ -225,29 +244,45 @@ void QualityTotals::tabulate(
   counts("Degenerate", [this](S, I) { return this->Counts.degenerate; });
   counts("NotMeasured", [this](S, I) { return this->Counts.notMeasured; });
   counts("NonFinite", [this](S, I) { return this->Counts.nonFinite; });
+}
 
-  // The ten worst, in the table and as points.
+//------------------------------------------------------------------------------
+void QualityTotals::fillWorstColumns(vtkTable* statistics) const
+{
+  const auto rows = static_cast<vtkIdType>(this->Metrics.size());
   auto* cells = addColumn<vtkIdTypeArray>(statistics, "WorstCells", rows, WorstCount);
   auto* positions = addColumn<vtkDoubleArray>(statistics, "WorstPositions", rows, 3 * WorstCount);
   cells->Fill(-1);
   positions->Fill(0);
+  for (vtkIdType m = 0; m < rows; ++m)
+  {
+    const auto& list = this->Results[m].worst;
+    for (std::size_t i = 0; i < list.size(); ++i)
+    {
+      cells->SetTypedComponent(m, static_cast<int>(i), list[i].element.cell);
+      for (int c = 0; c < 3; ++c)
+      {
+        positions->SetTypedComponent(m, static_cast<int>(3 * i) + c, list[i].center[c]);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::fillWorstPoints(vtkPolyData* output) const
+{
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> vertices;
   vtkNew<vtkIntArray> metric, rank, validity;
   vtkNew<vtkIdTypeArray> id;
   vtkNew<vtkDoubleArray> value;
-  for (vtkIdType m = 0; m < rows; ++m)
+  for (std::size_t m = 0; m < this->Metrics.size(); ++m)
   {
     const auto& list = this->Results[m].worst;
     for (std::size_t i = 0; i < list.size(); ++i)
     {
       const Worst& w = list[i];
-      cells->SetTypedComponent(m, static_cast<int>(i), w.element.cell);
-      for (int c = 0; c < 3; ++c)
-      {
-        positions->SetTypedComponent(m, static_cast<int>(3 * i) + c, w.center[c]);
-      }
       const vtkIdType point = points->InsertNextPoint(w.center.data());
       vertices->InsertNextCell(1, &point);
       metric->InsertNextValue(static_cast<int>(this->Metrics[m]));
@@ -257,19 +292,23 @@ void QualityTotals::tabulate(
       validity->InsertNextValue(w.element.validity);
     }
   }
-  worst->SetPoints(points);
-  worst->SetVerts(vertices);
-  auto addArray = [&](vtkDataArray* array, const char* name)
+  output->SetPoints(points);
+  output->SetVerts(vertices);
+  const auto addArray = [output](vtkDataArray* array, const char* name)
   {
     array->SetName(name);
-    worst->GetPointData()->AddArray(array);
+    output->GetPointData()->AddArray(array);
   };
   addArray(metric, "Metric");
   addArray(rank, "Rank");
   addArray(id, "CellId");
   addArray(value, "Value");
   addArray(validity, "Validity");
+}
 
+//------------------------------------------------------------------------------
+void QualityTotals::fillAngles(vtkTable* angles) const
+{
   const vtkIdType angleRows = static_cast<vtkIdType>(this->Angles.size());
   auto* from = addColumn<vtkDoubleArray>(angles, "From", angleRows);
   auto* to = addColumn<vtkDoubleArray>(angles, "To", angleRows);

@@ -60,6 +60,11 @@ private:
     MetricStatistics statistics;
   };
   void mergeWorst(std::size_t m, std::vector<Worst> more);
+  void fillDistribution(int bins, vtkTable* table);
+  void fillStatistics(vtkTable* statistics) const;
+  void fillWorstColumns(vtkTable* statistics) const;
+  void fillWorstPoints(vtkPolyData* output) const;
+  void fillAngles(vtkTable* angles) const;
 
   std::vector<Metric> Metrics;
   std::vector<PerMetric> Results;

@@ -1,5 +1,6 @@
 #include "vtkElementQuality.h"
 
+#include "Blocks.h"
 #include "ColorMaps.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
@@ -7,8 +8,6 @@
 #include "TargetChoice.h"
 
 #include "vtkCellData.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
@@ -41,10 +40,8 @@ enum Ports
 
 //------------------------------------------------------------------------------
 vtkElementQuality::vtkElementQuality()
-  : Selection(std::make_unique<tautline::MetricSelection>())
 {
-  this->SetNumberOfInputPorts(2);
-  this->SetNumberOfOutputPorts(NumberOfPorts);
+  this->DeclarePorts(2, NumberOfPorts);
   this->SetController(vtkMultiProcessController::GetGlobalController());
 }
 
@@ -52,53 +49,6 @@ vtkElementQuality::vtkElementQuality()
 vtkElementQuality::~vtkElementQuality()
 {
   this->SetController(nullptr);
-}
-
-//------------------------------------------------------------------------------
-void vtkElementQuality::AddMetric(int metric)
-{
-  try
-  {
-    if (this->Selection->add(metric))
-    {
-      this->Modified();
-    }
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkElementQuality::AddMetricByName(const char* name)
-{
-  try
-  {
-    if (this->Selection->addByName(name))
-    {
-      this->Modified();
-    }
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkElementQuality::ClearMetrics()
-{
-  if (this->Selection->clear())
-  {
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-int vtkElementQuality::GetNumberOfMetrics() const
-{
-  return this->Selection->count();
 }
 
 //------------------------------------------------------------------------------
@@ -110,19 +60,19 @@ vtkMultiProcessController* vtkElementQuality::GetController()
 //------------------------------------------------------------------------------
 vtkTable* vtkElementQuality::GetStatistics()
 {
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(StatisticsPort));
+  return this->GetOutputTable(StatisticsPort);
 }
 
 //------------------------------------------------------------------------------
 vtkTable* vtkElementQuality::GetDistribution()
 {
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(DistributionPort));
+  return this->GetOutputTable(DistributionPort);
 }
 
 //------------------------------------------------------------------------------
 vtkTable* vtkElementQuality::GetAngles()
 {
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(AnglesPort));
+  return this->GetOutputTable(AnglesPort);
 }
 
 //------------------------------------------------------------------------------
@@ -158,49 +108,13 @@ std::string vtkElementQuality::GetColorMapSettings()
 }
 
 //------------------------------------------------------------------------------
-int vtkElementQuality::FillInputPortInformation(int port, vtkInformation* info)
-{
-  // The composite type first: the tables are then those of the whole, not of each block.
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), port == 1);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 int vtkElementQuality::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(),
-    port == MeshPort      ? "vtkDataObject"
-      : port == WorstPort ? "vtkPolyData"
-                          : "vtkTable");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkElementQuality::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  if (!input)
+  this->Superclass::FillOutputPortInformation(port, info);
+  if (port == WorstPort)
   {
-    return 0;
+    info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
   }
-  const auto provide = [&](int port, vtkDataObject* made)
-  {
-    const auto object = vtkSmartPointer<vtkDataObject>::Take(made);
-    vtkInformation* info = outputVector->GetInformationObject(port);
-    vtkDataObject* output = vtkDataObject::GetData(info);
-    if (!output || std::string(output->GetClassName()) != object->GetClassName())
-    {
-      info->Set(vtkDataObject::DATA_OBJECT(), object);
-    }
-  };
-  provide(MeshPort, input->NewInstance());
-  provide(StatisticsPort, vtkTable::New());
-  provide(DistributionPort, vtkTable::New());
-  provide(AnglesPort, vtkTable::New());
-  provide(WorstPort, vtkPolyData::New());
   return 1;
 }
 
@@ -212,29 +126,21 @@ int vtkElementQuality::RequestData(
   this->Notice.clear();
   this->Summary.clear();
   this->WorkingBytes = 0;
-  tautline::QualityTotals totals(this->Selection->metrics());
-  std::string problem;
-  try
-  {
-    this->MeasureBlocks(vtkDataObject::GetData(inputVector[0]),
-      vtkDataObject::GetData(inputVector[1]), output, totals);
-  }
-  catch (const std::bad_alloc&)
-  {
-    problem = "Not enough memory: choose fewer metrics or measure the mesh in parts.";
-  }
-  catch (const std::exception& error)
-  {
-    problem = error.what();
-  }
+  tautline::QualityTotals totals(this->GetSelection().metrics());
+  const std::string failure = FailureOf("choose fewer metrics or measure the mesh in parts",
+    [&]
+    {
+      tautline::forEachBlock(vtkDataObject::GetData(inputVector[0]),
+        vtkDataObject::GetData(inputVector[1]), nullptr, output,
+        [&](const tautline::InputBlock& block)
+        { this->Measure(block.input, block.reference, block.output, totals); });
+    });
 
   // Every process takes part in what follows, whatever befell its own blocks.
   totals.gather(this->Controller);
-  if (!problem.empty())
+  if (!failure.empty())
   {
-    vtkErrorMacro(<< problem);
-    output->Initialize();
-    return 0;
+    return this->Fail(outputVector, failure);
   }
   if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
   {
@@ -248,47 +154,6 @@ int vtkElementQuality::RequestData(
     vtkWarningMacro(<< this->Notice);
   }
   return 1;
-}
-
-//------------------------------------------------------------------------------
-void vtkElementQuality::MeasureBlocks(vtkDataObject* input, vtkDataObject* reference,
-  vtkDataObject* output, tautline::QualityTotals& totals)
-{
-  if (auto* mesh = vtkDataSet::SafeDownCast(input))
-  {
-    if (reference && !vtkDataSet::SafeDownCast(reference))
-    {
-      throw tautline::Error(
-        "The mesh is a single data set but the reference has blocks: extract the "
-        "block that is the reference (Extract Block).");
-    }
-    this->Measure(
-      mesh, vtkDataSet::SafeDownCast(reference), vtkDataSet::SafeDownCast(output), totals);
-    return;
-  }
-  auto* blocks = vtkCompositeDataSet::SafeDownCast(input);
-  auto* references = vtkCompositeDataSet::SafeDownCast(reference);
-  if (reference && !references)
-  {
-    throw tautline::Error("The mesh has blocks but the reference has none: give a reference of the "
-                          "same structure, or merge the blocks first (Merge Blocks).");
-  }
-  auto* results = vtkCompositeDataSet::SafeDownCast(output);
-  results->CopyStructure(blocks);
-  auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
-  for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem())
-  {
-    auto* block = vtkDataSet::SafeDownCast(walk->GetCurrentDataObject());
-    if (!block)
-    {
-      continue;
-    }
-    auto result = vtkSmartPointer<vtkDataSet>::Take(block->NewInstance());
-    results->SetDataSet(walk, result);
-    this->Measure(block,
-      references ? vtkDataSet::SafeDownCast(references->GetDataSet(walk)) : nullptr, result,
-      totals);
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -387,21 +252,14 @@ tautline::Targets vtkElementQuality::MakeTargets(
 void vtkElementQuality::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Metrics:";
-  for (tautline::Metric metric : this->Selection->metrics())
-  {
-    os << " " << tautline::metricInfo(metric).name;
-  }
-  os << "\n" << indent << "Combination: " << this->Combination << "\n";
+  os << indent << "Combination: " << this->Combination << "\n";
   os << indent << "Power: " << this->Power << "\n";
   os << indent << "TargetType: " << this->TargetType << "\n";
   os << indent << "Beta: " << this->Beta << "\n";
   os << indent << "Epsilon: " << this->Epsilon << "\n";
   os << indent << "ReversedMesh: " << this->ReversedMesh << "\n";
   os << indent << "HistogramBins: " << this->HistogramBins << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "Notice: " << this->Notice << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
   os << indent << "WorkingBytes: " << this->WorkingBytes << "\n";
 }

@@ -64,43 +64,29 @@
 #define vtkElementQuality_h
 
 #include "TautlineQualityModule.h" // for export macro
-#include "vtkDataObjectAlgorithm.h"
+#include "vtkMetricAlgorithm.h"
 
-#include <memory> // for Selection
-#include <string> // for Notice, Summary
+#include <string> // for Notice
 #include <vector> // for size and tensor targets
 
 class vtkDataSet;
 class vtkMultiProcessController;
 class vtkPolyData;
-class vtkTable;
 
 namespace tautline
 {
 class MeshAdapter;
-class MetricSelection;
 class QualityTotals;
 struct EvaluationOptions;
 struct Targets;
 }
 
-class TAUTLINEQUALITY_EXPORT vtkElementQuality : public vtkDataObjectAlgorithm
+class TAUTLINEQUALITY_EXPORT vtkElementQuality : public vtkMetricAlgorithm
 {
 public:
   static vtkElementQuality* New();
-  vtkTypeMacro(vtkElementQuality, vtkDataObjectAlgorithm);
+  vtkTypeMacro(vtkElementQuality, vtkMetricAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  ///@{
-  /**
-   * The metrics, by number (enum Metric of tautline/Metrics.h), or by name, label, symbol or alias.
-   * An unknown one is an error and changes nothing. If none is added, it is the inverse mean ratio.
-   */
-  void AddMetric(int metric);
-  void AddMetricByName(const char* name);
-  void ClearMetrics();
-  int GetNumberOfMetrics() const;
-  ///@}
 
   enum Combinations
   {
@@ -184,12 +170,6 @@ public:
   ///@}
 
   ///@{
-  /// Number of threads; 0 is all cores. Results do not depend on it. The default is 0.
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
-  ///@{
   /// The processes that share the mesh. The default is the global controller.
   virtual void SetController(vtkMultiProcessController* controller);
   vtkMultiProcessController* GetController();
@@ -218,8 +198,6 @@ public:
 
   /// What the user should know of how the last mesh was taken (orientation, cells left out), or "".
   const char* GetNotice() const { return this->Notice.c_str(); }
-  /// The result of the last execution in a few lines.
-  const char* GetSummary() const { return this->Summary.c_str(); }
   /// Bytes allocated beyond input and output arrays at the peak of the last execution.
   double GetWorkingBytes() const { return this->WorkingBytes; }
 
@@ -227,10 +205,7 @@ protected:
   vtkElementQuality();
   ~vtkElementQuality() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -238,15 +213,12 @@ private:
   vtkElementQuality(const vtkElementQuality&) = delete;
   void operator=(const vtkElementQuality&) = delete;
 
-  void MeasureBlocks(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* output,
-    tautline::QualityTotals& totals);
   void Measure(
     vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output, tautline::QualityTotals& totals);
   void SettleOrientation(tautline::MeshAdapter& adapter, signed char* validity, vtkDataSet* output);
   tautline::Targets MakeTargets(
     vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter);
 
-  std::unique_ptr<tautline::MetricSelection> Selection;
   int Combination = MEAN;
   double Power = 2.0;
   int TargetType = IDEAL;
@@ -254,10 +226,8 @@ private:
   double Epsilon = 1e-4;
   int ReversedMesh = MEASURE_FLIPPED;
   int HistogramBins = 32;
-  int Threads = 0;
   vtkMultiProcessController* Controller = nullptr;
   std::string Notice;
-  std::string Summary;
   double WorkingBytes = 0;
 };
 

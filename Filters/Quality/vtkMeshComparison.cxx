@@ -91,98 +91,18 @@ void settleOrientation(tautline::Mesh& before, tautline::Mesh& after,
 
 //------------------------------------------------------------------------------
 vtkMeshComparison::vtkMeshComparison()
-  : Selection(std::make_unique<tautline::MetricSelection>())
 {
-  this->SetNumberOfInputPorts(2);
-  this->SetNumberOfOutputPorts(2);
+  this->DeclarePorts(2, 2);
 }
 
 //------------------------------------------------------------------------------
 vtkMeshComparison::~vtkMeshComparison() = default;
 
 //------------------------------------------------------------------------------
-void vtkMeshComparison::AddMetric(int metric)
+int vtkMeshComparison::FillInputPortInformation(int port, vtkInformation* info)
 {
-  try
-  {
-    if (this->Selection->add(metric))
-    {
-      this->Modified();
-    }
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkMeshComparison::AddMetricByName(const char* name)
-{
-  try
-  {
-    if (this->Selection->addByName(name))
-    {
-      this->Modified();
-    }
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkMeshComparison::ClearMetrics()
-{
-  if (this->Selection->clear())
-  {
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshComparison::GetNumberOfMetrics() const
-{
-  return this->Selection->count();
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshComparison::FillInputPortInformation(int, vtkInformation* info)
-{
-  // The composite type first: VTK then leaves the pairing of the blocks to this filter.
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshComparison::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkTable");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshComparison::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataObject* after = vtkDataObject::GetData(inputVector[1]);
-  if (!after)
-  {
-    return 0;
-  }
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  vtkDataObject* output = vtkDataObject::GetData(info);
-  if (!output || std::string(output->GetClassName()) != after->GetClassName())
-  {
-    info->Set(
-      vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkDataObject>::Take(after->NewInstance()));
-  }
-  if (!vtkTable::GetData(outputVector, 1))
-  {
-    outputVector->GetInformationObject(1)->Set(vtkDataObject::DATA_OBJECT(), vtkNew<vtkTable>());
-  }
+  this->Superclass::FillInputPortInformation(port, info);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 0);
   return 1;
 }
 
@@ -190,26 +110,17 @@ int vtkMeshComparison::RequestDataObject(
 int vtkMeshComparison::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataObject* output = vtkDataObject::GetData(outputVector, 0);
-  vtkDataObject* table = vtkDataObject::GetData(outputVector, 1);
   this->Summary.clear();
   Totals totals;
-  totals.metrics = this->Selection->metrics();
+  totals.metrics = this->GetSelection().metrics();
   totals.changes.resize(totals.metrics.size());
-  try
-  {
-    this->CompareBlocks(vtkDataObject::GetData(inputVector[0]),
-      vtkDataObject::GetData(inputVector[1]), output, totals);
-    this->Tabulate(totals, table);
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-    output->Initialize();
-    table->Initialize();
-    return 0;
-  }
-  return 1;
+  return this->Attempt(outputVector, "choose fewer metrics or compare the mesh in parts",
+    [&]
+    {
+      this->CompareBlocks(vtkDataObject::GetData(inputVector[0]),
+        vtkDataObject::GetData(inputVector[1]), vtkDataObject::GetData(outputVector, 0), totals);
+      this->Tabulate(totals, vtkDataObject::GetData(outputVector, 1));
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -373,12 +284,5 @@ void vtkMeshComparison::Tabulate(const Totals& totals, vtkDataObject* output)
 void vtkMeshComparison::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Metrics:";
-  for (tautline::Metric metric : this->Selection->metrics())
-  {
-    os << " " << tautline::metricInfo(metric).name;
-  }
-  os << "\n" << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
 }

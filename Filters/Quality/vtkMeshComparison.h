@@ -56,35 +56,16 @@
 #define vtkMeshComparison_h
 
 #include "TautlineQualityModule.h" // for export macro
-#include "vtkDataObjectAlgorithm.h"
-
-#include <memory> // for Selection
-#include <string> // for Summary
+#include "vtkMetricAlgorithm.h"
 
 class vtkDataSet;
 
-namespace tautline
-{
-class MetricSelection;
-}
-
-class TAUTLINEQUALITY_EXPORT vtkMeshComparison : public vtkDataObjectAlgorithm
+class TAUTLINEQUALITY_EXPORT vtkMeshComparison : public vtkMetricAlgorithm
 {
 public:
   static vtkMeshComparison* New();
-  vtkTypeMacro(vtkMeshComparison, vtkDataObjectAlgorithm);
+  vtkTypeMacro(vtkMeshComparison, vtkMetricAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  ///@{
-  /**
-   * The metrics, by number (enum Metric of tautline/Metrics.h), or by name, label, symbol or alias.
-   * An unknown one is an error and changes nothing. If none is added, it is the inverse mean ratio.
-   */
-  void AddMetric(int metric);
-  void AddMetricByName(const char* name);
-  void ClearMetrics();
-  int GetNumberOfMetrics() const;
-  ///@}
 
   ///@{
   /**
@@ -95,26 +76,11 @@ public:
   vtkGetMacro(Tolerance, double);
   ///@}
 
-  ///@{
-  /**
-   * Number of threads; 0, the default, is all cores. The result does not depend on it.
-   */
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
-  /**
-   * The result of the last execution in words, a line per metric.
-   */
-  const char* GetSummary() const { return this->Summary.c_str(); }
-
 protected:
   vtkMeshComparison();
   ~vtkMeshComparison() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
@@ -128,9 +94,6 @@ private:
   void Tabulate(const Totals& totals, vtkDataObject* output);
 
   double Tolerance = 1e-6;
-  int Threads = 0;
-  std::string Summary;
-  std::unique_ptr<tautline::MetricSelection> Selection;
 };
 
 #endif

@@ -20,60 +20,12 @@ vtkStandardNewMacro(vtkMetricField);
 
 //------------------------------------------------------------------------------
 vtkMetricField::vtkMetricField()
-  : Selection(std::make_unique<tautline::MetricSelection>())
 {
   this->SetNumberOfInputPorts(0);
 }
 
 //------------------------------------------------------------------------------
 vtkMetricField::~vtkMetricField() = default;
-
-//------------------------------------------------------------------------------
-void vtkMetricField::AddMetric(int metric)
-{
-  try
-  {
-    if (this->Selection->add(metric))
-    {
-      this->Modified();
-    }
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkMetricField::AddMetricByName(const char* name)
-{
-  try
-  {
-    if (this->Selection->addByName(name))
-    {
-      this->Modified();
-    }
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkMetricField::ClearMetrics()
-{
-  if (this->Selection->clear())
-  {
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-int vtkMetricField::GetNumberOfMetrics() const
-{
-  return this->Selection->count();
-}
 
 //------------------------------------------------------------------------------
 void vtkMetricField::GetGrid(int wholeExtent[6], double origin[3], double spacing[3]) const
@@ -102,10 +54,23 @@ int vtkMetricField::RequestInformation(
   info->Set(vtkDataObject::ORIGIN(), origin, 3);
   info->Set(vtkDataObject::SPACING(), spacing, 3);
   info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  const tautline::Metric first = this->Selection->metrics().front();
+  const tautline::Metric first = this->GetSelection().metrics().front();
   vtkDataObject::SetActiveAttribute(info, vtkDataObject::FIELD_ASSOCIATION_POINTS,
     tautline::metricInfo(first).name, vtkDataSetAttributes::SCALARS);
   vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkMetricField::GetOutput()
+{
+  return vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+//------------------------------------------------------------------------------
+int vtkMetricField::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkImageData");
   return 1;
 }
 
@@ -127,48 +92,42 @@ int vtkMetricField::RequestData(
     grid.first[c] = extent[2 * c];
     grid.size[c] = std::max(0, extent[2 * c + 1] - extent[2 * c] + 1);
   }
-  try
-  {
-    for (int c = 0; c < (this->Cell == TRIANGLE ? 2 : 3); ++c)
+  return this->Attempt(outputVector, "choose smaller Dimensions or fewer metrics",
+    [&]
     {
-      const double length = this->Bounds[2 * c + 1] - this->Bounds[2 * c];
-      if (this->Dimensions[c] < 1 || !(length > 0 || (length == 0 && this->Dimensions[c] == 1)))
+      for (int c = 0; c < (this->Cell == TRIANGLE ? 2 : 3); ++c)
       {
-        throw tautline::Error(std::string("Along ") + "xyz"[c] +
-          ", Bounds must increase and Dimensions be at least 1; equal bounds need dimension 1.");
+        const double length = this->Bounds[2 * c + 1] - this->Bounds[2 * c];
+        if (this->Dimensions[c] < 1 || !(length > 0 || (length == 0 && this->Dimensions[c] == 1)))
+        {
+          throw tautline::Error(std::string("Along ") + "xyz"[c] +
+            ", Bounds must increase and Dimensions be at least 1; equal bounds need dimension 1.");
+        }
       }
-    }
-    const tautline::MetricField field(
-      this->Cell == TRIANGLE ? tautline::CellType::Triangle : tautline::CellType::Tetrahedron,
-      { tautline::Vec3{ this->Vertex1[0], this->Vertex1[1], this->Vertex1[2] },
-        tautline::Vec3{ this->Vertex2[0], this->Vertex2[1], this->Vertex2[2] },
-        tautline::Vec3{ this->Vertex3[0], this->Vertex3[1], this->Vertex3[2] } });
-    tautline::EvaluationOptions options;
-    options.threads = this->Threads;
-    const std::vector<tautline::Metric> metrics = this->Selection->metrics();
-    for (std::size_t i = 0; i < metrics.size() && !this->GetAbortExecute(); ++i)
-    {
-      vtkNew<vtkDoubleArray> values;
-      values->SetName(tautline::metricInfo(metrics[i]).name);
-      values->SetNumberOfTuples(grid.count());
-      field.evaluate(grid, metrics[i], options, values->GetPointer(0));
-      output->GetPointData()->AddArray(values);
-      this->UpdateProgress(static_cast<double>(i + 1) / static_cast<double>(metrics.size() + 1));
-    }
-    output->GetPointData()->SetActiveScalars(tautline::metricInfo(metrics.front()).name);
-    vtkNew<vtkSignedCharArray> validity;
-    validity->SetName("Validity");
-    validity->SetNumberOfTuples(grid.count());
-    field.classify(grid, validity->GetPointer(0), this->Threads);
-    output->GetPointData()->AddArray(validity);
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-    output->Initialize();
-    return 0;
-  }
-  return 1;
+      const tautline::MetricField field(
+        this->Cell == TRIANGLE ? tautline::CellType::Triangle : tautline::CellType::Tetrahedron,
+        { tautline::Vec3{ this->Vertex1[0], this->Vertex1[1], this->Vertex1[2] },
+          tautline::Vec3{ this->Vertex2[0], this->Vertex2[1], this->Vertex2[2] },
+          tautline::Vec3{ this->Vertex3[0], this->Vertex3[1], this->Vertex3[2] } });
+      tautline::EvaluationOptions options;
+      options.threads = this->Threads;
+      const std::vector<tautline::Metric> metrics = this->GetSelection().metrics();
+      for (std::size_t i = 0; i < metrics.size() && !this->GetAbortExecute(); ++i)
+      {
+        vtkNew<vtkDoubleArray> values;
+        values->SetName(tautline::metricInfo(metrics[i]).name);
+        values->SetNumberOfTuples(grid.count());
+        field.evaluate(grid, metrics[i], options, values->GetPointer(0));
+        output->GetPointData()->AddArray(values);
+        this->Proceed(static_cast<double>(i + 1) / static_cast<double>(metrics.size() + 1));
+      }
+      output->GetPointData()->SetActiveScalars(tautline::metricInfo(metrics.front()).name);
+      vtkNew<vtkSignedCharArray> validity;
+      validity->SetName("Validity");
+      validity->SetNumberOfTuples(grid.count());
+      field.classify(grid, validity->GetPointer(0), this->Threads);
+      output->GetPointData()->AddArray(validity);
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -190,10 +149,4 @@ void vtkMetricField::PrintSelf(ostream& os, vtkIndent indent)
   print("Vertex3", this->Vertex3);
   print("Bounds", this->Bounds);
   print("Dimensions", this->Dimensions);
-  os << indent << "Metrics:";
-  for (tautline::Metric metric : this->Selection->metrics())
-  {
-    os << " " << tautline::metricInfo(metric).name;
-  }
-  os << "\n" << indent << "Threads: " << this->Threads << "\n";
 }

@@ -39,20 +39,15 @@
 #define vtkMetricField_h
 
 #include "TautlineQualityModule.h" // for export macro
-#include "vtkImageAlgorithm.h"
+#include "vtkMetricAlgorithm.h"
 
-#include <memory> // for Selection
+class vtkImageData;
 
-namespace tautline
-{
-class MetricSelection;
-}
-
-class TAUTLINEQUALITY_EXPORT vtkMetricField : public vtkImageAlgorithm
+class TAUTLINEQUALITY_EXPORT vtkMetricField : public vtkMetricAlgorithm
 {
 public:
   static vtkMetricField* New();
-  vtkTypeMacro(vtkMetricField, vtkImageAlgorithm);
+  vtkTypeMacro(vtkMetricField, vtkMetricAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
@@ -72,17 +67,6 @@ public:
   vtkGetMacro(Cell, int);
   void SetCellToTriangle() { this->SetCell(TRIANGLE); }
   void SetCellToTetrahedron() { this->SetCell(TETRAHEDRON); }
-  ///@}
-
-  ///@{
-  /**
-   * The metrics, by number (enum Metric of tautline/Metrics.h), or by name, label, symbol or alias.
-   * An unknown one is an error and changes nothing. If none is added, it is the inverse mean ratio.
-   */
-  void AddMetric(int metric);
-  void AddMetricByName(const char* name);
-  void ClearMetrics();
-  int GetNumberOfMetrics() const;
   ///@}
 
   ///@{
@@ -115,18 +99,14 @@ public:
   vtkGetVector3Macro(Dimensions, int);
   ///@}
 
-  ///@{
-  /**
-   * Number of threads; 0, the default, is all cores. The result does not depend on it.
-   */
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
+  /// The field.
+  vtkImageData* GetOutput();
 
 protected:
   vtkMetricField();
   ~vtkMetricField() override;
 
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -142,8 +122,6 @@ private:
   double Vertex3[3] = { 0.5, 0.86602540378443864676, 0 };
   double Bounds[6] = { -1, 2, 0, 2, 0, 2 };
   int Dimensions[3] = { 301, 201, 101 };
-  int Threads = 0;
-  std::unique_ptr<tautline::MetricSelection> Selection;
 };
 
 #endif

@@ -3,6 +3,12 @@
 #include "tautline/Shapes/ShapeMatch.h"
 
 //------------------------------------------------------------------------------
+vtkShapeAlgorithm::vtkShapeAlgorithm()
+{
+  this->TimeLimit = 0.0;
+}
+
+//------------------------------------------------------------------------------
 void vtkShapeAlgorithm::GetOptions(
   tautline::LocationOptions& locations, tautline::MatchOptions& match)
 {
@@ -29,11 +35,7 @@ void vtkShapeAlgorithm::GetOptions(
   match.scales = this->Scales;
   match.timeLimit = this->TimeLimit;
   match.threads = this->Threads;
-  match.progress = [this](double part)
-  {
-    this->UpdateProgress(part);
-    return this->GetAbortExecute() == 0;
-  };
+  match.progress = [this](double fraction) { return this->Proceed(fraction); };
 }
 
 //------------------------------------------------------------------------------
@@ -59,6 +61,4 @@ void vtkShapeAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Rotations: " << this->Rotations << "\n";
   os << indent << "Scales: " << this->Scales << "\n";
   os << indent << "Foreground: " << this->Foreground << "\n";
-  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
 }

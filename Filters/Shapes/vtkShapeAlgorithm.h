@@ -8,7 +8,8 @@
  *     E = sum over triangles of  E_edge + a E_def + b E_dis
  *
  * and its terms are in tautline/ShapeMatch.h. The properties below are those of dissertation
- * chapter 5, and some that are not in it: they are off unless it is said otherwise.
+ * chapter 5, and some that are not in it: they are off unless it is said otherwise. After the time
+ * limit (0, no limit, by default) the best placement so far is returned.
  *
  * @sa vtkShapeMatcher, vtkShapeRetrieval, tautline::matchShape (Filters/Kernel/ShapeMatch.h)
  */
@@ -17,7 +18,7 @@
 #define vtkShapeAlgorithm_h
 
 #include "TautlineShapesModule.h" // for export macro
-#include "vtkDataObjectAlgorithm.h"
+#include "vtkTautlineTimedAlgorithm.h"
 
 namespace tautline
 {
@@ -26,10 +27,10 @@ struct MatchOptions;
 struct SilhouetteOptions;
 }
 
-class TAUTLINESHAPES_EXPORT vtkShapeAlgorithm : public vtkDataObjectAlgorithm
+class TAUTLINESHAPES_EXPORT vtkShapeAlgorithm : public vtkTautlineTimedAlgorithm
 {
 public:
-  vtkTypeMacro(vtkShapeAlgorithm, vtkDataObjectAlgorithm);
+  vtkTypeMacro(vtkShapeAlgorithm, vtkTautlineTimedAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
@@ -220,24 +221,8 @@ public:
   vtkGetMacro(Foreground, int);
   ///@}
 
-  ///@{
-  /**
-   * Seconds after which the best so far is returned; 0, the default, is no limit.
-   */
-  vtkSetMacro(TimeLimit, double);
-  vtkGetMacro(TimeLimit, double);
-  ///@}
-
-  ///@{
-  /**
-   * Number of threads; 0, the default, is all cores. The result does not depend on it.
-   */
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
 protected:
-  vtkShapeAlgorithm() = default;
+  vtkShapeAlgorithm();
   ~vtkShapeAlgorithm() override = default;
 
   void GetOptions(tautline::LocationOptions& locations, tautline::MatchOptions& match);
@@ -261,8 +246,6 @@ protected:
   int Rotations = 1;
   int Scales = 1;
   int Foreground = 0;
-  double TimeLimit = 0.0;
-  int Threads = 0;
 
 private:
   vtkShapeAlgorithm(const vtkShapeAlgorithm&) = delete;

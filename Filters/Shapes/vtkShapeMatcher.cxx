@@ -1,6 +1,7 @@
 #include "vtkShapeMatcher.h"
 
 #include "ShapeAdapter.h"
+#include "TableRows.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -90,6 +91,74 @@ void addTriangleTerms(
   }
   grid->GetCellData()->SetActiveScalars("Energy");
 }
+
+/// The arrays of a source mesh, the orders of the vertices, and Displacement.
+void addPointData(vtkUnstructuredGrid* grid, const Source& source, vtkDataSet* input)
+{
+  const vtkIdType n = grid->GetNumberOfPoints();
+  if (!source.pointIds.empty())
+  {
+    vtkPointData* from = input->GetPointData();
+    grid->GetPointData()->CopyAllocate(from, n);
+    for (vtkIdType i = 0; i < n; ++i)
+    {
+      grid->GetPointData()->CopyData(from, source.pointIds[i], i);
+    }
+  }
+  tautline::addOrders(grid, source.shape.mesh);
+  auto displacement = makeArray("Displacement", 3, n);
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    const double* x = grid->GetPoint(i);
+    for (int c = 0; c < 3; ++c)
+    {
+      displacement->SetComponent(i, c, x[c] - source.places[i][c]);
+    }
+  }
+  grid->GetPointData()->AddArray(displacement);
+}
+
+/// One row. @param tolerance distance from the centre of mass that is accepted, pixels
+void fillStatistics(const tautline::ShapeMatch& match, double tolerance, vtkTable* table)
+{
+  tautline::TableRows rows;
+  rows.begin();
+  rows.add("Energy", match.energy);
+  rows.add("EdgeCost", match.edge);
+  rows.add("Deformation", match.deformation);
+  rows.add("Distortion", match.distortion);
+  rows.add("Rotation", match.rotation);
+  rows.add("Descriptor", match.descriptor);
+  rows.add("Ordering", match.ordering);
+  rows.add("Rank", static_cast<double>(match.rank));
+  rows.add("CentreDistance", match.centreDistance);
+  rows.add("CentreTolerance", tolerance);
+  rows.add("CentreAccepted", match.centreAccepted);
+  rows.add("Mirrored", match.mirrored);
+  rows.add("Angle", match.angle);
+  rows.add("Scale", match.scale);
+  rows.add("Exact", match.exact);
+  rows.add("Stop", static_cast<double>(match.stop));
+  rows.fill(table);
+}
+
+std::string summaryOf(const tautline::ShapeMatch& match, double tolerance)
+{
+  std::ostringstream text;
+  text << "Energy " << match.energy << ": edges " << match.edge << ", deformation "
+       << match.deformation << ", distortion " << match.distortion << " (unweighted); solution "
+       << match.rank << ", centre off by " << match.centreDistance << " of " << tolerance
+       << " pixels.";
+  if (match.stop != tautline::MatchStop::Complete)
+  {
+    text << " Ended early: the best so far.";
+  }
+  else if (!match.centreAccepted)
+  {
+    text << " No solution tried is close enough to the centre of mass.";
+  }
+  return text.str();
+}
 }
 
 //------------------------------------------------------------------------------
@@ -142,8 +211,6 @@ int vtkShapeMatcher::RequestData(
 {
   vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
   vtkImageData* targetInput = vtkImageData::GetData(inputVector[1]);
-  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
-  vtkTable* statistics = vtkTable::GetData(outputVector, 1);
   this->Summary.clear();
   this->Energy = this->CentreDistance = 0.0;
   this->Rank = 0;
@@ -153,87 +220,33 @@ int vtkShapeMatcher::RequestData(
   {
     return 1;
   }
-  try
-  {
-    tautline::SilhouetteOptions tracing;
-    tracing.foreground = static_cast<tautline::Foreground>(this->Foreground);
-    const Source source = takeSource(input, this->Spacing, tracing.foreground);
-    const tautline::GreyImage image(targetInput);
-    const tautline::ImageView view = image.view();
-    tautline::LocationOptions locations;
-    tautline::MatchOptions options;
-    this->GetOptions(locations, options);
-    const tautline::ShapeTarget target(tautline::traceSilhouette(view, tracing), locations,
-      options.energy, this->GreyGradient ? &view : nullptr);
-    const tautline::ShapeMatch match = tautline::matchShape(source.shape, target, options);
+  return this->Attempt(outputVector, "choose a coarser grid or a larger spacing",
+    [&]
+    {
+      vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
+      tautline::SilhouetteOptions tracing;
+      tracing.foreground = static_cast<tautline::Foreground>(this->Foreground);
+      const Source source = takeSource(input, this->Spacing, tracing.foreground);
+      const tautline::GreyImage image(targetInput);
+      const tautline::ImageView view = image.view();
+      tautline::LocationOptions locations;
+      tautline::MatchOptions options;
+      this->GetOptions(locations, options);
+      const tautline::ShapeTarget target(tautline::traceSilhouette(view, tracing), locations,
+        options.energy, this->GreyGradient ? &view : nullptr);
+      const tautline::ShapeMatch match = tautline::matchShape(source.shape, target, options);
 
-    tautline::fillGrid(output, source.shape.mesh, match.points, image);
-    const vtkIdType n = output->GetNumberOfPoints();
-    if (!source.pointIds.empty())
-    {
-      vtkPointData* from = input->GetPointData();
-      output->GetPointData()->CopyAllocate(from, n);
-      for (vtkIdType i = 0; i < n; ++i)
-      {
-        output->GetPointData()->CopyData(from, source.pointIds[i], i);
-      }
-    }
-    tautline::addOrders(output, source.shape.mesh);
-    auto displacement = makeArray("Displacement", 3, n);
-    for (vtkIdType i = 0; i < n; ++i)
-    {
-      const double* x = output->GetPoint(i);
-      for (int c = 0; c < 3; ++c)
-      {
-        displacement->SetComponent(i, c, x[c] - source.places[i][c]);
-      }
-    }
-    output->GetPointData()->AddArray(displacement);
-    addTriangleTerms(output, match, options.energy);
-
-    const double theta = this->CentreTolerance * target.maxDistance();
-    const std::pair<const char*, double> columns[] = { { "Energy", match.energy },
-      { "EdgeCost", match.edge }, { "Deformation", match.deformation },
-      { "Distortion", match.distortion }, { "Rotation", match.rotation },
-      { "Descriptor", match.descriptor }, { "Ordering", match.ordering },
-      { "Rank", static_cast<double>(match.rank) }, { "CentreDistance", match.centreDistance },
-      { "CentreTolerance", theta }, { "CentreAccepted", match.centreAccepted ? 1.0 : 0.0 },
-      { "Mirrored", match.mirrored ? 1.0 : 0.0 }, { "Angle", match.angle },
-      { "Scale", match.scale }, { "Exact", match.exact ? 1.0 : 0.0 },
-      { "Stop", static_cast<double>(match.stop) } };
-    for (const auto& [name, value] : columns)
-    {
-      auto column = makeArray(name, 1, 1);
-      column->SetValue(0, value);
-      statistics->AddColumn(column);
-    }
-    this->Energy = match.energy;
-    this->Rank = static_cast<int>(match.rank);
-    this->CentreDistance = match.centreDistance;
-    this->Exact = match.exact;
-    std::ostringstream text;
-    text << "Energy " << match.energy << ": edges " << match.edge << ", deformation "
-         << match.deformation << ", distortion " << match.distortion << " (unweighted); solution "
-         << match.rank << ", centre off by " << match.centreDistance << " of " << theta
-         << " pixels.";
-    if (match.stop != tautline::MatchStop::Complete)
-    {
-      text << " Ended early: the best so far.";
-    }
-    else if (!match.centreAccepted)
-    {
-      text << " No solution tried is close enough to the centre of mass.";
-    }
-    this->Summary = text.str();
-  }
-  catch (const std::exception& error)
-  {
-    output->Initialize();
-    statistics->Initialize();
-    vtkErrorMacro(<< error.what());
-    return 0;
-  }
-  return 1;
+      tautline::fillGrid(output, source.shape.mesh, match.points, image);
+      addPointData(output, source, input);
+      addTriangleTerms(output, match, options.energy);
+      const double tolerance = this->CentreTolerance * target.maxDistance();
+      fillStatistics(match, tolerance, vtkTable::GetData(outputVector, 1));
+      this->Energy = match.energy;
+      this->Rank = static_cast<int>(match.rank);
+      this->CentreDistance = match.centreDistance;
+      this->Exact = match.exact;
+      this->Summary = summaryOf(match, tolerance);
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -242,5 +255,4 @@ void vtkShapeMatcher::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "GreyGradient: " << this->GreyGradient << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
 }

@@ -46,8 +46,6 @@
 #include "TautlineShapesModule.h" // for export macro
 #include "vtkShapeAlgorithm.h"
 
-#include <string> // for Summary
-
 class vtkImageData;
 
 class TAUTLINESHAPES_EXPORT vtkShapeMatcher : public vtkShapeAlgorithm
@@ -92,7 +90,6 @@ public:
   vtkGetMacro(Rank, int);
   vtkGetMacro(CentreDistance, double);
   vtkGetMacro(Exact, bool);
-  vtkGetMacro(Summary, std::string);
   ///@}
 
 protected:
@@ -114,7 +111,6 @@ private:
   int Rank = 0;
   double CentreDistance = 0.0;
   bool Exact = false;
-  std::string Summary;
 };
 
 #endif

@@ -196,56 +196,44 @@ int vtkShapeRetrieval::RequestData(
   vtkMultiBlockDataSet* input = vtkMultiBlockDataSet::GetData(inputVector[0]);
   this->Summary.clear();
   this->RecognitionRate = 0.0;
-  vtkTable* tables[4];
-  for (int port = 0; port < 4; ++port)
-  {
-    tables[port] = vtkTable::GetData(outputVector, port);
-  }
   if (!input || input->GetNumberOfBlocks() == 0)
   {
     return 1;
   }
-  try
-  {
-    const ShapeSet set = takeShapes(input, static_cast<tautline::Foreground>(this->Foreground));
-    tautline::RetrievalOptions options;
-    this->GetOptions(options.locations, options.match);
-    options.spacing = this->Spacing;
-    options.symmetric = this->Symmetric;
-    if (this->Setting != CUSTOM)
+  return this->Attempt(outputVector, "choose fewer shapes, or a larger spacing",
+    [&]
     {
-      const auto progress = options.match.progress;
-      options = this->Setting == FELZENSZWALB ? tautline::RetrievalOptions::felzenszwalb()
-        : this->Setting == DISSERTATION       ? tautline::RetrievalOptions::dissertation()
-                                              : tautline::RetrievalOptions::highest();
-      options.match.progress = progress;
-      options.match.threads = this->Threads;
-      options.match.timeLimit = this->TimeLimit;
-    }
-    options.best = this->BestMatches;
-    const tautline::Retrieval result = tautline::retrieveShapes(set.shapes, set.numbers, options);
-    fillTables(set, result, tables[0], tables[1], tables[2], tables[3]);
-    this->RecognitionRate = 100.0 * result.recognition.rate;
-    std::ostringstream text;
-    text << result.count << " shapes of " << set.classes.size()
-         << " classes: " << result.recognition.hits << " of " << result.recognition.possible
-         << " best matches are of the query's class, " << this->RecognitionRate << " %.";
-    if (result.stop != tautline::MatchStop::Complete)
-    {
-      text << " Ended early: distances of -1 were not computed.";
-    }
-    this->Summary = text.str();
-  }
-  catch (const std::exception& error)
-  {
-    for (vtkTable* table : tables)
-    {
-      table->Initialize();
-    }
-    vtkErrorMacro(<< error.what());
-    return 0;
-  }
-  return 1;
+      const ShapeSet set = takeShapes(input, static_cast<tautline::Foreground>(this->Foreground));
+      tautline::RetrievalOptions options;
+      this->GetOptions(options.locations, options.match);
+      options.spacing = this->Spacing;
+      options.symmetric = this->Symmetric;
+      if (this->Setting != CUSTOM)
+      {
+        const auto progress = options.match.progress;
+        options = this->Setting == FELZENSZWALB ? tautline::RetrievalOptions::felzenszwalb()
+          : this->Setting == DISSERTATION       ? tautline::RetrievalOptions::dissertation()
+                                                : tautline::RetrievalOptions::highest();
+        options.match.progress = progress;
+        options.match.threads = this->Threads;
+        options.match.timeLimit = this->TimeLimit;
+      }
+      options.best = this->BestMatches;
+      const tautline::Retrieval result = tautline::retrieveShapes(set.shapes, set.numbers, options);
+      fillTables(set, result, vtkTable::GetData(outputVector, 0),
+        vtkTable::GetData(outputVector, 1), vtkTable::GetData(outputVector, 2),
+        vtkTable::GetData(outputVector, 3));
+      this->RecognitionRate = 100.0 * result.recognition.rate;
+      std::ostringstream text;
+      text << result.count << " shapes of " << set.classes.size()
+           << " classes: " << result.recognition.hits << " of " << result.recognition.possible
+           << " best matches are of the query's class, " << this->RecognitionRate << " %.";
+      if (result.stop != tautline::MatchStop::Complete)
+      {
+        text << " Ended early: distances of -1 were not computed.";
+      }
+      this->Summary = text.str();
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -256,5 +244,4 @@ void vtkShapeRetrieval::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Symmetric: " << this->Symmetric << "\n";
   os << indent << "BestMatches: " << this->BestMatches << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
 }

@@ -30,8 +30,6 @@
 #include "TautlineShapesModule.h" // for export macro
 #include "vtkShapeAlgorithm.h"
 
-#include <string> // for Summary
-
 class TAUTLINESHAPES_EXPORT vtkShapeRetrieval : public vtkShapeAlgorithm
 {
 public:
@@ -92,7 +90,6 @@ public:
    * Results of the last run: the rate in percent, and what was found, in words.
    */
   vtkGetMacro(RecognitionRate, double);
-  vtkGetMacro(Summary, std::string);
   ///@}
 
 protected:
@@ -112,7 +109,6 @@ private:
   bool Symmetric = false;
   int BestMatches = 10;
   double RecognitionRate = 0.0;
-  std::string Summary;
 };
 
 #endif

@@ -21,6 +21,70 @@
 
 vtkStandardNewMacro(vtkSilhouetteMesher);
 
+namespace
+{
+/// Adds what is known of the shape as field arrays, in the unit of space.
+void addFacts(
+  vtkDataSet* output, const tautline::Silhouette& shape, const tautline::GreyImage& image)
+{
+  const auto add = [output](const char* name, std::initializer_list<double> values)
+  {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    array->SetNumberOfComponents(static_cast<int>(values.size()));
+    array->InsertNextTuple(values.begin());
+    output->GetFieldData()->AddArray(array);
+  };
+  double centre[3];
+  image.toSpace(shape.centre, centre);
+  const double pixel = image.pixelSize();
+  add("CentreOfMass", { centre[0], centre[1] });
+  add("MaximumDistance", { shape.maxDistance * pixel });
+  add("Area", { shape.area * pixel * pixel });
+  add("Components", { static_cast<double>(shape.components) });
+  add("Holes", { static_cast<double>(shape.holes) });
+  add("TouchesBorder", { shape.touchesBorder ? 1.0 : 0.0 });
+}
+
+/// The traced outline as one closed line.
+void fillOutline(
+  vtkPolyData* output, const tautline::Silhouette& shape, const tautline::GreyImage& image)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell(static_cast<int>(shape.outline.size()) + 1);
+  for (const tautline::Vec2& p : shape.outline)
+  {
+    double x[3];
+    image.toSpace(p, x);
+    lines->InsertCellPoint(points->InsertNextPoint(x));
+  }
+  lines->InsertCellPoint(0);
+  output->SetPoints(points);
+  output->SetLines(lines);
+}
+
+std::string summaryOf(const tautline::PolygonMesh& mesh, const tautline::Silhouette& shape)
+{
+  std::ostringstream text;
+  text << mesh.points.size() << " vertices, " << mesh.triangles.size() << " triangles";
+  if (shape.components > 1)
+  {
+    text << "; the largest of " << shape.components << " components";
+  }
+  if (shape.holes > 0)
+  {
+    text << "; " << shape.holes << (shape.holes == 1 ? " hole" : " holes") << " ignored";
+  }
+  if (shape.touchesBorder)
+  {
+    text << "; touches the border of the image";
+  }
+  return text.str() + ".";
+}
+}
+
 //------------------------------------------------------------------------------
 vtkSilhouetteMesher::vtkSilhouetteMesher()
 {
@@ -76,55 +140,11 @@ int vtkSilhouetteMesher::RequestData(
     tautline::fillGrid(output, mesh, mesh.points, image);
     tautline::addOrders(output, mesh);
 
-    const auto addField = [&](const char* name, std::initializer_list<double> values)
-    {
-      vtkNew<vtkDoubleArray> array;
-      array->SetName(name);
-      array->SetNumberOfComponents(static_cast<int>(values.size()));
-      array->InsertNextTuple(values.begin());
-      output->GetFieldData()->AddArray(array);
-    };
-    double centre[3];
-    image.toSpace(shape.centre, centre);
-    const double pixel = image.pixelSize();
-    addField("CentreOfMass", { centre[0], centre[1] });
-    addField("MaximumDistance", { shape.maxDistance * pixel });
-    addField("Area", { shape.area * pixel * pixel });
-    addField("Components", { static_cast<double>(shape.components) });
-    addField("Holes", { static_cast<double>(shape.holes) });
-    addField("TouchesBorder", { shape.touchesBorder ? 1.0 : 0.0 });
-
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    vtkNew<vtkCellArray> lines;
-    lines->InsertNextCell(static_cast<int>(shape.outline.size()) + 1);
-    for (const tautline::Vec2& p : shape.outline)
-    {
-      double x[3];
-      image.toSpace(p, x);
-      lines->InsertCellPoint(points->InsertNextPoint(x));
-    }
-    lines->InsertCellPoint(0);
-    outline->SetPoints(points);
-    outline->SetLines(lines);
-
+    addFacts(output, shape, image);
+    fillOutline(outline, shape, image);
     this->NumberOfComponents = static_cast<int>(shape.components);
     this->NumberOfHoles = static_cast<int>(shape.holes);
-    std::ostringstream text;
-    text << mesh.points.size() << " vertices, " << mesh.triangles.size() << " triangles";
-    if (shape.components > 1)
-    {
-      text << "; the largest of " << shape.components << " components";
-    }
-    if (shape.holes > 0)
-    {
-      text << "; " << shape.holes << (shape.holes == 1 ? " hole" : " holes") << " ignored";
-    }
-    if (shape.touchesBorder)
-    {
-      text << "; touches the border of the image";
-    }
-    this->Summary = text.str() + ".";
+    this->Summary = summaryOf(mesh, shape);
   }
   catch (const std::exception& error)
   {

@@ -1,18 +1,17 @@
 #include "vtkMeshUntangler.h"
 
+#include "Blocks.h"
+#include "IterationHistory.h"
 #include "MovableMesh.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include "vtkCellData.h"
-#include "vtkDataArray.h"
 #include "vtkDataSet.h"
-#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkSelection.h"
 #include "vtkSignedCharArray.h"
 #include "vtkTable.h"
 
@@ -24,13 +23,9 @@ vtkStandardNewMacro(vtkMeshUntangler);
 
 namespace
 {
-enum Ports
-{
-  MeshPort = 0,
-  SelectionPort = 1, // input
-  HistoryPort = 1,
-  NumberOfPorts = 2
-};
+constexpr int SelectionPort = 1; // input
+constexpr int NumberOfInputPorts = 2, NumberOfOutputPorts = 2;
+constexpr int FixedArray = 0;
 
 constexpr int ListedElements = 10;
 
@@ -103,95 +98,38 @@ std::string verdict(
 //------------------------------------------------------------------------------
 vtkMeshUntangler::vtkMeshUntangler()
 {
-  this->SetNumberOfInputPorts(NumberOfPorts);
-  this->SetNumberOfOutputPorts(NumberOfPorts);
+  this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { SelectionPort });
 }
 
 //------------------------------------------------------------------------------
 vtkMeshUntangler::~vtkMeshUntangler() = default;
 
 //------------------------------------------------------------------------------
-vtkTable* vtkMeshUntangler::GetHistory()
-{
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(HistoryPort));
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshUntangler::FillInputPortInformation(int port, vtkInformation* info)
-{
-  tautline::declareInput(info, port == SelectionPort, port != MeshPort);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshUntangler::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == MeshPort ? "vtkDataObject" : "vtkTable");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshUntangler::RequestDataObject(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-  if (!input)
-  {
-    return 0;
-  }
-  tautline::provideOutputs(input, outputVector);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 int vtkMeshUntangler::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-  vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   this->Reason.clear();
   this->Summary.clear();
   this->InvertedBefore = this->InvertedAfter = this->Impossible = this->NotValid = 0;
-  tautline::TableRows history;
-  try
-  {
-    const auto selected =
-      tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
-    const double blocks = tautline::countBlocks(input);
-    tautline::forEachBlock(input, nullptr, selected, output,
-      [&](const tautline::InputBlock& block) { this->Untangle(block, blocks, history); });
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro("Not enough memory: untangle the mesh in parts.");
-    output->Initialize();
-    return 0;
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-    output->Initialize();
-    return 0;
-  }
-  history.fill(vtkTable::GetData(outputVector, HistoryPort));
-  if (this->NotValid > 0)
-  {
-    vtkWarningMacro(<< this->Summary);
-  }
-  return 1;
+  return this->Attempt(outputVector, "untangle the mesh in parts",
+    [&]
+    {
+      tautline::TableRows history;
+      this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort,
+        [&](const tautline::InputBlock& block) { this->Untangle(block, history); });
+      history.fill(vtkTable::GetData(outputVector, HistoryPort));
+      if (this->NotValid > 0)
+      {
+        vtkWarningMacro(<< this->Summary);
+      }
+    });
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshUntangler::Untangle(
-  const tautline::InputBlock& block, double blocks, tautline::TableRows& history)
+void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::TableRows& history)
 {
-  block.output->ShallowCopy(block.input);
-  if (block.input->GetNumberOfPoints() == 0 || block.input->GetNumberOfCells() == 0)
-  {
-    return;
-  }
   tautline::MovableMesh mesh(block.input, this->Threads);
-  mesh.fix(tautline::chosenArray(this, 0, block.input, "to tell the fixed points by"), false);
+  mesh.fix(tautline::chosenArray(this, FixedArray, block.input, "of fixed points"), false);
   tautline::fixSelected(mesh, block.selected);
   if (this->FixBoundary)
   {
@@ -204,10 +142,7 @@ void vtkMeshUntangler::Untangle(
   options.fixed = mesh.fixed().data();
   options.threads = this->Threads;
   options.observer = [&](const tautline::IterationState& state)
-  {
-    this->UpdateProgress((block.number + state.progress) / blocks);
-    return !this->GetAbortExecute();
-  };
+  { return this->ProceedInBlock(block.number, state.progress); };
   const tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);
 
   const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), result.points);
@@ -226,19 +161,10 @@ void vtkMeshUntangler::Untangle(
   const tautline::Mesh moved(view, this->Threads);
   const Remaining remaining = remainingOf(result, moved);
   this->NotValid += static_cast<vtkIdType>(remaining.size());
-  std::ostringstream text;
-  text << (block.name.empty() ? "" : "In " + block.name + ": ")
-       << verdict(result, remaining, moved);
-  if (result.surfaceError > 0)
-  {
-    text << "\nLargest distance of the elements from the input surface: " << result.surfaceError
-         << ".";
-  }
-  for (const std::string& sentence : { note, mesh.notice() })
-  {
-    text << (sentence.empty() ? "" : "\n") << sentence;
-  }
-  this->Summary += (this->Summary.empty() ? "" : "\n") + text.str();
+  this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
+    verdict(result, remaining, moved) + tautline::surfaceErrorSentence(result.surfaceError));
+  this->AddToSummary(note);
+  this->AddToSummary(mesh.notice());
 }
 
 //------------------------------------------------------------------------------
@@ -246,8 +172,5 @@ void vtkMeshUntangler::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Effort: " << this->Effort << "\n";
-  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
   os << indent << "FixBoundary: " << this->FixBoundary << "\n";
-  os << indent << "Threads: " << this->Threads << "\n";
-  os << indent << "Summary: " << this->Summary << "\n";
 }

@@ -40,11 +40,9 @@
 #define vtkMeshUntangler_h
 
 #include "TautlineUntanglingModule.h" // for export macro
-#include "vtkDataObjectAlgorithm.h"
+#include "vtkMeshMotionAlgorithm.h"
 
-#include <string> // for Summary
-
-class vtkTable;
+#include <string> // for Reason
 
 namespace tautline
 {
@@ -52,11 +50,11 @@ class TableRows;
 struct InputBlock;
 }
 
-class TAUTLINEUNTANGLING_EXPORT vtkMeshUntangler : public vtkDataObjectAlgorithm
+class TAUTLINEUNTANGLING_EXPORT vtkMeshUntangler : public vtkMeshMotionAlgorithm
 {
 public:
   static vtkMeshUntangler* New();
-  vtkTypeMacro(vtkMeshUntangler, vtkDataObjectAlgorithm);
+  vtkTypeMacro(vtkMeshUntangler, vtkMeshMotionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Efforts
@@ -75,12 +73,6 @@ public:
   ///@}
 
   ///@{
-  /// Seconds; 0 is no limit. The default is 600.
-  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(TimeLimit, double);
-  ///@}
-
-  ///@{
   /**
    * Whether the points of the boundary stay. Points also stay where the point array at index 0
    * (SetInputArrayToProcess) is not 0, and where the selection at port 1 holds them or a cell of
@@ -92,15 +84,6 @@ public:
   ///@}
 
   ///@{
-  /// Number of threads; 0 is all cores. The result does not depend on it. The default is 0.
-  vtkSetClampMacro(Threads, int, 0, 1024);
-  vtkGetMacro(Threads, int);
-  ///@}
-
-  /// The output other than the mesh.
-  vtkTable* GetHistory();
-
-  ///@{
   /**
    * The result of the last execution; numbers are of all blocks together. Inverted elements include
    * degenerate ones; impossible are those with an Obstacle of 2 or 3.
@@ -109,17 +92,12 @@ public:
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
   vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
   vtkIdType GetImpossible() const { return this->Impossible; }
-  const char* GetSummary() const { return this->Summary.c_str(); }
   ///@}
 
 protected:
   vtkMeshUntangler();
   ~vtkMeshUntangler() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
@@ -127,18 +105,15 @@ private:
   vtkMeshUntangler(const vtkMeshUntangler&) = delete;
   void operator=(const vtkMeshUntangler&) = delete;
 
-  void Untangle(const tautline::InputBlock& block, double blocks, tautline::TableRows& history);
+  void Untangle(const tautline::InputBlock& block, tautline::TableRows& history);
 
   int Effort = NORMAL;
-  double TimeLimit = 600.0;
   bool FixBoundary = true;
-  int Threads = 0;
   std::string Reason;
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;
   vtkIdType Impossible = 0;
   vtkIdType NotValid = 0; ///< with NaN coordinates too
-  std::string Summary;
 };
 
 #endif

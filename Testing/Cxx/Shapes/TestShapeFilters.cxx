@@ -221,7 +221,7 @@ void testMatcher()
   fromMesh->SetTimeLimit(1e-9);
   fromMesh->Update();
   TAUTLINE_CHECK(!fromMesh->GetExact() && mesh->GetNumberOfCells() == before->GetNumberOfCells());
-  TAUTLINE_CHECK(fromMesh->GetSummary().find("best so far") != std::string::npos);
+  TAUTLINE_CHECK(std::string(fromMesh->GetSummary()).find("best so far") != std::string::npos);
   // Wrong input is named.
   vtkNew<vtkShapeMatcher> wrong;
   wrong->SetInputDataObject(0, source);

@@ -1,0 +1,152 @@
+#include "Blocks.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkExtractSelection.h"
+#include "vtkInformation.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSelection.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+//------------------------------------------------------------------------------
+void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selected,
+  vtkDataObject* output, const std::function<void(const InputBlock&)>& visit)
+{
+  const bool composite = vtkCompositeDataSet::SafeDownCast(input);
+  if (reference && composite != (vtkCompositeDataSet::SafeDownCast(reference) != nullptr))
+  {
+    throw Error(composite
+        ? "The mesh has blocks but the reference has none: give a reference of the same "
+          "structure, or merge the blocks first (Merge Blocks)."
+        : "The mesh is a single data set but the reference has blocks: extract the block that is "
+          "the reference (Extract Block).");
+  }
+  if (!composite)
+  {
+    visit({ vtkDataSet::SafeDownCast(input), vtkDataSet::SafeDownCast(reference),
+      vtkDataSet::SafeDownCast(selected), vtkDataSet::SafeDownCast(output), 0, "", 0 });
+    return;
+  }
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(input);
+  auto* references = vtkCompositeDataSet::SafeDownCast(reference);
+  auto* selections = vtkCompositeDataSet::SafeDownCast(selected);
+  auto* results = vtkCompositeDataSet::SafeDownCast(output);
+  results->CopyStructure(blocks);
+  auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+  int number = 0;
+  for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem())
+  {
+    auto* block = vtkDataSet::SafeDownCast(walk->GetCurrentDataObject());
+    if (!block)
+    {
+      continue;
+    }
+    const unsigned int index = walk->GetCurrentFlatIndex();
+    const std::string name = "block " + std::to_string(index);
+    const auto at = [&walk](vtkCompositeDataSet* set)
+    { return set ? vtkDataSet::SafeDownCast(set->GetDataSet(walk)) : nullptr; };
+    auto result = vtkSmartPointer<vtkDataSet>::Take(block->NewInstance());
+    results->SetDataSet(walk, result);
+    try
+    {
+      visit({ block, at(references), at(selections), result, number++, name, index });
+    }
+    catch (const Error& error)
+    {
+      throw Error("In " + name + ": " + error.what());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void forEachLeaf(vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit)
+{
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
+  if (auto* single = vtkDataSet::SafeDownCast(data))
+  {
+    visit(0, single);
+  }
+  if (!blocks)
+  {
+    return;
+  }
+  auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+  for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem())
+  {
+    if (auto* leaf = vtkDataSet::SafeDownCast(walk->GetCurrentDataObject()))
+    {
+      visit(walk->GetCurrentFlatIndex(), leaf);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data)
+{
+  const bool composite = vtkCompositeDataSet::SafeDownCast(data);
+  vtkDataSet* found = nullptr;
+  forEachLeaf(data,
+    [&](unsigned int index, vtkDataSet* leaf)
+    { found = !composite || index == block.flatIndex ? leaf : found; });
+  return found;
+}
+
+//------------------------------------------------------------------------------
+int countBlocks(vtkDataObject* input)
+{
+  int count = 0;
+  forEachLeaf(input, [&count](unsigned int, vtkDataSet*) { ++count; });
+  return std::max(count, 1);
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataObject> markSelected(vtkDataObject* input, vtkSelection* selection)
+{
+  if (!selection || selection->GetNumberOfNodes() == 0)
+  {
+    return nullptr;
+  }
+  vtkNew<vtkExtractSelection> extract;
+  extract->PreserveTopologyOn();
+  extract->SetInputDataObject(0, input);
+  extract->SetInputDataObject(1, selection);
+  extract->Update();
+  return extract->GetOutputDataObject(0);
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* chosenArray(
+  vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* purpose)
+{
+  vtkInformation* choice = algorithm->GetInputArrayInformation(index);
+  const char* name = choice->Get(vtkDataObject::FIELD_NAME());
+  if (!name || !*name || std::string(name) == "None")
+  {
+    return nullptr;
+  }
+  const bool ofCells = chosenOfCells(algorithm, index);
+  vtkDataArray* array =
+    ofCells ? input->GetCellData()->GetArray(name) : input->GetPointData()->GetArray(name);
+  if (!array)
+  {
+    throw Error(std::string("There is no ") + (ofCells ? "cell" : "point") + " array '" + name +
+      "' " + purpose + ": choose another one, or None.");
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+bool chosenOfCells(vtkAlgorithm* algorithm, int index)
+{
+  return algorithm->GetInputArrayInformation(index)->Get(vtkDataObject::FIELD_ASSOCIATION()) ==
+    vtkDataObject::FIELD_ASSOCIATION_CELLS;
+}
+}

@@ -1,0 +1,80 @@
+/**
+ * @file Blocks.h
+ * @brief The data sets of a data object with their counterparts in other inputs, what is selected of
+ * them, and the arrays chosen by a filter.
+ */
+#ifndef tautline_Blocks_h
+#define tautline_Blocks_h
+
+#include "TautlineCoreModule.h" // for export macro
+
+#include "tautline/Core/Types.h"
+
+#include "vtkSmartPointer.h"
+
+#include <functional>
+#include <string>
+
+class vtkAlgorithm;
+class vtkDataArray;
+class vtkDataObject;
+class vtkDataSet;
+class vtkSelection;
+
+namespace tautline
+{
+/// A data set of the input, with its counterparts.
+struct InputBlock
+{
+  vtkDataSet* input;
+  vtkDataSet* reference; ///< or null
+  vtkDataSet* selected;  ///< the input with the array of markSelected(), or null
+  vtkDataSet* output;
+  int number;             ///< counts through the data sets, from 0
+  std::string name;       ///< "block 3", or "" if the input is a single data set
+  unsigned int flatIndex; ///< of composite data; 0 if the input is a single data set
+};
+
+/**
+ * @brief Gives a composite output the structure of the input and calls visit for each data set, or
+ * once. Throws Error if reference and input do not have the same structure; what visit throws as
+ * Error gets the name of the block.
+ */
+TAUTLINECORE_EXPORT void forEachBlock(vtkDataObject* input, vtkDataObject* reference,
+  vtkDataObject* selected, vtkDataObject* output,
+  const std::function<void(const InputBlock&)>& visit);
+
+/// The number of data sets, at least 1.
+TAUTLINECORE_EXPORT int countBlocks(vtkDataObject* input);
+
+/// Calls visit(flat index, data set) for the data sets of composite data, or with 0 for a single
+/// one.
+TAUTLINECORE_EXPORT void forEachLeaf(
+  vtkDataObject* data, const std::function<void(unsigned int, vtkDataSet*)>& visit);
+
+/// The data set of `data` that belongs to a block of the input: at its place, or `data` itself;
+/// null: none.
+TAUTLINECORE_EXPORT vtkDataSet* counterpartOf(const InputBlock& block, vtkDataObject* data);
+
+/// The array of marks, of points or cells, in what markSelected() returns.
+constexpr const char* SelectedArray = "vtkInsidedness"; // the name vtkExtractSelection gives it
+
+/// A copy of the input with marks on what is selected; null without a selection.
+TAUTLINECORE_EXPORT vtkSmartPointer<vtkDataObject> markSelected(
+  vtkDataObject* input, vtkSelection* selection);
+
+/**
+ * @brief The point or cell array that the user chose by SetInputArrayToProcess(); null if none is
+ * chosen ("None" or "").
+ * @param index that of SetInputArrayToProcess()
+ * @param purpose for the message, "of fixed points"
+ *
+ * Throws Error if the input has no array of that name.
+ */
+TAUTLINECORE_EXPORT vtkDataArray* chosenArray(
+  vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* purpose);
+
+/// Whether the array chosen is one of cells.
+TAUTLINECORE_EXPORT bool chosenOfCells(vtkAlgorithm* algorithm, int index);
+}
+#endif

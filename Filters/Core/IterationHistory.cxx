@@ -1,0 +1,65 @@
+#include "IterationHistory.h"
+
+#include <sstream>
+
+namespace tautline
+{
+//------------------------------------------------------------------------------
+void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
+  const std::vector<std::string>& names, const std::string& block)
+{
+  const auto at = [](const std::vector<double>& values, std::size_t i)
+  { return i < values.size() ? values[i] : 0.0; };
+  for (const IterationRecord& record : history)
+  {
+    rows.begin(block);
+    rows.add("Objective", record.objective);
+    for (std::size_t i = 0; i < names.size(); ++i)
+    {
+      if (names.size() > 1)
+      {
+        rows.add(names[i] + " objective", at(record.objectives, i));
+      }
+      rows.add(names[i] + " mean", at(record.mean, i));
+      rows.add(names[i] + " worst", at(record.worst, i));
+    }
+    rows.add("Inverted", static_cast<double>(record.inverted));
+    rows.add("N gradient", record.gradientNorm);
+    rows.add("N moving", static_cast<double>(record.moving));
+    rows.add("Time (s)", record.seconds);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string summarize(
+  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block)
+{
+  std::ostringstream text;
+  text << (block.empty() ? "" : "In " + block + ": ") << describe(result.reason) << "\n";
+  text << result.iterations << " iterations";
+  if (!result.history.empty())
+  {
+    const IterationRecord &first = result.history.front(), &last = result.history.back();
+    text << ", " << last.seconds << " s. Objective: " << first.objective << " to "
+         << last.objective;
+  }
+  text << ".\n"
+       << result.freeVertices << " of " << mesh.mesh().view().numberOfPoints
+       << " points were free to move.\nInverted elements: " << result.invertedBefore << " before, "
+       << result.invertedAfter << " after, of " << mesh.mesh().view().numberOfCells
+       << (result.untangled ? "; it was untangled first." : ".");
+  text << surfaceErrorSentence(result.surfaceError);
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::string surfaceErrorSentence(double surfaceError)
+{
+  std::ostringstream text;
+  if (surfaceError > 0)
+  {
+    text << "\nLargest distance of the elements from the input surface: " << surfaceError << ".";
+  }
+  return text.str();
+}
+}

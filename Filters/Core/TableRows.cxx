@@ -1,0 +1,68 @@
+#include "TableRows.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkNew.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+//------------------------------------------------------------------------------
+void TableRows::begin(const std::string& block)
+{
+  this->Next = 0;
+  if (!block.empty())
+  {
+    this->addText("Block", block);
+  }
+}
+
+//------------------------------------------------------------------------------
+TableRows::Column& TableRows::next(const std::string& name)
+{
+  if (this->Next == this->Columns.size())
+  {
+    this->Columns.push_back({ name, {}, {} });
+  }
+  return this->Columns[this->Next++];
+}
+
+//------------------------------------------------------------------------------
+void TableRows::add(const std::string& column, double value)
+{
+  this->next(column).values.push_back(value);
+}
+
+//------------------------------------------------------------------------------
+void TableRows::addText(const std::string& column, const std::string& value)
+{
+  this->next(column).texts.push_back(value);
+}
+
+//------------------------------------------------------------------------------
+void TableRows::fill(vtkTable* table) const
+{
+  table->Initialize();
+  for (const Column& column : this->Columns)
+  {
+    if (column.texts.empty())
+    {
+      vtkNew<vtkDoubleArray> array;
+      array->SetName(column.name.c_str());
+      array->SetNumberOfValues(static_cast<vtkIdType>(column.values.size()));
+      std::copy(column.values.begin(), column.values.end(), array->GetPointer(0));
+      table->AddColumn(array);
+      continue;
+    }
+    vtkNew<vtkStringArray> array;
+    array->SetName(column.name.c_str());
+    for (const std::string& text : column.texts)
+    {
+      array->InsertNextValue(text);
+    }
+    table->AddColumn(array);
+  }
+}
+}

@@ -1,0 +1,77 @@
+/**
+ * @class vtkMeshMotionAlgorithm
+ * @brief Base class of the filters that move the points of a mesh: fixed points, blocks, history.
+ *
+ * Abstract. Such a filter keeps the connectivity. Its input on port 0 is a data set with explicit
+ * points, or blocks of these, which are treated one after the other, each with its own boundary. A
+ * mesh that is reversed throughout is treated as its mirror image; mixed orientation, image data
+ * (implicit points) and cells of higher order are refused.
+ *
+ * @par Fixed points:
+ * A point does not move where a point array (SetInputArrayToProcess(); the index is in the
+ * documentation of the filter) is not 0, and where a vtkSelection contains it or a cell of it. The
+ * points of ghost cells never move, so that the parts of a distributed mesh still fit together.
+ *
+ * @par Outputs:
+ * Port 0 has the new points, in the precision of the input unless a valid element would become
+ * invalid by rounding, and the point array `Displacement` (3 components, new minus old position, in
+ * the unit of the coordinates). Port 1 is the table `History`, a row per iteration or stage.
+ *
+ * @sa vtkMeshOptimizer, vtkMeshUntangler, vtkMeshWarp, vtkTautlineAlgorithm
+ */
+
+#ifndef vtkMeshMotionAlgorithm_h
+#define vtkMeshMotionAlgorithm_h
+
+#include "TautlineCoreModule.h" // for export macro
+#include "vtkTautlineTimedAlgorithm.h"
+
+class vtkDataObject;
+
+namespace tautline
+{
+struct InputBlock;
+}
+
+class TAUTLINECORE_EXPORT vtkMeshMotionAlgorithm : public vtkTautlineTimedAlgorithm
+{
+public:
+  vtkTypeMacro(vtkMeshMotionAlgorithm, vtkTautlineTimedAlgorithm);
+
+  /// The table of output port 1.
+  vtkTable* GetHistory() { return this->GetOutputTable(HistoryPort); }
+
+protected:
+  vtkMeshMotionAlgorithm();
+  ~vtkMeshMotionAlgorithm() override;
+
+  enum Ports
+  {
+    MeshPort = 0,
+    HistoryPort = 1 // output
+  };
+
+  /**
+   * Calls visit for each data set of the input, with its counterparts and its output, which has the
+   * arrays of the input. Data sets without points or cells are passed on without a call.
+   * @param reference a data object of the same structure, or null
+   * @param fixedPort the input port with the selection of fixed points
+   */
+  void ForEachBlock(vtkInformationVector** inputVector, vtkInformationVector* outputVector,
+    vtkDataObject* reference, int fixedPort,
+    const std::function<void(const tautline::InputBlock&)>& visit);
+
+  /// The number of data sets of the input, at least 1; known within ForEachBlock().
+  int GetNumberOfBlocks() const { return this->NumberOfBlocks; }
+
+  /// Reports the progress on a block, 0 to 1. @return false if the execution is to be aborted
+  bool ProceedInBlock(int block, double fraction);
+
+private:
+  vtkMeshMotionAlgorithm(const vtkMeshMotionAlgorithm&) = delete;
+  void operator=(const vtkMeshMotionAlgorithm&) = delete;
+
+  int NumberOfBlocks = 1;
+};
+
+#endif

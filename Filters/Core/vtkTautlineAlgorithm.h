@@ -1,0 +1,116 @@
+/**
+ * @class vtkTautlineAlgorithm
+ * @brief Base class of Tautline's filters: ports, threads, the summary, errors and progress.
+ *
+ * Abstract. It holds once what every filter does in the same way, so that a filter consists of its
+ * own properties and of a RequestData() that checks the input, passes a view of it to the kernel
+ * and attaches the result.
+ *
+ * @par Ports:
+ * Input port 0 takes a data set or a composite data set (the composite type stands first, so that a
+ * filter sees all blocks and its tables are those of the whole). The other input ports are optional
+ * and take the same types; those declared as selections take a vtkSelection. Output port 0 has the
+ * type of the input on port 0, the others are tables. A derived class declares its ports by
+ * DeclarePorts() in its constructor and overrides FillInputPortInformation() or
+ * FillOutputPortInformation() where it differs: RequestDataObject() makes what these announce.
+ *
+ * @par Errors:
+ * RequestData() does its work in Attempt(). An exception (tautline::Error, or any other) becomes an
+ * error event with its message, and all outputs are empty, so that no half result is taken for a
+ * whole one. A result that is incomplete but of use is a warning with the summary.
+ *
+ * @par Derived classes:
+ * vtkTautlineTimedAlgorithm adds a time limit, vtkMeshMotionAlgorithm the fixed points and the
+ * iteration history of filters that move points. Filters of Tautline that make or take one type of
+ * data set only (sources, meshers) derive from VTK's classes for that type.
+ *
+ * @sa vtkTautlineTimedAlgorithm, vtkMeshMotionAlgorithm
+ */
+
+#ifndef vtkTautlineAlgorithm_h
+#define vtkTautlineAlgorithm_h
+
+#include "TautlineCoreModule.h" // for export macro
+#include "vtkDataObjectAlgorithm.h"
+
+#include <functional>       // for work
+#include <initializer_list> // for ports
+#include <string>           // for Summary
+#include <vector>           // for SelectionPorts
+
+class vtkTable;
+
+class TAUTLINECORE_EXPORT vtkTautlineAlgorithm : public vtkDataObjectAlgorithm
+{
+public:
+  vtkTypeMacro(vtkTautlineAlgorithm, vtkDataObjectAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Number of threads, 0 to 1024; 0, the default, is one per core. The result does not depend on
+   * it.
+   */
+  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkGetMacro(Threads, int);
+  ///@}
+
+  /**
+   * The result of the last execution in sentences, a paragraph per block of a composite data set;
+   * "" before the first execution and after a failed one.
+   */
+  const char* GetSummary() const { return this->Summary.c_str(); }
+
+protected:
+  vtkTautlineAlgorithm();
+  ~vtkTautlineAlgorithm() override;
+
+  /**
+   * Sets the numbers of ports.
+   * @param inputs number of input ports; port 0 is the mesh, the others are optional
+   * @param outputs number of output ports; port 0 is the mesh, the others are tables
+   * @param selections the input ports that take a vtkSelection
+   */
+  void DeclarePorts(int inputs, int outputs, std::initializer_list<int> selections = {});
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+  /// The table on an output port.
+  vtkTable* GetOutputTable(int port);
+
+  /**
+   * Does the work of RequestData(). If it throws, reports the message as an error and empties the
+   * summary and all outputs.
+   * @param memoryRemedy what the user can do where memory does not suffice: "choose fewer metrics"
+   * @return 1, or 0 after an error: the result of RequestData()
+   */
+  int Attempt(vtkInformationVector* outputVector, const char* memoryRemedy,
+    const std::function<void()>& work);
+
+  /// Does some work. @return the message of what it threw, or "": for work that other processes
+  /// take part in, where an error is reported after all of them have finished.
+  static std::string FailureOf(const char* memoryRemedy, const std::function<void()>& work);
+
+  /// Reports a failure as Attempt() does. @return 0
+  int Fail(vtkInformationVector* outputVector, const std::string& message);
+
+  /// Reports progress, 0 to 1. @return false if the execution is to be aborted
+  bool Proceed(double fraction);
+
+  /// Adds a paragraph to the summary, unless it is empty.
+  void AddToSummary(const std::string& paragraph);
+
+  int Threads = 0;
+  std::string Summary;
+
+private:
+  vtkTautlineAlgorithm(const vtkTautlineAlgorithm&) = delete;
+  void operator=(const vtkTautlineAlgorithm&) = delete;
+
+  std::vector<int> SelectionPorts;
+};
+
+#endif

@@ -1,0 +1,54 @@
+/**
+ * @class vtkMetricAlgorithm
+ * @brief Base class of the filters that evaluate quality metrics: the list of metrics.
+ *
+ * Abstract. A metric is given by its number (enum Metric of tautline/Quality/Metrics.h) or by its
+ * name, label, symbol or alias; vtkElementQuality::GetKnownMetric() lists them. A metric that is
+ * added again stays once, in its first place. If none is added, the inverse mean ratio is evaluated.
+ *
+ * @sa vtkElementQuality, vtkMeshComparison, vtkMetricField, vtkTautlineAlgorithm
+ */
+
+#ifndef vtkMetricAlgorithm_h
+#define vtkMetricAlgorithm_h
+
+#include "TautlineQualityModule.h" // for export macro
+#include "vtkTautlineAlgorithm.h"
+
+#include <memory> // for Selection
+
+namespace tautline
+{
+class MetricSelection;
+}
+
+class TAUTLINEQUALITY_EXPORT vtkMetricAlgorithm : public vtkTautlineAlgorithm
+{
+public:
+  vtkTypeMacro(vtkMetricAlgorithm, vtkTautlineAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Adds a metric. An unknown one is an error and changes nothing.
+  void AddMetric(int metric);
+  void AddMetricByName(const char* name);
+  ///@}
+  /// Removes all metrics.
+  void ClearMetrics();
+  /// The number of metrics added.
+  int GetNumberOfMetrics() const;
+
+protected:
+  vtkMetricAlgorithm();
+  ~vtkMetricAlgorithm() override;
+
+  const tautline::MetricSelection& GetSelection() const { return *this->Selection; }
+
+private:
+  vtkMetricAlgorithm(const vtkMetricAlgorithm&) = delete;
+  void operator=(const vtkMetricAlgorithm&) = delete;
+
+  std::unique_ptr<tautline::MetricSelection> Selection;
+};
+
+#endif
