@@ -19,7 +19,7 @@
 #include <cmath>
 #include <functional>
 
-#if VTK_MODULE_ENABLE_Tautline_Meshing
+#if TAUTLINE_HAS_MESH_GENERATORS
 #include "PlanarMesher.h"
 #include "SolidMesher.h"
 #endif
@@ -44,7 +44,7 @@ struct Made
   Index count() const { return static_cast<Index>(this->cells.size()) / (this->dimension + 1); }
 };
 
-#if VTK_MODULE_ENABLE_Tautline_Meshing
+#if TAUTLINE_HAS_MESH_GENERATORS
 Made makeWithSpacing(
   const DomainInfo& info, double spacing, const std::function<bool(Index)>& progress)
 {
@@ -117,8 +117,7 @@ Made makeUnstructured(
 Made makeUnstructured(const DomainInfo& info, Index, const std::function<bool(Index)>&)
 {
   throw Error(std::string("the domain '") + info.name +
-    "' needs a mesher, and this Tautline was built without the module Meshing "
-    "(TAUTLINE_MESHING=OFF); "
+    "' needs a mesh generator, and this Tautline was built without them (TAUTLINE_MESHING=OFF); "
     "the structured domains rectangle and square do not");
 }
 #endif
@@ -184,7 +183,7 @@ const char* vtkDomainSource::GetDomainName(int domain)
 //------------------------------------------------------------------------------
 bool vtkDomainSource::HasMeshing()
 {
-  return VTK_MODULE_ENABLE_Tautline_Meshing != 0;
+  return TAUTLINE_HAS_MESH_GENERATORS != 0;
 }
 
 //------------------------------------------------------------------------------

@@ -10,7 +10,7 @@
 #ifndef tautline_PlanarMesher_h
 #define tautline_PlanarMesher_h
 
-#include "TautlineMeshingModule.h" // for export macro
+#include "MeshGeneratorsExport.h"
 
 #include "tautline/Domains/Domains.h"
 
@@ -18,7 +18,7 @@
 
 namespace tautline
 {
-/// What the triangles have to be like.
+/// Requirements on the triangles.
 struct PlanarOptions
 {
   /// Degrees; up to 20.7 the refinement ends for certain (inputs with sharp corners apart), beyond
@@ -48,7 +48,7 @@ struct PlanarMesh
 };
 
 /// Throws Error: crossing segments are named, as are points that are not finite.
-TAUTLINEMESHING_EXPORT PlanarMesh meshPlane(
+TAUTLINE_MESH_GENERATORS_EXPORT PlanarMesh meshPlane(
   const PlanarBoundary& boundary, const PlanarOptions& options);
 }
 #endif

@@ -10,7 +10,7 @@
 #ifndef tautline_SolidMesher_h
 #define tautline_SolidMesher_h
 
-#include "TautlineMeshingModule.h" // for export macro
+#include "MeshGeneratorsExport.h"
 
 #include "tautline/Domains/Domains.h"
 
@@ -18,22 +18,22 @@
 
 namespace tautline
 {
-/// What the tetrahedra have to be like.
+/// Requirements on the tetrahedra.
 struct SolidOptions
 {
-  /// Largest ratio of circumradius and shortest edge; 0 for no bound. TetGen wants more than 1.
+  /// Largest ratio of circumradius and shortest edge; 0 for no bound. above 1.
   double radiusEdgeRatio = 1.4;
   /// Smallest dihedral angle aimed at, degrees.
   double minimumDihedralAngle = 10.0;
   /// Largest volume; 0 for no bound.
   double volume = 0.0;
-  /// Wanted edge length at each point of the boundary; empty for none.
+  /// Target edge length at each point of the boundary; empty for none.
   std::vector<double> pointSizes;
   /// The facets of the boundary are kept as they are: no point is added to them.
   bool preserveSurface = false;
   /// Regions: x y z, reference, largest volume (negative for none) each.
   std::vector<double> regions;
-  /// Seconds TetGen may take; 0 for as long as it likes (some inputs make it loop).
+  /// Seconds TetGen may take; 0: no limit (on some inputs it does not terminate).
   double timeLimit = 0.0;
   /// Called some times a second; returning false stops with an Error.
   std::function<bool()> progress;
@@ -49,7 +49,7 @@ struct SolidMesh
   std::vector<int> faceMarkers;
 };
 
-TAUTLINEMESHING_EXPORT SolidMesh meshSolid(
+TAUTLINE_MESH_GENERATORS_EXPORT SolidMesh meshSolid(
   const SolidBoundary& boundary, const SolidOptions& options);
 }
 #endif
