@@ -157,6 +157,7 @@ vtkSmartPointer<vtkMeshOptimizer> optimizerTo(vtkDataSet* mesh, double reduction
   filter->SetMaximumIterations(endless);
   filter->SetReduction(reduction);
   filter->SetBestKnown(best);
+  filter->UseBestKnownOn();
   filter->SetRelativeChange(0);
   filter->SetGradientNorm(0);
   return filter;

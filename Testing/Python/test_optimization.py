@@ -61,6 +61,16 @@ def test_objectives():
     assert kept.statistics["imr"]["mean_after"] < 1.001
 
 
+def test_best_known():
+    """None is an unknown optimum; 0, that of untangling, is a known one, which IMR cannot come close to."""
+    estimated = tl.optimize(BRACKET, ["imr"], reduction=0.5)
+    assert "reduction" in estimated.reason
+    assert tl.optimize(BRACKET, ["imr"], reduction=0.5, best_known=None).iterations == estimated.iterations
+    known = tl.optimize(BRACKET, ["imr"], reduction=0.5, best_known=0)
+    assert "Converged" in known.reason and known.iterations > estimated.iterations
+    refused("best_known", tl.optimize, BRACKET, ["imr"], best_known="0")
+
+
 def test_points_that_stay():
     mesh = tl.read(PLATE)
     fixed = np.zeros(mesh.GetNumberOfPoints())

@@ -94,6 +94,16 @@ assert (untangled.InvertedBefore, untangled.InvertedAfter) == (41, 0)
 table = servermanager.Fetch(untangled, idx=1)
 assert table.GetValueByName(table.GetNumberOfRows() - 1, "Inverted").ToDouble() == 0
 
+# a known optimum of 0, which the objective cannot come close to, is not an unknown one
+reasons = []
+for use in (0, 1):
+    known = OptimizeMesh(Input=worse, Preset="Custom", Reduction=0.5, UseBestKnown=use, BestKnown=0)  # noqa: F821
+    known.UpdatePipeline()
+    known.UpdatePropertyInformation()
+    reasons.append(known.Reason)
+assert "reduction" in reasons[0] and "Converged" in reasons[1], reasons
+simple.RenameSource("Known", known)
+
 display = simple.Show(all_free, simple.CreateView("RenderView"))
 assert list(display.ColorArrayName) == ["CELLS", "imr"], display.ColorArrayName[:]
 chart = simple.CreateView("XYChartView")
@@ -113,4 +123,5 @@ assert (again.Preset, again.NumberOfObjectives, again.Metric1, again.Target2) ==
 )
 again.UpdatePipeline()
 assert again.CellData["rr"].GetRange() == expected
+assert (simple.FindSource("Known").UseBestKnown, simple.FindSource("Known").BestKnown) == (1, 0)
 assert simple.FindSource("Moving").Animation == 1 and simple.FindSource("Untangled").Effort == "Thorough"

@@ -156,10 +156,10 @@ def optimize(
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
     options: properties of vtkMeshOptimizer. Stopping: maximum_iterations (100), gradient_norm (1e-6), relative_change
-        (1e-5), two_digits (False), reduction (1: off), best_known, stop_when_valid (False). Scalarization: c (0:
-        automatic), exponent (1), tolerance (0.01), utopia (one number per objective). Metrics: power (8), combination
-        ("mean", "worst", "power mean"), beta (0). Methods: culling (1e-3), patch_iterations (1), relaxation (1.4),
-        improve_worst (0), rescale_untangling (True).
+        (1e-5), two_digits (False), reduction (1: off), best_known (None: estimated), stop_when_valid (False).
+        Scalarization: c (0: automatic), exponent (1), tolerance (0.01), utopia (one number per objective). Metrics:
+        power (8), combination ("mean", "worst", "power mean"), beta (0). Methods: culling (1e-3), patch_iterations
+        (1), relaxation (1.4), improve_worst (0), rescale_untangling (True).
 
     Raises Error for wrong arguments and for meshes that the filter refuses.
 
@@ -257,6 +257,12 @@ def _add_objective(filter_: Any, objective: Any, targets: list[str]) -> None:
     filter_.AddObjectiveByName(name, template, weight, pick("target", target, TARGETS))
 
 
+def _best_known(filter_: Any, value: float | None) -> None:
+    filter_.SetUseBestKnown(value is not None)
+    if value is not None:
+        filter_.SetBestKnown(within("best_known", value, -np.inf, np.inf))
+
+
 def _utopia(filter_: Any, values: Any) -> None:
     for value in np.atleast_1d(values):
         filter_.AddUtopia(within("utopia", float(value), -np.inf, np.inf))
@@ -268,7 +274,7 @@ _OPTIONS = {
     "relative_change": number_option("SetRelativeChange", 0, 1),
     "two_digits": flag_option("SetTwoDigits"),
     "reduction": number_option("SetReduction", 0, 1),
-    "best_known": number_option("SetBestKnown", -np.inf, np.inf),
+    "best_known": _best_known,
     "stop_when_valid": flag_option("SetStopWhenValid"),
     "c": number_option("SetC", 0, np.inf),
     "exponent": number_option("SetExponent", np.nextafter(0, 1), np.inf),

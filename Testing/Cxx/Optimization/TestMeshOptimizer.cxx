@@ -236,6 +236,20 @@ void testOptions()
   more("change", [](auto* f, auto& o) { f->SetRelativeChange(o.stopping.relativeChange = 0.05); });
   more("digits", [](auto* f, auto& o) { f->SetTwoDigits(o.stopping.twoDigits = true); });
   more("reduction", [](auto* f, auto& o) { f->SetReduction(o.stopping.reduction = 0.5); });
+  // 0 is a best known value like any other, and counts if it is said to be known only.
+  more("best known 0",
+    [](auto* f, auto& o)
+    {
+      f->SetReduction(o.stopping.reduction = 0.5);
+      f->SetBestKnown(o.stopping.bestKnown = 0);
+      f->UseBestKnownOn();
+    });
+  more("best unknown",
+    [](auto* f, auto& o)
+    {
+      f->SetReduction(o.stopping.reduction = 0.5);
+      f->SetBestKnown(1e9);
+    });
   more("valid", [](auto* f, auto& o) { f->SetStopWhenValid(o.stopping.allValid = true); });
   more("iterations",
     [](auto* f, auto& o) { f->SetMaximumIterations(o.stopping.maximumIterations = 2); });

@@ -210,6 +210,7 @@ def _configured(
     filter_.SetReduction(reduction)
     if best_known is not None:
         filter_.SetBestKnown(best_known)
+        filter_.UseBestKnownOn()
     filter_.SetCulling(0.0)
     filter_.SetTimeLimit(0.0)
     filter_.SetThreads(threads)
