@@ -69,13 +69,14 @@ Entities findEntities(const MeshFile& mesh)
   for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
   {
     const Index reference = wholeValue(references, cell, 0);
-    const Index wanted = std::max<Index>(1, wholeValue(tags, cell, std::max<Index>(1, reference)));
+    const Index preferred =
+      std::max<Index>(1, wholeValue(tags, cell, std::max<Index>(1, reference)));
     const int dimension = cellDimension(mesh.cellTypes[cell]);
     const auto [entry, added] =
-      known.insert({ { dimension, wanted, reference }, entities.list.size() });
+      known.insert({ { dimension, preferred, reference }, entities.list.size() });
     if (added)
     {
-      Index tag = wanted;
+      Index tag = preferred;
       while (!taken.insert({ dimension, tag }).second)
       {
         tag = tag < LargestTag ? tag + 1 : 1;

@@ -3,7 +3,7 @@
  * @brief What a mesh file holds, in plain C++ arrays, between a format's parser and VTK.
  *
  * The parsers and formatters of this directory (TetGenFile, MeditFile, GmshFile, OffFile) fill and
- * print a MeshFile and know nothing of VTK; MeshFileAdapter turns it into data sets and back.
+ * print a MeshFile and do not use VTK; MeshFileAdapter turns it into data sets and back.
  *
  * Names every format shares, so that a filter finds them wherever a mesh came from:
  *

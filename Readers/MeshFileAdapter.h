@@ -18,7 +18,7 @@ namespace tautline
 /// become the grid's without being copied.
 TAUTLINEREADERS_EXPORT void toGrid(MeshFile mesh, vtkUnstructuredGrid* grid);
 
-/// Fills an empty surface; cells are sorted as VTK wants them: vertices, lines, polygons.
+/// Fills an empty surface; cells are in the order VTK requires: vertices, lines, polygons.
 TAUTLINEREADERS_EXPORT void toSurface(MeshFile mesh, vtkPolyData* surface);
 
 /**

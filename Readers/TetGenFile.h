@@ -2,8 +2,8 @@
  * @file TetGenFile.h
  * @brief The file sets of TetGen and Triangle: .node .ele .face .edge, .poly and .smesh.
  *
- * 2D files (Triangle) and 3D files (TetGen) have the same names; the header of the vertices tells
- * them apart. Vertices are numbered from 0 or 1. The array names are listed in MeshFile.h.
+ * 2D files (Triangle) and 3D files (TetGen) have the same names; the header of the vertices
+ * distinguishes them. Vertices are numbered from 0 or 1. The array names are listed in MeshFile.h.
  */
 #ifndef tautline_TetGenFile_h
 #define tautline_TetGenFile_h

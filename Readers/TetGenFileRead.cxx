@@ -15,7 +15,7 @@ constexpr char Comment = '#';
 constexpr Index Largest = std::numeric_limits<int>::max();
 constexpr Index Smallest = std::numeric_limits<int>::min();
 
-/// What the header of the vertices says.
+/// The header of the vertices.
 struct NodeHeader
 {
   Index count = 0;
@@ -376,7 +376,7 @@ MeshFile readTetGen(const std::string& name, bool lowerCells)
 
 namespace
 {
-/// Corners of a polygon, which may go on in the next lines.
+/// Corners of a polygon, which may continue on the next lines.
 void readPolygon(TextCursor& cursor, const NodeList& nodes, Index corners, MeshFile& mesh)
 {
   cursor.expectRoom(corners, 2, "number of corners");

@@ -208,8 +208,8 @@ void TextCursor::expectFileEnd(const char* what)
 {
   if (this->skipToToken())
   {
-    this->fail(std::string("the file goes on after the last ") + what + " its header announces: '" +
-      excerpt(this->At, this->End) + "'");
+    this->fail(std::string("the file continues after the last ") + what +
+      " its header announces: '" + excerpt(this->At, this->End) + "'");
   }
 }
 

@@ -24,7 +24,7 @@ namespace tautline
 class FileContent
 {
 public:
-  /// Throws FileError when the file cannot be read; `why` says who needs it ("the companion of
+  /// Throws FileError when the file cannot be read; `why` is the purpose ("the companion of
   /// ...").
   explicit FileContent(const std::string& name, const std::string& why = std::string());
   /// The bytes of a string, for tests.

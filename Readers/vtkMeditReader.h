@@ -4,8 +4,8 @@
  *
  * A .mesh brings its .sol companion, a .sol its .mesh. Point arrays: `Reference`, `Fixed` (required
  * vertices and corners), `Corner`, fields of the .sol. Cell arrays: `Reference`, `Ridge`,
- * `Required`. Tensors of a .sol become 3 x 3 matrices, row by row, as the metric-tensor targets
- * want them.
+ * `Required`. Tensors of a .sol become 3 x 3 matrices, row by row, the format of the metric-tensor
+ * targets.
  *
  * Limits: .meshb (binary) and curved (P2) cells are not read; normals and tangents are skipped.
  *

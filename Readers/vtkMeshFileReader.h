@@ -1,6 +1,6 @@
 /**
  * @class vtkMeshFileReader
- * @brief What Tautline's mesh readers share: a file name, lower-dimensional cells, errors.
+ * @brief Base class of Tautline's mesh readers: the file name, lower-dimensional cells, errors.
  *
  * A subclass names a format. The whole file is read at once and checked; what is wrong with it is
  * reported as "file:line: problem" and leaves an empty output. Coordinates are double precision.
@@ -55,7 +55,7 @@ public:
   const char* GetErrorText() const { return this->ErrorText.c_str(); }
 
   /**
-   * Whether the name's ending and the first bytes look like a file of this format.
+   * Whether the extension and the first bytes are those of a file of this format.
    */
   virtual int CanReadFile(const char* name) = 0;
 

@@ -62,9 +62,9 @@ std::vector<std::string> split(const std::string& line)
 }
 
 std::size_t columnOf(
-  const std::vector<std::string>& names, std::initializer_list<const char*> wanted)
+  const std::vector<std::string>& names, std::initializer_list<const char*> candidates)
 {
-  for (const char* name : wanted)
+  for (const char* name : candidates)
   {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end())

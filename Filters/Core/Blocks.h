@@ -1,7 +1,7 @@
 /**
  * @file Blocks.h
- * @brief The data sets of a data object with their counterparts in other inputs, what is selected of
- * them, and the arrays chosen by a filter.
+ * @brief The data sets of a data object with their counterparts in other inputs, what is selected
+ * of them, and the arrays chosen by a filter.
  */
 #ifndef tautline_Blocks_h
 #define tautline_Blocks_h

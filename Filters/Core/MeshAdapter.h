@@ -37,7 +37,7 @@ public:
   const Mesh& mesh() const { return *this->TheMesh; }
 
   /**
-   * @brief What the user should know of how the mesh is taken, as sentences, or an empty string:
+   * @brief Remarks for the user on how the mesh is interpreted, as sentences, or "":
    * higher-order cells measured on their corners, cells left out (by type and number), points with
    * NaN coordinates.
    */

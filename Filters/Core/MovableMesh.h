@@ -38,7 +38,7 @@ public:
   const Mesh& mesh() const { return this->Adapter.mesh(); }
   /// One per cell of the input.
   const std::vector<signed char>& validity() const { return this->Validity; }
-  /// What the user should know of how the mesh is taken, or "".
+  /// Remarks for the user on how the mesh is interpreted, as sentences, or "".
   const std::string& notice() const { return this->Notice; }
   /// Cells to leave out of statistics; null if there are none.
   const unsigned char* skipped() const;

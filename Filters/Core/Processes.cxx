@@ -125,7 +125,7 @@ void Processes::together(const std::function<void()>& work) const
   {
     message = error.what();
   }
-  // The first process that knows what is wrong tells all others.
+  // The first process with a specific message sends it to all others.
   const bool vague = message.rfind(Vague, 0) == 0;
   const Index priority = !failed ? 0 : vague ? 1 : 1 + this->Count - this->Rank;
   const Index highest = this->maximum(priority);
@@ -135,13 +135,13 @@ void Processes::together(const std::function<void()>& work) const
   }
   if (this->Count > 1)
   {
-    const auto teller = static_cast<int>(highest > 1 ? 1 + this->Count - highest : 0);
+    const auto sender = static_cast<int>(highest > 1 ? 1 + this->Count - highest : 0);
     auto length = static_cast<vtkIdType>(message.size());
-    this->Controller->Broadcast(&length, 1, teller);
+    this->Controller->Broadcast(&length, 1, sender);
     message.resize(static_cast<std::size_t>(length));
-    this->Controller->Broadcast(&message[0], length, teller);
+    this->Controller->Broadcast(&message[0], length, sender);
     const bool everywhere = this->sum(static_cast<Index>(failed && !vague)) == this->Count;
-    message = (everywhere ? "" : "In process " + std::to_string(teller) + ": ") + message;
+    message = (everywhere ? "" : "In process " + std::to_string(sender) + ": ") + message;
   }
   throw Error(message);
 }
@@ -149,12 +149,12 @@ void Processes::together(const std::function<void()>& work) const
 //------------------------------------------------------------------------------
 int minimumOverProcesses(int own)
 {
-  int least = own;
+  int minimum = own;
   if (vtkMultiProcessController* controller = manyProcesses())
   {
-    controller->AllReduce(&own, &least, 1, vtkCommunicator::MIN_OP);
+    controller->AllReduce(&own, &minimum, 1, vtkCommunicator::MIN_OP);
   }
-  return least;
+  return minimum;
 }
 
 //------------------------------------------------------------------------------
@@ -181,10 +181,10 @@ void requireOneProcess(vtkDataObject* input)
   {
     controller->AllReduce(here.data(), processes.data(), size, vtkCommunicator::SUM_OP);
   }
-  const int most = size > 0 ? *std::max_element(processes.begin(), processes.end()) : 0;
-  if (most > 1)
+  const int maximum = size > 0 ? *std::max_element(processes.begin(), processes.end()) : 0;
+  if (maximum > 1)
   {
-    throw Error("The mesh is spread over " + std::to_string(most) +
+    throw Error("The mesh is spread over " + std::to_string(maximum) +
       " processes, and the boundary of a part is not that of the mesh: gather it on one process "
       "first, "
       "in ParaView by Aggregate Dataset.");

@@ -44,8 +44,8 @@ public:
 
   /**
    * @brief Does work that does not communicate, or that throws on all processes if on any. What it
-   * throws on any process is thrown on all, as Error, so that none waits for another that has given
-   * up.
+   * throws on any process is thrown on all, as Error, so that none waits for another that has
+   * failed.
    */
   void together(const std::function<void()>& work) const;
 
@@ -55,7 +55,7 @@ private:
   Communicator Comm = nullptr;
 };
 
-/// The least of the numbers of all processes. Collective; MPI is not needed.
+/// The minimum over all processes. Collective; MPI is not needed.
 TAUTLINECORE_EXPORT int minimumOverProcesses(int own);
 
 /// Throws Error, on all processes, if a data set has cells on several of them. Collective; MPI is

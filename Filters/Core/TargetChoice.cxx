@@ -26,12 +26,12 @@ std::vector<double> perCell(
       ": choose a point or cell array of the mesh for it.");
   }
   const bool onPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  const vtkIdType wanted = onPoints ? view.numberOfPoints : view.numberOfCells;
-  if (array->GetNumberOfTuples() != wanted)
+  const vtkIdType expected = onPoints ? view.numberOfPoints : view.numberOfCells;
+  if (array->GetNumberOfTuples() != expected)
   {
     throw Error(std::string("The array '") + (array->GetName() ? array->GetName() : "") + "' has " +
       std::to_string(array->GetNumberOfTuples()) + " tuples, the mesh has " +
-      std::to_string(wanted) + (onPoints ? " points." : " cells."));
+      std::to_string(expected) + (onPoints ? " points." : " cells."));
   }
   const int components = array->GetNumberOfComponents();
   std::vector<double> result(components * view.numberOfCells, 0.0);
@@ -107,7 +107,7 @@ Targets makeTargets(const Mesh& mesh, const TargetChoice& choice, int threads)
       const auto sizes = perCell(choice.size.array, choice.size.association, mesh.view(), "a size");
       if (choice.size.array->GetNumberOfComponents() != 1)
       {
-        throw Error("A size array has one component: the area or volume wanted.");
+        throw Error("A size array has one component: the target area or volume.");
       }
       return sizeTargets(mesh, sizes.data());
     }

@@ -21,7 +21,7 @@ struct ChosenArray
   int association = 0;
 };
 
-/// What the wanted element is, and where that is told; only what the type needs is looked at.
+/// The target element and the data that define it; only those of the type are used.
 struct TargetChoice
 {
   TargetType type = TargetType::Ideal;

@@ -17,7 +17,7 @@
  * @par Errors:
  * RequestData() does its work in Attempt(). An exception (tautline::Error, or any other) becomes an
  * error event with its message, and all outputs are empty, so that no half result is taken for a
- * whole one. A result that is incomplete but of use is a warning with the summary.
+ * whole one. An incomplete but useful result is a warning with the summary.
  *
  * @par Derived classes:
  * vtkTautlineTimedAlgorithm adds a time limit, vtkMeshMotionAlgorithm the fixed points and the

@@ -2,9 +2,8 @@
  * @class vtkTautlineTimedAlgorithm
  * @brief Base class of Tautline's filters whose work can be ended by a time limit.
  *
- * Abstract. After the time limit a filter returns the best result it has by then and reports this in
- * its summary, unless its documentation says that it ends with an error. The time is that of the
- * wall clock.
+ * Abstract. After the time limit a filter returns the best result it has by then and reports this
+ * in its summary, unless it is documented to end with an error. The time is wall time.
  *
  * @sa vtkTautlineAlgorithm
  */
@@ -24,7 +23,7 @@ public:
   ///@{
   /**
    * Seconds for each data set and time step, at least 0; 0 is no limit. The default is 600, unless
-   * the documentation of a filter says otherwise.
+   * a filter documents another one.
    */
   vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);

@@ -169,7 +169,8 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
     {
       if (!choice.array)
       {
-        throw Error("No array is chosen that tells what moves: choose one, or another Moved Part.");
+        throw Error(
+          "No array is chosen for the part that moves: choose one, or another Moved Part.");
       }
       const std::set<double> values(choice.values.begin(), choice.values.end());
       markWhere(mesh, choice.array, choice.ofCells, flags,

@@ -103,34 +103,34 @@ public:
   /// correspondence.
   std::vector<Index> match(std::string& how)
   {
-    const Correspondence wanted = this->Request.correspondence;
-    if (wanted == Correspondence::PointIds ||
-      (wanted == Correspondence::Automatic && this->Request.ids))
+    const Correspondence requested = this->Request.correspondence;
+    if (requested == Correspondence::PointIds ||
+      (requested == Correspondence::Automatic && this->Request.ids))
     {
       how = "by point ids";
       return this->byIds();
     }
     const Index points = this->Request.target->GetNumberOfPoints();
-    if (wanted == Correspondence::SameMesh && points != this->View.numberOfPoints)
+    if (requested == Correspondence::SameMesh && points != this->View.numberOfPoints)
     {
       throw Error("The target has " + text(points) + " points and the mesh has " +
         text(this->View.numberOfPoints) +
         ": it is not the same mesh. Choose another Correspondence.");
     }
-    if (wanted != Correspondence::SameBoundary && points == this->View.numberOfPoints)
+    if (requested != Correspondence::SameBoundary && points == this->View.numberOfPoints)
     {
       std::vector<Index> ids(points);
       for (Index i = 0; i < points; ++i)
       {
         ids[i] = i;
       }
-      if (wanted == Correspondence::SameMesh || this->fits(ids))
+      if (requested == Correspondence::SameMesh || this->fits(ids))
       {
         how = "as the same mesh, point by point";
         return ids;
       }
     }
-    if (wanted == Correspondence::SameBoundary || wanted == Correspondence::Automatic)
+    if (requested == Correspondence::SameBoundary || requested == Correspondence::Automatic)
     {
       std::vector<Index> ids = this->bySurface();
       how = "as the boundary extracted from the mesh";
@@ -139,7 +139,7 @@ public:
         ids = this->byOrder();
         how = "by the order of the points that move";
       }
-      if (wanted == Correspondence::SameBoundary && ids.empty())
+      if (requested == Correspondence::SameBoundary && ids.empty())
       {
         throw Error("The target has " + text(points) + " points, of the mesh " +
           text(count(*this->Request.projected)) +
@@ -303,13 +303,13 @@ private:
 /// as the mesh.
 vtkSmartPointer<vtkDataSet> surfaceOf(vtkDataSet* target, bool ofVolume)
 {
-  const int wanted = ofVolume ? 2 : 1;
+  const int expected = ofVolume ? 2 : 1;
   int dimension = -1;
   for (vtkIdType i = 0; i < target->GetNumberOfCells(); ++i)
   {
     dimension = std::max(dimension, target->GetCell(i)->GetCellDimension());
   }
-  if (dimension < wanted)
+  if (dimension < expected)
   {
     throw Error(std::string("The target has no ") + (ofVolume ? "surface" : "curve") +
       " the boundary could be moved to, and its points do not correspond to those of the mesh: "
@@ -317,14 +317,14 @@ vtkSmartPointer<vtkDataSet> surfaceOf(vtkDataSet* target, bool ofVolume)
       (ofVolume ? "surface" : "curve") + ", or point ids.");
   }
   vtkSmartPointer<vtkDataSet> result = target;
-  if (dimension > wanted)
+  if (dimension > expected)
   {
     vtkNew<vtkDataSetSurfaceFilter> surface;
     surface->SetInputData(target);
     surface->Update();
     result = surface->GetOutput();
   }
-  if (dimension > wanted && !ofVolume)
+  if (dimension > expected && !ofVolume)
   {
     vtkNew<vtkFeatureEdges> edges;
     edges->SetInputData(result);

@@ -1,6 +1,6 @@
 /**
  * @file TargetMatch.h
- * @brief Which place of a target data set belongs to which point of a mesh.
+ * @brief The correspondence between the points of a mesh and the places of a target data set.
  */
 #ifndef tautline_TargetMatch_h
 #define tautline_TargetMatch_h
@@ -45,7 +45,7 @@ struct TargetPlaces
   std::string how;                  ///< a sentence: which correspondence, how many, how far
 };
 
-/// Throws Error that says what does not fit.
+/// Throws Error that names what does not fit.
 TargetPlaces placesOf(const TargetRequest& request);
 }
 #endif

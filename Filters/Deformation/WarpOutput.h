@@ -1,6 +1,6 @@
 /**
  * @file WarpOutput.h
- * @brief What Warp Mesh says of a result: arrays, rows of tables, sentences.
+ * @brief The results of Warp Mesh as arrays, rows of tables and sentences.
  */
 #ifndef tautline_WarpOutput_h
 #define tautline_WarpOutput_h
@@ -26,7 +26,7 @@ struct WarpFacts
   int threads = 0;
 };
 
-/// What the filter adds up over data sets.
+/// Totals over the data sets.
 struct WarpTotals
 {
   Index invertedAfterWarp = 0, inverted = 0, impossible = 0;

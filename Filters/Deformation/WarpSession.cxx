@@ -253,7 +253,7 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
   auto* input = vtkPointSet::SafeDownCast(block.input);
   if (!input)
   {
-    MovableMesh refused(block.input, this->settings.options.threads); // throws and says what to do
+    MovableMesh refused(block.input, this->settings.options.threads); // throws the remedy
   }
   WarpBlock& kept = this->Blocks[block.number];
   const bool inSequence = this->sequence();
@@ -411,7 +411,7 @@ PointFlags WarpSession::movedPart(
   choice.elsewhere = selected && !block.name.empty();
   if (set.part == MovedPart::Values)
   {
-    choice.array = chosenArray(set.arrays, MovedArray, block.input, "of what moves");
+    choice.array = chosenArray(set.arrays, MovedArray, block.input, "of the part that moves");
     choice.ofCells = chosenOfCells(set.arrays, MovedArray);
   }
   return movedPoints(rest.mesh->mesh(), rest.boundary, choice);
@@ -476,7 +476,7 @@ WarpOptions WarpSession::optionsFor(const RestingMesh& rest, int blockNumber)
 }
 
 //------------------------------------------------------------------------------
-/// Whether the warper there was can go on; makes a new one if not.
+/// Whether the existing warper can be used again; makes a new one if not.
 bool WarpSession::prepare(RestingMesh& rest, WarpTask& task, int blockNumber)
 {
   const std::vector<double> values = this->optionValues();

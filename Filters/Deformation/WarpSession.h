@@ -77,7 +77,7 @@ struct RestingMesh
   std::vector<unsigned char> types;
   std::vector<Index> offsets, connectivity, cells;
   std::unique_ptr<Mesh> elements;
-  // What the warper was made with, and looks at.
+  // What the warper was made with and refers to.
   PointFlags prescribed;
   std::vector<double> tensors, options, elementTensors;
   std::unique_ptr<Warper> warper;

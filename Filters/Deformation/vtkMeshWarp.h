@@ -1,13 +1,13 @@
 /**
  * @class vtkMeshWarp
- * @brief Moves the interior of a mesh after its boundary has moved.
+ * @brief Deforms the interior of a mesh to follow a prescribed boundary motion.
  *
  * The boundary moves by a displacement array, to a second data set, by a transform of a part of it,
  * or as it does over the time steps of the input. The interior follows by anisotropic FEMWARP and
  * the optimization of shape and validity (HYBRID, dissertation section 4.9) or by one of the
  * methods this is compared with. The connectivity stays. An affine motion of the whole boundary
  * comes out exactly, except by JACOBIAN_STIFFENING, whose material is not uniform, and by HYBRID,
- * which goes on to restore the shapes that it changed.
+ * which then restores the shapes of the elements.
  *
  * Takes data sets with explicit points, or blocks of these (one after the other, each with its own
  * boundary): triangles, quadrilaterals, tetrahedra and hexahedra (pointwise methods: wedges and
@@ -65,7 +65,8 @@
  * std::cout << warp->GetSummary();
  * @endcode
  *
- * @sa vtkMeshUntangler, vtkMeshOptimizer, tautline/Warp.h, tautline/PointMotion.h
+ * @sa vtkMeshUntangler, vtkMeshOptimizer, tautline/Deformation/Warp.h,
+ * tautline/Deformation/PointMotion.h
  */
 
 #ifndef vtkMeshWarp_h
@@ -111,8 +112,8 @@ public:
 
   ///@{
   /**
-   * How much of the motion, along its path: 0 is the input (bitwise), 1 all; more goes on beyond
-   * it. At least 0. The default is 1.
+   * How much of the motion, along its path: 0 is the input (bitwise), 1 all; above 1 it is
+   * extrapolated. At least 0. The default is 1.
    */
   vtkSetClampMacro(Amount, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Amount, double);
@@ -127,8 +128,8 @@ public:
     CLOSEST_POINT = 4    ///< projection to the nearest point of the surface (curve)
   };
   ///@{
-  /// Which point of the target belongs to which of the mesh. The default is AUTOMATIC_MATCH; the
-  /// summary tells.
+  /// Which point of the target corresponds to which point of the mesh. The default is
+  /// AUTOMATIC_MATCH; the summary names it.
   vtkSetClampMacro(Correspondence, int, AUTOMATIC_MATCH, CLOSEST_POINT);
   vtkGetMacro(Correspondence, int);
   ///@}
@@ -240,9 +241,8 @@ public:
 
   enum StartsFrom
   {
-    FIRST_STEP = 0, ///< the result at a time does not depend on other times
-    PREVIOUS_STEP =
-      1 ///< each time step goes on from the one before; going back, from those kept or anew
+    FIRST_STEP = 0,   ///< the result at a time does not depend on other times
+    PREVIOUS_STEP = 1 ///< each time step starts from the one before
   };
   ///@{
   /**
@@ -384,7 +384,7 @@ public:
   ///@}
 
   ///@{
-  /// HYBRID: most iterations of the optimization of shape. The default is 50.
+  /// HYBRID: maximum number of iterations of the optimization of shape. The default is 50.
   vtkSetClampMacro(MaximumIterations, int, 0, 1000000);
   vtkGetMacro(MaximumIterations, int);
   ///@}

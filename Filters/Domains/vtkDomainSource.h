@@ -2,7 +2,7 @@
  * @class vtkDomainSource
  * @brief The geometric domains of the dissertation, meshed with as many cells as asked for.
  *
- * The shapes follow the figures (tautline/Domains.h lists them with their numbers); the
+ * The shapes follow the figures (tautline/Domains/Domains.h lists them with their numbers); the
  * dissertation gives no dimensions and its meshes are not published, so these are shapes of the
  * same kind, not the same meshes. Structured domains (rectangle, square) are exact and need
  * nothing; the others need the module Meshing, and say so when it was not built.
@@ -101,7 +101,7 @@ public:
 
   ///@{
   /**
-   * Square only: least width of the interaction layer. The default is 0.2.
+   * Square only: minimum width of the interaction layer. The default is 0.2.
    */
   vtkSetClampMacro(LayerWidth, double, 0.0, 10.0);
   vtkGetMacro(LayerWidth, double);

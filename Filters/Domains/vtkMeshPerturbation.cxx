@@ -78,7 +78,7 @@ int vtkMeshPerturbation::FillOutputPortInformation(int, vtkInformation* info)
 //------------------------------------------------------------------------------
 int vtkMeshPerturbation::FillInputPortInformation(int, vtkInformation* info)
 {
-  // Wider than what can be moved, so that the refusal can say what to do.
+  // Also types that cannot be moved, so that the message can name the remedy.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   return 1;
 }

@@ -6,20 +6,21 @@
  * fraction of inverted elements.
  *
  * A percentage of the vertices inside the mesh is chosen. One after the other, each moves in a
- * random direction by a random part (evenly from 0 to Fraction) of the distance at which, in that
- * direction, the first element around it would invert, given where the others are by then. This
- * distance is exact: the determinant of every corner is linear in one vertex. The dissertation asks
- * for "less than half the distance at which element inversion would occur" (section 2.7.2): the
- * default. No element becomes inverted or degenerate, in the precision the output is stored in.
+ * random direction by a random fraction (uniform from 0 to Fraction) of the distance at which, in
+ * that direction, the first element around it would invert, given where the others are by then.
+ * This distance is exact: the determinant of every corner is linear in one vertex. The dissertation
+ * asks for "less than half the distance at which element inversion would occur" (section 2.7.2):
+ * the default. No element becomes inverted or degenerate, in the precision the output is stored in.
  *
  * With a TangledFraction above 0, interior vertices then go past inversion until that fraction of
  * the elements is inverted. It is reached to the nearest element up to about 0.8 (a mesh with a
- * fixed boundary cannot always be inverted throughout); GetTangledFractionReached() tells.
+ * fixed boundary cannot always be inverted throughout); GetTangledFractionReached() is the fraction
+ * that was reached.
  *
  * Vertices of a planar mesh stay in its plane. Those of a surface in space move in the tangent
  * plane of the elements around them, and so leave the surface by a second-order amount; an element
- * inverts where it turns by 90 degrees from what it was. (Element Quality, which knows no "before",
- * cannot see that: a surface triangle always agrees with its own normal. Mind sharp edges: fix
+ * inverts where it turns by 90 degrees from what it was. (Element Quality evaluates one mesh and
+ * cannot detect that: a surface triangle always agrees with its own normal. Mind sharp edges: fix
  * their points.)
  *
  * The result depends on the input, the options and Seed only: not on the number of threads, nor on
@@ -58,7 +59,7 @@
  * std::cout << perturbation->GetSummary() << "\n";
  * @endcode
  *
- * @sa tautline::perturb (Filters/Kernel/Perturb.h), vtkElementQuality, vtkMeshComparison
+ * @sa tautline::perturb (tautline/Domains/Perturb.h), vtkElementQuality, vtkMeshComparison
  */
 
 #ifndef vtkMeshPerturbation_h
@@ -91,8 +92,8 @@ public:
 
   ///@{
   /**
-   * The largest part of its distance to inversion by which a vertex moves, between 0 and 1; the
-   * part is drawn evenly from 0 to this. The default is 0.5.
+   * The maximum fraction of its distance to inversion by which a vertex moves, between 0 and 1; the
+   * fraction is uniformly distributed from 0 to this. The default is 0.5.
    */
   vtkSetClampMacro(Fraction, double, 0.0, 1.0);
   vtkGetMacro(Fraction, double);

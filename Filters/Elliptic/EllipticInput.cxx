@@ -253,7 +253,7 @@ void EllipticInput::markFixed(
       this->Fixed[i] |= boundary[i] && where[i];
     }
   }
-  // Selections and arrays of cells may know a point on one process only.
+  // Selections and arrays of cells may mark a point on one process only.
   PointNumbering(this->Part.communicator, view.numberOfPoints, this->Part.globalIds)
     .either(this->Fixed.data());
   this->Fixed.reserve(1); // so that it is not null where there are no points

@@ -56,7 +56,7 @@ public:
     const Processes& processes, int threads);
 
   const EllipticSystem& system() const { return *this->System; }
-  /// What the user should know of how the mesh is taken, or "".
+  /// Remarks for the user on how the mesh is interpreted, as sentences, or "".
   const std::string& notice() const { return this->Notice; }
 
 private:

@@ -176,7 +176,7 @@ void dropInside(vtkDataSet* input, std::vector<char>& flags)
   }
 }
 
-/// Where a piece is, and which it is.
+/// The place of a piece and its number.
 struct Box
 {
   int rank, piece;
@@ -327,7 +327,7 @@ std::vector<std::vector<Index>> globalIdsOf(
         if (repeated > 0 || (!sorted.empty() && sorted.front() < 0))
         {
           throw Error(std::to_string(repeated) +
-            " points are at the place of another one, or have its global id, and cannot be told "
+            " points are at the place of another one, or have its global id, and cannot be "
             "from points of other parts: run Clean to Grid first, or solve in one process.");
         }
       }

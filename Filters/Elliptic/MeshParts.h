@@ -37,8 +37,8 @@ struct LocalMesh
  *
  * A data set is a mesh, and so is each block of a multiblock data set. The partitions of a
  * partitioned or multipiece data set are one mesh, on all processes together. Points on several
- * processes or partitions are recognised by the global point ids of the input, or else by equal
- * coordinates. Throws Error if points of one partition cannot be told apart.
+ * processes or partitions are identified by the global point ids of the input, or else by equal
+ * coordinates. Throws Error if points of one partition cannot be distinguished.
  *
  * @param selected what markSelected() returned
  * @param output of the class of the input; gets its structure

@@ -23,10 +23,9 @@ namespace
 {
 constexpr int SpectrumPort = 1;
 constexpr int ListedElements = 5;
-constexpr double MostOfIt =
-  0.9;                    ///< a share of elements is named that has so much of the eigenvalue
-constexpr int Digits = 4; ///< of numbers in sentences
-constexpr double Unknown = -1.0; ///< an error bound
+constexpr double NamedFraction = 0.9; ///< of the eigenvalue: how few elements have it is reported
+constexpr int Digits = 4;             ///< of numbers in sentences
+constexpr double Unknown = -1.0;      ///< an error bound
 
 double knownOr(double bound)
 {
@@ -114,8 +113,8 @@ std::vector<double> excess(const std::vector<double>& values, const tautline::Pr
   return result;
 }
 
-/// The number of elements on all processes, and of the fewest that have most of the eigenvalue
-/// together.
+/// The number of elements on all processes, and the smallest number that have 90 % of the
+/// eigenvalue together.
 std::array<tautline::Index, 2> concentration(
   const std::vector<double>& shares, const tautline::Processes& processes)
 {
@@ -132,7 +131,7 @@ std::array<tautline::Index, 2> concentration(
     sum = processes.sum(sum);
     return processes.sum(count);
   };
-  // The highest threshold above which there is most of it, by bisection.
+  // The highest threshold above which the shares add up to that fraction, by bisection.
   constexpr int steps = 50;
   double low = 0.0, high = 1.0, sum = 0.0;
   const tautline::Index all = above(low, sum);
@@ -140,7 +139,7 @@ std::array<tautline::Index, 2> concentration(
   {
     const double middle = 0.5 * (low + high);
     above(middle, sum);
-    (sum >= MostOfIt ? low : high) = middle;
+    (sum >= NamedFraction ? low : high) = middle;
   }
   return { all, above(low, sum) };
 }
@@ -249,7 +248,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
     tautline::addArray(mesh.output, true, "Share", elements.share, 1);
     const auto [all, few] = concentration(elements.share, processes);
     text << "\n"
-         << few << " of " << all << " elements have " << 100 * MostOfIt
+         << few << " of " << all << " elements have " << 100 * NamedFraction
          << " % of the largest eigenvalue.";
   }
   tautline::addArray(mesh.output, true, "Excess", excess(elements.largestEigenvalue, processes), 1);

@@ -20,7 +20,7 @@
  * bounds; -1: not known), `Converged`, `Iterations`, `Seconds`, `Method`, `Message`; of composite
  * data sets also `Block`.
  *
- * @sa vtkSolverStudy, vtkEllipticSolver, tautline/ConditionEstimate.h
+ * @sa vtkSolverStudy, vtkEllipticSolver, tautline/Solvers/ConditionEstimate.h
  */
 
 #ifndef vtkConditionEstimator_h
@@ -57,7 +57,7 @@ public:
   ///@}
 
   ///@{
-  /// Wanted relative error of the eigenvalues, above 0 and below 1. The default is 1e-6.
+  /// Tolerance: relative error of the eigenvalues, above 0 and below 1. The default is 1e-6.
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
   ///@}

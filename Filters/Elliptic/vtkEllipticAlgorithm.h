@@ -1,6 +1,6 @@
 /**
  * @class vtkEllipticAlgorithm
- * @brief What the filters that solve elliptic partial differential equations have in common: the
+ * @brief Base class of the filters for elliptic partial differential equations: the boundary value
  * problem.
  *
  * Abstract. The boundary value problem of dissertation section 2.2, discretised by linear finite
@@ -11,20 +11,20 @@
  * Each block of a multiblock data set is a mesh of its own; the partitions of a partitioned data
  * set are one mesh. With several MPI processes (pvserver, pvbatch) the parts of all processes are
  * one mesh, which they solve together; ghost cells are left out. Points on several processes are
- * known by their global ids if the mesh has them, else by equal coordinates. Tables are those of
- * process 0.
+ * identified by their global ids if the mesh has them, else by equal coordinates. Tables are those
+ * of process 0.
  *
  * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted
  * and degenerate elements, polygons, polyhedra, cells of higher order, mixed orientation, parts
  * without a point where the solution is given, values and coefficients that are not finite.
  *
- * Arrays of SetInputArrayToProcess: 0 fixed points (of points or cells), 1 source, 2 given values
- * (of points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.
+ * Arrays (SetInputArrayToProcess), by index: 0 fixed points (of points or cells), 1 source, 2 given
+ * values (of points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.
  *
- * Expressions know x, y, z and the point arrays by name, as ParaView's Calculator: sin(x)*exp(-y),
- * "my array"/2, if(x<0.5, 1, 2); vectors are written 2*iHat - x*jHat.
+ * Expressions have the variables x, y, z and the point arrays by name, as in ParaView's Calculator:
+ * sin(x)*exp(-y), "my array"/2, if(x<0.5, 1, 2); vectors are written 2*iHat - x*jHat.
  *
- * @sa vtkEllipticSolver, vtkConditionEstimator, vtkSolverStudy, tautline/EllipticProblem.h
+ * @sa vtkEllipticSolver, vtkConditionEstimator, vtkSolverStudy, tautline/Elliptic/EllipticProblem.h
  */
 
 #ifndef vtkEllipticAlgorithm_h
@@ -68,7 +68,7 @@ public:
 
   ///@{
   /// Coefficients of ELLIPTIC: at least 0. The default is 1 each; gamma is for volumes. Array 3
-  /// goes before them.
+  /// replaces them.
   vtkSetMacro(Alpha, double);
   vtkGetMacro(Alpha, double);
   vtkSetMacro(Beta, double);
@@ -96,7 +96,7 @@ public:
   vtkGetMacro(PoissonRatio, double);
   ///@}
 
-  /// What holds a planar body in the third direction.
+  /// The state of a planar body in the third direction.
   enum PlaneStates
   {
     PLANE_STRAIN = 0,
@@ -109,7 +109,7 @@ public:
   vtkGetMacro(PlaneState, int);
   ///@}
 
-  /// How a function is told.
+  /// How a function is given.
   enum FunctionTypes
   {
     CONSTANT = 0,
@@ -159,7 +159,7 @@ public:
   ///@}
 
   ///@{
-  /// An expression that tells the part of the boundary, such as "x < 0.01".
+  /// An expression that is not 0 on the fixed part of the boundary, such as "x < 0.01".
   vtkSetMacro(FixedWhere, std::string);
   vtkGetMacro(FixedWhere, std::string);
   ///@}
@@ -196,9 +196,9 @@ public:
 
   ///@{
   /**
-   * Options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5". They go before other
-   * properties, and those of other users of PETSc in the process are neither read nor changed. One
-   * that PETSc does not know is an error.
+   * Options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5". They override other
+   * properties. The options of other users of PETSc in the process are neither read nor changed. An
+   * option unknown to PETSc is an error.
    */
   vtkSetMacro(PETScOptions, std::string);
   vtkGetMacro(PETScOptions, std::string);
@@ -218,7 +218,7 @@ protected:
 
   /// Forgets the results of the last execution.
   virtual void Reset();
-  /// Does its work on a mesh; all processes call it. Throws tautline::Error.
+  /// Computes the result on a mesh. Collective. Throws tautline::Error.
   virtual void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
     const tautline::Processes& processes, tautline::TableRows& table) = 0;
 

@@ -107,7 +107,7 @@ public:
   ///@}
 
   ///@{
-  /// Whether multigrid is told the rigid body modes of an elastic body, its near-null space. On.
+  /// Whether multigrid gets the rigid body modes of an elastic body, its near-null space. On.
   vtkSetMacro(RigidBodyModes, bool);
   vtkGetMacro(RigidBodyModes, bool);
   vtkBooleanMacro(RigidBodyModes, bool);

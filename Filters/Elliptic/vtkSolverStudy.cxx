@@ -19,7 +19,7 @@ namespace
 {
 constexpr int StudyPort = 1;
 constexpr int WithModes = 24,
-              WithoutModes = 25;        // numbers of combinations, by what multigrid is told
+              WithoutModes = 25;        // numbers of combinations, by what multigrid gets
 constexpr const char* FailedMark = "*"; // as in Tables 2.8 to 2.12
 constexpr const char* NotRunMark = "-";
 

@@ -17,7 +17,7 @@
  * known), `N true residual`, norm of b - A x over that of b; `N converged`, 1 or 0; `Reason`; of
  * composite data sets also `Block`. ParaView's bar chart shows the total time.
  *
- * @sa vtkEllipticSolver, vtkConditionEstimator, tautline/SolverStudy.h
+ * @sa vtkEllipticSolver, vtkConditionEstimator, tautline/Elliptic/SolverStudy.h
  */
 
 #ifndef vtkSolverStudy_h
@@ -39,7 +39,7 @@ public:
    * Combinations to run, by number; none by default, which means 1 to 16, those of Table 2.5:
    * Jacobi, SSOR, ILU(0), BoomerAMG, each with CG, GMRES, MINRES, Bi-CGSTAB. 17 is a direct solver;
    * 18 CG with incomplete Cholesky; 19 to 22 smoothed aggregation (GAMG) with CG, GMRES, MINRES,
-   * Bi-CGSTAB; 23 CG without preconditioner. In 19 to 22 multigrid is told the rigid body modes of
+   * Bi-CGSTAB; 23 CG without preconditioner. In 19 to 22 multigrid gets the rigid body modes of
    * an elastic body, in 13 to 16 it only sees the matrix; 24 is 13 with them, 25 is 19 without.
    */
   void AddCombination(int number);

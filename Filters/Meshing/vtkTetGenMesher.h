@@ -17,7 +17,7 @@
  * its own: whatever happens to it is an error with an empty output, and abort is obeyed.
  * Deterministic.
  *
- * Limits: TetGen does not say how far it is, so progress only shows that it runs.
+ * Limitations: TetGen reports no progress, so progress only shows that it runs.
  *
  * Method: H. Si, TetGen, a Delaunay-based quality tetrahedral mesh generator, ACM Transactions on
  * Mathematical Software 41 (2015).
@@ -64,7 +64,7 @@ public:
 
   ///@{
   /**
-   * Whether the point array to process (index 0) gives the wanted edge length at each input point.
+   * Whether the point array to process (index 0) gives the target edge length at each input point.
    * The default is off.
    */
   vtkSetMacro(UseSizeArray, bool);
@@ -83,7 +83,8 @@ public:
 
   ///@{
   /**
-   * Seconds TetGen may take; 0 is no limit. On some surfaces it never ends. The default is 3600.
+   * Seconds TetGen may take; 0 is no limit. On some surfaces it does not terminate. The default is
+   * 3600.
    */
   vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);

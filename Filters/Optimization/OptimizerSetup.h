@@ -1,7 +1,7 @@
 /**
  * @file OptimizerSetup.h
- * @brief From the properties of Optimize Mesh to the options of the kernel for one data set, and what
- * is kept of a run.
+ * @brief From the properties of Optimize Mesh to the options of the kernel for one data set, and
+ * what is kept of a run.
  */
 #ifndef tautline_OptimizerSetup_h
 #define tautline_OptimizerSetup_h

@@ -48,18 +48,20 @@ tautline::ObjectiveRow& vtkMeshOptimizer::RowAt(int index)
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshOptimizer::AddObjective(int metric, int form, double weight, int target)
+void vtkMeshOptimizer::AddObjective(int metric, int objectiveTemplate, double weight, int target)
 {
   try
   {
     tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if there is none
-    if (form < DEFAULT_TEMPLATE || form > MAXIMUM || target < IDEAL || target > TENSOR)
+    if (objectiveTemplate < DEFAULT_TEMPLATE || objectiveTemplate > MAXIMUM || target < IDEAL ||
+      target > TENSOR)
     {
-      throw tautline::Error("There is no template " + std::to_string(form) + " or no target type " +
-        std::to_string(target) + "; see the enumerations of vtkMeshOptimizer.");
+      throw tautline::Error("There is no template " + std::to_string(objectiveTemplate) +
+        " or no target type " + std::to_string(target) +
+        "; see the enumerations of vtkMeshOptimizer.");
     }
-    this->RowAt(
-      this->Objectives++) = { metric, form, weight, static_cast<tautline::TargetType>(target) };
+    this->RowAt(this->Objectives++) = { metric, objectiveTemplate, weight,
+      static_cast<tautline::TargetType>(target) };
     this->Preset = CUSTOM;
     this->Modified();
   }
@@ -70,7 +72,8 @@ void vtkMeshOptimizer::AddObjective(int metric, int form, double weight, int tar
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshOptimizer::AddObjectiveByName(const char* metric, int form, double weight, int target)
+void vtkMeshOptimizer::AddObjectiveByName(
+  const char* metric, int objectiveTemplate, double weight, int target)
 {
   const tautline::MetricInfo* info = tautline::findMetric(metric ? metric : "");
   if (!info)
@@ -79,7 +82,7 @@ void vtkMeshOptimizer::AddObjectiveByName(const char* metric, int form, double w
                   << "'. Element Quality and its help page list them.");
     return;
   }
-  this->AddObjective(static_cast<int>(info->metric), form, weight, target);
+  this->AddObjective(static_cast<int>(info->metric), objectiveTemplate, weight, target);
 }
 
 //------------------------------------------------------------------------------
@@ -128,21 +131,21 @@ void vtkMeshOptimizer::SetMetric4(int metric)
 {
   this->SetRowValue(this->RowAt(3).metric, metric);
 }
-void vtkMeshOptimizer::SetTemplate1(int form)
+void vtkMeshOptimizer::SetTemplate1(int objectiveTemplate)
 {
-  this->SetRowValue(this->RowAt(0).objectiveTemplate, form);
+  this->SetRowValue(this->RowAt(0).objectiveTemplate, objectiveTemplate);
 }
-void vtkMeshOptimizer::SetTemplate2(int form)
+void vtkMeshOptimizer::SetTemplate2(int objectiveTemplate)
 {
-  this->SetRowValue(this->RowAt(1).objectiveTemplate, form);
+  this->SetRowValue(this->RowAt(1).objectiveTemplate, objectiveTemplate);
 }
-void vtkMeshOptimizer::SetTemplate3(int form)
+void vtkMeshOptimizer::SetTemplate3(int objectiveTemplate)
 {
-  this->SetRowValue(this->RowAt(2).objectiveTemplate, form);
+  this->SetRowValue(this->RowAt(2).objectiveTemplate, objectiveTemplate);
 }
-void vtkMeshOptimizer::SetTemplate4(int form)
+void vtkMeshOptimizer::SetTemplate4(int objectiveTemplate)
 {
-  this->SetRowValue(this->RowAt(3).objectiveTemplate, form);
+  this->SetRowValue(this->RowAt(3).objectiveTemplate, objectiveTemplate);
 }
 void vtkMeshOptimizer::SetWeight1(double weight)
 {

@@ -1,12 +1,12 @@
 /**
  * @class vtkMeshOptimizer
- * @brief Moves the points of a mesh so that one or several measures of its quality become better.
+ * @brief Moves the points of a mesh so that one or several quality metrics improve.
  *
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from
  * data sets with explicit points, or blocks of these (one after the other, each with its own
- * boundary). The connectivity stays. What is lowered is chosen by a preset, or in full: up to any
- * number of objectives (a metric, summed up by a template, against a target), how they are
- * combined, and the algorithm.
+ * boundary). The connectivity stays. What is minimized is chosen by a preset, or in full: any
+ * number of objectives (a metric, aggregated over the elements by a template, against a target),
+ * their scalarization, and the algorithm.
  *
  * The output is never worse than the input: the combined objective does not rise, and no valid
  * element becomes inverted unless AllowInversion. An input with inverted elements is untangled
@@ -19,7 +19,7 @@
  * 0 the mesh; 1 (optional) a reference mesh with the same cells, for targets of type REFERENCE and
  * the preset PRESERVE_SHAPE; 2 (optional) a vtkSelection of points or cells that stay.
  *
- * Arrays of the mesh (SetInputArrayToProcess), by index: 0 wanted sizes, 1 metric tensors, 2 fixed
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 target sizes, 1 metric tensors, 2 fixed
  * points (not 0), 3 limits of the points' displacements, 4 weights of the elements (cells, at least
  * 0).
  *
@@ -27,14 +27,14 @@
  * The input with new points, the point array `Displacement` (new minus old), and cell arrays: for
  * each objective's metric its value after, named by the metric ("imr"), and before ("imr_before");
  * `Validity` after (see vtkElementQuality). Points that were in single precision stay so unless a
- * valid element would not be valid when rounded; the summary says so.
+ * valid element would not be valid when rounded; the summary reports it.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric `<metric>
  * mean` and
  * `<metric> worst`, and with several objectives `<metric> objective`; `Inverted` (with degenerate
  * elements), `N gradient`, `N moving` (points), `Time (s)`. Of composite data sets the rows of each
- * block follow each other, told apart by the column `Block`.
+ * block follow each other, distinguished by the column `Block`.
  *
  * @par Output port 2 `Statistics`:
  * A vtkTable with a row per metric (and block): `Metric`, `Label`, and `Before` and `After` of:
@@ -60,7 +60,7 @@
  *
  * Dissertation chapter 3 and section 2.4.
  *
- * @sa vtkMeshUntangler, vtkElementQuality, vtkMeshComparison, tautline/Optimize.h
+ * @sa vtkMeshUntangler, vtkElementQuality, vtkMeshComparison, tautline/Optimization/Optimize.h
  */
 
 #ifndef vtkMeshOptimizer_h
@@ -103,7 +103,7 @@ public:
   };
   ///@{
   /**
-   * What to do in one word. All but CUSTOM decide on objectives, scalarization, optimizer and
+   * A ready-made choice. All but CUSTOM decide on objectives, scalarization, optimizer and
    * stopping criteria (but for the time limit), see tautline::applyPreset(); those below are for
    * CUSTOM. The default is BEST_SHAPE.
    */
@@ -131,20 +131,21 @@ public:
   ///@{
   /**
    * Adds an objective and chooses the preset CUSTOM.
-   * @param metric by number (enum Metric of tautline/Metrics.h) or by name, label, symbol or alias;
-   * an unknown one is an error and changes nothing
-   * @param form one of Templates; DEFAULT_TEMPLATE is that the dissertation uses for the metric
+   * @param metric by number (enum Metric of tautline/Quality/Metrics.h) or by name, label, symbol
+   * or alias; an unknown one is an error and changes nothing
+   * @param objectiveTemplate one of Templates; DEFAULT_TEMPLATE is that of the dissertation for the
+   * metric
    * @param weight above 0, for the scalarizations that take weights
    * @param target one of TargetTypes, as in vtkElementQuality: the ideal element, that of the mesh
    * at port 1, the ideal shape in the size of the array at index 0 or in the metric tensor of the
    * array at index 1 (SetInputArrayToProcess; points or cells)
    */
   void AddObjective(
-    int metric, int form = DEFAULT_TEMPLATE, double weight = 1.0, int target = IDEAL);
-  void AddObjectiveByName(
-    const char* metric, int form = DEFAULT_TEMPLATE, double weight = 1.0, int target = IDEAL);
+    int metric, int objectiveTemplate = DEFAULT_TEMPLATE, double weight = 1.0, int target = IDEAL);
+  void AddObjectiveByName(const char* metric, int objectiveTemplate = DEFAULT_TEMPLATE,
+    double weight = 1.0, int target = IDEAL);
   ///@}
-  /// Without objectives, CUSTOM lowers the sum of squared inverse mean ratios.
+  /// Without objectives, CUSTOM minimizes the sum of squared inverse mean ratios.
   void RemoveAllObjectives();
 
   ///@{
@@ -154,15 +155,15 @@ public:
   ///@}
 
   ///@{
-  /// The parts of one objective, for panels that set them one by one; see AddObjective().
+  /// The properties of one objective, for panels that set them one by one; see AddObjective().
   void SetMetric1(int metric);
   void SetMetric2(int metric);
   void SetMetric3(int metric);
   void SetMetric4(int metric);
-  void SetTemplate1(int form);
-  void SetTemplate2(int form);
-  void SetTemplate3(int form);
-  void SetTemplate4(int form);
+  void SetTemplate1(int objectiveTemplate);
+  void SetTemplate2(int objectiveTemplate);
+  void SetTemplate3(int objectiveTemplate);
+  void SetTemplate4(int objectiveTemplate);
   void SetWeight1(double weight);
   void SetWeight2(double weight);
   void SetWeight3(double weight);
@@ -211,7 +212,7 @@ public:
     RAO = 7
   };
   ///@{
-  /// How several objectives become one, see tautline/Scalarization.h. The default is
+  /// How several objectives become one, see tautline/Objectives/Scalarization.h. The default is
   /// EXPONENTIAL_SUM.
   vtkSetClampMacro(Scalarization, int, EXPONENTIAL_SUM, RAO);
   vtkGetMacro(Scalarization, int);
@@ -231,7 +232,7 @@ public:
 
   ///@{
   /**
-   * By what part of its value an objective may rise while those after it are lowered
+   * By what fraction of its value an objective may rise while those after it are minimized
    * (LEXICOGRAPHIC), at least 0. The default is 0.01.
    */
   vtkSetMacro(Tolerance, double);
@@ -260,8 +261,8 @@ public:
   ///@{
   /**
    * The algorithm: local ones sweep over the points, others move all at once. AUTOMATIC, the
-   * default, is LOCAL_NEWTON; should a sweep fail to lower several objectives, LIMITED_MEMORY_BFGS
-   * goes on.
+   * default, is LOCAL_NEWTON; should a sweep fail to reduce several objectives, LIMITED_MEMORY_BFGS
+   * continues.
    */
   vtkSetClampMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);
   vtkGetMacro(Optimizer, int);
@@ -280,8 +281,8 @@ public:
   ///@}
 
   ///@{
-  /// Stop when an iteration lowers the objective by less than this part; 0: never. The default is
-  /// 1e-5.
+  /// Stop when an iteration reduces the objective by less than this fraction; 0: never. The
+  /// default is 1e-5.
   vtkSetClampMacro(RelativeChange, double, 0.0, 1.0);
   vtkGetMacro(RelativeChange, double);
   ///@}
@@ -336,9 +337,9 @@ public:
    * parts stay; of a mesh of 2D cells those on straight parts move along them (see FlatAngle).
    * ON_SURFACE: besides, those where the boundary of a volume or planar mesh is curved but smooth
    * (see FeatureAngle) slide on it as it was; this needs a local optimizer, and GetSurfaceError()
-   * tells how far the new boundary is from the old. FREE: they move as all others. Points also stay
-   * where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the selection at
-   * port 2 holds them or a cell of theirs. The default is FIXED.
+   * is the distance of the new boundary from the old. FREE: they move as all others. Points also
+   * stay where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the
+   * selection at port 2 holds them or a cell of theirs. The default is FIXED.
    */
   vtkSetClampMacro(Boundary, int, FIXED, ON_SURFACE);
   vtkGetMacro(Boundary, int);
@@ -381,7 +382,7 @@ public:
   ///@}
 
   ///@{
-  /// Let steps invert elements that are valid, if the objective gains by it. Off.
+  /// Let steps invert elements that are valid, if that reduces the objective. Off.
   vtkSetMacro(AllowInversion, bool);
   vtkGetMacro(AllowInversion, bool);
   vtkBooleanMacro(AllowInversion, bool);
@@ -406,7 +407,7 @@ public:
 
   ///@{
   /**
-   * Local algorithms leave out points that moved less than this part of their shortest edge; 0:
+   * Local algorithms leave out points that moved less than this fraction of their shortest edge; 0:
    * none. The default is 1e-3.
    */
   vtkSetClampMacro(Culling, double, 0.0, 1.0);
@@ -427,8 +428,8 @@ public:
 
   ///@{
   /**
-   * After the objective has converged, lower the worst value of the first metric as long as its
-   * mean does not get worse by more than this part; 0, the default: do not.
+   * After the objective has converged, improve the worst value of the first metric as long as
+   * its mean does not get worse by more than this fraction; 0, the default: off.
    */
   vtkSetClampMacro(ImproveWorst, double, 0.0, 1.0);
   vtkGetMacro(ImproveWorst, double);
@@ -447,8 +448,8 @@ public:
 
   ///@{
   /**
-   * Megabytes for the points of the iterations; if they do not do, every second is dropped, and
-   * again. The default is 1000.
+   * Megabytes for the points of the iterations; beyond that every second one is dropped,
+   * repeatedly. The default is 1000.
    */
   vtkSetClampMacro(AnimationMemory, double, 1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(AnimationMemory, double);
@@ -460,8 +461,8 @@ public:
   ///@{
   /**
    * The result of the last execution; numbers are of all blocks together, the reason is that of the
-   * last: why it stopped as a sentence and as a number (enum StopReason of tautline/Optimize.h, -1:
-   * nothing done).
+   * last: why it stopped as a sentence and as a number (enum StopReason of
+   * tautline/Core/Iteration.h, -1: nothing done).
    */
   const char* GetReason() const { return this->Reason.c_str(); }
   int GetStopReason() const { return this->StopReason; }

@@ -114,7 +114,7 @@ private:
   vtkNew<vtkDoubleArray> Area, Chord, Missed;
 };
 
-/// The triangles that meet the disc, and the triangles that stand for their parts in it.
+/// The triangles that meet the disc, and the triangles that replace their parts in it.
 void collectTriangles(const tautline::HorizonInput& taken, const Disc& disc,
   TriangleCollector& triangles, TriangleCollector& pieces)
 {

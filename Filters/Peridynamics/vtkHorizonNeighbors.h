@@ -19,11 +19,11 @@
  * vtkPolyData: the circle, as a closed line of 256 pieces.
  *
  * @par Output port 2 `Pieces`:
- * vtkPolyData: the one or two triangles that stand for each (Figure 4.5), with `Case` and `CellId`.
+ * vtkPolyData: the one or two triangles that replace each (Figure 4.5), with `Case` and `CellId`.
  *
  * A centre off the plane is projected to it.
  *
- * @sa tautline::intersectDisc (Filters/Kernel/Peridynamics.h), vtkPeridynamicStiffness
+ * @sa tautline::intersectDisc (tautline/Peridynamics/Peridynamics.h), vtkPeridynamicStiffness
  */
 
 #ifndef vtkHorizonNeighbors_h

@@ -19,20 +19,20 @@
  *
  * @par Limitations:
  * Elements of the interaction layer are about equally large (ElementSize). Where the boundary's
- * edges are much longer or shorter than that, elements next to it are flat: no matter for the
- * matrix in exact discretization.
+ * edges are much longer or shorter than that, elements next to it are flat, which does not affect
+ * the matrix in exact discretization.
  *
  * @par Example:
  * @code
- * vtkNew<vtkInteractionLayer> interaction layer;
- * interaction layer->SetInputConnection(reader->GetOutputPort());
- * interaction layer->SetWidth(0.2);
+ * vtkNew<vtkInteractionLayer> layer;
+ * layer->SetInputConnection(reader->GetOutputPort());
+ * layer->SetWidth(0.2);
  * vtkNew<vtkPeridynamicStiffness> stiffness;
- * stiffness->SetInputConnection(interaction layer->GetOutputPort());
+ * stiffness->SetInputConnection(layer->GetOutputPort());
  * stiffness->SetHorizon(0.2);
  * @endcode
  *
- * @sa tautline::addInteractionLayer (Filters/Kernel/Peridynamics/InteractionLayer.h),
+ * @sa tautline::addInteractionLayer (tautline/Peridynamics/InteractionLayer.h),
  * vtkPeridynamicStiffness, vtkDomainSource
  */
 
@@ -51,7 +51,7 @@ public:
 
   ///@{
   /**
-   * Least width of the interaction layer, above 0, in the unit of the mesh. The default is 0.2.
+   * Minimum width of the interaction layer, above 0, in the unit of the mesh. The default is 0.2.
    */
   vtkSetMacro(Width, double);
   vtkGetMacro(Width, double);

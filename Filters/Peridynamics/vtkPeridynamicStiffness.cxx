@@ -94,7 +94,7 @@ int vtkPeridynamicStiffness::FillOutputPortInformation(int port, vtkInformation*
 int vtkPeridynamicStiffness::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  // The picture's extent is known when the matrix is: what is promised is the most there can be.
+  // The extent of the picture is known after the assembly: announced is the maximum.
   const int last = std::max(this->SparsityPixels, 1) - 1;
   const int extent[6] = { 0, last, 0, last, 0, 0 };
   outputVector->GetInformationObject(SparsityPort)

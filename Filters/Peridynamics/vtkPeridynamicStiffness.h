@@ -61,7 +61,7 @@
  * std::cout << stiffness->GetCondition() << "\n"; // 9.28
  * @endcode
  *
- * @sa tautline::assemblePeridynamics (Filters/Kernel/Peridynamics.h), vtkInteractionLayer,
+ * @sa tautline::assemblePeridynamics (tautline/Peridynamics/Peridynamics.h), vtkInteractionLayer,
  * vtkHorizonNeighbors
  */
 
@@ -191,7 +191,7 @@ public:
   enum RuleSets
   {
     TABLES = 0,  ///< 3 and 1 (linear), 3 and 3 (constant): what its tables were made with
-    LITERAL = 1, ///< 1 and 3: what its text says
+    LITERAL = 1, ///< 1 and 3: those of its text
     ONE_ONE = 2,
     THREE_THREE = 3,
     THREE_ONE = 4
@@ -207,7 +207,7 @@ public:
 
   ///@{
   /**
-   * Wanted relative error of the integral over each pair of triangles in exact discretization,
+   * Relative error accepted of the integral over each pair of triangles in exact discretization,
    * 1e-10 to 0.1. The default is 1e-5.
    */
   vtkSetMacro(Tolerance, double);
@@ -254,7 +254,7 @@ public:
 
   ///@{
   /**
-   * Wanted relative error of the eigenvalues, 1e-14 to 0.1. The default is 1e-8.
+   * Relative error accepted of the eigenvalues, 1e-14 to 0.1. The default is 1e-8.
    */
   vtkSetClampMacro(SpectrumTolerance, double, 1e-14, 0.1);
   vtkGetMacro(SpectrumTolerance, double);

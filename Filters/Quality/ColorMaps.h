@@ -5,8 +5,9 @@
  * ParaView keeps one colour map per array name and looks for its default in the settings. The
  * functions below write such settings, from the registry of metrics: an ideal element is pale, one
  * at the end of the acceptable range dark red, a worse one darker still, and an inverted one, where
- * the metric's sign tells, magenta. The range is fixed, so that a colour means the same quality in
- * every picture. A size, of which neither small nor large is good, keeps ParaView's own map.
+ * the sign of the metric shows it, magenta. The range is fixed, so that a colour means the same
+ * quality in every picture. A size, of which neither small nor large is good, keeps ParaView's own
+ * map.
  */
 
 #ifndef tautline_ColorMaps_h

@@ -11,12 +11,12 @@ std::vector<Metric> MetricSelection::metrics() const
 
 bool MetricSelection::add(int metric)
 {
-  const Metric wanted = metricInfo(static_cast<Metric>(metric)).metric;
-  if (std::find(this->Chosen.begin(), this->Chosen.end(), wanted) != this->Chosen.end())
+  const Metric known = metricInfo(static_cast<Metric>(metric)).metric;
+  if (std::find(this->Chosen.begin(), this->Chosen.end(), known) != this->Chosen.end())
   {
     return false;
   }
-  this->Chosen.push_back(wanted);
+  this->Chosen.push_back(known);
   return true;
 }
 

@@ -17,7 +17,7 @@
  * metric is the active cell scalar array; point arrays pass, none of them active.
  *
  * @par Output port 1 `Statistics`:
- * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (elements summed up), `Minimum`,
+ * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (number of elements), `Minimum`,
  * `Maximum`, `Mean`, `RMS`, `StandardDeviation`, `Quantile01`, `05`, `25`, `50`, `75`, `95`, `99`,
  * `OutsideAcceptable`, `AcceptableLow`, `AcceptableHigh`, then the same in each row: `Inverted`,
  * `Degenerate`, `NotMeasured`, `NonFinite`; `WorstCells` (10 components: ids, worst first, -1 where
@@ -41,7 +41,7 @@
  * they count through blocks and ranks in order.
  *
  * @par Targets:
- * Metrics that are functions of T = A W^-1 take the wanted element W from TargetType: the ideal
+ * Metrics that are functions of T = A W^-1 take the target element W from TargetType: the ideal
  * one, the same element of a reference mesh (input port 1), the ideal shape in a size given per
  * cell or point, or in a metric tensor.
  *
@@ -57,7 +57,7 @@
  *
  * Dissertation sections 2.3, 3.2.1, 4.9.2 and Table 2.7.
  *
- * @sa vtkMeshComparison, vtkMetricField, vtkMeshPerturbation, tautline/Metrics.h
+ * @sa vtkMeshComparison, vtkMetricField, vtkMeshPerturbation, tautline/Quality/Metrics.h
  */
 
 #ifndef vtkElementQuality_h
@@ -119,12 +119,12 @@ public:
   };
   ///@{
   /**
-   * What the wanted element is, for target metrics. IDEAL: the ideal cell of each type with unit
+   * The target element, for target metrics. IDEAL: the ideal cell of each type with unit
    * edges. REFERENCE: the same cell of the mesh at input port 1. SIZE: the ideal shape with the
    * area or volume in the array at index 0 (SetInputArrayToProcess; points or cells). TENSOR: the
    * ideal shape in the metric tensor in the array at index 1 (6 components xx yy zz xy yz xz, or 9;
-   * points or cells), whose wanted edges have length 1. Values of point arrays are averaged over
-   * each cell. The default is IDEAL.
+   * points or cells), in which the target edges have length 1. Values of point arrays are averaged
+   * over each cell. The default is IDEAL.
    */
   vtkSetClampMacro(TargetType, int, IDEAL, TENSOR);
   vtkGetMacro(TargetType, int);
@@ -196,7 +196,7 @@ public:
   /// ParaView settings, as JSON text: the colour maps of the arrays of the metrics and of Validity.
   static std::string GetColorMapSettings();
 
-  /// What the user should know of how the last mesh was taken (orientation, cells left out), or "".
+  /// Remarks on how the last mesh was interpreted (orientation, cells left out), or "".
   const char* GetNotice() const { return this->Notice.c_str(); }
   /// Bytes allocated beyond input and output arrays at the peak of the last execution.
   double GetWorkingBytes() const { return this->WorkingBytes; }

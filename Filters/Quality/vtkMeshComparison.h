@@ -3,7 +3,7 @@
  * @brief What changed, element by element, between two meshes of equal connectivity.
  *
  * Compares a mesh before and after something moved its points: perturbation, smoothing, warping.
- * For each metric chosen it tells where elements became better or worse and by how much, and counts
+ * For each metric chosen it shows where elements became better or worse and by how much, and counts
  * them.
  *
  * Validity decides first: an element that becomes valid is better, one that becomes degenerate or
@@ -49,7 +49,7 @@
  * comparison->GetOutputDataObject(1); // the table
  * @endcode
  *
- * @sa tautline::compareMetric (Filters/Kernel/Compare.h), vtkElementQuality, vtkMeshPerturbation
+ * @sa tautline::compareMetric (tautline/Quality/Compare.h), vtkElementQuality, vtkMeshPerturbation
  */
 
 #ifndef vtkMeshComparison_h

@@ -4,7 +4,8 @@
  *
  * Abstract. A metric is given by its number (enum Metric of tautline/Quality/Metrics.h) or by its
  * name, label, symbol or alias; vtkElementQuality::GetKnownMetric() lists them. A metric that is
- * added again stays once, in its first place. If none is added, the inverse mean ratio is evaluated.
+ * added again stays once, in its first place. If none is added, the inverse mean ratio is
+ * evaluated.
  *
  * @sa vtkElementQuality, vtkMeshComparison, vtkMetricField, vtkTautlineAlgorithm
  */

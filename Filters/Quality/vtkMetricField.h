@@ -4,8 +4,8 @@
  *
  * Two vertices of a triangle, or three of a tetrahedron, are held fixed. At every point of a grid
  * stands the value the metric has with the last vertex there: contours show which shapes a metric
- * likes and how hard it punishes the others. The defaults are those of dissertation Figures 2.1
- * and 3.1: the base from (0, 0) to (1, 0), the free vertex in [-1, 2] x [0, 2].
+ * prefers and how strongly it penalizes the others. The defaults are those of dissertation Figures
+ * 2.1 and 3.1: the base from (0, 0) to (1, 0), the free vertex in [-1, 2] x [0, 2].
  *
  * A triangle lies in the plane z = 0; the third numbers of Vertex1, Vertex2, Bounds and Dimensions
  * do not matter to it. It is positive with the free vertex left of the line from Vertex1 to Vertex2
@@ -32,7 +32,7 @@
  * contours->GenerateValues(10, 1.0, 3.0);
  * @endcode
  *
- * @sa tautline::MetricField (Filters/Kernel/MetricField.h), vtkElementQuality
+ * @sa tautline::MetricField (tautline/Quality/MetricField.h), vtkElementQuality
  */
 
 #ifndef vtkMetricField_h

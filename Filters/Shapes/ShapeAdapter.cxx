@@ -27,7 +27,7 @@ namespace
 {
 /// Pixels are square if their sides differ by no more than this part.
 constexpr double SquareTolerance = 1e-4;
-/// A mesh is planar if its depth is no more than this part of its extent.
+/// A mesh is planar if its thickness is at most this fraction of its extent.
 constexpr double PlaneTolerance = 1e-6;
 
 Error stray()

@@ -63,7 +63,7 @@ SourceMesh takeSourceMesh(vtkDataSet* mesh);
 void fillGrid(vtkUnstructuredGrid* grid, const PolygonMesh& mesh, const std::vector<Vec2>& points,
   const GreyImage& image);
 
-/// Point and cell arrays that tell the order of vertices along the boundary and of elimination.
+/// Point and cell arrays with the order of vertices along the boundary and of elimination.
 void addOrders(vtkUnstructuredGrid* grid, const PolygonMesh& mesh);
 }
 #endif

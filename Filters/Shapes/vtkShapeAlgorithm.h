@@ -1,17 +1,16 @@
 /**
  * @class vtkShapeAlgorithm
- * @brief What Match Shape and Shape Retrieval have in common: the energy, the locations and the
- * search.
+ * @brief Base class of Match Shape and Shape Retrieval: the energy, the locations and the search.
  *
  * Abstract. The energy of a placement of the source's triangles is (dissertation equation 5.1)
  *
  *     E = sum over triangles of  E_edge + a E_def + b E_dis
  *
- * and its terms are in tautline/ShapeMatch.h. The properties below are those of dissertation
+ * and its terms are in tautline/Shapes/ShapeMatch.h. The properties below are those of dissertation
  * chapter 5, and some that are not in it: they are off unless it is said otherwise. After the time
  * limit (0, no limit, by default) the best placement so far is returned.
  *
- * @sa vtkShapeMatcher, vtkShapeRetrieval, tautline::matchShape (Filters/Kernel/ShapeMatch.h)
+ * @sa vtkShapeMatcher, vtkShapeRetrieval, tautline::matchShape (tautline/Shapes/ShapeMatch.h)
  */
 
 #ifndef vtkShapeAlgorithm_h
@@ -83,8 +82,8 @@ public:
 
   ///@{
   /**
-   * Whether the distortion tells growing from shrinking; the dissertation's does not. Off by
-   * default.
+   * Whether the distortion distinguishes growing from shrinking; the dissertation's does not. Off
+   * by default.
    */
   vtkSetMacro(SignedDistortion, bool);
   vtkGetMacro(SignedDistortion, bool);
@@ -197,7 +196,7 @@ public:
 
   ///@{
   /**
-   * Orientations of the source to try, 1 to 360; of use with a RotationWeight. The default is 1.
+   * Orientations of the source to try, 1 to 360; useful with a RotationWeight. The default is 1.
    */
   vtkSetMacro(Rotations, int);
   vtkGetMacro(Rotations, int);

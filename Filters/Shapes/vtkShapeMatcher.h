@@ -3,7 +3,7 @@
  * @brief "Match Shape": finds a deformable shape in an image.
  *
  * The source is a triangulated polygon; the placement of its vertices in the target image with the
- * least energy is found by dynamic programming over the triangles, exactly and without a first
+ * minimum energy is found by dynamic programming over the triangles, exactly and without a first
  * guess (dissertation chapter 5). If the mean of the matched vertices is too far from the target's
  * centre of mass, the next best solution is taken (equation 5.2).
  *
@@ -37,7 +37,7 @@
  * matcher->SetLocations(vtkShapeAlgorithm::CONTOUR);
  * @endcode
  *
- * @sa vtkSilhouetteMesher, vtkShapeRetrieval, tautline::matchShape (Filters/Kernel/ShapeMatch.h)
+ * @sa vtkSilhouetteMesher, vtkShapeRetrieval, tautline::matchShape (tautline/Shapes/ShapeMatch.h)
  */
 
 #ifndef vtkShapeMatcher_h

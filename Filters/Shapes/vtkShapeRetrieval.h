@@ -21,7 +21,7 @@
  * possible (dissertation section 5.3); the query itself does not count.
  *
  * @sa vtkSilhouetteSetReader, vtkShapeMatcher, tautline::retrieveShapes
- * (Filters/Kernel/ShapeRetrieval.h)
+ * (tautline/Shapes/ShapeRetrieval.h)
  */
 
 #ifndef vtkShapeRetrieval_h

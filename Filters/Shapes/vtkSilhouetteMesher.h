@@ -33,7 +33,7 @@
  * mesher->SetSpacing(15);
  * @endcode
  *
- * @sa vtkShapeMatcher, tautline::traceSilhouette (Filters/Kernel/Silhouette.h)
+ * @sa vtkShapeMatcher, tautline::traceSilhouette (tautline/Shapes/Silhouette.h)
  */
 
 #ifndef vtkSilhouetteMesher_h
@@ -72,7 +72,7 @@ public:
 
   ///@{
   /**
-   * Whether Threshold is used. Off, the default: midway between the least and the greatest value.
+   * Whether Threshold is used. Off, the default: midway between the minimum and the maximum.
    */
   vtkSetMacro(UseThreshold, bool);
   vtkGetMacro(UseThreshold, bool);

@@ -5,8 +5,8 @@
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from
  * data sets with explicit points, or blocks of these. The connectivity stays, and so do the points
  * of the boundary unless FixBoundary is off. The output never has more inverted elements than the
- * input. What it says of the result is a guarantee: that every element is valid, or which are not,
- * where they are, and why.
+ * input. Its report is a guarantee: that every element is valid, or which are not, where they are,
+ * and why.
  *
  * A mesh reversed throughout is treated as its mirror image; one of mixed orientation, image data
  * (implicit points) and cells of higher order are refused. For better elements run vtkMeshOptimizer
@@ -31,7 +31,7 @@
  * Each untangles its own part. Points of ghost cells stay, so that the parts still fit together.
  *
  * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see
- * tautline/Untangle.h.
+ * tautline/Untangling/Untangle.h.
  *
  * @sa vtkMeshOptimizer, vtkElementQuality, vtkMeshPerturbation
  */
@@ -65,7 +65,7 @@ public:
   };
   ///@{
   /**
-   * How hard to try: LOCAL moves only what is around inverted elements, NORMAL then all points,
+   * The effort: LOCAL moves only what is around inverted elements, NORMAL then all points,
    * THOROUGH for thousands of iterations and from several starts. The default is NORMAL.
    */
   vtkSetClampMacro(Effort, int, LOCAL, THOROUGH);

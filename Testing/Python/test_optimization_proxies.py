@@ -97,7 +97,7 @@ assert table.GetValueByName(table.GetNumberOfRows() - 1, "Inverted").ToDouble() 
 # a known optimum of 0, which the objective cannot come close to, is not an unknown one
 reasons = []
 for use in (0, 1):
-    known = OptimizeMesh(Input=worse, Preset="Custom", Reduction=0.5, UseBestKnown=use, BestKnown=0)  # noqa: F821
+    known = OptimizeMesh(Input=mesh, Preset="Custom", Reduction=0.5, UseBestKnown=use, BestKnown=0)  # noqa: F821
     known.UpdatePipeline()
     known.UpdatePropertyInformation()
     reasons.append(known.Reason)

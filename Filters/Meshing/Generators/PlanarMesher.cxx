@@ -32,7 +32,7 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Traits, Structu
 using Vertex = Triangulation::Vertex_handle;
 using Face = Triangulation::Face_handle;
 
-/// Angle and size bounds in the form of CGAL's concept MeshingCriteria_2.
+/// Angle and size bounds after CGAL's concept MeshingCriteria_2.
 class Criteria
 {
 public:
@@ -87,7 +87,7 @@ public:
       q.excess = size > 0.0 ? lengths[2] / (size * size) : 0.0;
       const double area = 2.0 * CGAL::area(a, b, c);
       // Near sharp corners of the input small angles cannot be refined away: trying ends in edges
-      // shorter than coordinates can tell apart.
+      // shorter than the resolution of the coordinates.
       q.sine = lengths[0] > this->Smallest ? area * area / (lengths[1] * lengths[2]) : 1.0;
       return (*this)(q);
     }

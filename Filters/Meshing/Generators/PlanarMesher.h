@@ -28,10 +28,10 @@ struct PlanarOptions
   double size = 0.0;
   /// Longest edge allowed near a place; empty for none. Both bounds hold.
   std::function<double(double, double)> sizeField;
-  /// Whether `holes` of the boundary say where no triangles go. Otherwise it is every part that an
-  /// odd number of outlines does not surround.
+  /// Whether there are no triangles where the boundary has `holes`. Otherwise there are none in
+  /// every part that an odd number of outlines does not surround.
   bool holesGiven = false;
-  /// Error beyond this number of points, which ends a refinement that would go on for ever.
+  /// Error beyond this number of points, which ends a refinement that does not terminate.
   Index pointLimit = 20000000;
   /// Called from time to time with the number of points; returning false stops with an Error.
   std::function<bool(Index)> progress;

@@ -187,7 +187,7 @@ bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>
   const rlimit noCore = { 0, 0 };
   setrlimit(RLIMIT_CORE, &noCore);
   const int nowhere = ::open("/dev/null", O_WRONLY);
-  ::dup2(nowhere, STDOUT_FILENO); // TetGen talks even when it is told not to
+  ::dup2(nowhere, STDOUT_FILENO); // TetGen prints even with -Q
   ::dup2(nowhere, STDERR_FILENO);
   int code = 0;
   try
@@ -380,7 +380,7 @@ std::string switchesFor(const SolidOptions& options)
   }
   if (options.volume > 0.0)
   {
-    std::snprintf(text, sizeof(text), "a%.15f", options.volume); // TetGen knows no exponents
+    std::snprintf(text, sizeof(text), "a%.15f", options.volume); // TetGen reads no exponents
     switches += text;
   }
   switches += options.regions.empty() ? "" : "Aa";

@@ -289,7 +289,7 @@ void testParts()
 
   filter->SetMovedPart(vtkMeshWarp::ARRAY_VALUES);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("No array is chosen that tells what moves"));
+  TAUTLINE_CHECK(messages.has("No array is chosen for the part that moves"));
   messages.clear();
   const auto points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   filter->SetInputArrayToProcess(1, 0, 0, points, "marker");

@@ -36,7 +36,7 @@ void testTetGenMessages()
   expect("node", "4 3 0 0\n1 0 0 0.00\n2 1 0 0.00\n3 1 0 0.0000000\n",
     "bad.node:5: the file ends before vertex 4");
   expect("node", "2 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 1\n",
-    "bad.node:4: the file goes on after the last vertex");
+    "bad.node:4: the file continues after the last vertex");
   expect(
     "node", "2 3 0 0\n1 0 nan 0\n2 1 0 0\n", "bad.node:2: coordinate is not a finite number: nan");
   expect("node", "2 3 0 0\n1 0 0 1e999\n2 1 0 0\n",
