@@ -8,6 +8,8 @@ namespace tautline
 {
 namespace
 {
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 /// The directions (normals of faces, or edges) of the facets around one point: two, or too many.
 struct Directions
 {
@@ -91,6 +93,38 @@ void set(std::vector<double>& all, Index point, const Vec3& v)
     all[3 * point + c] = v[c] / length;
   }
 }
+
+/// Sets whether a boundary point slides in a plane, along a line, on the surface, or is fixed.
+void classify(Index i, const Directions& d, bool volume, double cosine, double smoothCosine,
+  BoundaryShape& shape)
+{
+  const Vec3 shared = cross(d.firstSum, d.secondSum);
+  if (volume && d.kinds == 1)
+  {
+    set(shape.planes, i, d.firstSum);
+    ++shape.inPlanes;
+  }
+  else if (!volume && d.kinds == 1 && d.facets == 2)
+  {
+    set(shape.lines, i, d.firstSum);
+    ++shape.onLines;
+  }
+  else if (!d.faulty && (volume || d.facets == 2) && d.minCosine >= smoothCosine)
+  {
+    shape.surface[i] = 1;
+    ++shape.onSurface;
+  }
+  else if (volume && d.kinds == 2 &&
+    norm(shared) > std::sqrt(1 - cosine * cosine) * norm(d.firstSum) * norm(d.secondSum))
+  {
+    set(shape.lines, i, shared);
+    ++shape.onLines;
+  }
+  else
+  {
+    shape.fixed[i] = 1;
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -160,36 +194,9 @@ BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle, double featureAn
   const bool volume = mesh.dimension() == Dimension::Volume;
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
-    const Directions& d = around[i];
-    if (d.facets == 0)
+    if (around[i].facets > 0)
     {
-      continue;
-    }
-    const Vec3 shared = cross(d.firstSum, d.secondSum);
-    if (volume && d.kinds == 1)
-    {
-      set(shape.planes, i, d.firstSum);
-      ++shape.inPlanes;
-    }
-    else if (!volume && d.kinds == 1 && d.facets == 2)
-    {
-      set(shape.lines, i, d.firstSum);
-      ++shape.onLines;
-    }
-    else if (smooth && !d.faulty && (volume || d.facets == 2) && d.minCosine >= smoothCosine)
-    {
-      shape.surface[i] = 1;
-      ++shape.onSurface;
-    }
-    else if (volume && d.kinds == 2 &&
-      norm(shared) > std::sqrt(1 - cosine * cosine) * norm(d.firstSum) * norm(d.secondSum))
-    {
-      set(shape.lines, i, shared);
-      ++shape.onLines;
-    }
-    else
-    {
-      shape.fixed[i] = 1;
+      classify(i, around[i], volume, cosine, smooth ? smoothCosine : infinity, shape);
     }
   }
   return shape;

@@ -20,20 +20,10 @@ std::string cellMessage(Index cell, const std::string& what)
 {
   return "Cell " + std::to_string(cell) + " " + what;
 }
-}
 
-//------------------------------------------------------------------------------
-Mesh::Mesh(const MeshView& view, int threads)
-  : View(view)
+/// The cells sorted by type; adds to the numbers of those of higher order and of unsupported ones.
+std::vector<CellBlock> sortByType(const MeshView& view, Index& higherOrder, Index& unsupported)
 {
-  if (view.numberOfPoints < 0 || view.numberOfCells < 0 ||
-    (view.numberOfPoints > 0 && !view.points) ||
-    (view.numberOfCells > 0 && (!view.cellTypes || !view.offsets || !view.connectivity)))
-  {
-    throw Error("The mesh view is incomplete: points, cell types, offsets and connectivity are "
-                "all needed.");
-  }
-
   // One pass finds which of the 256 types occur, so that a mesh of one type needs no id lists.
   std::array<Index, 256> histogram{};
   for (Index i = 0; i < view.numberOfCells; ++i)
@@ -52,13 +42,14 @@ Mesh::Mesh(const MeshView& view, int threads)
     if (blockOfType[type] >= 0)
     {
       counts[blockOfType[type]] += histogram[type];
-      this->HigherOrder += isHigherOrder(type) ? histogram[type] : 0;
+      higherOrder += isHigherOrder(type) ? histogram[type] : 0;
     }
     else
     {
-      this->Unsupported += histogram[type];
+      unsupported += histogram[type];
     }
   }
+  std::vector<CellBlock> blocks;
   for (int b = 0; b < NumberOfCellTypes; ++b)
   {
     if (counts[b] == 0)
@@ -79,10 +70,15 @@ Mesh::Mesh(const MeshView& view, int threads)
         }
       }
     }
-    this->Blocks.push_back(std::move(block));
+    blocks.push_back(std::move(block));
   }
+  return blocks;
+}
 
-  for (const CellBlock& block : this->Blocks)
+/// Throws Error on a cell with too few nodes or with node ids out of range.
+void checkConnectivity(const MeshView& view, const std::vector<CellBlock>& blocks, int threads)
+{
+  for (const CellBlock& block : blocks)
   {
     const int nodes = topology(block.type).nodes;
     std::atomic<Index> wrong{ -1 };
@@ -114,7 +110,69 @@ Mesh::Mesh(const MeshView& view, int threads)
           "connectivity array."));
     }
   }
+}
 
+/// Calls visit(p) for the finite nodes of the cells, once per cell.
+template <class Visit>
+void forEachCorner(const MeshView& view, const std::vector<CellBlock>& blocks, const Visit& visit)
+{
+  for (const CellBlock& block : blocks)
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      for (int k = 0; k < nodes; ++k)
+      {
+        const Vec3 p = pointOf(view, node[k]);
+        if (std::isfinite(p[0] + p[1] + p[2]))
+        {
+          visit(p);
+        }
+      }
+    }
+  }
+}
+
+/// The principal direction in which the corners extend least, and their mean.
+Vec3 leastExtent(const MeshView& view, const std::vector<CellBlock>& blocks, const Vec3& middle,
+  double diagonal, Vec3& center)
+{
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Index count = 0;
+  forEachCorner(view, blocks,
+    [&](const Vec3& p)
+    {
+      const Vec3 r = (1.0 / diagonal) * (p - middle);
+      const Eigen::Vector3d v(r[0], r[1], r[2]);
+      moments += v * v.transpose();
+      sum += v;
+      ++count;
+    });
+  const Eigen::Vector3d mean = sum / static_cast<double>(count);
+  moments = moments / static_cast<double>(count) - mean * mean.transpose();
+  const Eigen::Vector3d n =
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
+  center = middle + diagonal * Vec3{ mean[0], mean[1], mean[2] };
+  return { n[0], n[1], n[2] };
+}
+}
+
+//------------------------------------------------------------------------------
+Mesh::Mesh(const MeshView& view, int threads)
+  : View(view)
+{
+  if (view.numberOfPoints < 0 || view.numberOfCells < 0 ||
+    (view.numberOfPoints > 0 && !view.points) ||
+    (view.numberOfCells > 0 && (!view.cellTypes || !view.offsets || !view.connectivity)))
+  {
+    throw Error("The mesh view is incomplete: points, cell types, offsets and connectivity are "
+                "all needed.");
+  }
+
+  this->Blocks = sortByType(view, this->HigherOrder, this->Unsupported);
+  checkConnectivity(view, this->Blocks, threads);
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
     const Vec3 p = pointOf(view, i);
@@ -136,30 +194,12 @@ Mesh::Mesh(const MeshView& view, int threads)
 //------------------------------------------------------------------------------
 void Mesh::findPlane()
 {
+  const MeshView& view = this->View;
   // Principal directions of the corners of the cells; unused and non-finite points do not count.
   Vec3 low, high;
   low.fill(std::numeric_limits<double>::max());
   high.fill(-std::numeric_limits<double>::max());
-  auto forEachCorner = [&](auto visit)
-  {
-    for (const CellBlock& block : this->Blocks)
-    {
-      const int nodes = topology(block.type).nodes;
-      for (Index i = 0; i < block.count; ++i)
-      {
-        const Index* node = this->View.connectivity + this->View.offsets[block.cell(i)];
-        for (int k = 0; k < nodes; ++k)
-        {
-          const Vec3 p = pointOf(this->View, node[k]);
-          if (std::isfinite(p[0] + p[1] + p[2]))
-          {
-            visit(p);
-          }
-        }
-      }
-    }
-  };
-  forEachCorner(
+  forEachCorner(view, this->Blocks,
     [&](const Vec3& p)
     {
       for (int c = 0; c < 3; ++c)
@@ -196,26 +236,10 @@ void Mesh::findPlane()
   else
   {
     const Vec3 middle = 0.5 * (low + high);
-    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Index count = 0;
-    forEachCorner(
-      [&](const Vec3& p)
-      {
-        const Vec3 r = (1.0 / diagonal) * (p - middle);
-        const Eigen::Vector3d v(r[0], r[1], r[2]);
-        moments += v * v.transpose();
-        sum += v;
-        ++count;
-      });
-    const Eigen::Vector3d mean = sum / static_cast<double>(count);
-    moments = moments / static_cast<double>(count) - mean * mean.transpose();
-    const Eigen::Vector3d n =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
-    const Vec3 center = middle + diagonal * Vec3{ mean[0], mean[1], mean[2] };
-    normal = { n[0], n[1], n[2] };
+    Vec3 center;
+    normal = leastExtent(view, this->Blocks, middle, diagonal, center);
     double farthest = 0.0;
-    forEachCorner(
+    forEachCorner(view, this->Blocks,
       [&](const Vec3& p) { farthest = std::max(farthest, std::abs(dot(p - center, normal))); });
     if (farthest > planarTolerance * diagonal)
     {

@@ -45,6 +45,58 @@ double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node, co
   }
   return sum;
 }
+
+/// Counts the parts, which `sets` has by cell, and those that are reversed: the signed size of a part
+/// decides, tangled or not; where it is lost to rounding (a vertex far out), the majority.
+void countParts(const Mesh& mesh, const signed char* validity, UnionFind& sets, Orientation& result)
+{
+  const MeshView& view = mesh.view();
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  const bool haveSigns = mesh.dimension() != Dimension::Surface;
+  struct Part
+  {
+    double sum = 0, magnitude = 0;
+    Index majority = 0; // positive less inverted cells
+  };
+  std::vector<Part> parts(view.numberOfCells);
+  Vec3 origin = { 0, 0, 0 };
+  for (Index i = 0; i < view.numberOfPoints; ++i)
+  {
+    origin = pointOf(view, i);
+    if (std::isfinite(dot(origin, origin)))
+    {
+      break;
+    }
+  }
+  for (const CellBlock& block : mesh.blocks())
+  {
+    if (topology(block.type).dimension == dimension)
+    {
+      for (Index i = 0; i < block.count; ++i)
+      {
+        const Index cell = block.cell(i);
+        if (haveSigns && validity[cell] >= Inverted) // flat ones, too: they may be long
+        {
+          const double size =
+            signedSize(mesh, topology(block.type), view.connectivity + view.offsets[cell], origin);
+          Part& part = parts[sets.find(cell)];
+          part.sum += size;
+          part.magnitude += std::abs(size);
+          part.majority += validity[cell]; // 1, 0 or -1
+        }
+        result.parts += sets.find(cell) == cell;
+      }
+    }
+  }
+  if (haveSigns)
+  {
+    constexpr double rounding = 1e-9;
+    const double sign = mesh.mirrored() ? -1 : 1;
+    result.reversedParts = std::count_if(parts.begin(), parts.end(),
+      [=](const Part& p)
+      { return std::abs(p.sum) > rounding * p.magnitude ? sign * p.sum < 0 : p.majority < 0; });
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -92,51 +144,7 @@ Orientation Mesh::orientation(const signed char* validity) const
       }
     });
 
-  // The signed size of a part decides, tangled or not; where it is lost to rounding (a vertex far
-  // out), the majority.
-  struct Part
-  {
-    double sum = 0, magnitude = 0;
-    Index majority = 0; // positive less inverted cells
-  };
-  std::vector<Part> parts(this->View.numberOfCells);
-  Vec3 origin = { 0, 0, 0 };
-  for (Index i = 0; i < this->View.numberOfPoints; ++i)
-  {
-    origin = pointOf(this->View, i);
-    if (std::isfinite(dot(origin, origin)))
-    {
-      break;
-    }
-  }
-  for (const CellBlock& block : this->Blocks)
-  {
-    if (topology(block.type).dimension == dimension)
-    {
-      for (Index i = 0; i < block.count; ++i)
-      {
-        const Index cell = block.cell(i);
-        if (haveSigns && validity[cell] >= Inverted) // flat ones, too: they may be long
-        {
-          const double size = signedSize(*this, topology(block.type),
-            this->View.connectivity + this->View.offsets[cell], origin);
-          Part& part = parts[sets.find(cell)];
-          part.sum += size;
-          part.magnitude += std::abs(size);
-          part.majority += validity[cell]; // 1, 0 or -1
-        }
-        result.parts += sets.find(cell) == cell;
-      }
-    }
-  }
-  if (haveSigns)
-  {
-    constexpr double rounding = 1e-9;
-    const double sign = this->Mirrored ? -1 : 1;
-    result.reversedParts = std::count_if(parts.begin(), parts.end(),
-      [=](const Part& p)
-      { return std::abs(p.sum) > rounding * p.magnitude ? sign * p.sum < 0 : p.majority < 0; });
-  }
+  countParts(*this, validity, sets, result);
   if (result.disagreeing > 0 || (result.reversedParts > 0 && result.reversedParts < result.parts))
   {
     result.state = Orientation::Mixed;

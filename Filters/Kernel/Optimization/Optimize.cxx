@@ -125,6 +125,29 @@ bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeRes
 }
 
 //------------------------------------------------------------------------------
+/// Whether a sweep was the last worth making, and why; `all`: it visited every vertex.
+bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,
+  double firstGradient, double lowered, double size, StopReason& reason)
+{
+  if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient)
+  {
+    reason = StopReason::GradientNorm;
+    return true;
+  }
+  if (lowered <= stop.relativeChange * size)
+  {
+    reason = StopReason::RelativeChange;
+    return true;
+  }
+  if (lowered == 0)
+  {
+    reason = StopReason::NoProgress;
+    return true;
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
 /**
  * @brief Sweeps to convergence.
  * @param failed set where a sweep raised the objective, as those of several objectives can
@@ -187,26 +210,12 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     }
 
     // Convergence is only believed of a sweep over all vertices.
-    const bool still = sweep.moved == 0 && sweep.visited == 0;
-    if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient)
+    if (!converged(stop, sweep, all, firstGradient, lowered, size, reason))
     {
-      reason = StopReason::GradientNorm;
-    }
-    else if (lowered <= stop.relativeChange * size)
-    {
-      reason = StopReason::RelativeChange;
-    }
-    else if (lowered == 0)
-    {
-      reason = StopReason::NoProgress;
-    }
-    else
-    {
-      all = false;
-      if (still || sweep.moved == 0)
+      all = sweep.moved == 0;
+      if (all)
       {
         sweeper.wakeAll();
-        all = true;
       }
       continue;
     }

@@ -487,6 +487,57 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
 }
 
 //------------------------------------------------------------------------------
+/// Halves the step t until the objective falls enough; `to` is then the displacement reached.
+template <int Dim>
+bool VertexOptimizer<Dim>::search(const Scalarizer& scalarizer, PatchWorker<Dim>& w,
+  const double* d, const double* direction, double t, double slope, double* to)
+{
+  for (int halving = 0; halving < maximumHalvings && t > 0; ++halving, t *= 0.5)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      to[c] = d[c] + t * direction[c];
+    }
+    if (this->changeAt(scalarizer, w, to) <= ArmijoConstant * t * slope &&
+      (!this->Guarded || staysValid<Dim>(w.patch.simplices, d, to)))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Moves v by d, back to the surface if it is on one; whether it moved far enough to stay awake.
+template <int Dim>
+bool VertexOptimizer<Dim>::placeMoved(
+  std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
+{
+  const double size = sizeOf(w.patch.simplices);
+  double d2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    d2 += d[c] * d[c];
+  }
+  if (this->isOnSurface(v))
+  {
+    if (!this->placeOnSurface(v, d, scalarizer, w))
+    {
+      return false;
+    }
+  }
+  else
+  {
+    Vec3 x = { 0, 0, 0 };
+    for (int c = 0; c < Dim; ++c)
+    {
+      x[c] = this->Simplices.coordinates()[VertexStride * static_cast<std::size_t>(v) + c] + d[c];
+    }
+    this->place(v, x);
+  }
+  return std::sqrt(d2) > this->Options.culling * size;
+}
+
+//------------------------------------------------------------------------------
 template <int Dim>
 bool VertexOptimizer<Dim>::moveVertex(
   std::int32_t v, const Scalarizer& scalarizer, PatchWorker<Dim>& w, double& gradient2)
@@ -539,22 +590,8 @@ bool VertexOptimizer<Dim>::moveVertex(
       t = std::min(t, safety * stepToInversion<Dim>(w.patch.simplices, d, direction));
     }
     t = this->limited(v, d, direction, t);
-    bool found = false;
     double to[Dim];
-    for (int halving = 0; halving < maximumHalvings && t > 0; ++halving, t *= 0.5)
-    {
-      for (int c = 0; c < Dim; ++c)
-      {
-        to[c] = d[c] + t * direction[c];
-      }
-      if (this->changeAt(scalarizer, w, to) <= ArmijoConstant * t * slope &&
-        (!this->Guarded || staysValid<Dim>(w.patch.simplices, d, to)))
-      {
-        found = true;
-        break;
-      }
-    }
-    if (!found)
+    if (!this->search(scalarizer, w, d, direction, t, slope, to))
     {
       break;
     }
@@ -572,29 +609,7 @@ bool VertexOptimizer<Dim>::moveVertex(
   {
     return false;
   }
-  const double size = sizeOf(w.patch.simplices);
-  double d2 = 0;
-  for (int c = 0; c < Dim; ++c)
-  {
-    d2 += d[c] * d[c];
-  }
-  if (this->isOnSurface(v))
-  {
-    if (!this->placeOnSurface(v, d, scalarizer, w))
-    {
-      return false;
-    }
-  }
-  else
-  {
-    Vec3 x = { 0, 0, 0 };
-    for (int c = 0; c < Dim; ++c)
-    {
-      x[c] = this->Simplices.coordinates()[VertexStride * static_cast<std::size_t>(v) + c] + d[c];
-    }
-    this->place(v, x);
-  }
-  return std::sqrt(d2) > this->Options.culling * size;
+  return this->placeMoved(v, d, scalarizer, w);
 }
 
 //------------------------------------------------------------------------------

@@ -65,6 +65,10 @@ private:
     return (Dim == 2 && this->Simplices.surface()) ||
       (!this->Options.onSurface.empty() && this->Options.onSurface[v]);
   }
+  bool search(const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d,
+    const double* direction, double t, double slope, double* to);
+  bool placeMoved(
+    std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w);
   void place(std::int32_t v, const Vec3& x);
   bool placeOnSurface(
     std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w);

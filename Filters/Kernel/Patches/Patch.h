@@ -196,6 +196,93 @@ void loadTargets(
   }
 }
 
+/// The edges from v to the other vertices of a packet's simplices; in the plane of the tangents, if
+/// there are any.
+template <int Dim>
+void loadEdges(const double* x, const double* center, const std::int32_t* ids, const Vec3* tangents,
+  Packet (&e)[Dim][3])
+{
+  for (int k = 0; k < Dim; ++k)
+  {
+    loadVertices(x, ids + k, Dim, e[k]);
+    for (int c = 0; c < (tangents ? 3 : Dim); ++c)
+    {
+      e[k][c] -= center[c];
+    }
+    if (tangents)
+    {
+      const Packet inPlane[2] = { e[k][0] * tangents[0][0] + e[k][1] * tangents[0][1] +
+          e[k][2] * tangents[0][2],
+        e[k][0] * tangents[1][0] + e[k][1] * tangents[1][1] + e[k][2] * tangents[1][2] };
+      e[k][0] = inPlane[0];
+      e[k][1] = inPlane[1];
+    }
+  }
+}
+
+/**
+ * @brief Sets the coefficients of N(d) and D(d) of a packet's simplices.
+ * @param at, across the coefficients of the edges e at v and of the others
+ */
+template <int Dim>
+void setCoefficients(const Packet (&e)[Dim][3], const Packet (&at)[Dim], const Packet (&across)[3],
+  Packet det, PatchPacket<Dim>& p)
+{
+  if constexpr (Dim == 3)
+  {
+    Packet ab[3], bc[3], ca[3];
+    const auto cross3 = [](const Packet* a, const Packet* b, Packet* r)
+    {
+      r[0] = a[1] * b[2] - a[2] * b[1];
+      r[1] = a[2] * b[0] - a[0] * b[2];
+      r[2] = a[0] * b[1] - a[1] * b[0];
+    };
+    cross3(e[0], e[1], ab);
+    cross3(e[1], e[2], bc);
+    cross3(e[2], e[0], ca);
+    p.D0 = det * (e[0][0] * bc[0] + e[0][1] * bc[1] + e[0][2] * bc[2]);
+    p.N0 = Packet{};
+    p.C = at[0] + at[1] + at[2];
+    for (int c = 0; c < 3; ++c)
+    {
+      p.n[c] = det * (ab[c] + bc[c] + ca[c]);
+      p.S[c] = at[0] * e[0][c] + at[1] * e[1][c] + at[2] * e[2][c];
+      const Packet d01 = e[0][c] - e[1][c], d12 = e[1][c] - e[2][c], d20 = e[2][c] - e[0][c];
+      p.N0 += at[0] * e[0][c] * e[0][c] + at[1] * e[1][c] * e[1][c] + at[2] * e[2][c] * e[2][c] +
+        across[0] * d01 * d01 + across[1] * d12 * d12 + across[2] * d20 * d20;
+    }
+  }
+  else
+  {
+    const Packet dx = e[0][0] - e[1][0], dy = e[0][1] - e[1][1];
+    p.D0 = det * (e[0][0] * e[1][1] - e[0][1] * e[1][0]);
+    p.n[0] = -det * dy;
+    p.n[1] = det * dx;
+    p.C = at[0] + at[1];
+    p.N0 = across[0] * (dx * dx + dy * dy);
+    for (int c = 0; c < 2; ++c)
+    {
+      p.S[c] = at[0] * e[0][c] + at[1] * e[1][c];
+      p.N0 += at[0] * e[0][c] * e[0][c] + at[1] * e[1][c] * e[1][c];
+    }
+  }
+}
+
+/// Gives simplices of weight 0 the invariants of an ideal one that does not move.
+template <int Dim>
+void clearWeightless(PatchPacket<Dim>& p)
+{
+  const Mask there = p.weight != 0.0;
+  p.N0 = select(there, p.N0, broadcast(Dim));
+  p.D0 = select(there, p.D0, broadcast(1.0));
+  p.C = select(there, p.C, Packet{});
+  for (int c = 0; c < Dim; ++c)
+  {
+    p.S[c] = select(there, p.S[c], Packet{});
+    p.n[c] = select(there, p.n[c], Packet{});
+  }
+}
+
 /**
  * @brief Builds the patch of v from the coordinates x.
  * @param simplexWeights per simplex, or null; simplices of weight 0 are as if they were not there
@@ -235,22 +322,7 @@ void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
       ids = filled;
     }
     Packet e[Dim][3] = {};
-    for (int k = 0; k < Dim; ++k)
-    {
-      loadVertices(x, ids + k, Dim, e[k]);
-      for (int c = 0; c < (tangents ? 3 : Dim); ++c)
-      {
-        e[k][c] -= center[c];
-      }
-      if (tangents)
-      {
-        const Packet inPlane[2] = { e[k][0] * tangents[0][0] + e[k][1] * tangents[0][1] +
-            e[k][2] * tangents[0][2],
-          e[k][0] * tangents[1][0] + e[k][1] * tangents[1][1] + e[k][2] * tangents[1][2] };
-        e[k][0] = inPlane[0];
-        e[k][1] = inPlane[1];
-      }
-    }
+    loadEdges<Dim>(x, center, ids, tangents, e);
     // Coefficients of the edges at v, of the others, and of the determinant.
     Packet at[Dim] = {}, across[3] = {}, det = {};
     if (uniform)
@@ -274,55 +346,10 @@ void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
         p.weight[l] = simplexWeights[mesh.patchCorners()[first + l] / (Dim + 1)];
       }
     }
-    if constexpr (Dim == 3)
-    {
-      Packet ab[3], bc[3], ca[3];
-      const auto cross3 = [](const Packet* a, const Packet* b, Packet* r)
-      {
-        r[0] = a[1] * b[2] - a[2] * b[1];
-        r[1] = a[2] * b[0] - a[0] * b[2];
-        r[2] = a[0] * b[1] - a[1] * b[0];
-      };
-      cross3(e[0], e[1], ab);
-      cross3(e[1], e[2], bc);
-      cross3(e[2], e[0], ca);
-      p.D0 = det * (e[0][0] * bc[0] + e[0][1] * bc[1] + e[0][2] * bc[2]);
-      p.N0 = Packet{};
-      p.C = at[0] + at[1] + at[2];
-      for (int c = 0; c < 3; ++c)
-      {
-        p.n[c] = det * (ab[c] + bc[c] + ca[c]);
-        p.S[c] = at[0] * e[0][c] + at[1] * e[1][c] + at[2] * e[2][c];
-        const Packet d01 = e[0][c] - e[1][c], d12 = e[1][c] - e[2][c], d20 = e[2][c] - e[0][c];
-        p.N0 += at[0] * e[0][c] * e[0][c] + at[1] * e[1][c] * e[1][c] + at[2] * e[2][c] * e[2][c] +
-          across[0] * d01 * d01 + across[1] * d12 * d12 + across[2] * d20 * d20;
-      }
-    }
-    else
-    {
-      const Packet dx = e[0][0] - e[1][0], dy = e[0][1] - e[1][1];
-      p.D0 = det * (e[0][0] * e[1][1] - e[0][1] * e[1][0]);
-      p.n[0] = -det * dy;
-      p.n[1] = det * dx;
-      p.C = at[0] + at[1];
-      p.N0 = across[0] * (dx * dx + dy * dy);
-      for (int c = 0; c < 2; ++c)
-      {
-        p.S[c] = at[0] * e[0][c] + at[1] * e[1][c];
-        p.N0 += at[0] * e[0][c] * e[0][c] + at[1] * e[1][c] * e[1][c];
-      }
-    }
+    setCoefficients<Dim>(e, at, across, det, p);
     if (simplexWeights && any(p.weight == 0.0))
     {
-      const Mask there = p.weight != 0.0;
-      p.N0 = select(there, p.N0, broadcast(Dim));
-      p.D0 = select(there, p.D0, broadcast(1.0));
-      p.C = select(there, p.C, Packet{});
-      for (int c = 0; c < Dim; ++c)
-      {
-        p.S[c] = select(there, p.S[c], Packet{});
-        p.n[c] = select(there, p.n[c], Packet{});
-      }
+      clearWeightless<Dim>(p);
     }
   }
 }

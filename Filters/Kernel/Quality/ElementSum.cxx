@@ -65,6 +65,68 @@ std::vector<Index> spatialOrder(const Mesh& mesh, const CellBlock& block)
     keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
   return order;
 }
+
+/// A colour, and a chunk that has it.
+using ColouredChunk = std::pair<int, ElementSum::Chunk>;
+
+/**
+ * @brief Colours the chunks greedily, one after the other: a colour is free if no vertex of the
+ * chunk has it yet.
+ * @param reordered the cells of each block go along a space-filling curve
+ * @param orders of each block, set if reordered
+ * @return false if no colour is free for a chunk
+ */
+bool colourChunks(const Mesh& mesh, Metric metric, bool reordered,
+  std::vector<std::vector<Index>>& orders, std::vector<ColouredChunk>& coloured)
+{
+  const MeshView& view = mesh.view();
+  const MetricCode code = metricCode(metric);
+  const auto& blocks = mesh.blocks();
+  std::vector<std::uint64_t> used(view.numberOfPoints, 0); // colours of each vertex, as bits
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+  {
+    const CellBlock& block = blocks[b];
+    if (!evaluatorFor(mesh, metric, code, block, false))
+    {
+      continue;
+    }
+    if (reordered)
+    {
+      orders[b] = spatialOrder(mesh, block);
+    }
+    const Index* order = reordered ? orders[b].data() : nullptr;
+    const int nodes = topology(block.type).nodes;
+    for (Index begin = 0; begin < block.count; begin += ChunkSize)
+    {
+      const Index end = std::min(block.count, begin + ChunkSize);
+      const auto forEachVertex = [&](const auto& visit)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          const Index* node = view.connectivity + view.offsets[block.cell(order ? order[i] : i)];
+          for (int k = 0; k < nodes; ++k)
+          {
+            visit(used[node[k]]);
+          }
+        }
+      };
+      std::uint64_t taken = 0;
+      forEachVertex([&](std::uint64_t& mask) { taken |= mask; });
+      if (taken == ~std::uint64_t(0))
+      {
+        return false;
+      }
+      int colour = 0;
+      while (taken >> colour & 1)
+      {
+        ++colour;
+      }
+      forEachVertex([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << colour; });
+      coloured.push_back({ colour, { static_cast<int>(b), begin, end } });
+    }
+  }
+  return true;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -74,59 +136,12 @@ ElementSum::ElementSum(const Mesh& mesh, Metric metric, const EvaluationOptions&
   , Options(options)
 {
   checkEvaluation(mesh, metricInfo(metric), options);
-  const MeshView& view = mesh.view();
-  const MetricCode code = metricCode(metric);
-  const auto& blocks = mesh.blocks();
-  this->Order.resize(blocks.size());
+  this->Order.resize(mesh.blocks().size());
 
-  // Greedy colouring of chunks in order: a colour is free if no vertex of the chunk has it yet.
   for (bool reordered : { false, true })
   {
-    std::vector<std::uint64_t> used(view.numberOfPoints, 0);
-    std::vector<std::pair<int, Chunk>> coloured;
-    bool failed = false;
-    for (std::size_t b = 0; b < blocks.size() && !failed; ++b)
-    {
-      const CellBlock& block = blocks[b];
-      if (!evaluatorFor(mesh, metric, code, block, false))
-      {
-        continue;
-      }
-      if (reordered)
-      {
-        this->Order[b] = spatialOrder(mesh, block);
-      }
-      const Index* order = reordered ? this->Order[b].data() : nullptr;
-      const int nodes = topology(block.type).nodes;
-      for (Index begin = 0; begin < block.count && !failed; begin += ChunkSize)
-      {
-        const Index end = std::min(block.count, begin + ChunkSize);
-        auto forEachVertex = [&](auto visit)
-        {
-          for (Index i = begin; i < end; ++i)
-          {
-            const Index* node = view.connectivity + view.offsets[block.cell(order ? order[i] : i)];
-            for (int k = 0; k < nodes; ++k)
-            {
-              visit(used[node[k]]);
-            }
-          }
-        };
-        std::uint64_t taken = 0;
-        forEachVertex([&](std::uint64_t& mask) { taken |= mask; });
-        failed = taken == ~std::uint64_t(0);
-        if (!failed)
-        {
-          int colour = 0;
-          while (taken >> colour & 1)
-          {
-            ++colour;
-          }
-          forEachVertex([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << colour; });
-          coloured.push_back({ colour, { static_cast<int>(b), begin, end } });
-        }
-      }
-    }
+    std::vector<ColouredChunk> coloured;
+    const bool failed = !colourChunks(mesh, metric, reordered, this->Order, coloured);
     // Many colours mean a numbering without locality: go along a space-filling curve instead, which
     // keeps the chunks compact. Its own few extra colours are then accepted.
     int colours = 0;

@@ -25,6 +25,62 @@ void addNormalGradient(Packet scale, const Packet* n, int a, int b, int c, Batch
   }
 }
 
+/**
+ * @brief The gradient of a metric by the points, from its derivatives d by the invariants.
+ * @param edges from point 0 to the others
+ * @param normal of a triangle, of length 1
+ * @param faceNormal of the faces of a tetrahedron, twice as long as their areas
+ * Always inlined: it shares products with the value.
+ */
+template <int N>
+inline __attribute__((always_inline)) void setGradient(const CellTopology& topology,
+  const SimplexInvariants<N>& d, Mask degenerate, const Packet (&edges)[3][3], const Packet* normal,
+  const Packet (&faceNormal)[4][3], Batch& batch)
+{
+  for (int k = 0; k < topology.nodes; ++k)
+  {
+    batch.gradient[k][0] = batch.gradient[k][1] = batch.gradient[k][2] = Packet{};
+  }
+  for (int e = 0; e < d.edges; ++e)
+  {
+    const int i = topology.edgeNodes[e][0], j = topology.edgeNodes[e][1];
+    const Packet factor = select(degenerate, Packet{}, 2.0 * d.edge2[e]);
+    for (int c = 0; c < 3; ++c)
+    {
+      const Packet g = factor * (batch.points[j][c] - batch.points[i][c]);
+      batch.gradient[j][c] += g;
+      batch.gradient[i][c] -= g;
+    }
+  }
+  const Packet size = select(degenerate, Packet{}, d.size);
+  if constexpr (N == 2)
+  {
+    addNormalGradient(0.5 * size, normal, 0, 1, 2, batch);
+  }
+  else
+  {
+    for (int f = 0; f < 4; ++f)
+    {
+      addNormalGradient(select(degenerate, Packet{}, 0.5 * d.face2[f]), faceNormal[f],
+        oppositeFace[f][0], oppositeFace[f][1], oppositeFace[f][2], batch);
+    }
+    // 6 V = ((b - a) x (c - a)) . (d - a)
+    Packet g[3][3];
+    cross(edges[1], edges[2], g[0]);
+    cross(edges[2], edges[0], g[1]);
+    cross(edges[0], edges[1], g[2]);
+    for (int k = 0; k < 3; ++k)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        const Packet term = (1.0 / 6.0) * size * g[k][c];
+        batch.gradient[k + 1][c] += term;
+        batch.gradient[0][c] -= term;
+      }
+    }
+  }
+}
+
 template <class M, int N, bool WithGradient>
 void evaluateSimplex(const BatchContext& context, Batch& batch)
 {
@@ -36,10 +92,10 @@ void evaluateSimplex(const BatchContext& context, Batch& batch)
     subtract(batch.points[topology.edgeNodes[e][1]], batch.points[topology.edgeNodes[e][0]], edge);
     s.edge2[e] = dot(edge, edge);
   }
-  Packet ab[3], ac[3], ad[3], normal[3], faceNormal[4][3];
-  subtract(batch.points[1], batch.points[0], ab);
-  subtract(batch.points[2], batch.points[0], ac);
-  cross(ab, ac, normal);
+  Packet edges[3][3], normal[3], faceNormal[4][3];
+  subtract(batch.points[1], batch.points[0], edges[0]);
+  subtract(batch.points[2], batch.points[0], edges[1]);
+  cross(edges[0], edges[1], normal);
   Packet lengths2 = s.edge2[0] * s.edge2[2], jacobian2;
   if constexpr (N == 2)
   {
@@ -60,8 +116,8 @@ void evaluateSimplex(const BatchContext& context, Batch& batch)
   }
   else
   {
-    subtract(batch.points[3], batch.points[0], ad);
-    const Packet jacobian = dot(normal, ad);
+    subtract(batch.points[3], batch.points[0], edges[2]);
+    const Packet jacobian = dot(normal, edges[2]);
     s.size = jacobian * (1.0 / 6.0);
     jacobian2 = jacobian * jacobian;
     lengths2 *= s.edge2[3];
@@ -80,48 +136,7 @@ void evaluateSimplex(const BatchContext& context, Batch& batch)
 
   if constexpr (WithGradient)
   {
-    for (int k = 0; k < topology.nodes; ++k)
-    {
-      batch.gradient[k][0] = batch.gradient[k][1] = batch.gradient[k][2] = Packet{};
-    }
-    for (int e = 0; e < s.edges; ++e)
-    {
-      const int i = topology.edgeNodes[e][0], j = topology.edgeNodes[e][1];
-      const Packet factor = select(degenerate, Packet{}, 2.0 * d.edge2[e]);
-      for (int c = 0; c < 3; ++c)
-      {
-        const Packet g = factor * (batch.points[j][c] - batch.points[i][c]);
-        batch.gradient[j][c] += g;
-        batch.gradient[i][c] -= g;
-      }
-    }
-    const Packet size = select(degenerate, Packet{}, d.size);
-    if constexpr (N == 2)
-    {
-      addNormalGradient(0.5 * size, normal, 0, 1, 2, batch);
-    }
-    else
-    {
-      for (int f = 0; f < 4; ++f)
-      {
-        addNormalGradient(select(degenerate, Packet{}, 0.5 * d.face2[f]), faceNormal[f],
-          oppositeFace[f][0], oppositeFace[f][1], oppositeFace[f][2], batch);
-      }
-      // 6 V = ((b - a) x (c - a)) . (d - a)
-      Packet g[3][3];
-      cross(ac, ad, g[0]);
-      cross(ad, ab, g[1]);
-      cross(ab, ac, g[2]);
-      for (int k = 0; k < 3; ++k)
-      {
-        for (int c = 0; c < 3; ++c)
-        {
-          const Packet part = (1.0 / 6.0) * size * g[k][c];
-          batch.gradient[k + 1][c] += part;
-          batch.gradient[0][c] -= part;
-        }
-      }
-    }
+    setGradient<N>(topology, d, degenerate, edges, normal, faceNormal, batch);
   }
 }
 

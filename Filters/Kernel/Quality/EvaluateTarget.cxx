@@ -84,21 +84,17 @@ void multiply(const Packet (&left)[N][N], const Packet (&right)[N][N], Packet (&
   }
 }
 
-template <class M, int N>
-void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
-  const Packet* normal, Corner<N>& corner)
+/**
+ * @brief A, column by column.
+ * @param normal of a surface, or null
+ * @param lengths2 the product of the squared lengths of the columns
+ * @return det A, whatever the target: by it a corner is degenerate or not
+ */
+template <int N>
+Packet loadMatrix(const Packet (&edge)[N][3], const Packet* normal, Corner<N>& corner,
+  Packet (&a)[N][N], Packet& lengths2)
 {
-  const CellTopology& topology = *context.topology;
-  const auto& nodes = topology.cornerNodes[sample];
-  Packet edge[N][3];
-  for (int k = 0; k < N; ++k)
-  {
-    subtract(batch.points[nodes[k + 1]], batch.points[nodes[0]], edge[k]);
-  }
-
-  // A, column by column; degenerate is relative to the lengths of the columns.
-  Packet a[N][N];
-  Packet lengths2 = broadcast(1.0);
+  lengths2 = broadcast(1.0);
   for (int k = 0; k < N; ++k)
   {
     lengths2 *= dot(edge[k], edge[k]);
@@ -126,7 +122,7 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
     }
   }
 
-  Packet det; // of A itself: whether the corner is degenerate does not depend on the target
+  Packet det;
   if constexpr (N == 2)
   {
     det = a[0][0] * a[1][1] - a[0][1] * a[1][0];
@@ -137,25 +133,35 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
     cross(edge[0], edge[1], c01);
     det = dot(c01, edge[2]);
   }
-  if (seenByTensor<M>(context))
+  return det;
+}
+
+/// Replaces A by M^(1/2) A.
+template <int N>
+void applyTensor(
+  const BatchContext& context, const Batch& batch, Corner<N>& corner, Packet (&a)[N][N])
+{
+  Packet seen[N][N];
+  for (int r = 0; r < N; ++r)
   {
-    Packet seen[N][N];
-    for (int r = 0; r < N; ++r)
+    for (int c = 0; c < N; ++c)
     {
-      for (int c = 0; c < N; ++c)
+      for (int l = 0; l < PacketWidth; ++l)
       {
-        for (int l = 0; l < PacketWidth; ++l)
-        {
-          corner.root[r][c][l] =
-            context.options->targets->metricRoots[9 * batch.cells[l] + 3 * r + c];
-        }
+        corner.root[r][c][l] =
+          context.options->targets->metricRoots[9 * batch.cells[l] + 3 * r + c];
       }
     }
-    multiply<N>(corner.root, a, seen);
-    std::copy(&seen[0][0], &seen[0][0] + N * N, &a[0][0]);
   }
+  multiply<N>(corner.root, a, seen);
+  std::copy(&seen[0][0], &seen[0][0] + N * N, &a[0][0]);
+}
 
-  // W^-1: a multiple of I where only the size counts, else the target's or the ideal cell's.
+/// W^-1: a multiple of I where only the size counts, else the target's or the ideal cell's.
+template <class M, int N>
+void loadInverse(const BatchContext& context, const Batch& batch, int sample, Corner<N>& corner)
+{
+  const CellTopology& topology = *context.topology;
   if constexpr (M::usesSize)
   {
     const double scale =
@@ -192,7 +198,12 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
       }
     }
   }
+}
 
+/// T = A W^-1 with its invariants and cofactors.
+template <class M, int N>
+void findInvariants(const Packet (&a)[N][N], Corner<N>& corner)
+{
   TargetInvariants<N>& t = corner.invariants;
   t = {};
   for (int r = 0; r < N; ++r)
@@ -236,6 +247,27 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
     t.det = m[0][0] * corner.cofactor[0][0] + m[0][1] * corner.cofactor[0][1] +
       m[0][2] * corner.cofactor[0][2];
   }
+}
+
+template <class M, int N>
+void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
+  const Packet* normal, Corner<N>& corner)
+{
+  const auto& nodes = context.topology->cornerNodes[sample];
+  Packet edge[N][3];
+  for (int k = 0; k < N; ++k)
+  {
+    subtract(batch.points[nodes[k + 1]], batch.points[nodes[0]], edge[k]);
+  }
+  Packet a[N][N], lengths2;
+  const Packet det = loadMatrix<N>(edge, normal, corner, a, lengths2);
+  if (seenByTensor<M>(context))
+  {
+    applyTensor<N>(context, batch, corner, a);
+  }
+  loadInverse<M, N>(context, batch, sample, corner);
+  findInvariants<M, N>(a, corner);
+  // Relative to the lengths of the columns.
   const double tolerance = Mesh::degenerateTolerance() * Mesh::degenerateTolerance();
   corner.degenerate = det * det <= tolerance * lengths2;
 }

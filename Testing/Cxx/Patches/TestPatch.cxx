@@ -190,7 +190,7 @@ void testEnergy(const char* name, const Energy& energy)
       }
       Packet N, D;
       invariants(patch.packets[i], to, N, D);
-      least = std::min(least, leastOf(D));
+      least = std::min(least, minOf(D));
     }
     TAUTLINE_CHECK_NEAR(least, 0.0, 1e-12);
   }
