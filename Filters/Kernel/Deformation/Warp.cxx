@@ -10,11 +10,6 @@ namespace tautline
 {
 namespace
 {
-bool usesFiniteElements(WarpMethod method)
-{
-  return method < WarpMethod::InverseDistance;
-}
-
 /// "1 element", "2 elements"
 std::string counted(Index count, const char* what)
 {
@@ -30,10 +25,8 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options)
       throw Error(text);
     }
   };
-  refuse(options.method < WarpMethod::Hybrid || options.method > WarpMethod::WeightedLaplacian,
-    "There is no such method of warping: choose one of WarpMethod.");
-  refuse(options.coefficients < WarpCoefficients::DisplacementSums ||
-      options.coefficients > WarpCoefficients::PerCell,
+  refuse(!isKnown(options.method), "There is no such method of warping: choose one of WarpMethod.");
+  refuse(!isKnown(options.coefficients),
     "There is no such choice of coefficients: choose one of WarpCoefficients.");
   refuse(options.steps < 0 || options.maximumSteps < 1,
     "The number of steps must not be negative, and their limit at least 1.");
@@ -60,8 +53,7 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options)
       t[1] * t[2] - t[4] * t[4] >= -rounding * size * size &&
       t[0] * t[2] - t[5] * t[5] >= -rounding * size * size && det >= -rounding * size * size * size;
   };
-  const bool anisotropic =
-    options.method == WarpMethod::Hybrid || options.method == WarpMethod::AnisotropicFemwarp;
+  const bool anisotropic = isAnisotropic(options.method);
   if (anisotropic && options.coefficients == WarpCoefficients::Manual)
   {
     const SymmetricTensor& t = options.tensor;
@@ -93,7 +85,7 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
   }
   if (mesh.dimension() == Dimension::Surface)
   {
-    throw Error("WarpResult works on planar and volume meshes: this is a surface in space.");
+    throw Error("Only planar and volume meshes can be deformed: this is a surface in space.");
   }
   for (const CellBlock& block : mesh.blocks())
   {
@@ -206,9 +198,8 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
     this->checkDisplacement(displacement);
   };
   const WarpMethod method = this->Options.method;
-  const bool untangles = method == WarpMethod::Hybrid || method == WarpMethod::FemwarpUntangling;
   const bool small = method == WarpMethod::SmallStepFemwarp && this->Options.steps == 1;
-  if (this->Options.steps > 1 || small || (this->Options.steps == 0 && !untangles))
+  if (this->Options.steps > 1 || small || (this->Options.steps == 0 && !untangles(method)))
   {
     warpInSteps(this->Input, this->Parts, checked, small ? 0 : this->Options.steps, false, control);
   }
@@ -220,7 +211,7 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
     this->checkDisplacement(displacement.data());
     control.goOn(0.0);
     this->First.run(displacement.data(), 1.0, control, result.points);
-    if (untangles && result.invertedAfter > 0 && !control.stopped())
+    if (untangles(method) && result.invertedAfter > 0 && !control.stopped())
     {
       this->followMotion(checked, displacement.data(), control);
     }

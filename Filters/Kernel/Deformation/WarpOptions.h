@@ -32,6 +32,15 @@ enum class WarpMethod : int
     10 ///< weighted Laplacian smoothing: each vertex an affine combination of its neighbours
 };
 
+/// Whether a number names a method; numbers come from state files and from Python.
+TAUTLINE_SOLVERS_EXPORT bool isKnown(WarpMethod method);
+/// Whether a method assembles finite elements, which wedges and pyramids have none of here.
+TAUTLINE_SOLVERS_EXPORT bool usesFiniteElements(WarpMethod method);
+/// Whether a method takes the coefficients of WarpOptions::coefficients.
+TAUTLINE_SOLVERS_EXPORT bool isAnisotropic(WarpMethod method);
+/// Whether a method untangles what its motion inverts.
+TAUTLINE_SOLVERS_EXPORT bool untangles(WarpMethod method);
+
 /// Where the coefficients of AnisotropicFemwarp and Hybrid come from. The numbers are stable.
 enum class WarpCoefficients : int
 {
@@ -40,6 +49,9 @@ enum class WarpCoefficients : int
   Manual = 2,              ///< `tensor`
   PerCell = 3              ///< `tensors`
 };
+
+/// Whether a number names a choice of coefficients.
+TAUTLINE_SOLVERS_EXPORT bool isKnown(WarpCoefficients coefficients);
 
 /// What Hybrid's second step starts from: at most 50 iterations, to a relative change of 1e-3.
 TAUTLINE_SOLVERS_EXPORT OptimizeOptions hybridOptimization();

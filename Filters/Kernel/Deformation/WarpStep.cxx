@@ -8,14 +8,6 @@
 
 namespace tautline
 {
-OptimizeOptions hybridOptimization()
-{
-  OptimizeOptions options;
-  options.stopping.maximumIterations = 50;
-  options.stopping.relativeChange = 1e-3;
-  return options;
-}
-
 //------------------------------------------------------------------------------
 WarpStep::WarpStep(const Mesh& from, const Mesh& initial, const WarpParts& parts)
   : From(from)
@@ -25,6 +17,50 @@ WarpStep::WarpStep(const Mesh& from, const Mesh& initial, const WarpParts& parts
 }
 
 WarpStep::~WarpStep() = default;
+
+//------------------------------------------------------------------------------
+/// Makes the scalar operator with the coefficients of this motion, unless it is there already.
+void WarpStep::updateFemwarp(const double* displacement, WarpControl& control)
+{
+  const WarpOptions& options = control.options();
+  const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
+  SymmetricTensor tensor = IdentityTensor;
+  const double* tensors = nullptr;
+  if (!this->Following && isAnisotropic(options.method))
+  {
+    switch (options.coefficients)
+    {
+      case WarpCoefficients::DisplacementSums:
+        tensor = displacementSums(prescribed, displacement);
+        break;
+      case WarpCoefficients::PrincipalDirections:
+        tensor = principalDirections(prescribed, displacement);
+        break;
+      case WarpCoefficients::Manual:
+        tensor = options.tensor;
+        break;
+      case WarpCoefficients::PerCell:
+        tensors = options.tensors;
+        break;
+    }
+  }
+  // Coefficients that differ by rounding only give the same matrix.
+  constexpr double rounding = 1e-12;
+  bool same = this->Scalar != nullptr;
+  for (std::size_t k = 0; k < tensor.size(); ++k)
+  {
+    same = same && std::abs(tensor[k] - this->Tensor[k]) <= rounding;
+  }
+  if (!same)
+  {
+    const auto kind = options.method == WarpMethod::Biharmonic ? Femwarp::Operator::Biharmonic
+                                                               : Femwarp::Operator::Harmonic;
+    this->Scalar =
+      std::make_unique<Femwarp>(this->From, this->Parts, kind, tensor, tensors, control);
+    this->Tensor = tensor;
+  }
+  control.result().tensor = this->Tensor;
+}
 
 //------------------------------------------------------------------------------
 /// The displacements of all points by the method's own equations.
@@ -56,47 +92,8 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
       moved = this->Elastic->warp(displacement, control);
       break;
     default:
-    {
-      const bool anisotropic = !this->Following &&
-        (options.method == WarpMethod::AnisotropicFemwarp || options.method == WarpMethod::Hybrid);
-      SymmetricTensor tensor = IdentityTensor;
-      const double* tensors = nullptr;
-      if (anisotropic)
-      {
-        switch (options.coefficients)
-        {
-          case WarpCoefficients::DisplacementSums:
-            tensor = displacementSums(prescribed, displacement);
-            break;
-          case WarpCoefficients::PrincipalDirections:
-            tensor = principalDirections(prescribed, displacement);
-            break;
-          case WarpCoefficients::Manual:
-            tensor = options.tensor;
-            break;
-          case WarpCoefficients::PerCell:
-            tensors = options.tensors;
-            break;
-        }
-      }
-      // The same coefficients, to rounding: the same matrix.
-      constexpr double rounding = 1e-12;
-      bool same = this->Scalar != nullptr;
-      for (std::size_t k = 0; k < tensor.size(); ++k)
-      {
-        same = same && std::abs(tensor[k] - this->Tensor[k]) <= rounding;
-      }
-      if (!same)
-      {
-        const auto kind = options.method == WarpMethod::Biharmonic ? Femwarp::Operator::Biharmonic
-                                                                   : Femwarp::Operator::Harmonic;
-        this->Scalar =
-          std::make_unique<Femwarp>(this->From, this->Parts, kind, tensor, tensors, control);
-        this->Tensor = tensor;
-      }
-      control.result().tensor = this->Tensor;
+      this->updateFemwarp(displacement, control);
       moved = this->Scalar->warp(displacement, control);
-    }
   }
   if (moved.empty())
   {
@@ -151,9 +148,7 @@ Index WarpStep::run(
   result.invertedWarp =
     this->record("warp", amount, control.iterations() - before, points.data(), control).inverted;
   result.invertedAfter = result.invertedWarp;
-  const WarpMethod method = control.options().method;
-  if ((method == WarpMethod::Hybrid || method == WarpMethod::FemwarpUntangling) &&
-    !control.stopped())
+  if (untangles(control.options().method) && !control.stopped())
   {
     this->improve(displacement, amount, control, points);
   }

@@ -53,6 +53,7 @@ public:
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
 
 private:
+  void updateFemwarp(const double* displacement, WarpControl& control);
   void warp(const double* displacement, WarpControl& control, std::vector<double>& moved);
   int untangle(const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;

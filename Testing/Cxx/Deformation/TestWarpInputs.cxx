@@ -1,4 +1,4 @@
-// WarpResult: what is refused and how, what is reported, and how it is stopped.
+// Mesh deformation: what is refused and how, what is reported, and how it is stopped.
 
 #include "Warping.h"
 
@@ -9,6 +9,43 @@ using namespace tautline;
 namespace
 {
 const Field nowhere = [](const Vec3&) { return Vec3{ 0, 0, 0 }; };
+
+/// The classes of all methods, written out: a class must not depend on the order of the numbers.
+void testMethodClasses()
+{
+  struct Expected
+  {
+    WarpMethod method;
+    bool finiteElements, anisotropic, untangles;
+  };
+  const Expected expected[] = { { WarpMethod::Hybrid, true, true, true },
+    { WarpMethod::Femwarp, true, false, false },
+    { WarpMethod::AnisotropicFemwarp, true, true, false },
+    { WarpMethod::SmallStepFemwarp, true, false, false },
+    { WarpMethod::FemwarpUntangling, true, false, true },
+    { WarpMethod::IterativeStiffening, true, false, false },
+    { WarpMethod::JacobianStiffening, true, false, false },
+    { WarpMethod::Biharmonic, true, false, false },
+    { WarpMethod::InverseDistance, false, false, false },
+    { WarpMethod::RadialBasis, false, false, false },
+    { WarpMethod::WeightedLaplacian, false, false, false } };
+  const int count = int(std::size(expected));
+  for (int number = 0; number < count; ++number)
+  {
+    const Expected& e = expected[number];
+    TAUTLINE_CHECK_EQUAL(int(e.method), number);
+    TAUTLINE_CHECK(isKnown(e.method));
+    TAUTLINE_CHECK_EQUAL(usesFiniteElements(e.method), e.finiteElements);
+    TAUTLINE_CHECK_EQUAL(isAnisotropic(e.method), e.anisotropic);
+    TAUTLINE_CHECK_EQUAL(untangles(e.method), e.untangles);
+  }
+  const int coefficients = 4;
+  for (int number = -2; number < 2 * count; ++number)
+  {
+    TAUTLINE_CHECK_EQUAL(isKnown(WarpMethod(number)), number >= 0 && number < count);
+    TAUTLINE_CHECK_EQUAL(isKnown(WarpCoefficients(number)), number >= 0 && number < coefficients);
+  }
+}
 
 void testRefused()
 {
@@ -75,7 +112,7 @@ void testRefused()
           block, [](const Vec3& p) { return 0.1 * p; }, withMethod(WarpMethod(method)));
         TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
       };
-      if (method < int(WarpMethod::InverseDistance))
+      if (usesFiniteElements(WarpMethod(method)))
       {
         TAUTLINE_CHECK_THROWS(run(), topology(type).plural);
       }
@@ -182,7 +219,7 @@ void testParts()
     // The part that moves does not care for the others.
     const WarpResult alone = warped(one, motion, withMethod(WarpMethod(method)));
     double worst = 0;
-    for (std::size_t i = 0; i < own && method < int(WarpMethod::InverseDistance); ++i)
+    for (std::size_t i = 0; i < own && usesFiniteElements(WarpMethod(method)); ++i)
     {
       worst = std::max(worst, std::abs(alone.points[i] - result.points[i]));
     }
@@ -298,6 +335,7 @@ void testStopping()
 
 int TestWarpInputs(int, char*[])
 {
+  testMethodClasses();
   testRefused();
   testParts();
   testImpossible();
