@@ -221,16 +221,18 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> Femwarp::warp(const double* displacement, WarpControl& control)
+/// Splits the prescribed displacements into affine motions and the rest.
+/// @return a bound on the rounding of the rest: what is no larger counts as nothing
+double Femwarp::splitAffine(
+  const double* displacement, std::vector<double>& rest, std::vector<double>& result) const
 {
   const MeshView& view = this->Input.view();
   const Index n = view.numberOfPoints;
   const std::vector<AffineMotion> affine = this->Parts.affine(view.points, displacement);
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
-
-  // What the affine motions leave; what is no more than their rounding is nothing.
-  std::vector<double> rest(3 * n, 0.0), result(3 * n, 0.0);
-  double most = 0, position = 0;
+  rest.assign(3 * n, 0.0);
+  result.assign(3 * n, 0.0);
+  double largest = 0, position = 0;
   for (Index i = 0; i < n; ++i)
   {
     const Index part = this->Parts.part(i);
@@ -243,7 +245,7 @@ std::vector<double> Femwarp::warp(const double* displacement, WarpControl& contr
       if (prescribed[i] && part >= 0)
       {
         rest[3 * i + c] = given - moved[c];
-        most = std::max(most, std::abs(given));
+        largest = std::max(largest, std::abs(given));
         position = std::max(position, std::abs(x[c] - affine[part].center[c]));
       }
     }
@@ -257,57 +259,73 @@ std::vector<double> Femwarp::warp(const double* displacement, WarpControl& contr
     }
   }
   constexpr double roundings = 32;
-  const double nothing =
-    roundings * std::numeric_limits<double>::epsilon() * (most + slope * position);
+  return roundings * std::numeric_limits<double>::epsilon() * (largest + slope * position);
+}
 
-  // A singular operator: regularise more and more until the motion is no larger than what the
-  // maximum principle would allow, about.
-  constexpr double excess = 2.0, firstRegularization = 1e-10, factor = 100, last = 1e-1;
+//------------------------------------------------------------------------------
+/// Solves for the three components of the rest and adds them to the motion.
+Femwarp::Outcome Femwarp::solveComponents(
+  const std::vector<double>& rest, double nothing, WarpControl& control, std::vector<double>& moved)
+{
+  // The maximum principle bounds the motion by the prescribed one; discrete operators may exceed it
+  // a little.
+  constexpr double excess = 2.0;
+  const Index n = this->Input.view().numberOfPoints;
+  Outcome outcome;
   std::vector<double> values(n);
-  for (;;)
+  for (int c = 0; c < 3 && !control.stopped(); ++c)
   {
-    bool good = true, bounded = true;
-    std::string failure;
-    std::vector<double> moved = result;
-    for (int c = 0; c < 3 && !control.stopped(); ++c)
+    double largest = 0;
+    for (Index i = 0; i < n; ++i)
     {
-      double largest = 0;
-      for (Index i = 0; i < n; ++i)
+      values[i] = rest[3 * i + c];
+      largest = std::max(largest, std::abs(values[i]));
+    }
+    if (!(largest > nothing))
+    {
+      continue;
+    }
+    outcome.converged = this->System->solve(values, control) && outcome.converged;
+    outcome.failure = outcome.failure.empty() ? this->System->failure() : outcome.failure;
+    if (this->Second && !control.stopped())
+    {
+      outcome.converged = this->Second->solve(values, control) && outcome.converged;
+    }
+    for (Index i = 0; i < n; ++i)
+    {
+      if (!this->Parts.held()[i])
       {
-        values[i] = rest[3 * i + c];
-        largest = std::max(largest, std::abs(values[i]));
-      }
-      if (!(largest > nothing))
-      {
-        continue;
-      }
-      good = this->System->solve(values, control) && good;
-      failure = failure.empty() ? this->System->failure() : failure;
-      if (this->Second && !control.stopped())
-      {
-        good = this->Second->solve(values, control) && good;
-      }
-      for (Index i = 0; i < n; ++i)
-      {
-        if (!this->Parts.held()[i])
-        {
-          bounded = bounded && std::abs(values[i]) <= excess * largest;
-          moved[3 * i + c] += values[i];
-        }
+        outcome.bounded = outcome.bounded && std::abs(values[i]) <= excess * largest;
+        moved[3 * i + c] += values[i];
       }
     }
+  }
+  return outcome;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> Femwarp::warp(const double* displacement, WarpControl& control)
+{
+  std::vector<double> rest, affine;
+  const double nothing = this->splitAffine(displacement, rest, affine);
+  // A singular operator is regularized more and more until the motion is bounded.
+  constexpr double first = 1e-10, factor = 100, last = 1e-1;
+  for (;;)
+  {
+    std::vector<double> moved = affine;
+    const Outcome outcome = this->solveComponents(rest, nothing, control, moved);
     control.result().decoupled = this->Decoupled;
     control.result().regularization = this->Regularization;
-    if (control.stopped() || !this->Singular || (good && bounded) || this->Regularization >= last)
+    if (control.stopped() || !this->Singular || (outcome.converged && outcome.bounded) ||
+      this->Regularization >= last)
     {
-      if (!good && !control.stopped())
+      if (!outcome.converged && !control.stopped())
       {
-        control.say("The linear solver did not converge: " + failure);
+        control.say("The linear solver did not converge: " + outcome.failure);
       }
       return moved;
     }
-    this->Regularization =
-      this->Regularization > 0 ? factor * this->Regularization : firstRegularization;
+    this->Regularization = this->Regularization > 0 ? factor * this->Regularization : first;
     this->partition(control);
   }
 }

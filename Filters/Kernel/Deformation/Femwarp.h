@@ -34,9 +34,9 @@ SymmetricTensor principalDirections(
  *
  * Where C is singular some points may depend on no prescribed point: rows, chains of rows and whole
  * layers of the matrix that decouple. These points get the isotropic operator instead, with all
- * others given; the others do not notice. Where the motion with such a C is nonetheless unbounded
- * or the solver fails, a part of the isotropic operator is added to all, the least of 1e-10, 1e-8,
- * ... that helps.
+ * others given, which changes nothing for the others. Where the motion with such a C is nonetheless
+ * unbounded or the solver fails, a fraction of the isotropic operator is added to all, the smallest
+ * of 1e-10, 1e-8, ... that suffices.
  */
 class Femwarp
 {
@@ -51,10 +51,21 @@ public:
   Femwarp(const Mesh& mesh, const WarpParts& parts, Operator kind, const SymmetricTensor& tensor,
     const double* tensors, WarpControl& control);
 
-  /// Displacements of all points; empty when it was stopped before anything was known.
+  /// Displacements of all points, 3 each; when stopped, the affine motions and what was solved.
   std::vector<double> warp(const double* displacement, WarpControl& control);
 
 private:
+  /// How the solves for the components ended.
+  struct Outcome
+  {
+    bool converged = true;
+    bool bounded = true; ///< the motion is not much larger than the prescribed one
+    std::string failure; ///< of the linear solver, or ""
+  };
+  double splitAffine(
+    const double* displacement, std::vector<double>& rest, std::vector<double>& result) const;
+  Outcome solveComponents(const std::vector<double>& rest, double nothing, WarpControl& control,
+    std::vector<double>& moved);
   SparseMatrix assemble(double regularization, WarpControl& control) const;
   void partition(WarpControl& control);
   void findDecoupled(const SparseMatrix& matrix, WarpControl& control);

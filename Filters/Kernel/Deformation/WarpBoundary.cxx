@@ -97,148 +97,191 @@ bool pierces(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t)
   const int s = side(p, q, t[0], t[1]);
   return s != 0 && side(p, q, t[1], t[2]) == s && side(p, q, t[2], t[0]) == s;
 }
+
+/// A grid of cubes about as large as the facets; each facet is in all cubes that its bounding box
+/// meets.
+class FacetGrid
+{
+public:
+  struct Box
+  {
+    Vec3 low, high;
+  };
+
+  explicit FacetGrid(std::vector<Box> boxes)
+    : Boxes(std::move(boxes))
+  {
+    Vec3 high = { -Infinity, -Infinity, -Infinity };
+    this->Low = { Infinity, Infinity, Infinity };
+    double sum = 0;
+    for (const Box& box : this->Boxes)
+    {
+      double extent = 0;
+      for (int c = 0; c < 3; ++c)
+      {
+        this->Low[c] = std::min(this->Low[c], box.low[c]);
+        high[c] = std::max(high[c], box.high[c]);
+        extent = std::max(extent, box.high[c] - box.low[c]);
+      }
+      sum += extent;
+    }
+    if (this->Boxes.size() < 2 || !(sum > 0))
+    {
+      return;
+    }
+    // At least twice the mean extent. Few cubes along the whole, so that a facet much larger than
+    // the others does not take too many.
+    constexpr double maxAlong = 512;
+    const Vec3 extent = high - this->Low;
+    const double longest = std::max({ extent[0], extent[1], extent[2] });
+    this->Size = std::max(2.0 * sum / static_cast<double>(this->Boxes.size()), longest / maxAlong);
+    this->enter();
+  }
+
+  static Box emptyBox()
+  {
+    return { { Infinity, Infinity, Infinity }, { -Infinity, -Infinity, -Infinity } };
+  }
+
+  /// Calls visit(i, j) once for each pair of facets whose boxes meet.
+  template <class Visit>
+  void forEachPair(const Visit& visit) const
+  {
+    for (std::size_t begin = 0, end = 0; begin < this->Entries.size(); begin = end)
+    {
+      const std::int64_t key = this->Entries[begin].first;
+      for (end = begin; end < this->Entries.size() && this->Entries[end].first == key; ++end)
+      {
+      }
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        for (std::size_t j = i + 1; j < end; ++j)
+        {
+          const std::int32_t a = this->Entries[i].second, b = this->Entries[j].second;
+          // Each pair counts in one cube only: that of the lower corner of what the boxes share.
+          if (this->keyOfOverlap(this->Boxes[a], this->Boxes[b]) == key)
+          {
+            visit(a, b);
+          }
+        }
+      }
+    }
+  }
+
+private:
+  static constexpr double Infinity = std::numeric_limits<double>::infinity();
+  static constexpr std::int64_t Apart = -1;
+
+  std::int64_t place(double x, int c) const
+  {
+    return static_cast<std::int64_t>(std::floor((x - this->Low[c]) / this->Size));
+  }
+  static std::int64_t key(std::int64_t i, std::int64_t j, std::int64_t k)
+  {
+    constexpr int bits = 21;
+    return (i << (2 * bits)) | (j << bits) | k;
+  }
+  std::int64_t keyOfOverlap(const Box& a, const Box& b) const
+  {
+    std::int64_t corner[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      if (a.low[c] > b.high[c] || b.low[c] > a.high[c])
+      {
+        return Apart;
+      }
+      corner[c] = this->place(std::max(a.low[c], b.low[c]), c);
+    }
+    return key(corner[0], corner[1], corner[2]);
+  }
+  void enter()
+  {
+    for (std::size_t i = 0; i < this->Boxes.size(); ++i)
+    {
+      std::int64_t first[3], last[3];
+      for (int c = 0; c < 3; ++c)
+      {
+        first[c] = this->place(this->Boxes[i].low[c], c);
+        last[c] = this->place(this->Boxes[i].high[c], c);
+      }
+      for (std::int64_t a = first[0]; a <= last[0]; ++a)
+      {
+        for (std::int64_t b = first[1]; b <= last[1]; ++b)
+        {
+          for (std::int64_t c = first[2]; c <= last[2]; ++c)
+          {
+            this->Entries.emplace_back(key(a, b, c), static_cast<std::int32_t>(i));
+          }
+        }
+      }
+    }
+    std::sort(this->Entries.begin(), this->Entries.end());
+  }
+
+  std::vector<Box> Boxes;
+  Vec3 Low = { 0, 0, 0 };
+  double Size = 1;
+  std::vector<std::pair<std::int64_t, std::int32_t>> Entries; ///< (cube, facet), sorted
+};
+
+bool triangleEdgesPierce(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    if (pierces(s[k], s[(k + 1) % 3], t) || pierces(t[k], t[(k + 1) % 3], s))
+    {
+      return true;
+    }
+  }
+  return false;
+}
 }
 
 WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
 {
-  const int dimension = this->Nodes;
-  const std::size_t n = this->Facets.size();
+  const int nodes = this->Nodes;
   const auto at = [&](Index p) {
     return Vec3{ points[3 * p], points[3 * p + 1], points[3 * p + 2] };
   };
   const auto inPlane = [&](Index p) {
     return Vec2{ dot(this->Input.frame()[0], at(p)), dot(this->Input.frame()[1], at(p)) };
   };
-
-  // A grid of boxes about as large as the facets; each facet is in all boxes its bounding box
-  // reaches.
-  struct Box
+  std::vector<FacetGrid::Box> boxes(this->Facets.size(), FacetGrid::emptyBox());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
   {
-    Vec3 low, high;
-  };
-  std::vector<Box> boxes(n);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vec3 low = { infinity, infinity, infinity }, high = { -infinity, -infinity, -infinity };
-  double sum = 0;
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    Box& box = boxes[i];
-    box.low = { infinity, infinity, infinity };
-    box.high = { -infinity, -infinity, -infinity };
-    for (int k = 0; k < dimension; ++k)
+    for (int k = 0; k < nodes; ++k)
     {
       const Vec3 x = at(this->Facets[i][k]);
       for (int c = 0; c < 3; ++c)
       {
-        box.low[c] = std::min(box.low[c], x[c]);
-        box.high[c] = std::max(box.high[c], x[c]);
-      }
-    }
-    double extent = 0;
-    for (int c = 0; c < 3; ++c)
-    {
-      low[c] = std::min(low[c], box.low[c]);
-      high[c] = std::max(high[c], box.high[c]);
-      extent = std::max(extent, box.high[c] - box.low[c]);
-    }
-    sum += extent;
-  }
-  Crossing result;
-  if (n < 2 || !(sum > 0))
-  {
-    return result;
-  }
-  // Not too many boxes to a facet that is much larger than the others.
-  constexpr double mostAlong = 512;
-  const double longest = std::max({ high[0] - low[0], high[1] - low[1], high[2] - low[2] });
-  const double size = std::max(2.0 * sum / static_cast<double>(n), longest / mostAlong);
-  const auto place = [&](double x, int c)
-  { return static_cast<std::int64_t>(std::floor((x - low[c]) / size)); };
-  constexpr int bits = 21;
-  const auto key = [](std::int64_t i, std::int64_t j, std::int64_t k)
-  { return (i << (2 * bits)) | (j << bits) | k; };
-  std::vector<std::pair<std::int64_t, std::int32_t>> entries;
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    std::int64_t first[3], last[3];
-    for (int c = 0; c < 3; ++c)
-    {
-      first[c] = place(boxes[i].low[c], c);
-      last[c] = place(boxes[i].high[c], c);
-    }
-    for (std::int64_t a = first[0]; a <= last[0]; ++a)
-    {
-      for (std::int64_t b = first[1]; b <= last[1]; ++b)
-      {
-        for (std::int64_t c = first[2]; c <= last[2]; ++c)
-        {
-          entries.emplace_back(key(a, b, c), static_cast<std::int32_t>(i));
-        }
+        boxes[i].low[c] = std::min(boxes[i].low[c], x[c]);
+        boxes[i].high[c] = std::max(boxes[i].high[c], x[c]);
       }
     }
   }
-  std::sort(entries.begin(), entries.end());
-
   const auto cross = [&](const std::array<Index, 3>& a, const std::array<Index, 3>& b)
   {
-    for (int i = 0; i < dimension; ++i)
+    const auto inB = [&](Index p)
+    { return std::find(b.begin(), b.begin() + nodes, p) != b.begin() + nodes; };
+    if (std::any_of(a.begin(), a.begin() + nodes, inB))
     {
-      for (int j = 0; j < dimension; ++j)
-      {
-        if (a[i] == b[j])
-        {
-          return false;
-        }
-      }
+      return false;
     }
-    if (dimension == 2)
-    {
-      return segmentsMeet(inPlane(a[0]), inPlane(a[1]), inPlane(b[0]), inPlane(b[1]));
-    }
-    const std::array<Vec3, 3> s = { at(a[0]), at(a[1]), at(a[2]) };
-    const std::array<Vec3, 3> t = { at(b[0]), at(b[1]), at(b[2]) };
-    for (int k = 0; k < 3; ++k)
-    {
-      if (pierces(s[k], s[(k + 1) % 3], t) || pierces(t[k], t[(k + 1) % 3], s))
-      {
-        return true;
-      }
-    }
-    return false;
+    return nodes == 2
+      ? segmentsMeet(inPlane(a[0]), inPlane(a[1]), inPlane(b[0]), inPlane(b[1]))
+      : triangleEdgesPierce({ at(a[0]), at(a[1]), at(a[2]) }, { at(b[0]), at(b[1]), at(b[2]) });
   };
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end)
-  {
-    for (end = begin; end < entries.size() && entries[end].first == entries[begin].first; ++end)
-    {
-    }
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      for (std::size_t j = i + 1; j < end; ++j)
+  Crossing result;
+  FacetGrid(std::move(boxes))
+    .forEachPair(
+      [&](std::int32_t i, std::int32_t j)
       {
-        const Box &a = boxes[entries[i].second], &b = boxes[entries[j].second];
-        std::int64_t corner[3];
-        bool apart = false;
-        for (int c = 0; c < 3; ++c)
+        const auto &f = this->Facets[i], &g = this->Facets[j];
+        if (cross(f, g) && result.pairs++ == 0)
         {
-          apart = apart || a.low[c] > b.high[c] || b.low[c] > a.high[c];
-          corner[c] = place(std::max(a.low[c], b.low[c]), c);
+          result.first = { f[0], g[0] };
         }
-        // Each pair counts in one box only: that of the lower corner of what they share.
-        if (apart || key(corner[0], corner[1], corner[2]) != entries[begin].first)
-        {
-          continue;
-        }
-        const auto &f = this->Facets[entries[i].second], &g = this->Facets[entries[j].second];
-        if (cross(f, g))
-        {
-          if (result.pairs++ == 0)
-          {
-            result.first = { f[0], g[0] };
-          }
-        }
-      }
-    }
-  }
+      });
   return result;
 }
 }

@@ -94,21 +94,56 @@ std::vector<char> WarpParts::moving(const double* displacement) const
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+using Matrix = Eigen::Matrix3d;
+using Vector = Eigen::Vector3d;
+
+/// A least squares fit of displacements by offset + linear (x - center).
+struct Fit
+{
+  Index count = 0;
+  Vector center = Vector::Zero();
+  Matrix moments = Matrix::Zero(); ///< sum of x x^T from the center; later its pseudo-inverse
+  Matrix linear = Matrix::Zero();  ///< its columns are derivatives
+  Vector offset = Vector::Zero();
+
+  double size() const { return std::max<double>(1.0, static_cast<double>(this->count)); }
+};
+
+/// Replaces the second moments by their pseudo-inverse: directions in which the points extend by
+/// less than a small fraction of their extent count as not spanned.
+void invertMoments(Fit& fit)
+{
+  constexpr double flat = 1e-6;
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(fit.moments);
+  Vector values = solver.eigenvalues();
+  for (int k = 0; k < 3; ++k)
+  {
+    const bool spanned = values[k] > flat * flat * values[2];
+    values[k] = spanned ? 1.0 / values[k] : 0.0;
+  }
+  fit.moments = solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+AffineMotion motionOf(const Fit& fit)
+{
+  AffineMotion motion;
+  for (int c = 0; c < 3; ++c)
+  {
+    motion.center[c] = fit.center[c];
+    motion.offset[c] = fit.offset[c];
+    for (int k = 0; k < 3; ++k)
+    {
+      motion.linear[k][c] = fit.linear(c, k);
+    }
+  }
+  return motion;
+}
+}
+
 std::vector<AffineMotion> WarpParts::affine(const double* points, const double* displacement) const
 {
-  // Directions in which the points extend by less than this part of their extent count as not
-  // spanned.
-  constexpr double flat = 1e-6;
-  using Matrix = Eigen::Matrix3d;
-  using Vector = Eigen::Vector3d;
-  struct Fit
-  {
-    Index count = 0;
-    Vector center = Vector::Zero();
-    Matrix inverse = Matrix::Zero();
-    Matrix linear = Matrix::Zero(); ///< its columns are derivatives
-    Vector offset = Vector::Zero();
-  };
   std::vector<Fit> fits(this->Count);
   const auto forEach = [&](const auto& visit)
   {
@@ -129,30 +164,20 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
     });
   for (Fit& fit : fits)
   {
-    fit.center /= std::max<double>(1.0, static_cast<double>(fit.count));
+    fit.center /= fit.size();
   }
   forEach([](Fit& fit, const auto& x, const auto&)
-    { fit.inverse += (x - fit.center) * (x - fit.center).transpose(); });
-  for (Fit& fit : fits)
-  {
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(fit.inverse);
-    Vector values = solver.eigenvalues();
-    for (int k = 0; k < 3; ++k)
-    {
-      const bool spanned = values[k] > flat * flat * values[2];
-      values[k] = spanned ? 1.0 / values[k] : 0.0;
-    }
-    fit.inverse = solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
-  }
+    { fit.moments += (x - fit.center) * (x - fit.center).transpose(); });
+  std::for_each(fits.begin(), fits.end(), invertMoments);
 
-  // The second round removes what rounding left of the first.
+  // The second round fits what rounding left of the first.
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round)
   {
     struct Sums
     {
-      Vector mean = Vector::Zero();
-      Matrix moments = Matrix::Zero();
+      Vector rest = Vector::Zero();
+      Matrix mixed = Matrix::Zero();
     };
     std::vector<Sums> sums(fits.size());
     forEach(
@@ -161,32 +186,17 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
         const Vector y = x - fit.center;
         const Vector rest = d - fit.offset - fit.linear * y;
         Sums& sum = sums[&fit - fits.data()];
-        sum.mean += rest;
-        sum.moments += rest * y.transpose();
+        sum.rest += rest;
+        sum.mixed += rest * y.transpose();
       });
     for (std::size_t p = 0; p < fits.size(); ++p)
     {
-      Fit& fit = fits[p];
-      fit.offset += sums[p].mean / std::max<double>(1.0, static_cast<double>(fit.count));
-      fit.linear += sums[p].moments * fit.inverse;
+      fits[p].offset += sums[p].rest / fits[p].size();
+      fits[p].linear += sums[p].mixed * fits[p].moments;
     }
   }
-
-  std::vector<AffineMotion> motions;
-  for (const Fit& fit : fits)
-  {
-    AffineMotion motion;
-    for (int c = 0; c < 3; ++c)
-    {
-      motion.center[c] = fit.center[c];
-      motion.offset[c] = fit.offset[c];
-      for (int k = 0; k < 3; ++k)
-      {
-        motion.linear[k][c] = fit.linear(c, k);
-      }
-    }
-    motions.push_back(motion);
-  }
+  std::vector<AffineMotion> motions(fits.size());
+  std::transform(fits.begin(), fits.end(), motions.begin(), motionOf);
   return motions;
 }
 }

@@ -6,14 +6,23 @@
 
 namespace tautline
 {
-WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displacement)
-  : Input(mesh)
-  , Displacement(displacement, displacement + 3 * mesh.view().numberOfPoints)
+namespace
 {
-  // Pieces: points joined by facets all of whose points are prescribed.
+using Matrix = Eigen::Matrix3d;
+using Vector = Eigen::Vector3d;
+
+/// Extents below this fraction of the largest count as 0: the points lie in a plane or on a line.
+constexpr double FlatExtent = 1e-6;
+/// Largest fraction of the displacements (root mean square) that an affine map may leave.
+constexpr double AffineResidual = 0.05;
+
+/// The piece of each point, -1 where nothing is prescribed: points are joined by facets (edges of
+/// planar cells) all of whose points are prescribed. Pieces are numbered by their smallest points.
+std::vector<Index> findPieces(
+  const Mesh& mesh, const std::vector<unsigned char>& prescribed, std::size_t& pieces)
+{
   const MeshView& view = mesh.view();
   const Index n = view.numberOfPoints;
-  const std::vector<unsigned char>& prescribed = parts.prescribed();
   std::vector<Index> parent(n);
   std::iota(parent.begin(), parent.end(), Index(0));
   const auto root = [&](Index i)
@@ -55,119 +64,138 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
       }
     }
   }
-  this->PieceOf.assign(n, -1);
+  std::vector<Index> pieceOf(n, -1);
+  pieces = 0;
   for (Index i = 0; i < n; ++i)
   {
     if (prescribed[i])
     {
       const Index r = root(i);
-      if (r == i)
-      {
-        this->PieceOf[i] = static_cast<Index>(this->Pieces.size());
-        this->Pieces.emplace_back();
-      }
-      else
-      {
-        this->PieceOf[i] = this->PieceOf[r];
-      }
+      pieceOf[i] = r == i ? static_cast<Index>(pieces++) : pieceOf[r];
     }
   }
+  return pieceOf;
+}
 
-  // The affine map of each piece, split into a rotation and a stretch.
-  using Matrix = Eigen::Matrix3d;
-  using Vector = Eigen::Vector3d;
-  struct Sums
-  {
-    double count = 0;
-    Vector center = Vector::Zero(), shift = Vector::Zero();
-    Matrix before = Matrix::Zero(), between = Matrix::Zero();
-    double moved = 0; ///< sum of squares
-  };
-  std::vector<Sums> sums(this->Pieces.size());
+/// Means and second moments of the points of a piece and of their displacements.
+struct Moments
+{
+  double count = 0;
+  Vector center = Vector::Zero(), shift = Vector::Zero();
+  Matrix points = Matrix::Zero(); ///< sum of x x^T, from the mean
+  Matrix mixed = Matrix::Zero();  ///< sum of d x^T
+  double moved = 0;               ///< sum of |d|^2
+};
+
+std::vector<Moments> momentsOf(const MeshView& view, const std::vector<Index>& pieceOf,
+  std::size_t pieces, const double* displacement)
+{
+  std::vector<Moments> moments(pieces);
   const auto forEach = [&](const auto& visit)
   {
-    for (Index i = 0; i < n; ++i)
+    for (Index i = 0; i < view.numberOfPoints; ++i)
     {
-      if (this->PieceOf[i] >= 0)
+      if (pieceOf[i] >= 0)
       {
-        visit(sums[this->PieceOf[i]], Eigen::Map<const Vector>(view.points + 3 * i),
+        visit(moments[pieceOf[i]], Eigen::Map<const Vector>(view.points + 3 * i),
           Eigen::Map<const Vector>(displacement + 3 * i));
       }
     }
   };
   forEach(
-    [](Sums& s, const auto& x, const auto& d)
+    [](Moments& m, const auto& x, const auto& d)
     {
-      s.count += 1;
-      s.center += x;
-      s.shift += d;
+      m.count += 1;
+      m.center += x;
+      m.shift += d;
     });
-  for (Sums& s : sums)
+  for (Moments& m : moments)
   {
-    s.center /= s.count;
-    s.shift /= s.count;
+    m.center /= m.count;
+    m.shift /= m.count;
   }
   forEach(
-    [](Sums& s, const auto& x, const auto& d)
+    [](Moments& m, const auto& x, const auto& d)
     {
-      const Vector a = x - s.center, b = d - s.shift;
-      s.before += a * a.transpose();
-      s.between += b * a.transpose();
-      s.moved += b.squaredNorm();
+      const Vector a = x - m.center, b = d - m.shift;
+      m.points += a * a.transpose();
+      m.mixed += b * a.transpose();
+      m.moved += b.squaredNorm();
     });
-  for (std::size_t p = 0; p < sums.size(); ++p)
+  return moments;
+}
+
+/// Completes a map that is given in a plane only: the normal of the plane follows the plane. False
+/// if the plane collapses to a line, or a planar mesh is mirrored.
+bool completePlane(const Matrix& axes, bool planarMesh, Matrix& map)
+{
+  const Vector normal = axes.col(0);
+  const Vector u = map * axes.col(1), v = map * axes.col(2);
+  const Vector other = axes.col(1).cross(axes.col(2));
+  Vector image = u.cross(v);
+  const double length = image.norm();
+  if (!(length > 0))
   {
-    const Sums& s = sums[p];
+    return false;
+  }
+  image *= (other.dot(normal) < 0 ? -1.0 : 1.0) / length;
+  map += (image - map * normal) * normal.transpose();
+  return !planarMesh || image.dot(normal) >= 0;
+}
+
+/// The linear part of the affine map that fits a piece best (least squares). False where the points
+/// do not determine it, or where it leaves too much of the displacements.
+bool fitMap(const Moments& m, bool planarMesh, Matrix& map)
+{
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(m.points);
+  const Matrix axes = eigen.eigenvectors();
+  Matrix inverse = Matrix::Zero();
+  int spanned = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    if (eigen.eigenvalues()[k] > FlatExtent * FlatExtent * eigen.eigenvalues()[2])
+    {
+      inverse += axes.col(k) * axes.col(k).transpose() / eigen.eigenvalues()[k];
+      ++spanned;
+    }
+  }
+  if (spanned < 2)
+  {
+    return false; // points on a line do not determine a rotation
+  }
+  const Matrix linear = m.mixed * inverse;
+  const double rest = m.moved - (linear * m.mixed.transpose()).trace();
+  if (rest > AffineResidual * AffineResidual * m.moved)
+  {
+    return false;
+  }
+  map = Matrix::Identity() + linear;
+  return spanned == 3 || completePlane(axes, planarMesh, map);
+}
+}
+
+//------------------------------------------------------------------------------
+WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displacement)
+  : Input(mesh)
+  , Displacement(displacement, displacement + 3 * mesh.view().numberOfPoints)
+{
+  std::size_t pieces = 0;
+  this->PieceOf = findPieces(mesh, parts.prescribed(), pieces);
+  this->Pieces.resize(pieces);
+  const std::vector<Moments> moments = momentsOf(mesh.view(), this->PieceOf, pieces, displacement);
+  for (std::size_t p = 0; p < pieces; ++p)
+  {
     Piece& piece = this->Pieces[p];
     for (int c = 0; c < 3; ++c)
     {
-      piece.center[c] = s.center[c];
-      piece.shift[c] = s.shift[c];
+      piece.center[c] = moments[p].center[c];
+      piece.shift[c] = moments[p].shift[c];
     }
-    constexpr double flat = 1e-6;
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(s.before);
-    const Matrix axes = eigen.eigenvectors();
-    Matrix inverse = Matrix::Zero();
-    int spanned = 0;
-    for (int k = 0; k < 3; ++k)
-    {
-      if (eigen.eigenvalues()[k] > flat * flat * eigen.eigenvalues()[2])
-      {
-        inverse += axes.col(k) * axes.col(k).transpose() / eigen.eigenvalues()[k];
-        ++spanned;
-      }
-    }
-    if (spanned < 2)
-    {
-      continue; // a line: its turn is not known
-    }
-    // What the map leaves of the displacements: much of it, and the turn is none of the piece's.
-    constexpr double affineEnough = 0.05;
-    const Matrix linear = s.between * inverse;
-    const double rest = s.moved - (linear * s.between.transpose()).trace();
-    if (rest > affineEnough * affineEnough * s.moved)
+    // The polar decomposition splits the map into a rotation and a stretch.
+    Matrix map;
+    if (!fitMap(moments[p], mesh.dimension() == Dimension::Planar, map))
     {
       continue;
-    }
-    Matrix map = Matrix::Identity() + linear;
-    if (spanned == 2)
-    {
-      // The normal of a plane follows the plane.
-      const Vector normal = axes.col(0);
-      const Vector u = map * axes.col(1), v = map * axes.col(2);
-      const Vector other = axes.col(1).cross(axes.col(2));
-      Vector image = u.cross(v);
-      const double length = image.norm();
-      if (!(length > 0))
-      {
-        continue;
-      }
-      image *= (other.dot(normal) < 0 ? -1.0 : 1.0) / length;
-      map += (image - map * normal) * normal.transpose();
-      if (mesh.dimension() == Dimension::Planar && image.dot(normal) < 0)
-      {
-        continue; // mirrored in the plane
-      }
     }
     const Eigen::JacobiSVD<Matrix> svd(map, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Matrix rotation = svd.matrixU() * svd.matrixV().transpose();
@@ -192,7 +220,7 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
 }
 
 //------------------------------------------------------------------------------
-/// Displacement of a point that goes with a piece.
+/// Displacement of the point x that moves with a piece (Rodrigues' rotation formula).
 Vec3 WarpPath::place(const Piece& piece, double amount, const Vec3& x) const
 {
   const Vec3 y = x - piece.center;

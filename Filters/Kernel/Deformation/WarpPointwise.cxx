@@ -33,7 +33,24 @@ PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned 
     return;
   }
 
-  // Lengths relative to the extent of the prescribed points, from their mean.
+  this->measure();
+  this->fitAffine();
+  this->Rest.resize(n);
+  double largestRest = 0;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const Index id = this->Prescribed[i];
+    this->Rest[i] = this->given(id) - this->affineAt(this->local(id));
+    largestRest = std::max(largestRest, norm(this->Rest[i]));
+  }
+  this->Affine = largestRest <= AffineTolerance * this->Largest;
+}
+
+//------------------------------------------------------------------------------
+/// The unit of length, the extent of the prescribed points, and the origin, their mean.
+void PrescribedMotion::measure()
+{
+  const MeshView& view = this->Input.view();
   const Vec3 first = pointOf(view, this->Prescribed[0]);
   Vec3 low = first, high = first, sum = { 0, 0, 0 };
   for (const Index id : this->Prescribed)
@@ -47,12 +64,16 @@ PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned 
     }
     this->Largest = std::max(this->Largest, norm(this->given(id)));
   }
-  this->Center = first + (1.0 / static_cast<double>(n)) * sum;
+  this->Center = first + (1.0 / static_cast<double>(this->Prescribed.size())) * sum;
   const double extent = norm(high - low);
   this->Scale = extent > 0 ? extent : 1.0;
+}
 
-  // The inverse of the second moments; where the points do not determine an affine motion, of the
-  // smallest one.
+//------------------------------------------------------------------------------
+/// Least squares with the pseudo-inverse of the second moments: where the points do not determine
+/// an affine motion, this is the smallest one.
+void PrescribedMotion::fitAffine()
+{
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Index id : this->Prescribed)
   {
@@ -92,7 +113,7 @@ PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned 
         sums[k + 1] += x[k] * r;
       }
     }
-    this->Map[0] += (1.0 / static_cast<double>(n)) * sums[0];
+    this->Map[0] += (1.0 / static_cast<double>(this->Prescribed.size())) * sums[0];
     for (std::size_t k = 0; k < 3; ++k)
     {
       for (std::size_t l = 0; l < 3; ++l)
@@ -101,15 +122,6 @@ PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned 
       }
     }
   }
-  this->Rest.resize(this->Prescribed.size());
-  double most = 0;
-  for (std::size_t i = 0; i < this->Rest.size(); ++i)
-  {
-    const Index id = this->Prescribed[i];
-    this->Rest[i] = this->given(id) - this->affineAt(this->local(id));
-    most = std::max(most, norm(this->Rest[i]));
-  }
-  this->Affine = most <= AffineTolerance * this->Largest;
 }
 
 //------------------------------------------------------------------------------

@@ -83,6 +83,8 @@ public:
   std::vector<double> displacements(const std::vector<Vec3>& rest) const;
 
 private:
+  void measure();
+  void fitAffine();
   Vec3 given(Index id) const;
   Vec3 affineAt(const Vec3& local) const;
 

@@ -13,7 +13,7 @@ constexpr double DefaultRadius = 2.0;
 constexpr std::size_t FirstCandidates = 4000;
 constexpr std::size_t MoreCandidates = 1000; ///< each time
 /// No more points than this are chosen: their matrix is dense.
-constexpr std::size_t MostCenters = 3000;
+constexpr std::size_t MaxCenters = 3000;
 /// A candidate that is within this (squared) of what the chosen ones span adds nothing but
 /// rounding.
 constexpr double Independence = 1e-12;
@@ -70,7 +70,7 @@ public:
   /// Chooses until all residuals are at most `enough`. False: stopped by the clock.
   bool choose(double enough, const WarpClock& clock)
   {
-    while (this->Chosen.size() < MostCenters)
+    while (this->Chosen.size() < MaxCenters)
     {
       std::size_t best = this->Points.size();
       double most = enough;
@@ -88,7 +88,7 @@ public:
         return true;
       }
       if (this->Chosen.size() % ClockInterval == 0 &&
-        !clock.proceed(0.5 * static_cast<double>(this->Chosen.size()) / MostCenters))
+        !clock.proceed(0.5 * static_cast<double>(this->Chosen.size()) / MaxCenters))
       {
         return false;
       }
@@ -255,6 +255,72 @@ private:
   PointTree Tree;
   std::array<std::vector<double>, 3> Centers, Coefficients; ///< in the order of the tree
 };
+
+/**
+ * @brief Chooses centres until every prescribed point is met. Candidates are first some points
+ * spread evenly; then, in each round, those of the others that are met worst.
+ * @param enough largest residual
+ * @return false when the clock stopped it
+ */
+bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, int threads,
+  const WarpClock& clock, GreedyFit& fit)
+{
+  const std::vector<Index>& all = motion.prescribed();
+  const std::size_t stride = (all.size() + FirstCandidates - 1) / FirstCandidates;
+  std::vector<char> isCandidate(all.size(), 0);
+  std::size_t candidates = 0;
+  const auto add = [&](std::size_t i)
+  {
+    isCandidate[i] = 1;
+    fit.add(motion.local(all[i]), motion.rest(i));
+    ++candidates;
+  };
+  for (std::size_t i = 0; i < all.size(); i += stride)
+  {
+    add(i);
+  }
+  std::vector<double> errors(all.size());
+  while (fit.choose(enough, clock))
+  {
+    if (candidates == all.size() || fit.chosen() >= MaxCenters)
+    {
+      return true;
+    }
+    const Interpolant interpolant(fit, radius);
+    forEachChunk(static_cast<Index>(all.size()), threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          errors[i] =
+            isCandidate[i] ? 0 : norm(motion.rest(i) - interpolant.at(motion.local(all[i])));
+        }
+      });
+    std::vector<std::size_t> missed;
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+      if (errors[i] > enough)
+      {
+        missed.push_back(i);
+      }
+    }
+    if (missed.empty())
+    {
+      return true;
+    }
+    std::sort(missed.begin(), missed.end(),
+      [&](std::size_t a, std::size_t b)
+      { return errors[a] > errors[b] || (errors[a] == errors[b] && a < b); });
+    missed.resize(std::min(missed.size(), MoreCandidates));
+    const std::size_t from = candidates;
+    for (const std::size_t i : missed)
+    {
+      add(i);
+    }
+    fit.catchUp(from);
+  }
+  return false;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -281,69 +347,11 @@ std::vector<double> warpByRadialBasis(const Mesh& mesh,
   const double radius =
     options.supportRadius > 0 ? options.supportRadius / motion.scale() : DefaultRadius;
   const double enough = options.fitTolerance * motion.largest();
-
-  // Every so manieth prescribed point is a candidate, then those of the others that are met worst,
-  // until there are none.
-  const std::vector<Index>& all = motion.prescribed();
-  const std::size_t stride = (all.size() + FirstCandidates - 1) / FirstCandidates;
-  std::vector<char> isCandidate(all.size(), 0);
   GreedyFit fit(radius, options.threads);
-  std::size_t candidates = 0;
-  const auto add = [&](std::size_t i)
+  if (!fitGreedily(motion, radius, enough, options.threads, clock, fit))
   {
-    isCandidate[i] = 1;
-    fit.add(motion.local(all[i]), motion.rest(i));
-    ++candidates;
-  };
-  for (std::size_t i = 0; i < all.size(); i += stride)
-  {
-    add(i);
+    return {};
   }
-  std::vector<double> errors(all.size());
-  while (true)
-  {
-    if (!fit.choose(enough, clock))
-    {
-      return {};
-    }
-    if (candidates == all.size() || fit.chosen() >= MostCenters)
-    {
-      break;
-    }
-    const Interpolant interpolant(fit, radius);
-    forEachChunk(static_cast<Index>(all.size()), options.threads,
-      [&](Index, Index begin, Index end)
-      {
-        for (Index i = begin; i < end; ++i)
-        {
-          errors[i] =
-            isCandidate[i] ? 0 : norm(motion.rest(i) - interpolant.at(motion.local(all[i])));
-        }
-      });
-    std::vector<std::size_t> missed;
-    for (std::size_t i = 0; i < all.size(); ++i)
-    {
-      if (errors[i] > enough)
-      {
-        missed.push_back(i);
-      }
-    }
-    if (missed.empty())
-    {
-      break;
-    }
-    std::sort(missed.begin(), missed.end(),
-      [&](std::size_t a, std::size_t b)
-      { return errors[a] > errors[b] || (errors[a] == errors[b] && a < b); });
-    missed.resize(std::min(missed.size(), MoreCandidates));
-    const std::size_t from = candidates;
-    for (const std::size_t i : missed)
-    {
-      add(i);
-    }
-    fit.catchUp(from);
-  }
-
   const Interpolant interpolant(fit, radius);
   std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
   const bool complete = forEachBatch(motion.free().size(), options.threads, clock, 0.5,

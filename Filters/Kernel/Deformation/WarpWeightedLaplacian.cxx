@@ -288,6 +288,92 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
   }
   return true;
 }
+
+/// The numbers of the unknown points: those that are free, in a part with a prescribed point.
+struct Unknowns
+{
+  std::vector<Index> points;
+  std::vector<int> numberOf; ///< per point of the mesh, -1 where it is no unknown
+
+  Unknowns(const Mesh& mesh, const PrescribedMotion& motion)
+    : numberOf(static_cast<std::size_t>(mesh.view().numberOfPoints), -1)
+  {
+    const MeshView& view = mesh.view();
+    Parts parts(view.numberOfPoints);
+    for (const CellBlock& block : mesh.blocks())
+    {
+      const int nodes = topology(block.type).nodes;
+      for (Index i = 0; i < block.count; ++i)
+      {
+        const Index* ids = view.connectivity + view.offsets[block.cell(i)];
+        for (int k = 1; k < nodes; ++k)
+        {
+          parts.join(ids[0], ids[k]);
+        }
+      }
+    }
+    std::vector<char> moves(this->numberOf.size(), 0);
+    for (const Index id : motion.prescribed())
+    {
+      moves[parts.root(id)] = 1;
+    }
+    for (const Index id : motion.free())
+    {
+      if (moves[parts.root(id)])
+      {
+        this->numberOf[id] = static_cast<int>(this->points.size());
+        this->points.push_back(id);
+      }
+    }
+  }
+};
+
+/// Axes along and across the plane of a planar mesh: none of the solver's error then leads out of
+/// the plane.
+std::array<Vec3, 3> axesOf(const Mesh& mesh)
+{
+  return mesh.dimension() == Dimension::Planar
+    ? std::array<Vec3, 3>{ mesh.frame()[0], mesh.frame()[1], mesh.normal() }
+    : std::array<Vec3, 3>{ Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
+}
+
+/// Each unknown minus its combination of unknowns is its combination of prescribed displacements:
+/// the matrix, and the right-hand sides along three axes.
+Matrix assemble(const PrescribedMotion& motion, const Unknowns& unknowns,
+  const std::vector<WeightedNeighbors>& rows, const std::array<Vec3, 3>& axes,
+  Eigen::MatrixXd& right)
+{
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  std::vector<Index> place(unknowns.numberOf.size(), -1);
+  for (std::size_t i = 0; i < motion.prescribed().size(); ++i)
+  {
+    place[motion.prescribed()[i]] = static_cast<Index>(i);
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  right = Eigen::MatrixXd::Zero(n, 3);
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    const WeightedNeighbors& row = rows[static_cast<std::size_t>(i)];
+    entries.emplace_back(i, i, 1.0);
+    for (std::size_t j = 0; j < row.neighbors.size(); ++j)
+    {
+      const Index other = row.neighbors[j];
+      if (unknowns.numberOf[other] >= 0)
+      {
+        entries.emplace_back(i, unknowns.numberOf[other], -row.weights[j]);
+        continue;
+      }
+      const Vec3& d = motion.rest(static_cast<std::size_t>(place[other]));
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        right(i, static_cast<Eigen::Index>(k)) += row.weights[j] * dot(d, axes[k]);
+      }
+    }
+  }
+  Matrix matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -296,103 +382,39 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const WarpOptions& options)
 {
   const WarpClock clock(options);
-  const MeshView& view = mesh.view();
   const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);
-
-  // Parts without a prescribed point stay where they are; the others' points are the unknowns.
-  Parts parts(view.numberOfPoints);
-  for (const CellBlock& block : mesh.blocks())
-  {
-    const int nodes = topology(block.type).nodes;
-    for (Index i = 0; i < block.count; ++i)
-    {
-      const Index* ids = view.connectivity + view.offsets[block.cell(i)];
-      for (int k = 1; k < nodes; ++k)
-      {
-        parts.join(ids[0], ids[k]);
-      }
-    }
-  }
-  std::vector<char> moves(static_cast<std::size_t>(view.numberOfPoints), 0);
-  for (const Index id : motion.prescribed())
-  {
-    moves[parts.root(id)] = 1;
-  }
-  std::vector<Index> unknowns;
-  std::vector<int> number(static_cast<std::size_t>(view.numberOfPoints), -1);
-  for (const Index id : motion.free())
-  {
-    if (moves[parts.root(id)])
-    {
-      number[id] = static_cast<int>(unknowns.size());
-      unknowns.push_back(id);
-    }
-  }
-
+  const Unknowns unknowns(mesh, motion);
   std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
-  const auto n = static_cast<Eigen::Index>(unknowns.size());
-  if (n > 0 && !motion.affine())
+  if (!unknowns.points.empty() && !motion.affine())
   {
     const Combinations combinations(mesh);
-    std::vector<WeightedNeighbors> rows(unknowns.size());
-    if (!forEachBatch(unknowns.size(), options.threads, clock, 0.0,
-          [&](std::size_t i) { rows[i] = combinations.at(unknowns[i]); }))
+    std::vector<WeightedNeighbors> rows(unknowns.points.size());
+    if (!forEachBatch(rows.size(), options.threads, clock, 0.0,
+          [&](std::size_t i) { rows[i] = combinations.at(unknowns.points[i]); }))
     {
       return {};
     }
-    std::vector<Index> place(static_cast<std::size_t>(view.numberOfPoints), -1);
-    for (std::size_t i = 0; i < motion.prescribed().size(); ++i)
-    {
-      place[motion.prescribed()[i]] = static_cast<Index>(i);
-    }
-    // Components along and across the plane of a planar mesh: none of the solver's error leads out
-    // of it.
-    const std::array<Vec3, 3> frame = mesh.dimension() == Dimension::Planar
-      ? std::array<Vec3, 3>{ mesh.frame()[0], mesh.frame()[1], mesh.normal() }
-      : std::array<Vec3, 3>{ Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
-    // Each unknown minus its combination of unknowns is its combination of prescribed
-    // displacements.
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n, 3);
-    for (Eigen::Index i = 0; i < n; ++i)
-    {
-      const WeightedNeighbors& row = rows[static_cast<std::size_t>(i)];
-      entries.emplace_back(i, i, 1.0);
-      for (std::size_t j = 0; j < row.neighbors.size(); ++j)
-      {
-        const Index other = row.neighbors[j];
-        if (number[other] >= 0)
-        {
-          entries.emplace_back(i, number[other], -row.weights[j]);
-          continue;
-        }
-        const Vec3& d = motion.rest(static_cast<std::size_t>(place[other]));
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-          right(i, static_cast<Eigen::Index>(k)) += row.weights[j] * dot(d, frame[k]);
-        }
-      }
-    }
-    Matrix matrix(n, n);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    Eigen::MatrixXd solution;
+    const std::array<Vec3, 3> axes = axesOf(mesh);
+    Eigen::MatrixXd right, solution;
+    const Matrix matrix = assemble(motion, unknowns, rows, axes, right);
     if (!solve(matrix, right, options.tolerance, clock, solution))
     {
       return {};
     }
     for (std::size_t i = 0; i < rest.size(); ++i)
     {
-      const int row = number[motion.free()[i]];
+      const int row = unknowns.numberOf[motion.free()[i]];
       for (std::size_t k = 0; k < 3 && row >= 0; ++k)
       {
-        rest[i] += solution(row, static_cast<Eigen::Index>(k)) * frame[k];
+        rest[i] += solution(row, static_cast<Eigen::Index>(k)) * axes[k];
       }
     }
   }
+  // Parts without a prescribed point stay where they are.
   std::vector<double> result = motion.displacements(rest);
   for (const Index id : motion.free())
   {
-    if (number[id] < 0)
+    if (unknowns.numberOf[id] < 0)
     {
       std::fill_n(&result[3 * id], 3, 0.0);
     }
