@@ -321,7 +321,7 @@ std::vector<double> Femwarp::warp(const double* displacement, WarpControl& contr
     {
       if (!outcome.converged && !control.stopped())
       {
-        control.say("The linear solver did not converge: " + outcome.failure);
+        control.addMessage("The linear solver did not converge: " + outcome.failure);
       }
       return moved;
     }

@@ -18,7 +18,7 @@ using Vector = Eigen::Vector3d;
 using Matrix = Eigen::Matrix3d;
 using Path = std::function<Vector(const Vector&)>; ///< where a point is at the amount asked for
 
-constexpr double Degree = 3.14159265358979323846 / 180;
+constexpr double Degree = Pi / 180;
 constexpr double SmallAngle = 1e-7; // the axis of a smaller turn is not known, nor needed
 constexpr double Flattened = 1e-12; // volumes of less than this times that of a cube as long
 constexpr int MostPolarSteps = 100; // it takes a dozen for the worst matrix let through

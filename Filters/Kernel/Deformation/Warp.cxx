@@ -209,7 +209,7 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
     std::vector<double> displacement(3 * this->Input.view().numberOfPoints, 0.0);
     motion(1.0, displacement.data());
     this->checkDisplacement(displacement.data());
-    control.goOn(0.0);
+    control.proceed(0.0);
     this->First.run(displacement.data(), 1.0, control, result.points);
     if (untangles(method) && result.invertedAfter > 0 && !control.stopped())
     {
@@ -299,23 +299,23 @@ void Warper::Implementation::explain(WarpControl& control)
   WarpResult& result = control.result();
   if (this->Parts.freePoints() == 0)
   {
-    control.say("There are no points between the prescribed ones: nothing had to be found.");
+    control.addMessage("There are no points between the prescribed ones: nothing had to be found.");
   }
   if (this->Parts.loose() > 0)
   {
-    control.say("Without a prescribed point " + counted(this->Parts.loose(), "part") +
+    control.addMessage("Without a prescribed point " + counted(this->Parts.loose(), "part") +
       " of the mesh stayed in place.");
   }
   if (result.decoupled > 0)
   {
-    control.say("With these coefficients no prescribed point determines " +
+    control.addMessage("With these coefficients no prescribed point determines " +
       counted(result.decoupled, "point") + " of the mesh, which followed the points around.");
   }
   if (result.regularization > 0)
   {
     std::ostringstream text;
     text << result.regularization;
-    control.say(
+    control.addMessage(
       "With these coefficients the motion was not bounded; the isotropic operator was added, "
       "times " +
       text.str() + ".");
@@ -325,28 +325,29 @@ void Warper::Implementation::explain(WarpControl& control)
   result.crossings = boundary.crossing.pairs;
   if (boundary.inverted > 0)
   {
-    control.say("The moved boundary itself inverts " + counted(boundary.inverted, "element") +
+    control.addMessage("The moved boundary itself inverts " +
+      counted(boundary.inverted, "element") +
       ", all of whose points are prescribed; the first is cell " +
       std::to_string(boundary.firstInverted) + ".");
   }
   if (boundary.crossing.pairs > 0)
   {
-    control.say("The moved boundary intersects itself, at points " +
+    control.addMessage("The moved boundary intersects itself, at points " +
       std::to_string(boundary.crossing.first[0]) + " and " +
       std::to_string(boundary.crossing.first[1]) + " for example: move it less far.");
   }
   if (result.invertedAfter > 0)
   {
-    control.say(counted(result.invertedAfter, "element") +
+    control.addMessage(counted(result.invertedAfter, "element") +
       (result.invertedAfter == 1 ? " is" : " are") + " inverted or degenerate.");
   }
   if (result.timeLimit)
   {
-    control.say("The time limit was reached.");
+    control.addMessage("The time limit was reached.");
   }
   if (result.aborted)
   {
-    control.say("Stopped on request.");
+    control.addMessage("Stopped on request.");
   }
 }
 

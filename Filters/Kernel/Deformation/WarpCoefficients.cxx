@@ -68,7 +68,7 @@ SymmetricTensor principalDirections(
 
   // The average of |d . e| over the directions e of a plane is 2 / pi |d|, of space |d| / 2.
   constexpr double coincide = 1e-6;
-  constexpr double average[4] = { 0, 1, 0.63661977236758134, 0.5 };
+  constexpr double average[4] = { 0, 1, 2 / Pi, 0.5 };
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
   for (int first = 0; first < 3;)
   {

@@ -1,61 +1,64 @@
 /**
  * @file WarpControl.h
- * @brief The clock, the observer and the running totals of one warp. Internal: not installed.
+ * @brief The time limit, the observer and the running totals of one deformation. Internal: not
+ * installed.
  */
 #ifndef tautline_WarpControl_h
 #define tautline_WarpControl_h
 
+#include "tautline/Core/Stopwatch.h"
 #include "WarpOptions.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tautline
 {
+/**
+ * @class tautline::WarpControl
+ * @brief Created when a deformation starts; all its parts ask it whether to continue. Called from
+ * the calling thread only.
+ */
 class WarpControl
 {
 public:
+  /// Both stay alive; the result gets the flags timeLimit and aborted, and the message.
   WarpControl(const WarpOptions& options, WarpResult& result)
     : Options(options)
     , Result(result)
-    , Start(std::chrono::steady_clock::now())
   {
   }
 
   const WarpOptions& options() const { return this->Options; }
   WarpResult& result() { return this->Result; }
 
-  double elapsed() const
-  {
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Start;
-    return passed.count();
-  }
+  /// Seconds since the start.
+  double elapsed() const { return this->Time.seconds(); }
   /// Seconds left, for the limits of solvers; 0 where there is no limit, else above 0.
   double secondsLeft() const
   {
-    constexpr double next = 1e-3; // what is as good as none
+    constexpr double smallest = 1e-3; // 0 would mean no limit
     return this->Options.maximumSeconds > 0
-      ? std::max(next, this->Options.maximumSeconds - this->elapsed())
+      ? std::max(smallest, this->Options.maximumSeconds - this->elapsed())
       : 0.0;
   }
 
-  /// Which part of the whole the work from here on is; fractions told to goOn() are of that part.
+  /// The part of the whole, 0 to 1, that fractions passed to proceed() are fractions of.
   void setRange(double from, double to)
   {
     this->From = from;
     this->To = to;
   }
-  /// False when it is time to stop; says so in the result.
-  bool goOn(double fraction)
+  /// Reports progress; false when the deformation has to stop. The result then states why.
+  bool proceed(double fraction)
   {
-    if (this->Options.maximumSeconds > 0 && this->elapsed() >= this->Options.maximumSeconds)
+    if (this->Time.reached(this->Options.maximumSeconds))
     {
       this->Result.timeLimit = true;
     }
-    // What is tried again in another way does not start again for who watches.
+    // A second attempt starts at a smaller fraction; the reported progress never decreases.
     const double now = this->From + (this->To - this->From) * std::clamp(fraction, 0.0, 1.0);
-    this->Told = std::max(this->Told, now);
-    if (!this->stopped() && this->Options.progress && !this->Options.progress(this->Told))
+    this->Reported = std::max(this->Reported, now);
+    if (!this->stopped() && this->Options.progress && !this->Options.progress(this->Reported))
     {
       this->Result.aborted = true;
     }
@@ -63,12 +66,12 @@ public:
   }
   bool stopped() const { return this->Result.timeLimit || this->Result.aborted; }
 
-  /// Of linear solvers, so far.
+  /// Iterations of linear solvers so far.
   int iterations() const { return this->Iterations; }
   void addIterations(int iterations) { this->Iterations += iterations; }
 
-  /// Adds a sentence to the message, once.
-  void say(const std::string& sentence)
+  /// Appends a sentence to the message of the result, once.
+  void addMessage(const std::string& sentence)
   {
     std::string& message = this->Result.message;
     if (message.find(sentence) == std::string::npos)
@@ -80,8 +83,8 @@ public:
 private:
   const WarpOptions& Options;
   WarpResult& Result;
-  std::chrono::steady_clock::time_point Start;
-  double From = 0, To = 1, Told = 0;
+  Stopwatch Time;
+  double From = 0, To = 1, Reported = 0;
   int Iterations = 0;
 };
 }

@@ -127,7 +127,7 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
     {
       if (!control.stopped())
       {
-        control.say("The linear solver did not converge: " + this->System->failure());
+        control.addMessage("The linear solver did not converge: " + this->System->failure());
       }
       return best.empty() ? moved : best;
     }
@@ -164,11 +164,11 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
     }
     if (round == options.maximumStiffenings)
     {
-      control.say("Stiffening ended after " + std::to_string(round) + " rounds with " +
+      control.addMessage("Stiffening ended after " + std::to_string(round) + " rounds with " +
         std::to_string(fewest) + " inverted elements.");
       return best;
     }
-    if (!control.goOn(static_cast<double>(round + 1) / (options.maximumStiffenings + 1)))
+    if (!control.proceed(static_cast<double>(round + 1) / (options.maximumStiffenings + 1)))
     {
       return best;
     }

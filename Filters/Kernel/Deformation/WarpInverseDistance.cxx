@@ -1,7 +1,7 @@
 #include "WarpPointwise.h"
 
+#include "WarpBatches.h"
 #include "tautline/Geometry/PointTree.h"
-#include "WarpClock.h"
 
 namespace tautline
 {
@@ -189,15 +189,14 @@ Mean meanFor(double power)
 
 //------------------------------------------------------------------------------
 std::vector<double> warpByInverseDistance(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement,
-  const WarpOptions& options)
+  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control)
 {
+  const WarpOptions& options = control.options();
   if (!(options.distancePower > 0 && options.distancePower <= LargestPower))
   {
     throw Error("the power of the distance is " + std::to_string(options.distancePower) +
       "; it must be above 0 and at most 20");
   }
-  const WarpClock clock(options);
   const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);
   if (motion.affine())
   {
@@ -206,7 +205,7 @@ std::vector<double> warpByInverseDistance(const Mesh& mesh,
   const Sources sources(motion, options.distancePower);
   const Mean mean = meanFor(options.distancePower);
   std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
-  const bool complete = forEachBatch(motion.free().size(), options.threads, clock, 0.0,
+  const bool complete = forEachBatch(motion.free().size(), 0.0, control,
     [&](std::size_t i) { rest[i] = (sources.*mean)(motion.local(motion.free()[i])); });
   return complete ? motion.displacements(rest) : std::vector<double>();
 }

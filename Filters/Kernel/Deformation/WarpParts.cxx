@@ -1,5 +1,7 @@
 #include "WarpParts.h"
 
+#include "tautline/Core/UnionFind.h"
+
 #include <Eigen/Dense>
 
 #include <numeric>
@@ -24,16 +26,7 @@ WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed)
   }
 
   // Parts are numbered in the order of their smallest points.
-  std::vector<Index> parent(n);
-  std::iota(parent.begin(), parent.end(), Index(0));
-  const auto root = [&](Index i)
-  {
-    while (parent[i] != i)
-    {
-      i = parent[i] = parent[parent[i]];
-    }
-    return i;
-  };
+  UnionFind sets(n);
   std::vector<char> used(n, 0);
   for (const CellBlock& block : mesh.blocks())
   {
@@ -45,8 +38,7 @@ WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed)
       for (int k = 1; k < nodes; ++k)
       {
         used[node[k]] = 1;
-        const Index a = root(node[0]), b = root(node[k]);
-        parent[std::max(a, b)] = std::min(a, b);
+        sets.join(node[0], node[k]);
       }
     }
   }
@@ -55,7 +47,7 @@ WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed)
   {
     if (used[i])
     {
-      const Index r = root(i);
+      const Index r = sets.find(i);
       this->Part[i] = r == i ? this->Count++ : this->Part[r];
     }
   }

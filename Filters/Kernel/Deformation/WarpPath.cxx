@@ -1,8 +1,8 @@
 #include "WarpPath.h"
 
-#include <Eigen/Dense>
+#include "tautline/Core/UnionFind.h"
 
-#include <numeric>
+#include <Eigen/Dense>
 
 namespace tautline
 {
@@ -23,16 +23,7 @@ std::vector<Index> findPieces(
 {
   const MeshView& view = mesh.view();
   const Index n = view.numberOfPoints;
-  std::vector<Index> parent(n);
-  std::iota(parent.begin(), parent.end(), Index(0));
-  const auto root = [&](Index i)
-  {
-    while (parent[i] != i)
-    {
-      i = parent[i] = parent[parent[i]];
-    }
-    return i;
-  };
+  UnionFind sets(n);
   const auto join = [&](const Index* nodes, int count, const auto& local)
   {
     for (int k = 0; k < count; ++k)
@@ -44,8 +35,7 @@ std::vector<Index> findPieces(
     }
     for (int k = 1; k < count; ++k)
     {
-      const Index a = root(nodes[local(0)]), b = root(nodes[local(k)]);
-      parent[std::max(a, b)] = std::min(a, b);
+      sets.join(nodes[local(0)], nodes[local(k)]);
     }
   };
   for (const CellBlock& block : mesh.blocks())
@@ -70,7 +60,7 @@ std::vector<Index> findPieces(
   {
     if (prescribed[i])
     {
-      const Index r = root(i);
+      const Index r = sets.find(i);
       pieceOf[i] = r == i ? static_cast<Index>(pieces++) : pieceOf[r];
     }
   }

@@ -12,7 +12,7 @@
 #ifndef tautline_WarpPointwise_h
 #define tautline_WarpPointwise_h
 
-#include "WarpOptions.h"
+#include "WarpControl.h"
 #include "tautline/SolversExport.h"
 
 namespace tautline
@@ -23,7 +23,7 @@ namespace tautline
  *
  * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is
  * read, and returned as it is, where the flag is set. Without any prescribed point nothing moves.
- * The result is empty when options.progress returned false or options.maximumSeconds were over.
+ * The result is empty when the control stopped the work. `options` below are those of the control.
  * Throws Error for options out of range.
  *
  * Inverse distance weighting (Shepard): the mean of the prescribed displacements, weighted by the
@@ -32,8 +32,7 @@ namespace tautline
  * the largest displacement.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement,
-  const WarpOptions& options);
+  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
 
 /**
  * @brief As above by radial basis functions: Wendland's C2 function with the radius
@@ -42,8 +41,7 @@ TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(const Mesh& me
  * largest displacement; the point that is met worst comes next.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement,
-  const WarpOptions& options);
+  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
 
 /**
  * @brief As above by the method of Shontz and Vavasis (2003): each point that is not prescribed is
@@ -54,8 +52,7 @@ TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
  * options.tolerance.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement,
-  const WarpOptions& options);
+  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
 
 // --- what the three share
 // ------------------------------------------------------------------------------

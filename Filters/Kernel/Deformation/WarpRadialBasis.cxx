@@ -1,7 +1,7 @@
 #include "WarpPointwise.h"
 
+#include "WarpBatches.h"
 #include "tautline/Geometry/PointTree.h"
-#include "WarpClock.h"
 
 namespace tautline
 {
@@ -20,7 +20,7 @@ constexpr double Independence = 1e-12;
 constexpr std::size_t LeafSize = 32;
 /// Products from which a choice is worth starting threads.
 constexpr Index ParallelWork = 200000;
-/// The clock is asked once for so many chosen points.
+/// Chosen points between two checks of the limits.
 constexpr std::size_t ClockInterval = 16;
 
 /// Wendland's C2 function of the distance over the radius.
@@ -67,8 +67,8 @@ public:
     }
   }
 
-  /// Chooses until all residuals are at most `enough`. False: stopped by the clock.
-  bool choose(double enough, const WarpClock& clock)
+  /// Chooses until all residuals are at most `enough`; false when the control stopped it.
+  bool choose(double enough, WarpControl& control)
   {
     while (this->Chosen.size() < MaxCenters)
     {
@@ -88,7 +88,7 @@ public:
         return true;
       }
       if (this->Chosen.size() % ClockInterval == 0 &&
-        !clock.proceed(0.5 * static_cast<double>(this->Chosen.size()) / MaxCenters))
+        !control.proceed(0.5 * static_cast<double>(this->Chosen.size()) / MaxCenters))
       {
         return false;
       }
@@ -260,10 +260,10 @@ private:
  * @brief Chooses centres until every prescribed point is met. Candidates are first some points
  * spread evenly; then, in each round, those of the others that are met worst.
  * @param enough largest residual
- * @return false when the clock stopped it
+ * @return false when the control stopped it
  */
-bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, int threads,
-  const WarpClock& clock, GreedyFit& fit)
+bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, WarpControl& control,
+  GreedyFit& fit)
 {
   const std::vector<Index>& all = motion.prescribed();
   const std::size_t stride = (all.size() + FirstCandidates - 1) / FirstCandidates;
@@ -280,14 +280,14 @@ bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, i
     add(i);
   }
   std::vector<double> errors(all.size());
-  while (fit.choose(enough, clock))
+  while (fit.choose(enough, control))
   {
     if (candidates == all.size() || fit.chosen() >= MaxCenters)
     {
       return true;
     }
     const Interpolant interpolant(fit, radius);
-    forEachChunk(static_cast<Index>(all.size()), threads,
+    forEachChunk(static_cast<Index>(all.size()), control.options().threads,
       [&](Index, Index begin, Index end)
       {
         for (Index i = begin; i < end; ++i)
@@ -325,9 +325,9 @@ bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, i
 
 //------------------------------------------------------------------------------
 std::vector<double> warpByRadialBasis(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement,
-  const WarpOptions& options)
+  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control)
 {
+  const WarpOptions& options = control.options();
   if (!(options.supportRadius >= 0 && std::isfinite(options.supportRadius)))
   {
     throw Error("the support radius is " + std::to_string(options.supportRadius) +
@@ -338,7 +338,6 @@ std::vector<double> warpByRadialBasis(const Mesh& mesh,
     throw Error("the tolerance of the fit is " + std::to_string(options.fitTolerance) +
       "; it must be at least 0 and below 1");
   }
-  const WarpClock clock(options);
   const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);
   if (motion.affine())
   {
@@ -348,13 +347,13 @@ std::vector<double> warpByRadialBasis(const Mesh& mesh,
     options.supportRadius > 0 ? options.supportRadius / motion.scale() : DefaultRadius;
   const double enough = options.fitTolerance * motion.largest();
   GreedyFit fit(radius, options.threads);
-  if (!fitGreedily(motion, radius, enough, options.threads, clock, fit))
+  if (!fitGreedily(motion, radius, enough, control, fit))
   {
     return {};
   }
   const Interpolant interpolant(fit, radius);
   std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
-  const bool complete = forEachBatch(motion.free().size(), options.threads, clock, 0.5,
+  const bool complete = forEachBatch(motion.free().size(), 0.5, control,
     [&](std::size_t i) { rest[i] = interpolant.at(motion.local(motion.free()[i])); });
   return complete ? motion.displacements(rest) : std::vector<double>();
 }

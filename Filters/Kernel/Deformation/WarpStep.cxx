@@ -68,20 +68,16 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
 {
   const WarpOptions& options = control.options();
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
-  // The methods that know nothing of the control have its clock and its observer.
-  WarpOptions pointwise = options;
-  pointwise.maximumSeconds = control.secondsLeft();
-  pointwise.progress = [&control](double fraction) { return control.goOn(fraction); };
   switch (options.method)
   {
     case WarpMethod::InverseDistance:
-      moved = warpByInverseDistance(this->From, prescribed, displacement, pointwise);
+      moved = warpByInverseDistance(this->From, prescribed, displacement, control);
       break;
     case WarpMethod::RadialBasis:
-      moved = warpByRadialBasis(this->From, prescribed, displacement, pointwise);
+      moved = warpByRadialBasis(this->From, prescribed, displacement, control);
       break;
     case WarpMethod::WeightedLaplacian:
-      moved = warpByWeightedLaplacian(this->From, prescribed, displacement, pointwise);
+      moved = warpByWeightedLaplacian(this->From, prescribed, displacement, control);
       break;
     case WarpMethod::IterativeStiffening:
     case WarpMethod::JacobianStiffening:
@@ -98,7 +94,7 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
   if (moved.empty())
   {
     // Stopped before anything was known: only the prescribed points have moved.
-    control.goOn(1.0);
+    control.proceed(1.0);
     moved.assign(3 * prescribed.size(), 0.0);
   }
   // Parts that do not move stay, to the last bit, whatever the method.
@@ -225,7 +221,7 @@ int WarpStep::untangle(
   options.threads = control.options().threads;
   options.maximumSeconds = control.secondsLeft();
   options.observer = [&control](const IterationState& state)
-  { return control.goOn(0.3 + 0.4 * state.progress); };
+  { return control.proceed(0.3 + 0.4 * state.progress); };
   UntangleResult done = tautline::untangle(mesh, options);
   if (done.reason == StopReason::TimeLimit)
   {
@@ -293,7 +289,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
     stop.maximumSeconds = stop.maximumSeconds > 0 ? std::min(left, stop.maximumSeconds) : left;
   }
   optimization.observer = [&control](const IterationState& state)
-  { return control.goOn(0.7 + 0.3 * state.progress); };
+  { return control.proceed(0.7 + 0.3 * state.progress); };
   OptimizeResult done = tautline::optimize(mesh, optimization);
   points = std::move(done.points);
   return done.iterations;

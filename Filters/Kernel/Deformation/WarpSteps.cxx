@@ -46,7 +46,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
     // The last step ends at 1, not a rounding before it.
     const bool last = automatic ? amount + step >= 1.0 : done + 1 == steps;
     const double next = last ? 1.0 : amount + step;
-    if (!control.goOn(amount))
+    if (!control.proceed(amount))
     {
       break;
     }
@@ -89,7 +89,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
     }
     if (automatic && done >= options.maximumSteps && amount < 1.0)
     {
-      control.say("The limit of steps was reached.");
+      control.addMessage("The limit of steps was reached.");
       break;
     }
   }
@@ -97,7 +97,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
   {
     result.invertedWarp = result.invertedAfter =
       qualityOf(mesh, result.points.data(), options.threads).inverted;
-    control.say("The mesh could follow only a part of the motion, " +
+    control.addMessage("The mesh could follow only a part of the motion, " +
       std::to_string(result.amount) + " of it, without inverted elements.");
   }
 }

@@ -206,7 +206,7 @@ bool WarpSystem::runSolver(const std::vector<double>& right, double tolerance,
   }
   this->Solver->options().relativeTolerance = tolerance;
   this->Solver->options().maximumSeconds = control.secondsLeft();
-  this->Solver->options().observer = [&control](int, double) { return control.goOn(0.5); };
+  this->Solver->options().observer = [&control](int, double) { return control.proceed(0.5); };
   control.result().setupSeconds += this->Solver->setUp();
   solution.assign(this->Inner.size, 0.0);
   const LinearSolution done = this->Solver->solve(right.data(), solution.data());

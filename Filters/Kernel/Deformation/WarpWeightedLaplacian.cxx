@@ -1,11 +1,11 @@
 #include "WarpPointwise.h"
 
-#include "WarpClock.h"
+#include "WarpBatches.h"
+#include "tautline/Core/LineSearch.h"
+#include "tautline/Core/UnionFind.h"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
-
-#include <numeric>
 
 namespace tautline
 {
@@ -20,36 +20,8 @@ constexpr double Enough = 1e-27, Acceptable = 1e-20;
 /// Of the incomplete factorisation.
 constexpr double DropTolerance = 1e-3;
 constexpr int FillFactor = 6;
-/// Iterations of the linear solver between questions to the clock, and how often it starts anew.
-constexpr int RunLength = 300, MostRuns = 20;
-
-/// Parts of the mesh, joined by cells.
-class Parts
-{
-public:
-  explicit Parts(Index points)
-    : Parent(static_cast<std::size_t>(points))
-  {
-    std::iota(this->Parent.begin(), this->Parent.end(), Index{ 0 });
-  }
-  Index root(Index i)
-  {
-    while (this->Parent[i] != i)
-    {
-      i = this->Parent[i] = this->Parent[this->Parent[i]];
-    }
-    return i;
-  }
-  void join(Index a, Index b)
-  {
-    a = this->root(a);
-    b = this->root(b);
-    this->Parent[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<Index> Parent;
-};
+/// Iterations of the linear solver between two checks of the limits, and the number of restarts.
+constexpr int RunLength = 300, MaxRuns = 20;
 
 /// Neighbours of a point and its convex combination of them.
 struct WeightedNeighbors
@@ -136,10 +108,11 @@ void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vecto
       break;
     }
     // Halved until it lowers the function; at the bottom rounding decides and a full step is right.
-    constexpr double Armijo = 1e-4, Bottom = 1e-12, Shortest = 1e-10;
+    constexpr double Bottom = 1e-12, Shortest = 1e-10;
     double length = 1;
     double next = functionAt(l + direction);
-    while (length > Shortest && decrease > Bottom && !(next <= value - Armijo * length * decrease))
+    while (length > Shortest && decrease > Bottom &&
+      !(next <= value - ArmijoConstant * length * decrease))
     {
       length *= 0.5;
       next = functionAt(l + length * direction);
@@ -254,10 +227,10 @@ private:
 /**
  * @brief Solves the system, column by column, by stabilised biconjugate gradients; the matrix is
  * diagonally dominant and an incomplete factorisation exists.
- * @return false when the clock said stop
+ * @return false when the control stopped it
  */
 bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
-  const WarpClock& clock, Eigen::MatrixXd& solution)
+  WarpControl& control, Eigen::MatrixXd& solution)
 {
   Eigen::BiCGSTAB<Matrix, Eigen::IncompleteLUT<double>> solver;
   solver.preconditioner().setDroptol(DropTolerance);
@@ -272,11 +245,11 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
     int runs = 0;
     do
     {
-      if (!clock.proceed(0.5 + static_cast<double>(k) / 6))
+      if (!control.proceed(0.5 + static_cast<double>(k) / 6))
       {
         return false;
       }
-      if (++runs > MostRuns)
+      if (++runs > MaxRuns)
       {
         throw Error("the linear system of weighted Laplacian smoothing could not be solved to " +
           std::to_string(tolerance) + "; raise the tolerance or choose another method");
@@ -299,7 +272,7 @@ struct Unknowns
     : numberOf(static_cast<std::size_t>(mesh.view().numberOfPoints), -1)
   {
     const MeshView& view = mesh.view();
-    Parts parts(view.numberOfPoints);
+    UnionFind parts(view.numberOfPoints);
     for (const CellBlock& block : mesh.blocks())
     {
       const int nodes = topology(block.type).nodes;
@@ -315,11 +288,11 @@ struct Unknowns
     std::vector<char> moves(this->numberOf.size(), 0);
     for (const Index id : motion.prescribed())
     {
-      moves[parts.root(id)] = 1;
+      moves[parts.find(id)] = 1;
     }
     for (const Index id : motion.free())
     {
-      if (moves[parts.root(id)])
+      if (moves[parts.find(id)])
       {
         this->numberOf[id] = static_cast<int>(this->points.size());
         this->points.push_back(id);
@@ -378,10 +351,9 @@ Matrix assemble(const PrescribedMotion& motion, const Unknowns& unknowns,
 
 //------------------------------------------------------------------------------
 std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement,
-  const WarpOptions& options)
+  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control)
 {
-  const WarpClock clock(options);
+  const WarpOptions& options = control.options();
   const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);
   const Unknowns unknowns(mesh, motion);
   std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
@@ -389,7 +361,7 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   {
     const Combinations combinations(mesh);
     std::vector<WeightedNeighbors> rows(unknowns.points.size());
-    if (!forEachBatch(rows.size(), options.threads, clock, 0.0,
+    if (!forEachBatch(rows.size(), 0.0, control,
           [&](std::size_t i) { rows[i] = combinations.at(unknowns.points[i]); }))
     {
       return {};
@@ -397,7 +369,7 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
     const std::array<Vec3, 3> axes = axesOf(mesh);
     Eigen::MatrixXd right, solution;
     const Matrix matrix = assemble(motion, unknowns, rows, axes, right);
-    if (!solve(matrix, right, options.tolerance, clock, solution))
+    if (!solve(matrix, right, options.tolerance, control, solution))
     {
       return {};
     }

@@ -43,7 +43,9 @@ struct Problem
   std::vector<double> run(Method warp, const WarpOptions& options = {}) const
   {
     const Mesh mesh(this->data.view());
-    return warp(mesh, this->prescribed, this->displacement.data(), options);
+    WarpResult result;
+    WarpControl control(options, result);
+    return warp(mesh, this->prescribed, this->displacement.data(), control);
   }
   Index inverted(const std::vector<double>& moves) const
   {

@@ -1,0 +1,43 @@
+/**
+ * @file WarpBatches.h
+ * @brief A loop over many points that reports progress and can be stopped. Internal: not installed.
+ */
+#ifndef tautline_WarpBatches_h
+#define tautline_WarpBatches_h
+
+#include "tautline/Core/Parallel.h"
+#include "WarpControl.h"
+
+namespace tautline
+{
+/**
+ * @brief Calls work(i) for each i below n in several runs, each on all threads; reports progress
+ * between the runs.
+ * @param from fraction of the deformation done before the first run; the last one ends at 1
+ * @return false if the deformation had to stop before the end
+ */
+template <class Work>
+bool forEachBatch(std::size_t n, double from, WarpControl& control, const Work& work)
+{
+  constexpr Index Runs = 16, Grain = 64;
+  const auto size = static_cast<Index>(n);
+  const Index run = std::max<Index>(ChunkSize, (size + Runs - 1) / Runs);
+  for (Index begin = 0; begin < size; begin += run)
+  {
+    if (!control.proceed(
+          from + (1 - from) * static_cast<double>(begin) / static_cast<double>(size)))
+    {
+      return false;
+    }
+    const Index end = std::min(size, begin + run);
+#pragma omp parallel for schedule(dynamic, Grain) \
+  num_threads(resolveThreads(control.options().threads))
+    for (Index i = begin; i < end; ++i)
+    {
+      work(static_cast<std::size_t>(i));
+    }
+  }
+  return true;
+}
+}
+#endif
