@@ -25,12 +25,12 @@ public:
 
   std::uint64_t next()
   {
-    this->State += 0x9e3779b97f4a7c15u;
+    this->State += Increment;
     return hash(this->State);
   }
 
   /// In [0, 1).
-  double uniform() { return static_cast<double>(this->next() >> 11) * 0x1p-53; }
+  double uniform() { return unit(this->next()); }
 
   /// In [-1, 1).
   double symmetric() { return 2.0 * this->uniform() - 1.0; }
@@ -63,14 +63,18 @@ public:
     }
   }
 
-private:
+  /// The increment of the counter, and the hash that makes a number of it.
+  static constexpr std::uint64_t Increment = 0x9e3779b97f4a7c15u;
   static std::uint64_t hash(std::uint64_t z)
   {
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
+  /// A hash as a number in [0, 1).
+  static double unit(std::uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1p-53; }
 
+private:
   std::uint64_t State;
 };
 }

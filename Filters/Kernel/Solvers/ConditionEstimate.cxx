@@ -26,10 +26,10 @@ void check(const ConditionOptions& options)
   }
 }
 
-double relative(const ExtremeEigenvalue& end)
+double relative(const ExtremeEigenvalue& extreme)
 {
-  return end.value != 0.0 ? end.bound / std::abs(end.value)
-                          : std::numeric_limits<double>::infinity();
+  return extreme.value != 0.0 ? extreme.bound / std::abs(extreme.value)
+                              : std::numeric_limits<double>::infinity();
 }
 
 /// D^-1/2 A D^-1/2, which has the eigenvalues of D^-1 A; and D^-1/2. False if D is not positive.
@@ -61,12 +61,12 @@ std::vector<double> valuesOf(const PetscSystem& system, Vec vector)
   return values;
 }
 
-/// Puts the two ends together. Rounding moves eigenvalues by about the last digit of the largest,
+/// Fills the result with both eigenvalues. Rounding moves eigenvalues by about the last digit of the largest,
 /// whatever residuals say.
-void fill(ExtremeEigenvalues& ends, const PetscSystem& system, const ConditionOptions& options,
-  const SpectrumWatch& watch, ConditionEstimate& result)
+void fill(ExtremeEigenvalues& extremes, const PetscSystem& system, const ConditionOptions& options,
+  const EigensolverStoppingTest& test, ConditionEstimate& result)
 {
-  ExtremeEigenvalue &low = ends.smallest, &high = ends.largest;
+  ExtremeEigenvalue &low = extremes.smallest, &high = extremes.largest;
   low.bound = std::max(low.bound, std::numeric_limits<double>::epsilon() * std::abs(high.value));
   result.smallest = low.found ? low.value : 0.0;
   result.largest = high.found ? high.value : 0.0;
@@ -97,10 +97,10 @@ void fill(ExtremeEigenvalues& ends, const PetscSystem& system, const ConditionOp
   {
     result.condition = high.value / low.value;
   }
-  if (watch.stopped())
+  if (test.stopped())
   {
     result.converged = false;
-    result.message = watch.message();
+    result.message = test.message();
   }
   else if (!result.converged && result.message.empty())
   {
@@ -109,8 +109,8 @@ void fill(ExtremeEigenvalues& ends, const PetscSystem& system, const ConditionOp
 }
 
 /// The Ritz values of conjugate gradients: from inside the spectrum.
-void ritzValues(const LinearSystem& system, const ConditionOptions& options, SpectrumWatch& watch,
-  ConditionEstimate& result)
+void ritzValues(const LinearSystem& system, const ConditionOptions& options,
+  EigensolverStoppingTest& test, ConditionEstimate& result)
 {
   SolverOptions solverOptions;
   solverOptions.preconditioner = options.preconditioner;
@@ -120,7 +120,7 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options, Spe
   solverOptions.petscOptions = options.petscOptions;
   solverOptions.ritzValues = true;
   solverOptions.observer = [&](int iteration, double)
-  { return !watch.stop(iteration / (iteration + 100.0)); };
+  { return !test.stop(iteration / (iteration + 100.0)); };
   LinearSolver solver(system, solverOptions);
   const PetscSystem& objects = solver.state().Objects;
   // As a right-hand side, random numbers: they see the whole spectrum.
@@ -135,7 +135,7 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options, Spe
   result.smallestError = result.largestError = std::numeric_limits<double>::infinity();
   result.condition = result.smallest > 0.0 ? result.largest / result.smallest : 0.0;
   result.converged = false;
-  result.message = watch.stopped() ? watch.message()
+  result.message = test.stopped() ? test.message()
     : converged(solution.reason)
     ? "Ritz values lie inside the spectrum: the condition number is at least this."
     : "CG " + std::string(describe(solution.reason)) +
@@ -145,7 +145,7 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options, Spe
 /// The spectrum of P^-1 A, whatever PETSc calls P.
 ExtremeEigenvalues preconditionedExtremeEigenvalues(const LinearSystem& system,
   const ConditionOptions& options, Preconditioner preconditioner, const std::string& petscOptions,
-  SpectrumWatch& watch)
+  EigensolverStoppingTest& test)
 {
   SolverOptions solverOptions;
   solverOptions.preconditioner = preconditioner;
@@ -155,11 +155,11 @@ ExtremeEigenvalues preconditionedExtremeEigenvalues(const LinearSystem& system,
   solver.setUp();
   LinearSolverState& own = solver.state();
   const PetscScope scope(own.OptionSet.database());
-  ExtremeEigenvalues ends;
+  ExtremeEigenvalues extremes;
   if (own.Failure != SolveReason::Exact)
   {
-    ends.smallest.message = ends.largest.message = own.FailureText;
-    return ends;
+    extremes.smallest.message = extremes.largest.message = own.FailureText;
+    return extremes;
   }
   PC pc = nullptr;
   petsc(KSPGetPC(own.Solver, &pc));
@@ -167,18 +167,18 @@ ExtremeEigenvalues preconditionedExtremeEigenvalues(const LinearSystem& system,
   petsc(PCGetFailedReason(pc, &why));
   if (why != PC_NOERROR)
   {
-    ends.smallest.message = ends.largest.message =
+    extremes.smallest.message = extremes.largest.message =
       "The preconditioner could not be built: a pivot is zero.";
-    return ends;
+    return extremes;
   }
-  return lanczosExtremeEigenvalues(own.Objects.matrix(), pc, options, watch);
+  return lanczosExtremeEigenvalues(own.Objects.matrix(), pc, options, test);
 }
 
 /// The spectrum of A, or of D^-1 A.
-ExtremeEigenvalues plainEnds(const LinearSystem& system, const PetscSystem& objects,
-  const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
+ExtremeEigenvalues plainExtremeEigenvalues(const LinearSystem& system, const PetscSystem& objects,
+  const ConditionOptions& options, PetscOptionSet& optionSet, EigensolverStoppingTest& test)
 {
-  ExtremeEigenvalues ends;
+  ExtremeEigenvalues extremes;
   Mat matrix = objects.matrix();
   PetscMatrix scaled;
   PetscVector roots;
@@ -186,93 +186,40 @@ ExtremeEigenvalues plainEnds(const LinearSystem& system, const PetscSystem& obje
   {
     if (!scaledByDiagonal(matrix, scaled, roots))
     {
-      ends.smallest.message = ends.largest.message =
+      extremes.smallest.message = extremes.largest.message =
         "The preconditioner is not positive definite: a diagonal entry is not positive.";
-      return ends;
+      return extremes;
     }
     matrix = scaled;
   }
-  ends = slepcExtremeEigenvalues(matrix, system, objects.ranks(), options, optionSet, watch);
+  extremes = slepcExtremeEigenvalues(matrix, system, objects.ranks(), options, optionSet, test);
   if (roots)
   {
-    for (ExtremeEigenvalue* end : { &ends.smallest, &ends.largest })
+    for (ExtremeEigenvalue* extreme : { &extremes.smallest, &extremes.largest })
     {
-      if (end->vector)
+      if (extreme->vector)
       {
-        petsc(VecPointwiseMult(end->vector, end->vector, roots));
+        petsc(VecPointwiseMult(extreme->vector, extreme->vector, roots));
       }
     }
   }
   // What shift-invert or LOBPCG cannot do, a singular or an indefinite matrix, the Lanczos method
   // can.
-  if ((!ends.smallest.found || !ends.largest.found) && !watch.stopped())
+  if ((!extremes.smallest.found || !extremes.largest.found) && !test.stopped())
   {
     ExtremeEigenvalues other =
-      preconditionedExtremeEigenvalues(system, options, options.preconditioner, "", watch);
-    for (const auto& [end, second] : { std::make_pair(&ends.smallest, &other.smallest),
-           std::make_pair(&ends.largest, &other.largest) })
+      preconditionedExtremeEigenvalues(system, options, options.preconditioner, "", test);
+    for (const auto& [extreme, second] : { std::make_pair(&extremes.smallest, &other.smallest),
+           std::make_pair(&extremes.largest, &other.largest) })
     {
-      if (!end->found)
+      if (!extreme->found)
       {
-        *end = std::move(*second);
+        *extreme = std::move(*second);
       }
     }
   }
-  return ends;
+  return extremes;
 }
-}
-
-//------------------------------------------------------------------------------
-double SpectrumWatch::seconds() const
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
-}
-
-void SpectrumWatch::stage(double begin, double end)
-{
-  this->Begin = begin;
-  this->End = end;
-}
-
-bool SpectrumWatch::stop(double fraction)
-{
-  bool aborted = this->Aborted;
-  try
-  {
-    aborted = aborted ||
-      (this->Options.progress &&
-        !this->Options.progress(this->Begin + fraction * (this->End - this->Begin)));
-  }
-  catch (...)
-  {
-    // No exception may pass through PETSc.
-    this->Thrown = std::current_exception();
-    aborted = true;
-  }
-  if (this->Options.progress)
-  {
-    this->Aborted = this->System.anywhere(aborted);
-  }
-  if (this->Options.maximumSeconds > 0.0)
-  {
-    this->Late = this->System.anywhere(this->seconds() > this->Options.maximumSeconds);
-  }
-  return this->stopped();
-}
-
-std::string SpectrumWatch::message() const
-{
-  return this->Aborted ? "Stopped by the user."
-    : this->Late       ? "The time limit was reached before the tolerance."
-                       : "";
-}
-
-void SpectrumWatch::rethrow() const
-{
-  if (this->Thrown)
-  {
-    std::rethrow_exception(this->Thrown);
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -287,7 +234,7 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
   PetscOptionSet optionSet(options.petscOptions);
   const PetscScope own(optionSet.database());
   const PetscSystem objects(system);
-  SpectrumWatch watch(objects, options);
+  EigensolverStoppingTest test(objects, options);
   ConditionEstimate result;
   try
   {
@@ -296,14 +243,15 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
         options.petscOptions.find("-pc_") == std::string::npos);
     if (options.method == SpectrumMethod::RitzValues)
     {
-      ritzValues(system, options, watch, result);
+      ritzValues(system, options, test, result);
     }
     else
     {
-      ExtremeEigenvalues ends = plain ? plainEnds(system, objects, options, optionSet, watch)
-                                      : preconditionedExtremeEigenvalues(system, options,
-                                          options.preconditioner, options.petscOptions, watch);
-      fill(ends, objects, options, watch, result);
+      ExtremeEigenvalues extremes = plain
+        ? plainExtremeEigenvalues(system, objects, options, optionSet, test)
+        : preconditionedExtremeEigenvalues(
+            system, options, options.preconditioner, options.petscOptions, test);
+      fill(extremes, objects, options, test, result);
     }
   }
   catch (const PetscError& error)
@@ -312,8 +260,8 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
     result.smallestError = result.largestError = std::numeric_limits<double>::infinity();
     result.message = error.what();
   }
-  watch.rethrow();
-  result.seconds = watch.seconds();
+  test.rethrow();
+  result.seconds = test.seconds();
   return result;
 }
 }

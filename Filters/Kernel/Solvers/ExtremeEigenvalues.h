@@ -1,33 +1,33 @@
 /**
  * @file ExtremeEigenvalues.h
- * @brief Both ends of the spectrum of A, or of P^-1 A, of a matrix that PETSc holds. Not a public
- * header.
+ * @brief The smallest and the largest eigenvalue of A, or of P^-1 A, for a matrix that PETSc holds.
+ * Not a public header.
  */
-#ifndef tautline_SpectrumEnds_h
-#define tautline_SpectrumEnds_h
+#ifndef tautline_ExtremeEigenvalues_h
+#define tautline_ExtremeEigenvalues_h
 
 #include "ConditionOptions.h"
 #include "PetscObjects.h"
 
-#include <chrono>
+#include "tautline/Core/Stopwatch.h"
 
 namespace tautline
 {
-/// Limits that all methods keep; the ranks stop together.
-class SpectrumWatch
+/// Decides when an eigensolver stops: limits that all methods keep. The ranks stop together.
+class EigensolverStoppingTest
 {
 public:
-  SpectrumWatch(const PetscSystem& system, const ConditionOptions& options)
+  EigensolverStoppingTest(const PetscSystem& system, const ConditionOptions& options)
     : System(system)
     , Options(options)
   {
   }
-  /// Tells a fraction done of the present stage; whether to stop.
+  /// Reports the fraction done of the present stage; whether to stop.
   bool stop(double fraction);
   /// The next stage takes the fractions from `begin` to `end`.
   void stage(double begin, double end);
   bool stopped() const { return this->Late || this->Aborted; }
-  double seconds() const;
+  double seconds() const { return this->Time.seconds(); }
   /// Why it stopped, or "".
   std::string message() const;
   /// Throws what progress() threw.
@@ -36,13 +36,13 @@ public:
 private:
   const PetscSystem& System;
   const ConditionOptions& Options;
-  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+  Stopwatch Time;
   double Begin = 0.0, End = 1.0;
   bool Late = false, Aborted = false;
   std::exception_ptr Thrown;
 };
 
-/// One end of a spectrum.
+/// The smallest or the largest eigenvalue.
 struct ExtremeEigenvalue
 {
   bool found = false;
@@ -65,32 +65,32 @@ void fillStartVector(Vec vector, std::uint64_t seed = 0);
 
 /**
  * @brief Lanczos' method for P^-1 A in the inner product of P, without reorthogonalisation, in two
- * passes: the second gathers the vectors of the ends once the first knows their weights. Needs five
- * vectors however many the steps.
+ * passes: the first finds the weights of the two eigenvectors, the second sums up the eigenvectors.
+ * Needs five vectors, whatever the number of steps.
  *
- * For an end, the tridiagonal matrix of the step at which it converged is taken, before rounding
- * makes copies of it. With y gathered and x = P^-1 y, the value is the Rayleigh quotient x^T A x /
- * x^T y; an eigenvalue is within the norm of A x - theta y, in the inner product of P^-1, of it:
- * rounding in the recurrence does not matter. Where that is far too large, because eigenvalues
+ * For each of the two eigenvalues the tridiagonal matrix of the step at which it converged is taken,
+ * before rounding makes copies of it. With y gathered and x = P^-1 y, the value is the Rayleigh quotient x^T A x /
+ * x^T y. The distance to an eigenvalue is at most the norm of A x - theta y in the inner product of
+ * P^-1; rounding in the recurrence does not matter. Where that is far too large, because eigenvalues
  * crowd, the error is estimated from the last half of the steps.
  *
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 10.1 to 10.3; C. C.
- * Paige, J. Inst. Maths Applics 18 (1976), on what rounding does; bounds: B. N. Parlett, The
+ * Paige, J. Inst. Maths Applics 18 (1976), on the effect of rounding; bounds: B. N. Parlett, The
  * Symmetric Eigenvalue Problem, sections 10.6 and 15.9.
  */
 ExtremeEigenvalues lanczosExtremeEigenvalues(
-  Mat matrix, PC preconditioner, const ConditionOptions& options, SpectrumWatch& watch);
+  Mat matrix, PC preconditioner, const ConditionOptions& options, EigensolverStoppingTest& test);
 
 /**
- * @brief The ends of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest by
+ * @brief Both eigenvalues of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest by
  * Krylov-Schur on the inverse where a factorisation is affordable, else by LOBPCG with BoomerAMG as
  * the preconditioner.
  */
 ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& system, int ranks,
-  const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch);
+  const ConditionOptions& options, PetscOptionSet& optionSet, EigensolverStoppingTest& test);
 
 /// The largest alone.
-ExtremeEigenvalue slepcLargestEigenvalue(
-  Mat matrix, const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch);
+ExtremeEigenvalue slepcLargestEigenvalue(Mat matrix, const ConditionOptions& options,
+  PetscOptionSet& optionSet, EigensolverStoppingTest& test);
 }
 #endif

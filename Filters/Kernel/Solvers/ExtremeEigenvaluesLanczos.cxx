@@ -86,11 +86,12 @@ private:
 };
 
 /**
- * What the first pass finds of an end. An eigenvalue lies within the residual r of the value. Where
- * eigenvalues crowd, r is far larger than the error; r^2 over the distance to the next Ritz value
- * (Kato-Temple) is far smaller as long as close eigenvalues have not come apart. So that is
- * believed only together with how far the value moved since half of the steps: convergence is at
- * least quadratic in their number (Kaniel-Paige), so that no more than a third of it is left.
+ * A Ritz value of the first pass and its error. An eigenvalue lies within the residual r of the
+ * value. Where eigenvalues crowd, r is far larger than the error; r^2 over the distance to the next
+ * Ritz value (Kato-Temple) is far smaller as long as close eigenvalues are not separated yet. So the
+ * estimate is the larger one of that bound and of the change of the value since half of the steps:
+ * convergence is at least quadratic in their number (Kaniel-Paige), so that no more than a third of
+ * that change is left.
  */
 struct Candidate
 {
@@ -100,32 +101,32 @@ struct Candidate
   std::vector<std::pair<Index, double>> history; ///< steps and values
 };
 
-void update(
-  Candidate& end, const Tridiagonal& t, bool smallest, double beta, double tolerance, double scale)
+void update(Candidate& extreme, const Tridiagonal& t, bool smallest, double beta, double tolerance,
+  double scale)
 {
-  if (end.converged)
+  if (extreme.converged)
   {
     return;
   }
   const auto steps = static_cast<Index>(t.diagonal.size());
-  end.pair = ritzPair(t, smallest, beta);
-  end.residual = beta * std::abs(end.pair.vector.back());
-  end.estimate = end.residual;
-  for (const auto& [before, value] : end.history)
+  extreme.pair = ritzPair(t, smallest, beta);
+  extreme.residual = beta * std::abs(extreme.pair.vector.back());
+  extreme.estimate = extreme.residual;
+  for (const auto& [before, value] : extreme.history)
   {
     if (2 * before <= steps)
     {
-      end.estimate = std::max(end.pair.bound, std::abs(end.pair.value - value));
+      extreme.estimate = std::max(extreme.pair.bound, std::abs(extreme.pair.value - value));
     }
   }
-  end.history.emplace_back(steps, end.pair.value);
-  end.converged = std::min(end.residual, end.estimate) <=
-    std::max(tolerance * std::abs(end.pair.value), ZeroTolerance * scale);
+  extreme.history.emplace_back(steps, extreme.pair.value);
+  extreme.converged = std::min(extreme.residual, extreme.estimate) <=
+    std::max(tolerance * std::abs(extreme.pair.value), ZeroTolerance * scale);
 }
 
 /// The value and its bound from the gathered y = P x.
 void measure(Mat matrix, PC preconditioner, const PetscVector& y, const Candidate& candidate,
-  ExtremeEigenvalue& end)
+  ExtremeEigenvalue& extreme)
 {
   PetscVector x, r, z;
   petsc(VecDuplicate(y, x.out()));
@@ -136,18 +137,19 @@ void measure(Mat matrix, PC preconditioner, const PetscVector& y, const Candidat
   petsc(MatMult(matrix, x, r));
   petsc(VecDot(x, r, &energy));
   petsc(VecDot(x, y, &mass));
-  end.value = energy / mass;
-  petsc(VecAXPY(r, -end.value, y));
+  extreme.value = energy / mass;
+  petsc(VecAXPY(r, -extreme.value, y));
   petsc(PCApply(preconditioner, r, z));
   petsc(VecDot(r, z, &square));
   const double residual = std::sqrt(std::max(square, 0.0) / mass);
-  end.bound = std::min(residual, candidate.estimate + std::abs(end.value - candidate.pair.value));
-  end.found = std::isfinite(end.value) && std::isfinite(end.bound);
+  extreme.bound =
+    std::min(residual, candidate.estimate + std::abs(extreme.value - candidate.pair.value));
+  extreme.found = std::isfinite(extreme.value) && std::isfinite(extreme.bound);
   petsc(VecScale(x, 1.0 / std::sqrt(std::max(mass, std::numeric_limits<double>::min()))));
-  end.vector = std::move(x);
+  extreme.vector = std::move(x);
 }
 
-/// Whether P^-1 is symmetric, as far as two vectors tell.
+/// Whether P^-1 is symmetric, tested with two vectors.
 bool isSymmetric(Mat matrix, PC preconditioner)
 {
   PetscVector a, b, pa, pb;
@@ -166,123 +168,138 @@ bool isSymmetric(Mat matrix, PC preconditioner)
   petsc(VecDot(b, pb, &bb));
   return std::abs(ab - ba) <= SymmetryTolerance * std::sqrt(std::abs(aa * bb));
 }
-}
 
-//------------------------------------------------------------------------------
-void fillStartVector(Vec vector, std::uint64_t seed)
+/// What the first pass leaves: candidates for both eigenvalues.
+struct FirstPass
 {
-  PetscInt begin = 0, end = 0;
-  double* values = nullptr;
-  petsc(VecGetOwnershipRange(vector, &begin, &end));
-  petsc(VecGetArrayWrite(vector, &values));
-  for (PetscInt row = begin; row < end; ++row)
-  {
-    // splitmix64
-    std::uint64_t z = (static_cast<std::uint64_t>(row) + 1 + (seed << 40)) * 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    z ^= z >> 31;
-    values[row - begin] = static_cast<double>(z >> 11) * 0x1p-53 + 0.25;
-  }
-  petsc(VecRestoreArrayWrite(vector, &values));
-}
-
-ExtremeEigenvalues lanczosExtremeEigenvalues(
-  Mat matrix, PC preconditioner, const ConditionOptions& options, SpectrumWatch& watch)
-{
-  ExtremeEigenvalues ends;
-  ends.smallest.method = ends.largest.method = "Lanczos in the inner product of P";
-  const auto give = [&](const std::string& message) -> ExtremeEigenvalues
-  {
-    ends.smallest.message = ends.largest.message = message;
-    return std::move(ends);
-  };
-  if (!isSymmetric(matrix, preconditioner))
-  {
-    return give("The preconditioner is not symmetric: the eigenvalues of P^-1 A need not be real.");
-  }
-  Recurrence recurrence(matrix, preconditioner);
-  Tridiagonal t;
   Candidate low, high;
+  Index steps = 0;
+  bool failed = false; ///< the preconditioner is not positive definite, or not finite
+};
+
+/// Steps until both candidates have converged, or until a limit; checks them more and more rarely.
+FirstPass findCandidates(
+  Recurrence& recurrence, const ConditionOptions& options, EigensolverStoppingTest& test)
+{
+  FirstPass pass;
+  Tridiagonal t;
   double scale = 0.0;
-  Index steps = 0, nextCheck = FirstCheck;
-  watch.stage(0.0, 0.5);
-  while (steps < options.maximumIterations)
+  Index nextCheck = FirstCheck;
+  while (pass.steps < options.maximumIterations)
   {
     recurrence.step();
     if (recurrence.failed())
     {
-      return give("The preconditioner is not positive definite, or not finite.");
+      pass.failed = true;
+      return pass;
     }
-    ++steps;
+    ++pass.steps;
     t.diagonal.push_back(recurrence.alpha());
     scale = std::max({ scale, std::abs(recurrence.alpha()), recurrence.beta() });
     const bool invariant = recurrence.beta() <= ZeroTolerance * scale;
     const bool stop =
-      watch.stop(static_cast<double>(steps) / static_cast<double>(steps + ManySteps));
-    const bool last = invariant || stop || steps == options.maximumIterations;
-    if (steps >= nextCheck || last)
+      test.stop(static_cast<double>(pass.steps) / static_cast<double>(pass.steps + ManySteps));
+    const bool last = invariant || stop || pass.steps == options.maximumIterations;
+    if (pass.steps >= nextCheck || last)
     {
       const double beta = invariant ? 0.0 : recurrence.beta();
-      update(high, t, false, beta, options.tolerance, scale);
-      update(low, t, true, beta, options.tolerance, scale);
-      nextCheck = steps + std::max<Index>(4, steps / 10);
-      if (last || (low.converged && high.converged))
+      update(pass.high, t, false, beta, options.tolerance, scale);
+      update(pass.low, t, true, beta, options.tolerance, scale);
+      nextCheck = pass.steps + std::max<Index>(4, pass.steps / 10);
+      if (last || (pass.low.converged && pass.high.converged))
       {
         break;
       }
     }
     t.beside.push_back(recurrence.beta());
   }
+  return pass;
+}
 
-  // Second pass; without it, when time is up, there are the values but no vectors.
-  bool gathered = !watch.stopped();
-  PetscVector yLow, yHigh;
-  if (gathered)
+/// Repeats the recurrence and sums up the eigenvectors; false if it had to stop before the end.
+bool gatherVectors(
+  Recurrence& recurrence, const FirstPass& pass, EigensolverStoppingTest& test, Vec yLow, Vec yHigh)
+{
+  const std::vector<double>&low = pass.low.pair.vector, &high = pass.high.pair.vector;
+  const std::size_t steps = std::max(low.size(), high.size());
+  petsc(VecSet(yLow, 0.0));
+  petsc(VecSet(yHigh, 0.0));
+  recurrence.restart();
+  for (std::size_t k = 0; k < steps; ++k)
   {
-    petsc(MatCreateVecs(matrix, yLow.out(), yHigh.out()));
-    petsc(VecSet(yLow, 0.0));
-    petsc(VecSet(yHigh, 0.0));
-    watch.stage(0.5, 1.0);
-    recurrence.restart();
-  }
-  const std::size_t longest = std::max(low.pair.vector.size(), high.pair.vector.size());
-  for (std::size_t k = 0; k < longest && gathered; ++k)
-  {
-    if (k < low.pair.vector.size())
+    if (k < low.size())
     {
-      petsc(VecAXPY(yLow, low.pair.vector[k], recurrence.v()));
+      petsc(VecAXPY(yLow, low[k], recurrence.v()));
     }
-    if (k < high.pair.vector.size())
+    if (k < high.size())
     {
-      petsc(VecAXPY(yHigh, high.pair.vector[k], recurrence.v()));
+      petsc(VecAXPY(yHigh, high[k], recurrence.v()));
     }
-    gathered = !watch.stop(static_cast<double>(k) / static_cast<double>(longest));
-    if (k + 1 < longest && gathered)
+    if (test.stop(static_cast<double>(k) / static_cast<double>(steps)))
+    {
+      return false;
+    }
+    if (k + 1 < steps)
     {
       recurrence.step();
     }
   }
-  if (gathered)
+  return true;
+}
+}
+
+//------------------------------------------------------------------------------
+ExtremeEigenvalues lanczosExtremeEigenvalues(
+  Mat matrix, PC preconditioner, const ConditionOptions& options, EigensolverStoppingTest& test)
+{
+  ExtremeEigenvalues extremes;
+  extremes.smallest.method = extremes.largest.method = "Lanczos in the inner product of P";
+  const auto failed = [&](const std::string& message) -> ExtremeEigenvalues
   {
-    measure(matrix, preconditioner, yLow, low, ends.smallest);
-    measure(matrix, preconditioner, yHigh, high, ends.largest);
+    extremes.smallest.message = extremes.largest.message = message;
+    return std::move(extremes);
+  };
+  if (!isSymmetric(matrix, preconditioner))
+  {
+    return failed(
+      "The preconditioner is not symmetric: the eigenvalues of P^-1 A need not be real.");
   }
-  for (const auto& [end, candidate] :
-    { std::make_pair(&ends.smallest, &low), std::make_pair(&ends.largest, &high) })
+  Recurrence recurrence(matrix, preconditioner);
+  test.stage(0.0, 0.5);
+  const FirstPass pass = findCandidates(recurrence, options, test);
+  if (pass.failed)
   {
-    end->iterations = static_cast<int>(candidate->pair.vector.size());
+    return failed("The preconditioner is not positive definite, or not finite.");
+  }
+  // If time is up after the first pass, there are values but no vectors.
+  bool gathered = false;
+  if (!test.stopped())
+  {
+    PetscVector yLow, yHigh;
+    petsc(MatCreateVecs(matrix, yLow.out(), yHigh.out()));
+    test.stage(0.5, 1.0);
+    gathered = gatherVectors(recurrence, pass, test, yLow, yHigh);
+    if (gathered)
+    {
+      measure(matrix, preconditioner, yLow, pass.low, extremes.smallest);
+      measure(matrix, preconditioner, yHigh, pass.high, extremes.largest);
+    }
+  }
+  for (const auto& [extreme, candidate] : { std::make_pair(&extremes.smallest, &pass.low),
+         std::make_pair(&extremes.largest, &pass.high) })
+  {
+    extreme->iterations = static_cast<int>(candidate->pair.vector.size());
     if (!gathered)
     {
-      end->value = candidate->pair.value;
-      end->bound = std::min(candidate->residual, candidate->estimate);
-      end->found = std::isfinite(end->value) && std::isfinite(end->bound);
+      extreme->value = candidate->pair.value;
+      extreme->bound = std::min(candidate->residual, candidate->estimate);
+      extreme->found = std::isfinite(extreme->value) && std::isfinite(extreme->bound);
     }
-    if (!candidate->converged && !watch.stopped())
+    if (!candidate->converged && !test.stopped())
     {
-      end->message = "Not converged after " + std::to_string(steps) + " steps of Lanczos.";
+      extreme->message = "Not converged after " + std::to_string(pass.steps) + " steps of Lanczos.";
     }
   }
-  return ends;
+  return extremes;
 }
 }

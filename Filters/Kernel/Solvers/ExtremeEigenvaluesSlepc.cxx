@@ -13,7 +13,7 @@ using PetscEigensolver = PetscHandle<EPS, EPSDestroy>;
 /// Unknowns up to which a factorisation costs less than an iteration: of plane problems, with few
 /// neighbours, and of others.
 constexpr PetscInt PlanarFactorLimit = 400000, SpatialFactorLimit = 30000;
-/// Neighbours of a point, itself among them, that tell the one from the other.
+/// Up to this mean number of neighbours of a point, itself included, a problem counts as planar.
 constexpr double PlanarNeighbours = 11.0;
 
 constexpr PetscInt LargestBasis = 40; // vectors Krylov-Schur keeps for the largest eigenvalue
@@ -29,23 +29,23 @@ bool isFactorAffordable(Mat matrix, int blockSize)
   return rows <= (neighbours <= PlanarNeighbours ? PlanarFactorLimit : SpatialFactorLimit);
 }
 
-/// Between restarts: our limits first, then SLEPc's own test.
-PetscErrorCode stopping(EPS solver, PetscInt iteration, PetscInt most, PetscInt found,
-  PetscInt wanted, EPSConvergedReason* reason, void* context)
+/// Between restarts: SLEPc's own test, then our limits.
+PetscErrorCode testStopping(EPS solver, PetscInt iteration, PetscInt maximum, PetscInt found,
+  PetscInt requested, EPSConvergedReason* reason, void* context)
 {
-  auto& watch = *static_cast<SpectrumWatch*>(context);
+  auto& test = *static_cast<EigensolverStoppingTest*>(context);
   const PetscErrorCode code =
-    EPSStoppingBasic(solver, iteration, most, found, wanted, reason, nullptr);
+    EPSStoppingBasic(solver, iteration, maximum, found, requested, reason, nullptr);
   if (code == 0 && *reason == EPS_CONVERGED_ITERATING &&
-    watch.stop(static_cast<double>(iteration) / (iteration + 20.0)))
+    test.stop(static_cast<double>(iteration) / (iteration + 20.0)))
   {
     *reason = EPS_CONVERGED_USER;
   }
   return code;
 }
 
-void create(Mat matrix, const ConditionOptions& options, SpectrumWatch& watch, PetscInt wanted,
-  PetscEigensolver& solver)
+void create(Mat matrix, const ConditionOptions& options, EigensolverStoppingTest& test,
+  PetscInt requested, PetscEigensolver& solver)
 {
   MPI_Comm comm = MPI_COMM_NULL;
   PetscVector start;
@@ -53,9 +53,9 @@ void create(Mat matrix, const ConditionOptions& options, SpectrumWatch& watch, P
   petsc(EPSCreate(comm, solver.out()));
   petsc(EPSSetOperators(solver, matrix, nullptr));
   petsc(EPSSetProblemType(solver, EPS_HEP));
-  petsc(EPSSetDimensions(solver, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc(EPSSetDimensions(solver, requested, PETSC_DEFAULT, PETSC_DEFAULT));
   petsc(EPSSetTolerances(solver, options.tolerance, options.maximumIterations));
-  petsc(EPSSetStoppingTestFunction(solver, stopping, &watch, nullptr));
+  petsc(EPSSetStoppingTestFunction(solver, testStopping, &test, nullptr));
   petsc(MatCreateVecs(matrix, start.out(), nullptr));
   fillStartVector(start);
   Vec list[] = { start };
@@ -63,19 +63,19 @@ void create(Mat matrix, const ConditionOptions& options, SpectrumWatch& watch, P
 }
 
 /**
- * @brief The eigenpair nearest to the end, with the bound from its residual. Of the smallest, the
- * next eigenvalue has converged, too, and the distance to it counts (Kato-Temple); without that
- * rounding would hide a small eigenvalue beside a large one.
+ * @brief The extreme eigenpair, with the error bound from its residual. Beside the smallest
+ * eigenvalue the next one has converged, too, and the distance between them sharpens the bound
+ * (Kato-Temple): else rounding would hide a small eigenvalue beside a large one.
  */
-void collect(Mat matrix, EPS solver, bool smallest, ExtremeEigenvalue& end)
+void collect(Mat matrix, EPS solver, bool smallest, ExtremeEigenvalue& extreme)
 {
   PetscInt found = 0, iterations = 0;
   petsc(EPSGetConverged(solver, &found));
   petsc(EPSGetIterationNumber(solver, &iterations));
-  end.iterations = static_cast<int>(iterations);
+  extreme.iterations = static_cast<int>(iterations);
   if (found == 0)
   {
-    end.message = "Not converged after " + std::to_string(iterations) + " iterations.";
+    extreme.message = "Not converged after " + std::to_string(iterations) + " iterations.";
     return;
   }
   PetscVector x, r;
@@ -91,22 +91,22 @@ void collect(Mat matrix, EPS solver, bool smallest, ExtremeEigenvalue& end)
   petsc(EPSGetEigenvector(solver, best, x, nullptr));
   petsc(VecNormalize(x, nullptr));
   petsc(MatMult(matrix, x, r));
-  petsc(VecDot(x, r, &end.value));
-  petsc(VecAXPY(r, -end.value, x));
+  petsc(VecDot(x, r, &extreme.value));
+  petsc(VecAXPY(r, -extreme.value, x));
   petsc(VecNorm(r, NORM_2, &length));
   double gap = std::numeric_limits<double>::infinity();
   for (PetscInt i = 0; i < found; ++i)
   {
-    gap = i == best ? gap : std::min(gap, std::abs(values[i] - end.value));
+    gap = i == best ? gap : std::min(gap, std::abs(values[i] - extreme.value));
   }
-  end.bound = smallest && found > 1 && gap > length ? length * length / gap : length;
-  end.found = std::isfinite(end.value) && std::isfinite(end.bound);
-  end.vector = std::move(x);
+  extreme.bound = smallest && found > 1 && gap > length ? length * length / gap : length;
+  extreme.found = std::isfinite(extreme.value) && std::isfinite(extreme.bound);
+  extreme.vector = std::move(x);
 }
 
-/// Runs it; a failure of SLEPc, or of what it is built on, is a message.
+/// Runs a solver; a failure of SLEPc, or of a library below, becomes a message.
 template <class Call>
-void attempt(ExtremeEigenvalue& end, const Call& call)
+void attempt(ExtremeEigenvalue& extreme, const Call& call)
 {
   try
   {
@@ -114,48 +114,48 @@ void attempt(ExtremeEigenvalue& end, const Call& call)
   }
   catch (const PetscError& error)
   {
-    end.message = error.what();
+    extreme.message = error.what();
   }
 }
 }
 
 //------------------------------------------------------------------------------
-ExtremeEigenvalue slepcLargestEigenvalue(
-  Mat matrix, const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
+ExtremeEigenvalue slepcLargestEigenvalue(Mat matrix, const ConditionOptions& options,
+  PetscOptionSet& optionSet, EigensolverStoppingTest& test)
 {
   ensureSlepc();
-  ExtremeEigenvalue end;
-  end.method = "Krylov-Schur";
+  ExtremeEigenvalue extreme;
+  extreme.method = "Krylov-Schur";
   PetscInt rows = 0;
   petsc(MatGetSize(matrix, &rows, nullptr));
-  attempt(end,
+  attempt(extreme,
     [&]()
     {
       PetscEigensolver solver;
-      create(matrix, options, watch, 1, solver);
+      create(matrix, options, test, 1, solver);
       petsc(EPSSetType(solver, EPSKRYLOVSCHUR));
       petsc(EPSSetWhichEigenpairs(solver, EPS_LARGEST_REAL));
       petsc(EPSSetDimensions(solver, 1, std::min(LargestBasis, rows), PETSC_DEFAULT));
       optionSet.read([&]() { petsc(EPSSetFromOptions(solver)); });
       petsc(EPSSolve(solver));
-      collect(matrix, solver, false, end);
+      collect(matrix, solver, false, extreme);
     });
-  return end;
+  return extreme;
 }
 
 ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& system, int ranks,
-  const ConditionOptions& options, PetscOptionSet& optionSet, SpectrumWatch& watch)
+  const ConditionOptions& options, PetscOptionSet& optionSet, EigensolverStoppingTest& test)
 {
-  ExtremeEigenvalues ends;
+  ExtremeEigenvalues extremes;
   PetscInt rows = 0;
   petsc(MatGetSize(matrix, &rows, nullptr));
-  watch.stage(0.0, 0.4);
-  ends.largest = slepcLargestEigenvalue(matrix, options, optionSet, watch);
+  test.stage(0.0, 0.4);
+  extremes.largest = slepcLargestEigenvalue(matrix, options, optionSet, test);
 
-  ExtremeEigenvalue& low = ends.smallest;
+  ExtremeEigenvalue& low = extremes.smallest;
   const bool factorise = isFactorAffordable(matrix, system.blockSize);
   PetscInt negative = 0;
-  watch.stage(0.4, 1.0);
+  test.stage(0.4, 1.0);
   attempt(low,
     [&]()
     {
@@ -163,7 +163,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
       ST transformation = nullptr;
       KSP inner = nullptr;
       PC pc = nullptr;
-      create(matrix, options, watch, std::min<PetscInt>(2, rows), solver);
+      create(matrix, options, test, std::min<PetscInt>(2, rows), solver);
       petsc(EPSGetST(solver, &transformation));
       if (factorise)
       {
@@ -214,6 +214,6 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
     low.message = "The matrix is not positive definite: " + std::to_string(negative) +
       " of its eigenvalues are negative.";
   }
-  return ends;
+  return extremes;
 }
 }

@@ -1,10 +1,11 @@
 #include "Lanczos.h"
 
 #include "tautline/Core/Parallel.h"
+#include "tautline/Core/Random.h"
+#include "tautline/Core/Stopwatch.h"
 #include "Tridiagonal.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
 namespace tautline
@@ -120,37 +121,15 @@ std::vector<double> combine(const std::vector<std::vector<double>>& basis,
 std::vector<double> startVector(Index n)
 {
   std::vector<double> x(n);
-  std::uint64_t state = 0x9e3779b97f4a7c15u; // splitmix64
+  std::uint64_t state = SplitMix::Increment;
   for (double& v : x)
   {
-    state += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    z ^= z >> 31;
-    v = static_cast<double>(z >> 11) * 0x1p-53 + 0.25; // no sign: the lowest mode has none
+    state += SplitMix::Increment;
+    // All positive, as the lowest mode is.
+    v = SplitMix::unit(SplitMix::hash(state)) + 0.25;
   }
   return x;
 }
-
-class Clock
-{
-public:
-  explicit Clock(double limit)
-    : Limit(limit)
-  {
-  }
-  bool isUp() const
-  {
-    const auto now = std::chrono::steady_clock::now();
-    return this->Limit > 0.0 &&
-      std::chrono::duration<double>(now - this->Start).count() > this->Limit;
-  }
-
-private:
-  double Limit;
-  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
-};
 
 /// Threads that have to wait for each other after less work than this do not pay.
 int threadsFor(const SparseMatrix& matrix, const LanczosOptions& options)
@@ -176,7 +155,7 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
   {
     throw Error("the matrix is empty: there is no unknown");
   }
-  const Clock clock(options.timeLimit);
+  const Stopwatch time;
   const int threads = threadsFor(matrix, options);
   Spectrum spectrum;
   std::vector<std::vector<double>> basis;
@@ -202,7 +181,7 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
     t.diagonal.push_back(alpha);
     size = std::max({ size, std::abs(alpha), beta });
     const bool invariant = beta <= 1e-14 * size;
-    const bool stop = clock.isUp() ||
+    const bool stop = time.reached(options.timeLimit) ||
       (options.progress &&
         !options.progress(static_cast<double>(k + 1) / static_cast<double>(most)));
     if (k + 1 >= nextCheck || k + 1 == most || invariant || stop)
@@ -241,7 +220,7 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
 {
   const Index n = matrix.size;
   const int threads = threadsFor(matrix, options);
-  const Clock clock(options.timeLimit);
+  const Stopwatch time;
   SolveReport report;
   x.assign(n, 0.0);
   std::vector<double> inverse(n), r = b, z(n), q(n);
@@ -276,7 +255,8 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
   std::vector<double> p = z;
   double rho = product(r, z, threads);
   report.residual = 1.0;
-  while (report.residual > tolerance && report.iterations < options.maxIterations && !clock.isUp())
+  while (report.residual > tolerance && report.iterations < options.maxIterations &&
+    !time.reached(options.timeLimit))
   {
     matrix.multiply(p.data(), q.data(), threads);
     const double curvature = product(p, q, threads);

@@ -8,7 +8,7 @@
 #include "PetscObjects.h"
 #include "SolverOptions.h"
 
-#include <chrono>
+#include "tautline/Core/Stopwatch.h"
 
 namespace tautline
 {
@@ -32,13 +32,13 @@ struct LinearSolverState
   SolveReason Failure = SolveReason::Exact; // of the set-up; Exact: none
   std::string FailureText;
 
-  // The convergence test that PETSc or its options chose; ours asks it first.
+  // The convergence test that PETSc or its options chose; ours calls it first.
   PetscErrorCode (*Test)(KSP, PetscInt, PetscReal, KSPConvergedReason*, void*) = nullptr;
   void* TestContext = nullptr;
   PetscErrorCode (*DestroyTest)(void*) = nullptr;
 
-  // The solve that is going on.
-  std::chrono::steady_clock::time_point Start;
+  // Of the current solve.
+  Stopwatch Time;
   std::vector<double> Residuals;
   SolveReason Stopped = SolveReason::Exact; // TimeLimit or Aborted
   std::exception_ptr Thrown;                // by the observer
@@ -49,6 +49,7 @@ private:
   void configure();
   void applyTolerances();
   void findEmptyRows();
+  void runSolver(Vec b, Vec x, LinearSolution& solution);
   void measure(Vec b, Vec x, LinearSolution& solution);
   void ritzValues(LinearSolution& solution);
   bool shouldStop(int iteration, double norm);

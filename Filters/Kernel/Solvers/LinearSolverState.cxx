@@ -1,0 +1,451 @@
+#include "LinearSolverState.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+namespace
+{
+/// A direct solve must leave a residual below this, relative to b; a singular matrix does not.
+constexpr double DirectTolerance = 1e-6;
+
+/// A solution that leaves this fraction of the right-hand side is hardly better than 0, though the
+/// preconditioned residual may be small.
+constexpr double FalseResidual = 0.5;
+
+KSPType typeOf(KrylovMethod method)
+{
+  switch (method)
+  {
+    case KrylovMethod::ConjugateGradient:
+      return KSPCG;
+    case KrylovMethod::GMRES:
+      return KSPGMRES;
+    case KrylovMethod::MINRES:
+      return KSPMINRES;
+    case KrylovMethod::BiCGStab:
+      return KSPBCGS;
+    case KrylovMethod::Direct:
+      return KSPPREONLY;
+  }
+  throw Error("There is no solver with number " + std::to_string(static_cast<int>(method)) + ".");
+}
+
+SolveReason translate(KSPConvergedReason reason, bool direct)
+{
+  switch (reason)
+  {
+    case KSP_CONVERGED_RTOL:
+    case KSP_CONVERGED_RTOL_NORMAL:
+      return SolveReason::RelativeTolerance;
+    case KSP_CONVERGED_ATOL:
+    case KSP_CONVERGED_ATOL_NORMAL:
+      return SolveReason::AbsoluteTolerance;
+    case KSP_CONVERGED_HAPPY_BREAKDOWN:
+      return SolveReason::Exact;
+    case KSP_DIVERGED_ITS:
+      return SolveReason::IterationLimit;
+    case KSP_DIVERGED_DTOL:
+      return SolveReason::Diverged;
+    case KSP_DIVERGED_BREAKDOWN:
+    case KSP_DIVERGED_BREAKDOWN_BICG:
+      return SolveReason::Breakdown;
+    case KSP_DIVERGED_INDEFINITE_PC:
+      return SolveReason::IndefinitePreconditioner;
+    case KSP_DIVERGED_INDEFINITE_MAT:
+      return SolveReason::IndefiniteMatrix;
+    case KSP_DIVERGED_NANORINF:
+      return SolveReason::NotANumber;
+    case KSP_DIVERGED_PC_FAILED:
+      return SolveReason::PreconditionerFailed;
+    default:
+      break;
+  }
+  return reason < 0 ? SolveReason::OtherFailure
+    : direct        ? SolveReason::Exact
+                    : SolveReason::OtherConvergence;
+}
+
+/// Why a preconditioner could not be set up.
+const char* explain(PCFailedReason reason)
+{
+  switch (reason)
+  {
+    case PC_FACTOR_STRUCT_ZEROPIVOT:
+      return "a pivot is zero: the matrix has an empty row";
+    case PC_FACTOR_NUMERIC_ZEROPIVOT:
+      return "a pivot is zero: the matrix is singular, or not definite enough for this "
+             "preconditioner";
+    case PC_FACTOR_OUTMEMORY:
+      return "not enough memory for the factors";
+    case PC_SUBPC_ERROR:
+      return "an inner solver failed: a pivot is zero";
+    default:
+      return "the preconditioner or factorisation failed";
+  }
+}
+
+bool finite(const double* x, Index n)
+{
+  return std::all_of(x, x + n, [](double value) { return std::isfinite(value); });
+}
+
+void check(const SolverOptions& options)
+{
+  const auto positive = [](double value) { return std::isfinite(value) && value >= 0.0; };
+  if (!positive(options.relativeTolerance) || options.relativeTolerance >= 1.0 ||
+    !positive(options.absoluteTolerance))
+  {
+    throw Error("The relative tolerance of a linear solver must be at least 0 and below 1, the "
+                "absolute one at least 0.");
+  }
+  if (options.maximumIterations < 0 || options.restart < 1)
+  {
+    throw Error(
+      "The iterations of a linear solver must be at least 0, the restart of GMRES at least 1.");
+  }
+  if (!(options.omega > 0.0 && options.omega < 2.0))
+  {
+    throw Error("The relaxation factor of SSOR must be between 0 and 2, exclusive.");
+  }
+  if (!positive(options.maximumSeconds))
+  {
+    throw Error("The time limit of a linear solver must be at least 0.");
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+LinearSolverState::LinearSolverState(const LinearSystem& system, const SolverOptions& options)
+  : System(system)
+  , Options(options)
+  , OptionSet(options.petscOptions)
+  , Objects(system, this->OptionSet.changesMatrix())
+{
+  check(options);
+  const PetscScope own(this->OptionSet.database());
+  this->configure();
+}
+
+LinearSolverState::~LinearSolverState()
+{
+  if (this->DestroyTest && petscUsable() && this->Generation == petscGeneration())
+  {
+    this->DestroyTest(this->TestContext);
+  }
+}
+
+void LinearSolverState::requireAlive() const
+{
+  if (!petscUsable() || this->Generation != petscGeneration())
+  {
+    throw Error(
+      "PETSc has been shut down by other code of this process since this linear solver was "
+      "made: make a new one.");
+  }
+}
+
+void LinearSolverState::configure()
+{
+  const bool direct = this->Options.method == KrylovMethod::Direct;
+  PC pc = nullptr;
+  petsc(KSPCreate(this->Objects.communicator(), this->Solver.out()));
+  petsc(KSPSetOperators(this->Solver, this->Objects.matrix(), this->Objects.matrix()));
+  petsc(KSPSetType(this->Solver, typeOf(this->Options.method)));
+  petsc(KSPGetPC(this->Solver, &pc));
+  if (this->Options.method == KrylovMethod::GMRES)
+  {
+    petsc(KSPGMRESSetRestart(this->Solver, this->Options.restart));
+  }
+  const bool parallel = this->Objects.ranks() > 1;
+  switch (direct ? Preconditioner::None : this->Options.preconditioner)
+  {
+    case Preconditioner::Jacobi:
+      petsc(PCSetType(pc, PCJACOBI));
+      break;
+    case Preconditioner::SSOR:
+      petsc(PCSetType(pc, PCSOR));
+      petsc(PCSORSetSymmetric(pc, SOR_LOCAL_SYMMETRIC_SWEEP));
+      petsc(PCSORSetOmega(pc, this->Options.omega));
+      break;
+    case Preconditioner::ILU:
+    case Preconditioner::ICC:
+    {
+      const char* type = this->Options.preconditioner == Preconditioner::ILU ? PCILU : PCICC;
+      petsc(PCSetType(pc, parallel ? PCBJACOBI : type));
+      if (parallel)
+      {
+        this->OptionSet.setDefault("-sub_pc_type", type);
+      }
+      break;
+    }
+    case Preconditioner::BoomerAMG:
+      petsc(PCSetType(pc, PCHYPRE));
+      petsc(PCHYPRESetType(pc, "boomeramg"));
+      break;
+    case Preconditioner::GAMG:
+      petsc(PCSetType(pc, PCGAMG));
+      break;
+    case Preconditioner::None:
+      petsc(PCSetType(pc, PCNONE));
+      break;
+    default:
+      throw Error("There is no preconditioner with number " +
+        std::to_string(static_cast<int>(this->Options.preconditioner)) + ".");
+  }
+  if (direct)
+  {
+    chooseFactorization(pc, this->System, this->Objects.ranks(), this->OptionSet);
+  }
+  if (this->Options.ritzValues)
+  {
+    petsc(KSPSetComputeSingularValues(this->Solver, PETSC_TRUE));
+  }
+  this->applyTolerances();
+  this->OptionSet.read([&]() { petsc(KSPSetFromOptions(this->Solver)); });
+  this->OptionSet.rejectUnused(false);
+  // Asked by each iteration, our test asks the one chosen by now.
+  petsc(KSPGetAndClearConvergenceTest(
+    this->Solver, &this->Test, &this->TestContext, &this->DestroyTest));
+  petsc(KSPSetConvergenceTest(this->Solver, test, this, nullptr));
+}
+
+void LinearSolverState::applyTolerances()
+{
+  check(this->Options);
+  const auto unlessGiven = [&](const char* name, double value, double kept)
+  { return this->OptionSet.has(name) ? kept : value; };
+  PetscReal relative = 0, absolute = 0, divergence = 0;
+  PetscInt iterations = 0;
+  petsc(KSPGetTolerances(this->Solver, &relative, &absolute, &divergence, &iterations));
+  petsc(KSPSetTolerances(this->Solver,
+    unlessGiven("-ksp_rtol", this->Options.relativeTolerance, relative),
+    unlessGiven("-ksp_atol", this->Options.absoluteTolerance, absolute), divergence,
+    this->OptionSet.has("-ksp_max_it") ? iterations : this->Options.maximumIterations));
+}
+
+//------------------------------------------------------------------------------
+PetscErrorCode LinearSolverState::test(
+  KSP solver, PetscInt iteration, PetscReal norm, KSPConvergedReason* reason, void* context)
+{
+  auto& self = *static_cast<LinearSolverState*>(context);
+  // GMRES reports the residual at a restart twice.
+  self.Residuals.resize(static_cast<std::size_t>(iteration));
+  self.Residuals.push_back(norm);
+  const PetscErrorCode code = self.Test(solver, iteration, norm, reason, self.TestContext);
+  if (code == 0 && *reason == KSP_CONVERGED_ITERATING && self.shouldStop(iteration, norm))
+  {
+    *reason = KSP_DIVERGED_ITS;
+  }
+  return code;
+}
+
+bool LinearSolverState::shouldStop(int iteration, double norm)
+{
+  bool aborted = false;
+  // No exception may pass through PETSc.
+  try
+  {
+    aborted = this->Options.observer && !this->Options.observer(iteration, norm);
+  }
+  catch (...)
+  {
+    this->Thrown = std::current_exception();
+    aborted = true;
+  }
+  const bool limited = this->Options.maximumSeconds > 0.0;
+  bool late = this->Time.reached(this->Options.maximumSeconds);
+  // The ranks stop together.
+  aborted = this->Options.observer && this->Objects.anywhere(aborted);
+  late = limited && this->Objects.anywhere(late);
+  if (aborted || late)
+  {
+    this->Stopped = aborted ? SolveReason::Aborted : SolveReason::TimeLimit;
+  }
+  return aborted || late;
+}
+
+//------------------------------------------------------------------------------
+double LinearSolverState::setUp()
+{
+  if (this->Ready)
+  {
+    return 0.0;
+  }
+  const Stopwatch time;
+  try
+  {
+    this->findEmptyRows();
+    petsc(KSPSetUp(this->Solver));
+    petsc(KSPSetUpOnBlocks(this->Solver));
+  }
+  catch (const PetscError& error)
+  {
+    const bool indefinite =
+      std::string(error.what()).find("not positive definite") != std::string::npos;
+    this->Failure = indefinite ? SolveReason::IndefiniteMatrix : SolveReason::PreconditionerFailed;
+    this->FailureText = error.what();
+    this->Ready = true;
+    return time.seconds();
+  }
+  const double elapsed = time.seconds();
+  this->OptionSet.rejectUnused(true);
+  this->Ready = true;
+  return elapsed;
+}
+
+/// In a semidefinite matrix a zero on the diagonal means an empty row, which Jacobi would not notice.
+void LinearSolverState::findEmptyRows()
+{
+  if (!this->System.symmetric || !this->System.positiveDefinite)
+  {
+    return;
+  }
+  PetscVector diagonal = this->Objects.createVector();
+  PetscReal least = 0.0;
+  PetscInt row = 0;
+  petsc(MatGetDiagonal(this->Objects.matrix(), diagonal));
+  petsc(VecAbs(diagonal));
+  petsc(VecMin(diagonal, &row, &least));
+  if (least == 0.0)
+  {
+    throw PetscError(PETSC_ERR_MAT_CH_ZRPVT,
+      "The matrix is singular: the diagonal entry of row " + std::to_string(row) +
+        ", a pivot, is 0.");
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Runs PETSc's solver; an error of PETSc becomes a message.
+void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
+{
+  try
+  {
+    petsc(KSPSolve(this->Solver, b, x));
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+    PetscInt iterations = 0;
+    petsc(KSPGetConvergedReason(this->Solver, &reason));
+    petsc(KSPGetIterationNumber(this->Solver, &iterations));
+    solution.reason = this->Stopped != SolveReason::Exact
+      ? this->Stopped
+      : translate(reason, this->Options.method == KrylovMethod::Direct);
+    solution.iterations = iterations;
+    solution.residuals = this->Residuals;
+    if (solution.reason == SolveReason::PreconditionerFailed)
+    {
+      PC pc = nullptr;
+      PCFailedReason why = PC_NOERROR;
+      petsc(KSPGetPC(this->Solver, &pc));
+      petsc(PCGetFailedReason(pc, &why));
+      solution.message = explain(why);
+    }
+    this->measure(b, x, solution);
+    if (this->Options.ritzValues)
+    {
+      this->ritzValues(solution);
+    }
+  }
+  catch (const PetscError& error)
+  {
+    solution.reason = SolveReason::OtherFailure;
+    solution.message = error.what();
+  }
+}
+
+//------------------------------------------------------------------------------
+LinearSolution LinearSolverState::solve(const double* b, double* x)
+{
+  LinearSolution solution;
+  this->Time = Stopwatch();
+  this->Residuals.clear();
+  this->Stopped = SolveReason::Exact;
+  this->Thrown = nullptr;
+  const Index n = this->Objects.localSize();
+  if (!this->Options.initialGuess)
+  {
+    std::fill_n(x, n, 0.0);
+  }
+  solution.setupSeconds = this->setUp();
+  if (this->Failure != SolveReason::Exact)
+  {
+    solution.reason = this->Failure;
+    solution.message = this->FailureText;
+    return solution;
+  }
+  if (this->Objects.anywhere(!finite(b, n) || !finite(x, n)))
+  {
+    solution.reason = SolveReason::NotANumber;
+    solution.message = "The right-hand side or the initial guess has an entry that is not finite.";
+    std::fill_n(x, n, 0.0);
+    return solution;
+  }
+
+  PetscVector rightHandSide = this->Objects.createVector(), unknowns = this->Objects.createVector();
+  this->Objects.add(b, rightHandSide);
+  this->Objects.copyIn(x, unknowns);
+  this->applyTolerances();
+  const Stopwatch time;
+  const bool direct = this->Options.method == KrylovMethod::Direct;
+  petsc(KSPSetInitialGuessNonzero(
+    this->Solver, this->Options.initialGuess && !direct ? PETSC_TRUE : PETSC_FALSE));
+  this->runSolver(rightHandSide, unknowns, solution);
+  solution.solveSeconds = time.seconds();
+  if (this->Thrown)
+  {
+    std::rethrow_exception(this->Thrown);
+  }
+
+  // x stays as it was where the solution is not finite.
+  std::vector<double> values(static_cast<std::size_t>(n));
+  this->Objects.copyOut(unknowns, values.data());
+  if (!this->Objects.anywhere(!finite(values.data(), n)))
+  {
+    std::copy(values.begin(), values.end(), x);
+  }
+  else if (converged(solution.reason))
+  {
+    solution.reason = SolveReason::NotANumber;
+  }
+  return solution;
+}
+
+void LinearSolverState::measure(Vec b, Vec x, LinearSolution& solution)
+{
+  PetscVector residual = this->Objects.createVector();
+  PetscReal before = 0.0, after = 0.0;
+  petsc(VecNorm(b, NORM_2, &before));
+  petsc(MatMult(this->Objects.matrix(), x, residual));
+  petsc(VecAYPX(residual, -1.0, b));
+  petsc(VecNorm(residual, NORM_2, &after));
+  solution.trueResidual = before > 0.0 && std::isfinite(after) ? after / before : 0.0;
+  if (this->Options.method != KrylovMethod::Direct)
+  {
+    const bool relative = solution.reason == SolveReason::RelativeTolerance;
+    const double acceptable = std::max(FalseResidual, this->Options.relativeTolerance);
+    solution.reason = relative && solution.trueResidual > acceptable ? SolveReason::FalseConvergence
+                                                                     : solution.reason;
+    return;
+  }
+  // A factorisation does not notice that a matrix is singular; the residual does.
+  solution.residuals = { before, after };
+  if (converged(solution.reason) && !(after <= DirectTolerance * before))
+  {
+    solution.reason = SolveReason::PreconditionerFailed;
+    solution.message = "The matrix is singular or nearly so: a direct solve leaves a residual of " +
+      std::to_string(before > 0.0 ? after / before : after) + " times the right-hand side.";
+  }
+}
+
+void LinearSolverState::ritzValues(LinearSolution& solution)
+{
+  const bool known = this->Options.method == KrylovMethod::ConjugateGradient ||
+    this->Options.method == KrylovMethod::GMRES;
+  PetscReal largest = 0.0, smallest = 0.0;
+  if (known && solution.iterations > 0 &&
+    KSPComputeExtremeSingularValues(this->Solver, &largest, &smallest) == 0 && largest > 0.0)
+  {
+    solution.ritzSmallest = smallest;
+    solution.ritzLargest = largest;
+  }
+}
+}
