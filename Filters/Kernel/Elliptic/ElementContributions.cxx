@@ -122,8 +122,8 @@ std::vector<double> topEigenvector(const EllipticSystem& system)
   const PetscScope own(optionSet.database());
   const PetscSystem objects(system.linearSystem());
   const ConditionOptions options;
-  SpectrumWatch watch(objects, options);
-  const ExtremeEigenvalue end = slepcLargestEigenvalue(objects.matrix(), options, optionSet, watch);
+  EigensolverStoppingTest test(objects, options);
+  const ExtremeEigenvalue end = slepcLargestEigenvalue(objects.matrix(), options, optionSet, test);
   std::vector<double> vector;
   if (end.found)
   {

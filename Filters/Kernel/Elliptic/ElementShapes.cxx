@@ -13,7 +13,7 @@ std::vector<std::array<double, 2>> gaussRule(int n)
   constexpr int iterations = 50; // from this start a handful suffice
   for (int i = 0; i < n; ++i)
   {
-    double x = std::cos(M_PI * (i + 0.75) / (n + 0.5)), slope = 1;
+    double x = std::cos(Pi * (i + 0.75) / (n + 0.5)), slope = 1;
     for (int iteration = 0; iteration < iterations; ++iteration)
     {
       double previous = 1, value = x;

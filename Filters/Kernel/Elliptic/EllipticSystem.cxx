@@ -4,21 +4,13 @@
 #include "EllipticFields.h"
 #include "FiniteElements.h"
 #include "tautline/Core/Parallel.h"
+#include "tautline/Core/Stopwatch.h"
 
-#include <chrono>
 #include <limits>
 #include <numeric>
 
 namespace tautline
 {
-namespace
-{
-double secondsSince(const std::chrono::steady_clock::time_point& start)
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-}
-
 //------------------------------------------------------------------------------
 struct EllipticSystem::Implementation
 {
@@ -145,7 +137,7 @@ std::vector<double> EllipticSystem::Implementation::source() const
 //------------------------------------------------------------------------------
 void EllipticSystem::Implementation::assemble()
 {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch time;
   SparseMatrix whole;
   std::vector<double> load;
   const Mesh& mesh = *this->Input;
@@ -173,7 +165,7 @@ void EllipticSystem::Implementation::assemble()
     load.assign(whole.size, 0.0);
   }
   this->reduce(whole, load);
-  this->AssembleSeconds = secondsSince(start);
+  this->AssembleSeconds = time.seconds();
 }
 
 /// Keeps rows and columns of the free points; what is given elsewhere goes to the right-hand side.

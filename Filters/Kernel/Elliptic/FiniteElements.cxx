@@ -282,6 +282,64 @@ void AssemblyPattern::expand(int components, SparseMatrix& matrix) const
 }
 
 //------------------------------------------------------------------------------
+/// The element matrices of the cells from firstCell to endCell, each in `entries` numbers of the
+/// buffer.
+template <class Element>
+void AssemblyPattern::computeBatch(const Element& element, const MeshView& view, Index firstCell,
+  Index endCell, Index entries, double* buffer) const
+{
+  forEachChunk(endCell - firstCell, this->Threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        const Index cell = firstCell + i;
+        const Index* node = view.connectivity + this->firstNode(cell);
+        const CellType type = static_cast<CellType>(view.cellTypes[cell]);
+        withElement(type,
+          [&](auto nodesOfCell, auto dimensionOfCell)
+          {
+            constexpr int nodes = decltype(nodesOfCell)::value;
+            constexpr int dimension = decltype(dimensionOfCell)::value;
+            Vec3 p[nodes];
+            for (int k = 0; k < nodes; ++k)
+            {
+              p[k] = pointOf(view, node[k]);
+            }
+            element.template compute<nodes, dimension>(cell, type, p, &buffer[i * entries]);
+          });
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+/// Adds the rows that one use has in an element matrix k to those of its point.
+template <int Components>
+void AssemblyPattern::addUse(
+  Index use, Index firstColumn, Index width, const double* k, double* row) const
+{
+  const Index cell = this->Uses[use] >> placeBits;
+  const int nodes = this->nodesOf(cell);
+  for (int j = 0; j < nodes; ++j)
+  {
+    Index slot = this->Slots[use * this->Stride + j];
+    if (width > widestSlot)
+    {
+      const auto column = this->Columns.begin() + firstColumn;
+      const Index node = this->Input->view().connectivity[this->firstNode(cell) + j];
+      slot = std::lower_bound(column, column + width, node) - column;
+    }
+    for (int a = 0; a < Components; ++a)
+    {
+      for (int b = 0; b < Components; ++b)
+      {
+        row[Components * (width * a + slot) + b] += k[Components * (nodes * a + j) + b];
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 /**
  * Cells are taken in batches: first the matrices of a batch, by cell; then every row adds what the
  * batch has for it, in increasing order of cells. So no two threads write to one row, sums have one
@@ -298,37 +356,16 @@ void AssemblyPattern::gather(
   const Index entries = components * components * this->Stride * this->Stride;
   // The buffer takes no more than the matrix itself, unless that is small. Few batches, since each
   // looks at all rows.
-  constexpr Index least = 1 << 15;
+  constexpr Index smallest = 1 << 15;
   const Index batch = std::min(
-    view.numberOfCells, std::max(least, static_cast<Index>(matrix.values.size()) / entries));
+    view.numberOfCells, std::max(smallest, static_cast<Index>(matrix.values.size()) / entries));
   std::vector<double> buffer(batch * entries);
   std::vector<std::int32_t> done(view.numberOfPoints, 0); // uses of each point
   FirstCell wrong;
   for (Index firstCell = 0; firstCell < view.numberOfCells; firstCell += batch)
   {
     const Index endCell = std::min(view.numberOfCells, firstCell + batch);
-    forEachChunk(endCell - firstCell, this->Threads,
-      [&](Index, Index begin, Index end)
-      {
-        for (Index i = begin; i < end; ++i)
-        {
-          const Index cell = firstCell + i;
-          const Index* node = view.connectivity + this->firstNode(cell);
-          const CellType type = static_cast<CellType>(view.cellTypes[cell]);
-          withElement(type,
-            [&](auto nodesOfCell, auto dimensionOfCell)
-            {
-              constexpr int nodes = decltype(nodesOfCell)::value;
-              constexpr int dimension = decltype(dimensionOfCell)::value;
-              Vec3 p[nodes];
-              for (int k = 0; k < nodes; ++k)
-              {
-                p[k] = pointOf(view, node[k]);
-              }
-              element.template compute<nodes, dimension>(cell, type, p, &buffer[i * entries]);
-            });
-        }
-      });
+    this->computeBatch(element, view, firstCell, endCell, entries, buffer.data());
     forEachChunk(view.numberOfPoints, this->Threads,
       [&](Index, Index begin, Index end)
       {
@@ -348,24 +385,7 @@ void AssemblyPattern::gather(
             const int nodes = this->nodesOf(cell), place = this->Uses[use] % MaxNodes;
             const double* k =
               &buffer[(cell - firstCell) * entries + place * components * components * nodes];
-            for (int j = 0; j < nodes; ++j)
-            {
-              Index slot = this->Slots[use * this->Stride + j];
-              if (width > widestSlot)
-              {
-                const auto column = this->Columns.begin() + first;
-                slot = std::lower_bound(
-                         column, column + width, view.connectivity[this->firstNode(cell) + j]) -
-                  column;
-              }
-              for (int a = 0; a < components; ++a)
-              {
-                for (int b = 0; b < components; ++b)
-                {
-                  row[components * (width * a + slot) + b] += k[components * (nodes * a + j) + b];
-                }
-              }
-            }
+            this->addUse<components>(use, first, width, k, row);
             // The diagonal has something of every entry of its row.
             if (!std::isfinite(k[components * place]))
             {

@@ -84,6 +84,11 @@ private:
   void findColumns();
   void expand(int components, SparseMatrix& matrix) const;
   template <class Element>
+  void computeBatch(const Element& element, const MeshView& view, Index firstCell, Index endCell,
+    Index entries, double* buffer) const;
+  template <int Components>
+  void addUse(Index use, Index firstColumn, Index width, const double* k, double* row) const;
+  template <class Element>
   void gather(const Element& element, SparseMatrix& matrix, const double* points) const;
   int nodesOf(Index cell) const
   {

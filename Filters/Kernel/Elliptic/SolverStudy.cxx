@@ -1,9 +1,9 @@
 #include "SolverStudy.h"
 
+#include "tautline/Core/Stopwatch.h"
 #include "tautline/Quality/Metrics.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <ctime>
 
@@ -42,7 +42,6 @@ public:
   Study(const EllipticSystem& system, const SolverStudyOptions& options)
     : System(system)
     , Options(options)
-    , Start(std::chrono::steady_clock::now())
   {
   }
 
@@ -64,7 +63,7 @@ private:
 
   const EllipticSystem& System;
   const SolverStudyOptions& Options;
-  std::chrono::steady_clock::time_point Start;
+  Stopwatch Time;
   std::unique_ptr<PointNumbering> Scalars; // unknowns one by one, of several ranks
   std::vector<bool> TakesOptions;          // of each combination: PETSc's options
   double Told = 0;                         // progress
@@ -137,9 +136,8 @@ void Study::checkOptions()
 //------------------------------------------------------------------------------
 bool Study::overTime() const
 {
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Start;
   return this->Options.maximumSeconds > 0 &&
-    this->System.numbering().maximum(passed.count()) >= this->Options.maximumSeconds;
+    this->System.numbering().maximum(this->Time.seconds()) >= this->Options.maximumSeconds;
 }
 
 /// Reports progress of this rank, which only grows though residuals need not fall.
@@ -175,9 +173,8 @@ LinearSolution Study::solveOnce(const SolverCombination& combination, std::size_
   }
   if (this->Options.maximumSeconds > 0)
   {
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Start;
     constexpr double least = 1e-3; // 0 would mean no limit
-    const double left = std::max(least, this->Options.maximumSeconds - passed.count());
+    const double left = std::max(least, this->Options.maximumSeconds - this->Time.seconds());
     options.maximumSeconds =
       options.maximumSeconds > 0 ? std::min(options.maximumSeconds, left) : left;
   }

@@ -56,6 +56,9 @@ struct PointNumbering::Implementation
   RankLists<Index> Lent, Borrowed;
 
   void build(const Index* globalIds, const unsigned char* used);
+  void numberOwned(const std::vector<Index>& points, const std::vector<int>& owners);
+  void shareRows(const std::vector<Index>& points, const std::vector<Index>& ids,
+    const std::vector<int>& owners);
   std::vector<int> findOwners(const std::vector<Index>& ids, std::string& complaint) const;
 
   /// Combines the values of shared points at their owners and hands the result to all who have
@@ -165,7 +168,17 @@ void PointNumbering::Implementation::build(const Index* globalIds, const unsigne
     owners = this->findOwners(ids, complaint);
     throwTogether(this->Comm, complaint);
   }
+  this->numberOwned(points, owners);
+  if (this->Ranks > 1)
+  {
+    this->shareRows(points, ids, owners);
+  }
+}
 
+/// Rows of the points of this rank; those of all ranks follow each other.
+void PointNumbering::Implementation::numberOwned(
+  const std::vector<Index>& points, const std::vector<int>& owners)
+{
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     if (owners[i] == this->Rank)
@@ -183,23 +196,30 @@ void PointNumbering::Implementation::build(const Index* globalIds, const unsigne
   MPI_Scan(&this->OwnedRows, &end, 1, MPI_INT64_T, MPI_SUM, this->Comm);
   MPI_Allreduce(&this->OwnedRows, &this->GlobalSize, 1, MPI_INT64_T, MPI_SUM, this->Comm);
   this->FirstRow = end - this->OwnedRows;
-  std::unordered_map<Index, Index> pointOf;
-  pointOf.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     if (owners[i] == this->Rank)
     {
       this->Rows[points[i]] += this->FirstRow;
-      pointOf.emplace(ids[i], points[i]);
     }
   }
+}
 
-  // Tell the owners what is shared with them; they answer with rows.
+/// Each rank lists the points it shares with their owners, who answer with the rows.
+void PointNumbering::Implementation::shareRows(
+  const std::vector<Index>& points, const std::vector<Index>& ids, const std::vector<int>& owners)
+{
+  std::unordered_map<Index, Index> pointOf;
+  pointOf.reserve(points.size());
   std::vector<std::size_t> shared;
   std::vector<int> sharedOwner;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    if (owners[i] != this->Rank)
+    if (owners[i] == this->Rank)
+    {
+      pointOf.emplace(ids[i], points[i]);
+    }
+    else
     {
       shared.push_back(i);
       sharedOwner.push_back(owners[i]);
@@ -328,68 +348,40 @@ Index PointNumbering::sum(Index value) const
 }
 
 //------------------------------------------------------------------------------
-std::vector<unsigned char> globalBoundaryPoints(
-  const Mesh& mesh, Communicator communicator, const Index* globalIds, const unsigned char* skip)
+namespace
 {
-  const Index points = mesh.view().numberOfPoints;
-  std::vector<unsigned char> flags(static_cast<std::size_t>(points), 0);
-  const PointNumbering all(communicator, points, globalIds);
-  const bool volume = mesh.dimension() == Dimension::Volume;
-  const bool volumeSomewhere = all.maximum(volume ? 1.0 : 0.0) > 0.0;
-  using Facet = std::array<Index, MaxFaceNodes>; // local points, -1 where there is none
-  const auto mark = [&](const Facet& facet)
-  {
-    for (const Index point : facet)
+/// Local points of a facet, -1 where there is none.
+using LocalFacet = std::array<Index, MaxFaceNodes>;
+
+/// Calls visit(facet, cells) for each facet that does not have two cells on this rank; cells with
+/// skip flags do not count.
+template <class Visit>
+void forEachOpenFacet(const Mesh& mesh, const unsigned char* skip, const Visit& visit)
+{
+  FacetTable(mesh).forEachFacet(
+    [&](Index smallest, const FacetUse* uses, Index count)
     {
-      if (point >= 0)
+      const auto counted = static_cast<int>(std::count_if(
+        uses, uses + count, [&](const FacetUse& use) { return !skip || !skip[use.cell]; }));
+      if (counted != 0 && counted != 2)
       {
-        flags[point] = 1;
+        visit(LocalFacet{ smallest, uses->others[0], uses->others[1], uses->others[2] }, counted);
       }
-    }
-  };
+    });
+}
 
-  // As Mesh::boundary() has it, what does not have two cells is boundary; other ranks may have the
-  // second one.
-  std::vector<Facet> facets;
-  std::vector<SharedFacet> shared;
+/// The number of cells of each facet on all ranks, added up by a directory spread over the ranks.
+std::vector<int> cellsOnAllRanks(MPI_Comm comm, int ranks, const std::vector<SharedFacet>& facets)
+{
   std::vector<int> target;
-  if (volume == volumeSomewhere)
+  for (const SharedFacet& facet : facets)
   {
-    FacetTable(mesh).forEachFacet(
-      [&](Index smallest, const FacetUse* uses, Index count)
-      {
-        const auto counted = static_cast<int>(std::count_if(
-          uses, uses + count, [&](const FacetUse& use) { return !skip || !skip[use.cell]; }));
-        if (counted == 0 || counted == 2)
-        {
-          return;
-        }
-        const Facet facet = { smallest, uses->others[0], uses->others[1], uses->others[2] };
-        if (all.ranks() == 1)
-        {
-          mark(facet);
-          return;
-        }
-        SharedFacet item = { facet, counted };
-        for (Index& id : item.ids)
-        {
-          id = id < 0 ? id : globalIds[id];
-        }
-        std::sort(item.ids.begin(), item.ids.end());
-        facets.push_back(facet);
-        shared.push_back(item);
-        target.push_back(directoryRank(item.ids.back(), all.ranks()));
-      });
+    target.push_back(directoryRank(facet.ids.back(), ranks));
   }
-  if (all.ranks() == 1)
-  {
-    return flags;
-  }
-
-  const MPI_Comm comm = mpiOf(communicator);
-  const RankOrder order(target, all.ranks());
+  const RankOrder order(target, ranks);
   const RankLists<SharedFacet> asked =
-    exchange(comm, filed<SharedFacet>(order, [&](Index i) { return shared[i]; }));
+    exchange(comm, filed<SharedFacet>(order, [&](Index i) { return facets[i]; }));
+  // Equal facets stand together in this order.
   std::vector<std::size_t> sorted(asked.items.size());
   std::iota(sorted.begin(), sorted.end(), std::size_t(0));
   std::sort(sorted.begin(), sorted.end(),
@@ -411,11 +403,64 @@ std::vector<unsigned char> globalBoundaryPoints(
     }
   }
   const RankLists<int> cells = exchange(comm, answers);
+  std::vector<int> result(facets.size());
   for (std::size_t k = 0; k < order.order.size(); ++k)
   {
-    if (cells.items[k] != 2)
+    result[order.order[k]] = cells.items[k];
+  }
+  return result;
+}
+}
+
+std::vector<unsigned char> globalBoundaryPoints(
+  const Mesh& mesh, Communicator communicator, const Index* globalIds, const unsigned char* skip)
+{
+  const Index points = mesh.view().numberOfPoints;
+  std::vector<unsigned char> flags(static_cast<std::size_t>(points), 0);
+  const PointNumbering all(communicator, points, globalIds);
+  const bool volume = mesh.dimension() == Dimension::Volume;
+  const bool volumeSomewhere = all.maximum(volume ? 1.0 : 0.0) > 0.0;
+  const auto mark = [&](const LocalFacet& facet)
+  {
+    for (const Index point : facet)
     {
-      mark(facets[order.order[k]]);
+      if (point >= 0)
+      {
+        flags[point] = 1;
+      }
+    }
+  };
+  // As in Mesh::boundary(), facets that do not have two cells are boundary.
+  if (all.ranks() == 1)
+  {
+    forEachOpenFacet(mesh, skip, [&](const LocalFacet& facet, int) { mark(facet); });
+    return flags;
+  }
+  // Another rank may have the second cell. A rank without volume cells has no facets of a volume
+  // mesh.
+  std::vector<LocalFacet> facets;
+  std::vector<SharedFacet> shared;
+  if (volume == volumeSomewhere)
+  {
+    forEachOpenFacet(mesh, skip,
+      [&](const LocalFacet& facet, int cells)
+      {
+        SharedFacet item = { facet, cells };
+        for (Index& id : item.ids)
+        {
+          id = id < 0 ? id : globalIds[id];
+        }
+        std::sort(item.ids.begin(), item.ids.end());
+        facets.push_back(facet);
+        shared.push_back(item);
+      });
+  }
+  const std::vector<int> cells = cellsOnAllRanks(mpiOf(communicator), all.ranks(), shared);
+  for (std::size_t i = 0; i < facets.size(); ++i)
+  {
+    if (cells[i] != 2)
+    {
+      mark(facets[i]);
     }
   }
   all.either(flags.data());
