@@ -235,28 +235,160 @@ void PlacementSolver::solveStep(std::size_t number, const Step& step, PairTable&
   }
 }
 
+//------------------------------------------------------------------------------
+namespace
+{
+/// Finds the best place of vertex k for places p of i and q of j, by packets of places r.
+class RowSearch
+{
+public:
+  /// Of one thread.
+  struct Scratch
+  {
+    std::vector<float> best;     ///< least cost for each q
+    std::vector<Index> guess;    ///< packet of the best r for each q; where the next p starts
+    std::vector<Index> tried;    ///< packet tried first
+    std::vector<BaseEdge> edges; ///< from p to each q
+
+    explicit Scratch(Index columns)
+      : best(static_cast<std::size_t>(columns))
+      , guess(best.size(), 0)
+      , tried(best.size(), 0)
+    {
+    }
+  };
+
+  /// @param limit placements above it are left out, if `bounds`
+  RowSearch(const TriangleTerms& terms, const PairTable& fromI, const PairTable& fromJ, bool bounds,
+    float limit)
+    : Terms(terms)
+    , FromI(fromI)
+    , FromJ(fromJ)
+    , Bounds(bounds)
+    , Screen(bounds && terms.deformation > 0.0f)
+    , Limit(limit)
+    , Inverse(Screen ? 1.0f / terms.deformation : 0.0f)
+  {
+  }
+
+  void setSets(const LocationSet& i, const LocationSet& j, const LocationSet& k)
+  {
+    this->SetI = &i;
+    this->SetJ = &j;
+    this->SetK = &k;
+    this->MinI = rowMinima(this->FromI, k);
+    this->MinJ = rowMinima(this->FromJ, k);
+  }
+
+  void setLengths(const PairTable& ij, const PairTable& ik, const PairTable& jk)
+  {
+    this->LengthIJ = &ij;
+    this->LengthIK = &ik;
+    this->LengthJK = &jk;
+    if (this->Screen)
+    {
+      this->NormJ = jk;
+      for (float& length : this->NormJ.values)
+      {
+        length *= length * this->Terms.weights[2];
+      }
+    }
+  }
+
+  /// Fills row p of the table.
+  template <bool Distortion, bool Rotation, bool Mirrored>
+  void solve(Index p, Scratch& scratch, PairTable& out) const
+  {
+    const LocationSet &sj = *this->SetJ, &sk = *this->SetK;
+    const float px = this->SetI->x[p], py = this->SetI->y[p];
+    std::vector<float>& best = scratch.best;
+    std::vector<BaseEdge>& edges = scratch.edges;
+    edges.clear();
+    for (Index q = 0; q < sj.size(); ++q)
+    {
+      edges.emplace_back(this->Terms, sj.x[q], sj.y[q], px, py, this->LengthIJ->row(p)[q]);
+      best[q] = this->Limit;
+    }
+    // The best of a packet of places r for vertex k, with q for vertex j.
+    const auto visit = [&](Index q, Index row)
+    {
+      const Index r = row * FloatWidth;
+      const FloatPacket parts =
+        loadFloats(this->FromI.row(p) + r) + loadFloats(this->FromJ.row(q) + r);
+      const float value = least(parts +
+        triangleCost<Distortion, Rotation, Mirrored>(this->Terms, edges[q],
+          loadFloats(sk.x.data() + r) - px, loadFloats(sk.y.data() + r) - py,
+          loadFloats(this->LengthIK->row(p) + r), loadFloats(this->LengthJK->row(q) + r)));
+      if (value < best[q])
+      {
+        best[q] = value;
+        scratch.guess[q] = row;
+      }
+    };
+    // The row where the last p found the best comes first; few of the others can beat it.
+    const float* rowsI = this->MinI.row(p);
+    scratch.tried = scratch.guess;
+    for (Index q : sj.used)
+    {
+      const Index guess = scratch.guess[q];
+      if (!this->Bounds ||
+        rowsI[guess] + this->MinJ.row(q)[guess] + this->Terms.bound(edges[q].length) < this->Limit)
+      {
+        visit(q, scratch.tried[q]);
+      }
+    }
+    for (Index row = 0; row < sk.rows; ++row)
+    {
+      const Index r = row * FloatWidth;
+      const FloatPacket rx = loadFloats(sk.x.data() + r) - px;
+      const FloatPacket ry = loadFloats(sk.y.data() + r) - py;
+      const FloatPacket pr = loadFloats(this->LengthIK->row(p) + r);
+      const FloatPacket normI = this->Terms.weights[1] * (pr * pr);
+      const FloatPacket partI = loadFloats(this->FromI.row(p) + r);
+      for (Index q : sj.used)
+      {
+        if (row == scratch.tried[q])
+        {
+          continue;
+        }
+        const float value = best[q] * this->Inverse;
+        if (!this->Screen || value > TriangleTerms::MaxLog2 ||
+          mayStayBelow<Mirrored>(edges[q], rx, ry,
+            edges[q].weighted + normI + loadFloats(this->NormJ.row(q) + r),
+            partI + loadFloats(this->FromJ.row(q) + r), value, this->Inverse))
+        {
+          visit(q, row);
+        }
+      }
+    }
+    for (Index q : sj.used)
+    {
+      out.row(p)[q] = best[q] < this->Limit ? best[q] : Unreachable;
+    }
+  }
+
+private:
+  const TriangleTerms& Terms;
+  const PairTable &FromI, &FromJ;
+  bool Bounds, Screen; ///< Screen: packets are ruled out by a cheap bound on the deformation
+  float Limit, Inverse;
+  const LocationSet *SetI = nullptr, *SetJ = nullptr, *SetK = nullptr;
+  const PairTable *LengthIJ = nullptr, *LengthIK = nullptr, *LengthJK = nullptr;
+  PairTable MinI, MinJ, NormJ;
+};
+}
+
 void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable& out)
 {
   const LocationSet &si = *this->Problem.sets[step.elimination.parents[0]],
                     &sj = *this->Problem.sets[step.elimination.parents[1]],
                     &sk = *this->Problem.sets[step.elimination.vertex];
-  const PairTable& lengthIJ = this->distances(&si, &sj);
-  const PairTable& lengthIK = this->distances(&si, &sk);
-  const PairTable& lengthJK = this->distances(&sj, &sk);
-  const PairTable minI = rowMinima(step.fromI, sk), minJ = rowMinima(step.fromJ, sk);
   const bool bounds = this->Problem.bounds;
-  const float limit = bounds ? this->StepLimit : Unreachable;
-  const bool screen = bounds && step.terms.deformation > 0.0f;
-  const float inverse = screen ? 1.0f / step.terms.deformation : 0.0f;
-  PairTable normJ;
-  if (screen)
-  {
-    normJ = lengthJK;
-    for (float& length : normJ.values)
-    {
-      length *= length * step.terms.weights[2];
-    }
-  }
+  RowSearch search(
+    step.terms, step.fromI, step.fromJ, bounds, bounds ? this->StepLimit : Unreachable);
+  search.setSets(si, sj, sk);
+  search.setLengths(
+    this->distances(&si, &sj), this->distances(&si, &sk), this->distances(&sj, &sk));
   const Index count = static_cast<Index>(si.used.size());
   const double triangles = static_cast<double>(this->Problem.mesh->triangles.size());
   std::atomic<bool> stopped{ false };
@@ -266,9 +398,7 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
 #pragma omp parallel num_threads( \
   resolveThreads(this->Problem.threads)) if (count * sj.size() * sk.size() > SmallStep)
       {
-        std::vector<float> best(static_cast<std::size_t>(sj.size()));
-        std::vector<Index> guess(best.size(), 0), tried(best.size(), 0);
-        std::vector<BaseEdge> edges;
+        RowSearch::Scratch scratch(sj.size());
 #pragma omp for schedule(dynamic, 4)
         for (Index at = 0; at < count; ++at)
         {
@@ -276,69 +406,7 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
           {
             continue;
           }
-          const Index p = si.used[at];
-          const float px = si.x[p], py = si.y[p];
-          edges.clear();
-          for (Index q = 0; q < sj.size(); ++q)
-          {
-            edges.emplace_back(step.terms, sj.x[q], sj.y[q], px, py, lengthIJ.row(p)[q]);
-            best[q] = limit;
-          }
-          // The best of a packet of places r for vertex k, with q for vertex j.
-          const auto visit = [&](Index q, Index row)
-          {
-            const Index r = row * FloatWidth;
-            const FloatPacket parts =
-              loadFloats(step.fromI.row(p) + r) + loadFloats(step.fromJ.row(q) + r);
-            const float value = least(parts +
-              triangleCost<distortion, rotation, mirrored>(step.terms, edges[q],
-                loadFloats(sk.x.data() + r) - px, loadFloats(sk.y.data() + r) - py,
-                loadFloats(lengthIK.row(p) + r), loadFloats(lengthJK.row(q) + r)));
-            if (value < best[q])
-            {
-              best[q] = value;
-              guess[q] = row;
-            }
-          };
-          // The row where the last p found the best comes first; few of the others can beat it.
-          const float* rowsI = minI.row(p);
-          tried = guess;
-          for (Index q : sj.used)
-          {
-            if (!bounds ||
-              rowsI[guess[q]] + minJ.row(q)[guess[q]] + step.terms.bound(edges[q].length) < limit)
-            {
-              visit(q, tried[q]);
-            }
-          }
-          for (Index row = 0; row < sk.rows; ++row)
-          {
-            const Index r = row * FloatWidth;
-            const FloatPacket rx = loadFloats(sk.x.data() + r) - px;
-            const FloatPacket ry = loadFloats(sk.y.data() + r) - py;
-            const FloatPacket pr = loadFloats(lengthIK.row(p) + r);
-            const FloatPacket normI = step.terms.weights[1] * (pr * pr);
-            const FloatPacket partI = loadFloats(step.fromI.row(p) + r);
-            for (Index q : sj.used)
-            {
-              if (row == tried[q])
-              {
-                continue;
-              }
-              const float value = best[q] * inverse;
-              if (!screen || value > TriangleTerms::MostLog2 ||
-                mayStayBelow<mirrored>(edges[q], rx, ry,
-                  edges[q].weighted + normI + loadFloats(normJ.row(q) + r),
-                  partI + loadFloats(step.fromJ.row(q) + r), value, inverse))
-              {
-                visit(q, row);
-              }
-            }
-          }
-          for (Index q : sj.used)
-          {
-            out.row(p)[q] = best[q] < limit ? best[q] : Unreachable;
-          }
+          search.solve<distortion, rotation, mirrored>(si.used[at], scratch, out);
           if (omp_get_thread_num() == 0 && at % 16 == 0 &&
             !this->going(
               (static_cast<double>(number) + static_cast<double>(at) / static_cast<double>(count)) /
@@ -351,20 +419,184 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
     });
 }
 
+//------------------------------------------------------------------------------
+namespace
+{
+/**
+ * @brief The search for vertex k where i, j and k have the same grid of places.
+ *
+ * For one offset q - p the cost of the triangle depends on r - p only: a slice of all of them is
+ * made once and serves every p.
+ */
+class GridSearch
+{
+public:
+  /// Of one thread: the costs of one offset.
+  struct Slice
+  {
+    PairTable costs; ///< row r_y - p_y from 1 - rows on, column r_x - p_x from 1 - columns on
+    std::vector<float> minima; ///< of its rows
+    std::vector<float> lower;  ///< bound from below for each row of the grid
+
+    explicit Slice(const GridSearch& search)
+      : costs(search.SliceRows, search.SliceWidth, 0.0f)
+      , minima(static_cast<std::size_t>(search.SliceRows), 0.0f)
+      , lower(static_cast<std::size_t>(search.MinI.columns))
+    {
+    }
+  };
+
+  GridSearch(const TriangleTerms& terms, const PairTable& fromI, const PairTable& fromJ,
+    const LocationSet& set, bool bounds, float limit)
+    : Terms(terms)
+    , FromI(fromI)
+    , FromJ(fromJ)
+    , Bounds(bounds)
+    , Limit(limit)
+    , Columns(set.columns)
+    , Rows(set.rows)
+    , Width(set.rowLength)
+    , SliceRows(2 * Rows - 1)
+    , SliceWidth((2 * Columns - 1 + Width + FloatWidth) / FloatWidth * FloatWidth)
+    , StepX(static_cast<float>(set.step[0]))
+    , StepY(static_cast<float>(set.step[1]))
+    , MinI(rowMinima(fromI, set))
+    , MinJ(rowMinima(fromJ, set))
+  {
+  }
+
+  /// Number of offsets q - p.
+  Index offsets() const { return (2 * this->Columns - 1) * this->SliceRows; }
+
+  /// Fills the entries (p, q) of the table with this offset.
+  template <bool Distortion, bool Rotation, bool Mirrored>
+  void solve(Index offset, Slice& slice, PairTable& out) const
+  {
+    const Index dx = offset % (2 * this->Columns - 1) - (this->Columns - 1);
+    const Index dy = offset / (2 * this->Columns - 1) - (this->Rows - 1);
+    const float bx = this->StepX * static_cast<float>(dx),
+                by = this->StepY * static_cast<float>(dy);
+    const BaseEdge base(this->Terms, bx, by, 0.0f, 0.0f, std::sqrt(bx * bx + by * by));
+    if (this->Bounds && this->Terms.bound(base.length) >= this->Limit)
+    {
+      return;
+    }
+    this->fillSlice<Distortion, Rotation, Mirrored>(base, slice);
+    Index guess = 0;
+    const Index endY = std::min(this->Rows, this->Rows - dy);
+    const Index endX = std::min(this->Columns, this->Columns - dx);
+    for (Index py = std::max<Index>(0, -dy); py < endY; ++py)
+    {
+      for (Index px = std::max<Index>(0, -dx); px < endX; ++px)
+      {
+        const Index p = py * this->Width + px, q = (py + dy) * this->Width + px + dx;
+        const float best = this->search(p, q, px, py, slice, guess);
+        out.row(p)[q] = best < this->Limit ? best : Unreachable;
+      }
+    }
+  }
+
+private:
+  /// The costs of the triangles p, q, r with p at the origin, for all r.
+  template <bool Distortion, bool Rotation, bool Mirrored>
+  void fillSlice(const BaseEdge& base, Slice& slice) const
+  {
+    const float bx = base.dx, by = base.dy;
+    for (Index row = 0; row < this->SliceRows; ++row)
+    {
+      const float y = this->StepY * static_cast<float>(row - (this->Rows - 1));
+      FloatPacket low = broadcast(Unreachable);
+      for (Index c = 0; c < this->SliceWidth; c += FloatWidth)
+      {
+        // The columns beyond the last one repeat it, for whole packets.
+        FloatPacket x;
+        for (int l = 0; l < FloatWidth; ++l)
+        {
+          x[l] = static_cast<float>(std::min(c + l, 2 * this->Columns - 2) - (this->Columns - 1));
+        }
+        x *= this->StepX;
+        const FloatPacket fromQx = x - bx, ry = broadcast(y);
+        const float fromQy = y - by;
+        const FloatPacket cost = triangleCost<Distortion, Rotation, Mirrored>(
+          this->Terms, base, x, ry, sqrt(x * x + y * y), sqrt(fromQx * fromQx + fromQy * fromQy));
+        storeFloats(slice.costs.row(row) + c, cost);
+        low = min(low, cost);
+      }
+      slice.minima[row] = least(low);
+    }
+  }
+
+  /// The least cost over all r, at most the limit. The row that was best for the last p and q comes
+  /// first; a row is skipped if the sum of its three minima is no better than what is found.
+  float search(Index p, Index q, Index px, Index py, Slice& slice, Index& guess) const
+  {
+    const Index width = this->Width;
+    const float *partI = this->FromI.row(p), *partJ = this->FromJ.row(q);
+    const float* costs = slice.costs.row(this->Rows - 1 - py) + this->Columns - 1 - px;
+    float best = this->Limit;
+    const auto visit = [&](Index row)
+    {
+      FloatPacket low = broadcast(Unreachable);
+      for (Index c = 0; c < width; c += FloatWidth)
+      {
+        const FloatPacket parts =
+          loadFloats(partI + row * width + c) + loadFloats(partJ + row * width + c);
+        low = min(low, loadFloats(costs + row * this->SliceWidth + c) + parts);
+      }
+      const float value = least(low);
+      if (value < best)
+      {
+        best = value;
+        guess = row;
+      }
+    };
+    if (!this->Bounds)
+    {
+      for (Index row = 0; row < this->Rows; ++row)
+      {
+        visit(row);
+      }
+      return best;
+    }
+    const float *rowsI = this->MinI.row(p), *rowsJ = this->MinJ.row(q);
+    const float* rowsCost = slice.minima.data() + this->Rows - 1 - py;
+    std::vector<float>& lower = slice.lower;
+    for (Index row = 0; row < this->Rows; ++row)
+    {
+      lower[row] = rowsI[row] + rowsJ[row] + rowsCost[row];
+    }
+    const Index first = guess;
+    if (lower[first] < best)
+    {
+      visit(first);
+    }
+    for (Index row = 0; row < this->Rows; ++row)
+    {
+      if (lower[row] < best && row != first)
+      {
+        visit(row);
+      }
+    }
+    return best;
+  }
+
+  const TriangleTerms& Terms;
+  const PairTable &FromI, &FromJ;
+  bool Bounds;
+  float Limit;
+  Index Columns, Rows, Width; ///< Width: slots of a row of the grid
+  Index SliceRows, SliceWidth;
+  float StepX, StepY;
+  PairTable MinI, MinJ;
+};
+}
+
 void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable& out)
 {
-  const LocationSet& set = *this->Problem.sets[step.elimination.vertex];
-  const Index columns = set.columns, rows = set.rows, width = set.rowLength;
-  const PairTable minI = rowMinima(step.fromI, set), minJ = rowMinima(step.fromJ, set);
   const bool bounds = this->Problem.bounds;
-  const float limit = bounds ? this->StepLimit : Unreachable;
-  const float stepX = static_cast<float>(set.step[0]), stepY = static_cast<float>(set.step[1]);
-  // For one offset q - p the cost of the triangle depends on r - p only: a slice of all of them is
-  // made once and serves every p. Columns run over r - p from 1 - columns on, padded for whole
-  // packets.
-  const Index sliceRows = 2 * rows - 1;
-  const Index sliceWidth = (2 * columns - 1 + width + FloatWidth) / FloatWidth * FloatWidth;
-  const Index offsets = (2 * columns - 1) * sliceRows;
+  const GridSearch search(step.terms, step.fromI, step.fromJ,
+    *this->Problem.sets[step.elimination.vertex], bounds, bounds ? this->StepLimit : Unreachable);
+  const Index offsets = search.offsets();
   const double triangles = static_cast<double>(this->Problem.mesh->triangles.size());
   std::atomic<bool> stopped{ false };
   dispatch(this->Problem.energy,
@@ -372,9 +604,7 @@ void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable&
     {
 #pragma omp parallel num_threads(resolveThreads(this->Problem.threads))
       {
-        PairTable slice(sliceRows, sliceWidth, 0.0f);
-        std::vector<float> sliceMinima(static_cast<std::size_t>(sliceRows), 0.0f);
-        std::vector<float> lower(static_cast<std::size_t>(minI.columns));
+        GridSearch::Slice slice(search);
 #pragma omp for schedule(dynamic, 8)
         for (Index offset = 0; offset < offsets; ++offset)
         {
@@ -382,93 +612,7 @@ void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable&
           {
             continue;
           }
-          const Index dx = offset % (2 * columns - 1) - (columns - 1);
-          const Index dy = offset / (2 * columns - 1) - (rows - 1);
-          const float bx = stepX * static_cast<float>(dx), by = stepY * static_cast<float>(dy);
-          const BaseEdge base(step.terms, bx, by, 0.0f, 0.0f, std::sqrt(bx * bx + by * by));
-          if (bounds && step.terms.bound(base.length) >= limit)
-          {
-            continue;
-          }
-          for (Index row = 0; row < sliceRows; ++row)
-          {
-            const float y = stepY * static_cast<float>(row - (rows - 1));
-            FloatPacket low = broadcast(Unreachable);
-            for (Index c = 0; c < sliceWidth; c += FloatWidth)
-            {
-              FloatPacket x;
-              for (int l = 0; l < FloatWidth; ++l)
-              {
-                x[l] = static_cast<float>(std::min(c + l, 2 * columns - 2) - (columns - 1));
-              }
-              x *= stepX;
-              const FloatPacket fromQx = x - bx, ry = broadcast(y);
-              const float fromQy = y - by;
-              const FloatPacket cost = triangleCost<distortion, rotation, mirrored>(step.terms,
-                base, x, ry, sqrt(x * x + y * y), sqrt(fromQx * fromQx + fromQy * fromQy));
-              storeFloats(slice.row(row) + c, cost);
-              low = min(low, cost);
-            }
-            sliceMinima[row] = least(low);
-          }
-          Index guess = 0;
-          for (Index py = std::max<Index>(0, -dy); py < std::min(rows, rows - dy); ++py)
-          {
-            for (Index px = std::max<Index>(0, -dx); px < std::min(columns, columns - dx); ++px)
-            {
-              const Index p = py * width + px, q = (py + dy) * width + px + dx;
-              const float *partI = step.fromI.row(p), *partJ = step.fromJ.row(q);
-              const float* costs = slice.row(rows - 1 - py) + columns - 1 - px;
-              float best = limit;
-              const auto visit = [&](Index row)
-              {
-                FloatPacket low = broadcast(Unreachable);
-                for (Index c = 0; c < width; c += FloatWidth)
-                {
-                  const FloatPacket parts =
-                    loadFloats(partI + row * width + c) + loadFloats(partJ + row * width + c);
-                  low = min(low, loadFloats(costs + row * sliceWidth + c) + parts);
-                }
-                const float value = least(low);
-                if (value < best)
-                {
-                  best = value;
-                  guess = row;
-                }
-              };
-              if (!bounds)
-              {
-                for (Index row = 0; row < rows; ++row)
-                {
-                  visit(row);
-                }
-              }
-              else
-              {
-                // A row whose three least parts together are no better than what is found is
-                // skipped.
-                const float *rowsI = minI.row(p), *rowsJ = minJ.row(q);
-                const float* rowsCost = sliceMinima.data() + rows - 1 - py;
-                for (Index row = 0; row < rows; ++row)
-                {
-                  lower[row] = rowsI[row] + rowsJ[row] + rowsCost[row];
-                }
-                const Index first = guess;
-                if (lower[first] < best)
-                {
-                  visit(first);
-                }
-                for (Index row = 0; row < rows; ++row)
-                {
-                  if (lower[row] < best && row != first)
-                  {
-                    visit(row);
-                  }
-                }
-              }
-              out.row(p)[q] = best < limit ? best : Unreachable;
-            }
-          }
+          search.solve<distortion, rotation, mirrored>(offset, slice, out);
           if (omp_get_thread_num() == 0 && offset % 32 == 0 &&
             !this->going((static_cast<double>(number) +
                            static_cast<double>(offset) / static_cast<double>(offsets)) /
@@ -481,6 +625,7 @@ void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable&
     });
 }
 
+//------------------------------------------------------------------------------
 std::vector<Index> PlacementSolver::trace(Index p, Index q) const
 {
   std::vector<Index> slots(this->Problem.mesh->points.size(), 0);

@@ -1,10 +1,10 @@
 /**
- * @file ShapeDp.h
+ * @file ShapeDynamicProgram.h
  * @brief Dynamic programming over the triangles of a polygon. Internal to the kernel: not
  * installed.
  */
-#ifndef tautline_ShapeDp_h
-#define tautline_ShapeDp_h
+#ifndef tautline_ShapeDynamicProgram_h
+#define tautline_ShapeDynamicProgram_h
 
 #include "ShapeEnergy.h"
 #include "ShapeTarget.h"

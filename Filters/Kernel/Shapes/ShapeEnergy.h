@@ -21,7 +21,7 @@ constexpr float FlatAnisotropy = 1e6f;
 /// The least area, as part of the square of the perimeter, of a triangle that is not flat.
 constexpr float FlatArea = 1e-7f;
 /// The least sum of edge lengths, in units of the target's size.
-constexpr float LeastLength = 1e-6f;
+constexpr float MinLength = 1e-6f;
 
 /// What the energy of a triangle needs of the source: vertices i, j, k go to p, q, r.
 struct TriangleTerms
@@ -63,16 +63,16 @@ struct TriangleTerms
     }
   }
 
-  /// Coefficients of a polynomial that is at least cosh(sqrt(y)) for 0 <= y <= MostLog2.
+  /// Coefficients of a polynomial that is at least cosh(sqrt(y)) for 0 <= y <= MaxLog2.
   static constexpr float CoshSeries[5] = { 1.0f + 1e-5f, 0.5f, 1.0f / 24.0f, 1.0f / 720.0f,
     4.6e-5f };
-  static constexpr float MostLog2 = 49.0f;
+  static constexpr float MaxLog2 = 49.0f;
 
   /// A bound from below of the energy of any triangle with an edge of this length: the sum of its
   /// edges is at least twice that, and log x >= 1 - 1 / x.
   float bound(float edge) const
   {
-    const float most = this->longest / (2.0f * edge + LeastLength);
+    const float most = this->longest / (2.0f * edge + MinLength);
     return most < 1.0f ? this->distortion * (1.0f - most) : 0.0f;
   }
 };
@@ -97,7 +97,7 @@ struct BaseEdge
  * @brief Whether, for some r of a packet, the deformation may leave the sum below a value.
  *
  * Without division, root or logarithm: a log(alpha / beta)^2 < value - parts is norm < size
- * cosh(sqrt(y)) with y = (value - parts) / a, at most MostLog2. Never wrong where the answer is no.
+ * cosh(sqrt(y)) with y = (value - parts) / a, at most MaxLog2. Never wrong where the answer is no.
  * @param norm the anisotropy times the size
  * @param parts the other costs
  * @param value divided by a
@@ -127,7 +127,7 @@ inline FloatPacket triangleCost(const TriangleTerms& t, const BaseEdge& base, Fl
 {
   const FloatPacket det = base.dx * ry - base.dy * rx;
   const FloatPacket size = Mirrored ? abs(det) : det;
-  const FloatPacket length = max(base.length + pr + qr, broadcast(LeastLength));
+  const FloatPacket length = max(base.length + pr + qr, broadcast(MinLength));
   const FloatPacket norm = base.weighted + t.weights[1] * (pr * pr) + t.weights[2] * (qr * qr);
   const FloatMask flat = size <= FlatArea * (length * length);
   FloatPacket k =

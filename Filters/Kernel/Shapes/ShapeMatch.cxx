@@ -2,9 +2,9 @@
 
 #include "ShapeDynamicProgram.h"
 #include "ShapeEnergy.h"
+#include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -578,12 +578,10 @@ private:
   friend ShapeMatch tautline::evaluatePlacement(
     const ShapeSource&, const ShapeTarget&, const ShapeEnergy&, const std::vector<Vec2>&);
 };
-}
 
-ShapeMatch matchShape(
+void checkPrepared(
   const ShapeSource& source, const ShapeTarget& target, const MatchOptions& options)
 {
-  check(options);
   if (source.mesh.triangles.empty() || !(source.maxDistance > 0.0))
   {
     throw Error("The source has no triangles: make it with makeShapeSource().");
@@ -595,9 +593,18 @@ ShapeMatch matchShape(
     throw Error("The target was prepared for another lambda, smoothing or kind of edges, or "
                 "without descriptors.");
   }
-  const auto start = std::chrono::steady_clock::now();
+}
+}
+
+//------------------------------------------------------------------------------
+ShapeMatch matchShape(
+  const ShapeSource& source, const ShapeTarget& target, const MatchOptions& options)
+{
+  check(options);
+  checkPrepared(source, target, options);
+  const Stopwatch time;
   const double delta = source.maxDistance / target.maxDistance();
-  const Index mirrors = e.reflection == Reflection::Whole ? 2 : 1;
+  const Index mirrors = options.energy.reflection == Reflection::Whole ? 2 : 1;
   const double runs = static_cast<double>(mirrors * options.rotations * options.scales);
   MatchStop stop = MatchStop::Complete;
   double done = 0.0;
@@ -611,9 +618,7 @@ ShapeMatch matchShape(
       {
         stop = MatchStop::Stopped;
       }
-      const std::chrono::duration<double> used = std::chrono::steady_clock::now() - start;
-      if (stop == MatchStop::Complete && options.timeLimit > 0.0 &&
-        used.count() > options.timeLimit)
+      if (stop == MatchStop::Complete && time.reached(options.timeLimit))
       {
         stop = MatchStop::TimeLimit;
       }

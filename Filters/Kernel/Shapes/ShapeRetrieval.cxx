@@ -1,10 +1,10 @@
 #include "ShapeRetrieval.h"
 
 #include "tautline/Core/Parallel.h"
+#include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <exception>
 #include <map>
 #include <numeric>
@@ -95,6 +95,174 @@ Recognition recognize(
   return result;
 }
 
+//------------------------------------------------------------------------------
+namespace
+{
+/// Compares each shape with each other one, on several threads. OpenMP lets no exception leave a
+/// thread: the one of the first item of work is kept and thrown at the end.
+class Comparison
+{
+public:
+  Comparison(const std::vector<Silhouette>& shapes, const RetrievalOptions& options)
+    : Shapes(shapes)
+    , Options(options)
+    , Match(options.match)
+    , Count(static_cast<Index>(shapes.size()))
+    , Work(Count + Count * Count)
+    , Sources(shapes.size())
+    , Targets(shapes.size())
+    , ErrorAt(Work)
+  {
+    this->Match.threads = 1;
+    this->Match.timeLimit = 0;
+    this->Match.progress = nullptr;
+  }
+
+  /// Energies of all pairs, row by source; negative where the comparison was stopped before.
+  std::vector<double> run()
+  {
+    std::vector<double> energies(static_cast<std::size_t>(this->Count * this->Count), -1.0);
+#pragma omp parallel num_threads(resolveThreads(this->Options.match.threads))
+    {
+#pragma omp for schedule(dynamic, 1)
+      for (Index s = 0; s < this->Count; ++s)
+      {
+        this->guarded(s, [&] { this->prepare(s); });
+      }
+#pragma omp for schedule(dynamic, 4)
+      for (Index pair = 0; pair < this->Count * this->Count; ++pair)
+      {
+        if (this->stop() != MatchStop::Complete)
+        {
+          continue;
+        }
+        const Index s = pair / this->Count, t = pair % this->Count;
+        this->guarded(this->Count + s,
+          [&]
+          {
+            energies[pair] =
+              s == t ? 0.0 : matchShape(this->Sources[s], *this->Targets[t], this->Match).energy;
+          });
+        this->report();
+      }
+    }
+    if (this->Caught)
+    {
+      std::rethrow_exception(this->Caught);
+    }
+    return energies;
+  }
+
+  MatchStop stop() const
+  {
+    return this->Stop;
+  }
+
+  std::vector<Index> vertices() const
+  {
+    std::vector<Index> numbers;
+    for (const ShapeSource& source : this->Sources)
+    {
+      numbers.push_back(static_cast<Index>(source.mesh.points.size()));
+    }
+    return numbers;
+  }
+
+private:
+  void prepare(Index s)
+  {
+    this->Sources[s] = makeShapeSource(this->Shapes[s], this->Options.spacing);
+    this->Targets[s] =
+      std::make_unique<ShapeTarget>(this->Shapes[s], this->Options.locations, this->Match.energy);
+  }
+
+  /// Only the first thread calls back; the others look at the flag.
+  void report()
+  {
+    if (omp_get_thread_num() != 0)
+    {
+      return;
+    }
+    const MatchOptions& match = this->Options.match;
+    if (this->Time.reached(match.timeLimit))
+    {
+      this->Stop = MatchStop::TimeLimit;
+    }
+    else if (match.progress &&
+      !match.progress(static_cast<double>(this->Done) / static_cast<double>(this->Work)))
+    {
+      this->Stop = MatchStop::Stopped;
+    }
+  }
+
+  /// Keeps the exception of the lowest item, so that the message is always the same.
+  void keep(Index item, const std::exception_ptr& error)
+  {
+#pragma omp critical(TautlineRetrieval)
+    if (item < this->ErrorAt)
+    {
+      this->ErrorAt = item;
+      this->Caught = error;
+    }
+    this->Stop = MatchStop::Stopped;
+  }
+
+  template <class Action>
+  void guarded(Index item, const Action& action)
+  {
+    try
+    {
+      action();
+    }
+    catch (const tautline::Error& caught)
+    {
+      this->keep(item,
+        std::make_exception_ptr(
+          tautline::Error("Shape " + std::to_string(item % this->Count) + ": " + caught.what())));
+    }
+    catch (...)
+    {
+      this->keep(item, std::current_exception());
+    }
+    ++this->Done;
+  }
+
+  const std::vector<Silhouette>& Shapes;
+  const RetrievalOptions& Options;
+  MatchOptions Match; ///< of a single pair: on one thread, without limits
+  Index Count;
+  Index Work; ///< items: the shapes and the pairs
+  std::vector<ShapeSource> Sources;
+  std::vector<std::unique_ptr<ShapeTarget>> Targets;
+  Stopwatch Time;
+  std::atomic<MatchStop> Stop{ MatchStop::Complete };
+  std::atomic<Index> Done{ 0 };
+  Index ErrorAt;
+  std::exception_ptr Caught;
+};
+
+/// The symmetric distance: the sum of both energies, each divided by the number of triangles.
+std::vector<double> symmetrized(
+  const std::vector<double>& energies, const std::vector<Index>& vertices)
+{
+  const Index count = static_cast<Index>(vertices.size());
+  std::vector<double> both(energies.size(), -1.0);
+  for (Index s = 0; s < count; ++s)
+  {
+    for (Index t = 0; t < count; ++t)
+    {
+      const double there = energies[s * count + t], back = energies[t * count + s];
+      if (there >= 0.0 && back >= 0.0)
+      {
+        both[s * count + t] = there / static_cast<double>(vertices[s] - 2) +
+          back / static_cast<double>(vertices[t] - 2);
+      }
+    }
+  }
+  return both;
+}
+}
+
 Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vector<Index>& labels,
   const RetrievalOptions& options)
 {
@@ -107,122 +275,15 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
   {
     throw Error("A label per shape and at least 1 best match are needed.");
   }
-  const auto start = std::chrono::steady_clock::now();
   Retrieval result;
   result.count = count;
-  result.distances.assign(static_cast<std::size_t>(count * count), -1.0);
-  std::vector<ShapeSource> sources(shapes.size());
-  std::vector<std::unique_ptr<ShapeTarget>> targets(shapes.size());
-  MatchOptions match = options.match;
-  match.threads = 1;
-  match.timeLimit = 0;
-  match.progress = nullptr;
-  std::atomic<int> stop{ static_cast<int>(MatchStop::Complete) };
-  std::exception_ptr error;
-  std::atomic<Index> done{ 0 };
-  const Index work = count + count * count;
-  const auto report = [&]
-  {
-    // Only the first thread calls back; the others look at the flag.
-    if (omp_get_thread_num() != 0)
-    {
-      return;
-    }
-    const std::chrono::duration<double> used = std::chrono::steady_clock::now() - start;
-    if (options.match.timeLimit > 0.0 && used.count() > options.match.timeLimit)
-    {
-      stop = static_cast<int>(MatchStop::TimeLimit);
-    }
-    else if (options.match.progress &&
-      !options.match.progress(static_cast<double>(done) / static_cast<double>(work)))
-    {
-      stop = static_cast<int>(MatchStop::Stopped);
-    }
-  };
-  // Errors must not leave the threads: the one of the first shape is kept.
-  Index errorAt = work;
-  const auto guarded = [&](Index at, const auto& action)
-  {
-    try
-    {
-      action();
-    }
-    catch (const Error& caught)
-    {
-#pragma omp critical(TautlineRetrieval)
-      if (at < errorAt)
-      {
-        errorAt = at;
-        error = std::make_exception_ptr(
-          Error("Shape " + std::to_string(at % count) + ": " + caught.what()));
-      }
-      stop = static_cast<int>(MatchStop::Stopped);
-    }
-    catch (...)
-    {
-#pragma omp critical(TautlineRetrieval)
-      if (at < errorAt)
-      {
-        errorAt = at;
-        error = std::current_exception();
-      }
-      stop = static_cast<int>(MatchStop::Stopped);
-    }
-    ++done;
-  };
-#pragma omp parallel num_threads(resolveThreads(options.match.threads))
-  {
-#pragma omp for schedule(dynamic, 1)
-    for (Index s = 0; s < count; ++s)
-    {
-      guarded(s,
-        [&]
-        {
-          sources[s] = makeShapeSource(shapes[s], options.spacing);
-          targets[s] = std::make_unique<ShapeTarget>(shapes[s], options.locations, match.energy);
-        });
-    }
-#pragma omp for schedule(dynamic, 4)
-    for (Index pair = 0; pair < count * count; ++pair)
-    {
-      if (stop != static_cast<int>(MatchStop::Complete))
-      {
-        continue;
-      }
-      const Index s = pair / count, t = pair % count;
-      guarded(count + s,
-        [&] {
-          result.distances[pair] = s == t ? 0.0 : matchShape(sources[s], *targets[t], match).energy;
-        });
-      report();
-    }
-  }
-  if (error)
-  {
-    std::rethrow_exception(error);
-  }
-  result.stop = static_cast<MatchStop>(stop.load());
-  for (const ShapeSource& source : sources)
-  {
-    result.vertices.push_back(static_cast<Index>(source.mesh.points.size()));
-  }
+  Comparison comparison(shapes, options);
+  result.distances = comparison.run();
+  result.stop = comparison.stop();
+  result.vertices = comparison.vertices();
   if (options.symmetric)
   {
-    std::vector<double> both(result.distances.size(), -1.0);
-    for (Index s = 0; s < count; ++s)
-    {
-      for (Index t = 0; t < count; ++t)
-      {
-        const double there = result.distances[s * count + t],
-                     back = result.distances[t * count + s];
-        if (there >= 0.0 && back >= 0.0)
-        {
-          both[s * count + t] = there / static_cast<double>(result.vertices[s] - 2) +
-            back / static_cast<double>(result.vertices[t] - 2);
-        }
-      }
-    }
-    result.distances.swap(both);
+    result.distances = symmetrized(result.distances, result.vertices);
   }
   result.ranking = rankShapes(result.distances, count);
   result.recognition = recognize(result.ranking, labels, options.best);

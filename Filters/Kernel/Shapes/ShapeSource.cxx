@@ -134,7 +134,7 @@ TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source, const std::arra
   const double large = u + v, small = std::abs(u - v);
   TriangleEnergy terms;
   const double size = energy.reflection == Reflection::Free ? std::abs(detT) : detT;
-  const double longest = std::max(lengthT, static_cast<double>(LeastLength));
+  const double longest = std::max(lengthT, static_cast<double>(MinLength));
   double k = FlatAnisotropy;
   if (size > FlatArea * longest * longest && small > 0.0)
   {

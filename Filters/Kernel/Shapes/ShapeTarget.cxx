@@ -73,6 +73,80 @@ double distanceToOutline(const std::vector<Vec2>& outline, const Vec2& p)
   }
   return best;
 }
+
+/// The image whose gradient attracts edges: the mask of the silhouette, or the grey values scaled to
+/// 0 outside and 1 inside.
+std::vector<float> imageOf(const Silhouette& shape, const ImageView* grey)
+{
+  if (!grey)
+  {
+    return shape.mask;
+  }
+  if (grey->width != shape.width || grey->height != shape.height)
+  {
+    throw Error("The grey image and the silhouette differ in size.");
+  }
+  std::vector<float> image(grey->values, grey->values + shape.width * shape.height);
+  const auto [low, high] = std::minmax_element(image.begin(), image.end());
+  const float from = *low, range = *high - *low;
+  for (float& value : image)
+  {
+    value = (shape.dark ? from + range - value : value - from) / range;
+  }
+  return image;
+}
+
+/// A Gaussian of width sigma and its derivative, sampled at whole pixels.
+struct GaussianKernel
+{
+  std::vector<double> gauss, slope;
+
+  explicit GaussianKernel(double sigma)
+  {
+    const Index radius = std::max<Index>(1, static_cast<Index>(std::ceil(4.0 * sigma)));
+    double sum = 0.0, moment = 0.0;
+    for (Index k = -radius; k <= radius; ++k)
+    {
+      const double x = static_cast<double>(k) / sigma;
+      this->gauss.push_back(std::exp(-0.5 * x * x));
+      this->slope.push_back(x * this->gauss.back());
+      sum += this->gauss.back();
+      moment += this->slope.back() * static_cast<double>(k);
+    }
+    // Scaled so that a straight edge, a unit step, has the gradient 1; without that it is
+    // 1 / (sigma sqrt(2 pi)) at the step. The step of a pixel image is half a pixel off.
+    const double step = sigma * std::sqrt(2.0 * Pi);
+    for (std::size_t k = 0; k < this->gauss.size(); ++k)
+    {
+      this->gauss[k] /= sum;
+      this->slope[k] *= step / moment;
+    }
+  }
+};
+
+/// The locations of a grid over the image; of NearGrid those within a cell of the outline.
+LocationSet gridLocations(const Silhouette& shape, const LocationOptions& options, const Vec2& cell)
+{
+  const LocationSet all = LocationSet::lattice(
+    { 0.5 * cell[0] - 0.5, 0.5 * cell[1] - 0.5 }, cell, options.columns, options.rows);
+  if (options.kind != Locations::NearGrid)
+  {
+    return all;
+  }
+  std::vector<Vec2> near;
+  for (const Vec2& p : all.points)
+  {
+    if (distanceToOutline(shape.outline, p) <= std::max(cell[0], cell[1]))
+    {
+      near.push_back(p);
+    }
+  }
+  if (near.size() < 3)
+  {
+    throw Error("Less than 3 grid locations are near the outline: use a finer grid.");
+  }
+  return LocationSet::list(near);
+}
 }
 
 Index LocationSet::locationOf(Index slot) const
@@ -218,6 +292,85 @@ PairTable ShapeTarget::Data::edgeTable(const LocationSet& a, const LocationSet& 
   return table;
 }
 
+//------------------------------------------------------------------------------
+/// The gradient of the smoothed image and the cost of an edge point made of it.
+void ShapeTarget::Data::computeCosts(const std::vector<float>& image)
+{
+  const GaussianKernel kernel(this->energy.smoothing);
+  const Index w = this->width, h = this->height;
+  this->gradientX = convolve(convolve(image, w, h, true, kernel.gauss), w, h, false, kernel.slope);
+  this->gradientY = convolve(convolve(image, w, h, false, kernel.gauss), w, h, true, kernel.slope);
+  this->cost.resize(image.size());
+  for (std::size_t i = 0; i < image.size(); ++i)
+  {
+    this->cost[i] = 1.0f /
+      (static_cast<float>(this->energy.lambda) +
+        std::hypot(this->gradientX[i], this->gradientY[i]));
+  }
+}
+
+//------------------------------------------------------------------------------
+void ShapeTarget::Data::chooseLocations(const Silhouette& shape, const LocationOptions& options)
+{
+  if (options.kind == Locations::Contour)
+  {
+    if (options.contour < 3)
+    {
+      throw Error("At least 3 locations on the contour are needed.");
+    }
+    this->locations = LocationSet::list(resampleOutline(shape.outline, options.contour));
+    const double between = shape.perimeter / static_cast<double>(options.contour);
+    this->gridStep = { between, between };
+    for (Index i = 0; i < options.contour; ++i)
+    {
+      this->arc.push_back(static_cast<double>(i) / static_cast<double>(options.contour));
+    }
+    return;
+  }
+  if (options.columns < 1 || options.rows < 1 || options.columns * options.rows < 3 ||
+    std::min(options.columns, options.rows) < 2)
+  {
+    throw Error("A grid of " + std::to_string(options.columns) + " x " +
+      std::to_string(options.rows) + " locations is too small: the minimum is 2 x 2.");
+  }
+  this->gridStep = { static_cast<double>(this->width) / static_cast<double>(options.columns),
+    static_cast<double>(this->height) / static_cast<double>(options.rows) };
+  this->locations = gridLocations(shape, options, this->gridStep);
+}
+
+//------------------------------------------------------------------------------
+/// A coarse set for a first solution: every third location, in both directions of a grid.
+void ShapeTarget::Data::chooseCoarse()
+{
+  std::vector<Vec2> points;
+  const Index columns = this->locations.grid ? this->locations.columns : 1;
+  for (std::size_t i = 0; i < this->locations.points.size(); ++i)
+  {
+    const Index row = static_cast<Index>(i) / columns, column = static_cast<Index>(i) % columns;
+    if (row % CoarseStep == 1 && (columns == 1 || column % CoarseStep == 1))
+    {
+      points.push_back(this->locations.points[i]);
+      this->coarseOf.push_back(static_cast<Index>(i));
+    }
+  }
+  if (points.size() < 3)
+  {
+    return;
+  }
+  this->coarse = LocationSet::list(points);
+  this->coarseEdges = PairTable(this->coarse.size(), this->coarse.size(), Unreachable);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const float* from = this->edges.row(this->locations.slots[this->coarseOf[i]]);
+    for (std::size_t j = 0; j < points.size(); ++j)
+    {
+      this->coarseEdges.row(static_cast<Index>(i))[j] =
+        from[this->locations.slots[this->coarseOf[j]]];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options,
   const ShapeEnergy& energy, const ImageView* grey)
   : Private(std::make_unique<Data>())
@@ -236,98 +389,8 @@ ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options
   d.centre = shape.centre;
   d.maxDistance = shape.maxDistance;
   d.perimeter = shape.perimeter;
-
-  // The gradient of the smoothed image, 1 on a straight edge.
-  std::vector<float> image = shape.mask;
-  if (grey)
-  {
-    if (grey->width != shape.width || grey->height != shape.height)
-    {
-      throw Error("The grey image and the silhouette differ in size.");
-    }
-    image.assign(grey->values, grey->values + shape.width * shape.height);
-    const auto [low, high] = std::minmax_element(image.begin(), image.end());
-    const float from = *low, range = *high - *low;
-    for (float& value : image)
-    {
-      value = (shape.dark ? from + range - value : value - from) / range;
-    }
-  }
-  const Index radius = std::max<Index>(1, static_cast<Index>(std::ceil(4.0 * energy.smoothing)));
-  std::vector<double> gauss, slope;
-  double sum = 0.0, moment = 0.0;
-  for (Index k = -radius; k <= radius; ++k)
-  {
-    const double x = static_cast<double>(k) / energy.smoothing;
-    gauss.push_back(std::exp(-0.5 * x * x));
-    slope.push_back(x * gauss.back());
-    sum += gauss.back();
-    moment += slope.back() * static_cast<double>(k);
-  }
-  // A unit step has the gradient 1 / (sigma sqrt(2 pi)) at its place; a pixel's step is half a
-  // pixel off.
-  const double step = energy.smoothing * std::sqrt(2.0 * Pi);
-  for (std::size_t k = 0; k < gauss.size(); ++k)
-  {
-    gauss[k] /= sum;
-    slope[k] *= step / moment;
-  }
-  d.gradientX =
-    convolve(convolve(image, d.width, d.height, true, gauss), d.width, d.height, false, slope);
-  d.gradientY =
-    convolve(convolve(image, d.width, d.height, false, gauss), d.width, d.height, true, slope);
-  d.cost.resize(image.size());
-  for (std::size_t i = 0; i < image.size(); ++i)
-  {
-    d.cost[i] =
-      1.0f / (static_cast<float>(energy.lambda) + std::hypot(d.gradientX[i], d.gradientY[i]));
-  }
-
-  std::vector<Vec2> coarse;
-  if (options.kind == Locations::Contour)
-  {
-    if (options.contour < 3)
-    {
-      throw Error("At least 3 locations on the contour are needed.");
-    }
-    d.locations = LocationSet::list(resampleOutline(shape.outline, options.contour));
-    const double between = shape.perimeter / static_cast<double>(options.contour);
-    d.gridStep = { between, between };
-    for (Index i = 0; i < options.contour; ++i)
-    {
-      d.arc.push_back(static_cast<double>(i) / static_cast<double>(options.contour));
-    }
-  }
-  else
-  {
-    if (options.columns < 1 || options.rows < 1 || options.columns * options.rows < 3 ||
-      std::min(options.columns, options.rows) < 2)
-    {
-      throw Error("A grid of " + std::to_string(options.columns) + " x " +
-        std::to_string(options.rows) + " locations is too small: 2 x 2 is the least.");
-    }
-    const Vec2 cell = { static_cast<double>(d.width) / static_cast<double>(options.columns),
-      static_cast<double>(d.height) / static_cast<double>(options.rows) };
-    d.gridStep = cell;
-    d.locations = LocationSet::lattice(
-      { 0.5 * cell[0] - 0.5, 0.5 * cell[1] - 0.5 }, cell, options.columns, options.rows);
-    if (options.kind == Locations::NearGrid)
-    {
-      std::vector<Vec2> near;
-      for (const Vec2& p : d.locations.points)
-      {
-        if (distanceToOutline(shape.outline, p) <= std::max(cell[0], cell[1]))
-        {
-          near.push_back(p);
-        }
-      }
-      if (near.size() < 3)
-      {
-        throw Error("Less than 3 grid locations are near the outline: use a finer grid.");
-      }
-      d.locations = LocationSet::list(near);
-    }
-  }
+  d.computeCosts(imageOf(shape, grey));
+  d.chooseLocations(shape, options);
   const double tableSize =
     static_cast<double>(d.locations.size()) * static_cast<double>(d.locations.size());
   if (tableSize * sizeof(float) > TableLimit)
@@ -335,31 +398,8 @@ ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options
     throw Error("A table over all pairs of " + std::to_string(d.locations.points.size()) +
       " locations would take more than 4 GiB: use fewer locations.");
   }
-  // A coarse set for a first solution: every third location, in both directions of a grid.
-  const Index columns = d.locations.grid ? d.locations.columns : 1;
-  for (std::size_t i = 0; i < d.locations.points.size(); ++i)
-  {
-    const Index row = static_cast<Index>(i) / columns, column = static_cast<Index>(i) % columns;
-    if (row % CoarseStep == 1 && (columns == 1 || column % CoarseStep == 1))
-    {
-      coarse.push_back(d.locations.points[i]);
-      d.coarseOf.push_back(static_cast<Index>(i));
-    }
-  }
   d.edges = d.edgeTable(d.locations, d.locations);
-  if (coarse.size() >= 3)
-  {
-    d.coarse = LocationSet::list(coarse);
-    d.coarseEdges = PairTable(d.coarse.size(), d.coarse.size(), Unreachable);
-    for (std::size_t i = 0; i < coarse.size(); ++i)
-    {
-      for (std::size_t j = 0; j < coarse.size(); ++j)
-      {
-        d.coarseEdges.row(static_cast<Index>(i))[j] =
-          d.edges.row(d.locations.slots[d.coarseOf[i]])[d.locations.slots[d.coarseOf[j]]];
-      }
-    }
-  }
+  d.chooseCoarse();
   if (energy.descriptor > 0.0)
   {
     d.descriptors = describe(shape, d.locations.points);

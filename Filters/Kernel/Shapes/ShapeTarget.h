@@ -78,7 +78,12 @@ struct ShapeTarget::Data
   double perimeter = 0;
   Vec2 gridStep = {}; ///< spacing of the locations, for coarse to fine
 
+  void computeCosts(const std::vector<float>& image);
+  void chooseLocations(const Silhouette& shape, const LocationOptions& options);
+  void chooseCoarse();
+  /// Mean of the edge cost along the segment from p to q, in pixels.
   double edgeCost(const Vec2& p, const Vec2& q) const;
+  /// The edge costs from each location of a to each one of b.
   PairTable edgeTable(const LocationSet& a, const LocationSet& b) const;
 };
 }
