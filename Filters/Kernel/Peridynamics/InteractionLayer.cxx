@@ -1,20 +1,22 @@
 #include "InteractionLayer.h"
 
 #include "tautline/Core/Parallel.h"
-#include "PeridynamicsCommon.h"
+#include "PeridynamicsGeometry.h"
 #include "tautline/Geometry/PlanarDelaunay.h"
+#include "tautline/Geometry/SegmentDistance.h"
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 namespace tautline
 {
 namespace
 {
-constexpr double LeastGap = 0.55; // of lattice points from the boundary, in element sizes
-constexpr double Margin = 2.5;    // of lattice points beyond the width, in element sizes
-constexpr double Shake = 0.02;    // of lattice points, in element sizes: no four on a circle
-constexpr double MostPoints = 5e6;
+constexpr double MinGap = 0.55; // of lattice points from the boundary, in element sizes
+constexpr double Margin = 2.5;  // of lattice points beyond the width, in element sizes
+constexpr double Shake = 0.02;  // of lattice points, in element sizes: no four on a circle
+constexpr double MaxPoints = 5e6;
 
 struct Edge
 {
@@ -48,12 +50,12 @@ std::vector<Edge> boundaryEdges(const PlanarTriangles& mesh)
   return edges;
 }
 
-/// What a place is to the mesh: its distance to the boundary, and whether it is inside.
+/// The position of a point relative to the mesh.
 struct Place
 {
-  double distance = 0.0;
+  double distance = 0.0; ///< to the boundary
   bool inside = false;
-  bool crowds = false; ///< in the circle over an edge, which then were no Delaunay edge
+  bool crowds = false; ///< in the circle over an edge, which would then be no Delaunay edge
 };
 
 Place placeOf(Vec2 p, const std::vector<Edge>& edges)
@@ -92,7 +94,7 @@ double distanceOf(const Vec2* corner, const std::vector<Edge>& edges)
   return std::sqrt(nearest);
 }
 
-/// A number from -1 to 1 that looks random.
+/// A pseudo-random number from -1 to 1.
 double noise(Index i, Index j, int what)
 {
   std::uint64_t z =
@@ -102,9 +104,9 @@ double noise(Index i, Index j, int what)
   return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
 }
 
-void proceed(const InteractionLayerOptions& options, double part)
+void proceed(const InteractionLayerOptions& options, double fraction)
 {
-  if (options.progress && !options.progress(part))
+  if (options.progress && !options.progress(fraction))
   {
     throw Error("stopped by the user");
   }
@@ -124,7 +126,7 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
   const Vec2 from = { low[0] - reach, low[1] - reach };
   const double columns = std::ceil((high[0] + reach - from[0]) / size) + 1.0;
   const double rows = std::ceil((high[1] + reach - from[1]) / rise) + 1.0;
-  if (!(columns * rows <= MostPoints))
+  if (!(columns * rows <= MaxPoints))
   {
     throw Error("an interaction layer of this width with elements of size " + std::to_string(size) +
       " has too many of them: give a larger element size");
@@ -143,8 +145,8 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
         from[1] + (static_cast<double>(j)) * rise + Shake * noise(i, j, 1) * size };
       const Place place = placeOf(p, edges);
       points[j * m + i] = p;
-      kept[j * m + i] = !place.inside && !place.crowds && place.distance > LeastGap * size &&
-        place.distance < reach;
+      kept[j * m + i] =
+        !place.inside && !place.crowds && place.distance > MinGap * size && place.distance < reach;
     }
 #pragma omp atomic
     ++done;
@@ -159,10 +161,8 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
   }
   return chosen;
 }
-}
 
-//------------------------------------------------------------------------------
-HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerOptions& options)
+void checkOptions(const InteractionLayerOptions& options)
 {
   if (!(options.width > 0.0) || !std::isfinite(options.width))
   {
@@ -174,55 +174,66 @@ HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerO
     throw Error("the element size of the interaction layer is " +
       std::to_string(options.elementSize) + "; it has to be 0 or more");
   }
-  const PlanarTriangles triangles(mesh);
-  const std::vector<Edge> edges = boundaryEdges(triangles);
+}
+
+double meanLength(const std::vector<Edge>& edges)
+{
   double length = 0.0;
-  std::map<Index, Index> localOf;
-  std::vector<Index> globalOf;
-  std::vector<double> points;
-  std::vector<std::pair<Index, Index>> segments;
-  const auto local = [&](Index p, Vec2 at)
-  {
-    const auto [place, fresh] = localOf.emplace(p, static_cast<Index>(globalOf.size()));
-    if (fresh)
-    {
-      globalOf.push_back(p);
-      points.push_back(at[0]);
-      points.push_back(at[1]);
-    }
-    return place->second;
-  };
   for (const Edge& edge : edges)
   {
     const Vec2 e = edge.b - edge.a;
     length += std::sqrt(dot(e, e)) / static_cast<double>(edges.size());
-    const Index a = local(edge.first, edge.a), b = local(edge.second, edge.b);
-    segments.emplace_back(a, b);
   }
-  const double size = options.elementSize > 0.0 ? options.elementSize : length;
-  HorizonMesh result = mesh;
-  proceed(options, 0.05);
-  for (const Vec2 p : latticePoints(triangles, edges, size, options))
+  return length;
+}
+
+/// What is triangulated: the points of the boundary, then those of the lattice.
+struct LayerPoints
+{
+  std::vector<double> points;  ///< x y each
+  std::vector<Index> globalOf; ///< numbers of the points in the mesh with the layer
+  std::vector<std::pair<Index, Index>> segments;
+  Index boundaryPoints = 0;
+
+  explicit LayerPoints(const std::vector<Edge>& edges)
   {
-    globalOf.push_back(result.numberOfPoints());
-    result.points.push_back(p[0]);
-    result.points.push_back(p[1]);
-    points.push_back(p[0]);
-    points.push_back(p[1]);
+    std::map<Index, Index> localOf;
+    const auto local = [&](Index p, Vec2 at)
+    {
+      const auto [place, fresh] = localOf.emplace(p, static_cast<Index>(this->globalOf.size()));
+      if (fresh)
+      {
+        this->add(p, at);
+      }
+      return place->second;
+    };
+    for (const Edge& edge : edges)
+    {
+      const Index a = local(edge.first, edge.a), b = local(edge.second, edge.b);
+      this->segments.emplace_back(a, b);
+    }
+    this->boundaryPoints = static_cast<Index>(localOf.size());
   }
-  proceed(options, 0.5);
-  const auto boundaryPoints = static_cast<Index>(localOf.size());
-  const std::vector<std::array<Index, 3>> all = constrainedDelaunay(points, segments);
-  proceed(options, 0.8);
-  for (const auto& t : all)
+
+  void add(Index global, Vec2 at)
+  {
+    this->globalOf.push_back(global);
+    this->points.push_back(at[0]);
+    this->points.push_back(at[1]);
+  }
+  Vec2 at(Index local) const { return { this->points[2 * local], this->points[2 * local + 1] }; }
+
+  /// Whether a triangle is outside the mesh and comes nearer than the width; far from the mesh
+  /// triangles may be long.
+  bool isLayer(const std::array<Index, 3>& t, const std::vector<Edge>& edges, double width) const
   {
     Vec2 corner[3] = {}, centre = {};
     bool ofBoundary = true;
     for (int k = 0; k < 3; ++k)
     {
-      corner[k] = { points[2 * t[k]], points[2 * t[k] + 1] };
+      corner[k] = this->at(t[k]);
       centre = centre + (1.0 / 3.0) * corner[k];
-      ofBoundary = ofBoundary && t[k] < boundaryPoints;
+      ofBoundary = ofBoundary && t[k] < this->boundaryPoints;
     }
     const Place place = placeOf(centre, edges);
     double radius = 0.0;
@@ -230,17 +241,73 @@ HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerO
     {
       radius = std::max(radius, std::sqrt(dot(c - centre, c - centre)));
     }
-    // Those that come nearer than the width are kept; far from the mesh they may be long.
-    const bool reaches = place.distance <= options.width ||
-      (place.distance - radius <= options.width && distanceOf(corner, edges) <= options.width);
-    if ((ofBoundary && place.inside) || !reaches)
+    const bool reaches = place.distance <= width ||
+      (place.distance - radius <= width && distanceOf(corner, edges) <= width);
+    return !(ofBoundary && place.inside) && reaches;
+  }
+};
+
+/// Removes the points from `first` on that no triangle has.
+void removeUnused(HorizonMesh& mesh, Index first)
+{
+  constexpr Index unused = -1, used = -2;
+  std::vector<Index> newId(mesh.numberOfPoints(), unused);
+  std::iota(newId.begin(), newId.begin() + first, Index(0));
+  for (const Index id : mesh.triangles)
+  {
+    newId[id] = newId[id] < 0 ? used : newId[id];
+  }
+  Index next = first;
+  for (Index i = first; i < mesh.numberOfPoints(); ++i)
+  {
+    if (newId[i] == used)
+    {
+      mesh.points[2 * next] = mesh.points[2 * i];
+      mesh.points[2 * next + 1] = mesh.points[2 * i + 1];
+      newId[i] = next++;
+    }
+  }
+  mesh.points.resize(2 * next);
+  if (!mesh.givenPoints.empty())
+  {
+    mesh.givenPoints.resize(next);
+  }
+  for (Index& id : mesh.triangles)
+  {
+    id = newId[id];
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerOptions& options)
+{
+  checkOptions(options);
+  const PlanarTriangles triangles(mesh);
+  const std::vector<Edge> edges = boundaryEdges(triangles);
+  const double size = options.elementSize > 0.0 ? options.elementSize : meanLength(edges);
+  LayerPoints local(edges);
+  HorizonMesh result = mesh;
+  proceed(options, 0.05);
+  for (const Vec2 p : latticePoints(triangles, edges, size, options))
+  {
+    local.add(result.numberOfPoints(), p);
+    result.points.push_back(p[0]);
+    result.points.push_back(p[1]);
+  }
+  proceed(options, 0.5);
+  const std::vector<std::array<Index, 3>> all = constrainedDelaunay(local.points, local.segments);
+  proceed(options, 0.8);
+  for (const auto& t : all)
+  {
+    if (!local.isLayer(t, edges, options.width))
     {
       continue;
     }
     for (int k = 0; k < 3; ++k)
     {
       const int turned = triangles.flipped ? (3 - k) % 3 : k;
-      result.triangles.push_back(globalOf[t[turned]]);
+      result.triangles.push_back(local.globalOf[t[turned]]);
     }
     result.layer.push_back(1);
   }
@@ -248,35 +315,7 @@ HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerO
   {
     result.givenPoints.resize(result.numberOfPoints(), 1);
   }
-  // Points that no triangle has in the end are not kept.
-  std::vector<Index> newId(result.numberOfPoints(), -1);
-  for (Index i = 0; i < mesh.numberOfPoints(); ++i)
-  {
-    newId[i] = i;
-  }
-  Index next = mesh.numberOfPoints();
-  for (const Index id : result.triangles)
-  {
-    newId[id] = newId[id] < 0 ? -2 : newId[id];
-  }
-  for (Index i = mesh.numberOfPoints(); i < result.numberOfPoints(); ++i)
-  {
-    if (newId[i] == -2)
-    {
-      result.points[2 * next] = result.points[2 * i];
-      result.points[2 * next + 1] = result.points[2 * i + 1];
-      newId[i] = next++;
-    }
-  }
-  result.points.resize(2 * next);
-  if (!result.givenPoints.empty())
-  {
-    result.givenPoints.resize(next);
-  }
-  for (Index& id : result.triangles)
-  {
-    id = newId[id];
-  }
+  removeUnused(result, mesh.numberOfPoints());
   return result;
 }
 }

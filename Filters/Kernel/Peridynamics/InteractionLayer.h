@@ -6,19 +6,21 @@
 #ifndef tautline_InteractionLayer_h
 #define tautline_InteractionLayer_h
 
-#include "PeridynamicOptions.h"
+#include "Horizon.h"
 #include "tautline/SolversExport.h"
+
+#include <functional>
 
 namespace tautline
 {
 struct InteractionLayerOptions
 {
-  double width = 0.2; ///< least width, in the unit of the mesh; above 0
+  double width = 0.2; ///< minimum width, in the unit of the mesh; above 0
   double elementSize =
     0.0; ///< edge of the triangles of the interaction layer; 0: the mean edge of the boundary
   int threads = 0; ///< 0 is all cores; the result does not depend on it
   std::function<bool(double)>
-    progress; ///< told a fraction done; ends with an Error when it returns false
+    progress; ///< called with the fraction done; ends with an Error when it returns false
 };
 
 /**
@@ -26,9 +28,9 @@ struct InteractionLayerOptions
  *
  * Points and triangles of the mesh stay as they are, and come first; the interaction layer is
  * conforming: it has the edges of the boundary. Its points lie on a lattice of equilateral
- * triangles, slightly shaken, joined with those of the boundary by a constrained Delaunay
- * triangulation. Triangles that already belong to an interaction layer keep doing so, and count as
- * part of the mesh the interaction layer is put around.
+ * triangles, slightly perturbed, joined with those of the boundary by a constrained Delaunay
+ * triangulation. Triangles that already belong to an interaction layer stay in it, and count as part
+ * of the mesh that the new layer surrounds.
  *
  * Throws Error for a width that is not above 0, a mesh PeridynamicOptions would refuse, a boundary
  * that crosses or touches itself, and an interaction layer of more than ten million triangles.

@@ -1,31 +1,19 @@
 /**
  * @file PeridynamicOptions.h
- * @brief The mesh, the options and the result of a peridynamic assembly.
+ * @brief The options and the result of a peridynamic assembly.
  */
 #ifndef tautline_PeridynamicOptions_h
 #define tautline_PeridynamicOptions_h
 
+#include "Horizon.h"
 #include "tautline/Solvers/SparseMatrix.h"
+#include "tautline/SolversExport.h"
 
 #include <functional>
 #include <vector>
 
 namespace tautline
 {
-/// A triangle mesh in the plane, with its interaction layer.
-struct HorizonMesh
-{
-  std::vector<double> points;       ///< x y each
-  std::vector<Index> triangles;     ///< three points each, all of one orientation
-  std::vector<unsigned char> layer; ///< per triangle, not 0 where the solution is given
-  /// Per point, not 0 where the continuous linear basis is given. Empty: at the points of
-  /// interaction layer triangles, so also on the boundary of the domain.
-  std::vector<unsigned char> givenPoints;
-
-  Index numberOfPoints() const { return static_cast<Index>(this->points.size()) / 2; }
-  Index numberOfTriangles() const { return static_cast<Index>(this->triangles.size()) / 3; }
-};
-
 /// The kernel k(r), r < delta.
 enum class KernelShape
 {
@@ -53,16 +41,18 @@ enum class PeridynamicBasis
   DiscontinuousLinear = 2 ///< three per triangle
 };
 
+/// The model, by its equations in the dissertation.
 enum class PeridynamicModel
 {
   Scalar = 0, ///< diffusion, (4.6)
   Elastic = 1 ///< linearised elasticity, (4.4)-(4.5): two components per function
 };
 
+/// How the double integrals are discretized, see Peridynamics.h.
 enum class Discretization
 {
-  Dissertation = 0,
-  Exact = 1
+  Dissertation = 0, ///< the quadrature rules of section 4.3
+  Exact = 1         ///< to a tolerance
 };
 
 /// Numbers of points of the rules of the dissertation's discretization.
@@ -71,7 +61,7 @@ enum class RuleSet
   /// Three outer points; one inner point for the linear bases, three for the constant one: these
   /// reproduce the tables.
   Tables = 0,
-  /// One outer and three inner points: what section 4.3.1 says. Often indefinite with the linear
+  /// One outer and three inner points: what section 4.3.1 states. Often indefinite with the linear
   /// basis.
   Literal = 1,
   OneOne = 2,     ///< one outer point, one inner
@@ -87,7 +77,7 @@ struct PeridynamicOptions
   PeridynamicModel model = PeridynamicModel::Scalar;
   Discretization discretization = Discretization::Exact;
   RuleSet rules = RuleSet::Tables;
-  /// Exact: wanted relative error of the integral over each pair of triangles, 1e-10 to 0.1.
+  /// Exact: target relative error of the integral over each pair of triangles, 1e-10 to 0.1.
   double tolerance = 1e-5;
   /// Whether functions of the interaction layer are given. False: all are unknown, nothing is
   /// constrained, and constants (Elastic: rigid motions) are in the null space.
@@ -101,8 +91,18 @@ struct PeridynamicOptions
   double timeLimit = 0.0;   ///< seconds; 0 is none
   int threads = 0;          ///< 0 is all cores; the result does not depend on it
   std::function<bool(double)>
-    progress; ///< told a fraction done; ends with an Error when it returns false
+    progress; ///< called with the fraction done; ends with an Error when it returns false
 };
+
+/**
+ * @brief The limit that the exponent p has to stay below: for r^-p the form is finite on continuous
+ * functions below 4, on discontinuous ones below 3; the tensor kernel of Elastic adds 2. The bound
+ * p < 2 of (4.7) is about integrability of the kernel alone.
+ */
+TAUTLINE_SOLVERS_EXPORT double singularLimit(PeridynamicBasis basis, PeridynamicModel model);
+
+/// The number of functions of a basis.
+TAUTLINE_SOLVERS_EXPORT Index numberOfFunctions(const HorizonMesh& mesh, PeridynamicBasis basis);
 
 /// A matrix and what its rows are.
 struct PeridynamicSystem

@@ -1,8 +1,9 @@
 #include "Peridynamics.h"
 
-#include "PeridynamicsCommon.h"
+#include "TriangleAssembler.h"
 
 #include "tautline/Core/Parallel.h"
+#include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
 #include <atomic>
@@ -204,8 +205,7 @@ public:
     {
       return false;
     }
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - this->Start;
-    const bool late = this->Options.timeLimit > 0.0 && elapsed.count() > this->Options.timeLimit;
+    const bool late = this->Time.reached(this->Options.timeLimit);
     if (late && !this->Claimed.exchange(true))
     {
       this->Stopped = true;
@@ -239,7 +239,7 @@ private:
   double First, Last;
   std::atomic<bool> Stopped{ false }, Claimed{ false };
   std::string Reason;
-  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+  Stopwatch Time;
 };
 
 SparseMatrix makePattern(const FunctionSpace& space, const BoxGrid& supports, double horizon,
@@ -337,6 +337,14 @@ void flush(const PeridynamicWork& work, Index t, const std::vector<std::int32_t>
   }
 }
 
+/// s of the bilinear form.
+double kernelScale(const PeridynamicOptions& options)
+{
+  const double p = options.kernel.shape == KernelShape::Power ? options.kernel.exponent : 0.0;
+  const double more = options.model == PeridynamicModel::Elastic ? 2.0 : 0.0;
+  return std::pow(options.horizon, p - 4.0 - more);
+}
+
 void checkDiagonal(const PeridynamicSystem& system)
 {
   for (Index row = 0; row < system.matrix.size; ++row)
@@ -355,76 +363,6 @@ void checkDiagonal(const PeridynamicSystem& system)
     }
   }
 }
-}
-
-//------------------------------------------------------------------------------
-FunctionSpace::FunctionSpace(
-  const HorizonMesh& mesh, const PlanarTriangles& triangles, const PeridynamicOptions& options)
-  : basis(options.basis)
-  , functions(numberOfFunctions(mesh, options.basis))
-{
-  constexpr Index unused = -2, given = -1, unknown = 0;
-  this->unknownOf.assign(this->functions, unused);
-  this->low.assign(this->functions, { 1e300, 1e300 });
-  this->high.assign(this->functions, { -1e300, -1e300 });
-  for (Index t = 0; t < triangles.size(); ++t)
-  {
-    for (int k = 0; k < this->perTriangle(); ++k)
-    {
-      const Index f = this->function(triangles, t, k);
-      // A vertex of any interaction layer triangle is given: those on the boundary of the domain
-      // are not unknown.
-      const bool byPoint = this->basis == PeridynamicBasis::Linear && !mesh.givenPoints.empty();
-      const bool fixed =
-        options.constrained && (byPoint ? mesh.givenPoints[f] != 0 : mesh.layer[t] != 0);
-      this->unknownOf[f] = fixed || this->unknownOf[f] == given ? given : unknown;
-      this->low[f] = { std::min(this->low[f][0], triangles.low[t][0]),
-        std::min(this->low[f][1], triangles.low[t][1]) };
-      this->high[f] = { std::max(this->high[f][0], triangles.high[t][0]),
-        std::max(this->high[f][1], triangles.high[t][1]) };
-    }
-  }
-  for (Index f = 0; f < this->functions; ++f)
-  {
-    if (this->unknownOf[f] == unused)
-    {
-      this->low[f] = this->high[f] = triangles.low[0]; // anywhere
-    }
-    if (this->unknownOf[f] == unknown)
-    {
-      this->unknownOf[f] = this->unknowns++;
-      this->functionOf.push_back(f);
-    }
-  }
-  if (this->unknowns == 0)
-  {
-    throw Error("there is no unknown: every function belongs to the interaction layer. The domain "
-                "has to be larger, or "
-                "the elements smaller");
-  }
-}
-
-//------------------------------------------------------------------------------
-double singularLimit(PeridynamicBasis basis, PeridynamicModel model)
-{
-  return (basis == PeridynamicBasis::Linear ? 4.0 : 3.0) +
-    (model == PeridynamicModel::Elastic ? 2.0 : 0.0);
-}
-
-//------------------------------------------------------------------------------
-Index numberOfFunctions(const HorizonMesh& mesh, PeridynamicBasis basis)
-{
-  return basis == PeridynamicBasis::Linear ? mesh.numberOfPoints()
-    : basis == PeridynamicBasis::Constant  ? mesh.numberOfTriangles()
-                                           : 3 * mesh.numberOfTriangles();
-}
-
-//------------------------------------------------------------------------------
-double kernelScale(const PeridynamicOptions& options)
-{
-  const double p = options.kernel.shape == KernelShape::Power ? options.kernel.exponent : 0.0;
-  const double more = options.model == PeridynamicModel::Elastic ? 2.0 : 0.0;
-  return std::pow(options.horizon, p - 4.0 - more);
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,6 @@
 /// The discretization of the dissertation, section 4.3: low-order rules, cut triangles by their
 /// chords.
-#include "PeridynamicsCommon.h"
+#include "TriangleAssembler.h"
 #include "PeridynamicsKernel.h"
 
 #include <algorithm>

@@ -577,7 +577,7 @@ void PairIntegrator::integrate(const TrianglePair& pair, double* block)
   // What a pair can contribute: of triangles larger than the disc, that of the disc; of linear
   // functions both triangles share, that of differences over the horizon.
   const auto areaOf = [](const Vec2* c) { return 0.5 * std::abs(cross(c[1] - c[0], c[2] - c[0])); };
-  const double disc = M_PI * this->Horizon * this->Horizon;
+  const double disc = Pi * this->Horizon * this->Horizon;
   const double first = areaOf(pair.first), second = areaOf(pair.second);
   this->Scale = std::min(first, disc) * std::min(second, disc) * std::max(k, 0.01 * mean);
   this->Scale *= this->Components == 3 ? square : 1.0;

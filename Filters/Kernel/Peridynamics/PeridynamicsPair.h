@@ -6,7 +6,7 @@
 #ifndef tautline_PeridynamicsPair_h
 #define tautline_PeridynamicsPair_h
 
-#include "PeridynamicsCommon.h"
+#include "TriangleAssembler.h"
 #include "PeridynamicsKernel.h"
 
 namespace tautline

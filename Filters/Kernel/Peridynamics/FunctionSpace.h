@@ -1,0 +1,32 @@
+/**
+ * @file FunctionSpace.h
+ * @brief The basis functions of a nonlocal discretization. Internal to the kernel: not installed.
+ */
+#ifndef tautline_FunctionSpace_h
+#define tautline_FunctionSpace_h
+
+#include "PeridynamicOptions.h"
+#include "PeridynamicsGeometry.h"
+
+namespace tautline
+{
+/// The functions of a basis: which are unknown, and the boxes around their supports.
+struct FunctionSpace
+{
+  PeridynamicBasis basis;
+  Index functions = 0, unknowns = 0;
+  std::vector<Index> unknownOf, functionOf;
+  std::vector<Vec2> low, high; ///< boxes around the supports of the functions
+
+  FunctionSpace(
+    const HorizonMesh& mesh, const PlanarTriangles& triangles, const PeridynamicOptions& options);
+  int perTriangle() const { return this->basis == PeridynamicBasis::Constant ? 1 : 3; }
+  Index function(const PlanarTriangles& triangles, Index t, int k) const
+  {
+    return this->basis == PeridynamicBasis::Constant ? t
+      : this->basis == PeridynamicBasis::Linear      ? triangles.triangles[t][k]
+                                                : 3 * t + (triangles.flipped ? (3 - k) % 3 : k);
+  }
+};
+}
+#endif

@@ -1,0 +1,71 @@
+/**
+ * @file TriangleAssembler.h
+ * @brief What the two discretizations of the peridynamic integrals share. Internal to the kernel:
+ * not installed.
+ */
+#ifndef tautline_TriangleAssembler_h
+#define tautline_TriangleAssembler_h
+
+#include "FunctionSpace.h"
+
+#include <memory>
+
+namespace tautline
+{
+/// What an assembly works on and puts into.
+struct PeridynamicWork
+{
+  const PlanarTriangles& triangles;
+  const BoxGrid& grid;
+  const FunctionSpace& space;
+  const PeridynamicOptions& options;
+};
+
+/**
+ * @brief Adds up the rows of the functions of one triangle.
+ *
+ * An assembler keeps the sums of three functions (each with one or two components) over all
+ * functions; values are added by function, and go to the matrix all at once.
+ */
+class RowSums
+{
+public:
+  RowSums(Index functions, int components)
+    : Components(components)
+    , Sums(static_cast<std::size_t>(3 * functions * components * components), 0.0)
+    , Functions(functions)
+  {
+  }
+  /// The components^2 numbers of local function a against function f.
+  double* at(int a, Index f)
+  {
+    const int c = this->Components * this->Components;
+    return this->Sums.data() + (a * this->Functions + f) * c;
+  }
+
+private:
+  int Components;
+  std::vector<double> Sums;
+  Index Functions;
+};
+
+/// Integrates one triangle against the triangles near it and adds to the rows of its functions.
+class TriangleAssembler
+{
+public:
+  virtual ~TriangleAssembler() = default;
+  virtual void assemble(Index t, const std::vector<std::int32_t>& near, RowSums& sums) = 0;
+};
+
+std::unique_ptr<TriangleAssembler> makeDissertationAssembler(const PeridynamicWork& work);
+
+/// Integrals over pairs of triangles, kept for congruent ones.
+class PairIntegrals;
+std::shared_ptr<PairIntegrals> makePairIntegrals(
+  const PeridynamicWork& work, const std::function<bool(double)>& proceed);
+Index numberOfIntegratedPairs(const PairIntegrals& integrals);
+std::unique_ptr<TriangleAssembler> makeExactAssembler(
+  const PeridynamicWork& work, const PairIntegrals& integrals);
+
+}
+#endif
