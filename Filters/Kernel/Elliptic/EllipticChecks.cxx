@@ -2,8 +2,7 @@
 
 #include "ElementMatrices.h"
 #include "FiniteElements.h"
-
-#include <numeric>
+#include "tautline/Core/UnionFind.h"
 
 namespace tautline
 {
@@ -36,34 +35,6 @@ bool isElliptic(const Mesh& mesh, const SymmetricTensor& c)
   return positiveDefinite(dot(e[0], applyTensor(c, e[0])), dot(e[1], applyTensor(c, e[1])), 1,
     dot(e[0], applyTensor(c, e[1])), 0, 0);
 }
-
-/// Parts of a mesh: points that cells connect.
-class PointParts
-{
-public:
-  explicit PointParts(Index points)
-    : Parent(points)
-  {
-    std::iota(this->Parent.begin(), this->Parent.end(), Index(0));
-  }
-  Index find(Index point)
-  {
-    while (this->Parent[point] != point)
-    {
-      point = this->Parent[point] = this->Parent[this->Parent[point]];
-    }
-    return point;
-  }
-  void join(Index a, Index b)
-  {
-    a = this->find(a);
-    b = this->find(b);
-    this->Parent[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<Index> Parent;
-};
 
 /// Fixed points of a part that are not all in one place (line), as far as they are needed.
 struct Anchors
@@ -293,7 +264,7 @@ void EllipticChecks::requireFixedParts(
     return;
   }
   const MeshView& view = this->Input.view();
-  PointParts parts(view.numberOfPoints);
+  UnionFind parts(view.numberOfPoints);
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     for (Index k = view.offsets[cell] + 1; k < view.offsets[cell + 1] && !this->skipped(cell); ++k)

@@ -1,7 +1,7 @@
 /**
  * @file Horizon.h
- * @brief Meshes with an interaction layer, and the geometry of the horizon: the disc of radius delta
- * around a point, inside which a nonlocal model interacts.
+ * @brief Meshes with an interaction layer, and the geometry of the horizon: the disc of radius
+ * delta around a point, inside which a nonlocal model interacts.
  */
 #ifndef tautline_Horizon_h
 #define tautline_Horizon_h
@@ -29,7 +29,8 @@ struct HorizonMesh
 
 /**
  * @brief The square (0,1)^2 of right triangles with legs h sqrt(r) and h / sqrt(r), r the aspect
- * ratio, with an interaction layer from -delta to 1 + delta, as in the tables of the dissertation, chapter 4.
+ * ratio, with an interaction layer from -delta to 1 + delta, as in the tables of the dissertation,
+ * chapter 4.
  *
  * The grid starts exactly at -delta, also where then the sides of the square are no mesh lines (r =
  * 4, h = 0.1, delta = 0.3; the text does not say so, its numbers do): a triangle is of the domain

@@ -29,8 +29,8 @@ struct InteractionLayerOptions
  * Points and triangles of the mesh stay as they are, and come first; the interaction layer is
  * conforming: it has the edges of the boundary. Its points lie on a lattice of equilateral
  * triangles, slightly perturbed, joined with those of the boundary by a constrained Delaunay
- * triangulation. Triangles that already belong to an interaction layer stay in it, and count as part
- * of the mesh that the new layer surrounds.
+ * triangulation. Triangles that already belong to an interaction layer stay in it, and count as
+ * part of the mesh that the new layer surrounds.
  *
  * Throws Error for a width that is not above 0, a mesh PeridynamicOptions would refuse, a boundary
  * that crosses or touches itself, and an interaction layer of more than ten million triangles.

@@ -74,8 +74,8 @@ double distanceToOutline(const std::vector<Vec2>& outline, const Vec2& p)
   return best;
 }
 
-/// The image whose gradient attracts edges: the mask of the silhouette, or the grey values scaled to
-/// 0 outside and 1 inside.
+/// The image whose gradient attracts edges: the mask of the silhouette, or the grey values scaled
+/// to 0 outside and 1 inside.
 std::vector<float> imageOf(const Silhouette& shape, const ImageView* grey)
 {
   if (!grey)

@@ -61,8 +61,8 @@ std::vector<double> valuesOf(const PetscSystem& system, Vec vector)
   return values;
 }
 
-/// Fills the result with both eigenvalues. Rounding moves eigenvalues by about the last digit of the largest,
-/// whatever residuals say.
+/// Fills the result with both eigenvalues. Rounding moves eigenvalues by about the last digit of
+/// the largest, whatever residuals say.
 void fill(ExtremeEigenvalues& extremes, const PetscSystem& system, const ConditionOptions& options,
   const EigensolverStoppingTest& test, ConditionEstimate& result)
 {

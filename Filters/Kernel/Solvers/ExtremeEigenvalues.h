@@ -68,11 +68,11 @@ void fillStartVector(Vec vector, std::uint64_t seed = 0);
  * passes: the first finds the weights of the two eigenvectors, the second sums up the eigenvectors.
  * Needs five vectors, whatever the number of steps.
  *
- * For each of the two eigenvalues the tridiagonal matrix of the step at which it converged is taken,
- * before rounding makes copies of it. With y gathered and x = P^-1 y, the value is the Rayleigh quotient x^T A x /
- * x^T y. The distance to an eigenvalue is at most the norm of A x - theta y in the inner product of
- * P^-1; rounding in the recurrence does not matter. Where that is far too large, because eigenvalues
- * crowd, the error is estimated from the last half of the steps.
+ * For each of the two eigenvalues the tridiagonal matrix of the step at which it converged is
+ * taken, before rounding makes copies of it. With y gathered and x = P^-1 y, the value is the
+ * Rayleigh quotient x^T A x / x^T y. The distance to an eigenvalue is at most the norm of A x -
+ * theta y in the inner product of P^-1; rounding in the recurrence does not matter. Where that is
+ * far too large, because eigenvalues crowd, the error is estimated from the last half of the steps.
  *
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 10.1 to 10.3; C. C.
  * Paige, J. Inst. Maths Applics 18 (1976), on the effect of rounding; bounds: B. N. Parlett, The
@@ -82,9 +82,9 @@ ExtremeEigenvalues lanczosExtremeEigenvalues(
   Mat matrix, PC preconditioner, const ConditionOptions& options, EigensolverStoppingTest& test);
 
 /**
- * @brief Both eigenvalues of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest by
- * Krylov-Schur on the inverse where a factorisation is affordable, else by LOBPCG with BoomerAMG as
- * the preconditioner.
+ * @brief Both eigenvalues of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest
+ * by Krylov-Schur on the inverse where a factorisation is affordable, else by LOBPCG with BoomerAMG
+ * as the preconditioner.
  */
 ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& system, int ranks,
   const ConditionOptions& options, PetscOptionSet& optionSet, EigensolverStoppingTest& test);

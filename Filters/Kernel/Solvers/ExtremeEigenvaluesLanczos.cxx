@@ -88,10 +88,10 @@ private:
 /**
  * A Ritz value of the first pass and its error. An eigenvalue lies within the residual r of the
  * value. Where eigenvalues crowd, r is far larger than the error; r^2 over the distance to the next
- * Ritz value (Kato-Temple) is far smaller as long as close eigenvalues are not separated yet. So the
- * estimate is the larger one of that bound and of the change of the value since half of the steps:
- * convergence is at least quadratic in their number (Kaniel-Paige), so that no more than a third of
- * that change is left.
+ * Ritz value (Kato-Temple) is far smaller as long as close eigenvalues are not separated yet. So
+ * the estimate is the larger one of that bound and of the change of the value since half of the
+ * steps: convergence is at least quadratic in their number (Kaniel-Paige), so that no more than a
+ * third of that change is left.
  */
 struct Candidate
 {

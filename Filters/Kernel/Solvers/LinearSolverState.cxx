@@ -139,9 +139,8 @@ void LinearSolverState::requireAlive() const
 {
   if (!petscUsable() || this->Generation != petscGeneration())
   {
-    throw Error(
-      "PETSc has been shut down by other code of this process since this linear solver was "
-      "made: make a new one.");
+    throw Error("Other code of this process has shut down PETSc since this linear solver was made: "
+                "make a new one.");
   }
 }
 
@@ -294,7 +293,8 @@ double LinearSolverState::setUp()
   return elapsed;
 }
 
-/// In a semidefinite matrix a zero on the diagonal means an empty row, which Jacobi would not notice.
+/// In a semidefinite matrix a zero on the diagonal means an empty row, which Jacobi would not
+/// notice.
 void LinearSolverState::findEmptyRows()
 {
   if (!this->System.symmetric || !this->System.positiveDefinite)
