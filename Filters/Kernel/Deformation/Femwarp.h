@@ -1,8 +1,7 @@
 /**
  * @file Femwarp.h
- * @brief FEMWARP and anisotropic FEMWARP, sections 4.8 and 4.9.1: the coefficients, the harmonic
- * solve, the limit in which a coefficient is 0; and the biharmonic equation. Internal: not
- * installed.
+ * @brief FEMWARP and anisotropic FEMWARP, sections 4.8 and 4.9.1: the harmonic solve, the
+ * limit in which a coefficient is 0; and the biharmonic equation. Internal: not installed.
  */
 #ifndef tautline_Femwarp_h
 #define tautline_Femwarp_h
@@ -12,21 +11,6 @@
 
 namespace tautline
 {
-/**
- * @brief The coefficients (4.19), (4.21): sums of the absolute displacements along the axes, the
- * largest scaled to 1. The identity where nothing moves.
- */
-SymmetricTensor displacementSums(
-  const std::vector<unsigned char>& prescribed, const double* displacement);
-
-/**
- * @brief The same along the principal directions of the motion: the eigenvectors of the sum of d
- * d^T. Where eigenvalues coincide (within 1e-6 of the largest) the sums are averages over all
- * directions of their space, so that the tensor turns with the motion.
- */
-SymmetricTensor principalDirections(
-  const std::vector<unsigned char>& prescribed, const double* displacement);
-
 /**
  * @class tautline::Femwarp
  * @brief One scalar operator, solved for every coordinate of the displacements after their affine

@@ -3,6 +3,7 @@
 #include "WarpBoundary.h"
 #include "WarpPath.h"
 #include "WarpStep.h"
+#include "WarpSteps.h"
 
 #include <sstream>
 

@@ -1,4 +1,4 @@
-#include "Femwarp.h"
+#include "WarpCoefficients.h"
 
 #include <Eigen/Dense>
 

@@ -1,7 +1,5 @@
 #include "WarpQuality.h"
 
-#include "WarpStep.h"
-
 #include "tautline/Core/Parallel.h"
 
 #include <Eigen/Dense>

@@ -12,9 +12,29 @@ namespace tautline
 {
 /**
  * @brief The TMP shape metric (4.22) of each element at new points against the mesh, the mean over
- * its corners; NaN where it is inverted or degenerate, or of a type that is not computed with.
+ * its corners; NaN where it is inverted or degenerate, or of a type that is not measured.
+ * @param mesh valid; its dimension is Planar or Volume
+ * @param points 3 per point of the mesh
+ * @param threads 0: all cores. The result does not depend on it.
+ * @return one value per cell, at least 0
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> shapeSimilarity(
+  const Mesh& mesh, const double* points, int threads = 0);
+
+/// Shapes of all elements of a moved mesh together.
+struct WarpQuality
+{
+  Index inverted = 0; ///< elements without a value: inverted, degenerate or not measured
+  double worst = 0;   ///< largest value, 0 without any
+  double mean = 0;    ///< over the elements that have one
+};
+
+/**
+ * @brief The same, summed up; bitwise the same for any number of threads.
+ * @param points 3 per point of the mesh
+ * @param threads 0: all cores
+ */
+TAUTLINE_SOLVERS_EXPORT WarpQuality qualityOf(
   const Mesh& mesh, const double* points, int threads = 0);
 }
 #endif

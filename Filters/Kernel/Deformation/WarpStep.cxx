@@ -2,6 +2,7 @@
 
 #include "tautline/Quality/Targets.h"
 #include "tautline/Untangling/Untangle.h"
+#include "WarpCoefficients.h"
 #include "WarpElastic.h"
 #include "WarpPointwise.h"
 #include "tautline/Optimization/Optimize.h"

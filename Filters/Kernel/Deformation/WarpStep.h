@@ -7,18 +7,10 @@
 #define tautline_WarpStep_h
 
 #include "Femwarp.h"
+#include "WarpQuality.h"
 
 namespace tautline
 {
-/// How the elements of a moved mesh look against the mesh (4.22).
-struct WarpQuality
-{
-  Index inverted = 0; ///< or degenerate, or beyond measure
-  double worst = 0, mean = 0;
-};
-
-WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads);
-
 class ElasticWarp;
 
 class WarpStep
@@ -76,18 +68,5 @@ private:
   bool Following = false;
 };
 
-/// Where the prescribed points are after a part of the motion: (amount, displacements from the
-/// mesh).
-using WarpMotion = std::function<void(double, double*)>;
-
-/**
- * @brief The motion in steps, each from the mesh the one before came to.
- * @param steps so many of equal length; 0: as few as it takes for no element to invert. There a
- * step that inverts elements is halved, and the next grows again; if steps become too small or too
- * many, the result is the mesh of the last good one.
- * @param following see WarpStep::setFollowing(); the first of such steps is short
- */
-void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, int steps,
-  bool following, WarpControl& control);
 }
 #endif

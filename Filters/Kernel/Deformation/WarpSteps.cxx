@@ -1,3 +1,5 @@
+#include "WarpSteps.h"
+
 #include "WarpStep.h"
 
 namespace tautline

@@ -2,7 +2,7 @@
  * @file ShapeEnergy.h
  * @brief The energy of one triangle of a shape match, for a packet of places of its last vertex.
  *
- * Internal to the kernel: not installed. triangleEnergy() in ShapeMatch.h is the same in doubles
+ * Internal to the kernel: not installed. triangleEnergy() in ShapeModel.h is the same in doubles
  * and by another route.
  */
 #ifndef tautline_ShapeEnergy_h
@@ -15,14 +15,6 @@ namespace tautline
 {
 /// A large energy that sums of stay finite with; no match has it.
 constexpr float Unreachable = 1e30f;
-/// Anisotropy (alpha / beta + beta / alpha) / 2 of a triangle that is flat, or inverted where that
-/// is forbidden. Its energy is finite, and larger than that of any triangle one would want.
-constexpr float FlatAnisotropy = 1e6f;
-/// The least area, as part of the square of the perimeter, of a triangle that is not flat.
-constexpr float FlatArea = 1e-7f;
-/// The least sum of edge lengths, in units of the target's size.
-constexpr float MinLength = 1e-6f;
-
 /// What the energy of a triangle needs of the source: vertices i, j, k go to p, q, r.
 struct TriangleTerms
 {

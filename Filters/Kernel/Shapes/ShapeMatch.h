@@ -46,13 +46,5 @@ TAUTLINE_KERNEL_EXPORT ShapeMatch matchShape(
 /// Evaluates a placement; `points` are one per vertex of the source.
 TAUTLINE_KERNEL_EXPORT ShapeMatch evaluatePlacement(const ShapeSource& source,
   const ShapeTarget& target, const ShapeEnergy& energy, const std::vector<Vec2>& points);
-
-/**
- * @brief Deformation, distortion and rotation of a map of a triangle, in double, from its singular
- * values.
- * @param delta d_max of the source over d_max of the target
- */
-TAUTLINE_KERNEL_EXPORT TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source,
-  const std::array<Vec2, 3>& target, double delta, const ShapeEnergy& energy);
 }
 #endif

@@ -1,7 +1,6 @@
-#include "ShapeMatch.h"
-#include "ShapeTarget.h"
+#include "ShapeModel.h"
 
-#include "ShapeEnergy.h"
+#include "ShapeDescriptors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -72,6 +72,14 @@ TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(const Silhouette& shape, doub
 /// A polygon as the shape to look for; centre and d_max are those of its area and vertices.
 TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(std::vector<Vec2> polygon);
 
+/**
+ * @brief A source turned counter-clockwise, or mirrored at the y axis and then turned. A mirrored
+ * polygon runs through its vertices backwards, so that it stays counter-clockwise.
+ * @param angle in radians
+ */
+TAUTLINE_KERNEL_EXPORT ShapeSource transformSource(
+  const ShapeSource& source, double angle, bool mirrored);
+
 /// Where vertices may go.
 enum class Locations
 {
@@ -154,6 +162,22 @@ struct TriangleEnergy
   double distortion = 0;
   double rotation = 0;
 };
+
+/// Anisotropy (alpha / beta + beta / alpha) / 2 of a triangle that is flat, or inverted where that
+/// is forbidden. Its energy is finite, and larger than that of any useful triangle.
+constexpr float FlatAnisotropy = 1e6f;
+/// The minimum area of a triangle that is not flat, as a fraction of the square of its perimeter.
+constexpr float FlatArea = 1e-7f;
+/// The minimum sum of edge lengths, in units of the target's size.
+constexpr float MinLength = 1e-6f;
+
+/**
+ * @brief Deformation, distortion and rotation of a map of a triangle, in double, from its singular
+ * values.
+ * @param delta d_max of the source over d_max of the target
+ */
+TAUTLINE_KERNEL_EXPORT TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source,
+  const std::array<Vec2, 3>& target, double delta, const ShapeEnergy& energy);
 
 /// Why a search ended.
 enum class MatchStop

@@ -5,6 +5,7 @@
 #ifndef tautline_ShapeTarget_h
 #define tautline_ShapeTarget_h
 
+#include "ShapeDescriptors.h"
 #include "ShapeModel.h"
 
 namespace tautline
@@ -48,15 +49,6 @@ struct PairTable
   float* row(Index i) { return this->values.data() + i * this->columns; }
   const float* row(Index i) const { return this->values.data() + i * this->columns; }
 };
-
-using Descriptor = std::array<float, 5>;
-
-/// What a silhouette looks like from points of its outline.
-std::vector<Descriptor> describe(const Silhouette& shape, const std::vector<Vec2>& points);
-
-/// The source turned by an angle in radians, or mirrored and turned; a mirrored polygon runs
-/// through its vertices backwards.
-ShapeSource transformSource(const ShapeSource& source, double angle, bool mirrored);
 
 struct ShapeTarget::Data
 {

@@ -1,0 +1,34 @@
+/**
+ * @file WarpCoefficients.h
+ * @brief The coefficients of anisotropic FEMWARP, section 4.9.1, from a motion. Internal: not
+ * installed.
+ *
+ * Both functions take one flag per point and 3 displacements per point; only those of flagged
+ * points are read.
+ */
+#ifndef tautline_WarpCoefficients_h
+#define tautline_WarpCoefficients_h
+
+#include "tautline/Elliptic/Materials.h"
+
+#include <vector>
+
+namespace tautline
+{
+/**
+ * @brief The coefficients (4.19), (4.21): sums of the absolute displacements along the axes, the
+ * largest scaled to 1. The identity where nothing moves.
+ */
+SymmetricTensor displacementSums(
+  const std::vector<unsigned char>& prescribed, const double* displacement);
+
+/**
+ * @brief The same along the principal directions of the motion: the eigenvectors of the sum of d
+ * d^T. Where eigenvalues coincide (within 1e-6 of the largest) the sums are averages over all
+ * directions of their space, so that the tensor turns with the motion. The identity where nothing
+ * moves.
+ */
+SymmetricTensor principalDirections(
+  const std::vector<unsigned char>& prescribed, const double* displacement);
+}
+#endif
