@@ -13,7 +13,7 @@ namespace
 {
 /// Smallest over largest eigenvalue at which a tensor counts as singular.
 constexpr double singular = 1e-12;
-/// Couplings below this part of the isotropic operator's are none.
+/// Couplings below this fraction of those of the isotropic operator count as 0.
 constexpr double coupled = 1e-12;
 
 bool isSingular(const SymmetricTensor& t, const Mesh& mesh)
@@ -165,7 +165,7 @@ void Femwarp::partition(WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
-/// Points that no chain of couplings joins to a prescribed one.
+/// Finds points that no chain of couplings joins to a prescribed one.
 void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
 {
   AssemblyOptions options;
@@ -183,7 +183,7 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
   {
     scale[i] = coupled * size * isotropic.at(i, i);
   }
-  // From the prescribed points outward.
+  // Breadth-first from the held points along the couplings.
   std::vector<char> reached(n, 0);
   std::vector<Index> front;
   for (Index i = 0; i < n; ++i)

@@ -16,12 +16,13 @@ namespace
 {
 using Vector = Eigen::Vector3d;
 using Matrix = Eigen::Matrix3d;
-using Path = std::function<Vector(const Vector&)>; ///< where a point is at the amount asked for
+using Path = std::function<Vector(const Vector&)>; ///< the position of a point at a given amount
 
 constexpr double Degree = Pi / 180;
-constexpr double SmallAngle = 1e-7; // the axis of a smaller turn is not known, nor needed
+constexpr double SmallAngle =
+  1e-7; // the axis of a smaller rotation is undetermined, and not needed
 constexpr double Flattened = 1e-12; // volumes of less than this times that of a cube as long
-constexpr int MostPolarSteps = 100; // it takes a dozen for the worst matrix let through
+constexpr int MaxPolarSteps = 100;  // it takes a dozen for the worst matrix let through
 constexpr double PolarChange =
   1e-9;                          // of the last step but one; the error after the last is its square
 constexpr double Planar = 1e-12; // how far off a plane points may be, relative to their extent
@@ -47,7 +48,7 @@ Vector unit(const Vector& v, const char* what)
 Matrix rotationOf(const Matrix& a)
 {
   Matrix r = a;
-  for (int i = 0; i < MostPolarSteps; ++i)
+  for (int i = 0; i < MaxPolarSteps; ++i)
   {
     const Matrix other = r.inverse().transpose();
     const double scale = std::sqrt(other.norm() / r.norm());
@@ -170,8 +171,8 @@ Path bendingPath(const PointMotion& motion, double amount, Index n, const double
   const unsigned char* moved, const Vector& middle)
 {
   const Vector axis = unit(toVector(motion.axis), "axis");
-  const Vector wanted = unit(toVector(motion.direction), "direction");
-  const Vector across = wanted - axis.dot(wanted) * axis;
+  const Vector given = unit(toVector(motion.direction), "direction");
+  const Vector across = given - axis.dot(given) * axis;
   if (across.norm() < Flattened)
   {
     throw Error(

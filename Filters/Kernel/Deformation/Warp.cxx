@@ -26,7 +26,7 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options)
       throw Error(text);
     }
   };
-  refuse(!isKnown(options.method), "There is no such method of warping: choose one of WarpMethod.");
+  refuse(!isKnown(options.method), "There is no such method: choose one of WarpMethod.");
   refuse(!isKnown(options.coefficients),
     "There is no such choice of coefficients: choose one of WarpCoefficients.");
   refuse(options.steps < 0 || options.maximumSteps < 1,
@@ -65,7 +65,7 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options)
   }
   if (anisotropic && options.coefficients == WarpCoefficients::PerCell)
   {
-    refuse(!options.tensors, "Coefficients per cell are asked for, but there are none.");
+    refuse(!options.tensors, "Coefficients per cell are chosen, but there are none.");
     for (Index i = 0; i < mesh.view().numberOfCells; ++i)
     {
       if (!semidefinite(options.tensors + 6 * i))
@@ -90,8 +90,8 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
   }
   for (const CellBlock& block : mesh.blocks())
   {
-    const bool known = block.type != CellType::Wedge && block.type != CellType::Pyramid;
-    if (!known && usesFiniteElements(options.method))
+    const bool supported = block.type != CellType::Wedge && block.type != CellType::Pyramid;
+    if (!supported && usesFiniteElements(options.method))
     {
       throw Error("There are " + std::to_string(block.count) + " " + topology(block.type).plural +
         ". This method takes triangles, quadrilaterals, tetrahedra and hexahedra: triangulate "
@@ -118,7 +118,7 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
 }
 }
 
-/// What no interior position can mend.
+/// Defects of the moved boundary, which no position of the interior points can repair.
 struct BoundaryState
 {
   Index inverted = 0, firstInverted = -1; ///< elements of prescribed points alone
@@ -206,7 +206,7 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
   }
   else
   {
-    // Methods that untangle are to manage it in one step.
+    // Methods that untangle try a single step first.
     std::vector<double> displacement(3 * this->Input.view().numberOfPoints, 0.0);
     motion(1.0, displacement.data());
     this->checkDisplacement(displacement.data());
@@ -222,8 +222,8 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
 }
 
 //------------------------------------------------------------------------------
-/// Where a single step left inverted elements that the boundary does not call for: in steps, each
-/// untangled.
+/// Second attempt, in short steps that are untangled one by one, where a single step left inverted
+/// elements although the moved boundary is valid.
 void Warper::Implementation::followMotion(
   const WarpMotion& path, const double* displacement, WarpControl& control)
 {
@@ -294,7 +294,7 @@ BoundaryState Warper::Implementation::examineBoundary(const double* points) cons
 }
 
 //------------------------------------------------------------------------------
-/// What the user should know.
+/// Adds the warnings of the result to its message.
 void Warper::Implementation::explain(WarpControl& control)
 {
   WarpResult& result = control.result();

@@ -1,11 +1,11 @@
 /**
  * @file Warp.h
- * @brief Moves the interior points of a mesh after its boundary: FEMWARP, anisotropic FEMWARP, the
- * hybrid algorithm of section 4.9, and the methods they are compared with.
+ * @brief Deforms the interior of a mesh to follow a prescribed boundary motion: FEMWARP,
+ * anisotropic FEMWARP, the hybrid algorithm of section 4.9, and the methods they are compared with.
  *
  * Example: the boundary has moved, the interior follows.
  *
- *     tautline::Warper warper(mesh, options);             // keeps what can be used again
+ *     tautline::Warper warper(mesh, options);             // keeps what can be reused
  *     tautline::WarpResult result = warper.warp(displacement); // 3 per point
  */
 #ifndef tautline_Warp_h
@@ -22,31 +22,32 @@ namespace tautline
 {
 /**
  * @class tautline::Warper
- * @brief Keeps matrices, preconditioners and former solutions of a mesh for the next boundary
- * position.
+ * @brief Deforms a mesh; keeps matrices, preconditioners and former solutions for the next
+ * boundary position.
  */
 class TAUTLINE_SOLVERS_EXPORT Warper
 {
 public:
   /**
    * @brief The mesh and the arrays of the options stay alive. Throws Error for surfaces in space,
-   * elements that are not valid (how many, the first), cells the method does not take (wedges and
-   * pyramids: the last three do), no prescribed point, and options out of range.
+   * elements that are not valid (how many, the first), cells that the method does not support
+   * (wedges and pyramids, except for the last three methods), no prescribed point, and options out
+   * of range.
    */
   Warper(const Mesh& mesh, const WarpOptions& options);
   ~Warper();
 
   /**
-   * @brief Where the points are once the prescribed ones have moved by `displacement` (3 per point
-   * of the mesh; those of other points are not read). Throws Error for displacements that are not
-   * finite (how many, the first point), or lead out of the plane of a planar mesh.
+   * @brief The positions of all points after the prescribed ones have moved by `displacement` (3
+   * per point of the mesh; those of other points are not read). Throws Error for displacements that
+   * are not finite (how many, the first point), or lead out of the plane of a planar mesh.
    */
   WarpResult warp(const double* displacement);
 
   /**
-   * @brief The same where the boundary does not go straight: `motion(amount, displacement)` writes
-   * where the prescribed points are after a part of the motion, 0 < amount <= 1, as displacements
-   * from the mesh. Matters with more than one step.
+   * @brief The same where the boundary does not move along straight lines: `motion(amount,
+   * displacement)` writes the displacements of the prescribed points from the mesh at an amount of
+   * the motion, 0 < amount <= 1. Only matters with more than one step.
    */
   WarpResult warp(const std::function<void(double amount, double* displacement)>& motion);
 

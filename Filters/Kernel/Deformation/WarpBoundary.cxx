@@ -11,7 +11,7 @@ WarpBoundary::WarpBoundary(const Mesh& mesh, const std::vector<unsigned char>& p
   : Input(mesh)
   , Nodes(mesh.dimension() == Dimension::Volume ? 3 : 2)
 {
-  // Facets by their sorted nodes; a quadrilateral's largest node and the rest tell it from others.
+  // Equal facets have equal keys: their sorted nodes.
   struct Facet
   {
     std::array<Index, 4> key;

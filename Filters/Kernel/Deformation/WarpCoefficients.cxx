@@ -6,7 +6,7 @@ namespace tautline
 {
 namespace
 {
-/// Sums below this part of the largest are rounding: their axis does not move.
+/// Sums below this fraction of the largest are rounding: nothing moves along their axis.
 constexpr double rounding = 1e-12;
 
 template <class Visit>
@@ -22,7 +22,7 @@ void forEachPrescribed(
   }
 }
 
-/// The largest becomes 1, what is rounding 0. False if nothing moves.
+/// Scales the largest sum to 1 and sets those that are rounding to 0. False if nothing moves.
 bool normalize(Eigen::Vector3d& sums)
 {
   const double largest = sums.maxCoeff();
@@ -95,7 +95,7 @@ SymmetricTensor principalDirections(
     }
     first = end;
   }
-  // The square roots of eigenvalues that are rounding are not small.
+  // An eigenvalue that is rounding has a square root that is not small: its sum is set to 0.
   for (int k = 0; k < 3; ++k)
   {
     sums[k] = values[k] > rounding * values[2] ? sums[k] : 0.0;

@@ -15,8 +15,8 @@ namespace tautline
 {
 /**
  * @class tautline::WarpControl
- * @brief Created when a deformation starts; all its parts ask it whether to continue. Called from
- * the calling thread only.
+ * @brief Created when a deformation starts; every loop checks here whether to continue. To be used
+ * from the calling thread only.
  */
 class WarpControl
 {

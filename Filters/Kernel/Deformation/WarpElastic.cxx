@@ -54,7 +54,7 @@ void ElasticWarp::assemble(WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
-/// A body of one material follows affine motions exactly: they are taken off then, and only the
+/// A body of one material follows affine motions exactly: they are subtracted then, and only the
 /// rest is solved for.
 bool ElasticWarp::solve(
   const double* displacement, WarpControl& control, std::vector<double>& moved)
@@ -116,7 +116,7 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
   std::vector<double> best, moved, points(3 * view.numberOfPoints);
   std::vector<signed char> validity(view.numberOfCells);
   Index fewest = view.numberOfCells + 1;
-  constexpr double stiffest = 1e12; // as good as rigid, and the matrix can still be solved
+  constexpr double stiffest = 1e12; // nearly rigid, and the matrix can still be factored
   for (int round = 0;; ++round)
   {
     if (!this->System)

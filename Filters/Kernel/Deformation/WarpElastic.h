@@ -1,13 +1,13 @@
 /**
  * @file WarpElastic.h
- * @brief A mesh moved as an elastic body, small or inverted elements stiffer than others. Internal:
+ * @brief Deforms a mesh as an elastic body whose small or inverted elements are stiffer. Internal:
  * not installed.
  *
- * IterativeStiffening: the part of "Untangling Before Newton" (S. P. Sastry, S. M. Shontz and S. A.
- * Vavasis) the dissertation compares with: wherever elements come out inverted, they are made
- * stiffer and the linear problem is solved anew. JacobianStiffening: K. Stein, T. Tezduyar and R.
- * Benson, "Mesh moving techniques for fluid-structure interactions with large displacements", J.
- * Appl. Mech. 70, 2003: the Jacobian J of an element enters as J (J_0 / J)^chi, J_0 the mean.
+ * IterativeStiffening: that step of "Untangling Before Newton" (S. P. Sastry, S. M. Shontz and S.
+ * A. Vavasis) that the dissertation compares with: inverted elements are made stiffer and the
+ * linear problem is solved again. JacobianStiffening: K. Stein, T. Tezduyar and R. Benson, "Mesh
+ * moving techniques for fluid-structure interactions with large displacements", J. Appl. Mech. 70,
+ * 2003: the Jacobian J of an element enters as J (J_0 / J)^chi, J_0 the mean.
  */
 #ifndef tautline_WarpElastic_h
 #define tautline_WarpElastic_h
@@ -22,7 +22,7 @@ class ElasticWarp
 public:
   ElasticWarp(const Mesh& mesh, const WarpParts& parts, WarpControl& control);
 
-  /// Displacements of all points.
+  /// Displacements of all points, 3 each.
   std::vector<double> warp(const double* displacement, WarpControl& control);
 
 private:

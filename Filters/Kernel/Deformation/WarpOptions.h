@@ -12,17 +12,16 @@
 
 namespace tautline
 {
-/// The numbers are stable: ParaView state files hold them.
+/// The methods of deformation; the numbers are stable: ParaView state files hold them.
 enum class WarpMethod : int
 {
   Hybrid =
     0, ///< anisotropic FEMWARP, then shape against the initial mesh and untangling (4.22)-(4.24)
-  Femwarp = 1,            ///< one harmonic solve (4.10)
-  AnisotropicFemwarp = 2, ///< with coefficients (4.11), (4.20)
-  SmallStepFemwarp = 3,   ///< FEMWARP in steps, the matrix of each from the mesh before it
-  FemwarpUntangling = 4,  ///< FEMWARP, then untangling
-  IterativeStiffening =
-    5, ///< linear elasticity, inverted elements stiffened until there are none (UBN's part)
+  Femwarp = 1,             ///< one harmonic solve (4.10)
+  AnisotropicFemwarp = 2,  ///< with coefficients (4.11), (4.20)
+  SmallStepFemwarp = 3,    ///< FEMWARP in steps, the matrix of each from the mesh before it
+  FemwarpUntangling = 4,   ///< FEMWARP, then untangling
+  IterativeStiffening = 5, ///< linear elasticity, inverted elements stiffened until there are none
   JacobianStiffening =
     6, ///< linear elasticity, small elements stiff (Stein, Tezduyar and Benson 2003)
   Biharmonic = 7,
@@ -66,49 +65,51 @@ struct WarpOptions
   /// boundary.
   const unsigned char* prescribed = nullptr;
   /**
-   * @brief Steps the motion is cut into, each from the mesh of the one before. 0: as many as are
-   * needed for no element to invert; steps that invert one are halved, and grow again. The result
-   * is then valid and may have come only a part of the way, see WarpResult::amount.
-   * SmallStepFemwarp takes 1 for 0. On the way each connected piece of prescribed points turns and
-   * stretches as its displacements together say, if they are those of one affine map, about; else
-   * it goes straight.
+   * @brief Number of steps of the motion, each from the mesh of the one before; at least 0, 0 means
+   * automatic: steps that invert an element are halved, others doubled, so that none inverts. The
+   * result is then valid and may reach only a fraction of the motion, see WarpResult::amount.
+   * SmallStepFemwarp takes 1 as 0. Between the steps each connected piece of prescribed points
+   * rotates and stretches by the affine map of its displacements, if they come close to one; else
+   * it moves along straight lines.
    *
-   * Hybrid and FemwarpUntangling try one step first, with 0 as with 1; if untangling fails there,
+   * Hybrid and FemwarpUntangling try one step first, with 0 and with 1; if untangling fails there,
    * though the moved boundary does not cross itself, they follow the motion in short steps.
    */
   int steps = 1;
-  int maximumSteps = 100; ///< where their number is free
+  int maximumSteps = 100; ///< the limit where their number is automatic; at least 1
   /// Direct up to 600,000 unknowns (planar) or 20,000 (volume), else CG with BoomerAMG; off:
   /// `solver`.
   bool automaticSolver = true;
-  SolverOptions solver;      ///< its tolerance is `tolerance`
-  double tolerance = 1e-10;  ///< relative, of the solves; affine motions are exact whatever it is
-  double poissonRatio = 0.3; ///< of the elastic methods
-  double stiffeningPower = 1.0; ///< JacobianStiffening: chi
+  SolverOptions solver; ///< its tolerance is `tolerance`
+  double tolerance =
+    1e-10; ///< relative, of the solves, 0 to 1 (exclusive); affine motions are exact anyway
+  double poissonRatio = 0.3;    ///< of the elastic methods, -1 to 0.5 (exclusive)
+  double stiffeningPower = 1.0; ///< JacobianStiffening: chi, at least 0
   int maximumStiffenings = 50;  ///< IterativeStiffening
   double stiffeningFactor =
-    2.0; ///< IterativeStiffening: by which inverted elements get stiffer each time
-  double distancePower = 3.0; ///< InverseDistance
+    2.0; ///< IterativeStiffening: factor on the stiffness of inverted elements, above 1
+  double distancePower = 3.0; ///< InverseDistance: above 0, at most 20
   double supportRadius = 0.0; ///< RadialBasis; 0: twice the extent of the prescribed points
-  double fitTolerance =
-    1e-3; ///< RadialBasis: of the greedy choice, relative to the largest displacement
+  /// RadialBasis: of the greedy choice, relative to the largest displacement; 0 to 1 (exclusive).
+  double fitTolerance = 1e-3;
   /**
-   * @brief Hybrid's second step. On: untangle() what the warp inverted and, if that was anything,
-   * lower the squared inverse mean ratios of T for up to 20 sweeps; then lower the exponential sum
-   * of F_1, the shape (4.22), and of these squared ratios, a barrier that keeps every element valid
-   * where (4.24) has the untangling metric, which is 0 from there on. Off: (4.24) as it stands;
-   * what it leaves inverted is untangled afterwards.
+   * @brief Hybrid's second step. On: untangle() the inverted elements and, if there were any,
+   * reduce the squared inverse mean ratios of T in up to 20 sweeps; then minimize the exponential
+   * sum of F_1, the shape (4.22), and of these squared ratios. They are a barrier that keeps every
+   * element valid, and replace the untangling metric of (4.24), which is 0 there. Off: (4.24)
+   * itself; elements it leaves inverted are untangled afterwards.
    */
   bool untangleFirst = true;
   /// beta of (4.24) with untangleFirst off, relative to the mean area or volume of the elements; at
   /// least 0.
   double untanglingBeta = 0.0;
-  /// Hybrid's second step: optimizer and stopping criteria count, and c of the exponential sum; the
-  /// rest is set.
+  /// Hybrid's second step: only optimizer, stopping criteria and c of the exponential sum are used;
+  /// the rest is overwritten.
   OptimizeOptions optimization = hybridOptimization();
-  double maximumSeconds = 0.0;          ///< 0: no limit
-  int threads = 0;                      ///< 0: all cores. The result does not depend on it.
-  std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
+  double maximumSeconds = 0.0; ///< 0: no limit
+  int threads = 0;             ///< 0: all cores. The result does not depend on it.
+  /// Called with the fraction done, 0 to 1; the deformation stops when it returns false.
+  std::function<bool(double)> progress;
 };
 
 /// One line of the history.
@@ -127,25 +128,26 @@ struct WarpResult
 {
   std::vector<double> points; ///< 3 x numberOfPoints
   std::vector<WarpRecord> history;
-  double amount = 1.0;                     ///< how far it came
+  double amount = 1.0;                     ///< of the motion that was reached
   SymmetricTensor tensor = IdentityTensor; ///< the coefficients used, unless PerCell
   Index invertedWarp = 0;                  ///< after the warp itself
   Index invertedAfter = 0;                 ///< at the end
-  /// Inverted elements no interior position can make valid: the moved boundary itself is not.
+  /// Inverted elements that no position of the interior points makes valid, since the moved
+  /// boundary itself is invalid there.
   Index impossible = 0;
   /// Pairs of edges, or of boundary triangles, of the moved boundary that cross and did not before.
   Index crossings = 0;
   /**
-   * @brief Points that a coefficient of 0 cuts off from all prescribed ones. They follow the points
-   * around them by the isotropic operator, which changes nothing for the others.
+   * @brief Points that a coefficient of 0 separates from all prescribed ones. They follow the
+   * points around them by the isotropic operator, which changes nothing for the others.
    */
   Index decoupled = 0;
-  /// The isotropic operator's part added to a singular one, relative to its largest coefficient,
-  /// for a bounded motion; 0: none.
+  /// Multiple of the isotropic operator that was added to a singular one for a bounded motion,
+  /// relative to the largest coefficient; 0: none.
   double regularization = 0.0;
   double assembleSeconds = 0, setupSeconds = 0, solveSeconds = 0, improveSeconds = 0;
   bool aborted = false, timeLimit = false;
-  std::string message; ///< what the user should know, or ""
+  std::string message; ///< warnings for the user, or ""
 };
 }
 #endif

@@ -1,6 +1,6 @@
 /**
  * @file WarpPath.h
- * @brief The way the prescribed points take to their places, where only the places are known.
+ * @brief The path of the prescribed points, where only its end is given.
  * Internal: not installed.
  */
 #ifndef tautline_WarpPath_h
@@ -12,19 +12,19 @@ namespace tautline
 {
 /**
  * @class tautline::WarpPath
- * @brief Lets each connected piece of prescribed points turn, stretch and shift as the affine map
- * does that fits its displacements best, and what this leaves of them go straight. A piece that
- * turns does so rigidly, where straight ways would shrink it: half a turn would take it through a
+ * @brief Moves each connected piece of prescribed points by the rotation, stretch and translation
+ * of the affine map that fits its displacements best; the residual moves along straight lines. A
+ * piece that rotates keeps its shape, where straight paths would shrink it: at half a turn to a
  * point. Where the map mirrors, or leaves more than 5 % of the displacements (root mean square,
- * without the shift), all go straight.
+ * without the translation), all points move along straight lines.
  */
 class WarpPath
 {
 public:
   WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displacement);
 
-  /// Displacements of the prescribed points after a part of the motion, 0 to 1; exact at 1. Others
-  /// are 0.
+  /// Displacements of the prescribed points at an amount of the motion, 0 to 1; exact at 1. Those
+  /// of other points are 0. 3 per point.
   void at(double amount, double* displacement) const;
 
 private:

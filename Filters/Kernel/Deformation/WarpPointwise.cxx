@@ -8,8 +8,8 @@ namespace tautline
 {
 namespace
 {
-/// Second moments of the prescribed points below this part of the largest count as 0: a plane or a
-/// line.
+/// Second moments of the prescribed points below this fraction of the largest count as 0: the
+/// points lie in a plane or on a line.
 constexpr double RankTolerance = 1e-14;
 /// Relative to the largest displacement: an affine motion to rounding.
 constexpr double AffineTolerance = 1e-14;

@@ -1,13 +1,13 @@
 /**
  * @file WarpPointwise.h
- * @brief The warping methods that are compared with FEMWARP and need no partial differential
+ * @brief The methods of deformation that are compared with FEMWARP and need no partial differential
  * equation: inverse distance weighting, radial basis functions and weighted Laplacian smoothing.
  * Internal: not installed.
  *
  * All three move the points by the affine motion that fits the prescribed displacements best (least
- * squares) and treat only what is left of these; an affine motion comes out exactly, by whatever
- * method. They work in lengths relative to the extent of the prescribed points, so that the unit of
- * length does not matter.
+ * squares) and treat only the rest; every method is exact for an affine motion. They work in
+ * lengths relative to the extent of the prescribed points, so that the unit of length does not
+ * matter.
  */
 #ifndef tautline_WarpPointwise_h
 #define tautline_WarpPointwise_h
@@ -37,8 +37,8 @@ TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(const Mesh& me
 /**
  * @brief As above by radial basis functions: Wendland's C2 function with the radius
  * options.supportRadius (0: twice the extent of the prescribed points) around as many prescribed
- * points, at most 3000, as it takes for the others to be met within options.fitTolerance times the
- * largest displacement; the point that is met worst comes next.
+ * points, at most 3000, as it takes to meet the others within options.fitTolerance times the
+ * largest displacement; the point with the largest residual comes next.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
@@ -54,10 +54,8 @@ TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
 
-// --- what the three share
-// ------------------------------------------------------------------------------
-
-/// The prescribed displacements, split into an affine motion and the rest.
+/// What the three methods share: the prescribed displacements, split into an affine motion and the
+/// rest.
 class TAUTLINE_SOLVERS_EXPORT PrescribedMotion
 {
 public:

@@ -94,11 +94,11 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
   }
   if (moved.empty())
   {
-    // Stopped before anything was known: only the prescribed points have moved.
+    // Stopped before there was a result: only the prescribed points have moved.
     control.proceed(1.0);
     moved.assign(3 * prescribed.size(), 0.0);
   }
-  // Parts that do not move stay, to the last bit, whatever the method.
+  // Parts that do not move keep their coordinates exactly, with every method.
   const std::vector<char> moving = this->Parts.moving(displacement);
   for (std::size_t i = 0; i < prescribed.size(); ++i)
   {
@@ -184,16 +184,16 @@ void WarpStep::improve(
   {
     stage("untangle", this->untangle(fixed, control, points));
   }
-  // Following, the next step needs a mesh that is good, else the shape is to be that of the
-  // beginning.
+  // In a step of many the next step needs a good mesh; else the target is the shape of the initial
+  // mesh.
   const bool optimizes = this->Following ? result.invertedAfter == 0
                                          : options.method == WarpMethod::Hybrid && !literal &&
       result.invertedAfter < this->Initial.view().numberOfCells;
   if (optimizes && !control.stopped())
   {
-    // The shape (4.22) goes with the fourth power of T. From elements that were valid in the nick
-    // of time its descent would end early: at 120 degrees of a box in a box with a worst value of
-    // 870 instead of 41.
+    // The shape (4.22) grows with the fourth power of T. From elements that are barely valid its
+    // descent ends early: for a box that rotates by 120 degrees in a box with a worst value of 870
+    // instead of 41. The barrier improves these elements first.
     int iterations = 0;
     if (result.invertedAfter == 0 && (this->Following || tangled))
     {

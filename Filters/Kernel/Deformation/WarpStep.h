@@ -18,15 +18,15 @@ class WarpStep
 public:
   /**
    * @param from where the step begins; the first step's is `initial`
-   * @param initial what the shape of elements is measured against
+   * @param initial the reference of the shapes of elements
    */
   WarpStep(const Mesh& from, const Mesh& initial, const WarpParts& parts);
   ~WarpStep();
 
   /**
-   * @brief Makes it one of many steps of an untangling method: isotropic FEMWARP, local untangling,
-   * a little smoothing by shape against `initial`; what is left to do at the end of the way is
-   * improve()'s.
+   * @brief Makes this one of many steps of an untangling method: isotropic FEMWARP, local
+   * untangling, a little smoothing by shape against `initial`. improve() follows after the last
+   * one.
    */
   void setFollowing(bool following) { this->Following = following; }
 
@@ -39,8 +39,7 @@ public:
   Index run(
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
 
-  /// The second step of the methods that have one, on points that are where `displacement` wants
-  /// them.
+  /// The second step of the methods that have one; the prescribed points are in place already.
   void improve(
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
 

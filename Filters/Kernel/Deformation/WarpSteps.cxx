@@ -35,13 +35,13 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
   WarpResult& result = control.result();
   const std::size_t size = 3 * static_cast<std::size_t>(mesh.view().numberOfPoints);
   const bool automatic = steps == 0;
-  constexpr double longer = 2.0, shortest = 1e-4, cautious = 0.125; // of the motion
+  constexpr double growth = 2.0, shortest = 1e-4, firstFollowing = 0.125; // of the motion
 
   std::vector<double> points(mesh.view().points, mesh.view().points + size);
   result.points = points;
   result.amount = 0;
   auto from = std::make_unique<MovedMesh>(mesh, points, options.threads);
-  double amount = 0, step = !automatic ? 1.0 / steps : following ? cautious : 1.0;
+  double amount = 0, step = !automatic ? 1.0 / steps : following ? firstFollowing : 1.0;
   int done = 0;
   while (amount < 1.0)
   {
@@ -69,7 +69,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
     const bool good = inverted == 0 || !automatic;
     if (good && !control.stopped())
     {
-      // The prescribed points exactly where they belong.
+      // The prescribed points get their exact positions.
       motion(next, displacement.data());
       for (std::size_t i = 0; i < size; ++i)
       {
@@ -79,7 +79,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
       result.amount = amount = next;
       from = std::make_unique<MovedMesh>(mesh, points, options.threads);
       ++done;
-      step = automatic ? longer * step : step;
+      step = automatic ? growth * step : step;
     }
     else
     {

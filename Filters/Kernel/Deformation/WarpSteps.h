@@ -12,15 +12,15 @@
 
 namespace tautline
 {
-/// Where the prescribed points are after a part of the motion: (amount, displacements from the
-/// mesh).
+/// The path of the prescribed points: (amount from 0 to 1, displacements from the mesh, 3 per
+/// point).
 using WarpMotion = std::function<void(double, double*)>;
 
 /**
  * @brief The motion in steps, each from the mesh the one before came to.
- * @param steps so many of equal length; 0: as few as it takes for no element to invert. There a
- * step that inverts elements is halved, and the next grows again; if steps become too small or too
- * many, the result is the mesh of the last good one.
+ * @param steps number of steps of equal length; 0: as few as no element needs to invert. Then a
+ * step that inverts elements is halved, and the next one is doubled; if steps become too small or
+ * too many, the result is the mesh of the last valid one.
  * @param following see WarpStep::setFollowing(); the first of such steps is short
  */
 void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, int steps,

@@ -7,9 +7,9 @@ namespace tautline
 namespace
 {
 /// Former solutions kept; each costs two vectors.
-constexpr std::size_t mostFormer = 12;
-/// Up to so many unknowns a factorisation pays, measured: its first solve takes no more than a few
-/// tenths of a second longer than multigrid, or about as long, and each further one a tenth.
+constexpr std::size_t maxFormer = 12;
+/// Numbers of unknowns up to which a factorisation pays (measured): its first solve takes at most a
+/// few tenths of a second longer than multigrid, and each further one a tenth of the time.
 constexpr Index directPlanar = 600000, directVolume = 20000;
 /// Where CG fails, a factorisation is tried that is this much larger at most.
 constexpr Index largestFactor = 10;
@@ -190,7 +190,7 @@ void WarpSystem::remember(const std::vector<double>& solution)
     }
   }
   this->Basis.push_back(std::move(former));
-  if (this->Basis.size() > mostFormer)
+  if (this->Basis.size() > maxFormer)
   {
     this->Basis.pop_front(); // the others stay orthonormal
   }

@@ -40,7 +40,7 @@ public:
   /**
    * @brief Finds the values of the points that are not held from those that are; `values` has block
    * x numberOfPoints. Adds times and iterations to the control's result.
-   * @return false if the solver failed: `values` are the best there is, and failure() tells
+   * @return false if the solver failed: `values` are its last iterate, and failure() has the reason
    */
   bool solve(std::vector<double>& values, WarpControl& control);
 

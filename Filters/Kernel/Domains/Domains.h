@@ -4,9 +4,9 @@
  * motions.
  *
  * The figures show the shapes without dimensions; lengths here are chosen after them. A boundary is
- * sampled with a wanted spacing, so that a mesh of any size has a boundary of its own resolution.
- * Every segment or facet has a marker (1 is the outer boundary), every moving domain says where the
- * points of its boundary go.
+ * sampled with a given spacing, so that a mesh of any size has a boundary of its own resolution.
+ * Every segment or facet has a marker (1 is the outer boundary), every moving domain defines where
+ * the points of its boundary go.
  */
 #ifndef tautline_Domains_h
 #define tautline_Domains_h
@@ -59,14 +59,14 @@ enum class DomainKind
   Solid       ///< needs a mesher of tetrahedra
 };
 
-/// What is known of a domain.
+/// Facts about a domain.
 struct DomainInfo
 {
   const char* name;   ///< as in Python and on the command line
   const char* label;  ///< as in a menu
   const char* source; ///< where the dissertation has it, if it has
   DomainKind kind;
-  Index cells; ///< number of cells unless another is asked for
+  Index cells; ///< default number of cells
   bool moving; ///< has a deformed boundary
   double size; ///< area or volume, roughly: for the first guess of a spacing
 };

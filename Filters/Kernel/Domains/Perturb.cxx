@@ -81,7 +81,7 @@ private:
 
   void moveVertex(Index vertex);
   Index gain(Index limit);
-  Index tangleVertex(Index vertex, int pass, Index wanted, Index limit);
+  Index tangleVertex(Index vertex, int pass, Index target, Index limit);
 
   const Mesh& TheMesh;
   const PerturbOptions& Options;
@@ -293,7 +293,7 @@ Line Perturber::line(const Neighbour& n, int corner, const Vec3& along) const
 //------------------------------------------------------------------------------
 double Perturber::distanceToInversion(const Vec3& along) const
 {
-  double least = this->Radius;
+  double nearest = this->Radius;
   for (const Neighbour& n : this->Star)
   {
     for (int c = 0; c < n.topology->samples; ++c)
@@ -301,11 +301,11 @@ double Perturber::distanceToInversion(const Vec3& along) const
       const Line det = this->line(n, c, along);
       if (det.value * det.slope < 0)
       {
-        least = std::min(least, -det.value / det.slope);
+        nearest = std::min(nearest, -det.value / det.slope);
       }
     }
   }
-  return least;
+  return nearest;
 }
 
 //------------------------------------------------------------------------------
@@ -432,13 +432,13 @@ Index Perturber::gain(Index limit)
 }
 
 //------------------------------------------------------------------------------
-Index Perturber::tangleVertex(Index vertex, int pass, Index wanted, Index limit)
+Index Perturber::tangleVertex(Index vertex, int pass, Index target, Index limit)
 {
   this->gather(vertex);
   SplitMix random(this->Options.seed, TangleVertex + pass, vertex);
   Index best = 0;
   Vec3 bestPoint = this->Center;
-  for (int i = 0; i < DirectionsTried && best != wanted; ++i)
+  for (int i = 0; i < DirectionsTried && best != target; ++i)
   {
     this->place(this->Center);
     const Vec3 along = this->direction(random);
@@ -457,7 +457,7 @@ Index Perturber::tangleVertex(Index vertex, int pass, Index wanted, Index limit)
     }
     this->Crossings.push_back(this->Radius);
     std::sort(this->Crossings.begin(), this->Crossings.end());
-    for (std::size_t k = 0; k + 1 < this->Crossings.size() && best != wanted; ++k)
+    for (std::size_t k = 0; k + 1 < this->Crossings.size() && best != target; ++k)
     {
       // Not too near either end, where a cell is degenerate.
       const double from = this->Crossings[k], to = this->Crossings[k + 1];
@@ -465,7 +465,7 @@ Index Perturber::tangleVertex(Index vertex, int pass, Index wanted, Index limit)
       const Vec3 p = this->position(distance, along);
       this->place(p);
       const Index more = this->gain(limit);
-      if (more > 0 && (best == 0 || std::abs(more - wanted) < std::abs(best - wanted)))
+      if (more > 0 && (best == 0 || std::abs(more - target) < std::abs(best - target)))
       {
         best = more;
         bestPoint = p;

@@ -24,13 +24,14 @@ namespace tautline
 struct PerturbOptions
 {
   double percentage = 50.0; ///< of the movable vertices to move, 0 to 100
-  /// A vertex moves by a random part, evenly from 0 to this (0 to 1), of its distance to inversion.
+  /// A vertex moves by a random fraction, evenly from 0 to this (0 to 1), of its distance to
+  /// inversion.
   double fraction = 0.5;
   double tangledFraction = 0.0; ///< of the elements to be inverted in the end, 0 to 1
   std::uint64_t seed = 0;
   bool singlePrecision = false; ///< new coordinates are rounded to float, and still do not invert
   int threads = 0;              ///< 0: all cores. The result does not depend on it.
-  /// Called now and then with the part done, 0 to 1; returns whether to go on. May be empty.
+  /// Called now and then with the fraction done, 0 to 1; returns whether to continue. May be empty.
   std::function<bool(double)> progress;
 };
 
@@ -44,7 +45,7 @@ struct Perturbation
   Index invertedBefore = 0;
   Index invertedAfter = 0;
   double largestDisplacement = 0;
-  bool stopped = false; ///< progress() said so; the points are those reached
+  bool stopped = false; ///< progress() returned false; the points are those reached
 };
 
 /**
@@ -65,7 +66,7 @@ struct Perturbation
  *
  * Then, while fewer elements than tangledFraction are inverted, movable vertices in random order go
  * past the distance to inversion, choosing among the intervals between sign changes within the size
- * of the cells around; never by more elements than are still wanted, and without degenerate ones.
+ * of the cells around; never by more elements than are still needed, and without degenerate ones.
  * The fraction is met to the nearest element unless that many cannot be inverted with the other
  * vertices where they are (as a rule, above 0.8).
  *

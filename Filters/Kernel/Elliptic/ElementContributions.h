@@ -16,7 +16,7 @@ struct ElementContributions
   std::vector<double> largestEigenvalue; ///< of each cell's stiffness matrix; NaN for cells skipped
   /**
    * @brief x_e^T A_e x_e of the eigenvector of the largest eigenvalue, over the whole: the cell's
-   * share of it; sums to 1 over the cells of all ranks. Empty if the eigenvector was not wanted.
+   * share of it; sums to 1 over the cells of all ranks. Empty if the eigenvector was not requested.
    */
   std::vector<double> share;
   double bound = 0.0; ///< the largest eigenvalue is at most this: max over points of the cells' sum

@@ -11,7 +11,7 @@
 
 namespace tautline
 {
-/// Looks at a mesh and a problem before anything is assembled; all ranks throw together.
+/// Checks a mesh and a problem before anything is assembled; all ranks throw together.
 class EllipticChecks
 {
 public:
@@ -44,7 +44,7 @@ public:
   /// Every part of the mesh that has a free point has enough fixed ones.
   void requireFixedParts(
     const std::vector<unsigned char>& used, const std::vector<unsigned char>& fixed) const;
-  /// Unknowns per point of elasticity; a rank without cells asks the others.
+  /// Unknowns per point of elasticity; a rank without cells takes the number of the others.
   int elasticUnknowns() const;
 
 private:

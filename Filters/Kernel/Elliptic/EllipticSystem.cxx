@@ -85,7 +85,7 @@ EllipticSystem::Implementation::Implementation(
   }
   checks.everywhere([&]() { this->assemble(); });
 
-  // Rigid body modes are told by coordinates along the components.
+  // The rigid body modes follow from the coordinates along the components.
   for (Index point : this->FreePoints)
   {
     const Vec3 p = pointOf(mesh.view(), point);

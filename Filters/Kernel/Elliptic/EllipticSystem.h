@@ -25,7 +25,7 @@ namespace tautline
 {
 /**
  * @class tautline::EllipticSystem
- * @brief The assembled system A u = b of the free unknowns, and everything that can be asked of it.
+ * @brief The assembled system A u = b of the free unknowns, with the fields computed from it.
  */
 class TAUTLINE_SOLVERS_EXPORT EllipticSystem
 {
@@ -43,7 +43,7 @@ public:
    * - no free point; parts of the mesh without a fixed point where the operator is singular there
    *   (Poisson, a = 0). Elastic parts need two fixed points in the plane and three in space, not in
    *   one line; parts that touch in one point (or in space along one edge) count as one, and that
-   *   they may turn about it is not found. On several ranks only one fixed point is asked for.
+   *   they may turn about it is not found. On several ranks only one fixed point is required.
    *
    * @param mesh stays alive as long as the system, and so do the arrays of problem and part
    */
@@ -65,7 +65,7 @@ public:
   int threads() const;
   const PointNumbering& numbering() const; ///< of the free points: entry i is freePoints()[i]
 
-  /// What LinearSolver wants; valid as long as the system.
+  /// The system as LinearSolver takes it; valid as long as this object.
   LinearSystem linearSystem() const;
 
   /// Solves, with a solver of its own. A failure is a reason in `linear`, as in LinearSolver.

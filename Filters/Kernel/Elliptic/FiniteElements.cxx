@@ -65,11 +65,11 @@ void AssemblyPattern::findUses(const unsigned char* skip)
 {
   const MeshView& view = this->Input->view();
   const Index points = view.numberOfPoints;
-  // Each part of the cells counts for itself and later fills in from where the parts before it end:
-  // so the uses of a point are in order of cells, however many parts there are.
-  constexpr Index mostParts = 8; // each takes four bytes per point
+  // Each part of the cells is counted separately and then written behind the parts before it: so
+  // the uses of a point are in the order of the cells, whatever the number of parts.
+  constexpr Index maxParts = 8; // each takes four bytes per point
   const Index parts = std::max<Index>(1,
-    std::min({ mostParts, static_cast<Index>(resolveThreads(this->Threads)),
+    std::min({ maxParts, static_cast<Index>(resolveThreads(this->Threads)),
       numberOfChunks(view.numberOfCells) }));
   std::vector<std::vector<std::uint32_t>> next(parts);
   const auto forEachUse = [&](Index part, const auto& visit)
@@ -301,7 +301,7 @@ void AssemblyPattern::gather(
   view.points = points ? points : view.points;
   const Index entries = components * components * this->Stride * this->Stride;
   // The buffer takes no more than the matrix itself, unless that is small. Few batches, since each
-  // looks at all rows.
+  // visits all rows.
   constexpr Index smallest = 1 << 15;
   const Index batch = std::min(
     view.numberOfCells, std::max(smallest, static_cast<Index>(matrix.values.size()) / entries));
@@ -332,7 +332,7 @@ void AssemblyPattern::gather(
             const double* k =
               &buffer[(cell - firstCell) * entries + place * components * components * nodes];
             this->addUse<components>(use, first, width, k, row);
-            // The diagonal has something of every entry of its row.
+            // An entry that is not finite makes the diagonal of its row not finite.
             if (!std::isfinite(k[components * place]))
             {
               wrong.report(cell);
@@ -366,17 +366,18 @@ void AssemblyPattern::assemble(
 {
   const bool planar = elasticComponents(*this->Input) == 2;
   const double nu = pde.poissonRatio;
-  const double most = planar && pde.plane == PlaneState::Stress ? 1.0 : 0.5;
+  const double limit = planar && pde.plane == PlaneState::Stress ? 1.0 : 0.5;
   if (!(pde.youngsModulus > 0) || !std::isfinite(pde.youngsModulus))
   {
     throw Error("Young's modulus must be positive and finite.");
   }
-  if (!(nu > -1 && nu < most))
+  if (!(nu > -1 && nu < limit))
   {
     throw Error("Poisson's ratio must be between -1 and " +
-      std::string(most < 1 ? "0.5: a body of 0.5 does not change its volume, which linear elements "
-                             "cannot follow."
-                           : "1."));
+      std::string(limit < 1
+          ? "0.5: a body of 0.5 does not change its volume, which linear elements "
+            "cannot follow."
+          : "1."));
   }
   if (pde.stiffening)
   {
@@ -461,7 +462,7 @@ std::vector<double> loadVector(
             {
               for (int b = 0; b < nodes; ++b)
               {
-                // On a simplex the integrals of the products are known.
+                // On a simplex the integrals of the products have closed forms.
                 mass[a][b] += s.weight *
                   (nodes == dimension + 1 ? (a == b ? 2.0 : 1.0) / (nodes * (nodes + 1))
                                           : s.value[a] * s.value[b]);

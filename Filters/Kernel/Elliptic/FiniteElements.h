@@ -1,7 +1,7 @@
 /**
  * @file FiniteElements.h
  * @brief Stiffness matrices and load vectors of linear finite elements: P1 on triangles and
- * tetrahedra, Q1 on quadrilaterals and hexahedra, and what fits to them on wedges and pyramids.
+ * tetrahedra, Q1 on quadrilaterals and hexahedra, conforming functions on wedges and pyramids.
  *
  * Matrices are those of all points of the mesh, before any boundary condition: a point outside all
  * cells has an empty row. They come out the same, bitwise, for any number of threads, and exactly
@@ -26,7 +26,7 @@
 
 namespace tautline
 {
-/// How an assembly is to go; shared by all functions below.
+/// Options of an assembly; shared by all functions below.
 struct AssemblyOptions
 {
   const unsigned char* skip = nullptr; ///< one flag per cell, nonzero = leave out (ghosts); or null
@@ -35,12 +35,13 @@ struct AssemblyOptions
 
 /**
  * @class tautline::AssemblyPattern
- * @brief Where the entries of the matrices of a mesh are: found once, used for every assembly on
+ * @brief The sparsity pattern of the matrices of a mesh: found once, used for every assembly on
  * that mesh.
  *
  * Elements with more than two nodes along an edge and cells of other types are refused. Where the
  * Jacobian of an element vanishes (Mesh::degenerateTolerance()) it contributes nothing; inverted
- * elements contribute by its absolute value. Ask Mesh::classifyCells() first where that matters.
+ * elements contribute by its absolute value. Check with Mesh::classifyCells() first where that
+ * matters.
  */
 class TAUTLINE_SOLVERS_EXPORT AssemblyPattern
 {
@@ -102,7 +103,7 @@ private:
 
   const Mesh* Input;
   int Threads;
-  int Stride = 0;                     // the most nodes a cell has
+  int Stride = 0;                     // maximum number of nodes of a cell
   bool Uniform = false;               // all cells have so many, without gaps
   std::array<signed char, 256> Nodes; // of a cell by its VTK type
   /// The cells at each point, in increasing order, each with the point's place in it: cell *

@@ -53,8 +53,8 @@ private:
   SolverStudyRow solve(const SolverCombination& combination, std::size_t index);
   LinearSolution solveOnce(const SolverCombination& combination, std::size_t index, bool ritz);
   bool overTime() const;
-  bool keepsOn(double fraction);
-  bool tell(double fraction);
+  bool reportHere(double fraction);
+  bool report(double fraction);
   void findConditions();
   void recommend();
   std::string nameIn(const SolverCombination& combination) const;
@@ -66,7 +66,7 @@ private:
   Stopwatch Time;
   std::unique_ptr<PointNumbering> Scalars; // unknowns one by one, of several ranks
   std::vector<bool> TakesOptions;          // of each combination: PETSc's options
-  double Told = 0;                         // progress
+  double Reported = 0;                     // progress
   SolverStudy Result;
 };
 
@@ -141,20 +141,20 @@ bool Study::overTime() const
 }
 
 /// Reports progress of this rank, which only grows though residuals need not fall.
-bool Study::keepsOn(double fraction)
+bool Study::reportHere(double fraction)
 {
-  this->Told = std::max(this->Told, std::min(1.0, fraction));
-  return this->Options.progress(this->Told);
+  this->Reported = std::max(this->Reported, std::min(1.0, fraction));
+  return this->Options.progress(this->Reported);
 }
 
 /// Reports progress; false when the study is to stop, on all ranks.
-bool Study::tell(double fraction)
+bool Study::report(double fraction)
 {
   if (!this->Options.progress)
   {
     return true;
   }
-  const bool stop = !this->keepsOn(fraction);
+  const bool stop = !this->reportHere(fraction);
   this->Result.aborted = this->System.numbering().maximum(stop ? 1.0 : 0.0) > 0;
   return !this->Result.aborted;
 }
@@ -173,8 +173,8 @@ LinearSolution Study::solveOnce(const SolverCombination& combination, std::size_
   }
   if (this->Options.maximumSeconds > 0)
   {
-    constexpr double least = 1e-3; // 0 would mean no limit
-    const double left = std::max(least, this->Options.maximumSeconds - this->Time.seconds());
+    constexpr double smallest = 1e-3; // 0 would mean no limit
+    const double left = std::max(smallest, this->Options.maximumSeconds - this->Time.seconds());
     options.maximumSeconds =
       options.maximumSeconds > 0 ? std::min(options.maximumSeconds, left) : left;
   }
@@ -189,7 +189,7 @@ LinearSolution Study::solveOnce(const SolverCombination& combination, std::size_
       first = iteration == 0 ? norm : first;
       const double done =
         first > 0 && norm > 0 && tolerance > 0 ? std::log(norm / first) / std::log(tolerance) : 0;
-      return this->keepsOn(
+      return this->reportHere(
                (static_cast<double>(index) + std::max(0.0, std::min(1.0, done))) / count) &&
         (!this->Options.solver.observer || this->Options.solver.observer(iteration, norm));
     };
@@ -292,9 +292,9 @@ void Study::findConditions()
 //------------------------------------------------------------------------------
 std::string Study::nameIn(const SolverCombination& combination) const
 {
-  const bool told = this->System.blockSize() > 1 && isMultigrid(combination.preconditioner) &&
+  const bool hasModes = this->System.blockSize() > 1 && isMultigrid(combination.preconditioner) &&
     combination.nearNullSpace && combination.method != KrylovMethod::Direct;
-  return nameOf(combination) + (told ? " that knows the rigid body modes" : "");
+  return nameOf(combination) + (hasModes ? " with the rigid body modes" : "");
 }
 
 /// How the time of a combination grows with the mesh.
@@ -310,7 +310,7 @@ std::string Study::outlook(const SolverStudyRow& best) const
   }
   if (isMultigrid(c.preconditioner) && this->System.blockSize() > 1 && !c.nearNullSpace)
   {
-    return " Multigrid does not know the rigid body modes here: its iterations grow with the mesh.";
+    return " Multigrid lacks the rigid body modes here: its iterations grow with the mesh.";
   }
   if (isMultigrid(c.preconditioner))
   {
@@ -463,7 +463,7 @@ SolverStudy Study::run()
   this->checkOptions();
   for (std::size_t i = 0; i < combinations.size(); ++i)
   {
-    const bool go = this->tell(static_cast<double>(i) / static_cast<double>(combinations.size()));
+    const bool go = this->report(static_cast<double>(i) / static_cast<double>(combinations.size()));
     this->Result.timeLimit = go && !this->Result.aborted && this->overTime();
     if (!go || this->Result.timeLimit)
     {

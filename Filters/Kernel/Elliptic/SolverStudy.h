@@ -15,8 +15,8 @@ struct SolverCombination
 {
   KrylovMethod method = KrylovMethod::ConjugateGradient;
   Preconditioner preconditioner = Preconditioner::BoomerAMG;
-  /// Elasticity: multigrid is told which unknowns belong to one point, and the rigid body modes.
-  /// Others do not ask.
+  /// Elasticity: multigrid gets the unknowns of each point as a block, and the rigid body modes.
+  /// Other preconditioners do not use them.
   bool nearNullSpace = true;
 };
 
@@ -40,8 +40,8 @@ struct SolverStudyOptions
   bool conditions = true;
   int repetitions = 1;         ///< the best time of so many
   double maximumSeconds = 0.0; ///< of the whole study; 0: no limit
-  /// Told a fraction; the study stops when it returns false. On several ranks all have one or none
-  /// has.
+  /// Called with the fraction done, 0 to 1; the study stops when it returns false. On several ranks
+  /// all have one or none has.
   std::function<bool(double)> progress;
 };
 

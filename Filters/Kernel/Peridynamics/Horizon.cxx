@@ -10,7 +10,7 @@ namespace tautline
 {
 namespace
 {
-/// Where the segment from a (inside) to b (outside) leaves the circle, as a part of its length.
+/// Where the segment from a (inside) to b (outside) leaves the circle, as a fraction of its length.
 double exitParameter(Vec2 a, Vec2 b, double radius)
 {
   const Vec2 e = b - a;
@@ -83,9 +83,9 @@ double layerDeficit(const HorizonMesh& mesh, double horizon, int threads)
         std::min(nearest[i], squaredSegmentDistance(domain[i][0], domain[i][1], edge[0], edge[1]));
     }
   }
-  const double least =
+  const double reach =
     domain.empty() ? horizon : std::sqrt(*std::min_element(nearest.begin(), nearest.end()));
-  const double deficit = horizon - least;
+  const double deficit = horizon - reach;
   return deficit > 1e-9 * horizon ? deficit : 0.0;
 }
 

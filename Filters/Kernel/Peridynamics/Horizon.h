@@ -33,7 +33,7 @@ struct HorizonMesh
  * chapter 4.
  *
  * The grid starts exactly at -delta, also where then the sides of the square are no mesh lines (r =
- * 4, h = 0.1, delta = 0.3; the text does not say so, its numbers do): a triangle is of the domain
+ * 4, h = 0.1, delta = 0.3; only the numbers of the text show that): a triangle is of the domain
  * if its centroid is, and the linear basis is unknown at the points strictly inside. The
  * interaction layer is then too thin for those next to a side. See also structuredSquare(), whose
  * interaction layer has whole layers. Throws Error where the extent is no whole number of elements.

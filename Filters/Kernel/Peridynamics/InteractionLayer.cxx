@@ -15,7 +15,7 @@ namespace
 {
 constexpr double MinGap = 0.55; // of lattice points from the boundary, in element sizes
 constexpr double Margin = 2.5;  // of lattice points beyond the width, in element sizes
-constexpr double Shake = 0.02;  // of lattice points, in element sizes: no four on a circle
+constexpr double Jitter = 0.02; // of lattice points, in element sizes: no four on a circle
 constexpr double MaxPoints = 5e6;
 
 struct Edge
@@ -141,8 +141,8 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
     for (Index i = 0; i < m; ++i)
     {
       const double shift = j % 2 == 0 ? 0.0 : 0.5;
-      const Vec2 p = { from[0] + (static_cast<double>(i) + shift + Shake * noise(i, j, 0)) * size,
-        from[1] + (static_cast<double>(j)) * rise + Shake * noise(i, j, 1) * size };
+      const Vec2 p = { from[0] + (static_cast<double>(i) + shift + Jitter * noise(i, j, 0)) * size,
+        from[1] + (static_cast<double>(j)) * rise + Jitter * noise(i, j, 1) * size };
       const Place place = placeOf(p, edges);
       points[j * m + i] = p;
       kept[j * m + i] =

@@ -110,10 +110,10 @@ struct PeridynamicSystem
   SparseMatrix matrix;  ///< symmetric
   Index components = 1; ///< 1, Elastic: 2; row of function f, component c: components * f + c
   /// Per function of the basis (triangle, vertex, or 3 x triangle + corner): its number among the
-  /// unknown ones, -1 where it is given, -2 where it is part of nothing.
+  /// unknown ones, -1 where it is given, -2 where no triangle has it.
   std::vector<Index> unknownOf;
   std::vector<Index> functionOf; ///< of an unknown one
-  /// Per row, sum of a(phi_j, phi_i) g_j over the given functions j; empty unless asked for.
+  /// Per row, sum of a(phi_j, phi_i) g_j over the given functions j; empty unless requested.
   std::vector<double> constraintLoad;
   /// Of the dissertation's discretization: Frobenius norm of the unsymmetric part, which is
   /// dropped, over all.

@@ -68,7 +68,7 @@ void checkOptions(const PeridynamicOptions& o)
 /// Colours triangles so that those of one colour share no function; each colour in increasing
 /// order.
 std::vector<std::vector<std::int32_t>> colourTriangles(
-  const PlanarTriangles& triangles, const FunctionSpace& space, const std::vector<char>& wanted)
+  const PlanarTriangles& triangles, const FunctionSpace& space, const std::vector<char>& needed)
 {
   std::vector<std::vector<std::int32_t>> colours;
   if (space.basis != PeridynamicBasis::Linear)
@@ -76,7 +76,7 @@ std::vector<std::vector<std::int32_t>> colourTriangles(
     colours.emplace_back();
     for (Index t = 0; t < triangles.size(); ++t)
     {
-      if (wanted[t])
+      if (needed[t])
       {
         colours[0].push_back(static_cast<std::int32_t>(t));
       }
@@ -86,7 +86,7 @@ std::vector<std::vector<std::int32_t>> colourTriangles(
   std::vector<std::vector<char>> used; // per colour and vertex
   for (Index t = 0; t < triangles.size(); ++t)
   {
-    if (!wanted[t])
+    if (!needed[t])
     {
       continue;
     }
@@ -188,18 +188,19 @@ void checkLayer(const HorizonMesh& mesh, const PeridynamicOptions& options, doub
         number(options.horizon) + " is needed (Interaction Layer makes it), or allow a thin one");
 }
 
-/// Stops an assembly, from any thread, for the first reason there is.
-class Watch
+/// Time limit, observer and progress of an assembly; the first reason to stop counts, from any
+/// thread.
+class AssemblyControl
 {
 public:
-  Watch(const PeridynamicOptions& options, double first, double last)
+  AssemblyControl(const PeridynamicOptions& options, double first, double last)
     : Options(options)
     , First(first)
     , Last(last)
   {
   }
-  /// Called by one thread at a time per part done; false when the work is to stop.
-  bool proceed(double part)
+  /// Reports the fraction done; false when the work has to stop. May be called by all threads.
+  bool proceed(double fraction)
   {
     if (this->Stopped)
     {
@@ -213,7 +214,7 @@ public:
         " s is over; take a smaller horizon, larger elements or a longer limit";
     }
     if (!this->Stopped && omp_get_thread_num() == 0 && this->Options.progress &&
-      !this->Options.progress(this->First + (this->Last - this->First) * part) &&
+      !this->Options.progress(this->First + (this->Last - this->First) * fraction) &&
       !this->Claimed.exchange(true))
     {
       this->Stopped = true;
@@ -397,28 +398,28 @@ PeridynamicSystem assemblePeridynamics(
   checkMemory(system.memory, options);
 
   const PeridynamicWork work = { triangles, grid, space, options };
-  Watch watch(options, 0.0, 0.5);
+  AssemblyControl control(options, 0.0, 0.5);
   const bool exact = options.discretization == Discretization::Exact;
   std::shared_ptr<PairIntegrals> integrals;
   if (exact)
   {
-    integrals = makePairIntegrals(work, [&](double part) { return watch.proceed(part); });
-    watch.throwIfStopped();
+    integrals = makePairIntegrals(work, [&](double fraction) { return control.proceed(fraction); });
+    control.throwIfStopped();
     system.integratedPairs = numberOfIntegratedPairs(*integrals);
   }
-  watch.setRange(exact ? 0.5 : 0.0, 1.0);
+  control.setRange(exact ? 0.5 : 0.0, 1.0);
   system.matrix = makePattern(space, supports, options.horizon, system.components, options.threads);
   system.constraintLoad.assign(given ? system.matrix.size : 0, 0.0);
 
-  std::vector<char> wanted(triangles.size(), 0);
+  std::vector<char> needed(triangles.size(), 0);
   for (Index t = 0; t < triangles.size(); ++t)
   {
     for (int k = 0; k < space.perTriangle(); ++k)
     {
-      wanted[t] |= space.unknownOf[space.function(triangles, t, k)] >= 0;
+      needed[t] |= space.unknownOf[space.function(triangles, t, k)] >= 0;
     }
   }
-  const auto colours = colourTriangles(triangles, space, wanted);
+  const auto colours = colourTriangles(triangles, space, needed);
   const double scale = kernelScale(options);
   Index done = 0;
 #pragma omp parallel num_threads(resolveThreads(options.threads))
@@ -433,7 +434,7 @@ PeridynamicSystem assemblePeridynamics(
       for (std::size_t k = 0; k < colour.size(); ++k)
       {
         if (k % 64 == 0 &&
-          !watch.proceed(static_cast<double>(done) / static_cast<double>(triangles.size())))
+          !control.proceed(static_cast<double>(done) / static_cast<double>(triangles.size())))
         {
           continue;
         }
@@ -446,7 +447,7 @@ PeridynamicSystem assemblePeridynamics(
       done += static_cast<Index>(colour.size());
     }
   }
-  watch.throwIfStopped();
+  control.throwIfStopped();
   system.asymmetry = symmetrize(system.matrix, options.threads);
   dropZeros(system.matrix);
   if (exact)

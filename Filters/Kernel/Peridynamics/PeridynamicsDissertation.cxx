@@ -222,7 +222,8 @@ private:
     }
   }
 
-  /// Where the edge from a corner inside to one outside leaves the disc, as a part of its length.
+  /// Where the edge from a corner inside to one outside leaves the disc, as a fraction of its
+  /// length.
   double exit(std::int32_t local, int inner, int outer) const
   {
     const std::int32_t p = this->Corners[local][inner], q = this->Corners[local][outer];

@@ -100,9 +100,9 @@ public:
 
 private:
   void findShapes();
-  std::vector<char> wantedTriangles() const;
-  void findPairs(const std::vector<char>& wanted);
-  void findTouching(const std::vector<char>& wanted);
+  std::vector<char> neededTriangles() const;
+  void findPairs(const std::vector<char>& needed);
+  void findTouching(const std::vector<char>& needed);
   void integrate(const std::function<bool(double)>& proceed);
   Vec2 corner(Index t, int k, Index fromX, Index fromY) const;
 
@@ -138,8 +138,8 @@ PairIntegrals::PairIntegrals(
   this->findShapes();
   const Index few = std::max<Index>(64, work.triangles.size() / 16);
   this->Reuse = work.options.reuseCongruent && this->NumberOfShapes <= few;
-  const std::vector<char> wanted = this->wantedTriangles();
-  this->Reuse ? this->findPairs(wanted) : this->findTouching(wanted);
+  const std::vector<char> needed = this->neededTriangles();
+  this->Reuse ? this->findPairs(needed) : this->findTouching(needed);
   this->integrate(proceed);
 }
 
@@ -175,18 +175,18 @@ void PairIntegrals::findShapes()
 }
 
 //------------------------------------------------------------------------------
-std::vector<char> PairIntegrals::wantedTriangles() const
+std::vector<char> PairIntegrals::neededTriangles() const
 {
-  std::vector<char> wanted(this->Work.triangles.size(), 0);
+  std::vector<char> needed(this->Work.triangles.size(), 0);
   for (Index t = 0; t < this->Work.triangles.size(); ++t)
   {
     for (int k = 0; k < this->Functions; ++k)
     {
       const Index f = this->Work.space.function(this->Work.triangles, t, k);
-      wanted[t] |= this->Work.space.unknownOf[f] >= 0;
+      needed[t] |= this->Work.space.unknownOf[f] >= 0;
     }
   }
-  return wanted;
+  return needed;
 }
 
 //------------------------------------------------------------------------------
@@ -283,7 +283,7 @@ TrianglePair PairIntegrals::pair(Index t, Index other, bool exchanged) const
 }
 
 //------------------------------------------------------------------------------
-void PairIntegrals::findPairs(const std::vector<char>& wanted)
+void PairIntegrals::findPairs(const std::vector<char>& needed)
 {
   const PlanarTriangles& mesh = this->Work.triangles;
   // Surroundings that are new, by chunk of triangles; then, in order, the pairs in them.
@@ -295,7 +295,7 @@ void PairIntegrals::findPairs(const std::vector<char>& wanted)
       std::vector<std::int32_t> near;
       for (Index t = begin; t < end; ++t)
       {
-        if (!wanted[t])
+        if (!needed[t])
         {
           continue;
         }
@@ -341,7 +341,7 @@ void PairIntegrals::findPairs(const std::vector<char>& wanted)
 }
 
 //------------------------------------------------------------------------------
-void PairIntegrals::findTouching(const std::vector<char>& wanted)
+void PairIntegrals::findTouching(const std::vector<char>& needed)
 {
   const PlanarTriangles& mesh = this->Work.triangles;
   std::vector<std::int32_t> near;
@@ -351,7 +351,7 @@ void PairIntegrals::findTouching(const std::vector<char>& wanted)
     std::sort(near.begin(), near.end());
     for (const std::int32_t other : near)
     {
-      if (other >= t && (wanted[t] || wanted[other]) && (other == t || this->touch(t, other)))
+      if (other >= t && (needed[t] || needed[other]) && (other == t || this->touch(t, other)))
       {
         const auto next = static_cast<std::int32_t>(this->Examples.size());
         this->Blocks.emplace(PairKey{ static_cast<std::int32_t>(t), other, 0, 0, 0 }, next);

@@ -61,17 +61,17 @@ RadialKernel::RadialKernel(const KernelFunction& function, double horizon)
 //------------------------------------------------------------------------------
 double RadialKernel::value(double r) const
 {
-  const double part = std::min(r / this->Horizon, 1.0);
+  const double ratio = std::min(r / this->Horizon, 1.0);
   switch (this->Function.shape)
   {
     case KernelShape::Gaussian:
-      return std::exp(-part * part / (this->Function.width * this->Function.width));
+      return std::exp(-ratio * ratio / (this->Function.width * this->Function.width));
     case KernelShape::Conical:
-      return 1.0 - part;
+      return 1.0 - ratio;
     case KernelShape::Table:
     {
       const std::vector<double>& table = this->Function.table;
-      const double at = part * static_cast<double>(table.size() - 1);
+      const double at = ratio * static_cast<double>(table.size() - 1);
       const std::size_t i = std::min(static_cast<std::size_t>(at), table.size() - 2);
       const double t = at - static_cast<double>(i);
       return (1.0 - t) * table[i] + t * table[i + 1];
@@ -145,10 +145,10 @@ void RadialKernel::evaluate(const double* squares, double* values, Index count) 
       values[i] = this->value(std::sqrt(squares[i]));
     }
   }
-  const double least = 1e-20 * this->Horizon * this->Horizon;
+  const double smallest = 1e-20 * this->Horizon * this->Horizon;
   for (Index i = 0; i < count; ++i)
   {
-    values[i] = squares[i] > least ? values[i] : 0.0;
+    values[i] = squares[i] > smallest ? values[i] : 0.0;
   }
 }
 

@@ -24,7 +24,7 @@ constexpr double orbit[2] = { 0.10128650732345634, 0.47014206410511509 };
 constexpr double fineWeights[3] = { 0.225, 0.12593918054482715, 0.13239415278850619 };
 constexpr double coarseWeights[2] = { 0.48411983265637886, 0.17196005578120705 };
 
-constexpr int MostDepth = 9, MostTouchingDepth = 4, MostParts = 3000;
+constexpr int MaxDepth = 9, MaxTouchingDepth = 4, MaxParts = 3000;
 constexpr double pieceLength = 2.0; // in t = asinh(s / d): eight nodes are then exact to 3e-9
 
 int momentAt(int degree, int y)
@@ -432,8 +432,8 @@ void PairIntegrator::refine(const Triangle& part, int depth)
   const bool agreed = this->applyRules(part, cut);
   // Two rules agree on what neither sees.
   const bool blind = cut && this->CutSamples == 0 && depth < this->BlindDepth;
-  if ((agreed && !blind) || depth == MostDepth ||
-    (touching && !cut && depth >= MostTouchingDepth) || ++this->Parts > MostParts)
+  if ((agreed && !blind) || depth == MaxDepth || (touching && !cut && depth >= MaxTouchingDepth) ||
+    ++this->Parts > MaxParts)
   {
     for (int at = 0; at < this->blockSize(); ++at)
     {

@@ -51,8 +51,8 @@ struct PointNumbering::Implementation
   Index Points = 0, GlobalSize = 0, FirstRow = 0, OwnedRows = 0;
   std::vector<Index> Rows;
   std::vector<unsigned char> Owned;
-  /// Local points owned by other ranks, in order of owner; owned points that others have, in order
-  /// of rank.
+  /// Lent: local points owned by other ranks, in order of owner. Borrowed: owned points that other
+  /// ranks have, in order of rank.
   RankLists<Index> Lent, Borrowed;
 
   void build(const Index* globalIds, const unsigned char* used);
@@ -61,8 +61,8 @@ struct PointNumbering::Implementation
     const std::vector<int>& owners);
   std::vector<int> findOwners(const std::vector<Index>& ids, std::string& complaint) const;
 
-  /// Combines the values of shared points at their owners and hands the result to all who have
-  /// them.
+  /// Combines the values of shared points at their owners and sends the result to all ranks that
+  /// have them.
   template <class Item, class Read, class Combine, class Write>
   void combine(const Read& read, const Combine& add, const Write& write) const
   {

@@ -1,7 +1,6 @@
 /**
  * @file PointNumbering.h
- * @brief How the points of a mesh that is spread over MPI ranks are numbered together, and sums
- * over ranks.
+ * @brief Global numbers of the points of a mesh distributed over MPI ranks, and sums over ranks.
  */
 #ifndef tautline_PointNumbering_h
 #define tautline_PointNumbering_h
@@ -26,7 +25,7 @@ class TAUTLINE_SOLVERS_EXPORT PointNumbering
 public:
   /**
    * @param globalIds one id per local point, the same on all ranks for the same point; any numbers
-   * from 0 on; null only on one rank
+   * from 0 on, any order; null only on one rank
    * @param used one flag per local point, nonzero = has a row (a point that is in a cell and is not
    * eliminated); null: all. The ranks must agree on shared points.
    *
@@ -63,8 +62,8 @@ private:
 
 /**
  * @brief The points of edges (2D) or faces (3D) that exactly one cell on all ranks has (or more
- * than two); cells with skip flags (ghosts) do not count. On one rank what Mesh::boundary() says.
- * Collective.
+ * than two); cells with skip flags (ghosts) do not count. On one rank the result of
+ * Mesh::boundary(). Collective.
  * @param globalIds as above; null on one rank
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<unsigned char> globalBoundaryPoints(

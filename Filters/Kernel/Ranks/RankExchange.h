@@ -31,8 +31,8 @@ inline bool onAnyRank(MPI_Comm communicator, bool condition)
   return all != 0;
 }
 
-/// Throws Error on all ranks if one of them has something to complain about: an exception on one
-/// alone would leave the others waiting.
+/// Throws Error on all ranks if one of them has a complaint: an exception on one rank alone
+/// would leave the others waiting.
 inline void throwTogether(MPI_Comm communicator, const std::string& complaint)
 {
   if (onAnyRank(communicator, !complaint.empty()))

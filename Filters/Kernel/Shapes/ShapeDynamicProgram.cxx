@@ -81,7 +81,7 @@ PairTable rowMinima(const PairTable& table, const LocationSet& set)
   return minima;
 }
 
-float leastOf(const float* values, Index n)
+float minimumOf(const float* values, Index n)
 {
   return *std::min_element(values, values + n);
 }
@@ -106,9 +106,9 @@ double PlacementSolver::memory(const PlacementProblem& problem)
   return floats * sizeof(float);
 }
 
-bool PlacementSolver::going(double part)
+bool PlacementSolver::report(double fraction)
 {
-  if (!this->Stopped && this->Problem.progress && !this->Problem.progress(part))
+  if (!this->Stopped && this->Problem.progress && !this->Problem.progress(fraction))
   {
     this->Stopped = true;
   }
@@ -164,7 +164,7 @@ bool PlacementSolver::run()
   this->Steps.reserve(n);
   for (const PairTable* edge : this->Problem.edges)
   {
-    this->Floor += leastOf(edge->values.data(), static_cast<Index>(edge->values.size()));
+    this->Floor += minimumOf(edge->values.data(), static_cast<Index>(edge->values.size()));
   }
   for (std::size_t number = 0; number < n; ++number)
   {
@@ -176,7 +176,7 @@ bool PlacementSolver::run()
     Step& step = this->Steps.back();
     for (const PairTable* part : { &step.fromI, &step.fromJ })
     {
-      this->Floor -= leastOf(part->values.data(), static_cast<Index>(part->values.size()));
+      this->Floor -= minimumOf(part->values.data(), static_cast<Index>(part->values.size()));
     }
     // Rounding must not exclude the best placement itself.
     this->StepLimit =
@@ -191,13 +191,13 @@ bool PlacementSolver::run()
     }
     PairTable out(this->Problem.sets[i]->size(), this->Problem.sets[j]->size(), Unreachable);
     this->solveStep(number, step, out);
-    if (!this->going(static_cast<double>(number + 1) / static_cast<double>(n)))
+    if (!this->report(static_cast<double>(number + 1) / static_cast<double>(n)))
     {
       return false;
     }
     if (number + 1 < n)
     {
-      const float low = leastOf(out.values.data(), static_cast<Index>(out.values.size()));
+      const float low = minimumOf(out.values.data(), static_cast<Index>(out.values.size()));
       this->Floor += low < Unreachable ? low : 0.0f;
       this->Pending[{ i, j }] = std::move(out);
       continue;
@@ -408,7 +408,7 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
           }
           search.solve<distortion, rotation, mirrored>(si.used[at], scratch, out);
           if (omp_get_thread_num() == 0 && at % 16 == 0 &&
-            !this->going(
+            !this->report(
               (static_cast<double>(number) + static_cast<double>(at) / static_cast<double>(count)) /
               triangles))
           {
@@ -614,8 +614,8 @@ void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable&
           }
           search.solve<distortion, rotation, mirrored>(offset, slice, out);
           if (omp_get_thread_num() == 0 && offset % 32 == 0 &&
-            !this->going((static_cast<double>(number) +
-                           static_cast<double>(offset) / static_cast<double>(offsets)) /
+            !this->report((static_cast<double>(number) +
+                            static_cast<double>(offset) / static_cast<double>(offsets)) /
               triangles))
           {
             stopped = true;

@@ -1,7 +1,7 @@
 /**
  * @file ShapeDynamicProgram.h
- * @brief Dynamic programming over the triangles of a polygon. Internal to the kernel: not
- * installed.
+ * @brief The placement of a polygon of least energy, by dynamic programming over its triangles.
+ * Internal to the kernel: not installed.
  */
 #ifndef tautline_ShapeDynamicProgram_h
 #define tautline_ShapeDynamicProgram_h
@@ -29,20 +29,24 @@ struct PlacementProblem
   /// An energy that some placement has; placements above it may be left out. Unreachable: none.
   float limit = Unreachable;
   int threads = 0;
-  /// Called with the part done; returns whether to go on. May be empty.
+  /// Called with the fraction done, 0 to 1; returns whether to continue. May be empty.
   std::function<bool(double)> progress;
 };
 
-/// The tables of a solved problem.
+/**
+ * @class tautline::PlacementSolver
+ * @brief Solves a placement problem exactly, by dynamic programming over the elimination order of
+ * the triangles (Felzenszwalb 2005).
+ */
 class PlacementSolver
 {
 public:
   explicit PlacementSolver(const PlacementProblem& problem);
 
-  /// Fills the tables; false if progress() said to stop.
+  /// Fills the tables; false if progress() returned false.
   bool run();
 
-  /// Energies over the slots of the two vertices that are left.
+  /// Least energies over the slots of the two last vertices.
   const PairTable& values() const { return this->Values; }
 
   /// The slots of the best placement with the last two vertices at these slots.
@@ -65,14 +69,14 @@ private:
   void solveGrid(std::size_t number, const Step& step, PairTable& out);
   PairTable take(Index from, Index to);
   const PairTable& distances(const LocationSet* a, const LocationSet* b);
-  bool going(double part);
+  bool report(double fraction);
 
   const PlacementProblem& Problem;
   std::vector<Step> Steps;
   std::map<std::pair<Index, Index>, PairTable> Pending; ///< of edges inside, by (from, to)
   std::map<std::pair<const LocationSet*, const LocationSet*>, PairTable> Distances;
   PairTable Values;
-  /// A bound from below of all that is not part of the step at hand: what can still be saved on it.
+  /// A lower bound of all costs outside the current step.
   double Floor = 0.0;
   float StepLimit = Unreachable;
   bool Stopped = false;

@@ -60,12 +60,12 @@ struct TriangleTerms
     4.6e-5f };
   static constexpr float MaxLog2 = 49.0f;
 
-  /// A bound from below of the energy of any triangle with an edge of this length: the sum of its
+  /// A lower bound of the energy of any triangle with an edge of this length: the sum of its
   /// edges is at least twice that, and log x >= 1 - 1 / x.
   float bound(float edge) const
   {
-    const float most = this->longest / (2.0f * edge + MinLength);
-    return most < 1.0f ? this->distortion * (1.0f - most) : 0.0f;
+    const float ratio = this->longest / (2.0f * edge + MinLength);
+    return ratio < 1.0f ? this->distortion * (1.0f - ratio) : 0.0f;
   }
 };
 
@@ -104,8 +104,8 @@ inline bool mayStayBelow(const BaseEdge& base, FloatPacket rx, FloatPacket ry, F
   const FloatPacket det = base.dx * ry - base.dy * rx;
   const FloatPacket size = Mirrored ? abs(det) : det;
   const FloatPacket y2 = y * y;
-  const FloatPacket most = (c[0] + c[1] * y) + y2 * ((c[2] + c[3] * y) + c[4] * y2);
-  return anyOf(norm < size * most);
+  const FloatPacket bound = (c[0] + c[1] * y) + y2 * ((c[2] + c[3] * y) + c[4] * y2);
+  return anyOf(norm < size * bound);
 }
 
 /**

@@ -611,10 +611,10 @@ ShapeMatch matchShape(
   std::function<bool(double)> progress;
   if (options.progress || options.timeLimit > 0.0)
   {
-    progress = [&](double part)
+    progress = [&](double fraction)
     {
       if (stop == MatchStop::Complete && options.progress &&
-        !options.progress((done + part) / runs))
+        !options.progress((done + fraction) / runs))
       {
         stop = MatchStop::Stopped;
       }

@@ -1,7 +1,7 @@
 /**
  * @file ShapeMatch.h
- * @brief Finds a deformable shape in an image: the placement of a triangulated polygon of least
- * energy.
+ * @brief Finds a deformable shape in an image: the placement of a triangulated polygon with the
+ * least energy.
  *
  * The source is a triangulated polygon (Polygon.h), the target an image with a finite set of
  * locations for its vertices. The energy of a placement is a sum over the triangles (dissertation
@@ -14,7 +14,7 @@
  *     E_dis   |log(gamma / delta)|, gamma the larger ratio of the sums of edge lengths,
  *             delta that of d_max
  *
- * and the least of all placements is found by dynamic programming: exactly, whatever the start.
+ * and the global minimum is found by dynamic programming: exactly, without a starting point.
  *
  *     tautline::ShapeSource source = tautline::makeShapeSource(traceSilhouette(a), 25.0);
  *     tautline::ShapeTarget target(traceSilhouette(b), {});
@@ -22,7 +22,7 @@
  *     // match.points: where the vertices of source.mesh went
  *
  * Sources: J. Kim, dissertation, chapter 5; P. Felzenszwalb, Representation and detection of
- * deformable shapes, IEEE PAMI 27 (2005). Where the text leaves a choice, it is said below and in
+ * deformable shapes, IEEE PAMI 27 (2005). Choices that the text leaves open are stated below and in
  * the help page.
  */
 #ifndef tautline_ShapeMatch_h

@@ -36,8 +36,8 @@ struct ShapeEnergy
   bool directedEdges = false;
   /// Weight of 1 - cos(angle a triangle turns by); 0, the default: turning is free.
   double rotation = 0.0;
-  /// Weight per vertex of the squared difference between what source and target look like around
-  /// it: the part of the shape in discs of four radii, and the distance from the centre of mass.
+  /// Weight per vertex of the squared difference between the descriptors of source and target: the
+  /// fraction of the shape in discs of four radii, and the distance from the centre of mass.
   double descriptor = 0.0;
   /// Weight per boundary edge of |log(length along the target's outline / expected)|, with the
   /// outline run through in the polygon's direction. Contour locations only.
@@ -60,10 +60,11 @@ struct ShapeSource
 {
   PolygonMesh mesh;
   Vec2 centre = {};
-  double maxDistance = 0;  ///< d_max of the source
-  double perimeter = 0;    ///< of the outline
-  std::vector<double> arc; ///< where each vertex lies along the outline, 0 to 1; empty if not known
-  std::vector<std::array<float, 5>> descriptors; ///< per vertex; empty if not known
+  double maxDistance = 0; ///< d_max of the source
+  double perimeter = 0;   ///< of the outline
+  std::vector<double>
+    arc; ///< where each vertex lies along the outline, 0 to 1; empty if not computed
+  std::vector<std::array<float, 5>> descriptors; ///< per vertex; empty if not computed
 };
 
 /// The triangulated polygon of a silhouette. Throws Error on a spacing that is not above 0.
@@ -136,7 +137,8 @@ struct MatchOptions
   /// passed over for the next best (dissertation equation 5.2). 0: the rule is off. The
   /// dissertation's is 1/3.
   double centreTolerance = 1.0 / 3.0;
-  /// The most solutions to try for the rule; then the one with the least distance is taken.
+  /// Maximum number of solutions to try for the rule; then the one with the least distance is
+  /// taken.
   Index maxSolutions = 1000;
   /// Solves on a third of the locations first, then around that solution only; fast, not exact.
   bool coarseToFine = false;
@@ -146,11 +148,11 @@ struct MatchOptions
   /// energy.rotation.
   Index rotations = 1;
   /// Target sizes tried, an odd number: delta times 2^(k/2), k = -(n-1)/2 ... (n-1)/2; for images
-  /// with other things than the shape in them, where d_max says little.
+  /// that show more than the shape, where d_max is no measure of its size.
   Index scales = 1;
   int threads = 0;      ///< 0: all cores. The result does not depend on it.
   double timeLimit = 0; ///< seconds; 0: none. When it is over, the best so far is returned.
-  /// Called with the part done, 0 to 1; returns whether to go on. May be empty.
+  /// Called with the fraction done, 0 to 1; returns whether to continue. May be empty.
   std::function<bool(double)> progress;
 };
 
@@ -184,7 +186,7 @@ enum class MatchStop
 {
   Complete = 0,
   TimeLimit = 1,
-  Stopped = 2 ///< progress() said so
+  Stopped = 2 ///< progress() returned false
 };
 
 struct ShapeMatch

@@ -176,7 +176,7 @@ private:
       std::make_unique<ShapeTarget>(this->Shapes[s], this->Options.locations, this->Match.energy);
   }
 
-  /// Only the first thread calls back; the others look at the flag.
+  /// Only the first thread calls back; the others check the flag.
   void report()
   {
     if (omp_get_thread_num() != 0)

@@ -29,7 +29,7 @@ struct RetrievalOptions
   /// The same with Felzenszwalb's energy and without the centre of mass.
   TAUTLINE_KERNEL_EXPORT static RetrievalOptions felzenszwalb();
   /// What recognizes best here: vertices 15 pixels apart, 80 locations on the contour, directed
-  /// edges, ordering 1, descriptors 100, rotation 1, both directions. The help page tells how it
+  /// edges, ordering 1, descriptors 100, rotation 1, both directions. The help page explains how it
   /// was chosen.
   TAUTLINE_KERNEL_EXPORT static RetrievalOptions highest();
 };
@@ -42,7 +42,8 @@ struct Recognition
   Index possible = 0;         ///< per query the smaller of `best` and the others in its class
   std::vector<Index> hitsAt;  ///< queries whose k-th best match is of their class
   std::vector<Index> classes; ///< the labels there are, ascending
-  /// Row after row: the part of the best matches of a class's queries that are of each class.
+  /// Row after row: the fraction of the best matches of the queries of one class that is of each
+  /// class.
   std::vector<double> confusion;
 };
 

@@ -344,7 +344,7 @@ Silhouette traceSilhouette(const ImageView& image, const SilhouetteOptions& opti
   if (*low == *high)
   {
     throw Error("The image has one value only, " + std::to_string(*low) +
-      ": there is no shape to tell from its surroundings.");
+      ": there is no shape to separate from its surroundings.");
   }
   shape.dark = isDark(image, shape.threshold, options.foreground);
   Framed framed(image, shape.threshold, shape.dark);

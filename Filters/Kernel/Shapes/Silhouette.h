@@ -41,7 +41,7 @@ struct SilhouetteOptions
   Foreground foreground = Foreground::Automatic;
 };
 
-/// The outline of the largest component and what is known of the rest.
+/// The outline of the largest component, and figures of the rest.
 struct Silhouette
 {
   std::vector<Vec2> outline; ///< closed and simple, counter-clockwise, about a point per pixel

@@ -35,11 +35,11 @@ double relative(const ExtremeEigenvalue& extreme)
 /// D^-1/2 A D^-1/2, which has the eigenvalues of D^-1 A; and D^-1/2. False if D is not positive.
 bool scaledByDiagonal(Mat matrix, PetscMatrix& scaled, PetscVector& roots)
 {
-  PetscReal least = 0.0;
+  PetscReal smallest = 0.0;
   petsc(MatCreateVecs(matrix, roots.out(), nullptr));
   petsc(MatGetDiagonal(matrix, roots));
-  petsc(VecMin(roots, nullptr, &least));
-  if (!(least > 0.0))
+  petsc(VecMin(roots, nullptr, &smallest));
+  if (!(smallest > 0.0))
   {
     return false;
   }
@@ -62,7 +62,7 @@ std::vector<double> valuesOf(const PetscSystem& system, Vec vector)
 }
 
 /// Fills the result with both eigenvalues. Rounding moves eigenvalues by about the last digit of
-/// the largest, whatever residuals say.
+/// the largest, whatever the residuals are.
 void fill(ExtremeEigenvalues& extremes, const PetscSystem& system, const ConditionOptions& options,
   const EigensolverStoppingTest& test, ConditionEstimate& result)
 {
@@ -104,7 +104,7 @@ void fill(ExtremeEigenvalues& extremes, const PetscSystem& system, const Conditi
   }
   else if (!result.converged && result.message.empty())
   {
-    result.message = "The tolerance was not reached; the error bounds tell what was.";
+    result.message = "The tolerance was not reached; see the error bounds.";
   }
 }
 

@@ -31,7 +31,8 @@ struct ConditionOptions
   /// 0: no limit; looked at between iterations, not in a factorisation.
   double maximumSeconds = 0.0;
   std::string petscOptions;
-  std::function<bool(double)> progress; ///< told a fraction; stops when it returns false
+  /// Called with the fraction done, 0 to 1; the estimate stops when it returns false.
+  std::function<bool(double)> progress;
 };
 }
 #endif

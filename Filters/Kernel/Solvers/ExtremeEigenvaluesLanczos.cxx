@@ -11,7 +11,7 @@ constexpr double ZeroTolerance = 1e-13;
 /// How unsymmetric the action of a preconditioner may be.
 constexpr double SymmetryTolerance = 1e-7;
 constexpr Index FirstCheck = 8;
-constexpr Index ManySteps = 100; // half done, as far as progress tells
+constexpr Index ManySteps = 100; // reported as half of the work
 
 /// The recurrence; v = P u holds throughout.
 class Recurrence

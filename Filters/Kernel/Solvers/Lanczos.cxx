@@ -164,9 +164,9 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
   scale(w, 1.0 / std::sqrt(product(w, w, threads)));
   double beta = 0.0, size = 0.0;
   RitzPair low, high;
-  const Index most = std::min(n, std::max<Index>(1, options.maxIterations));
-  Index nextCheck = std::min<Index>(most, 12);
-  for (Index k = 0; k < most; ++k)
+  const Index maxSteps = std::min(n, std::max<Index>(1, options.maxIterations));
+  Index nextCheck = std::min<Index>(maxSteps, 12);
+  for (Index k = 0; k < maxSteps; ++k)
   {
     basis.push_back(w);
     matrix.multiply(basis[k].data(), w.data(), threads);
@@ -183,8 +183,8 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
     const bool invariant = beta <= 1e-14 * size;
     const bool stop = time.reached(options.timeLimit) ||
       (options.progress &&
-        !options.progress(static_cast<double>(k + 1) / static_cast<double>(most)));
-    if (k + 1 >= nextCheck || k + 1 == most || invariant || stop)
+        !options.progress(static_cast<double>(k + 1) / static_cast<double>(maxSteps)));
+    if (k + 1 >= nextCheck || k + 1 == maxSteps || invariant || stop)
     {
       low = ritzPair(t, true, invariant ? 0.0 : beta);
       high = ritzPair(t, false, invariant ? 0.0 : beta);
@@ -205,7 +205,7 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
   spectrum.largest = high.value;
   spectrum.smallestBound = low.bound;
   spectrum.largestBound = high.bound;
-  // Rounding moves eigenvalues by about this much, whatever the bounds say.
+  // Rounding moves eigenvalues by about this much, whatever the bounds are.
   const double rounding = 1e-14 * std::max(std::abs(low.value), std::abs(high.value));
   spectrum.definite = low.value > std::max(rounding, spectrum.converged ? low.bound : 0.0);
   spectrum.condition = spectrum.definite ? high.value / low.value : 0.0;

@@ -18,11 +18,12 @@ namespace tautline
 /// How far to go.
 struct LanczosOptions
 {
-  double tolerance = 1e-8;              ///< wanted relative error bound of both eigenvalues
-  Index maxIterations = 2000;           ///< at most; each keeps a vector
-  double timeLimit = 0.0;               ///< seconds; 0 is none
-  int threads = 0;                      ///< 0 is all cores
-  std::function<bool(double)> progress; ///< told a fraction done; stops when it returns false
+  double tolerance = 1e-8;    ///< relative error bound of both eigenvalues to reach
+  Index maxIterations = 2000; ///< at most; each keeps a vector
+  double timeLimit = 0.0;     ///< seconds; 0 is none
+  int threads = 0;            ///< 0 is all cores
+  /// Called with the fraction done, 0 to 1; the method stops when it returns false.
+  std::function<bool(double)> progress;
 };
 
 /// What was found.

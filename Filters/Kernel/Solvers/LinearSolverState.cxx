@@ -203,7 +203,7 @@ void LinearSolverState::configure()
   this->applyTolerances();
   this->OptionSet.read([&]() { petsc(KSPSetFromOptions(this->Solver)); });
   this->OptionSet.rejectUnused(false);
-  // Asked by each iteration, our test asks the one chosen by now.
+  // Our test, called in each iteration, calls the one chosen by now.
   petsc(KSPGetAndClearConvergenceTest(
     this->Solver, &this->Test, &this->TestContext, &this->DestroyTest));
   petsc(KSPSetConvergenceTest(this->Solver, test, this, nullptr));
@@ -302,12 +302,12 @@ void LinearSolverState::findEmptyRows()
     return;
   }
   PetscVector diagonal = this->Objects.createVector();
-  PetscReal least = 0.0;
+  PetscReal smallest = 0.0;
   PetscInt row = 0;
   petsc(MatGetDiagonal(this->Objects.matrix(), diagonal));
   petsc(VecAbs(diagonal));
-  petsc(VecMin(diagonal, &row, &least));
-  if (least == 0.0)
+  petsc(VecMin(diagonal, &row, &smallest));
+  if (smallest == 0.0)
   {
     throw PetscError(PETSC_ERR_MAT_CH_ZRPVT,
       "The matrix is singular: the diagonal entry of row " + std::to_string(row) +
@@ -438,10 +438,10 @@ void LinearSolverState::measure(Vec b, Vec x, LinearSolution& solution)
 
 void LinearSolverState::ritzValues(LinearSolution& solution)
 {
-  const bool known = this->Options.method == KrylovMethod::ConjugateGradient ||
+  const bool available = this->Options.method == KrylovMethod::ConjugateGradient ||
     this->Options.method == KrylovMethod::GMRES;
   PetscReal largest = 0.0, smallest = 0.0;
-  if (known && solution.iterations > 0 &&
+  if (available && solution.iterations > 0 &&
     KSPComputeExtremeSingularValues(this->Solver, &largest, &smallest) == 0 && largest > 0.0)
   {
     solution.ritzSmallest = smallest;

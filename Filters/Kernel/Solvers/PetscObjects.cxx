@@ -231,8 +231,8 @@ std::string PetscSystem::complaint() const
     return "The matrix of the linear system is not complete: its offsets, columns and values "
            "differ in size.";
   }
-  const Index most = std::numeric_limits<PetscInt>::max();
-  if (matrix->nonzeros() > most || unknowns > most / block)
+  const Index limit = std::numeric_limits<PetscInt>::max();
+  if (matrix->nonzeros() > limit || unknowns > limit / block)
   {
     return "The linear system is larger than this PETSc can number: use a smaller mesh, more MPI "
            "ranks, or a PETSc with "
@@ -376,7 +376,7 @@ void PetscSystem::copyOut(Vec rows, double* values) const
   }
   else
   {
-    // What others own counts as 0 in the sum over all who have the point.
+    // Values that other ranks own count as 0 in the sum over the ranks that have the point.
     const PointNumbering& numbering = *this->System.numbering;
     const auto block = static_cast<std::size_t>(this->System.blockSize);
     std::vector<double> all(block * numbering.rows().size(), 0.0);

@@ -70,7 +70,7 @@ public:
    * an inner solver or a viewer reads are not yet missed.
    */
   void rejectUnused(bool afterSetUp) const;
-  /// Runs a call that reads options; an error then tells the text.
+  /// Runs a call that reads options; an error then quotes their text.
   template <class Call>
   void read(const Call& call) const
   {

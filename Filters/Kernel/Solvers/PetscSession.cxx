@@ -22,7 +22,7 @@ std::string& collected()
   return *text;
 }
 
-/// How often PETSc has been shut down, and whether we will be told of the next time.
+/// How often PETSc has been shut down, and whether a callback is registered for the next time.
 int generation = 0;
 bool watched = false;
 
@@ -103,7 +103,7 @@ void ensurePetsc()
   static char* list[] = { program, noFiles, noSignals, nullptr };
   static char** arguments = list;
   static int count = 3;
-  const MPI_Comm chosen = PETSC_COMM_WORLD; // by somebody who is about to initialise PETSc
+  const MPI_Comm chosen = PETSC_COMM_WORLD; // by other code that is about to initialise PETSc
   const MPI_Comm world = chosen == MPI_COMM_NULL ? MPI_COMM_WORLD : chosen;
   PETSC_COMM_WORLD = MPI_COMM_SELF;
   const PetscErrorCode code = PetscInitialize(&count, &arguments, nullptr, nullptr);

@@ -1,7 +1,8 @@
 /**
  * @file PetscSession.h
- * @brief PETSc inside somebody else's process: initialised at first use, one thread at a time, with
- * options and an error handler that leave those of other users alone. Not a public header.
+ * @brief PETSc inside a process that may use it, too: initialised at first use, one thread at a
+ * time, with options and an error handler that leave those of other users alone. Not a public
+ * header.
  */
 #ifndef tautline_PetscSession_h
 #define tautline_PetscSession_h
@@ -44,7 +45,7 @@ void ensureSlepc();
  * @class tautline::PetscScope
  * @brief Every use of PETSc happens within one.
  *
- * The first one of the process initialises PETSc (and MPI if nobody has), not collectively, without
+ * The first one of the process initialises PETSc (and MPI if it is not), not collectively, without
  * signal handler, without the program's arguments and without .petscrc. While a scope lives, no
  * other thread of ours uses PETSc, options are looked up in `database` alone, and errors are
  * collected rather than printed. Scopes nest.
@@ -65,7 +66,7 @@ private:
   std::string Outer; // what was collected outside
 };
 
-/// What PETSc said of the last failed call in this scope.
+/// The message of PETSc on the last failed call in this scope.
 const std::string& petscMessage();
 
 /// Throws PetscError unless the code is 0.

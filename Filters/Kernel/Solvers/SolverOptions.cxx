@@ -76,7 +76,7 @@ const char* describe(SolveReason reason)
     case SolveReason::Exact:
       return "solved";
     case SolveReason::OtherConvergence:
-      return "converged as the options ask";
+      return "converged by the test of the PETSc options";
     case SolveReason::IterationLimit:
       return "not converged: the limit of iterations was reached";
     case SolveReason::IndefinitePreconditioner:

@@ -60,15 +60,15 @@ struct SolverOptions
   int maximumIterations = 10000;
   int restart = 30;            ///< m of GMRES(m)
   double omega = 1.0;          ///< of SSOR, 0 to 2 (exclusive)
-  double maximumSeconds = 0.0; ///< 0: no limit; looked at between iterations, not in a set-up
+  double maximumSeconds = 0.0; ///< 0: no limit; checked between iterations, not in a set-up
   bool initialGuess = false;   ///< start from the x passed in rather than from 0
   bool ritzValues = false;     ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
-  /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they win over the
-  /// above.
+  /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they take precedence
+  /// over the above.
   std::string petscOptions;
   int threads = 0; ///< 0: all cores; used where Tautline itself works
-  /// Told iteration and residual norm; stops when it returns false. Called from the calling thread.
-  /// On several ranks all have one or none has.
+  /// Called with iteration and residual norm, from the calling thread; the solve stops when it
+  /// returns false. On several ranks all have one or none has.
   std::function<bool(int, double)> observer;
 };
 
@@ -78,7 +78,7 @@ enum class SolveReason : int
   RelativeTolerance = 0,
   AbsoluteTolerance = 1,
   Exact = 2,            ///< a direct solve, or nothing to do
-  OtherConvergence = 3, ///< converged as PETSc options asked
+  OtherConvergence = 3, ///< converged by a test of the PETSc options
   IterationLimit = 4,
   IndefinitePreconditioner = 5, ///< shown as '*' in Tables 2.8 to 2.12
   IndefiniteMatrix = 6,
@@ -90,7 +90,7 @@ enum class SolveReason : int
   Aborted = 12,
   OtherFailure = 13,
   /// The preconditioned residual is small, that of the system is as large as the right-hand side:
-  /// the preconditioner misleads.
+  /// a false convergence.
   FalseConvergence = 14
 };
 
@@ -101,14 +101,14 @@ TAUTLINE_SOLVERS_EXPORT const char* describe(SolveReason reason);
 struct LinearSolution
 {
   SolveReason reason = SolveReason::OtherFailure;
-  std::string message; ///< what PETSc said of a failure, or ""
+  std::string message; ///< the message of PETSc on a failure, or ""
   int iterations = 0;
   double setupSeconds =
     0.0; ///< of the preconditioner or factorisation; 0 when it was there already
   double solveSeconds = 0.0;     ///< without set-up
   double trueResidual = 0.0;     ///< |b - A x| / |b| in the end; 0 if b is 0
   std::vector<double> residuals; ///< norms as the method measures them; [0] is the initial one
-  double ritzSmallest = 0.0, ritzLargest = 0.0; ///< of P^-1 A, if asked for and known; else 0
+  double ritzSmallest = 0.0, ritzLargest = 0.0; ///< of P^-1 A, if requested and available; else 0
 };
 }
 #endif
