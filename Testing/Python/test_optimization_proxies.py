@@ -95,9 +95,10 @@ table = servermanager.Fetch(untangled, idx=1)
 assert table.GetValueByName(table.GetNumberOfRows() - 1, "Inverted").ToDouble() == 0
 
 # a known optimum of 0, which the objective cannot come close to, is not an unknown one
+bracket = simple.OpenDataFile(str(DATA / "bracket.vtu"))
 reasons = []
 for use in (0, 1):
-    known = OptimizeMesh(Input=mesh, Preset="Custom", Reduction=0.5, UseBestKnown=use, BestKnown=0)  # noqa: F821
+    known = OptimizeMesh(Input=bracket, Preset="Custom", Reduction=0.5, UseBestKnown=use, BestKnown=0)  # noqa: F821
     known.UpdatePipeline()
     known.UpdatePropertyInformation()
     reasons.append(known.Reason)
