@@ -9,8 +9,6 @@
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -121,80 +119,41 @@ std::vector<double> takeSizes(vtkPointSet* input, vtkDataArray* sizes)
 }
 
 //------------------------------------------------------------------------------
-vtkTetGenMesher::vtkTetGenMesher()
+void vtkTetGenMesher::Generate(
+  vtkPointSet* input, vtkUnstructuredGrid* output, vtkPolyData* boundary)
 {
-  this->SetNumberOfOutputPorts(2);
-}
-
-//------------------------------------------------------------------------------
-int vtkTetGenMesher::FillInputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkTetGenMesher::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkUnstructuredGrid" : "vtkPolyData");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkTetGenMesher::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
-  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
-  vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputVector, 1);
-  if (!input || input->GetNumberOfPoints() == 0)
+  this->SetProgressText("TetGen");
+  this->UpdateProgress(0.05);
+  tautline::SolidOptions options;
+  options.radiusEdgeRatio = this->RadiusEdgeRatio;
+  options.minimumDihedralAngle = this->MinimumDihedralAngle;
+  options.volume = this->Volume;
+  options.preserveSurface = this->PreserveSurface;
+  options.timeLimit = this->TimeLimit;
+  options.regions = fieldValues(input, "Regions", 5);
+  options.progress = [this, calls = 0.0]() mutable
   {
-    return 1;
-  }
-  try
+    calls += 1.0;
+    this->UpdateProgress(0.05 + 0.9 * calls / (calls + 50.0));
+    return this->GetAbortExecute() == 0;
+  };
+  if (this->UseSizeArray)
   {
-    this->SetProgressText("TetGen");
-    this->UpdateProgress(0.05);
-    tautline::SolidOptions options;
-    options.radiusEdgeRatio = this->RadiusEdgeRatio;
-    options.minimumDihedralAngle = this->MinimumDihedralAngle;
-    options.volume = this->Volume;
-    options.preserveSurface = this->PreserveSurface;
-    options.timeLimit = this->TimeLimit;
-    options.regions = fieldValues(input, "Regions", 5);
-    options.progress = [this, calls = 0.0]() mutable
-    {
-      calls += 1.0;
-      this->UpdateProgress(0.05 + 0.9 * calls / (calls + 50.0));
-      return this->GetAbortExecute() == 0;
-    };
-    if (this->UseSizeArray)
-    {
-      options.pointSizes = takeSizes(input, this->GetInputArrayToProcess(0, input));
-    }
-    const tautline::SolidMesh mesh = tautline::meshSolid(takeSurface(input), options);
-    this->UpdateProgress(0.95);
-    const auto points = tautline::makePoints(mesh.points, 3);
-    output->SetPoints(points);
-    output->SetCells(VTK_TETRA, tautline::makeCells(mesh.tetrahedra, 4));
-    output->GetPointData()->AddArray(tautline::makeMarkers("BoundaryMarker", mesh.pointMarkers));
-    if (!options.regions.empty())
-    {
-      output->GetCellData()->AddArray(tautline::makeMarkers("Reference", mesh.references));
-    }
-    boundaryOutput->SetPoints(points);
-    boundaryOutput->SetPolys(tautline::makeCells(mesh.faces, 3));
-    boundaryOutput->GetCellData()->AddArray(
-      tautline::makeMarkers("BoundaryMarker", mesh.faceMarkers));
+    options.pointSizes = takeSizes(input, this->GetInputArrayToProcess(0, input));
   }
-  catch (const Error& error)
+  const tautline::SolidMesh mesh = tautline::meshSolid(takeSurface(input), options);
+  this->UpdateProgress(0.95);
+  const auto points = tautline::makePoints(mesh.points, 3);
+  output->SetPoints(points);
+  output->SetCells(VTK_TETRA, tautline::makeCells(mesh.tetrahedra, 4));
+  output->GetPointData()->AddArray(tautline::makeMarkers("BoundaryMarker", mesh.pointMarkers));
+  if (!options.regions.empty())
   {
-    output->Initialize();
-    boundaryOutput->Initialize();
-    vtkErrorMacro(<< error.what());
-    return 0;
+    output->GetCellData()->AddArray(tautline::makeMarkers("Reference", mesh.references));
   }
-  return 1;
+  boundary->SetPoints(points);
+  boundary->SetPolys(tautline::makeCells(mesh.faces, 3));
+  boundary->GetCellData()->AddArray(tautline::makeMarkers("BoundaryMarker", mesh.faceMarkers));
 }
 
 //------------------------------------------------------------------------------
@@ -204,7 +163,6 @@ void vtkTetGenMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RadiusEdgeRatio: " << this->RadiusEdgeRatio << "\n";
   os << indent << "MinimumDihedralAngle: " << this->MinimumDihedralAngle << "\n";
   os << indent << "Volume: " << this->Volume << "\n";
-  os << indent << "UseSizeArray: " << this->UseSizeArray << "\n";
   os << indent << "PreserveSurface: " << this->PreserveSurface << "\n";
   os << indent << "TimeLimit: " << this->TimeLimit << "\n";
 }

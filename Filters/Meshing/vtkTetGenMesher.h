@@ -28,13 +28,13 @@
 #define vtkTetGenMesher_h
 
 #include "TautlineMeshingModule.h" // for export macro
-#include "vtkUnstructuredGridAlgorithm.h"
+#include "vtkBoundaryMesher.h"
 
-class TAUTLINEMESHING_EXPORT vtkTetGenMesher : public vtkUnstructuredGridAlgorithm
+class TAUTLINEMESHING_EXPORT vtkTetGenMesher : public vtkBoundaryMesher
 {
 public:
   static vtkTetGenMesher* New();
-  vtkTypeMacro(vtkTetGenMesher, vtkUnstructuredGridAlgorithm);
+  vtkTypeMacro(vtkTetGenMesher, vtkBoundaryMesher);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -64,16 +64,6 @@ public:
 
   ///@{
   /**
-   * Whether the point array to process (index 0) gives the target edge length at each input point.
-   * The default is off.
-   */
-  vtkSetMacro(UseSizeArray, bool);
-  vtkGetMacro(UseSizeArray, bool);
-  vtkBooleanMacro(UseSizeArray, bool);
-  ///@}
-
-  ///@{
-  /**
    * Whether the input's facets stay as they are, without new points on them. The default is off.
    */
   vtkSetMacro(PreserveSurface, bool);
@@ -91,16 +81,13 @@ public:
   ///@}
 
 protected:
-  vtkTetGenMesher();
+  vtkTetGenMesher() = default;
   ~vtkTetGenMesher() override = default;
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Generate(vtkPointSet* input, vtkUnstructuredGrid* output, vtkPolyData* boundary) override;
 
   double RadiusEdgeRatio = 1.4;
   double MinimumDihedralAngle = 10.0;
   double Volume = 0.0;
-  bool UseSizeArray = false;
   bool PreserveSurface = false;
   double TimeLimit = 3600.0;
 

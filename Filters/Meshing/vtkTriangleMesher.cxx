@@ -10,8 +10,6 @@
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -100,81 +98,42 @@ std::function<double(double, double)> makeSizeField(
 }
 
 //------------------------------------------------------------------------------
-vtkTriangleMesher::vtkTriangleMesher()
+void vtkTriangleMesher::Generate(
+  vtkPointSet* input, vtkUnstructuredGrid* output, vtkPolyData* boundary)
 {
-  this->SetNumberOfOutputPorts(2);
-}
-
-//------------------------------------------------------------------------------
-int vtkTriangleMesher::FillInputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkTriangleMesher::FillOutputPortInformation(int port, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkUnstructuredGrid" : "vtkPolyData");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkTriangleMesher::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
-  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
-  vtkPolyData* boundaryOutput = vtkPolyData::GetData(outputVector, 1);
-  if (!input || input->GetNumberOfPoints() == 0)
+  tautline::PlanarBoundary outline = takeBoundary(input);
+  tautline::PlanarOptions options;
+  options.minimumAngle = this->MinimumAngle;
+  options.size = this->Size;
+  if (vtkDataArray* holes = input->GetFieldData()->GetArray("Holes"))
   {
-    return 1;
-  }
-  try
-  {
-    tautline::PlanarBoundary boundary = takeBoundary(input);
-    tautline::PlanarOptions options;
-    options.minimumAngle = this->MinimumAngle;
-    options.size = this->Size;
-    if (vtkDataArray* holes = input->GetFieldData()->GetArray("Holes"))
+    options.holesGiven = true;
+    for (vtkIdType i = 0; i < holes->GetNumberOfTuples() && holes->GetNumberOfComponents() == 3;
+         ++i)
     {
-      options.holesGiven = true;
-      for (vtkIdType i = 0; i < holes->GetNumberOfTuples() && holes->GetNumberOfComponents() == 3;
-           ++i)
-      {
-        boundary.holes.insert(
-          boundary.holes.end(), { holes->GetComponent(i, 0), holes->GetComponent(i, 1) });
-      }
+      outline.holes.insert(
+        outline.holes.end(), { holes->GetComponent(i, 0), holes->GetComponent(i, 1) });
     }
-    if (this->UseSizeArray)
-    {
-      options.sizeField =
-        makeSizeField(input, this->GetInputArrayToProcess(0, input), this->Gradation);
-    }
-    options.progress = [this](tautline::Index points)
-    {
-      const auto done = static_cast<double>(points);
-      this->UpdateProgress(done / (done + 1e5)); // the number of points is not known beforehand
-      return this->GetAbortExecute() == 0;
-    };
-    const tautline::PlanarMesh mesh = tautline::meshPlane(boundary, options);
-    const auto points = tautline::makePoints(mesh.points, 2, input->GetBounds()[4]);
-    output->SetPoints(points);
-    output->SetCells(VTK_TRIANGLE, tautline::makeCells(mesh.triangles, 3));
-    output->GetPointData()->AddArray(tautline::makeMarkers("BoundaryMarker", mesh.pointMarkers));
-    boundaryOutput->SetPoints(points);
-    boundaryOutput->SetLines(tautline::makeCells(mesh.edges, 2));
-    boundaryOutput->GetCellData()->AddArray(
-      tautline::makeMarkers("BoundaryMarker", mesh.edgeMarkers));
   }
-  catch (const Error& error)
+  if (this->UseSizeArray)
   {
-    output->Initialize();
-    boundaryOutput->Initialize();
-    vtkErrorMacro(<< error.what());
-    return 0;
+    options.sizeField =
+      makeSizeField(input, this->GetInputArrayToProcess(0, input), this->Gradation);
   }
-  return 1;
+  options.progress = [this](tautline::Index points)
+  {
+    const auto done = static_cast<double>(points);
+    this->UpdateProgress(done / (done + 1e5)); // the number of points is not known beforehand
+    return this->GetAbortExecute() == 0;
+  };
+  const tautline::PlanarMesh mesh = tautline::meshPlane(outline, options);
+  const auto points = tautline::makePoints(mesh.points, 2, input->GetBounds()[4]);
+  output->SetPoints(points);
+  output->SetCells(VTK_TRIANGLE, tautline::makeCells(mesh.triangles, 3));
+  output->GetPointData()->AddArray(tautline::makeMarkers("BoundaryMarker", mesh.pointMarkers));
+  boundary->SetPoints(points);
+  boundary->SetLines(tautline::makeCells(mesh.edges, 2));
+  boundary->GetCellData()->AddArray(tautline::makeMarkers("BoundaryMarker", mesh.edgeMarkers));
 }
 
 //------------------------------------------------------------------------------
@@ -183,6 +142,5 @@ void vtkTriangleMesher::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MinimumAngle: " << this->MinimumAngle << "\n";
   os << indent << "Size: " << this->Size << "\n";
-  os << indent << "UseSizeArray: " << this->UseSizeArray << "\n";
   os << indent << "Gradation: " << this->Gradation << "\n";
 }

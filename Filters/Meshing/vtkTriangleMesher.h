@@ -26,13 +26,13 @@
 #define vtkTriangleMesher_h
 
 #include "TautlineMeshingModule.h" // for export macro
-#include "vtkUnstructuredGridAlgorithm.h"
+#include "vtkBoundaryMesher.h"
 
-class TAUTLINEMESHING_EXPORT vtkTriangleMesher : public vtkUnstructuredGridAlgorithm
+class TAUTLINEMESHING_EXPORT vtkTriangleMesher : public vtkBoundaryMesher
 {
 public:
   static vtkTriangleMesher* New();
-  vtkTypeMacro(vtkTriangleMesher, vtkUnstructuredGridAlgorithm);
+  vtkTypeMacro(vtkTriangleMesher, vtkBoundaryMesher);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -54,32 +54,20 @@ public:
 
   ///@{
   /**
-   * Whether the point array to process (index 0) gives the longest edge allowed near each input
-   * point. Away from it the allowed edge grows by Gradation times the distance. The default is off.
-   */
-  vtkSetMacro(UseSizeArray, bool);
-  vtkGetMacro(UseSizeArray, bool);
-  vtkBooleanMacro(UseSizeArray, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Growth of the allowed edge per length. The default is 0.3.
+   * With UseSizeArray, away from the input points the allowed edge grows by this times the
+   * distance. The default is 0.3.
    */
   vtkSetClampMacro(Gradation, double, 0.0, 10.0);
   vtkGetMacro(Gradation, double);
   ///@}
 
 protected:
-  vtkTriangleMesher();
+  vtkTriangleMesher() = default;
   ~vtkTriangleMesher() override = default;
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void Generate(vtkPointSet* input, vtkUnstructuredGrid* output, vtkPolyData* boundary) override;
 
   double MinimumAngle = 20.7;
   double Size = 0.0;
-  bool UseSizeArray = false;
   double Gradation = 0.3;
 
 private:

@@ -1,0 +1,55 @@
+/**
+ * @class vtkBoundaryMesher
+ * @brief Base class of the meshers: a boundary becomes a mesh of what it surrounds.
+ *
+ * Abstract. The input is a vtkPointSet with the boundary. Output port 0 is a vtkUnstructuredGrid,
+ * the mesh; output port 1 is a vtkPolyData, the pieces of the boundary on the same points. Both
+ * have the array `BoundaryMarker`. After an error or an abort both are empty.
+ *
+ * Derived classes link libraries under the GPL or the AGPL, see Filters/Meshing/README.md.
+ *
+ * @sa vtkTriangleMesher, vtkTetGenMesher
+ */
+#ifndef vtkBoundaryMesher_h
+#define vtkBoundaryMesher_h
+
+#include "TautlineMeshingModule.h" // for export macro
+#include "vtkUnstructuredGridAlgorithm.h"
+
+class vtkPointSet;
+class vtkPolyData;
+
+class TAUTLINEMESHING_EXPORT vtkBoundaryMesher : public vtkUnstructuredGridAlgorithm
+{
+public:
+  vtkTypeMacro(vtkBoundaryMesher, vtkUnstructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Whether the point array to process (index 0, one component, above 0, in the unit of the
+   * coordinates) gives the edge length near each input point. The default is off.
+   */
+  vtkSetMacro(UseSizeArray, bool);
+  vtkGetMacro(UseSizeArray, bool);
+  vtkBooleanMacro(UseSizeArray, bool);
+  ///@}
+
+protected:
+  vtkBoundaryMesher();
+  ~vtkBoundaryMesher() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  /// Fills the outputs from an input with points. Throws tautline::Error.
+  virtual void Generate(vtkPointSet* input, vtkUnstructuredGrid* output, vtkPolyData* boundary) = 0;
+
+  bool UseSizeArray = false;
+
+private:
+  vtkBoundaryMesher(const vtkBoundaryMesher&) = delete;
+  void operator=(const vtkBoundaryMesher&) = delete;
+};
+
+#endif
