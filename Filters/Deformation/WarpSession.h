@@ -109,7 +109,7 @@ struct WarpTask
 {
   PointFlags prescribed, stay;
   std::vector<double> displacement; ///< at the amount, from the mesh at rest
-  /// The same after a part (0 to 1) of the way, where it is not straight; or empty.
+  /// The same after a fraction (0 to 1) of the way, where it is not straight; or empty.
   std::function<std::vector<double>(double)> path;
   std::vector<double> tensors; ///< or empty
   std::string correspondence;  ///< or ""

@@ -85,14 +85,8 @@ tautline::SolverOptions vtkEllipticSolver::GetSolverOptions() const
   tautline::SolverOptions options;
   options.method = static_cast<tautline::KrylovMethod>(this->Solver);
   options.preconditioner = static_cast<tautline::Preconditioner>(this->Preconditioner);
-  options.relativeTolerance = this->RelativeTolerance;
-  options.absoluteTolerance = this->AbsoluteTolerance;
-  options.maximumIterations = this->MaximumIterations;
-  options.restart = this->Restart;
-  options.omega = this->Omega;
+  this->SetCommonOptions(options);
   options.maximumSeconds = this->TimeLimit;
-  options.petscOptions = this->PETScOptions;
-  options.threads = this->Threads;
   // The user's options override others, and an option without effect would be an error.
   const std::string& own = this->PETScOptions;
   if (this->FastMultigrid && this->Preconditioner == AMG && this->Solver != DIRECT &&
@@ -165,10 +159,6 @@ void vtkEllipticSolver::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Solver: " << this->Solver << "\n";
   os << indent << "Preconditioner: " << this->Preconditioner << "\n";
-  os << indent << "RelativeTolerance: " << this->RelativeTolerance << "\n";
-  os << indent << "AbsoluteTolerance: " << this->AbsoluteTolerance << "\n";
-  os << indent << "MaximumIterations: " << this->MaximumIterations << "\n";
-  os << indent << "Restart: " << this->Restart << "\n";
   os << indent << "RigidBodyModes: " << this->RigidBodyModes << "\n";
   os << indent << "FastMultigrid: " << this->FastMultigrid << "\n";
   os << indent << "SolutionName: " << this->SolutionName << "\n";

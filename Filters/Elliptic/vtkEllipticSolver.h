@@ -28,21 +28,20 @@
 #ifndef vtkEllipticSolver_h
 #define vtkEllipticSolver_h
 
-#include "vtkEllipticAlgorithm.h"
+#include "vtkKrylovAlgorithm.h"
 
 class vtkDataSet;
 
 namespace tautline
 {
 struct EllipticSolution;
-struct SolverOptions;
 }
 
-class TAUTLINEELLIPTIC_EXPORT vtkEllipticSolver : public vtkEllipticAlgorithm
+class TAUTLINEELLIPTIC_EXPORT vtkEllipticSolver : public vtkKrylovAlgorithm
 {
 public:
   static vtkEllipticSolver* New();
-  vtkTypeMacro(vtkEllipticSolver, vtkEllipticAlgorithm);
+  vtkTypeMacro(vtkEllipticSolver, vtkKrylovAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /// Numbers of the methods; those of tautline::KrylovMethod.
@@ -79,31 +78,6 @@ public:
    */
   vtkSetClampMacro(Preconditioner, int, JACOBI, NONE);
   vtkGetMacro(Preconditioner, int);
-  ///@}
-
-  ///@{
-  /// Of the preconditioned residual, relative to the first, above 0 and below 1. The default is
-  /// 1e-5, PETSc's.
-  vtkSetMacro(RelativeTolerance, double);
-  vtkGetMacro(RelativeTolerance, double);
-  ///@}
-
-  ///@{
-  /// Norm of the residual that is enough in any case, at least 0. The default is 1e-50, PETSc's.
-  vtkSetMacro(AbsoluteTolerance, double);
-  vtkGetMacro(AbsoluteTolerance, double);
-  ///@}
-
-  ///@{
-  /// At least 1. The default is 10000.
-  vtkSetMacro(MaximumIterations, int);
-  vtkGetMacro(MaximumIterations, int);
-  ///@}
-
-  ///@{
-  /// m of GMRES(m), at least 1. The default is 30.
-  vtkSetMacro(Restart, int);
-  vtkGetMacro(Restart, int);
   ///@}
 
   ///@{
@@ -170,10 +144,6 @@ private:
 
   int Solver = CG;
   int Preconditioner = AMG;
-  double RelativeTolerance = 1e-5;
-  double AbsoluteTolerance = 1e-50;
-  int MaximumIterations = 10000;
-  int Restart = 30;
   bool RigidBodyModes = true;
   bool FastMultigrid = true;
   std::string SolutionName;

@@ -133,14 +133,8 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
   {
     options.combinations.push_back(allCombinations()[number - 1]);
   }
-  options.solver.relativeTolerance = this->RelativeTolerance;
-  options.solver.absoluteTolerance = this->AbsoluteTolerance;
-  options.solver.maximumIterations = this->MaximumIterations;
-  options.solver.restart = this->Restart;
-  options.solver.omega = this->Omega;
+  this->SetCommonOptions(options.solver);
   options.solver.maximumSeconds = this->CombinationTimeLimit;
-  options.solver.petscOptions = this->PETScOptions;
-  options.solver.threads = this->Threads;
   options.conditions = this->EstimateConditions;
   options.repetitions = this->Repetitions;
   options.maximumSeconds = this->TimeLimit;
@@ -205,10 +199,7 @@ void vtkSolverStudy::PrintSelf(ostream& os, vtkIndent indent)
   {
     os << " " << number;
   }
-  os << "\n" << indent << "RelativeTolerance: " << this->RelativeTolerance << "\n";
-  os << indent << "AbsoluteTolerance: " << this->AbsoluteTolerance << "\n";
-  os << indent << "MaximumIterations: " << this->MaximumIterations << "\n";
-  os << indent << "Restart: " << this->Restart << "\n";
+  os << "\n";
   os << indent << "EstimateConditions: " << this->EstimateConditions << "\n";
   os << indent << "Repetitions: " << this->Repetitions << "\n";
   os << indent << "CombinationTimeLimit: " << this->CombinationTimeLimit << "\n";

@@ -23,15 +23,15 @@
 #ifndef vtkSolverStudy_h
 #define vtkSolverStudy_h
 
-#include "vtkEllipticAlgorithm.h"
+#include "vtkKrylovAlgorithm.h"
 
 #include <vector> // for combinations
 
-class TAUTLINEELLIPTIC_EXPORT vtkSolverStudy : public vtkEllipticAlgorithm
+class TAUTLINEELLIPTIC_EXPORT vtkSolverStudy : public vtkKrylovAlgorithm
 {
 public:
   static vtkSolverStudy* New();
-  vtkTypeMacro(vtkSolverStudy, vtkEllipticAlgorithm);
+  vtkTypeMacro(vtkSolverStudy, vtkKrylovAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -48,18 +48,6 @@ public:
   static constexpr int GetNumberOfCombinations() { return 25; }
   /// The name of a combination by its number, "" for one that is not there.
   static const char* GetCombinationName(int number);
-
-  ///@{
-  /// As for vtkEllipticSolver: 1e-5, 1e-50, 10000 and 30.
-  vtkSetMacro(RelativeTolerance, double);
-  vtkGetMacro(RelativeTolerance, double);
-  vtkSetMacro(AbsoluteTolerance, double);
-  vtkGetMacro(AbsoluteTolerance, double);
-  vtkSetMacro(MaximumIterations, int);
-  vtkGetMacro(MaximumIterations, int);
-  vtkSetMacro(Restart, int);
-  vtkGetMacro(Restart, int);
-  ///@}
 
   ///@{
   /// Whether to estimate the condition of each P^-1 A. On.
@@ -103,10 +91,6 @@ private:
   void operator=(const vtkSolverStudy&) = delete;
 
   std::vector<int> Combinations;
-  double RelativeTolerance = 1e-5;
-  double AbsoluteTolerance = 1e-50;
-  int MaximumIterations = 10000;
-  int Restart = 30;
   bool EstimateConditions = true;
   int Repetitions = 1;
   double CombinationTimeLimit = 60.0;

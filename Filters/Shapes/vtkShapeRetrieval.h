@@ -17,8 +17,8 @@
  * Port 3, Confusion: `Label` and a column per class: the percentage of the best matches of a
  * class's shapes that are of each class.
  *
- * The recognition rate is the number of best matches of the query's own class, as a part of those
- * possible (dissertation section 5.3); the query itself does not count.
+ * The recognition rate is the number of best matches of the query's own class, as a fraction of
+ * those possible (dissertation section 5.3); the query itself does not count.
  *
  * @sa vtkSilhouetteSetReader, vtkShapeMatcher, tautline::retrieveShapes
  * (tautline/Shapes/ShapeRetrieval.h)
