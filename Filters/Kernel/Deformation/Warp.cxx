@@ -237,6 +237,7 @@ void Warper::Implementation::followMotion(
       return;
     }
   }
+  // The first attempt is kept in case the second one does not reach the end.
   const WarpResult before = result;
   result.impossible = 0;
   warpInSteps(this->Input, this->Parts, path, 0, true, control);
@@ -262,6 +263,7 @@ void Warper::Implementation::followMotion(
 BoundaryState Warper::Implementation::examineBoundary(const double* points) const
 {
   BoundaryState state;
+  // Cells all of whose points are prescribed: no solver can change them.
   const MeshView& view = this->Input.view();
   for (const CellBlock& block : this->Input.blocks())
   {

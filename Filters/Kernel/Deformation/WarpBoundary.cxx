@@ -56,6 +56,7 @@ WarpBoundary::WarpBoundary(const Mesh& mesh, const std::vector<unsigned char>& p
   }
   std::sort(
     facets.begin(), facets.end(), [](const Facet& a, const Facet& b) { return a.key < b.key; });
+  // Facets of one cell only; a quadrilateral becomes two triangles.
   for (std::size_t i = 0, j = 0; i < facets.size(); i = j)
   {
     for (j = i + 1; j < facets.size() && facets[j].key == facets[i].key; ++j)

@@ -26,6 +26,7 @@ ElasticWarp::ElasticWarp(const Mesh& mesh, const WarpParts& parts, WarpControl& 
     sum += std::abs(size);
     count += size != 0;
   }
+  // The factor (J_0 / J)^chi of each element, J_0 the mean.
   const double mean = sum / std::max<double>(1.0, static_cast<double>(count));
   for (Index i = 0; i < cells; ++i)
   {
@@ -139,6 +140,7 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
     {
       points[i] = view.points[i] + moved[i];
     }
+    // Stiffens the inverted elements and keeps the best result.
     MeshView now = view;
     now.points = points.data();
     Mesh mesh(now, options.threads);

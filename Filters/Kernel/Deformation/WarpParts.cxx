@@ -52,6 +52,7 @@ WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed)
     }
   }
 
+  // Parts without a prescribed point are loose: their points are held where they are.
   std::vector<char> hasPrescribed(this->Count, 0);
   for (Index i = 0; i < n; ++i)
   {

@@ -129,6 +129,7 @@ WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads)
     });
   WarpQuality quality;
   Index valid = 0;
+  // Summed in the order of the chunks.
   for (const Part& part : parts)
   {
     valid += part.valid;

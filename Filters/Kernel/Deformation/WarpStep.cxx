@@ -161,6 +161,7 @@ void WarpStep::improve(
   WarpResult& result = control.result();
   const double start = control.elapsed();
   const std::vector<char> moving = this->Parts.moving(displacement);
+  // Parts that do not move are not optimized.
   std::vector<unsigned char> fixed = this->Parts.held();
   for (std::size_t i = 0; i < fixed.size(); ++i)
   {
@@ -251,6 +252,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   optimization.threads = options.threads;
   optimization.scalarization.method = Scalarization::ExponentialSum;
   optimization.objectives.assign(2, Objective());
+  // (4.24): the exponential sum of the shape and of a second metric.
   Objective &shape = optimization.objectives[0], &other = optimization.objectives[1];
   shape.metric = Metric::ShapeSimilarity;
   shape.objectiveTemplate = ObjectiveTemplate::SumOfSquares;

@@ -52,6 +52,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
     {
       break;
     }
+    // The displacement of this step starts at the points reached, so that no error accumulates.
     std::vector<double> displacement(size, 0.0), to;
     motion(next, displacement.data());
     for (std::size_t i = 0; i < size; ++i)

@@ -146,6 +146,7 @@ void Perturber::findMovable(const unsigned char* fixed)
 {
   const MeshView& view = this->TheMesh.view();
   const int dimension = this->TheMesh.dimension() == Dimension::Volume ? 3 : 2;
+  // Fixed: the boundary, and the points of cells that are not elements or have no finite shape.
   std::vector<char> stays = this->TheMesh.boundary().isBoundaryPoint;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -179,6 +180,7 @@ void Perturber::findMovable(const unsigned char* fixed)
 }
 
 //------------------------------------------------------------------------------
+/// The movable vertices in a random order that depends on the seed and the stream only.
 std::vector<Index> Perturber::sortedByChance(std::uint64_t stream) const
 {
   std::vector<std::pair<std::uint64_t, Index>> keys;
@@ -205,6 +207,7 @@ bool Perturber::report(double done)
 }
 
 //------------------------------------------------------------------------------
+/// On a surface a cell also counts as inverted where it has turned by 90 degrees.
 Validity Perturber::stateOf(const Neighbour& n) const
 {
   const Validity own = this->TheMesh.classifyCell(*n.topology, n.points);
@@ -214,6 +217,7 @@ Validity Perturber::stateOf(const Neighbour& n) const
 }
 
 //------------------------------------------------------------------------------
+/// Copies the cells around a vertex.
 void Perturber::gather(Index vertex)
 {
   const MeshView& view = this->TheMesh.view();
@@ -241,6 +245,7 @@ void Perturber::gather(Index vertex)
 }
 
 //------------------------------------------------------------------------------
+/// A random unit vector: in space, in the plane, or in the tangent plane at the vertex.
 Vec3 Perturber::direction(SplitMix& random) const
 {
   if (this->TheMesh.dimension() == Dimension::Volume)
@@ -270,6 +275,7 @@ Vec3 Perturber::direction(SplitMix& random) const
 }
 
 //------------------------------------------------------------------------------
+/// The determinant at a corner of a cell as a linear function of the distance moved.
 Line Perturber::line(const Neighbour& n, int corner, const Vec3& along) const
 {
   const auto& node = n.topology->cornerNodes[corner];
@@ -351,6 +357,7 @@ bool Perturber::findStates()
 }
 
 //------------------------------------------------------------------------------
+/// Keeps the new position and the new states of the cells.
 void Perturber::accept(Index vertex, const Vec3& p)
 {
   std::copy(p.begin(), p.end(), this->Result.points.begin() + 3 * vertex);
@@ -442,6 +449,7 @@ Index Perturber::tangleVertex(Index vertex, int pass, Index target, Index limit)
   {
     this->place(this->Center);
     const Vec3 along = this->direction(random);
+    // The states of the cells are constant between two sign changes.
     this->Crossings.clear();
     for (const Neighbour& n : this->Star)
     {
@@ -482,6 +490,7 @@ Index Perturber::tangleVertex(Index vertex, int pass, Index target, Index limit)
 }
 
 //------------------------------------------------------------------------------
+/// Several passes over the vertices, until enough elements are inverted or none can be added.
 void Perturber::tangle()
 {
   const double share = this->Options.tangledFraction * static_cast<double>(this->Result.elements);

@@ -16,6 +16,7 @@ std::string counted(Index n, const CellTopology& t)
 void requireElements(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
+  // Names the first cell of a type that is not supported.
   const auto first = [&](auto wrong)
   {
     Index cell = 0;

@@ -122,6 +122,7 @@ void EllipticChecks::requireValidElements() const
   const Index cells = this->Input.view().numberOfCells;
   std::vector<signed char> validity(cells);
   this->Input.classifyCells(validity.data(), this->Threads);
+  // Counted over all ranks; the first cell of each kind is of this rank.
   struct Kind
   {
     Index count = 0, first = -1;
@@ -264,6 +265,7 @@ void EllipticChecks::requireFixedParts(
     return;
   }
   const MeshView& view = this->Input.view();
+  // Points that cells connect are one part.
   UnionFind parts(view.numberOfPoints);
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -272,6 +274,8 @@ void EllipticChecks::requireFixedParts(
       parts.join(view.connectivity[view.offsets[cell]], view.connectivity[k]);
     }
   }
+  // A body is held by as many points as prevent a rigid motion: 1, 2 or 3. On several ranks the
+  // fixed points of a part may be spread, so that only one is required.
   const bool oneRank = this->Numbering.ranks() == 1;
   const int needed = !elastic || !oneRank          ? 1
     : this->Input.dimension() == Dimension::Planar ? 2
@@ -309,6 +313,7 @@ void EllipticChecks::requireFixedParts(
     }
   }
 
+  // Parts that are held nowhere, each counted once.
   Index loose = 0, first = -1;
   std::vector<unsigned char> counted(view.numberOfPoints, 0);
   for (Index point = 0; point < view.numberOfPoints; ++point)

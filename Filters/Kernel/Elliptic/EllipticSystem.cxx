@@ -62,6 +62,7 @@ EllipticSystem::Implementation::Implementation(
 
   this->Components = problem.pde == Pde::Elasticity ? checks.elasticUnknowns() : 1;
   this->FreeIndex.assign(points, -1);
+  // Points of cells get unknowns unless they are fixed.
   std::vector<Index> globalIds;
   for (Index point = 0; point < points; ++point)
   {
@@ -176,6 +177,7 @@ void EllipticSystem::Implementation::reduce(
   const Index freePoints = static_cast<Index>(this->FreePoints.size());
   SparseMatrix& matrix = this->Matrix;
   matrix.size = d * freePoints;
+  // First the lengths of the rows, then their entries.
   matrix.offsets.assign(matrix.size + 1, 0);
   const auto rowOf = [&](Index i) { return d * this->FreePoints[i / d] + i % d; };
   forEachChunk(matrix.size, this->Threads,
@@ -322,6 +324,7 @@ EllipticSolution EllipticSystem::fields(const std::vector<double>& unknowns) con
   const Index points = impl.Input->view().numberOfPoints;
   EllipticSolution solution;
   solution.components = impl.Components == 1 ? 1 : 3;
+  // Points outside all cells have no value.
   solution.values.assign(solution.components * points, std::numeric_limits<double>::quiet_NaN());
   for (Index point = 0; point < points; ++point)
   {
@@ -329,6 +332,7 @@ EllipticSolution EllipticSystem::fields(const std::vector<double>& unknowns) con
     {
       continue;
     }
+    // Free points have unknowns, fixed ones their given values; planar components go back to space.
     Vec3 u = { 0, 0, 0 };
     for (int k = 0; k < impl.Components; ++k)
     {

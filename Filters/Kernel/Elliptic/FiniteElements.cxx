@@ -92,6 +92,7 @@ void AssemblyPattern::findUses(const unsigned char* skip)
     next[part].assign(points, 0);
     forEachUse(part, [&](Index node, Index) { ++next[part][node]; });
   }
+  // Turns the counts of the parts into positions behind those of the parts before.
   this->UseOffsets.assign(points + 1, 0);
   for (Index point = 0; point < points; ++point)
   {
@@ -149,6 +150,7 @@ void AssemblyPattern::findColumns()
             }
           }
         };
+        // Each neighbour once, in increasing order.
         forEachNode(
           [&](Index, std::int32_t node)
           {
@@ -174,6 +176,7 @@ void AssemblyPattern::findColumns()
       }
     }
   }
+  // The rows of all chunks one after the other.
   std::partial_sum(this->Offsets.begin(), this->Offsets.end(), this->Offsets.begin());
   this->Columns.resize(this->Offsets.back());
   forEachChunk(points, this->Threads,
@@ -212,6 +215,7 @@ void AssemblyPattern::expand(int components, SparseMatrix& matrix) const
           Index k = components * components * first;
           for (int a = 0; a < components; ++a)
           {
+            // Each column becomes a block of columns.
             for (Index j = 0; j < width; ++j)
             {
               for (int b = 0; b < components; ++b)

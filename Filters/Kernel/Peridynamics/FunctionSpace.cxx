@@ -47,4 +47,18 @@ FunctionSpace::FunctionSpace(
                 "the elements smaller");
   }
 }
+
+//------------------------------------------------------------------------------
+std::vector<char> FunctionSpace::trianglesWithUnknowns(const PlanarTriangles& triangles) const
+{
+  std::vector<char> result(triangles.size(), 0);
+  for (Index t = 0; t < triangles.size(); ++t)
+  {
+    for (int k = 0; k < this->perTriangle(); ++k)
+    {
+      result[t] |= this->unknownOf[this->function(triangles, t, k)] >= 0;
+    }
+  }
+  return result;
+}
 }

@@ -20,6 +20,8 @@ struct FunctionSpace
 
   FunctionSpace(
     const HorizonMesh& mesh, const PlanarTriangles& triangles, const PeridynamicOptions& options);
+  /// Per triangle, whether one of its functions is unknown.
+  std::vector<char> trianglesWithUnknowns(const PlanarTriangles& triangles) const;
   int perTriangle() const { return this->basis == PeridynamicBasis::Constant ? 1 : 3; }
   Index function(const PlanarTriangles& triangles, Index t, int k) const
   {

@@ -25,6 +25,7 @@ double sectorArea(Vec2 a, Vec2 b, double radius)
   { return 0.5 * radius * radius * std::atan2(cross(p, q), dot(p, q)); };
   const Vec2 e = b - a;
   const double alpha = dot(e, e), beta = dot(e, a), gamma = dot(a, a) - radius * radius;
+  // The line meets the circle at t0 and t1: sector, triangle, sector.
   const double root = beta * beta - alpha * gamma;
   if (!(alpha > 0.0) || root <= 0.0)
   {
@@ -73,6 +74,7 @@ double layerDeficit(const HorizonMesh& mesh, double horizon, int threads)
       domain.push_back(edge);
     }
   }
+  // The distance from the boundary of the domain to the outer boundary of the mesh.
   std::vector<double> nearest(domain.size(), horizon * horizon);
 #pragma omp parallel for schedule(static) num_threads(resolveThreads(threads))
   for (std::size_t i = 0; i < domain.size(); ++i)
@@ -99,6 +101,7 @@ HorizonMesh horizonSquare(double h, double aspectRatio, double delta, Index extr
       "the square needs an element size and an aspect ratio above 0 and an interaction layer of "
       "width 0 or more");
   }
+  // Legs of the triangles along x and y.
   const double steps[] = { h * std::sqrt(aspectRatio), h / std::sqrt(aspectRatio) };
   Index cells[2];
   for (int c = 0; c < 2; ++c)
@@ -130,6 +133,7 @@ HorizonMesh horizonSquare(double h, double aspectRatio, double delta, Index extr
     for (Index i = 0; i < cells[0]; ++i)
     {
       const Index a = j * (cells[0] + 1) + i, d = a + cells[0] + 1;
+      // Two triangles per rectangle; those whose centroid is outside the square are the layer.
       const Index both[2][3] = { { a, a + 1, d + 1 }, { a, d + 1, d } };
       for (const auto& t : both)
       {

@@ -26,6 +26,7 @@ struct Edge
 
 std::vector<Edge> boundaryEdges(const PlanarTriangles& mesh)
 {
+  // Edges of one triangle only.
   std::map<std::pair<Index, Index>, int> uses;
   for (const auto& t : mesh.triangles)
   {
@@ -71,6 +72,7 @@ Place placeOf(Vec2 p, const std::vector<Edge>& edges)
     nearest = std::min(nearest, dot(d, d));
     place.crowds = place.crowds || dot(toA, toB) <= 0.1 * dot(e, e);
     const double side = cross(e, toA);
+    // Winding number: crossings of the ray to the right.
     winding += edge.a[1] <= p[1] && edge.b[1] > p[1] && side > 0.0;
     winding -= edge.a[1] > p[1] && edge.b[1] <= p[1] && side < 0.0;
   }

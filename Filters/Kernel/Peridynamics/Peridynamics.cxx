@@ -83,6 +83,7 @@ std::vector<std::vector<std::int32_t>> colourTriangles(
     }
     return colours;
   }
+  // Greedy: the first colour whose triangles share no vertex with this one.
   std::vector<std::vector<char>> used; // per colour and vertex
   for (Index t = 0; t < triangles.size(); ++t)
   {
@@ -132,6 +133,7 @@ void neighbours(const FunctionSpace& space, const BoxGrid& supports, double hori
 double bytesFor(const HorizonMesh& mesh, const FunctionSpace& space, const BoxGrid& supports,
   const PeridynamicOptions& options)
 {
+  // The mean length of some rows, evenly spread.
   const Index sampled = std::min(space.unknowns, SampledRows);
   std::vector<std::int32_t> found;
   double entries = 0.0;
@@ -250,6 +252,7 @@ SparseMatrix makePattern(const FunctionSpace& space, const BoxGrid& supports, do
   const Index rows = space.unknowns;
   pattern.size = rows * components;
   std::vector<Index> counts(rows);
+  // First pass: lengths of the rows; second pass: their columns.
   for (const bool fill : { false, true })
   {
 #pragma omp parallel num_threads(resolveThreads(threads))
@@ -381,6 +384,7 @@ PeridynamicSystem assemblePeridynamics(
   const HorizonMesh& mesh, const PeridynamicOptions& options, const std::vector<double>* given)
 {
   checkOptions(options);
+  // All checks come before the expensive part.
   const PlanarTriangles triangles(mesh);
   PeridynamicSystem system;
   system.components = options.model == PeridynamicModel::Elastic ? 2 : 1;
@@ -411,19 +415,12 @@ PeridynamicSystem assemblePeridynamics(
   system.matrix = makePattern(space, supports, options.horizon, system.components, options.threads);
   system.constraintLoad.assign(given ? system.matrix.size : 0, 0.0);
 
-  std::vector<char> needed(triangles.size(), 0);
-  for (Index t = 0; t < triangles.size(); ++t)
-  {
-    for (int k = 0; k < space.perTriangle(); ++k)
-    {
-      needed[t] |= space.unknownOf[space.function(triangles, t, k)] >= 0;
-    }
-  }
-  const auto colours = colourTriangles(triangles, space, needed);
+  const auto colours = colourTriangles(triangles, space, space.trianglesWithUnknowns(triangles));
   const double scale = kernelScale(options);
   Index done = 0;
 #pragma omp parallel num_threads(resolveThreads(options.threads))
   {
+    // Within a colour no two threads write to the same row; the colours have a fixed order.
     RowSums sums(space.functions, static_cast<int>(system.components));
     const std::unique_ptr<TriangleAssembler> assembler =
       exact ? makeExactAssembler(work, *integrals) : makeDissertationAssembler(work);

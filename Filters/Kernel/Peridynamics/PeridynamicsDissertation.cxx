@@ -164,6 +164,7 @@ private:
       points.y[i] -= x[1];
       points.squares[i] = points.x[i] * points.x[i] + points.y[i] * points.y[i];
     }
+    // All kernel values at once, for the vector units.
     this->Kernel.evaluate(points.squares.data(), points.values.data(), count);
     for (Index i = 0; i < count; ++i)
     {

@@ -100,7 +100,6 @@ public:
 
 private:
   void findShapes();
-  std::vector<char> neededTriangles() const;
   void findPairs(const std::vector<char>& needed);
   void findTouching(const std::vector<char>& needed);
   void integrate(const std::function<bool(double)>& proceed);
@@ -136,9 +135,10 @@ PairIntegrals::PairIntegrals(
   constexpr double fineness = 1e-10;
   this->Unit = std::exp2(std::floor(std::log2(fineness * work.triangles.shortestEdge)));
   this->findShapes();
+  // Pairs repeat only in meshes of few shapes, such as structured ones.
   const Index few = std::max<Index>(64, work.triangles.size() / 16);
   this->Reuse = work.options.reuseCongruent && this->NumberOfShapes <= few;
-  const std::vector<char> needed = this->neededTriangles();
+  const std::vector<char> needed = work.space.trianglesWithUnknowns(work.triangles);
   this->Reuse ? this->findPairs(needed) : this->findTouching(needed);
   this->integrate(proceed);
 }
@@ -161,6 +161,7 @@ void PairIntegrals::findShapes()
       this->Lattice[id] = { std::llround(p[0] / this->Unit), std::llround(p[1] / this->Unit) };
     }
   }
+  // Triangles with the same two edges are congruent by a translation.
   std::map<std::array<Index, 4>, std::int32_t> shapes; // by two edges
   for (Index t = 0; t < mesh.size(); ++t)
   {
@@ -175,24 +176,10 @@ void PairIntegrals::findShapes()
 }
 
 //------------------------------------------------------------------------------
-std::vector<char> PairIntegrals::neededTriangles() const
-{
-  std::vector<char> needed(this->Work.triangles.size(), 0);
-  for (Index t = 0; t < this->Work.triangles.size(); ++t)
-  {
-    for (int k = 0; k < this->Functions; ++k)
-    {
-      const Index f = this->Work.space.function(this->Work.triangles, t, k);
-      needed[t] |= this->Work.space.unknownOf[f] >= 0;
-    }
-  }
-  return needed;
-}
-
-//------------------------------------------------------------------------------
 bool PairIntegrals::touch(Index t, Index other) const
 {
   const PlanarTriangles& mesh = this->Work.triangles;
+  // Most pairs are ruled out by their boxes.
   if (mesh.low[t][0] > mesh.high[other][0] + this->Unit ||
     mesh.low[other][0] > mesh.high[t][0] + this->Unit ||
     mesh.low[t][1] > mesh.high[other][1] + this->Unit ||
@@ -227,6 +214,7 @@ PairKey PairIntegrals::key(Index t, Index other, bool& exchanged) const
     std::swap(t, other);
     key = { key.second, key.first, -key.x, -key.y, 0 };
   }
+  // Two bits per corner of the second triangle: the corner of the first that it shares.
   if (this->Work.space.basis == PeridynamicBasis::Linear && mesh.low[t][0] <= mesh.high[other][0] &&
     mesh.low[other][0] <= mesh.high[t][0] && mesh.low[t][1] <= mesh.high[other][1] &&
     mesh.low[other][1] <= mesh.high[t][1])
@@ -300,6 +288,7 @@ void PairIntegrals::findPairs(const std::vector<char>& needed)
           continue;
         }
         this->Work.grid.near(mesh.low[t], mesh.high[t], this->Work.options.horizon, near);
+        // Triangles with equal surroundings have the same rows, up to a translation.
         Signature signature;
         for (const std::int32_t other : near)
         {
@@ -472,6 +461,7 @@ public:
         this->add(t, other, this->Integrals.rows(slot), sums);
         continue;
       }
+      // Pairs that do not touch are smooth and cheap: integrated here and not stored.
       const bool exchanged = other < t;
       const TrianglePair pair = this->Integrals.pair(t, other, exchanged);
       this->Integrator.integrate(pair, this->Block.data());

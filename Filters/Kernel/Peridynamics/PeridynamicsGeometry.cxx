@@ -135,6 +135,7 @@ BoxGrid::BoxGrid(const std::vector<Vec2>& low, const std::vector<Vec2>& high)
   this->Origin = first;
   this->Cell = { std::max((last[0] - first[0]) / static_cast<double>(this->Columns), 1e-300),
     std::max((last[1] - first[1]) / static_cast<double>(this->Rows), 1e-300) };
+  // Boxes sorted by the cells of their centres (counting sort).
   std::vector<std::int32_t> cellOf(count);
   this->Starts.assign(this->Columns * this->Rows + 1, 0);
   for (Index i = 0; i < count; ++i)
@@ -175,6 +176,7 @@ Index BoxGrid::row(double y) const
 void BoxGrid::near(Vec2 low, Vec2 high, double reach, std::vector<std::int32_t>& found) const
 {
   found.clear();
+  // Centres may be as far as the half of the largest box beyond the reach.
   const Vec2 slack = { 1.000001 * (reach + this->LargestHalf[0]),
     1.000001 * (reach + this->LargestHalf[1]) };
   const Index firstRow = this->row(low[1] - slack[1]), lastRow = this->row(high[1] + slack[1]);

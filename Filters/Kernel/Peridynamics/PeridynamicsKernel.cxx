@@ -36,6 +36,7 @@ RadialKernel::RadialKernel(const KernelFunction& function, double horizon)
     }
     return;
   }
+  // Other shapes: cumulative integrals by Gauss's rule in each interval.
   const double step = horizon / Intervals;
   for (int m = 0; m < Orders; ++m)
   {
@@ -93,6 +94,7 @@ void RadialKernel::power(const double* squares, double* values, Index count) con
     }
     return;
   }
+  // Square roots and products are several times as fast as std::pow.
   const int whole = this->Quarters / 4;
   switch (this->Quarters % 4)
   {
@@ -145,6 +147,7 @@ void RadialKernel::evaluate(const double* squares, double* values, Index count) 
       values[i] = this->value(std::sqrt(squares[i]));
     }
   }
+  // The point itself does not interact.
   const double smallest = 1e-20 * this->Horizon * this->Horizon;
   for (Index i = 0; i < count; ++i)
   {

@@ -99,6 +99,8 @@ void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
     return; // seen edge on: no angle
   }
   Nodes x, y, squares, weights;
+  // Far from the segment one rule of Gauss suffices: the pole is outside the ellipse of
+  // convergence.
   if (2.0 * (ra + rb) >= this->EllipseSum * length)
   {
     for (int l = 0; l < NodeCount; ++l)
@@ -111,6 +113,7 @@ void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
     work(x, y, squares, weights);
     return;
   }
+  // Near it the nodes are spaced by s = d sinh t, d the distance of the line.
   const Vec2 along = (1.0 / length) * e;
   const double d = std::abs(twice) / length, sign = twice > 0.0 ? 1.0 : -1.0;
   const Vec2 foot = { sign * d * along[1], -sign * d * along[0] };
@@ -167,6 +170,7 @@ void PairIntegrator::alongEdge(Vec2 a, Vec2 b, double* m) const
 //------------------------------------------------------------------------------
 void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
 {
+  // Integrals of cos^i sin^j over the angle, in closed form.
   const double angle = std::atan2(cross(a, b), dot(a, b));
   const Vec2 p = (1.0 / std::sqrt(dot(a, a))) * a, q = (1.0 / std::sqrt(dot(b, b))) * b;
   const auto change = [&](auto f) { return f(q[0], q[1]) - f(p[0], p[1]); };
@@ -206,6 +210,8 @@ void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
 /// is none.
 bool PairIntegrator::moments(Vec2 x, double* m)
 {
+  // In polar coordinates the integral is a sum over the edges: along the part of each inside the
+  // disc, and along the arcs of the circle beside it.
   const Vec2* corners = this->Pair->second;
   const Vec2 z[3] = { corners[0] - x, corners[1] - x, corners[2] - x };
   double t0[3], t1[3];
@@ -282,6 +288,7 @@ void PairIntegrator::sample(Vec2 x, double weight, double coarseWeight)
       }
     }
   }
+  // (phi_i(x) - phi_i(y)) (phi_j(x) - phi_j(y)) is a quadratic polynomial in z = y - x.
   const int d = this->FirstDegree;
   for (int i = 0; i < this->NumberUsed; ++i)
   {
@@ -385,6 +392,8 @@ bool PairIntegrator::isCut(const Triangle& part, bool& apart) const
 {
   const double square = this->Horizon * this->Horizon;
   const Vec2* other = this->Pair->second;
+  // The farthest corners decide whether everything is within the horizon, the nearest points of the
+  // edges whether nothing is.
   double farthest = 0.0, nearest = 1e300;
   for (const Corner& corner : part)
   {
@@ -441,6 +450,7 @@ void PairIntegrator::refine(const Triangle& part, int depth)
     }
     return;
   }
+  // Quartered at the midpoints of the edges.
   const auto between = [](const Corner& a, const Corner& b) {
     return Corner{ 0.5 * (a.at + b.at), a.touches && b.touches };
   };
@@ -457,6 +467,7 @@ void PairIntegrator::identicalPair(const TrianglePair& pair, double* block)
 {
   const Vec2* c = pair.first;
   const double twiceArea = cross(c[1] - c[0], c[2] - c[0]);
+  // The differences of two points of a triangle fill a hexagon; one half of it suffices.
   const Vec2 e0 = c[1] - c[0], e1 = c[2] - c[1], e2 = c[0] - c[2];
   const Vec2 hexagon[4] = { e0, -1.0 * e2, e1, -1.0 * e0 };
   const int degree = this->Components == 3 ? 4 : 2;
@@ -537,6 +548,7 @@ void PairIntegrator::integrate(const TrianglePair& pair, double* block)
   this->Pair = &pair;
   std::fill(block, block + this->blockSize(), 0.0);
   const int n = 2 * this->Functions;
+  // Shared functions stand once, in the rows of the first triangle.
   this->NumberUsed = 0;
   for (int i = 0; i < n; ++i)
   {

@@ -95,6 +95,7 @@ struct PointNumbering::Implementation
 std::vector<int> PointNumbering::Implementation::findOwners(
   const std::vector<Index>& ids, std::string& complaint) const
 {
+  // Each rank keeps the directory entries of some of the ids.
   std::vector<int> target(ids.size());
   for (std::size_t i = 0; i < ids.size(); ++i)
   {
@@ -112,6 +113,7 @@ std::vector<int> PointNumbering::Implementation::findOwners(
       entries.push_back({ asked.items[entries.size()], rank, entries.size() });
     }
   }
+  // Equal ids stand together, the lowest rank first: it is the owner.
   std::sort(entries.begin(), entries.end(),
     [](const Entry& a, const Entry& b) { return a.id != b.id ? a.id < b.id : a.place < b.place; });
   RankLists<int> answers;

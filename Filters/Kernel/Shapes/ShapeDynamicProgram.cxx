@@ -181,6 +181,7 @@ bool PlacementSolver::run()
     // Rounding must not exclude the best placement itself.
     this->StepLimit =
       static_cast<float>(this->Problem.limit - std::max(0.0, this->Floor) * (1.0 - 1e-5) + 1e-5);
+    // The own cost of vertex k counts once, on the edge from i.
     const std::vector<float>& vertex = this->Problem.vertices[k];
     for (Index p = 0; p < step.fromI.rows && !vertex.empty(); ++p)
     {
@@ -189,6 +190,7 @@ bool PlacementSolver::run()
         step.fromI.row(p)[r] += vertex[r];
       }
     }
+    // Eliminates vertex k: the least cost for each pair of places of its parents.
     PairTable out(this->Problem.sets[i]->size(), this->Problem.sets[j]->size(), Unreachable);
     this->solveStep(number, step, out);
     if (!this->report(static_cast<double>(number + 1) / static_cast<double>(n)))

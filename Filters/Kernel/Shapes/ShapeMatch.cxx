@@ -62,17 +62,19 @@ double orderingCost(double from, double to, double expected)
   return std::abs(std::log(std::max(advance, 0.01 * expected) / expected));
 }
 
-/// Cost of one boundary edge with the ordering term, over the contour's locations.
-PairTable orderedEdges(const ShapeTarget::Data& target, double expected, double weight)
+/// Costs of one boundary edge with the ordering term, over places on the contour.
+/// @param arc of the places
+/// @param expected advance along the contour
+PairTable orderedEdges(
+  const PairTable& edges, const std::vector<double>& arc, double expected, double weight)
 {
-  PairTable table = target.edges;
-  const std::size_t n = target.arc.size();
-  for (std::size_t i = 0; i < n; ++i)
+  PairTable table = edges;
+  for (std::size_t i = 0; i < arc.size(); ++i)
   {
-    for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t j = 0; j < arc.size(); ++j)
     {
       table.row(static_cast<Index>(i))[j] +=
-        static_cast<float>(weight * orderingCost(target.arc[i], target.arc[j], expected));
+        static_cast<float>(weight * orderingCost(arc[i], arc[j], expected));
     }
   }
   return table;
@@ -110,6 +112,7 @@ public:
 
   ShapeMatch run()
   {
+    // A first solution over fewer locations bounds the energy and serves if the search is stopped.
     const bool hasCoarse =
       this->Target.locations.points.size() >= SmallTarget && this->Target.coarse.points.size() >= 3;
     ShapeMatch first;
@@ -212,59 +215,45 @@ private:
 
   PlacementProblem fullProblem()
   {
-    PlacementProblem problem = this->emptyProblem();
-    const std::size_t n = this->Source.mesh.points.size();
-    problem.sets.assign(n, &this->Target.locations);
-    problem.edges.assign(n, &this->Target.edges);
-    problem.symmetricEdges = !this->Target.energy.directedEdges && !this->ordered();
-    if (this->ordered())
-    {
-      this->EdgeTables.reserve(2 * n);
-      for (std::size_t v = 0; v < n; ++v)
-      {
-        this->EdgeTables.push_back(orderedEdges(
-          this->Target, expectedAdvance(this->Source, v), this->Options.energy.ordering));
-        problem.edges[v] = &this->EdgeTables.back();
-      }
-    }
-    for (std::size_t v = 0; v < n && this->described(); ++v)
-    {
-      problem.vertices[v] = this->vertexCosts(v, this->Target.locations, {});
-    }
-    return problem;
+    return this->problemOver(this->Target.locations, this->Target.edges, {}, this->EdgeTables);
   }
 
   PlacementProblem coarseProblem()
   {
+    return this->problemOver(
+      this->Target.coarse, this->Target.coarseEdges, this->Target.coarseOf, this->CoarseTables);
+  }
+
+  /// The problem over a set of locations.
+  /// @param of the location of each member of the set; empty: the set has all locations
+  /// @param tables keep the edge costs with the ordering term
+  PlacementProblem problemOver(const LocationSet& set, const PairTable& edges,
+    const std::vector<Index>& of, std::vector<PairTable>& tables) const
+  {
     PlacementProblem problem = this->emptyProblem();
     const std::size_t n = this->Source.mesh.points.size();
-    problem.sets.assign(n, &this->Target.coarse);
-    problem.edges.assign(n, &this->Target.coarseEdges);
+    problem.sets.assign(n, &set);
+    problem.edges.assign(n, &edges);
     problem.symmetricEdges = !this->Target.energy.directedEdges && !this->ordered();
     if (this->ordered())
     {
-      this->CoarseTables.reserve(n);
+      std::vector<double> arc = this->Target.arc;
+      for (std::size_t i = 0; i < of.size(); ++i)
+      {
+        arc[i] = this->Target.arc[of[i]];
+      }
+      arc.resize(of.empty() ? arc.size() : of.size());
+      tables.reserve(n);
       for (std::size_t v = 0; v < n; ++v)
       {
-        PairTable table = this->Target.coarseEdges;
-        const double expected = expectedAdvance(this->Source, v);
-        for (std::size_t i = 0; i < this->Target.coarseOf.size(); ++i)
-        {
-          for (std::size_t j = 0; j < this->Target.coarseOf.size(); ++j)
-          {
-            table.row(static_cast<Index>(i))[j] +=
-              static_cast<float>(this->Options.energy.ordering *
-                orderingCost(this->Target.arc[this->Target.coarseOf[i]],
-                  this->Target.arc[this->Target.coarseOf[j]], expected));
-          }
-        }
-        this->CoarseTables.push_back(std::move(table));
-        problem.edges[v] = &this->CoarseTables.back();
+        tables.push_back(orderedEdges(
+          edges, arc, expectedAdvance(this->Source, v), this->Options.energy.ordering));
+        problem.edges[v] = &tables.back();
       }
     }
     for (std::size_t v = 0; v < n && this->described(); ++v)
     {
-      problem.vertices[v] = this->vertexCosts(v, this->Target.coarse, this->Target.coarseOf);
+      problem.vertices[v] = this->vertexCosts(v, set, of);
     }
     return problem;
   }
@@ -274,6 +263,7 @@ private:
   {
     const Index count = static_cast<Index>(this->Target.locations.points.size());
     const std::size_t n = points.size();
+    // Location numbers of the points.
     std::vector<Index> at;
     for (const Vec2& p : points)
     {
@@ -301,6 +291,7 @@ private:
       for (std::size_t v = 0; v < n; ++v)
       {
         const std::size_t next = (v + 1) % n;
+        // The costs are those of the full problem.
         PairTable table(sets[v].size(), sets[next].size(), Unreachable);
         for (std::size_t i = 0; i < of[v].size(); ++i)
         {
@@ -398,6 +389,7 @@ private:
     bool accepted = this->Options.centreTolerance == 0.0 || d <= tolerance;
     if (!accepted && nextBest)
     {
+      // The solutions over all places of the last two vertices, in order of their energies.
       std::vector<Solution> solutions;
       for (Index p : si.used)
       {

@@ -48,6 +48,7 @@ std::vector<Index> rankShapes(const std::vector<double>& distances, Index count)
         others.push_back(target);
       }
     }
+    // By distance; shapes without one, negative, come last.
     std::stable_sort(others.begin(), others.end(),
       [row](Index a, Index b)
       { return row[b] < 0.0 ? row[a] >= 0.0 : row[a] >= 0.0 && row[a] < row[b]; });
@@ -85,6 +86,7 @@ Recognition recognize(
       const Index other = labels[ranking[query * (count - 1) + k]];
       result.hits += other == label;
       result.hitsAt[k] += other == label;
+      // The rows of the confusion matrix sum to 1.
       result.confusion[position[label] * classes + position[other]] +=
         1.0 / static_cast<double>(size * taken);
     }

@@ -359,6 +359,8 @@ Silhouette traceSilhouette(const ImageView& image, const SilhouetteOptions& opti
   shape.width = image.width;
   shape.height = image.height;
   shape.components = static_cast<Index>(sizes.size());
+  // The largest component is the shape. Its line with the largest area is the outline; lines of
+  // negative area run around holes.
   const Index label = std::max_element(sizes.begin(), sizes.end()) - sizes.begin() + 1;
   std::vector<std::vector<Vec2>> lines = framed.trace(label);
   for (std::vector<Vec2>& line : lines)
@@ -428,6 +430,7 @@ std::vector<Vec2> approximateOutline(const std::vector<Vec2>& outline, double sp
   spacing = std::min(spacing, perimeter / 3.0);
   for (int attempt = 0; attempt < SpacingAttempts; ++attempt)
   {
+    // A smaller spacing follows the outline more closely until the polygon does not meet itself.
     const Index count = std::max<Index>(
       3 * PointsPerSpacing / 2, std::llround(PointsPerSpacing * perimeter / spacing));
     const std::vector<Vec2> points = resampleOutline(line, count);

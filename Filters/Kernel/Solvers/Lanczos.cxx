@@ -31,6 +31,7 @@ void forEachPiece(Index n, int threads, const Work& work)
   }
 }
 
+/// A scalar product with eight sums side by side, for the vector units; the order is fixed.
 double sumOf(const double* x, const double* y, Index begin, Index end)
 {
   double sums[8] = {};
@@ -49,6 +50,7 @@ double sumOf(const double* x, const double* y, Index begin, Index end)
   return ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
 }
 
+/// A scalar product, bitwise the same for any number of threads.
 double product(const std::vector<double>& x, const std::vector<double>& y, int threads)
 {
   const auto n = static_cast<Index>(x.size());
@@ -100,6 +102,7 @@ void orthogonalize(
     });
 }
 
+/// The sum of the basis vectors times weights.
 std::vector<double> combine(const std::vector<std::vector<double>>& basis,
   const std::vector<double>& weights, Index n, int threads)
 {
@@ -175,15 +178,18 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
     {
       throw Error("the matrix has entries that are not finite numbers");
     }
+    // Full orthogonalization, twice for accuracy: no copies of eigenvalues appear.
     orthogonalize(basis, k + 1, w, threads);
     orthogonalize(basis, k + 1, w, threads);
     beta = std::sqrt(product(w, w, threads));
     t.diagonal.push_back(alpha);
     size = std::max({ size, std::abs(alpha), beta });
+    // An invariant subspace: its eigenvalues are exact.
     const bool invariant = beta <= 1e-14 * size;
     const bool stop = time.reached(options.timeLimit) ||
       (options.progress &&
         !options.progress(static_cast<double>(k + 1) / static_cast<double>(maxSteps)));
+    // Ritz pairs are computed more and more rarely, as their cost grows with the steps.
     if (k + 1 >= nextCheck || k + 1 == maxSteps || invariant || stop)
     {
       low = ritzPair(t, true, invariant ? 0.0 : beta);
@@ -223,6 +229,7 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
   const Stopwatch time;
   SolveReport report;
   x.assign(n, 0.0);
+  // Jacobi preconditioner.
   std::vector<double> inverse(n), r = b, z(n), q(n);
   for (Index i = 0; i < n; ++i)
   {
@@ -259,6 +266,7 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
     !time.reached(options.timeLimit))
   {
     matrix.multiply(p.data(), q.data(), threads);
+    // One step of conjugate gradients (Golub and Van Loan, section 11.5).
     const double curvature = product(p, q, threads);
     if (!(curvature > 0.0))
     {

@@ -156,6 +156,7 @@ void LinearSolverState::configure()
   {
     petsc(KSPGMRESSetRestart(this->Solver, this->Options.restart));
   }
+  // ILU and ICC work on one rank; on several they become the solvers of the blocks.
   const bool parallel = this->Objects.ranks() > 1;
   switch (direct ? Preconditioner::None : this->Options.preconditioner)
   {
@@ -212,6 +213,7 @@ void LinearSolverState::configure()
 void LinearSolverState::applyTolerances()
 {
   check(this->Options);
+  // Tolerances in the PETSc options take precedence.
   const auto unlessGiven = [&](const char* name, double value, double kept)
   { return this->OptionSet.has(name) ? kept : value; };
   PetscReal relative = 0, absolute = 0, divergence = 0;
@@ -365,6 +367,7 @@ LinearSolution LinearSolverState::solve(const double* b, double* x)
   {
     std::fill_n(x, n, 0.0);
   }
+  // A preconditioner that cannot be set up fails every solve.
   solution.setupSeconds = this->setUp();
   if (this->Failure != SolveReason::Exact)
   {
@@ -420,6 +423,7 @@ void LinearSolverState::measure(Vec b, Vec x, LinearSolution& solution)
   solution.trueResidual = before > 0.0 && std::isfinite(after) ? after / before : 0.0;
   if (this->Options.method != KrylovMethod::Direct)
   {
+    // A preconditioner may make a large residual look small.
     const bool relative = solution.reason == SolveReason::RelativeTolerance;
     const double acceptable = std::max(FalseResidual, this->Options.relativeTolerance);
     solution.reason = relative && solution.trueResidual > acceptable ? SolveReason::FalseConvergence

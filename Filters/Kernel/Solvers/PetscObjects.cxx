@@ -60,6 +60,7 @@ PetscOptionSet::PetscOptionSet(const std::string& text)
   : Text(text)
 {
   petsc(PetscOptionsCreate(this->Database.out()));
+  // Alternately names and values; a name may have no value, but not two.
   std::istringstream words(text);
   std::string word;
   bool value = false;
@@ -278,6 +279,8 @@ void PetscSystem::distributeMatrix()
   {
     rowOf[i] = static_cast<PetscInt>(block * numbering.rows()[this->Points[i / block]] + i % block);
   }
+  // Every rank contributes the entries of its cells, also to rows of other ranks; PETSc sums them
+  // up.
   std::vector<PetscInt> rows(source.columns.size()), columns(source.columns.size());
   for (Index row = 0; row < source.size; ++row)
   {
@@ -301,6 +304,7 @@ void PetscSystem::distributeMatrix()
 void PetscSystem::attachRigidBodyModes()
 {
   const int dimension = this->System.blockSize;
+  // Smoothed aggregation builds its coarse spaces from the rigid body modes.
   PetscVector coordinates = this->createVector();
   petsc(VecSetBlockSize(coordinates, dimension));
   std::vector<double> values(static_cast<std::size_t>(this->localSize()));
@@ -331,6 +335,7 @@ void PetscSystem::add(const double* contributions, Vec rows) const
   }
   const PointNumbering& numbering = *this->System.numbering;
   const auto block = static_cast<std::size_t>(this->System.blockSize);
+  // By point, summed over the ranks, then by row again.
   std::vector<double> all(block * numbering.rows().size(), 0.0);
   for (std::size_t i = 0; i < this->Points.size(); ++i)
   {
