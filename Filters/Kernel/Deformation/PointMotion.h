@@ -1,7 +1,7 @@
 /**
  * @file PointMotion.h
- * @brief Motions of points along their true paths: an arc for a rotation, a screw for a rigid
- * motion, ever smaller radii for a bend. For parts of a boundary that a mesh is to follow (Warp.h).
+ * @brief Motions of points along their exact paths: an arc for a rotation, a screw for a rigid
+ * motion, decreasing radii for a bend. For parts of a boundary that a mesh follows (Warp.h).
  *
  * Example: the points marked, a third of the way round an axis through their middle.
  *
@@ -20,12 +20,13 @@
 
 namespace tautline
 {
-/// The numbers are stable: ParaView state files hold them.
+/// The kinds of motion; the numbers are stable: ParaView state files hold them.
 enum class MotionKind : int
 {
   /**
-   * @brief Any affine map without reflection: stretch about the centre of the points, then turn and
-   * shift along a screw. Of points in one plane, what it does across the plane does not count.
+   * @brief Any affine map without reflection: stretch about the centre of the points, then a
+   * rotation and a translation along a screw. For points in one plane only its effect in the plane
+   * counts.
    */
   Matrix = 0,
   Translation = 1,
@@ -33,12 +34,13 @@ enum class MotionKind : int
   Scaling = 3,  ///< by `factors` along the coordinate axes, from the centre
   /**
    * @brief A bar along `direction` becomes an arc of `angle` about `axis`; the line through the
-   * centre keeps its length. It is held where the points begin (ownCenter), or at the centre, and
-   * before that nothing moves.
+   * centre keeps its length. It is clamped where the points begin (ownCenter), or at the
+   * centre; nothing moves before that place.
    */
   Bending = 4
 };
 
+/// A motion by its kind; each kind reads the members it names.
 struct PointMotion
 {
   MotionKind kind = MotionKind::Matrix;
@@ -47,15 +49,16 @@ struct PointMotion
   double angle = 0.0; ///< degrees; any, also beyond a full turn
   Vec3 axis = { 0, 0, 1 };
   Vec3 factors = { 1, 1, 1 };
-  Vec3 direction = { 1, 0, 0 }; ///< of a bar to bend; what is along the axis does not count
-  bool ownCenter = true;        ///< the middle of the box around the points moved, not `center`
+  Vec3 direction = { 1, 0, 0 }; ///< of a bar to bend; its component along the axis is ignored
+  bool ownCenter = true; ///< the centre is that of the box around the moved points, else `center`
   Vec3 center = { 0, 0, 0 };
 };
 
 /**
- * @brief By how much the points marked with a value other than 0 move, 3 per point; 0 for the
- * others.
- * @param amount 0 is where they are, 1 the whole motion; more goes on
+ * @brief Displacements of the points with a nonzero flag, 3 per point; 0 for the others.
+ * @param amount 0 is the start, 1 the whole motion; larger values continue it
+ * @param points 3 coordinates per point
+ * @param moved one flag per point
  *
  * Throws Error for numbers that are not finite, an axis or a direction of length 0, factors that
  * are not positive, and matrices that mirror, flatten or are not affine.

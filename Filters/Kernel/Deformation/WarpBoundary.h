@@ -9,6 +9,10 @@
 
 namespace tautline
 {
+/**
+ * @class tautline::WarpBoundary
+ * @brief The prescribed boundary of a mesh, and where it crosses itself after a motion.
+ */
 class WarpBoundary
 {
 public:

@@ -17,9 +17,14 @@
 
 namespace tautline
 {
+/**
+ * @class tautline::ElasticWarp
+ * @brief The two elastic methods; keeps the matrix for the next boundary position.
+ */
 class ElasticWarp
 {
 public:
+  /// Sets the stiffness of the elements; mesh and parts stay alive.
   ElasticWarp(const Mesh& mesh, const WarpParts& parts, WarpControl& control);
 
   /// Displacements of all points, 3 each.

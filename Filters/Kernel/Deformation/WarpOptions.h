@@ -55,6 +55,7 @@ TAUTLINE_SOLVERS_EXPORT bool isKnown(WarpCoefficients coefficients);
 /// What Hybrid's second step starts from: at most 50 iterations, to a relative change of 1e-3.
 TAUTLINE_SOLVERS_EXPORT OptimizeOptions hybridOptimization();
 
+/// The options of a deformation; those of a single method name it.
 struct WarpOptions
 {
   WarpMethod method = WarpMethod::Hybrid;
@@ -112,7 +113,7 @@ struct WarpOptions
   std::function<bool(double)> progress;
 };
 
-/// One line of the history.
+/// One line of the history: a stage of a step.
 struct WarpRecord
 {
   double amount = 0.0;     ///< of the motion, 0 to 1
@@ -124,6 +125,7 @@ struct WarpRecord
   std::string stage;  ///< "warp", "untangle", "optimize"
 };
 
+/// The deformed mesh, and a report.
 struct WarpResult
 {
   std::vector<double> points; ///< 3 x numberOfPoints

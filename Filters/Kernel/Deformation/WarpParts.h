@@ -24,6 +24,11 @@ struct AffineMotion
   }
 };
 
+/**
+ * @class tautline::WarpParts
+ * @brief Which points are prescribed, free or held, and which parts of the mesh they belong to.
+ * Parts are connected by cells and numbered by their smallest points.
+ */
 class WarpParts
 {
 public:

@@ -13,6 +13,11 @@ namespace tautline
 {
 class ElasticWarp;
 
+/**
+ * @class tautline::WarpStep
+ * @brief Deforms a mesh by one step of a motion with the method of the options; keeps matrices for
+ * the next one from the same mesh.
+ */
 class WarpStep
 {
 public:

@@ -51,7 +51,7 @@ struct StructuredMesh
   std::vector<int> cellReferences; ///< 1 in the domain, 2 in its interaction layer
 };
 
-/// How a domain comes to its mesh.
+/// How a domain is meshed.
 enum class DomainKind
 {
   Structured, ///< made here
@@ -64,7 +64,7 @@ struct DomainInfo
 {
   const char* name;   ///< as in Python and on the command line
   const char* label;  ///< as in a menu
-  const char* source; ///< where the dissertation has it, if it has
+  const char* source; ///< where it is in the dissertation, or a remark
   DomainKind kind;
   Index cells; ///< default number of cells
   bool moving; ///< has a deformed boundary
@@ -89,7 +89,7 @@ TAUTLINE_KERNEL_EXPORT StructuredMesh structuredRectangle(Index cells);
 
 /**
  * @brief The square (0,1)^2 of right triangles of Figures 4.6 and 4.7 with an interaction layer of
- * width `interaction layer`.
+ * width `layer`.
  *
  * The legs of a triangle are h sqrt(r) and h / sqrt(r), so that the number of triangles in the
  * square is 2 / h^2 for every aspect ratio r. 1 / (h sqrt(r)) and sqrt(r) / h must be whole
@@ -99,7 +99,7 @@ TAUTLINE_KERNEL_EXPORT StructuredMesh structuredRectangle(Index cells);
 TAUTLINE_KERNEL_EXPORT StructuredMesh structuredSquare(double h, double aspectRatio, double layer);
 
 /**
- * @brief Where a boundary point goes: its displacement at the end of the motion, times `amount`.
+ * @brief The motion of a boundary point: its displacement at the end of the motion, times `amount`.
  * Motions that are not linear in amount (bending, turning) are evaluated at that amount: the inner
  * box turns by 180 degrees times amount. Zero on fixed parts.
  */

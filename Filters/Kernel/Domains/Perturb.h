@@ -1,6 +1,6 @@
 /**
  * @file Perturb.h
- * @brief Moves vertices at random, short of inverting an element or past it.
+ * @brief Moves vertices at random, with or without inverting elements.
  *
  * Example: test meshes like those of dissertation section 2.7.2, half of the interior vertices
  * moved by less than half the distance to inversion.
@@ -20,7 +20,7 @@
 
 namespace tautline
 {
-/// What to do to the mesh.
+/// How many vertices move, how far, and how many elements are to be inverted.
 struct PerturbOptions
 {
   double percentage = 50.0; ///< of the movable vertices to move, 0 to 100
@@ -35,7 +35,7 @@ struct PerturbOptions
   std::function<bool(double)> progress;
 };
 
-/// What became of it.
+/// The perturbed points, and a report.
 struct Perturbation
 {
   std::vector<double> points; ///< 3 per point of the mesh
@@ -58,11 +58,11 @@ struct Perturbation
  *
  * Each goes in a random direction: in space; in the plane of a planar mesh; in the tangent plane of
  * the cells around it on a surface. The distance to inversion is the least at which a corner
- * Jacobian of a cell around it changes its sign, given where the others are by then. It is exact:
- * each determinant is linear in one vertex. On a surface, a cell inverts where it turns by 90
- * degrees from what it was. Where no sign changes (possible around inverted elements only), it is
- * the distance of the farthest vertex of those cells. No cell changes from valid to degenerate or
- * inverted.
+ * Jacobian of a cell around it changes its sign, with the other vertices at their current places.
+ * It is exact: each determinant is linear in one vertex. On a surface, a cell inverts where it
+ * turns by 90 degrees from what it was. Where no sign changes (possible around inverted elements
+ * only), it is the distance of the farthest vertex of those cells. No cell changes from valid to
+ * degenerate or inverted.
  *
  * Then, while fewer elements than tangledFraction are inverted, movable vertices in random order go
  * past the distance to inversion, choosing among the intervals between sign changes within the size
@@ -74,6 +74,7 @@ struct Perturbation
  * lower percentage are among those moved at a higher one.
  *
  * @param fixed one flag per point, nonzero: stays; may be null
+ *
  * Throws Error on options out of range and on cells of higher order.
  */
 TAUTLINE_KERNEL_EXPORT Perturbation perturb(

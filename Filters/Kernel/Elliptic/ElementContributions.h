@@ -10,7 +10,7 @@
 
 namespace tautline
 {
-/// What each element adds to the largest eigenvalue and to the condition number.
+/// The contribution of each element to the largest eigenvalue and to the condition number.
 struct ElementContributions
 {
   std::vector<double> largestEigenvalue; ///< of each cell's stiffness matrix; NaN for cells skipped
@@ -23,6 +23,11 @@ struct ElementContributions
   double lowerBound = 0; ///< and at least this: the largest of one element matrix's free part
 };
 
+/**
+ * @brief Computes the contributions of all cells. Collective over the ranks.
+ * @param shares whether the eigenvector of the largest eigenvalue is computed for `share`
+ * @param threads 0: all cores. The result does not depend on it.
+ */
 TAUTLINE_SOLVERS_EXPORT ElementContributions elementContributions(
   const EllipticSystem& system, bool shares, int threads = 0);
 }

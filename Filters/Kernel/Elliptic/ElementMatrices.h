@@ -18,6 +18,7 @@ namespace tautline
 /// Throws Error if a mesh has cells there are no elements for: which, how many, and what to do.
 void requireElements(const Mesh& mesh);
 
+/// The product C v.
 inline Vec3 applyTensor(const SymmetricTensor& c, const Vec3& v)
 {
   return { c[0] * v[0] + c[3] * v[1] + c[5] * v[2], c[3] * v[0] + c[1] * v[1] + c[4] * v[2],

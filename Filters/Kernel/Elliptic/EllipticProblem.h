@@ -11,7 +11,7 @@
 
 namespace tautline
 {
-/// The numbers are stable: ParaView state files hold them.
+/// The equations; the numbers are stable: ParaView state files hold them.
 enum class Pde : int
 {
   Poisson = 0,   ///< -laplace u = f
@@ -19,6 +19,7 @@ enum class Pde : int
   Elasticity = 2 ///< -div tau(u) = f
 };
 
+/// An equation with its coefficients, right-hand side and Dirichlet data. Arrays are borrowed.
 struct EllipticProblem
 {
   Pde pde = Pde::Poisson;

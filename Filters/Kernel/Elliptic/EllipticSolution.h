@@ -9,13 +9,14 @@
 
 namespace tautline
 {
+/// The fields of a solution on this rank, and the report of the linear solver.
 struct EllipticSolution
 {
   int components = 1; ///< 1, or 3 for elasticity
-  /// Components per point; NaN at points outside all cells: no equation is about them.
+  /// Components per point; NaN at points outside all cells, which have no equation.
   std::vector<double> values;
-  /// Per cell, at its centre: gradient (3), or stress of elasticity (6, as SymmetricTensor). Ghosts
-  /// have theirs, too; NaN for faces beside volumes and where a value is NaN.
+  /// Per cell, at its centre: gradient (3), or stress of elasticity (6, as SymmetricTensor). Also
+  /// of ghosts; NaN for faces beside volumes and where a value is NaN.
   std::vector<double> gradients;
   LinearSolution linear;
 };

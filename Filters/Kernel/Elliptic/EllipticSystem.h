@@ -42,8 +42,8 @@ public:
    *   of a planar mesh;
    * - no free point; parts of the mesh without a fixed point where the operator is singular there
    *   (Poisson, a = 0). Elastic parts need two fixed points in the plane and three in space, not in
-   *   one line; parts that touch in one point (or in space along one edge) count as one, and that
-   *   they may turn about it is not found. On several ranks only one fixed point is required.
+   *   one line; parts that touch in one point (or in space along one edge) count as one; that
+   *   they may rotate about it is not detected. On several ranks only one fixed point is required.
    *
    * @param mesh stays alive as long as the system, and so do the arrays of problem and part
    */

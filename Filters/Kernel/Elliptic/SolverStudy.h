@@ -11,6 +11,7 @@
 
 namespace tautline
 {
+/// A solver and a preconditioner.
 struct SolverCombination
 {
   KrylovMethod method = KrylovMethod::ConjugateGradient;
@@ -26,6 +27,7 @@ TAUTLINE_SOLVERS_EXPORT std::string nameOf(const SolverCombination& combination)
 /// = false).
 TAUTLINE_SOLVERS_EXPORT std::vector<SolverCombination> dissertationCombinations();
 
+/// The combinations to run, and the limits.
 struct SolverStudyOptions
 {
   std::vector<SolverCombination> combinations = dissertationCombinations();
@@ -38,24 +40,26 @@ struct SolverStudyOptions
   /// Estimate the condition of each P^-1 A by the Ritz values of CG, which is run besides where it
   /// is not in the list.
   bool conditions = true;
-  int repetitions = 1;         ///< the best time of so many
+  int repetitions = 1;         ///< the best of their times counts; at least 1
   double maximumSeconds = 0.0; ///< of the whole study; 0: no limit
   /// Called with the fraction done, 0 to 1; the study stops when it returns false. On several ranks
   /// all have one or none has.
   std::function<bool(double)> progress;
 };
 
+/// The result of one combination.
 struct SolverStudyRow
 {
   SolverCombination combination;
   LinearSolution linear;     ///< of the fastest repetition
-  double seconds = 0.0;      ///< set-up and solve, as time passes; of several ranks the slowest
-  double cpuSeconds = 0.0;   ///< what this process computed for that, on all threads
-  double condition = 0.0;    ///< of P^-1 A, estimated from inside its spectrum; 0: not known
+  double seconds = 0.0;      ///< wall time of set-up and solve; of several ranks the slowest
+  double cpuSeconds = 0.0;   ///< CPU time of this process for that, all threads
+  double condition = 0.0;    ///< of P^-1 A, estimated from inside its spectrum; 0: not estimated
   double trueResidual = 0.0; ///< norm of b - A x over that of b
-  bool run = false;          ///< false when the time was over before, or the study was stopped
+  bool run = false;          ///< false if the study ended before it
 };
 
+/// The results of all combinations, and a recommendation.
 struct SolverStudy
 {
   std::vector<SolverStudyRow> rows; ///< one per combination

@@ -13,14 +13,15 @@
 
 namespace tautline
 {
+/// The size of the layer and of its triangles.
 struct InteractionLayerOptions
 {
   double width = 0.2; ///< minimum width, in the unit of the mesh; above 0
-  double elementSize =
-    0.0; ///< edge of the triangles of the interaction layer; 0: the mean edge of the boundary
+  /// Edge of the triangles of the interaction layer; 0: the mean edge of the boundary.
+  double elementSize = 0.0;
   int threads = 0; ///< 0 is all cores; the result does not depend on it
-  std::function<bool(double)>
-    progress; ///< called with the fraction done; ends with an Error when it returns false
+  /// Called with the fraction done, 0 to 1; the function ends with an Error when it returns false.
+  std::function<bool(double)> progress;
 };
 
 /**

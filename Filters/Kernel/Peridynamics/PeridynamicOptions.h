@@ -24,13 +24,14 @@ enum class KernelShape
   Table = 4     ///< linear between values at equal distances from 0 to delta
 };
 
+/// A radial kernel; each shape reads the members it names.
 struct KernelFunction
 {
   KernelShape shape = KernelShape::Power;
-  double exponent = 1.0; ///< p of Power
+  double exponent = 1.0; ///< p of Power, 0 to singularLimit() (exclusive)
   double width = 0.5;    ///< of Gaussian, in horizons; above 0
-  std::vector<double>
-    table; ///< of Table: two or more values, the first at r = 0, the last at delta
+  /// Of Table: two or more values, at least 0 and not all 0; the first at r = 0, the last at delta.
+  std::vector<double> table;
 };
 
 /// The functions the solution is made of.
@@ -69,6 +70,7 @@ enum class RuleSet
   ThreeOne = 4    ///< three outer points, one inner
 };
 
+/// The model, its discretization and the limits of an assembly.
 struct PeridynamicOptions
 {
   double horizon = 0.2; ///< delta, above 0, in the unit of the mesh
@@ -87,11 +89,11 @@ struct PeridynamicOptions
   bool allowThinLayer = false;
   /// Exact: whether pairs of triangles that are congruent up to a translation are integrated once.
   bool reuseCongruent = true;
-  double memoryLimit = 0.0; ///< bytes the result may take; 0: as many as the machine has free
+  double memoryLimit = 0.0; ///< bytes the result may take; 0: 90 % of the free memory
   double timeLimit = 0.0;   ///< seconds; 0 is none
   int threads = 0;          ///< 0 is all cores; the result does not depend on it
-  std::function<bool(double)>
-    progress; ///< called with the fraction done; ends with an Error when it returns false
+  /// Called with the fraction done, 0 to 1; the assembly ends with an Error when it returns false.
+  std::function<bool(double)> progress;
 };
 
 /**
@@ -104,7 +106,7 @@ TAUTLINE_SOLVERS_EXPORT double singularLimit(PeridynamicBasis basis, Peridynamic
 /// The number of functions of a basis.
 TAUTLINE_SOLVERS_EXPORT Index numberOfFunctions(const HorizonMesh& mesh, PeridynamicBasis basis);
 
-/// A matrix and what its rows are.
+/// A stiffness matrix, the meaning of its rows, and a report.
 struct PeridynamicSystem
 {
   SparseMatrix matrix;  ///< symmetric

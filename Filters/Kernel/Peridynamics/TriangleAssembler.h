@@ -61,6 +61,8 @@ std::unique_ptr<TriangleAssembler> makeDissertationAssembler(const PeridynamicWo
 
 /// Integrals over pairs of triangles, kept for congruent ones.
 class PairIntegrals;
+/// Integrates the pairs that are kept; `proceed` gets the fraction done and returns whether to
+/// continue.
 std::shared_ptr<PairIntegrals> makePairIntegrals(
   const PeridynamicWork& work, const std::function<bool(double)>& proceed);
 Index numberOfIntegratedPairs(const PairIntegrals& integrals);

@@ -18,6 +18,7 @@
 
 namespace tautline
 {
+/// The MPI communicator; the process alone for null.
 inline MPI_Comm mpiOf(Communicator communicator)
 {
   return communicator ? *static_cast<const MPI_Comm*>(communicator) : MPI_COMM_SELF;

@@ -12,12 +12,12 @@
 
 namespace tautline
 {
-/// What to do about triangles that a placement turns over.
+/// The treatment of triangles that a placement mirrors.
 enum class Reflection
 {
   Forbidden = 0, ///< they count as flat
-  Whole = 1, ///< the shape or its mirror image, whichever fits better; single triangles as above
-  Free = 2   ///< they cost nothing by themselves, as in the dissertation's formula
+  Whole = 1,     ///< the better one of the shape and its mirror image; triangles as Forbidden
+  Free = 2       ///< they cost nothing by themselves, as in the dissertation's formula
 };
 
 /// The terms of the energy and their weights.
@@ -89,12 +89,13 @@ enum class Locations
   Contour = 2   ///< points at equal distances along the target's outline
 };
 
+/// The set of locations for the vertices of the source.
 struct LocationOptions
 {
   Locations kind = Locations::Grid;
-  Index columns = 30; ///< of the grid
+  Index columns = 30; ///< of the grid; columns and rows are at least 2
   Index rows = 30;
-  Index contour = 60; ///< points on the outline
+  Index contour = 60; ///< points on the outline, at least 3
   int threads = 0;    ///< 0: all cores. The result does not depend on it.
 };
 
@@ -107,7 +108,9 @@ public:
    * Prepares a target. Edge costs are tables over pairs of locations, which depend on lambda,
    * smoothing and directedEdges of the energy only; descriptors are made if it weights them.
    * @param grey the image, if its grey values rather than the silhouette shall give the gradient;
-   * may be null Throws Error if there are less than 3 locations, their table would take more than 4
+   * may be null
+   *
+   * Throws Error if there are less than 3 locations, their table would take more than 4
    * GiB, or an option is out of range.
    */
   ShapeTarget(const Silhouette& shape, const LocationOptions& locations,
@@ -189,6 +192,7 @@ enum class MatchStop
   Stopped = 2 ///< progress() returned false
 };
 
+/// A placement of the source in the target, with its energy.
 struct ShapeMatch
 {
   std::vector<Vec2> points; ///< of the source's vertices in the target

@@ -1,6 +1,6 @@
 /**
  * @file ShapeTarget.h
- * @brief What a target prepares for its matches. Internal to the kernel: not installed.
+ * @brief The tables that a target prepares for its matches. Internal to the kernel: not installed.
  */
 #ifndef tautline_ShapeTarget_h
 #define tautline_ShapeTarget_h
@@ -50,6 +50,7 @@ struct PairTable
   const float* row(Index i) const { return this->values.data() + i * this->columns; }
 };
 
+/// What matches need of a target, computed once.
 struct ShapeTarget::Data
 {
   ShapeEnergy energy;

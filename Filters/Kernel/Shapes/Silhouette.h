@@ -33,10 +33,11 @@ enum class Foreground
   Dark = 2       ///< at or below it
 };
 
+/// How the shape is separated from its surroundings.
 struct SilhouetteOptions
 {
-  /// Grey value between the shape and its surroundings; NaN, the default: midway between the least
-  /// and the greatest value.
+  /// Grey value between the shape and its surroundings; NaN, the default: midway between the
+  /// smallest and the largest value.
   double threshold = std::nan("");
   Foreground foreground = Foreground::Automatic;
 };

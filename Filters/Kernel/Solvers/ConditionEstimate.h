@@ -11,18 +11,20 @@
 
 namespace tautline
 {
+/// Extreme eigenvalues with their errors and vectors.
 struct ConditionEstimate
 {
   double smallest = 0.0, largest = 0.0; ///< eigenvalues; 0 where not found
   /// Relative errors: bounds from residuals or, where eigenvalues crowd, an estimate from the last
-  /// half of the iterations; infinity where nothing is known (Ritz values).
+  /// half of the iterations; infinity where there is no bound (Ritz values).
   double smallestError = 0.0, largestError = 0.0;
   double condition = 0.0; ///< largest / smallest; 0 where the smallest is not positive
   bool converged = false;
   std::string method;  ///< "Krylov-Schur, shift-invert (Cholesky)", ...
   std::string message; ///< what limits the accuracy, or why it failed; or ""
-  int iterations =
-    0; ///< steps of Lanczos, restarts of Krylov-Schur, iterations of CG or LOBPCG; of both ends
+  /// Steps of Lanczos, restarts of Krylov-Schur, iterations of CG or LOBPCG; for both eigenvalues
+  /// together.
+  int iterations = 0;
   double seconds = 0.0;
   /// Eigenvectors, this rank's unknowns; empty where not found (Ritz values, or no time).
   std::vector<double> smallestVector, largestVector;

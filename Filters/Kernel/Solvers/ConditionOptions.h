@@ -9,7 +9,7 @@
 
 namespace tautline
 {
-/// How eigenvalues are found. The numbers are stable: ParaView state files hold them.
+/// The methods for extreme eigenvalues. The numbers are stable: ParaView state files hold them.
 enum class SpectrumMethod : int
 {
   Automatic = 0,  ///< Accurate
@@ -19,18 +19,19 @@ enum class SpectrumMethod : int
   Accurate = 2
 };
 
+/// The spectrum to estimate, the accuracy and the limits.
 struct ConditionOptions
 {
   SpectrumMethod method = SpectrumMethod::Automatic;
   /// None: the spectrum of A; else of P^-1 A.
   Preconditioner preconditioner = Preconditioner::None;
-  double omega = 1.0; ///< of SSOR
-  /// Relative, of each eigenvalue; multigrid takes ten times longer to 1e-6.
+  double omega = 1.0; ///< of SSOR, 0 to 2 (exclusive)
+  /// Relative, of each eigenvalue, 0 to 1 (exclusive); multigrid takes ten times longer to 1e-6.
   double tolerance = 1e-4;
-  int maximumIterations = 10000;
-  /// 0: no limit; looked at between iterations, not in a factorisation.
+  int maximumIterations = 10000; ///< at least 1
+  /// 0: no limit; checked between iterations, not in a factorisation.
   double maximumSeconds = 0.0;
-  std::string petscOptions;
+  std::string petscOptions; ///< "-name value ...", as SolverOptions::petscOptions
   /// Called with the fraction done, 0 to 1; the estimate stops when it returns false.
   std::function<bool(double)> progress;
 };

@@ -54,6 +54,7 @@ struct ExtremeEigenvalue
   PetscVector vector;  ///< of P^-1 A
 };
 
+/// Both ends of a spectrum.
 struct ExtremeEigenvalues
 {
   ExtremeEigenvalue smallest, largest;

@@ -15,7 +15,7 @@
 
 namespace tautline
 {
-/// How far to go.
+/// Accuracy and limits.
 struct LanczosOptions
 {
   double tolerance = 1e-8;    ///< relative error bound of both eigenvalues to reach
@@ -26,7 +26,7 @@ struct LanczosOptions
   std::function<bool(double)> progress;
 };
 
-/// What was found.
+/// The eigenvalues found, with bounds and vectors.
 struct Spectrum
 {
   double smallest = 0.0, largest = 0.0; ///< eigenvalues
@@ -43,11 +43,11 @@ struct Spectrum
 };
 
 /**
- * @brief Both ends of the spectrum of a symmetric matrix by the Lanczos method with full
+ * @brief The extreme eigenvalues of a symmetric matrix by the Lanczos method with full
  * reorthogonalisation (twice), from a fixed pseudo-random vector.
  *
- * Of a spectrum with more than `maxIterations` steps to go, or when time is up or progress() says
- * stop, the best found so far, with its bounds and `converged` false. Throws Error for an empty
+ * When the limits are reached or progress() returns false, the result is the best so far, with its
+ * bounds and `converged` false. Throws Error for an empty
  * matrix and for one with entries that are not finite.
  *
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., section 10.1-10.3; the bound:

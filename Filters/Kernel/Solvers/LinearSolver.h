@@ -37,13 +37,13 @@ public:
   LinearSolver(const LinearSolver&) = delete;
   LinearSolver& operator=(const LinearSolver&) = delete;
 
-  /// Builds the preconditioner or factorisation, unless there; returns the seconds it took.
+  /// Builds the preconditioner or factorisation, unless it exists; returns the seconds it took.
   double setUp();
 
   /**
    * @brief Solves A x = b. On several ranks b holds this rank's contributions (added up like the
    * matrix) and x gets the values of all of this rank's unknowns, shared ones too. A failure is a
-   * reason, with x the best there is; it does not throw.
+   * reason, with x the last iterate; it does not throw.
    */
   LinearSolution solve(const double* b, double* x);
 

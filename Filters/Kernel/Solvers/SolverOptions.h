@@ -37,6 +37,7 @@ enum class Preconditioner : int
 
 /// Number of a combination in Table 2.5, 1 to 16; 0 for one that is not there.
 TAUTLINE_SOLVERS_EXPORT int combinationNumber(KrylovMethod method, Preconditioner preconditioner);
+/// The usual name, "Bi-CGSTAB", "BoomerAMG", ...; "unknown" for other numbers.
 TAUTLINE_SOLVERS_EXPORT const char* nameOf(KrylovMethod method);
 TAUTLINE_SOLVERS_EXPORT const char* nameOf(Preconditioner preconditioner);
 
@@ -51,18 +52,19 @@ TAUTLINE_SOLVERS_EXPORT const char* nameOf(Preconditioner preconditioner);
  */
 TAUTLINE_SOLVERS_EXPORT const char* fastMultigridOptions();
 
+/// The method, its tolerances and limits.
 struct SolverOptions
 {
   KrylovMethod method = KrylovMethod::ConjugateGradient;
   Preconditioner preconditioner = Preconditioner::BoomerAMG;
-  double relativeTolerance = 1e-5; ///< of the preconditioned residual, as PETSc measures it (2.7)
-  double absoluteTolerance = 1e-50;
-  int maximumIterations = 10000;
-  int restart = 30;            ///< m of GMRES(m)
-  double omega = 1.0;          ///< of SSOR, 0 to 2 (exclusive)
-  double maximumSeconds = 0.0; ///< 0: no limit; checked between iterations, not in a set-up
-  bool initialGuess = false;   ///< start from the x passed in rather than from 0
-  bool ritzValues = false;     ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
+  double relativeTolerance = 1e-5;  ///< of the preconditioned residual, as PETSc measures it (2.7)
+  double absoluteTolerance = 1e-50; ///< of the same residual; at least 0
+  int maximumIterations = 10000;    ///< at least 0
+  int restart = 30;                 ///< m of GMRES(m), at least 1
+  double omega = 1.0;               ///< of SSOR, 0 to 2 (exclusive)
+  double maximumSeconds = 0.0;      ///< 0: no limit; checked between iterations, not in a set-up
+  bool initialGuess = false;        ///< start from the x passed in rather than from 0
+  bool ritzValues = false;          ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
   /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they take precedence
   /// over the above.
   std::string petscOptions;
@@ -94,10 +96,12 @@ enum class SolveReason : int
   FalseConvergence = 14
 };
 
+/// Whether a solve reached its tolerance.
 TAUTLINE_SOLVERS_EXPORT bool converged(SolveReason reason);
 /// A sentence for the user.
 TAUTLINE_SOLVERS_EXPORT const char* describe(SolveReason reason);
 
+/// The report of a solve.
 struct LinearSolution
 {
   SolveReason reason = SolveReason::OtherFailure;
