@@ -256,6 +256,31 @@ void EllipticChecks::requireInPlane(
 }
 
 //------------------------------------------------------------------------------
+/// Whatever holds a part on one rank holds it on all ranks that share points of it: repeats until
+/// nothing changes anywhere.
+void EllipticChecks::spreadHeld(UnionFind& parts, std::vector<unsigned char>& held) const
+{
+  const auto points = static_cast<Index>(held.size());
+  Index before = -1;
+  for (Index count = 0; count != before && this->Numbering.ranks() > 1;)
+  {
+    before = count;
+    std::vector<unsigned char> heldParts(held.size(), 0);
+    for (Index point = 0; point < points; ++point)
+    {
+      heldParts[parts.find(point)] |= held[point];
+    }
+    for (Index point = 0; point < points; ++point)
+    {
+      held[point] = heldParts[parts.find(point)];
+    }
+    this->Numbering.either(held.data());
+    count = this->Numbering.sum(
+      static_cast<Index>(std::count(held.begin(), held.end(), static_cast<unsigned char>(1))));
+  }
+}
+
+//------------------------------------------------------------------------------
 void EllipticChecks::requireFixedParts(
   const std::vector<unsigned char>& used, const std::vector<unsigned char>& fixed) const
 {
@@ -289,30 +314,11 @@ void EllipticChecks::requireFixedParts(
       anchors[parts.find(point)].add(view, point);
     }
   }
-  // What holds a part on one rank holds it on all that share points of it.
-  Index before = -1;
-  for (Index count = 0; count != before;)
+  for (Index point = 0; point < view.numberOfPoints; ++point)
   {
-    before = count;
-    std::vector<unsigned char> heldParts(view.numberOfPoints, 0);
-    for (Index point = 0; point < view.numberOfPoints; ++point)
-    {
-      const Index part = parts.find(point);
-      heldParts[part] |= held[point] || anchors[part].count >= needed;
-    }
-    for (Index point = 0; point < view.numberOfPoints; ++point)
-    {
-      held[point] = heldParts[parts.find(point)];
-    }
-    this->Numbering.either(held.data());
-    count = this->Numbering.sum(
-      static_cast<Index>(std::count(held.begin(), held.end(), static_cast<unsigned char>(1))));
-    if (oneRank)
-    {
-      break;
-    }
+    held[point] = anchors[parts.find(point)].count >= needed;
   }
-
+  this->spreadHeld(parts, held);
   // Parts that are held nowhere, each counted once.
   Index loose = 0, first = -1;
   std::vector<unsigned char> counted(view.numberOfPoints, 0);

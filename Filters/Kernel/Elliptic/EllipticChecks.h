@@ -11,6 +11,8 @@
 
 namespace tautline
 {
+class UnionFind;
+
 /// Checks a mesh and a problem before anything is assembled; all ranks throw together.
 class EllipticChecks
 {
@@ -52,6 +54,7 @@ private:
   void throwTogether(const std::string& message) const;
   void requireInPlane(
     const double* vectors, const std::vector<unsigned char>& where, const char* name) const;
+  void spreadHeld(UnionFind& parts, std::vector<unsigned char>& held) const;
 
   const Mesh& Input;
   const EllipticProblem& Problem;
