@@ -129,6 +129,7 @@ bool Triangulation::inCircle(Index a, Index b, Index c, Index p) const
     1e-15L * (std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]));
 }
 
+/// Walks from the last triangle towards p.
 Index Triangulation::locate(Index p)
 {
   Index t = this->Last;
@@ -194,6 +195,7 @@ void Triangulation::flip(Index t, int corner)
   this->TriangleOf[b] = u;
 }
 
+/// Flips edges until the triangles around p are Delaunay.
 void Triangulation::legalize(std::vector<std::pair<Index, Index>>& open, Index p)
 {
   // Triangles at p whose edge opposite p may have to be flipped.
@@ -224,6 +226,7 @@ void Triangulation::legalize(std::vector<std::pair<Index, Index>>& open, Index p
   }
 }
 
+/// Adds the point p to the triangle or the edge it lies in.
 void Triangulation::insert(Index p)
 {
   const Index t = this->locate(p);
@@ -314,6 +317,7 @@ bool Triangulation::hasEdge(Index a, Index b, Index& triangle) const
   return false;
 }
 
+/// Flips edges until the segment a-b is one.
 void Triangulation::recover(Index a, Index b)
 {
   Index t;

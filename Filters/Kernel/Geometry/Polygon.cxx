@@ -62,6 +62,7 @@ std::vector<Triangle> clipEars(const std::vector<Vec2>& points)
   return triangles;
 }
 
+/// Of each triangle, the triangles across the edges opposite its corners, -1 at the boundary.
 std::vector<Triangle> findNeighbours(const std::vector<Triangle>& triangles)
 {
   std::map<std::pair<Index, Index>, std::pair<Index, int>> edges;
@@ -179,6 +180,7 @@ std::vector<EliminationStep> eliminate(const PolygonMesh& mesh)
 }
 }
 
+/// Relative to the first vertex, so that polygons far from the origin keep their digits.
 double signedArea(const std::vector<Vec2>& polygon)
 {
   double sum = 0.0;

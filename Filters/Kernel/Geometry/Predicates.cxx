@@ -9,6 +9,9 @@ namespace tautline
 {
 namespace
 {
+// Bounds of the rounding of the determinants below (J. R. Shewchuk, "Adaptive precision
+// floating-point arithmetic and fast robust geometric predicates", Discrete Comput. Geom. 18,
+// 1997).
 constexpr double Epsilon = 0.5 * std::numeric_limits<double>::epsilon();
 constexpr double OrientationBound = (3.0 + 16.0 * Epsilon) * Epsilon;
 constexpr double CircleBound = (10.0 + 96.0 * Epsilon) * Epsilon;
@@ -29,6 +32,7 @@ void twoSum(double a, double b, double& sum, double& error)
   error = (a - (sum - bVirtual)) + (b - bVirtual);
 }
 
+/// e + b, exactly.
 void add(Expansion& e, double b)
 {
   Expansion result;
@@ -51,6 +55,7 @@ void add(Expansion& e, double b)
   e = std::move(result);
 }
 
+/// a + factor b, exactly.
 Expansion plus(Expansion a, const Expansion& b, double factor = 1.0)
 {
   for (double component : b)
@@ -60,6 +65,7 @@ Expansion plus(Expansion a, const Expansion& b, double factor = 1.0)
   return a;
 }
 
+/// a b, exactly: each product with its rounding error.
 Expansion times(const Expansion& a, const Expansion& b)
 {
   Expansion result;
@@ -97,6 +103,7 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c)
   {
     return sign(det);
   }
+  // Within the bound of rounding: the sign of the exact determinant.
   return sign(plus(times(difference(a[0], c[0]), difference(b[1], c[1])),
     times(difference(a[1], c[1]), difference(b[0], c[0])), -1.0));
 }
@@ -117,6 +124,7 @@ int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
   {
     return sign(det);
   }
+  // Within the bound of rounding: the same sum, exactly.
   Expansion exact;
   for (int i = 0; i < 3; ++i)
   {

@@ -137,6 +137,7 @@ double ObjectiveSumState::run(double scale, double* gradient) const
       if constexpr (Template == ObjectiveTemplate::PowerMean ||
         Template == ObjectiveTemplate::Maximum)
       {
+        // Scaled by the largest term; the gradient needs the value first: two passes.
         const double F = f.combine<Template>(this->elements.run<false, ScaledSums>(
           [&f](const BatchContext& context, const Batch& batch, ScaledSums& total, Packet&)
           { f.addScaled<Template>(context, batch, total); },

@@ -62,6 +62,7 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
   this->Mover.begin(values);
   const VertexBlocks& blocks = this->Simplices.blocks();
   const std::size_t numberOfBlocks = blocks.byColour.size();
+  // Results are kept per block and added in order: they do not depend on the number of threads.
   std::vector<double> gradient2(numberOfBlocks, 0.0), changes(n * numberOfBlocks, 0.0);
   std::vector<Index> visited(numberOfBlocks, 0), moved(numberOfBlocks, 0);
   std::vector<unsigned char> next(this->Simplices.freeVertices(), 0);
@@ -120,6 +121,7 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
   {
     values[i] = this->Mover.objective(i, total[i]);
   }
+  // The next sweep visits the vertices that moved and their neighbours.
   if (this->Options.culling > 0)
   {
     this->Active.swap(next);

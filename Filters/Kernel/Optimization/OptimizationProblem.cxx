@@ -94,6 +94,7 @@ void simplexInvariants(const SimplexMesh& mesh, std::int32_t first, int lanes, P
   constexpr int corners = Dim + 1;
   const std::int32_t* ids = mesh.corners() + static_cast<std::size_t>(corners) * first;
   std::int32_t filled[corners * PacketWidth];
+  // The last lanes repeat a simplex.
   if (lanes < PacketWidth)
   {
     for (int l = 0; l < PacketWidth; ++l)
@@ -149,6 +150,7 @@ void simplexInvariants(const SimplexMesh& mesh, std::int32_t first, int lanes, P
   }
 }
 
+/// The totals of all simplices, of which those of weight 0 do not count.
 template <int Dim>
 SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weights, int threads)
 {
@@ -250,6 +252,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   this->Start.assign(this->Simplices->coordinates(),
     this->Simplices->coordinates() +
       VertexStride * static_cast<std::size_t>(this->Simplices->vertices()));
+  // Objectives that are energies of the simplices are evaluated without the metrics.
   this->Sums.resize(this->Resolved.size());
   this->Weights.resize(this->Resolved.size());
   this->AllFast = true;
@@ -303,6 +306,7 @@ LocalTerm OptimizationProblem::fastTerm(const Objective& objective) const
       return term; // several corners make one value
     }
   }
+  // Weights and tensors belong to cells, which the energies do not see.
   if (this->Moving->blocks().empty() || objective.elementWeights ||
     (objective.evaluation.targets && !objective.evaluation.targets->metricRoots.empty()))
   {
@@ -400,6 +404,7 @@ void OptimizationProblem::rescaleUntangling()
   }
   const Index cells = this->Moving->view().numberOfCells;
   std::vector<double> q(cells);
+  // The largest element values of the other objectives are what the untangling ones have to exceed.
   const auto largest = [&](const Objective& objective)
   {
     evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
@@ -484,6 +489,7 @@ LocalOptions OptimizationProblem::localOptions() const
       ofVertex.push_back({ n[0], n[1], n[2] });
     }
   };
+  // From points to vertices, in the order and the scale of the simplices.
   directions(this->Options.slidePlanes, local.planes);
   directions(this->Options.slideLines, local.lines);
   for (std::int32_t v = 0; this->Options.slideSurface && v < s.freeVertices(); ++v)
@@ -592,6 +598,7 @@ IterationRecord OptimizationProblem::record(int iteration)
 {
   IterationRecord record;
   record.iteration = iteration;
+  // The mean of the mean ratio does not follow from sums of its reciprocal.
   const bool ratio = std::any_of(this->Resolved.begin(), this->Resolved.end(),
     [](const Objective& o) { return o.metric == Metric::MeanRatio; });
   if (this->AllFast && !ratio)
@@ -618,6 +625,7 @@ double OptimizationProblem::worstMovable() const
   std::vector<double> q(view.numberOfCells);
   const Objective& objective = this->Resolved[0];
   evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
+  // Elements without a free vertex cannot improve.
   std::vector<char> free(view.numberOfPoints, 0);
   for (std::int32_t v = 0; v < this->Simplices->freeVertices(); ++v)
   {

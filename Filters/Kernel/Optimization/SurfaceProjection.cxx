@@ -9,8 +9,10 @@ namespace tautline
 {
 namespace
 {
+/// Triangles in a leaf of the tree of boxes, at most.
 constexpr std::int32_t leafSize = 4;
 
+/// From a point to a box; 0 inside.
 double squareDistance(const Vec3& low, const Vec3& high, const Vec3& x)
 {
   double d2 = 0;
@@ -115,6 +117,7 @@ SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexM
       p[k] = simplices.transform(pointOf(view, facet.nodes[k]));
       finite = std::isfinite(dot(p[k], p[k]));
     }
+    // An edge is a triangle with two equal corners.
     if (finite && facet.size == 2)
     {
       result.Triangles.push_back({ p[0], p[1], p[1] });
@@ -277,6 +280,7 @@ std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
 //------------------------------------------------------------------------------
 double SurfaceProjection::distanceTo(const SurfaceProjection& other) const
 {
+  // At the corners, the middles of the edges and the centre of each triangle.
   double most2 = 0;
   for (const auto& [a, b, c] : this->Triangles)
   {

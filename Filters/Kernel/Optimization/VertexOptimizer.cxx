@@ -39,6 +39,7 @@ VertexOptimizer<Dim>::VertexOptimizer(SimplexMesh& simplices, const Mesh& mesh, 
   , Points(points)
   , Options(options)
 {
+  // Metrics read all points of the cells; energies of simplices their own patch only.
   for (const LocalTerm& term : terms)
   {
     this->Functions.push_back(this->makeFunction(term));
@@ -169,6 +170,7 @@ void VertexOptimizer<Dim>::gatherCells(std::int32_t v, VertexPatch<Dim>& patch) 
   patch.cellBatches = 0;
   for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
   {
+    // The cells of one type at the vertex, in batches.
     const CellTopology& t = topology(blocks[b].type);
     for (auto c = begin; c != end;)
     {
@@ -448,6 +450,7 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
   const double beta = iteration > 0 && last2 > 0 ? std::max(0.0, mixed / last2) : 0.0;
   double basis[Dim][Dim] = {};
   const int free = this->allowed(w.patch.vertex, basis);
+  // The negative gradient in the directions that are allowed, and a multiple of the last direction.
   for (int r = 0; r < Dim; ++r)
   {
     double projected = free == Dim ? -sum.g[r] : 0.0;
@@ -474,6 +477,7 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
     probe[c] = d[c] + h * direction[c];
     slopeHere += direction[c] * sum.g[c];
   }
+  // A second gradient a little along the direction gives the curvature.
   const std::vector<PatchSum<Dim>> kept = w.sums;
   const bool good = this->evaluate(w, probe, false);
   const PatchSum<Dim> there = good ? this->combined(w) : PatchSum<Dim>{};

@@ -155,6 +155,7 @@ void SimplexMesh::cut(
   const bool several = targets || this->Shapes.size() > 1;
 
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  // A counting sort: each simplex goes to the next place of its first vertex.
   this->Corners.resize(static_cast<std::size_t>(corners) * this->Simplices);
   this->Cell.resize(this->Simplices);
   this->Shape.resize(several ? this->Simplices : 0);

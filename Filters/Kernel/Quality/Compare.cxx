@@ -72,6 +72,7 @@ void compareMetric(const MetricInfo& info, int dimension, const CellValues& befo
   const CellValues& after, double tolerance, signed char* change, MetricChange& total)
 {
   const double ideal = info.ideal(dimension);
+  // Changes are relative to the value; near an ideal value of 0 without unit, to 1.
   const double smallest = ideal == 0 && info.unit[0] == '\0' ? 1.0 : 0.0;
   const int sense = info.direction == Direction::LargerIsBetter ? 1
     : info.direction == Direction::SmallerIsBetter              ? -1
@@ -79,6 +80,7 @@ void compareMetric(const MetricInfo& info, int dimension, const CellValues& befo
   auto changeOf = [&](Index i)
   {
     const signed char was = before.validity[i], is = after.validity[i];
+    // A change of validity decides; values only compare between elements of the same.
     if (was != is)
     {
       return is > was ? 1 : -1;

@@ -69,6 +69,7 @@ void evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& optio
   checkEvaluation(mesh, metricInfo(metric), options);
   const MeshView& view = mesh.view();
   const MetricCode code = metricCode(metric);
+  // Cells without a value get 0; nothing is filled if every cell has one.
   Index covered = 0;
   for (const CellBlock& block : mesh.blocks())
   {

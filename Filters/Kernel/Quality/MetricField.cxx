@@ -17,6 +17,7 @@ MetricField::MetricField(CellType type, const std::array<Vec3, 3>& fixed)
     p[2] = flat ? 0.0 : p[2];
   }
   const Vec3 a = this->Fixed[1] - this->Fixed[0], b = this->Fixed[2] - this->Fixed[0];
+  // The length of the edge or the area of the face: without it, no element is valid.
   const double size = flat ? norm(a) : norm(cross(a, b)) - 1e-12 * norm(a) * norm(b);
   if (!(size > 0) || !std::isfinite(size))
   {

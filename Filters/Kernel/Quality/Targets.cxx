@@ -18,6 +18,7 @@ Targets makeTargets(const Mesh& mesh, const Make& make)
 {
   const Index cells = mesh.view().numberOfCells;
   Targets targets;
+  // As many matrices per cell as it has samples; other cells have none.
   targets.offsets.assign(cells + 1, 0);
   for (const CellBlock& block : mesh.blocks())
   {
@@ -195,6 +196,7 @@ Targets tensorTargets(const Mesh& mesh, const double* tensors)
       }
       else if (dimension == 2)
       {
+        // A curved surface defines no directions: only multiples of the unit tensor are allowed.
         const double third = m.trace() / 3;
         if ((m - third * Matrix::Identity()).norm() > isotropyTolerance * m.norm())
         {

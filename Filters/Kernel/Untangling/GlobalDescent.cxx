@@ -141,6 +141,7 @@ bool GlobalDescent<Dim>::step(double* x)
   constexpr int halvings = 20;
   for (;;)
   {
+    // The direction of L-BFGS with the Hessian blocks as preconditioner.
     const double slope = this->Memory.direction(this->Gradient, this->Direction,
       [this](std::vector<double>& q)
       {

@@ -65,6 +65,7 @@ std::vector<Group> fixedGroups(const SimplexMesh& mesh, const double* x)
     }
     groups[groupOf[root]].push_back(free + i);
   }
+  // The largest first; equal ones in the order of their first vertex.
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t g = 0; g < groups.size(); ++g)
   {
@@ -136,6 +137,7 @@ RotationContinuation<Dim>::RotationContinuation(
           x[VertexStride * static_cast<std::size_t>(v) + c] / static_cast<double>(groups[g].size());
       }
     }
+    // Rotations about the centre of the hole, by equal steps about each axis.
     AxisRotation chosen = rotation;
     const std::vector<double> before = rotated;
     for (rotation.axis = Dim == 2 ? 2 : 0; rotation.axis < 3; ++rotation.axis)

@@ -262,6 +262,7 @@ bool TangledMesh<Dim>::relax(
         break; // collapsed to a point: no direction is better
       }
     }
+    // A Newton step of the regularized energy.
     const PatchSum<Dim> sum = sumOver<Dim>(patch, d.data(), energy);
     double s[Dim], slope = 0;
     newtonDirection<Dim>(sum, s);
@@ -303,6 +304,7 @@ bool TangledMesh<Dim>::relax(
       break;
     }
   }
+  // Where descent does not help: the place farthest from all planes.
   if (state.invalid > 0 && tryCenter)
   {
     std::array<double, Dim> center;

@@ -185,6 +185,7 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options)
   {
     return result;
   }
+  // Nothing to do, or nothing that may move.
   SimplexMesh simplices(mesh, options.fixed, nullptr, options.threads);
   if (result.invertedBefore == 0 || simplices.freeVertices() == 0)
   {
