@@ -6,9 +6,10 @@ namespace tautline
 {
 namespace
 {
-/// Factors a Hessian block, shifted until it is positive definite.
+/// Factors a Hessian block, shifted until it is positive definite. Not inlined: the norm decides on
+/// the shift, and is rounded in the same way wherever it is called.
 template <int Dim>
-void factorBlock(const double (&H)[Dim][Dim], double* L)
+__attribute__((noinline)) void factorBlock(const double (&H)[Dim][Dim], double* L)
 {
   using Block = SmallCholesky<Dim, CholeskyDiagonal::InverseRoot>;
   double square = 0;
