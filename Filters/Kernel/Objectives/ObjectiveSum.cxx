@@ -25,7 +25,7 @@ Objective resolved(Objective objective, int threads)
   return objective;
 }
 
-void checkForm(const Objective& objective)
+void checkTemplate(const Objective& objective)
 {
   const MetricInfo& info = metricInfo(objective.metric);
   const std::string label = info.label;
@@ -91,7 +91,7 @@ ObjectiveSumState::ObjectiveSumState(const Mesh& mesh, const Objective& given, i
   , elements(mesh, objective.metric, objective.evaluation)
 {
   const MetricInfo& info = metricInfo(this->objective.metric);
-  checkForm(this->objective);
+  checkTemplate(this->objective);
   if (this->elements.empty())
   {
     throw Error("The metric \"" + std::string(info.label) +

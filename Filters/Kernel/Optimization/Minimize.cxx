@@ -309,8 +309,8 @@ void Minimizer::newton()
   const double forcing = std::min(loosestForcing, std::sqrt(this->Norm / this->FirstNorm));
   this->First = 1;
   this->Fresh = false;
-  const int most = static_cast<int>(std::min<std::size_t>(2 * this->Size, maxInnerIterations));
-  for (int i = 0; i < most; ++i)
+  const int maxInner = static_cast<int>(std::min<std::size_t>(2 * this->Size, maxInnerIterations));
+  for (int i = 0; i < maxInner; ++i)
   {
     this->hessianTimes(d, product);
     const double curvature = this->dot(d, product), dd = this->dot(d, d);

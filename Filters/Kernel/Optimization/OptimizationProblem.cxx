@@ -408,12 +408,12 @@ void OptimizationProblem::rescaleUntangling()
   const auto largest = [&](const Objective& objective)
   {
     evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
-    double most = 0;
+    double result = 0;
     for (double value : q)
     {
-      most = std::max(most, std::abs(value));
+      result = std::max(result, std::abs(value));
     }
-    return most;
+    return result;
   };
   double others = 0;
   for (const Objective& objective : this->Resolved)

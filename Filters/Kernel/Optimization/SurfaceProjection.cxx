@@ -281,17 +281,17 @@ std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
 double SurfaceProjection::distanceTo(const SurfaceProjection& other) const
 {
   // At the corners, the middles of the edges and the centre of each triangle.
-  double most2 = 0;
+  double largest2 = 0;
   for (const auto& [a, b, c] : this->Triangles)
   {
     for (const Vec3& p :
       { a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (1.0 / 3.0) * (a + b + c) })
     {
       const Vec3 d = other.closest(p) - p;
-      most2 = std::max(most2, dot(d, d));
+      largest2 = std::max(largest2, dot(d, d));
     }
   }
-  return std::sqrt(most2);
+  return std::sqrt(largest2);
 }
 
 //------------------------------------------------------------------------------
@@ -299,7 +299,7 @@ double SurfaceProjection::distance(
   const Mesh& mesh, const SimplexMesh& simplices, const double* points, int threads) const
 {
   const MeshView& view = mesh.view();
-  double most2 = 0;
+  double largest2 = 0;
   for (const CellBlock& block : mesh.blocks())
   {
     const CellTopology& t = topology(block.type);
@@ -335,9 +335,9 @@ double SurfaceProjection::distance(
       });
     for (double d2 : ofChunk)
     {
-      most2 = std::max(most2, d2);
+      largest2 = std::max(largest2, d2);
     }
   }
-  return simplices.scale() * std::sqrt(most2);
+  return simplices.scale() * std::sqrt(largest2);
 }
 }

@@ -430,8 +430,8 @@ double VertexOptimizer<Dim>::limited(
     s2 += s[c] * s[c];
   }
   const double root2 = as * as - a2 * s2;
-  const double most = s2 > 0 && root2 > 0 ? (std::sqrt(root2) - as) / s2 : 0.0;
-  return std::max(0.0, std::min(t, most));
+  const double maxStep = s2 > 0 && root2 > 0 ? (std::sqrt(root2) - as) / s2 : 0.0;
+  return std::max(0.0, std::min(t, maxStep));
 }
 
 //------------------------------------------------------------------------------

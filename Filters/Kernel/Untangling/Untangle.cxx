@@ -62,7 +62,7 @@ void storeMoved(const SimplexMesh& simplices, const std::vector<double>& start, 
 }
 
 //------------------------------------------------------------------------------
-/// Says of each cell that is not valid, why.
+/// Sets for each cell that is not valid the reason.
 void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
   const std::vector<signed char>& validity, const std::vector<std::int32_t>& infeasible,
   UntangleResult& result)
@@ -140,7 +140,7 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
   const std::vector<double> input = result.points;
   std::vector<signed char> validity = before;
   Untangler<Dim> untangler(mesh, simplices, options, clock, result);
-  // The judge sees rounded coordinates: if it does not agree, with a wider margin.
+  // Coordinates are rounded to points: where cells lose their validity, again with a wider margin.
   for (const double margin : { 1e-12, 1e-9, 1e-6 })
   {
     const double* x = untangler.run(margin);

@@ -9,7 +9,7 @@
 
 namespace tautline
 {
-/// How hard to try before giving up. The numbers are stable: ParaView state files hold them.
+/// How many iterations to spend. The numbers are stable: ParaView state files hold them.
 enum class Effort : int
 {
   Local = 0,   ///< only the neighbourhood of inverted elements moves; at most 60 sweeps
