@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// A mesh is planar when no vertex leaves its plane by more than this fraction of the mesh's diagonal.
+/// A mesh is planar when no vertex leaves its plane by more than this fraction of the diagonal.
 constexpr double planarTolerance = 1e-6;
 
 std::string cellMessage(Index cell, const std::string& what)

@@ -46,8 +46,8 @@ double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node, co
   return sum;
 }
 
-/// Counts the parts, which `sets` has by cell, and those that are reversed: the signed size of a part
-/// decides, tangled or not; where it is lost to rounding (a vertex far out), the majority.
+/// Counts the parts, which `sets` has by cell, and those that are reversed: the signed size of a
+/// part decides, tangled or not; where it is lost to rounding (a vertex far out), the majority.
 void countParts(const Mesh& mesh, const signed char* validity, UnionFind& sets, Orientation& result)
 {
   const MeshView& view = mesh.view();

@@ -137,8 +137,8 @@ public:
     PatchSum<Dim> result = this->gradient(patch, d);
     if (hessian)
     {
-      // By differences of the gradient, over a small fraction of the patch's size; one-sided ones are
-      // enough for a direction.
+      // By differences of the gradient, over a small fraction of the patch's size; one-sided ones
+      // are enough for a direction.
       constexpr double fraction = 1e-6;
       const double h = fraction * sizeOf(patch.simplices);
       for (int r = 0; r < Dim; ++r)

@@ -11,7 +11,8 @@ namespace
 constexpr int maximumHalvings = 12;
 /// Fraction of the way to the first inversion that a step may go.
 constexpr double safety = 0.9;
-/// Changes above this fraction of an objective are seen by the scalarization itself, not by its slope.
+/// Changes above this fraction of an objective are seen by the scalarization itself, not by its
+/// slope.
 constexpr double visibleChange = 1e-6;
 
 /// A unit vector at a right angle to n, and the third.

@@ -48,8 +48,8 @@ void swapFirstTwo(TargetSimplex& shape, int dimension)
   }
 }
 
-/// Calls visit(topology, cell, corner, vertices) for each simplex of finite points at the corners of
-/// the cells of a dimension.
+/// Calls visit(topology, cell, corner, vertices) for each simplex of finite points at the corners
+/// of the cells of a dimension.
 template <class Visit>
 void visitSimplices(
   const Mesh& mesh, int dimension, const std::vector<std::int32_t>& vertexOf, const Visit& visit)
@@ -82,6 +82,12 @@ void visitSimplices(
       }
     }
   }
+}
+
+/// The power of two next to a length, so that scaling does not round; 1 if it is not a length.
+double powerOfTwo(double length)
+{
+  return length > 0 && std::isfinite(length) ? std::exp2(std::round(std::log2(length))) : 1.0;
 }
 
 /// The targets of the corners of the ideal cells, and where those of each type begin.
@@ -138,9 +144,7 @@ void SimplexMesh::cut(
       "The mesh has more elements than the optimizers take (about 500 million): split it.");
   }
   this->Simplices = static_cast<std::int32_t>(total);
-  const double mean = total > 0 ? lengths / static_cast<double>((total + 15) / 16) : 1.0;
-  // A power of two, so that scaling does not round.
-  this->Scale = mean > 0 && std::isfinite(mean) ? std::exp2(std::round(std::log2(mean))) : 1.0;
+  this->Scale = powerOfTwo(total > 0 ? lengths / static_cast<double>((total + 15) / 16) : 1.0);
 
   // The shapes of ideal corners are few; one for all simplices needs no index.
   std::vector<int> firstShape(NumberOfCellTypes, 0);

@@ -307,8 +307,7 @@ bool TangledMesh<Dim>::relax(
   // Where descent does not help: the place farthest from all planes.
   if (state.invalid > 0 && tryCenter)
   {
-    std::array<double, Dim> center;
-    this->patchCenter(patch, center);
+    const std::array<double, Dim> center = this->patchCenter(patch);
     if (this->examine(patch, center.data()).invalid < state.invalid)
     {
       d = center;
@@ -327,10 +326,10 @@ bool TangledMesh<Dim>::relax(
 }
 
 //------------------------------------------------------------------------------
-/// The Chebyshev centre of the places where all simplices of the patch are valid, or of the smallest
-/// violation; as a displacement, 0 if nothing bounds it.
+/// The Chebyshev centre of the places where all simplices of the patch are valid, or of the
+/// smallest violation; as a displacement, 0 if nothing bounds it.
 template <int Dim>
-void TangledMesh<Dim>::patchCenter(const Patch<Dim>& patch, std::array<double, Dim>& center) const
+std::array<double, Dim> TangledMesh<Dim>::patchCenter(const Patch<Dim>& patch) const
 {
   std::vector<HalfSpace<Dim>> planes;
   double reach = 0;
@@ -364,11 +363,12 @@ void TangledMesh<Dim>::patchCenter(const Patch<Dim>& patch, std::array<double, D
       }
     }
   }
-  center.fill(0.0);
+  std::array<double, Dim> center{};
   if (!planes.empty() && reach > 0)
   {
     chebyshevCenter<Dim>(planes, 2.0 * reach, center);
   }
+  return center;
 }
 
 template class TangledMesh<2>;

@@ -110,7 +110,7 @@ private:
   void examine(const double* x, Index begin, Index end, MeshState& state) const;
   void loadTarget(Index first, int lanes, Packet* weight, Packet& det) const;
   double regularization(const PatchState& state) const;
-  void patchCenter(const Patch<Dim>& patch, std::array<double, Dim>& center) const;
+  std::array<double, Dim> patchCenter(const Patch<Dim>& patch) const;
 
   static constexpr int Edges = Dim * (Dim + 1) / 2;
 
