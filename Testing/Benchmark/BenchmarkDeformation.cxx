@@ -8,7 +8,7 @@
 
 #include "../../Filters/Core/MeshAdapter.h"
 #include "../Cxx/VtkMeshes.h"
-#include "../Cxx/Warping.h"
+#include "../Cxx/Deformation/Warping.h"
 #include "Clocks.h"
 
 #include "tautline/Domains/Domains.h"

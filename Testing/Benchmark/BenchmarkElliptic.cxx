@@ -8,6 +8,7 @@
 #include "KuhnMesh.h"
 
 #include "tautline/Elliptic/EllipticSystem.h"
+#include "tautline/Elliptic/FiniteElements.h"
 
 #include <algorithm>
 #include <cstdio>
