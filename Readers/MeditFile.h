@@ -43,7 +43,5 @@ constexpr MeditSection MeditSections[] = { { "Tetrahedra", FileTetrahedron },
 
 /// Adds the fields of a .sol file to the mesh they belong to.
 void readMeditSolution(const FileContent& file, MeshFile& mesh);
-/// Writes the arrays; false, and no file, when there is none to write.
-bool writeMeditSolution(const MeshFile& mesh, const std::string& name);
 }
 #endif

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
 
 namespace tautline
 {
@@ -276,17 +277,16 @@ std::vector<Index> numbersTo(Index count)
   }
   return all;
 }
-}
 
-//------------------------------------------------------------------------------
-bool writeMeditSolution(const MeshFile& mesh, const std::string& name)
+/// The finished file of the arrays, if there are any; see writeMedit.
+std::optional<AtomicFile> solutionFile(const MeshFile& mesh, const std::string& name)
 {
   const int dimension = mesh.planar() ? 2 : 3;
   const auto points = columnsOf(mesh.pointArrays, dimension);
   const auto cells = columnsOf(mesh.cellArrays, dimension);
   if (points.empty() && cells.empty())
   {
-    return false;
+    return {};
   }
   TextOutput out(name);
   out << "MeshVersionFormatted 2\n";
@@ -300,8 +300,8 @@ bool writeMeditSolution(const MeshFile& mesh, const std::string& name)
     writeSolutionSection(out, MeditSections[i].name, cells, sections[i], dimension);
   }
   out << "\nEnd\n";
-  out.close();
-  return true;
+  return out.finish();
+}
 }
 
 //------------------------------------------------------------------------------
@@ -335,12 +335,16 @@ std::vector<std::string> writeMedit(const MeshFile& mesh, const std::string& nam
     }
   }
   out << "\nEnd\n";
-  out.close();
+  std::vector<AtomicFile> files;
+  files.push_back(out.finish());
   const std::string solution = stem + ".sol";
-  if (writeMeditSolution(mesh, solution))
+  if (std::optional<AtomicFile> values = solutionFile(mesh, solution))
   {
+    files.push_back(std::move(*values));
+    replaceAll(files);
     return { name, solution };
   }
+  replaceAll(files);
   std::remove(solution.c_str());
   return { name };
 }

@@ -181,7 +181,7 @@ void writeCorners(TextOutput& out, const MeshFile& mesh, Index cell)
   }
 }
 
-void writeElements(const MeshFile& mesh, const Plan& plan, const std::string& name)
+AtomicFile writeElements(const MeshFile& mesh, const Plan& plan, const std::string& name)
 {
   TextOutput out(name);
   const MeshArray* own = findArray(mesh.cellArrays, "BoundaryMarker");
@@ -205,10 +205,11 @@ void writeElements(const MeshFile& mesh, const Plan& plan, const std::string& na
     writeTuple(out, columns, plan.elements[i]);
     out.endLine();
   }
-  out.close();
+  return out.finish();
 }
 
-void writeBoundary(const MeshFile& mesh, const std::vector<Index>& cells, const std::string& name)
+AtomicFile writeBoundary(
+  const MeshFile& mesh, const std::vector<Index>& cells, const std::string& name)
 {
   TextOutput out(name);
   const MeshArray* marker = markerArray(mesh.cellArrays);
@@ -225,7 +226,7 @@ void writeBoundary(const MeshFile& mesh, const std::vector<Index>& cells, const 
     }
     out.endLine();
   }
-  out.close();
+  return out.finish();
 }
 
 /// Rows of a field array behind a count; `skip` leading components are not written.
@@ -385,24 +386,27 @@ std::vector<std::string> writeTetGen(const MeshFile& mesh, const std::string& na
       name + ": .node, .ele, .face, .edge, .poly or .smesh is expected as the file's ending");
   }
   const Plan plan = planFiles(mesh, name);
-  std::vector<std::string> written = { stem + ".node" };
-  TextOutput nodes(written[0]);
+  TextOutput nodes(stem + ".node");
   writeNodes(nodes, mesh, plan.planar);
-  nodes.close();
+  std::vector<AtomicFile> files;
+  files.push_back(nodes.finish());
   if (!plan.elements.empty())
   {
-    written.push_back(stem + ".ele");
-    writeElements(mesh, plan, written.back());
+    files.push_back(writeElements(mesh, plan, stem + ".ele"));
   }
   if (!plan.faces.empty())
   {
-    written.push_back(stem + ".face");
-    writeBoundary(mesh, plan.faces, written.back());
+    files.push_back(writeBoundary(mesh, plan.faces, stem + ".face"));
   }
   if (!plan.edges.empty())
   {
-    written.push_back(stem + ".edge");
-    writeBoundary(mesh, plan.edges, written.back());
+    files.push_back(writeBoundary(mesh, plan.edges, stem + ".edge"));
+  }
+  replaceAll(files);
+  std::vector<std::string> written;
+  for (const AtomicFile& file : files)
+  {
+    written.push_back(file.name());
   }
   for (const char* companion : { ".ele", ".face", ".edge" })
   {

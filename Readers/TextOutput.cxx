@@ -1,7 +1,6 @@
 #include "TextOutput.h"
 
-#include <cerrno>
-#include <cstring>
+#include <utility>
 
 namespace tautline
 {
@@ -12,24 +11,9 @@ constexpr std::size_t BufferSize = std::size_t{ 1 } << 20;
 
 //------------------------------------------------------------------------------
 TextOutput::TextOutput(const std::string& name)
-  : Name(name)
-  , File(std::fopen((name + ".part").c_str(), "wb"))
+  : File(name)
 {
-  if (!this->File)
-  {
-    throw FileError(name + ": cannot be written: " + std::strerror(errno));
-  }
   this->Buffer.reserve(BufferSize + 4096);
-}
-
-//------------------------------------------------------------------------------
-TextOutput::~TextOutput()
-{
-  if (this->File)
-  {
-    std::fclose(this->File);
-    std::remove((this->Name + ".part").c_str());
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -62,25 +46,23 @@ void TextOutput::endLine()
 //------------------------------------------------------------------------------
 void TextOutput::flush()
 {
-  if (std::fwrite(this->Buffer.data(), 1, this->Buffer.size(), this->File) != this->Buffer.size())
-  {
-    throw FileError(this->Name + ": cannot be written: " + std::strerror(errno));
-  }
+  this->File.write(this->Buffer.data(), this->Buffer.size());
   this->Buffer.clear();
+}
+
+//------------------------------------------------------------------------------
+AtomicFile TextOutput::finish()
+{
+  this->flush();
+  this->File.finish();
+  return std::move(this->File);
 }
 
 //------------------------------------------------------------------------------
 void TextOutput::close()
 {
-  this->flush();
-  const bool closed = std::fclose(this->File) == 0;
-  this->File = nullptr;
-  const std::string part = this->Name + ".part";
-  if (!closed || std::rename(part.c_str(), this->Name.c_str()) != 0)
-  {
-    const std::string reason = std::strerror(errno);
-    std::remove(part.c_str());
-    throw FileError(this->Name + ": cannot be written: " + reason);
-  }
+  AtomicFile file = this->finish();
+  file.replace();
+  file.syncName();
 }
 }

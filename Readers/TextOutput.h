@@ -6,15 +6,15 @@
 #ifndef tautline_TextOutput_h
 #define tautline_TextOutput_h
 
+#include "AtomicFile.h"
 #include "MeshFile.h"
 
 #include <charconv>
-#include <cstdio>
 #include <string_view>
 
 namespace tautline
 {
-/// Writes NAME.part and renames it in close(), so that a failure leaves an older file as it was.
+/// A failure leaves an older file as it was, see AtomicFile.
 class TextOutput
 {
 public:
@@ -22,7 +22,6 @@ public:
   explicit TextOutput(const std::string& name);
   TextOutput(const TextOutput&) = delete;
   TextOutput& operator=(const TextOutput&) = delete;
-  ~TextOutput();
 
   TextOutput& operator<<(std::string_view text)
   {
@@ -47,7 +46,9 @@ public:
   }
   /// Ends a line and hands full buffers to the system.
   void endLine();
-  /// Throws FileError when anything could not be written.
+  /// The complete file, to be replaced with others; throws FileError when a byte was not written.
+  AtomicFile finish();
+  /// Replaces the file; throws FileError when anything could not be written.
   void close();
 
 private:
@@ -61,9 +62,8 @@ private:
   }
   void flush();
 
-  std::string Name;
+  AtomicFile File;
   std::string Buffer;
-  std::FILE* File = nullptr;
 };
 }
 #endif
