@@ -17,8 +17,9 @@ LIST = "import tautline; print(*(n for n in ('warp', 'match', 'vtkShapeMatcher',
 #: The floors of the package below the capabilities, which do not import each other; _metrics serves three of them.
 FLOORS = (
     ("_errors", "_vtk"),
-    ("_arrays", "_formats", "_mesh", "_tables"),
-    ("_arguments", "_io"),
+    ("_arrays", "_files", "_formats", "_mesh", "_tables"),
+    ("_arguments", "_vtk_writers"),
+    ("_io",),
     ("_commands",),
     ("_metrics",),
 )

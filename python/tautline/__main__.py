@@ -7,6 +7,7 @@ import sys
 from importlib import import_module
 
 from . import _vtk
+from ._commands import check_outputs
 from ._errors import Error
 
 
@@ -33,6 +34,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Run a command. Returns 0, or 1 after an error, which is printed to stderr; wrong usage exits with 2."""
     parsed = _parser().parse_args(arguments)
     try:
+        check_outputs(parsed)
         return parsed.run(parsed) or 0
     except Error as error:
         print(f"tautline: {error}", file=sys.stderr)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any, Callable, Iterable
 
-from ._errors import Error
-from ._io import write
+from ._files import check_stream_or_target, replace_text
+from ._io import check_output, write
 from ._tables import csv_text
 
 #: A command: runs with the parsed arguments; the exit code is 0 for None.
@@ -64,13 +64,17 @@ def counts(mesh: Any) -> str:
     return f"{mesh.GetNumberOfPoints()} points, {mesh.GetNumberOfCells()} cells"
 
 
+def check_outputs(arguments: argparse.Namespace) -> None:
+    """Raise Error if a file that the command is to write cannot be written, before it does anything else."""
+    if getattr(arguments, "output", None):
+        check_output(arguments.output)
+    if getattr(arguments, "csv", None):
+        check_stream_or_target(arguments.csv)
+
+
 def save_text(file: str, text: str) -> None:
     """Write a text file and print its name. Raises Error if that fails."""
-    try:
-        with open(file, "w", encoding="utf-8", newline="") as out:
-            out.write(text)
-    except OSError as error:
-        raise Error(f"{file}: cannot be written: {error.strerror}") from None
+    replace_text(file, text, stream=True)
     print(file)
 
 

@@ -10,8 +10,10 @@ from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutput
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
 
 from ._errors import Error, plain, run, watch
+from ._files import check_target
 from ._formats import FORMATS, Format
 from ._mesh import from_arrays
+from ._vtk_writers import write_composite, write_data
 
 #: What every function takes as a mesh: a vtkDataSet, a composite data set, a file name, the result of another function,
 #: or (points, cells), see from_arrays().
@@ -75,22 +77,32 @@ def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
         Gmsh (.msh), OFF (.off).
     options: binary (False): write .msh as bytes. Not for formats of VTK.
 
+    A file is replaced as a whole: whatever happens, there is the older file or the complete new one. Where `file` is
+    a link, the file it points to is replaced. The blocks of a .vtm file are in a directory beside it.
+
     Returns the names of the files written. Raises Error if the format cannot hold the mesh, or if a file cannot be
     written.
     """
     name, ending = fspath(file), Path(file).suffix.lower()
-    data = as_mesh(mesh)
-    if ending not in FORMATS or not FORMATS[ending].writer:
-        known = " ".join(sorted(key for key, form in FORMATS.items() if form.writer))
-        raise Error(f"{name}: no writer for '{ending}'; there are {known}")
-    form = FORMATS[ending]
+    form = check_output(name)
     _check_options(name, ending, options, "binary" if form.own else None)
+    data = as_mesh(mesh)
     if not _holds(form, data):
         able = [key for key, other in FORMATS.items() if other.writer and not other.own and _holds(other, data)]
         raise Error(f"{name}: '{ending}' cannot hold a {data.GetClassName()}; {' '.join(able)} can")
     if form.own:
         return _write_own(data, name, form, options.get("binary", False))
-    return _write_vtk(data, name, form)
+    return write_composite(data, name) if ending == ".vtm" else write_data(data, name, form)
+
+
+def check_output(file: str | PathLike) -> Format:
+    """The format of a mesh to be written. Raises Error if there is no writer for it or no file can be made there."""
+    name, ending = fspath(file), Path(file).suffix.lower()
+    if ending not in FORMATS or not FORMATS[ending].writer:
+        known = " ".join(sorted(key for key, form in FORMATS.items() if form.writer))
+        raise Error(f"{name}: no writer for '{ending}'; there are {known}")
+    check_target(name)
+    return FORMATS[ending]
 
 
 def _check_options(name: str, ending: str, options: dict[str, Any], known: str | None) -> None:
@@ -122,21 +134,6 @@ def _read_vtk(name: str, form: Format) -> vtkDataObject:
     return mesh
 
 
-def _write_vtk(data: vtkDataObject, name: str, form: Format) -> list[str]:
-    writer = form.make_writer()
-    for binary in ("SetFileTypeToBinary", "SetDataModeToBinary"):  # not appended data: see _APPENDED
-        getattr(writer, binary, int)()
-    writer.SetInputData(data)
-    writer.SetFileName(name)
-    messages = watch(writer)
-    with _CapturedOutput():
-        written = writer.Write()
-    if messages.errors or not written or not Path(name).is_file():
-        reason = "; ".join(messages.errors) or "the directory does not exist or cannot be written to"
-        raise Error(f"{name}: cannot be written: {reason}")
-    return [name]
-
-
 def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[str]:
     writer = form.make_writer()
     if hasattr(writer, "SetBinary"):
@@ -162,7 +159,13 @@ class _CapturedOutput:
         vtkOutputWindow.SetInstance(self.window)
         self.verbosity = vtkLogger.GetCurrentVerbosityCutoff()
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-        return lambda: [plain(text) for text in self.window.GetOutput().split("\n\n") if text.strip()]
+        return self.texts
+
+    def texts(self) -> list[str]:
+        output = self.window.GetOutput() or ""
+        if isinstance(output, bytes):  # quotes from a file that is no text
+            output = output.decode(errors="backslashreplace")
+        return [plain(text) for text in output.split("\n\n") if text.strip()]
 
     def __exit__(self, *_):
         vtkOutputWindow.SetInstance(self.before)

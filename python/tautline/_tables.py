@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from typing import TYPE_CHECKING, Any, Sequence
+from typing import TYPE_CHECKING, Any, Iterable, Sequence
 
 import numpy as np
 
@@ -82,6 +82,13 @@ def csv_text(rows: list[dict[str, Any]]) -> str:
     writer = csv.DictWriter(out, rows[0].keys() if rows else (), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
+    return out.getvalue()
+
+
+def csv_rows(rows: Iterable[Iterable[Any]], end: str = "\n") -> str:
+    """A line per row."""
+    out = io.StringIO()
+    csv.writer(out, lineterminator=end).writerows(rows)
     return out.getvalue()
 
 

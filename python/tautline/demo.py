@@ -8,11 +8,12 @@ bracket in Data.
 
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import tautline
 from paraview import simple
 from paraview.modules.vtkRemotingServerManager import vtkSMSettings
-from tautline import _tables
+from tautline import _files, _tables
 
 METRICS = ["imr", "rr", "scaled_jacobian"]
 SHOWN, TITLE = METRICS[0], "Inverse mean ratio"
@@ -43,7 +44,7 @@ def measure(mesh: Path, output: Path) -> list[Path]:
     print(f"{mesh}\n{_tables.quality_text(result, WORST)}\n")
     written = [output / "quality.vtu", output / "quality.csv"]
     tautline.write(result, written[0])
-    written[1].write_text(_tables.csv_text(_tables.quality_rows(result)))
+    _files.replace_text(written[1], _tables.csv_text(_tables.quality_rows(result)))
     return written
 
 
@@ -117,7 +118,10 @@ def picture(mesh: Path, file: Path) -> None:
     simple.ResetCamera(view)
     camera.Zoom(ZOOM)
     camera.SetWindowCenter(0.2, 0)
-    simple.SaveScreenshot(str(file), view, ImageResolution=SIZE)
+    with TemporaryDirectory() as folder:
+        made = Path(folder, file.name)
+        simple.SaveScreenshot(str(made), view, ImageResolution=SIZE)
+        _files.replace_bytes(file, made.read_bytes())
 
 
 def main(mesh: Path | None, output: Path) -> None:

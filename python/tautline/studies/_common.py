@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import math
 import sys
 import time
@@ -18,9 +17,10 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 from tautline import _optimization
-from tautline._errors import Error, Messages, run, watch
+from tautline._errors import Messages, run, watch
 from tautline._arguments import pick
-from tautline._tables import align
+from tautline._files import make_folder, replace_text, save_figure
+from tautline._tables import align, csv_rows
 
 try:
     import matplotlib
@@ -298,10 +298,7 @@ class Report:
         self.name, self.out = name, Path(out)
         self.parts = [f"{title}\n{'=' * len(title)}"]
         self.findings: list[tuple[str, str, bool, str]] = []
-        try:
-            self.out.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise Error(f"{self.out}: cannot be made: {error.strerror}") from None
+        make_folder(self.out)
 
     def text(self, paragraph: str) -> None:
         self.parts.append(paragraph)
@@ -327,10 +324,8 @@ class Report:
         self.parts.append(f"{title}\n{align(shown, [head, *names])}")
 
     def csv(self, file: str, headings: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
-        with open(self.out / f"{file}.csv", "w", encoding="utf-8", newline="") as stream:
-            writer = csv.writer(stream)
-            writer.writerow(headings)
-            writer.writerows([["" if _missing(value) else value for value in row] for row in rows])
+        shown = [["" if _missing(value) else value for value in row] for row in rows]
+        replace_text(self.out / f"{file}.csv", csv_rows([headings, *shown], "\r\n"))
 
     def curves(self, file: str, runs: Sequence[Run]) -> None:
         """A CSV file of every quantity of every run after every iteration."""
@@ -483,7 +478,7 @@ class Report:
         self.csv("findings", ["source", "finding", "holds", "figures"],
                  [[s, f, "yes" if h else "no", n] for s, f, h, n in self.findings])
         text = "\n\n".join(self.parts) + "\n"
-        (self.out / f"{self.name}.txt").write_text(text, encoding="utf-8")
+        replace_text(self.out / f"{self.name}.txt", text)
         print(text)
         print(f"Files: {self.out}")
         return 0
@@ -497,7 +492,7 @@ class Report:
     def save(self, figure: Any, file: str) -> None:
         """Save a figure of pyplot."""
         figure.tight_layout()
-        figure.savefig(self.out / f"{file}.png", dpi=110, bbox_inches="tight")
+        save_figure(figure, self.out / f"{file}.png", dpi=110, bbox_inches="tight")
         pyplot.close(figure)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import math
 import time
 from pathlib import Path
@@ -13,8 +12,8 @@ import numpy as np
 
 import tautline
 
-from .._errors import Error
-from .._tables import align
+from .._files import make_folder, replace_text, save_figure
+from .._tables import align, csv_rows
 
 #: Tables 4.1 to 4.3 as printed: (aspect ratio, n = 1 / h, delta) and the condition numbers.
 _KEYS = [(ar, n, delta) for ar in (1, 4) for n in (10, 20, 40) for delta in (0.2, 0.3, 0.4)]
@@ -93,10 +92,7 @@ class Report:
         self.name, self.directory = name, Path(directory)
         self.lines: list[str] = []
         self.started = time.time()
-        try:
-            self.directory.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise Error(f"{directory}: cannot be created: {error.strerror}") from None
+        make_folder(self.directory)
 
     def text(self, text: str = "") -> None:
         print(text, flush=True)
@@ -106,10 +102,7 @@ class Report:
         self.text(align(rows, headings) + "\n")
 
     def write_csv(self, file: str, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
-        with open(self.directory / file, "w", newline="", encoding="utf-8") as out:
-            writer = csv.writer(out, lineterminator="\n")
-            writer.writerow(headings)
-            writer.writerows(rows)
+        replace_text(self.directory / file, csv_rows([headings, *rows]))
 
     def chart(self, file: str, panels: Sequence[dict[str, Any]]) -> None:
         """Panels side by side: dicts of title, x, y (labels), lines {label: (x, y[, style])}, scales."""
@@ -134,11 +127,11 @@ class Report:
             axes.set_yscale(panel.get("yscale", "linear"))
             axes.grid(True, which="major", alpha=0.3)
             axes.legend(fontsize=8)
-        figure.savefig(self.directory / file, dpi=90)
+        save_figure(figure, self.directory / file, dpi=90)
 
     def close(self) -> int:
         self.text(f"{time.time() - self.started:.1f} s")
-        (self.directory / f"{self.name}.txt").write_text("\n".join(self.lines) + "\n", encoding="utf-8")
+        replace_text(self.directory / f"{self.name}.txt", "\n".join(self.lines) + "\n")
         print("\n".join(str(path) for path in sorted(self.directory.glob(f"{self.name}*"))))
         return 0
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import time
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,8 @@ from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
 
 import tautline as tl
 
+from .._files import make_folder, replace_bytes, replace_text
+from .._tables import csv_rows
 from . import _silhouettes
 
 #: Table 5.1 of the dissertation, percent.
@@ -59,10 +60,7 @@ def _sweep(locations: str) -> list[tuple[str, dict[str, Any]]]:
 
 
 def _write(file: Path, head: list[str], rows: list[list[Any]]) -> None:
-    with open(file, "w", newline="", encoding="utf-8") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(head)
-        writer.writerows(rows)
+    replace_text(file, csv_rows([head, *rows]))
 
 
 def _images(shapes: Any) -> list[vtkImageData]:
@@ -136,9 +134,10 @@ class Canvas:
         grab.SetInput(self.window)
         grab.ReadFrontBufferOff()
         writer = vtkPNGWriter()
-        writer.SetFileName(str(file))
+        writer.WriteToMemoryOn()
         writer.SetInputConnection(grab.GetOutputPort())
         writer.Write()
+        replace_bytes(file, bytes(memoryview(writer.GetResult())))
 
 
 def _strips(file: Path, images: list, results: dict[str, Any], queries: list[int]) -> None:
@@ -223,8 +222,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--no-pictures", action="store_true")
     parser.add_argument("--out", type=Path, default=Path("study-shapes"))
     options = parser.parse_args(argv)
+    make_folder(options.out)
     shapes, labels, best, text = _silhouettes.data_set(options.data, options.size, options.seed)
-    options.out.mkdir(parents=True, exist_ok=True)
     print(text)
     results, rows = {}, []
     for key, setting in _settings(options.locations).items():
@@ -254,7 +253,7 @@ def main(argv: list[str]) -> int:
         theta = {name: float(rate) for name, rate in swept if name.startswith("theta")}
         spread = abs(theta["theta = 0.5 d_max"] - results["dissertation"].rate)
         findings.append(f"theta between d_max / 3 and d_max / 2 makes little difference: {spread:.1f} points apart.")
-    (options.out / "findings.txt").write_text("\n".join(findings) + "\n", encoding="utf-8")
+    replace_text(options.out / "findings.txt", "\n".join(findings) + "\n")
     print("\n".join(findings[1:]))
     if not options.no_pictures:
         _figures(options.out, shapes, results, options)
