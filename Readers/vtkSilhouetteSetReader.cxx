@@ -122,6 +122,11 @@ std::vector<Entry> readList(const fs::path& list)
 
 vtkSmartPointer<vtkImageReader2> makeReader(const fs::path& file)
 {
+  std::error_code ignored;
+  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
+  {
+    throw Error(file.string() + ": is not a regular file"); // opening a pipe would wait for ever
+  }
   return vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(file.string().c_str()));
 }
 

@@ -57,7 +57,7 @@ def test_mesh_generators():
 
     (OUTPUT / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n")
     refused("broken.off:6: vertex is 7, from 0 to 2 are allowed", tl.read, OUTPUT / "broken.off")
-    refused("cannot be opened", tl.read, OUTPUT / "none.msh")
+    refused("there is no such file", tl.read, OUTPUT / "none.msh")
     refused("no reader for '.docx'", tl.read, "thesis.docx")
     refused("no writer for '.docx'", tl.write, cube, "thesis.docx")
     refused("171 tetrahedra", tl.write, cube, OUTPUT / "cube.poly")

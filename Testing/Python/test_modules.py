@@ -18,7 +18,7 @@ LIST = "import tautline; print(*(n for n in ('warp', 'match', 'vtkShapeMatcher',
 FLOORS = (
     ("_errors", "_vtk"),
     ("_arrays", "_files", "_formats", "_mesh", "_tables"),
-    ("_arguments", "_vtk_writers"),
+    ("_arguments", "_legacy", "_surfaces", "_vtk_writers"),
     ("_io",),
     ("_commands",),
     ("_metrics",),

@@ -24,6 +24,21 @@ _STREAMS = ("/dev/std", "/dev/fd/", "/proc/")
 _NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
+def check_input(file: str | PathLike) -> None:
+    """Raise Error for what is no file, before a reader waits for it or reads from it for ever."""
+    name = fspath(file)
+    try:
+        mode = os.stat(name).st_mode
+        if stat.S_ISREG(mode):
+            with open(name, "rb"):
+                return
+    except FileNotFoundError:
+        raise Error(f"{name}: there is no such file") from None
+    except OSError as error:
+        raise Error(f"{name}: cannot be read: {error.strerror}") from None
+    raise Error(f"{name}: {'is a directory' if stat.S_ISDIR(mode) else 'is not a regular file'}")
+
+
 def check_target(file: str | PathLike) -> str:
     """The name of the file that writing to `file` replaces. Raises Error if it cannot be written.
 

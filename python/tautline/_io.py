@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Union
@@ -9,11 +10,14 @@ from typing import Any, Union
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
 
+from ._arrays import leaves
 from ._errors import Error, plain, run, watch
-from ._files import check_target
+from ._files import check_input, check_target
 from ._formats import FORMATS, Format
+from ._legacy import check_counts, check_references, scan_legacy
 from ._mesh import from_arrays
-from ._vtk_writers import write_composite, write_data
+from ._surfaces import check_surface
+from ._vtk_writers import block_files, write_composite, write_data
 
 #: What every function takes as a mesh: a vtkDataSet, a composite data set, a file name, the result of another function,
 #: or (points, cells), see from_arrays().
@@ -24,6 +28,8 @@ _APPENDED = (
     "The file has appended data, which VTK before 9.3 cannot read with a recent libexpat: "
     "save it with the data mode Binary or Ascii."
 )
+# Of one file; a damaged one may have thousands.
+_MOST_MESSAGES = 5
 
 
 def as_mesh(mesh: Mesh) -> vtkDataObject:
@@ -50,7 +56,8 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
         formats of VTK.
 
     Returns a vtkDataSet; of .vtm and some .vtk files a composite data set. Raises Error, with file and line where they
-    are known, if the file cannot be read.
+    are known, if the file cannot be read, is truncated or damaged. Only a .vtk file that ends between two sections,
+    or inside the last number of one, cannot be told from a complete file.
 
     >>> mesh = tautline.read("part.msh", lower_cells=True)
     """
@@ -59,6 +66,7 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
         raise Error(f"{name}: no reader for '{ending}'; there are {' '.join(sorted(FORMATS))}")
     form = FORMATS[ending]
     _check_options(name, ending, options, "lower_cells" if form.own else None)
+    check_input(name)
     if form.own:
         reader = form.make_reader()
         reader.SetLowerCells(options.get("lower_cells", False))
@@ -117,20 +125,35 @@ def _holds(form: Format, data: vtkDataObject) -> bool:
 
 
 def _read_vtk(name: str, form: Format) -> vtkDataObject:
-    if not Path(name).is_file():
-        raise Error(f"{name}: there is no such file")
+    """Read a file with a reader of VTK, of which every message is an error: it returns what it has all the same."""
+    if os.path.getsize(name) == 0:
+        raise Error(f"{name}: the file is empty")
+    if form.reader == "vtkXMLMultiBlockDataReader":
+        for block in block_files(name):
+            check_input(block)
+    legacy = form.module == "vtkIOLegacy"
+    announced = scan_legacy(name) if legacy else {}
+    check_surface(name)
     reader = form.make_reader()
     reader.SetFileName(name)
     with _CapturedOutput() as captured:
+        messages = watch(reader)
         try:
-            run(reader)
+            run(reader, messages)
         except Error as error:
             details = [text for text in captured() if text not in str(error)]
             details += [_APPENDED] if b"<AppendedData" in Path(name).read_bytes() else []
             raise Error("\n".join([f"{name}: {error}", *details])) from None
         mesh = reader.GetOutputDataObject(0)
+        found = dict.fromkeys(messages.warnings + captured())
+    if found:
+        raise Error("\n".join([f"{name}: the file is truncated or damaged:", *list(found)[:_MOST_MESSAGES]]))
     if not isinstance(mesh, (vtkDataSet, vtkCompositeDataSet)):
         raise Error(f"{name}: holds no mesh ({mesh.GetClassName() if mesh else 'nothing'})")
+    if legacy:
+        check_counts(name, mesh, announced)
+    for leaf in leaves(mesh):
+        check_references(name, leaf)
     return mesh
 
 

@@ -26,6 +26,7 @@ from . import _commands, _vtk
 from ._arguments import check_options, number, pick
 from ._arrays import cell_array, columns, point_array, table_rows
 from ._errors import Error, run, watch
+from ._files import check_input
 
 FOREGROUNDS = ("automatic", "bright", "dark")
 LOCATIONS = ("grid", "near grid", "contour")
@@ -51,8 +52,7 @@ def as_image(image: Any) -> vtkImageData:
         return image
     if isinstance(image, (str, PathLike)):
         name = fspath(image)
-        if not Path(name).is_file():
-            raise Error(f"{name}: there is no such file")
+        check_input(name)
         reader = vtkImageReader2Factory.CreateImageReader2(name)
         if reader is None:
             raise Error(f"{name}: not an image VTK can read")
@@ -254,6 +254,8 @@ def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
     path = Path(fspath(folder))
     if path.is_dir() and (path / "labels.csv").is_file():
         path = path / "labels.csv"
+    if not path.is_dir():
+        check_input(path)
     reader = _vtk.vtkSilhouetteSetReader()
     reader.SetFileName(str(path))
     run(reader)

@@ -86,6 +86,15 @@ def _publish(root: ElementTree.Element, temporary: str, target: str, folder: str
     return directory
 
 
+def block_files(name: str) -> list[str]:
+    """The names of the files that a .vtm file refers to; none if it is damaged."""
+    try:
+        entries = ElementTree.parse(name).getroot().iter("DataSet")
+    except ElementTree.ParseError:
+        return []
+    return [os.path.join(os.path.dirname(name), entry.get("file", "")) for entry in entries if entry.get("file")]
+
+
 def _content(data: vtkDataObject, name: str, form: Format) -> bytes:
     """What a writer of VTK writes to a file of that name."""
     writer = form.make_writer()

@@ -1,0 +1,257 @@
+"""Truncated and malformed files are errors: VTK's readers return what they have, or memory that nobody filled."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import tautline as tl
+from checks import DATA, OUT, refused, shell, square
+from vtkmodules.vtkCommonDataModel import (
+    vtkMultiBlockDataSet,
+    vtkPolyData,
+    vtkRectilinearGrid,
+    vtkStructuredGrid,
+    vtkUnstructuredGrid,
+)
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
+from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+from vtkmodules.vtkIOLegacy import vtkGenericDataObjectWriter
+
+FOLDER = OUT / "damaged"
+CUTS = 120  # of each file
+VERSIONS = (42, 51)  # that VTK writes
+HEAD = "# vtk DataFile Version {}\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+POINTS = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 1 1 0\n"
+TYPES = "CELL_TYPES 2\n5\n5\n"
+
+
+def surface(mesh):
+    made = vtkGeometryFilter()
+    made.SetInputData(mesh)
+    made.Update()
+    return made.GetOutput()
+
+
+def with_arrays(kind, dimensions=(4, 3, 2)):
+    """A structured mesh with an array on its points."""
+    image = tl.metric_field(dimensions=(dimensions[0] * dimensions[1] * dimensions[2], 1, 1)).mesh
+    mesh = kind()
+    if kind is vtkRectilinearGrid:
+        axis = image.GetPointData().GetArray(0).NewInstance()
+        axis.SetNumberOfValues(image.GetNumberOfPoints())
+        for i in range(image.GetNumberOfPoints()):
+            axis.SetValue(i, i)
+        mesh.SetDimensions(image.GetNumberOfPoints(), 1, 1)
+        mesh.SetXCoordinates(axis)
+    else:
+        append = vtkAppendFilter()
+        append.AddInputData(image)
+        append.Update()
+        mesh.SetDimensions(*dimensions)
+        mesh.SetPoints(append.GetOutput().GetPoints())
+    mesh.GetPointData().ShallowCopy(image.GetPointData())
+    return mesh
+
+
+def meshes() -> dict:
+    """A mesh of every type of data set, with arrays on points and cells."""
+    grid = tl.quality(tl.domain("rectangle", cells=60)).mesh
+    image = tl.metric_field(dimensions=(6, 5, 1)).mesh
+    blocks = vtkMultiBlockDataSet()
+    blocks.SetBlock(0, grid)
+    return {
+        "grid": grid,
+        "surface": surface(grid),
+        "image": image,
+        "structured": with_arrays(vtkStructuredGrid),
+        "rectilinear": with_arrays(vtkRectilinearGrid),
+        "blocks": blocks,
+    }
+
+
+def signature(mesh) -> tuple:
+    """Counts, and the values of every array, of a mesh."""
+    if isinstance(mesh, vtkMultiBlockDataSet):
+        return tuple(signature(mesh.GetBlock(i)) for i in range(mesh.GetNumberOfBlocks()))
+    arrays = []
+    for data in (mesh.GetPointData(), mesh.GetCellData()):
+        for i in range(data.GetNumberOfArrays()):
+            array = data.GetArray(i)
+            arrays.append((array.GetName(), tuple(array.GetTuple(j) for j in range(array.GetNumberOfTuples()))))
+    return mesh.GetNumberOfPoints(), mesh.GetNumberOfCells(), mesh.GetBounds(), tuple(arrays)
+
+
+def is_beginning(part: tuple, whole: tuple) -> bool:
+    """Whether a file cut between two sections was read: all of the points, and the first of the arrays or cells.
+
+    The last number may be shorter: nobody can see that of text.
+    """
+    if len(whole) == 1:  # the only block
+        return len(part) == 1 and is_beginning(part[0], whole[0])
+    same = part[0] == whole[0] and part[1] in (0, whole[1]) and part[2] == whole[2]
+    if not same or not part[3]:
+        return same
+    *before, (name, values) = part[3]
+    last = dict(whole[3]).get(name, ())
+    return all(array in whole[3] for array in before) and len(values) == len(last) and values[:-1] == last[:-1]
+
+
+def test_cut_legacy_files() -> None:
+    file = FOLDER / "cut.vtk"
+    refused_cuts = cuts = 0
+    for name, mesh in meshes().items():
+        for version in VERSIONS:
+            for binary in (False, True):
+                writer = vtkGenericDataObjectWriter()
+                writer.SetInputData(mesh)
+                writer.SetFileVersion(version)
+                writer.SetFileType(2 if binary else 1)
+                writer.SetFileName(str(file))
+                writer.Write()
+                content = file.read_bytes()
+                whole = signature(tl.read(file))
+                for size in range(0, len(content) - 1, max(1, len(content) // CUTS)):
+                    file.write_bytes(content[:size])
+                    cuts += 1
+                    try:
+                        part = signature(tl.read(file))
+                    except tl.Error as error:
+                        assert str(file) in str(error), error
+                        refused_cuts += 1
+                    else:
+                        kind = f"{name}, version {version}, {'binary' if binary else 'text'}, {size} bytes"
+                        assert is_beginning(part, whole), f"{kind}: read as {part[:3]}, not {whole[:3]}"
+    print(f"  {refused_cuts} of {cuts} cut files refused")
+    assert refused_cuts > 0.95 * cuts
+
+
+def test_cut_xml_files() -> None:
+    for name, ending in (("grid", ".vtu"), ("surface", ".vtp"), ("image", ".vti"), ("structured", ".vts"),
+                         ("rectilinear", ".vtr")):  # fmt: skip
+        file = FOLDER / f"cut{ending}"
+        tl.write(meshes()[name], file)
+        content = file.read_bytes()
+        for size in range(0, len(content.rstrip()), max(1, len(content) // CUTS)):
+            file.write_bytes(content[:size])
+            refused(str(file), tl.read, file)
+
+
+def test_cut_surfaces() -> None:
+    for ending in (".ply", ".stl", ".vtm"):
+        file = FOLDER / f"cut{ending}"
+        tl.write(meshes()["blocks" if ending == ".vtm" else "surface"], file)
+        content = file.read_bytes()
+        for size in range(0, len(content.rstrip()), max(1, len(content) // CUTS)):
+            file.write_bytes(content[:size])
+            refused(str(file), tl.read, file)
+
+
+def test_first_bytes() -> None:
+    """The head of a large file, which announces its points."""
+    file = FOLDER / "head.vtk"
+    tl.write(square(300), file)
+    file.write_bytes(file.read_bytes()[:100])
+    refused("truncated", tl.read, file)
+    assert "truncated" in shell("quality", file, code=1)
+
+
+def test_malformed_lists() -> None:
+    cases = {
+        "too few numbers": "CELLS 2 8\n3 0 1 2\n" + TYPES,
+        "too many numbers": "CELLS 2 8\n3 0 1 2\n3 1 3 2 0\n" + TYPES,
+        "words": "CELLS 2 8\n3 0 1 2\n3 a b c\n" + TYPES,
+        "a size that is too large": "CELLS 2 8\n3 0 1 2\n30 1 3 2\n" + TYPES,
+        "a negative size": "CELLS 2 8\n3 0 1 2\n-3 1 3 2\n" + TYPES,
+        "a wrong total": "CELLS 2 7\n3 0 1 2\n3 1 3 2\n" + TYPES,
+        "fewer cells than announced": "CELLS 3 8\n3 0 1 2\n3 1 3 2\nCELL_TYPES 3\n5\n5\n5\n",
+        "an unknown point": "CELLS 2 8\n3 0 1 2\n3 1 4 2\n" + TYPES,
+        "a negative point": "CELLS 2 8\n3 0 1 2\n3 1 -1 2\n" + TYPES,
+        "too few types": "CELLS 2 8\n3 0 1 2\n3 1 3 2\nCELL_TYPES 1\n5\n",
+        "no types": "CELLS 2 8\n3 0 1 2\n3 1 3 2\n",
+    }
+    offsets = {
+        "offsets that decrease": "CELLS 3 6\nOFFSETS vtktypeint64\n0 6 3\nCONNECTIVITY vtktypeint64\n0 1 2 1 3 2\n",
+        "offsets beyond the list": "CELLS 3 6\nOFFSETS vtktypeint64\n0 3 60\nCONNECTIVITY vtktypeint64\n0 1 2 1 3 2\n",
+        "no list": "CELLS 3 6\nOFFSETS vtktypeint64\n0 3 6\n",
+        "too many points": "CELLS 3 9\nOFFSETS vtktypeint64\n0 3 6\nCONNECTIVITY vtktypeint64\n0 1 2 1 3 2\n",
+        "unknown point by offsets": "CELLS 3 6\nOFFSETS vtktypeint64\n0 3 6\nCONNECTIVITY vtktypeint64\n0 1 2 1 3 9\n",
+    }
+    file = FOLDER / "malformed.vtk"
+    for version, lists, end in (("2.0", cases, ""), ("4.2", cases, ""), ("5.1", offsets, TYPES)):
+        for case, text in lists.items():
+            file.write_text(HEAD.format(version) + POINTS + text + end)
+            # in a process of its own: a reader of VTK may crash
+            done = subprocess.run([sys.executable, "-m", "tautline", "quality", file], capture_output=True, text=True)
+            assert done.returncode == 1, f"{case}, version {version}: exit code {done.returncode}, {done.stdout}"
+            assert str(file) in done.stderr, f"{case}, version {version}: {done.stderr}"
+    for version in ("2.0", "3.0", "4.2"):
+        file.write_text(HEAD.format(version) + POINTS + "CELLS 2 8\n3 0 1 2\n3 1 3 2\n" + TYPES)
+        assert tl.read(file).GetNumberOfCells() == 2, version
+    assert isinstance(tl.read(file), vtkUnstructuredGrid) and not isinstance(tl.read(file), vtkPolyData)
+
+
+def test_not_a_file() -> None:
+    """Pipes, devices and directories are refused at once, by every reader."""
+    folder = FOLDER / "not-files"
+    folder.mkdir(exist_ok=True)
+    start = time.monotonic()
+    for ending in (".vtk", ".vtu", ".stl", ".msh", ".mesh", ".off", ".node"):
+        paths = [folder / f"{kind}{ending}" for kind in ("pipe", "zero", "directory", "loop", "denied")]
+        for path in paths:
+            if path.is_symlink() or path.is_fifo():
+                path.unlink()
+        pipe, zero, directory, loop, _ = paths
+        os.mkfifo(pipe)
+        zero.symlink_to("/dev/zero")
+        directory.mkdir(exist_ok=True)
+        loop.symlink_to(loop.name)
+        refused("is not a regular file", tl.read, pipe)
+        refused("is not a regular file", tl.read, zero)
+        refused("is a directory", tl.read, directory)
+        refused("cannot be read", tl.read, loop)
+        refused("there is no such file", tl.read, folder / f"absent{ending}")
+    refused("is not a regular file", tl.silhouette, folder / "pipe.vtk")
+    refused("is not a regular file", tl.read_silhouettes, folder / "zero.vtk")
+    (folder / "list.csv").write_text("file,class\npipe.vtk,a\n")
+    refused("is not a regular file", tl.read_silhouettes, folder / "list.csv")
+    (folder / "blocks.vtm").write_text(
+        '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet><DataSet index="0" file="pipe.vtu"/>'
+        "</vtkMultiBlockDataSet></VTKFile>"
+    )
+    refused("is not a regular file", tl.read, folder / "blocks.vtm")
+    assert time.monotonic() - start < 5.0
+
+
+def test_no_permission() -> None:
+    if os.geteuid() != 0:
+        print("  not run: needs root, to be another user")
+        return
+    for ending in (".vtu", ".vtk", ".mesh"):
+        file = FOLDER / f"denied{ending}"
+        tl.write(square(3), file)
+        file.chmod(0)
+        child = os.fork()
+        if child == 0:
+            try:
+                os.setuid(65534)
+                refused("cannot be read: Permission denied", tl.read, file)
+                os._exit(0)
+            finally:
+                os._exit(1)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0, ending
+
+
+def test_sample_files() -> None:
+    """Complete files are read, whatever wrote them."""
+    for file in sorted(Path(DATA).glob("*.vt?")):
+        assert tl.read(file).GetNumberOfCells() > 0, file
+
+
+FOLDER.mkdir(parents=True, exist_ok=True)
+OUT.chmod(OUT.stat().st_mode | 0o055)
+for test in [value for name, value in list(globals().items()) if name.startswith("test_")]:
+    start = time.monotonic()
+    test()
+    print(f"{test.__name__} passed, {time.monotonic() - start:.1f} s", flush=True)
