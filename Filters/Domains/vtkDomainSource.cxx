@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <functional>
+#include <new>
 
 #if TAUTLINE_HAS_MESH_GENERATORS
 #include "PlanarMesher.h"
@@ -83,6 +84,7 @@ Made makeWithSpacing(
 Made makeUnstructured(
   const DomainInfo& info, Index cells, const std::function<bool(Index)>& progress)
 {
+  tautline::checkDomainSize(static_cast<double>(cells), info.kind);
   const double power = info.kind == DomainKind::Planar ? 2.0 : 3.0;
   constexpr Index Trial = 20000;
   const double enough = info.kind == DomainKind::Planar ? 0.005 : 0.02; // tetrahedra take longer
@@ -244,6 +246,11 @@ int vtkDomainSource::RequestData(
   catch (const Error& error)
   {
     vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro(<< "not enough memory for " << cells << " cells");
     return 0;
   }
   output->SetPoints(tautline::makePoints(made.points, made.dimension));

@@ -76,6 +76,12 @@ TAUTLINE_KERNEL_EXPORT const std::vector<DomainInfo>& domains();
 /// Throws Error, with the names there are, for an unknown one.
 TAUTLINE_KERNEL_EXPORT const DomainInfo& findDomain(const std::string& name);
 
+/**
+ * @brief Throws Error if a mesh of so many cells needs more memory than the machine has or the
+ * process may use. Estimated from the number alone, before anything is allocated.
+ */
+TAUTLINE_KERNEL_EXPORT void checkDomainSize(double cells, DomainKind kind);
+
 /// The boundary of a planar domain, sampled with segments of about the given length.
 TAUTLINE_KERNEL_EXPORT PlanarBoundary planarBoundary(const std::string& name, double spacing);
 /// The boundary of a solid domain.

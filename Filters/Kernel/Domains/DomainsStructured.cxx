@@ -76,6 +76,7 @@ Index wholeNumber(double value, const char* what)
 //------------------------------------------------------------------------------
 StructuredMesh structuredRectangle(Index cells)
 {
+  checkDomainSize(static_cast<double>(cells), DomainKind::Structured);
   const auto n = std::max<Index>(
     1, static_cast<Index>(std::llround(std::sqrt(static_cast<double>(cells) / 4.0))));
   const double h = 1.0 / static_cast<double>(n);
@@ -97,6 +98,8 @@ StructuredMesh structuredSquare(double h, double aspectRatio, double layer)
   const auto layersY = static_cast<Index>(std::ceil(layer / dy - 1e-9));
   const Grid grid = { nx + 2 * layersX, ny + 2 * layersY, -static_cast<double>(layersX) * dx,
     -static_cast<double>(layersY) * dy, dx, dy, false };
+  checkDomainSize(
+    2.0 * static_cast<double>(grid.nx) * static_cast<double>(grid.ny), DomainKind::Structured);
   StructuredMesh mesh = makeGrid(grid);
   // whole numbers, not sums of steps, on the sides of the square
   for (Index j = 0; j <= grid.ny; ++j)

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <sstream>
 
@@ -267,10 +268,37 @@ void checkMissingMeshers()
   TAUTLINE_CHECK(source->GetOutput()->GetNumberOfCells() == 0);
   TAUTLINE_CHECK(errors->GetErrorMessage().find("without the module Meshing") != std::string::npos);
 }
+
+/// Sizes that no memory holds are refused before anything is allocated.
+void checkSizes()
+{
+  constexpr tautline::Index Cells = tautline::Index{ 1 } << 50;
+  for (const auto& make :
+    std::vector<std::function<void()>>{
+      [] { tautline::structuredRectangle(Cells); },
+      [] { tautline::structuredSquare(1e-4, 1.0, 10.0); },
+      [] { tautline::checkDomainSize(1e15, tautline::DomainKind::Planar); },
+      [] { tautline::checkDomainSize(std::nan(""), tautline::DomainKind::Solid); },
+    })
+  {
+    std::string message;
+    try
+    {
+      make();
+    }
+    catch (const tautline::Error& error)
+    {
+      message = error.what();
+    }
+    TAUTLINE_CHECK(message.find("of memory") != std::string::npos);
+  }
+  tautline::checkDomainSize(1e5, tautline::DomainKind::Solid);
+}
 }
 
 int TestDomains(int, char* argv[])
 {
+  checkSizes();
   checkMotion();
   checkSquare();
   checkNames();
