@@ -13,7 +13,7 @@ def test_domain():
     assert square.GetNumberOfCells() == 392
     assert square.GetCellData().GetArray("Reference").GetRange() == (1, 2)
     refused("there is no domain 'torus'; there are wrench, hinge", tl.domain, "torus")
-    refused("negative", tl.domain, "wrench", -1)
+    refused("the number of cells is -1; it must be a number from 0", tl.domain, "wrench", -1)
     refused("whole numbers", tl.domain, "square", aspect_ratio=2)
     if tl.vtkDomainSource.HasMeshing():
         cylinder = tl.domain("cylinder", cells=5000, amount=0.5)

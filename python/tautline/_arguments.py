@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Mapping
+from typing import Any, Callable, Iterable, Mapping
 
 import numpy as np
 
 from ._arrays import snake
-from ._errors import Error
+from ._errors import Error, unknown
 
 #: How the values at the corners of a cell are combined, in the filters' numbering.
 COMBINATIONS = ("mean", "worst", "power mean")
@@ -72,11 +72,11 @@ def flag_option(setter: str) -> Setter:
     return lambda algorithm, value: getattr(algorithm, setter)(bool(value))
 
 
-def check_options(options: Mapping[str, Any], known: Mapping[str, Any]) -> None:
+def check_options(options: Mapping[str, Any], known: Iterable[str]) -> None:
     """Raise Error for a keyword that is not known."""
     for name in options:
         if name not in known:
-            raise Error(f"there is no option {name!r}; there are {', '.join(known)}")
+            raise unknown("option", name, known)
 
 
 def set_options(algorithm: Any, options: Mapping[str, Any], known: Mapping[str, Setter]) -> None:

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import _commands, _vtk
 from ._arguments import set_threads, within
 from ._arrays import cell_array, columns, point_array, snake
-from ._errors import run
+from ._errors import checked, run
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose
 from ._tables import comparison_rows, comparison_text
@@ -38,6 +38,7 @@ class CompareResult:
     summary: str
 
 
+@checked
 def compare(
     before: Mesh,
     after: Mesh,

@@ -8,15 +8,18 @@ from typing import Any
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from . import _commands, _vtk
-from ._errors import Error, run, watch
+from ._arguments import within
+from ._errors import checked, run, watch
 
 
+@checked
 def domains() -> list[str]:
     """The names of the domains, for domain()."""
     source = _vtk.vtkDomainSource
     return [source.GetDomainName(i) for i in range(source.GetNumberOfDomains())]
 
 
+@checked
 def domain(
     name: str,
     cells: int = 0,
@@ -45,15 +48,16 @@ def domain(
     """
     source = _vtk.vtkDomainSource()
     messages = watch(source)
-    source.SetDomainByName(name)
+    source.SetDomainByName(str(name))
     messages.raise_errors()
-    if cells < 0:
-        raise Error(f"the number of cells is {cells}; it cannot be negative")
-    source.SetNumberOfCells(cells)
-    source.SetAmount(amount)
-    source.SetElementSize(element_size)
-    source.SetAspectRatio(aspect_ratio)
-    source.SetLayerWidth(layer_width)
+    source.SetNumberOfCells(int(within("the number of cells", cells, 0, source.GetNumberOfCellsMaxValue())))
+    source.SetAmount(within("the amount", amount, source.GetAmountMinValue(), source.GetAmountMaxValue()))
+    low, high = source.GetElementSizeMinValue(), source.GetElementSizeMaxValue()
+    source.SetElementSize(within("the element size", element_size, low, high))
+    low, high = source.GetAspectRatioMinValue(), source.GetAspectRatioMaxValue()
+    source.SetAspectRatio(within("the aspect ratio", aspect_ratio, low, high))
+    low, high = source.GetLayerWidthMinValue(), source.GetLayerWidthMaxValue()
+    source.SetLayerWidth(within("the layer width", layer_width, low, high))
     run(source, messages)
     return source.GetOutputDataObject(1 if deformed_boundary else 0)
 

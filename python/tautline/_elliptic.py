@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
+from inspect import signature
 from typing import Any, Callable, Iterable, Sequence, Union
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
-from ._arguments import pick, set_threads, set_time_limit, within
+from ._arguments import check_options, pick, set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, cell_array, columns, has_array, point_array, table_rows
-from ._errors import Error, run, watch
+from ._errors import Error, checked, run, watch
 from ._io import Mesh, as_mesh
 from ._tables import align
 
@@ -113,6 +114,7 @@ class SolverStudyResult:
     summary: str
 
 
+@checked
 def solve(
     mesh: Mesh,
     pde: str = "poisson",
@@ -198,6 +200,7 @@ def solve(
     )
 
 
+@checked
 def condition(
     mesh: Mesh,
     pde: str = "poisson",
@@ -249,12 +252,14 @@ def condition(
     )
 
 
+@checked
 def solver_combinations() -> dict[int, str]:
     """The combinations of solver and preconditioner of solver_study() by number; 1 to 16 are those of Table 2.5."""
     study = _vtk.vtkSolverStudy
     return {number: study.GetCombinationName(number) for number in range(1, study.GetNumberOfCombinations() + 1)}
 
 
+@checked
 def solver_study(
     mesh: Mesh,
     pde: str = "poisson",
@@ -319,10 +324,15 @@ def _set_tolerances(filter_: Any, relative: float, absolute: float, iterations: 
     filter_.SetRestart(int(within("restart", restart, 1, _MAX_ITERATIONS)))
 
 
+# The arguments of _set_problem() before those of the user.
+_FILTER_ARGUMENTS = 3
+
+
 def _execute(filter_: Any, mesh: Mesh, pde: str, problem: dict[str, Any]) -> vtkDataObject:
     """Set the problem and run the filter; returns its first output without the arrays given as numbers."""
     messages = watch(filter_)
     inputs = InputArrays(filter_, as_mesh(mesh))
+    check_options(problem, list(signature(_set_problem).parameters)[_FILTER_ARGUMENTS:])
     _set_problem(filter_, inputs, pde, **problem)
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_, messages)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from difflib import get_close_matches
+from functools import wraps
+from inspect import signature
+from typing import Any, Callable, Iterable, TypeVar
 
 from vtkmodules.vtkCommonCore import vtkCommand
 
@@ -12,9 +15,39 @@ _PREAMBLE = re.compile(r"^(ERROR|Warning): In .*?, line \d+\s*\n?\w+ \(.*?\): ",
 # Parts of the executive's message that follows the message of a filter.
 _CONSEQUENCE = ("returned failure for request", "Algorithm vtk")
 
+Function = TypeVar("Function", bound=Callable[..., Any])
+
 
 class Error(RuntimeError):
     """Raised by every function of the package: wrong arguments, unreadable files, errors of a filter."""
+
+
+def unknown(what: str, name: str, known: Iterable[str]) -> Error:
+    """The error for an unknown name: with the nearest one, and all of them."""
+    names = list(known)
+    nearest = get_close_matches(name, names, 1)
+    hint = f"; did you mean {nearest[0]!r}?" if nearest else ""
+    return Error(f"there is no {what} {name!r}{hint}; there are {', '.join(names)}")
+
+
+def checked(function: Function) -> Function:
+    """A function that raises Error, not TypeError, for arguments that it does not have or that are missing."""
+    parameters = signature(function).parameters
+    keywords = [p.name for p in parameters.values() if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
+    others = any(p.kind is p.VAR_KEYWORD for p in parameters.values())
+
+    @wraps(function)
+    def call(*arguments: Any, **options: Any) -> Any:
+        for name in options:
+            if name not in keywords and not others:
+                raise unknown(f"argument of {function.__name__}()", name, keywords)
+        try:
+            signature(function).bind(*arguments, **options)
+        except TypeError as error:
+            raise Error(f"{function.__name__}(): {error}") from None
+        return function(*arguments, **options)
+
+    return call
 
 
 class Messages:

@@ -24,9 +24,20 @@ _STREAMS = ("/dev/std", "/dev/fd/", "/proc/")
 _NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
+def file_name(file: str | PathLike) -> str:
+    """The name of a file as a text. Raises Error for anything else."""
+    try:
+        name = fspath(file)
+    except TypeError:
+        raise Error(f"a file name is expected, not {type(file).__name__}") from None
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise Error(f"{name!r} is no file name")
+    return name
+
+
 def check_input(file: str | PathLike) -> None:
     """Raise Error for what is no file, before a reader waits for it or reads from it for ever."""
-    name = fspath(file)
+    name = file_name(file)
     try:
         mode = os.stat(name).st_mode
         if stat.S_ISREG(mode):
@@ -45,7 +56,7 @@ def check_target(file: str | PathLike) -> str:
     A link is followed: the file it points to is replaced, and the link stays. A link of another user in a directory
     where everybody may write, such as /tmp, is refused, as Linux does.
     """
-    name = fspath(file)
+    name = file_name(file)
     target = _follow(name)
     folder = _folder(target)
     if not os.path.isdir(folder):
@@ -64,7 +75,7 @@ def check_target(file: str | PathLike) -> str:
 
 def check_stream_or_target(file: str | PathLike) -> None:
     """check_target() for files that may also be a pipe or a device, such as /dev/stdout."""
-    if not _is_stream(fspath(file)):
+    if not _is_stream(file_name(file)):
         check_target(file)
 
 
@@ -75,7 +86,7 @@ def replacing(file: str | PathLike, *, stream: bool = False) -> Iterator[BinaryI
     stream: whether the file may be a pipe or a device, which are written directly. Raises Error if the file cannot be
     written; it is then as it was.
     """
-    name = fspath(file)
+    name = file_name(file)
     try:
         if stream and _is_stream(name):
             with open(name, "wb") as out:
@@ -115,12 +126,12 @@ def replace_text(file: str | PathLike, text: str, *, stream: bool = False) -> No
 def save_figure(figure: Any, file: str | PathLike, **options: Any) -> None:
     """Replace a file by the picture of a figure of matplotlib."""
     with replacing(file) as out:
-        figure.savefig(out, format=os.path.splitext(fspath(file))[1][1:], **options)
+        figure.savefig(out, format=os.path.splitext(file_name(file))[1][1:], **options)
 
 
 def make_folder(folder: str | PathLike) -> None:
     """Make a directory for output, if there is none. Raises Error if it cannot be made or written to."""
-    name = fspath(folder)
+    name = file_name(folder)
     try:
         os.makedirs(name, exist_ok=True)
     except OSError as error:

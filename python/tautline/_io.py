@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 from typing import Any, Union
 
@@ -11,8 +11,8 @@ from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutput
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
 
 from ._arrays import leaves
-from ._errors import Error, plain, run, watch
-from ._files import check_input, check_target
+from ._errors import Error, checked, plain, run, watch
+from ._files import check_input, check_target, file_name
 from ._formats import FORMATS, Format
 from ._legacy import check_counts, check_references, scan_legacy
 from ._mesh import from_arrays
@@ -46,6 +46,7 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
     raise Error(f"a mesh is a vtkDataSet, a file name or (points, cells), not {type(mesh).__name__}")
 
 
+@checked
 def read(file: str | PathLike, **options: Any) -> vtkDataObject:
     """Read a mesh. The ending of the file name decides on the format.
 
@@ -61,7 +62,8 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
 
     >>> mesh = tautline.read("part.msh", lower_cells=True)
     """
-    name, ending = fspath(file), Path(file).suffix.lower()
+    name = file_name(file)
+    ending = Path(name).suffix.lower()
     if ending not in FORMATS:
         raise Error(f"{name}: no reader for '{ending}'; there are {' '.join(sorted(FORMATS))}")
     form = FORMATS[ending]
@@ -76,6 +78,7 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
     return _read_vtk(name, form)
 
 
+@checked
 def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
     """Write a mesh. The ending of the file name decides on the format.
 
@@ -91,7 +94,8 @@ def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
     Returns the names of the files written. Raises Error if the format cannot hold the mesh, or if a file cannot be
     written.
     """
-    name, ending = fspath(file), Path(file).suffix.lower()
+    name = file_name(file)
+    ending = Path(name).suffix.lower()
     form = check_output(name)
     _check_options(name, ending, options, "binary" if form.own else None)
     data = as_mesh(mesh)
@@ -105,12 +109,21 @@ def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
 
 def check_output(file: str | PathLike) -> Format:
     """The format of a mesh to be written. Raises Error if there is no writer for it or no file can be made there."""
-    name, ending = fspath(file), Path(file).suffix.lower()
+    name = file_name(file)
+    ending = Path(name).suffix.lower()
     if ending not in FORMATS or not FORMATS[ending].writer:
         known = " ".join(sorted(key for key, form in FORMATS.items() if form.writer))
         raise Error(f"{name}: no writer for '{ending}'; there are {known}")
     check_target(name)
     return FORMATS[ending]
+
+
+def as_data_set(mesh: Mesh) -> vtkDataSet:
+    """as_mesh() for functions that do not take composite data. Raises Error for these."""
+    data = as_mesh(mesh)
+    if isinstance(data, vtkDataSet):
+        return data
+    raise Error(f"one mesh is expected, not a {data.GetClassName()}; take one of its blocks, or Merge Blocks first")
 
 
 def _check_options(name: str, ending: str, options: dict[str, Any], known: str | None) -> None:

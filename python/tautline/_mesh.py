@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkUnstructuredGrid,
 )
 
-from ._errors import Error
+from ._errors import Error, checked
 
 _CELLS = {  # name: VTK's cell type, number of points
     "triangle": (VTK_TRIANGLE, 3),
@@ -34,6 +34,7 @@ _FLAT = {3: "triangle", 4: "quadrilateral"}
 _SOLID = {3: "triangle", 4: "tetrahedron", 5: "pyramid", 6: "wedge", 8: "hexahedron"}
 
 
+@checked
 def from_arrays(points: Any, cells: Any) -> vtkUnstructuredGrid:
     """Make a mesh from numpy arrays.
 

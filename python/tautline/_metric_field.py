@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from . import _commands, _vtk
 from ._arguments import pick, set_threads
 from ._arrays import point_array
-from ._errors import Error, run
+from ._errors import Error, checked, run
 from ._metrics import Metrics, choose
 
 CELLS = ("triangle", "tetrahedron")
@@ -30,6 +30,7 @@ class MetricFieldResult:
     validity: np.ndarray
 
 
+@checked
 def metric_field(
     metrics: Metrics = ("imr",),
     cell: str = "triangle",

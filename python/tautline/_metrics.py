@@ -8,7 +8,7 @@ from typing import Any, Iterable, Union
 
 from . import _vtk
 from ._commands import add_command
-from ._errors import Error, Messages, watch
+from ._errors import Error, Messages, checked, watch
 from ._tables import finite, metrics_markdown, metrics_text
 
 #: Metrics of a function: a name, label, symbol or alias, or several of them.
@@ -19,6 +19,7 @@ _LISTS = ("aliases", "dimensions", "cell_types")
 _FLAGS = {"yes": True, "no": False}
 
 
+@checked
 def metrics() -> list[dict[str, Any]]:
     """List all metrics, each a dict of facts; None where a fact does not apply.
 

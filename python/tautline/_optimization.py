@@ -23,7 +23,7 @@ from ._arguments import (
     within,
 )
 from ._arrays import ANY, CELLS, POINTS, InputArrays, cell_array, columns, history_of, point_array, snake, table_rows
-from ._errors import Error, run, watch
+from ._errors import Error, checked, run, watch
 from ._io import Mesh, as_mesh
 
 PRESETS = (
@@ -104,6 +104,7 @@ class OptimizeResult:
     summary: str
 
 
+@checked
 def optimize(
     mesh: Mesh,
     objectives: str | Iterable[Objective] | None = None,

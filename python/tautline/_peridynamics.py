@@ -13,8 +13,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 from . import _commands, _vtk
 from ._arguments import pick, set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, columns, snake
-from ._errors import Error, run
-from ._io import Mesh, as_mesh
+from ._errors import Error, checked, run
+from ._io import Mesh, as_data_set
 
 BASES = ("constant", "linear", "discontinuous linear")
 KERNELS = ("power", "constant", "gaussian", "conical", "table")
@@ -60,6 +60,7 @@ class PeridynamicsResult:
     summary: str
 
 
+@checked
 def peridynamics(
     mesh: Mesh,
     delta: float = 0.2,
@@ -127,7 +128,7 @@ def peridynamics(
     >>> tautline.peridynamics(mesh, delta=0.2, p=1).condition
     """
     filter_ = _vtk.vtkPeridynamicStiffness()
-    inputs = InputArrays(filter_, as_mesh(mesh))
+    inputs = InputArrays(filter_, as_data_set(mesh))
     filter_.SetHorizon(float(delta))
     filter_.SetExponent(float(p))
     filter_.SetBasis(pick("basis", basis, BASES))
@@ -198,6 +199,7 @@ def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity:
     )
 
 
+@checked
 def interaction_layer(mesh: Mesh, width: float = 0.2, *, element_size: float = 0.0, threads: int = 0) -> vtkDataSet:
     """Add an interaction layer (collar, nonlocal boundary layer) of triangles around a mesh and in its holes.
 
@@ -219,7 +221,7 @@ def interaction_layer(mesh: Mesh, width: float = 0.2, *, element_size: float = 0
     filter_.SetWidth(float(width))
     filter_.SetElementSize(float(element_size))
     set_threads(filter_, threads)
-    filter_.SetInputDataObject(as_mesh(mesh))
+    filter_.SetInputDataObject(as_data_set(mesh))
     run(filter_)
     return filter_.GetOutput()
 
@@ -265,7 +267,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _run_peridynamics(arguments: argparse.Namespace) -> None:
-    mesh = as_mesh(arguments.mesh)
+    mesh = as_data_set(arguments.mesh)
     if arguments.add_layer:
         mesh = interaction_layer(mesh, arguments.delta, threads=arguments.threads)
     names = ("delta", "p", "basis", "kernel", "width", "model", "discretization", "rules", "tolerance", "region",

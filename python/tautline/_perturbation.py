@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import _commands, _vtk
 from ._arguments import set_threads, within
 from ._arrays import POINTS, InputArrays, point_array
-from ._errors import Error, run
+from ._errors import Error, checked, run
 from ._io import Mesh, as_mesh
 
 _FIXED = 0  # input array of vtkMeshPerturbation
@@ -40,6 +40,7 @@ class PerturbResult:
     summary: str
 
 
+@checked
 def perturb(
     mesh: Mesh,
     fraction: float = 0.5,

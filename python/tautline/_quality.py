@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 from . import _commands, _vtk
 from ._arguments import COMBINATIONS, TARGETS, pick, set_threads, within
 from ._arrays import InputArrays, cell_array, columns, point_array, snake
-from ._errors import Error, run
+from ._errors import Error, checked, run
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose, metrics as known_metrics
 from ._tables import quality_rows, quality_text
@@ -54,6 +54,7 @@ class QualityResult:
     summary: str
 
 
+@checked
 def quality(
     mesh: Mesh,
     metrics: Metrics = ("imr",),

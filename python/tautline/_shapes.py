@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 from typing import Any, Iterable
 
@@ -25,8 +25,8 @@ from vtkmodules.vtkIOImage import vtkImageReader2Factory
 from . import _commands, _vtk
 from ._arguments import check_options, number, pick
 from ._arrays import cell_array, columns, point_array, table_rows
-from ._errors import Error, run, watch
-from ._files import check_input
+from ._errors import Error, checked, run, watch
+from ._files import check_input, file_name
 
 FOREGROUNDS = ("automatic", "bright", "dark")
 LOCATIONS = ("grid", "near grid", "contour")
@@ -51,7 +51,7 @@ def as_image(image: Any) -> vtkImageData:
     if isinstance(image, vtkImageData):
         return image
     if isinstance(image, (str, PathLike)):
-        name = fspath(image)
+        name = file_name(image)
         check_input(name)
         reader = vtkImageReader2Factory.CreateImageReader2(name)
         if reader is None:
@@ -91,6 +91,7 @@ class SilhouetteResult:
     summary: str
 
 
+@checked
 def silhouette(
     image: Any, spacing: float = 25.0, *, threshold: float | None = None, foreground: str = "automatic"
 ) -> SilhouetteResult:
@@ -150,6 +151,7 @@ class MatchResult:
     summary: str
 
 
+@checked
 def match(
     source: Any,
     target: Any,
@@ -241,6 +243,7 @@ class RetrievalResult:
     summary: str
 
 
+@checked
 def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
     """Read a set of images with their classes.
 
@@ -251,7 +254,7 @@ def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
     Returns a block per image, with the field arrays `Label` and `File`. Raises Error for a list or an image that cannot
     be read.
     """
-    path = Path(fspath(folder))
+    path = Path(file_name(folder))
     if path.is_dir() and (path / "labels.csv").is_file():
         path = path / "labels.csv"
     if not path.is_dir():
@@ -262,6 +265,7 @@ def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
     return reader.GetOutputDataObject(0)
 
 
+@checked
 def retrieval(
     shapes: Any,
     labels: Iterable[Any] | None = None,
@@ -325,6 +329,8 @@ def _as_set(shapes: Any, labels: Iterable[Any] | None) -> vtkMultiBlockDataSet:
     if isinstance(shapes, (str, PathLike)):
         shapes = read_silhouettes(shapes)
     if not isinstance(shapes, vtkMultiBlockDataSet):
+        if not isinstance(shapes, Iterable):
+            raise Error(f"a set of shapes is a folder, a list of images or blocks, not {type(shapes).__name__}")
         images = [as_image(image) for image in shapes]
         shapes = vtkMultiBlockDataSet()
         for i, image in enumerate(images):
