@@ -40,7 +40,9 @@ HorizonInput::HorizonInput(vtkDataSet* input, vtkDataArray* region, double layer
   }
   if (adapter.ghostCells())
   {
-    throw Error("the mesh has ghost cells: a nonlocal matrix needs the whole mesh in one piece");
+    throw Error(
+      "the mesh has ghost cells, and a nonlocal matrix needs the whole mesh: gather it on "
+      "one process first");
   }
   this->Frame = mesh.frame();
   const Vec3 first = pointOf(view, view.connectivity[view.offsets[triangles->cell(0)]]);

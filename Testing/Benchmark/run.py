@@ -35,7 +35,7 @@ def yardstick(build: Path, repeats: int) -> dict[str, float]:
 
 
 def ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
-    """What we promise and what else tells something: (what, number, aim)."""
+    """The promised ratios and other informative ones: (what, number, aim)."""
     gradient, value = t["tetrahedra imr gradient"], t["tetrahedra imr value"]
     rest = t["filter tautline"] - t["filter adapter"] - t["filter validity"] - t["filter values"]
 
@@ -66,7 +66,7 @@ def shape_ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
     """Shape matching, in units of the yardstick: IMR and gradient of one tetrahedron in a plain loop (Yardstick.h)."""
     unit = t["yardstick"]
     return [
-        ("contour match of two like shapes / yardstick", t["shapes contour like"] / unit, "<= 20000"),
+        ("contour match of two similar shapes / yardstick", t["shapes contour like"] / unit, "<= 20000"),
         ("contour match, mean over shapes / yardstick", t["shapes contour mean"] / unit, ""),
         ("exact grid match [s]", t["shapes grid"] / 1e9, "<= 3"),
         ("two threads over one, exact grid match", t["shapes grid wall 1"] / t["shapes grid wall 2"], ">= 1.7"),
@@ -143,7 +143,7 @@ def show(times: dict[str, float], summary: list[tuple[str, float, str]]) -> None
 
 
 def show_table(rows: list[tuple[str, float, str]]) -> None:
-    print(f"\n{'passes of one thread, unless said otherwise':66}{'':>12}{'aim':>12}")
+    print(f"\n{'passes of one thread, unless stated otherwise':66}{'':>12}{'aim':>12}")
     for what, number, aim in rows:
         print(f"{what:66}{number:12.5g}{aim:>12}")
     print(f"{optimization.misses(rows)} aims missed")

@@ -12,7 +12,7 @@ tree="$work/moved here" # with a space
 mv "$work/first" "$tree"
 unset LD_LIBRARY_PATH PYTHONPATH PV_PLUGIN_PATH
 
-echo "--- nothing of ours is missing, nothing points into the build tree"
+echo "--- no library of Tautline is missing, nothing points into the build tree"
 while IFS= read -r -d '' library; do
   if ldd "$library" | grep -E 'not found'; then echo "in $library" >&2; exit 1; fi
   if readelf -d "$library" | grep -E 'R(UN)?PATH' | grep -F "$build"; then echo "in $library" >&2; exit 1; fi
@@ -35,10 +35,10 @@ others="$(ldd "$work/kernel_consumer/kernel_consumer" | awk '{ print $1 }' |
   grep -vE "^(lib($expected)\.so|linux-vdso|/lib.*/ld-linux|libasan|libubsan)" || true)"
 if [[ -n $others ]]; then echo "Tautline::Kernel links $others" >&2; exit 1; fi
 if ! ldd "$work/solvers_consumer/solvers_consumer" | grep -q petsc; then
-  echo "the look at linked libraries finds nothing: Tautline::Solvers does link PETSc" >&2; exit 1
+  echo "the check of linked libraries finds nothing: Tautline::Solvers does link PETSc" >&2; exit 1
 fi
 
-echo "--- every public header of the kernel compiles alone, and no header of ours lies outside our directories"
+echo "--- every public header of the kernel compiles alone, and no header of Tautline lies outside its directories"
 while IFS= read -r -d '' header; do
   "$compiler" -std=c++17 -Wall -Wextra -Werror -fsyntax-only -x c++ -I "$tree/include" "$header"
 done < <(find "$tree/include/tautline" -name '*.h' -print0)

@@ -85,7 +85,7 @@ def check_untangling():
     assert all(n == 0 for method, n in left.items() if "and untangling" in method), left
     for study in ("hydrocephalus", "bore"):
         start = studies.column(study, "inverted", "method", "0")
-        assert set(start.values()) == {5.0}, f"{study}: the warp inverts as many elements as asked for: {start}"
+        assert set(start.values()) == {5.0}, f"{study}: the warp inverts the requested number of elements: {start}"
         assert "5 inverted before, 0 after" in (studies.directory / study / f"{study}.txt").read_text(encoding="utf-8")
 
 

@@ -7,7 +7,7 @@ const char* describe(StopReason reason)
   switch (reason)
   {
     case StopReason::GradientNorm:
-      return "Converged: the gradient is as small as wanted.";
+      return "Converged: the gradient norm is below its tolerance.";
     case StopReason::RelativeChange:
       return "Converged: the objective hardly changes any more.";
     case StopReason::TwoDigits:
@@ -23,7 +23,7 @@ const char* describe(StopReason reason)
     case StopReason::Aborted:
       return "Stopped on request.";
     case StopReason::NoProgress:
-      return "No step lowers the objective.";
+      return "No step reduces the objective.";
     default:
       return "No vertex is free to move.";
   }

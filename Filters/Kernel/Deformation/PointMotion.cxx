@@ -279,7 +279,7 @@ std::vector<double> displacements(const PointMotion& motion, double amount, Inde
   if (wrong > 0)
   {
     throw Error("The motion takes " + std::to_string(wrong) +
-      " points to places that are not finite: look at its numbers.");
+      " points to places that are not finite: check its numbers.");
   }
   return result;
 }

@@ -79,7 +79,7 @@ LinearSystem Study::systemFor(const SolverCombination& combination)
   {
     return linear;
   }
-  // Multigrid is to see a matrix and nothing else.
+  // Multigrid gets the matrix only.
   linear.blockSize = 1;
   linear.coordinates = nullptr;
   if (linear.numbering)
@@ -103,7 +103,7 @@ LinearSystem Study::systemFor(const SolverCombination& combination)
 }
 
 //------------------------------------------------------------------------------
-/// Finds out in which combinations PETSc's options have an effect, and whether all options are
+/// Determines in which combinations PETSc's options have an effect, and whether all options are
 /// good, before any time is spent.
 void Study::checkOptions()
 {
@@ -246,7 +246,7 @@ SolverStudyRow Study::solve(const SolverCombination& combination, std::size_t in
 }
 
 //------------------------------------------------------------------------------
-/// The spectrum of P^-1 A is the same for every method; CG sees it best.
+/// The spectrum of P^-1 A is the same for every method; CG estimates it best.
 void Study::findConditions()
 {
   auto& rows = this->Result.rows;
@@ -377,7 +377,7 @@ std::string Study::warnings() const
     const std::string where =
       numbering.ranks() == 1 ? ", cell " + std::to_string(worst) + "," : std::string();
     text += " The mesh has " + std::to_string(bad) + (bad == 1 ? " element" : " elements") +
-      " of bad shape (inverse mean ratio above " + digits(badShape) + "; the worst" + where +
+      " of poor shape (inverse mean ratio above " + digits(badShape) + "; the worst" + where +
       " has " + digits(worstShape) +
       "): they dominate the largest eigenvalue. Optimize Mesh first would help every solver.";
   }

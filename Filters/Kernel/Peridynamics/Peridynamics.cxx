@@ -362,7 +362,7 @@ void checkDiagonal(const PeridynamicSystem& system)
     {
       throw Error("row " + std::to_string(row) +
         " of the matrix is empty: the horizon is smaller than the elements, and the dissertation's "
-        "rules see no "
+        "rules find no "
         "neighbour; take the exact discretization, a larger horizon or smaller elements");
     }
   }

@@ -32,14 +32,14 @@ inline bool onAnyRank(MPI_Comm communicator, bool condition)
   return all != 0;
 }
 
-/// Throws Error on all ranks if one of them has a complaint: an exception on one rank alone
+/// Throws Error on all ranks if one of them reports an error: an exception on one rank alone
 /// would leave the others waiting.
 inline void throwTogether(MPI_Comm communicator, const std::string& complaint)
 {
   if (onAnyRank(communicator, !complaint.empty()))
   {
     throw Error(
-      complaint.empty() ? "Another MPI rank has refused its part of the data." : complaint);
+      complaint.empty() ? "Another MPI rank has rejected its part of the data." : complaint);
   }
 }
 

@@ -247,7 +247,7 @@ void refine(Triangulation& triangulation, const PlanarOptions& options, double s
     if (points > options.pointLimit)
     {
       throw Error("the triangulation has more than " + std::to_string(options.pointLimit) +
-        " points; ask for larger triangles or a smaller angle");
+        " points; choose larger triangles or a smaller angle");
     }
     if (options.progress && !options.progress(points))
     {
@@ -256,7 +256,7 @@ void refine(Triangulation& triangulation, const PlanarOptions& options, double s
   }
 }
 
-/// The pieces of every segment: chains of constrained edges between two input points.
+/// The parts of every segment: chains of constrained edges between two input points.
 void collectEdges(const Triangulation& triangulation, const PlanarBoundary& boundary,
   const std::vector<Vertex>& vertices, PlanarMesh& mesh)
 {

@@ -88,10 +88,10 @@ void testPoisson()
   TAUTLINE_CHECK_EQUAL(best.seconds, fastest);
   TAUTLINE_CHECK(study.why.rfind(nameOf(best.combination), 0) == 0); // begins with it
   TAUTLINE_CHECK(contains(study.why, "The next, ") && contains(study.why, "grows about as N"));
-  TAUTLINE_CHECK(!contains(study.why, "bad shape") && !contains(study.why, "converge"));
+  TAUTLINE_CHECK(!contains(study.why, "poor shape") && !contains(study.why, "converge"));
   TAUTLINE_CHECK(!contains(study.why, "What remains"));
 
-  // The tolerance is of the preconditioned residual; the study says what the true one is.
+  // The tolerance is of the preconditioned residual; the study reports the true one.
   options = {};
   const MeshData large = movedBlock(CellType::Triangle, 120, 0.1);
   const Mesh fine(large.view());
@@ -105,7 +105,7 @@ void testPoisson()
 //------------------------------------------------------------------------------
 void testElasticity()
 {
-  // Multigrid needs fewer iterations when it knows the points and the rigid body modes.
+  // Multigrid needs fewer iterations when it is given the points and the rigid body modes.
   const MeshData data = movedBlock(CellType::Triangle, 40, 0.1);
   const Mesh mesh(data.view());
   EllipticProblem problem;
@@ -152,7 +152,7 @@ void testFailuresAndWarnings()
   TAUTLINE_CHECK_EQUAL(study.recommended, Index(-1));
   TAUTLINE_CHECK(
     contains(study.why, "None converged. 2 did not converge: CG + Jacobi not converged"));
-  TAUTLINE_CHECK(contains(study.why, "of bad shape") && contains(study.why, "the worst, cell "));
+  TAUTLINE_CHECK(contains(study.why, "of poor shape") && contains(study.why, "the worst, cell "));
   for (const SolverStudyRow& row : study.rows)
   {
     TAUTLINE_CHECK(row.run && row.linear.reason == SolveReason::IterationLimit);

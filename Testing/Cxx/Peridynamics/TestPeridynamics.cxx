@@ -99,7 +99,8 @@ void testStructure()
           }
         }
         TAUTLINE_CHECK(symmetric);
-        // An irregular mesh tells the readings apart: the dissertation's matrix is not symmetric.
+        // On an irregular mesh the discretizations differ: the dissertation's matrix is not
+        // symmetric.
         TAUTLINE_CHECK_EQUAL(held.asymmetry > 1e-6, !exact);
 
         options.constrained = false;
@@ -590,7 +591,7 @@ void testRefusals()
       o.kernel.width = 0.0;
     });
   refuse("tolerance", [](Mesh2, Options o) { o.tolerance = 0.0; });
-  refuse("see no neighbour",
+  refuse("find no neighbour",
     [](Mesh2, Options o)
     {
       o.discretization = Discretization::Dissertation;

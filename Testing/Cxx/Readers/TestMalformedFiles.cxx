@@ -13,7 +13,7 @@ namespace
 std::string data;
 std::string output;
 
-/// Writes `text` to a file of the kind and checks what is said of it.
+/// Writes `text` to a file of the kind and checks the error message.
 void expect(const std::string& extension, const std::string& text, const std::string& problem)
 {
   const std::string name = output + "/bad." + extension;
@@ -22,7 +22,7 @@ void expect(const std::string& extension, const std::string& text, const std::st
   if (said.find(problem) == std::string::npos || said.find(output) != 0)
   {
     std::cerr << "of\n"
-              << text.substr(0, 200) << "\nis said: " << said << "\nnot: " << problem << "\n";
+              << text.substr(0, 200) << "\nmessage: " << said << "\nnot: " << problem << "\n";
     TAUTLINE_CHECK(!"message");
   }
 }
