@@ -10,7 +10,7 @@
 /** Warns when the running ParaView is not the one the plugin was built for. */
 void tautlineCheckVersion();
 
-/** Gives the arrays of our filters their default colour maps; the user's own defaults win. */
+/** Gives the arrays of Tautline's filters default colour maps; the user's own take precedence. */
 void tautlineInstallColorMaps();
 
 #endif

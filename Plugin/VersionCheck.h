@@ -2,7 +2,7 @@
  * @file VersionCheck.h
  * @brief Compares the ParaView a plugin was built for with the one that loads it.
  *
- * A plugin shares the memory layout of ParaView's classes, and ParaView itself no longer refuses a
+ * A plugin shares the memory layout of ParaView's classes, and ParaView itself no longer rejects a
  * plugin of another build: such a plugin may load and crash later. The rule here is the one Debian
  * follows for plugins, the same major, minor and patch number.
  */
@@ -23,7 +23,7 @@ struct ParaViewVersion
   std::string vtk; ///< version of the VTK inside, "9.2.20230111"
 };
 
-/** What to tell the user, with the remedy; empty when the two versions go together. */
+/** The message to the user, with the remedy; empty when the two versions are compatible. */
 std::string versionMismatch(const ParaViewVersion& built, const ParaViewVersion& running);
 
 } // namespace tautline

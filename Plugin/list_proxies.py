@@ -8,7 +8,7 @@ GROUPS = ("filters", "sources", "readers", "writers")
 
 
 def proxies():
-    """The (group, name) pairs of all proxies ParaView knows now."""
+    """The (group, name) pairs of all proxies registered in ParaView."""
     manager = servermanager.ProxyManager()
     definitions = manager.GetProxyDefinitionManager()
     found = set()

@@ -1,6 +1,6 @@
 /**
  * @file FileNames.h
- * @brief Splitting file names and looking for companions.
+ * @brief Splitting file names and finding companion files.
  */
 #ifndef tautline_FileNames_h
 #define tautline_FileNames_h

@@ -18,7 +18,7 @@ void expectEnd(TextCursor& cursor, const std::string& section)
   }
 }
 
-/// Skips a section nobody asked for.
+/// Skips a section that is not used.
 void skipSection(TextCursor& cursor, const std::string& section)
 {
   const std::string end = "$End" + section;

@@ -266,7 +266,7 @@ struct Field
   }
 };
 
-/// The arrays of a section's fields: named in a comment of ours, or Solution1, ...
+/// The arrays of a section's fields: named in a comment that Tautline wrote, or Solution1, ...
 struct SolutionArrays
 {
   std::vector<MeshArray> arrays;

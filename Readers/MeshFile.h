@@ -65,7 +65,7 @@ enum FileCell : unsigned char
   FileWedge18 = 32
 };
 
-/// 0 to 3; -1 for a type no file of ours has.
+/// 0 to 3; -1 for a type that no supported file has.
 TAUTLINEREADERS_EXPORT int cellDimension(unsigned char type);
 /// Nodes of a cell; 0 for polygons and unknown types.
 TAUTLINEREADERS_EXPORT int cellNodes(unsigned char type);

@@ -25,8 +25,8 @@ TAUTLINEREADERS_EXPORT void toSurface(MeshFile mesh, vtkPolyData* surface);
  * @brief Copies a data set. Pixels and voxels become quadrilaterals and hexahedra, ghost cells are
  * left out, arrays that are not numeric too.
  *
- * Throws Error, naming types and counts, on cells files of ours do not have (strips, polyhedra,
- * ...).
+ * Throws Error, naming types and counts, on cells that the file formats do not have (strips,
+ * polyhedra, ...).
  */
 TAUTLINEREADERS_EXPORT MeshFile fromDataSet(vtkDataSet* input);
 }

@@ -47,7 +47,7 @@ NodeHeader readNodeHeader(TextCursor& cursor)
   return header;
 }
 
-/// Arrays for attribute columns: as named in a comment of ours, or Attribute1, Attribute2, ...
+/// Arrays for attribute columns: as named in a comment that Tautline wrote, or Attribute1, ...
 std::vector<MeshArray> attributeArrays(
   const FileContent& file, Index columns, Index tuples, bool elements)
 {

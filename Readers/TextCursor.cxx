@@ -282,7 +282,7 @@ void adviseLargePages(void* memory, std::size_t bytes)
   if (begin < end)
   {
     madvise(
-      reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // a wish: failing is no error
+      reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // advice: failing is no error
   }
 }
 

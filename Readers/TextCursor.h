@@ -4,7 +4,7 @@
  *
  * Every read that fails throws FileError "file:line: problem"; the line is counted only then, so it
  * costs nothing on good files. Numbers are parsed with std::from_chars. Nothing is ever read past
- * the end, and no count of a file is believed before the bytes it needs are known to be there.
+ * the end, and no count of a file is used before the bytes it needs are found in the file.
  */
 #ifndef tautline_TextCursor_h
 #define tautline_TextCursor_h
@@ -224,8 +224,8 @@ inline Index TextCursor::integer(const char* what)
   return static_cast<Index>(bytes);
 }
 
-/// Asks the system for large pages: touching a large new array for the first time in ordinary ones
-/// takes as long as filling it.
+/// Requests large pages from the system: touching a large new array for the first time in ordinary
+/// ones takes as long as filling it.
 void adviseLargePages(void* memory, std::size_t bytes);
 
 /// Room for `size` values in all, in large pages where there are some.

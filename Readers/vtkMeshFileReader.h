@@ -2,7 +2,7 @@
  * @class vtkMeshFileReader
  * @brief Base class of Tautline's mesh readers: the file name, lower-dimensional cells, errors.
  *
- * A subclass names a format. The whole file is read at once and checked; what is wrong with it is
+ * A subclass names a format. The whole file is read at once and checked; its first error is
  * reported as "file:line: problem" and leaves an empty output. Coordinates are double precision.
  * Array names are the same for all formats (see MeshFile.h): `Fixed`, `BoundaryMarker`,
  * `Reference`.

@@ -100,7 +100,7 @@ bool MeshAdapter::acrossY(Index first) const
   if (std::any_of(
         node, node + 3, [this](Index id) { return id < 0 || id >= this->View.numberOfPoints; }))
   {
-    return false; // the mesh will complain
+    return false; // the mesh reports the error
   }
   const Vec3 a = pointOf(this->View, node[0]);
   return cross(pointOf(this->View, node[1]) - a, pointOf(this->View, node[2]) - a)[1] < 0;
@@ -186,7 +186,7 @@ void MeshAdapter::takeCells(vtkDataSet* input)
 
 namespace
 {
-/// Vertices, lines and empty cells have no quality to speak of.
+/// Vertices, lines and empty cells have no quality.
 bool hasQuality(int vtkType)
 {
   switch (vtkType)

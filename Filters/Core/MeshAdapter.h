@@ -70,7 +70,7 @@ private:
 TAUTLINECORE_EXPORT std::string describe(const Orientation& orientation, const Mesh& mesh);
 
 /**
- * @brief Reverses the order of the points of every cell, which an output shares with nobody after.
+ * @brief Reverses the order of the points of every cell in a copy that only this output uses.
  * Throws Error for data sets other than unstructured grids and poly data, and for cells of higher
  * order.
  */

@@ -26,7 +26,8 @@ namespace tautline
 class TAUTLINECORE_EXPORT Processes
 {
 public:
-  /// Throws Error if there are several processes that do not talk by MPI, or if Tautline cannot.
+  /// Throws Error if there are several processes that do not communicate by MPI, or if VTK is built
+  /// without it.
   Processes();
 
   int rank() const { return this->Rank; }

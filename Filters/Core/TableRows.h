@@ -1,6 +1,6 @@
 /**
  * @class tautline::TableRows
- * @brief A table that is built row by row; the columns of the first row decide.
+ * @brief A table that is built row by row; the first row defines the columns.
  *
  *     rows.begin("block 3");
  *     rows.add("Condition", 12.5);

@@ -8,9 +8,9 @@
  *
  * @par Ports:
  * Input port 0 takes a data set or a composite data set (the composite type stands first, so that a
- * filter sees all blocks and its tables are those of the whole). The other input ports are optional
- * and take the same types; those declared as selections take a vtkSelection. Output port 0 has the
- * type of the input on port 0, the others are tables. A derived class declares its ports by
+ * filter gets all blocks and its tables describe the whole). The other input ports are optional and
+ * take the same types; those declared as selections take a vtkSelection. Output port 0 has the type
+ * of the input on port 0, the others are tables. A derived class declares its ports by
  * DeclarePorts() in its constructor and overrides FillInputPortInformation() or
  * FillOutputPortInformation() where it differs: RequestDataObject() makes what these announce.
  *

@@ -29,7 +29,7 @@ enum class MovedPart : int
 
 struct PartChoice
 {
-  std::function<const BoundaryParts&()> parts; ///< of the mesh; asked for if they matter
+  std::function<const BoundaryParts&()> parts; ///< of the mesh; called only if they are needed
   MovedPart part = MovedPart::Automatic;
   std::vector<int> numbers;      ///< Numbered
   std::vector<double> values;    ///< Values; empty: all but 0

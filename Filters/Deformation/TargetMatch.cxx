@@ -88,7 +88,7 @@ bool sameCells(const MeshView& a, const MeshView& b)
     std::equal(a.connectivity, a.connectivity + a.offsets[a.numberOfCells], b.connectivity);
 }
 
-/// Finds out which point of the mesh each point of the target is.
+/// Finds the point of the mesh that each point of the target corresponds to.
 class Matcher
 {
 public:

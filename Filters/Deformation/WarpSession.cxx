@@ -265,7 +265,7 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
   const bool last = !inSequence || this->current == this->requested;
   if (!last && !this->settings.fromPreviousStep)
   {
-    return; // only the mesh at the first time step was asked for
+    return; // only the mesh at the first time step was requested
   }
   kept.rest.take(inSequence ? kept.first.Get() : input, this->settings.options.threads);
   const MeshView& view = kept.rest.mesh->mesh().view();

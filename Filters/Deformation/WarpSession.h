@@ -87,7 +87,7 @@ struct RestingMesh
   /// What is warped.
   const Mesh& warped() const { return this->elements ? *this->elements : this->mesh->mesh(); }
 
-  /// Of its boundary; found when first asked for.
+  /// Of its boundary; computed on first use.
   const BoundaryParts& parts() const;
 
 private:
@@ -104,7 +104,7 @@ struct WarpBlock
   std::map<int, WarpResult> frames;   ///< at time steps, each warped from the one before
 };
 
-/// The motion of a data set as it is asked for.
+/// The requested motion of a data set.
 struct WarpTask
 {
   PointFlags prescribed, stay;
@@ -134,16 +134,16 @@ public:
   /// Whether a result needs more than the data at its time.
   bool sequence() const;
   /**
-   * @brief Chooses the time step to ask for. Collective.
+   * @brief Chooses the time step to request. Collective.
    * @param own the modification time of the filter
    */
   void plan(double time, vtkMTimeType upstream, vtkMTimeType own);
   /// Does what this time step needs of a data set; warps it if it is the one requested.
   void visit(const InputBlock& block, vtkDataObject* target, vtkDataObject* selected,
     TableRows& history, TableRows& statistics, WarpTotals& totals);
-  /// Forgets the data sets from a number on.
+  /// Drops the data sets from a number on.
   void forgetFrom(int block);
-  /// Forgets everything, after an error.
+  /// Drops all data, after an error.
   void clear();
 
 private:

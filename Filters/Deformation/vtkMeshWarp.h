@@ -47,7 +47,7 @@
  *
  * @par Again and again:
  * Matrices and factorisations are kept as long as the mesh, the points that are given and the
- * options of the method are the same: animating Amount, or a target over time, pays for them once.
+ * options of the method are the same: animating Amount, or a target over time, computes them once.
  *
  * @par Several processes:
  * A mesh spread over processes is refused, as the boundary of a part is not that of the mesh:
@@ -247,7 +247,7 @@ public:
   ///@{
   /**
    * From which mesh a time step is warped, if the input or the target has several. Either way the
-   * result at a time is the same in whatever order times are asked for. The default is FIRST_STEP.
+   * result at a time is the same in whatever order times are requested. The default is FIRST_STEP.
    */
   vtkSetClampMacro(StartFrom, int, FIRST_STEP, PREVIOUS_STEP);
   vtkGetMacro(StartFrom, int);
@@ -313,7 +313,7 @@ public:
 
   ///@{
   /**
-   * Let the size of the mesh decide on the solver (on, the default), or take Solver and
+   * Choose the solver by the size of the mesh (on, the default), or take Solver and
    * Preconditioner: the numbers of tautline::KrylovMethod (0 conjugate gradients, ..., 4 direct)
    * and tautline::Preconditioner (0 Jacobi, 1 SSOR, 2 ILU, 3 BoomerAMG, ...); the defaults are 0
    * and 3.

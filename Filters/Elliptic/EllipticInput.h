@@ -48,7 +48,7 @@ class EllipticInput
 {
 public:
   /**
-   * @brief Collective. Throws Error, on all processes, for what EllipticSystem refuses, arrays and
+   * @brief Collective. Throws Error, on all processes, for what EllipticSystem rejects, arrays and
    * expressions that do not fit, cells of higher order, polygons and polyhedra, and mixed
    * orientation.
    */

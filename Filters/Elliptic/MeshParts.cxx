@@ -183,13 +183,13 @@ struct Box
   vtkBoundingBox bounds;
 };
 
-/// Flags, for each piece, the points that other pieces may have, too. @param ghosts whether any
+/// Flags, for each piece, the points that other pieces may share. @param ghosts whether any
 /// piece has some. Collective.
 std::vector<std::vector<char>> sharedPoints(
   const std::vector<Piece>& pieces, bool ghosts, const Processes& processes)
 {
   constexpr std::size_t numbersPerBox = 8;
-  constexpr double few = 0.1; // of the points: then it does not pay to look for those inside
+  constexpr double few = 0.1; // of the points: then finding those inside costs more than it saves
   std::vector<double> numbers;
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
@@ -407,7 +407,7 @@ private:
     points->SetNumberOfPoints(count);
     merged->GetPointData()->CopyAllOn();
     merged->GetPointData()->CopyAllocate(all->GetPointData(), count);
-    for (vtkIdType k = all->GetNumberOfPoints() - 1; k >= 0; --k) // the first piece decides
+    for (vtkIdType k = all->GetNumberOfPoints() - 1; k >= 0; --k) // the first piece prevails
     {
       points->SetPoint(this->PointOf[k], all->GetPoint(k));
       merged->GetPointData()->CopyData(all->GetPointData(), k, this->PointOf[k]);

@@ -216,7 +216,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
-  /// Forgets the results of the last execution.
+  /// Clears the results of the last execution.
   virtual void Reset();
   /// Computes the result on a mesh. Collective. Throws tautline::Error.
   virtual void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,

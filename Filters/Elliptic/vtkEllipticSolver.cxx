@@ -149,7 +149,7 @@ vtkIdType vtkEllipticSolver::AddSolution(
   }
   const tautline::Index outside =
     tautline::addArray(output, false, name, solution.values, solution.components);
-  output->GetCellData()->SetActiveScalars(nullptr); // the solution is looked at first
+  output->GetCellData()->SetActiveScalars(nullptr); // the solution is shown first
   return outside;
 }
 

@@ -39,8 +39,8 @@ public:
    * Combinations to run, by number; none by default, which means 1 to 16, those of Table 2.5:
    * Jacobi, SSOR, ILU(0), BoomerAMG, each with CG, GMRES, MINRES, Bi-CGSTAB. 17 is a direct solver;
    * 18 CG with incomplete Cholesky; 19 to 22 smoothed aggregation (GAMG) with CG, GMRES, MINRES,
-   * Bi-CGSTAB; 23 CG without preconditioner. In 19 to 22 multigrid gets the rigid body modes of
-   * an elastic body, in 13 to 16 it only sees the matrix; 24 is 13 with them, 25 is 19 without.
+   * Bi-CGSTAB; 23 CG without preconditioner. In 19 to 22 multigrid gets the rigid body modes of an
+   * elastic body, in 13 to 16 the matrix only; 24 is 13 with them, 25 is 19 without.
    */
   void AddCombination(int number);
   void ClearCombinations();

@@ -3,7 +3,7 @@
  * @brief Base class of the meshers: a boundary becomes a mesh of what it surrounds.
  *
  * Abstract. The input is a vtkPointSet with the boundary. Output port 0 is a vtkUnstructuredGrid,
- * the mesh; output port 1 is a vtkPolyData, the pieces of the boundary on the same points. Both
+ * the mesh; output port 1 is a vtkPolyData, the subdivided boundary on the same points. Both
  * have the array `BoundaryMarker`. After an error or an abort both are empty.
  *
  * Derived classes link libraries under the GPL or the AGPL, see Filters/Meshing/README.md.

@@ -11,10 +11,11 @@
  * Output 0, vtkUnstructuredGrid: tetrahedra; the input's points come first. Point array
  * `BoundaryMarker`: the lowest marker of the facets a point is on (cell array `BoundaryMarker` of
  * the input, else 1), 0 inside. Cell array `Reference` with the region, if there are regions.
- * Output 1, vtkPolyData `Boundary`: the facets in pieces on the same points, with `BoundaryMarker`.
+ * Output 1, vtkPolyData `Boundary`: the subdivided facets on the same points, with
+ * `BoundaryMarker`.
  *
  * A surface that intersects itself is an error that names the facets. TetGen runs in a process of
- * its own: whatever happens to it is an error with an empty output, and abort is obeyed.
+ * its own: any failure of it is an error with an empty output, and an abort stops it.
  * Deterministic.
  *
  * Limitations: TetGen reports no progress, so progress only shows that it runs.

@@ -2,14 +2,14 @@
  * @class vtkTriangleMesher
  * @brief Quality triangles in planar outlines with holes and inner constraints (CGAL, GPL).
  *
- * Input: lines, polylines or polygons in a plane z = constant. Their edges are kept, in pieces
+ * Input: lines, polylines or polygons in a plane z = constant. Their edges are kept, subdivided
  * where the refinement needs it. What an odd number of outlines surrounds is filled, unless the
- * field array `Holes` (points x y z, as vtkTetGenReader gives it) says what is not; then everything
- * else is. Points without cells inside of the domain stay points of the mesh.
+ * field array `Holes` (points x y z, as vtkTetGenReader gives it) marks what is not; then
+ * everything else is. Points without cells inside of the domain stay points of the mesh.
  *
  * Output 0, vtkUnstructuredGrid: triangles, counter-clockwise; the input's points come first. Point
  * array `BoundaryMarker`: lowest marker of the segments a point is on (cell array `BoundaryMarker`
- * of the input, else 1), 0 elsewhere. Output 1, vtkPolyData `Boundary`: the segments in pieces on
+ * of the input, else 1), 0 elsewhere. Output 1, vtkPolyData `Boundary`: the subdivided segments on
  * the same points, with the cell array `BoundaryMarker`.
  *
  * Deterministic. Progress is reported and abort is obeyed; an aborted run gives an empty output.

@@ -253,7 +253,7 @@ int vtkMeshOptimizer::RequestInformation(
 int vtkMeshOptimizer::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // The time asked for is an iteration, which means nothing upstream.
+  // The time requested is an iteration, which has no meaning upstream.
   for (int port = 0; this->Animation && port < NumberOfPorts; ++port)
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)

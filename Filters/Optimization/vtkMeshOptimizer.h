@@ -103,7 +103,7 @@ public:
   };
   ///@{
   /**
-   * A ready-made choice. All but CUSTOM decide on objectives, scalarization, optimizer and
+   * A ready-made choice. All but CUSTOM determine objectives, scalarization, optimizer and
    * stopping criteria (but for the time limit), see tautline::applyPreset(); those below are for
    * CUSTOM. The default is BEST_SHAPE.
    */
@@ -390,8 +390,8 @@ public:
 
   ///@{
   /**
-   * Untangle an input with inverted elements first, where no objective can repair it; off: refuse
-   * it. On.
+   * Untangle an input with inverted elements first, where no objective can repair it; off: report
+   * an error. On.
    */
   vtkSetMacro(UntangleFirst, bool);
   vtkGetMacro(UntangleFirst, bool);

@@ -3,7 +3,7 @@
  * @brief Draws the horizon of a point and the triangles that meet it, by the cases of dissertation
  * Figure 4.4.
  *
- * To see what a row of a nonlocal matrix is made of, and what the dissertation's approximation of
+ * To show what a row of a nonlocal matrix is made of, and what the dissertation's approximation of
  * cut triangles leaves out.
  *
  * @par Input:
@@ -16,7 +16,7 @@
  * dissertation takes it; `Missed`, the difference.
  *
  * @par Output port 1 `Horizon`:
- * vtkPolyData: the circle, as a closed line of 256 pieces.
+ * vtkPolyData: the circle, as a closed line of 256 segments.
  *
  * @par Output port 2 `Pieces`:
  * vtkPolyData: the one or two triangles that replace each (Figure 4.5), with `Case` and `CellId`.

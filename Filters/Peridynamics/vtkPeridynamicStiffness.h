@@ -10,8 +10,8 @@
  *     k(r) = r^-p,  s = 1 / delta^(4-p)
  *
  * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel. The
- * solution is given in the interaction layer, the cells whose region is LayerValue. Two readings of
- * the integrals:
+ * solution is given in the interaction layer, the cells whose region is LayerValue. Two
+ * discretizations of the integrals:
  * - EXACT: geometry and singularity of the inner integral are exact; converges; symmetric.
  * - DISSERTATION: the rules of section 4.3. With Rules at TABLES it reproduces Tables 4.1 to 4.3.
  *
@@ -46,7 +46,7 @@
  * vtkImageData with `Entries` per pixel, as Figure 4.2; empty unless SparsityPixels is above 0.
  *
  * @par Errors:
- * Whatever tautline::assemblePeridynamics refuses, by name and with the remedy: no interaction
+ * Whatever tautline::assemblePeridynamics rejects, by name and with the remedy: no interaction
  * layer or too thin a one, an exponent at the singular limit, inverted or degenerate triangles, too
  * little memory, time over.
  *

@@ -1,6 +1,6 @@
 /**
  * @class tautline::MetricSelection
- * @brief The metrics a filter was asked for, in order and without repeats.
+ * @brief The metrics requested of a filter, in order and without repeats.
  */
 #ifndef tautline_MetricSelection_h
 #define tautline_MetricSelection_h

@@ -136,7 +136,7 @@ int vtkElementQuality::RequestData(
         { this->Measure(block.input, block.reference, block.output, totals); });
     });
 
-  // Every process takes part in what follows, whatever befell its own blocks.
+  // Every process takes part in what follows, also if its own blocks failed.
   totals.gather(this->Controller);
   if (!failure.empty())
   {

@@ -4,8 +4,8 @@
  *
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from any
  * vtkDataSet or composite data set; cells of higher order are measured on their corners. Whether
- * the mesh is planar, a surface or a volume is found, not asked, and so is its orientation: a mesh
- * that is reversed throughout is reported and, by default, measured as if it were not; one of mixed
+ * the mesh is planar, a surface or a volume is detected, and so is its orientation: a mesh that is
+ * reversed throughout is reported and, by default, measured as if it were not; one of mixed
  * orientation is reported.
  *
  * @par Output port 0 `Mesh`:

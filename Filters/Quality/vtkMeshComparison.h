@@ -6,12 +6,12 @@
  * For each metric chosen it shows where elements became better or worse and by how much, and counts
  * them.
  *
- * Validity decides first: an element that becomes valid is better, one that becomes degenerate or
+ * Validity comes first: an element that becomes valid is better, one that becomes degenerate or
  * inverted is worse. Between two valid elements (and two inverted ones, where the metric orders
- * these, as untangling metrics do) the values decide, by the direction of the metric. They count as
- * equal if they differ by no more than Tolerance times the larger magnitude; for metrics without a
- * unit whose ideal value is 0, times 1 if that is more. A neutral metric (the size) makes no valid
- * element better or worse.
+ * these, as untangling metrics do) the values are compared, by the direction of the metric. They
+ * count as equal if they differ by no more than Tolerance times the larger magnitude; for metrics
+ * without a unit whose ideal value is 0, times 1 if that is more. A neutral metric (the size) makes
+ * no valid element better or worse.
  *
  * @par Inputs:
  * Port 0 `Input`: the mesh before; port 1 `Other`: the mesh after. Both any vtkDataSet with the

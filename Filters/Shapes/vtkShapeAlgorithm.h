@@ -7,7 +7,7 @@
  *     E = sum over triangles of  E_edge + a E_def + b E_dis
  *
  * and its terms are in tautline/Shapes/ShapeMatch.h. The properties below are those of dissertation
- * chapter 5, and some that are not in it: they are off unless it is said otherwise. After the time
+ * chapter 5, and some that are not in it: they are off unless stated otherwise. After the time
  * limit (0, no limit, by default) the best placement so far is returned.
  *
  * @sa vtkShapeMatcher, vtkShapeRetrieval, tautline::matchShape (tautline/Shapes/ShapeMatch.h)
@@ -119,7 +119,7 @@ public:
 
   ///@{
   /**
-   * Weight of how different the surroundings of a vertex look, at least 0. The default is 0.
+   * Weight of the difference between the surroundings of vertices, at least 0. The default is 0.
    */
   vtkSetMacro(DescriptorWeight, double);
   vtkGetMacro(DescriptorWeight, double);

@@ -5,7 +5,7 @@
  * The largest component of the foreground of a binary, grey or colour image is traced to sub-pixel,
  * a simple polygon with nearly equally spaced vertices is laid along its outline, and the polygon
  * gets a constrained Delaunay triangulation without interior points (dissertation sections 5.2.1
- * and 5.2.2). That is the shape Match Shape looks for.
+ * and 5.2.2). That is the source shape of Match Shape.
  *
  * @par Input:
  * vtkImageData of one slice with square pixels and a point or cell array: grey values, colours

@@ -86,7 +86,7 @@ public:
   ///@{
   /**
    * The result of the last execution; numbers are of all blocks together. Inverted elements include
-   * degenerate ones; impossible are those with an Obstacle of 2 or 3.
+   * degenerate ones; infeasible (`Impossible`) are those with an Obstacle of 2 or 3.
    */
   const char* GetReason() const { return this->Reason.c_str(); }
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }

@@ -24,7 +24,7 @@ enum class StopReason : int
   IterationLimit = 5,
   TimeLimit = 6,
   Aborted = 7,
-  NoProgress = 8,    ///< no step lowers the objective
+  NoProgress = 8,    ///< no step reduces the objective
   NoFreeVertices = 9 ///< every vertex is fixed or outside all cells
 };
 

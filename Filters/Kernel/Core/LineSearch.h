@@ -9,7 +9,7 @@ namespace tautline
 {
 /**
  * @brief The constant c of Armijo's condition f(x + t d) <= f(x) + c t (g . d): a step has to reach
- * this fraction of the decrease that the slope promises. The value is that of J. Nocedal and S. J.
+ * this fraction of the decrease that the slope predicts. The value is that of J. Nocedal and S. J.
  * Wright, "Numerical Optimization", 2nd ed. 2006, section 3.1.
  */
 constexpr double ArmijoConstant = 1e-4;

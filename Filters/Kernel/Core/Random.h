@@ -3,9 +3,9 @@
  * @brief Random numbers that are the same everywhere. Internal: not installed.
  *
  * SplitMix64 (Steele, Lea and Flood, 2014): the state is a counter, the number its hash. A
- * generator is made from a seed, a stream and an item (a vertex, say), so that what one item draws
- * depends on no other. Reals are made of the upper 53 bits and directions by rejection, with
- * nothing but + - * / and the square root: the distributions and mathematical functions of the
+ * generator is made from a seed, a stream and an item (for example a vertex), so that the numbers
+ * of one item depend on no other. Reals are made of the upper 53 bits and directions by rejection,
+ * with nothing but + - * / and the square root: the distributions and mathematical functions of the
  * standard library differ between systems.
  */
 #ifndef tautline_Random_h

@@ -69,7 +69,7 @@ struct WarpOptions
    * @brief Number of steps of the motion, each from the mesh of the one before; at least 0, 0 means
    * automatic: steps that invert an element are halved, others doubled, so that none inverts. The
    * result is then valid and may reach only a fraction of the motion, see WarpResult::amount.
-   * SmallStepFemwarp takes 1 as 0. Between the steps each connected piece of prescribed points
+   * SmallStepFemwarp takes 1 as 0. Between the steps each connected component of prescribed points
    * rotates and stretches by the affine map of its displacements, if they come close to one; else
    * it moves along straight lines.
    *

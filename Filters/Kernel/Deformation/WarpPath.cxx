@@ -16,8 +16,9 @@ constexpr double FlatExtent = 1e-6;
 /// Largest fraction of the displacements (root mean square) that an affine map may leave.
 constexpr double AffineResidual = 0.05;
 
-/// The piece of each point, -1 where nothing is prescribed: points are joined by facets (edges of
-/// planar cells) all of whose points are prescribed. Pieces are numbered by their smallest points.
+/// The connected component of each point, -1 where nothing is prescribed: points are joined by
+/// facets (edges of planar cells) all of whose points are prescribed. Components are numbered by
+/// their smallest points.
 std::vector<Index> findPieces(
   const Mesh& mesh, const std::vector<unsigned char>& prescribed, std::size_t& pieces)
 {
@@ -67,7 +68,7 @@ std::vector<Index> findPieces(
   return pieceOf;
 }
 
-/// Means and second moments of the points of a piece and of their displacements.
+/// Means and second moments of the points of a component and of their displacements.
 struct Moments
 {
   double count = 0;
@@ -133,8 +134,8 @@ bool completePlane(const Matrix& axes, bool planarMesh, Matrix& map)
   return !planarMesh || image.dot(normal) >= 0;
 }
 
-/// The linear part of the affine map that fits a piece best (least squares). False where the points
-/// do not determine it, or where it leaves too much of the displacements.
+/// The linear part of the affine map that fits a component best (least squares). False where the
+/// points do not determine it, or where it leaves too much of the displacements.
 bool fitMap(const Moments& m, bool planarMesh, Matrix& map)
 {
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(m.points);
@@ -210,7 +211,7 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
 }
 
 //------------------------------------------------------------------------------
-/// Displacement of the point x that moves with a piece (Rodrigues' rotation formula).
+/// Displacement of the point x that moves with a component (Rodrigues' rotation formula).
 Vec3 WarpPath::place(const Piece& piece, double amount, const Vec3& x) const
 {
   const Vec3 y = x - piece.center;

@@ -12,11 +12,11 @@ namespace tautline
 {
 /**
  * @class tautline::WarpPath
- * @brief Moves each connected piece of prescribed points by the rotation, stretch and translation
- * of the affine map that fits its displacements best; the residual moves along straight lines. A
- * piece that rotates keeps its shape, where straight paths would shrink it: at half a turn to a
- * point. Where the map mirrors, or leaves more than 5 % of the displacements (root mean square,
- * without the translation), all points move along straight lines.
+ * @brief Moves each connected component of prescribed points by the rotation, stretch and
+ * translation of the affine map that fits its displacements best; the residual moves along straight
+ * lines. A component that rotates keeps its shape, where straight paths would shrink it: at half a
+ * turn to a point. Where the map mirrors, or leaves more than 5 % of the displacements (root mean
+ * square, without the translation), all points move along straight lines.
  */
 class WarpPath
 {

@@ -30,7 +30,7 @@ struct WarpQuality
 };
 
 /**
- * @brief The same, summed up; bitwise the same for any number of threads.
+ * @brief The same, aggregated over the elements; bitwise the same for any number of threads.
  * @param points 3 per point of the mesh
  * @param threads 0: all cores
  */

@@ -18,7 +18,7 @@ constexpr std::size_t MaxCenters = 3000;
 /// rounding.
 constexpr double Independence = 1e-12;
 constexpr std::size_t LeafSize = 32;
-/// Products from which a choice is worth starting threads.
+/// Number of products from which a choice uses several threads.
 constexpr Index ParallelWork = 200000;
 /// Chosen points between two checks of the limits.
 constexpr std::size_t ClockInterval = 16;

@@ -107,7 +107,8 @@ void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vecto
     {
       break;
     }
-    // Halved until it lowers the function; at the bottom rounding decides and a full step is right.
+    // Halved until it reduces the function; near the minimum rounding dominates: a full step is
+    // right.
     constexpr double Bottom = 1e-12, Shortest = 1e-10;
     double length = 1;
     double next = functionAt(l + direction);

@@ -7,8 +7,8 @@
  * cells has an empty row. They come out the same, bitwise, for any number of threads, and exactly
  * symmetric.
  *
- * Example: the matrix of -laplace u, and then that of -div(C grad u) without looking for its
- * pattern again.
+ * Example: the matrix of -laplace u, and then that of -div(C grad u) without computing the pattern
+ * again.
  *
  *     tautline::AssemblyPattern pattern(mesh);
  *     tautline::SparseMatrix matrix = pattern.assemble(tautline::DiffusionOperator());

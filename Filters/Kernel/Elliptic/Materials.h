@@ -17,8 +17,8 @@ constexpr SymmetricTensor IdentityTensor = { 1, 1, 1, 0, 0, 0 };
 /// The operator -div(C grad u) + a u, section 2.2 (2.3) and section 4.9 (4.11), (4.20).
 struct DiffusionOperator
 {
-  /// C, in the coordinates of space; positive semidefinite. Triangles in space see its tangential
-  /// part.
+  /// C, in the coordinates of space; positive semidefinite. On triangles in space only its
+  /// tangential part acts.
   SymmetricTensor tensor = IdentityTensor;
   const double* tensors = nullptr; ///< 6 per cell, instead of tensor; or null
   double reaction = 0.0;           ///< a; where it is negative the matrix may be indefinite

@@ -23,7 +23,7 @@ struct SolverCombination
 
 /// "CG + ILU(0)".
 TAUTLINE_SOLVERS_EXPORT std::string nameOf(const SolverCombination& combination);
-/// The sixteen of Table 2.5, in its order; as there, multigrid only sees the matrix (nearNullSpace
+/// The sixteen of Table 2.5, in its order; as there, multigrid gets the matrix only (nearNullSpace
 /// = false).
 TAUTLINE_SOLVERS_EXPORT std::vector<SolverCombination> dissertationCombinations();
 
@@ -70,7 +70,7 @@ struct SolverStudy
 
 /**
  * @brief Solves the system by each combination, from 0. Collective over the ranks. Failures are
- * reasons of their rows; bad options throw Error.
+ * reasons of their rows; invalid options throw Error.
  */
 TAUTLINE_SOLVERS_EXPORT SolverStudy studySolvers(
   const EllipticSystem& system, const SolverStudyOptions& options = {});

@@ -8,7 +8,7 @@ namespace tautline
 {
 namespace
 {
-using Real = long double; // decides signs where double does not
+using Real = long double; // for signs that double does not resolve
 
 struct Triangle
 {

@@ -109,7 +109,7 @@ void flipToDelaunay(PolygonMesh& mesh)
       const Index a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
       const Index e = mesh.triangles[t][(c + 2) % 3], o = mesh.triangles[u][d];
       const std::vector<Vec2>& x = mesh.points;
-      // A point inside the circle sees the edge under a convex quadrilateral.
+      // If the point is inside the circle, the quadrilateral is convex.
       if (inCircle(x[a], x[b], x[e], x[o]) <= 0)
       {
         continue;
@@ -136,7 +136,7 @@ void flipToDelaunay(PolygonMesh& mesh)
   }
 }
 
-/// Leaves of the tree first. The lowest triangle number decides, so the order is always the same.
+/// Leaves of the tree first. The lowest triangle number comes first, so the order is unique.
 std::vector<EliminationStep> eliminate(const PolygonMesh& mesh)
 {
   const std::size_t n = mesh.triangles.size();

@@ -39,7 +39,7 @@ BoundaryParts boundaryParts(const Mesh& mesh)
   const MeshView& view = mesh.view();
   BoundaryParts result;
   result.part.assign(view.numberOfPoints, 0);
-  // Parts are points joined by boundary facets, pieces of the mesh those joined by any facet.
+  // Parts are points joined by boundary facets; components of the mesh, those joined by any facet.
   UnionFind facets(view.numberOfPoints), pieces(view.numberOfPoints);
   std::vector<char> onBoundary(view.numberOfPoints, 0);
   FacetTable table(mesh);
@@ -77,9 +77,9 @@ BoundaryParts boundaryParts(const Mesh& mesh)
   std::stable_sort(
     parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.size > b.size; });
 
-  // The first part of a piece is its outer one.
+  // The first part of a component is its outer one.
   std::map<Index, int> number;
-  std::map<Index, bool> seen; // pieces of the mesh whose largest part has been met
+  std::map<Index, bool> seen; // components of the mesh whose largest part has been met
   for (const Part& part : parts)
   {
     number[part.root] = ++result.parts;

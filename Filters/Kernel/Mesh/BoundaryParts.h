@@ -15,7 +15,7 @@ struct BoundaryParts
   /// then 2, ...
   std::vector<int> part;
   int parts = 0;
-  /// One flag per part (part 1 first): it has the largest box of the parts of its piece of the
+  /// One flag per part (part 1 first): it has the largest box of the parts of its component of the
   /// mesh.
   std::vector<char> outer;
 };

@@ -23,7 +23,7 @@ struct BoundaryShape
 };
 
 /**
- * @brief Looks at the boundary facets around each boundary point.
+ * @brief Classifies each boundary point by the boundary facets around it.
  *
  * In a volume mesh a point whose faces all lie in one plane may slide in it; one whose faces lie in
  * two planes, along the line these share. In a mesh of 2D cells a point whose two boundary edges
@@ -34,7 +34,7 @@ struct BoundaryShape
  * count as one plane (line); 0 to 90
  * @param featureAngle the boundary (of volume and planar meshes) is smooth at a point if no facet
  * there differs from their mean by more than half of so many degrees; 0, the default: it is not
- * asked for; up to 180
+ * determined; up to 180
  */
 TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShape(
   const Mesh& mesh, double flatAngle, double featureAngle = 0);

@@ -76,7 +76,7 @@ constexpr int NumberOfCellTypes = 6;
  * A corner c spans the Jacobian A_c = [p(k1)-p(c), p(k2)-p(c), p(k3)-p(c)] with k1 k2 k3 its
  * neighbours in right-handed order (two in 2D); W_c is the same matrix of the ideal cell, whose
  * edges all have length 1 (equilateral triangle and faces, square, cube, right wedge, equilateral
- * pyramid). Metrics that do not depend on the corner chosen look at the first `samples` corners.
+ * pyramid). Metrics that do not depend on the corner chosen use the first `samples` corners.
  */
 struct CellTopology
 {

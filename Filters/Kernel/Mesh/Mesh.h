@@ -1,6 +1,6 @@
 /**
  * @file Mesh.h
- * @brief A view of somebody's mesh and what the kernel finds out about it.
+ * @brief A view of a caller's mesh and what the kernel derives from it.
  *
  * Example: the number of inverted tetrahedra of a mesh kept in plain arrays.
  *
@@ -47,7 +47,7 @@ enum class Dimension
   Volume   ///< 3D cells
 };
 
-/// What an element is worth; the values of the cell array `Validity`.
+/// Whether an element is valid; the values of the cell array `Validity`.
 enum Validity : signed char
 {
   Valid = 1,        ///< every corner Jacobian is positive
@@ -79,7 +79,7 @@ struct Orientation
   Index positiveCells = 0;
   Index negativeCells = 0;
   Index disagreeing = 0;   ///< interior edges (2D) or faces (3D) whose two cells disagree
-  Index parts = 0;         ///< connected parts; 0 when they did not have to be looked for
+  Index parts = 0;         ///< connected parts; 0 when they did not have to be found
   Index reversedParts = 0; ///< parts whose signed area or volume is negative
 };
 
@@ -132,7 +132,7 @@ public:
   /**
    * @brief Treats the mesh as its mirror image, for one that is reversed throughout: every sign and
    * every metric is then that of the cells listed in the opposite order. Gradients stay those with
-   * respect to the actual coordinates. Metrics that depend on orientation in space see a volume
+   * respect to the actual coordinates. Metrics that depend on orientation in space use a volume
    * mirrored in x. Off by default.
    */
   void setMirrored(bool mirrored) { this->Mirrored = mirrored; }

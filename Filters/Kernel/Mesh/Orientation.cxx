@@ -10,7 +10,7 @@ namespace
 /**
  * Signed area or volume of a cell with its faces cut into triangles about their centres, so that
  * the sum over a mesh whose cells agree depends on its boundary only, however tangled its inside.
- * Seen from one origin for all cells, what an inner edge or face adds cancels to the last digit.
+ * With one origin for all cells, the contributions of an inner edge or face cancel exactly.
  */
 double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node, const Vec3& origin)
 {
@@ -132,7 +132,7 @@ Orientation Mesh::orientation(const signed char* validity) const
     return result;
   }
 
-  // Signs differ (a tangled or a mixed mesh), or there are none (a surface): look at neighbours.
+  // Signs differ (a tangled or a mixed mesh), or there are none (a surface): compare neighbours.
   UnionFind sets(this->View.numberOfCells);
   FacetTable(*this).forEachFacet(
     [&](Index, const FacetUse* uses, Index count)

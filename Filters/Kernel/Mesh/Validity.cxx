@@ -20,7 +20,7 @@ Validity Mesh::classifyCell(const CellTopology& t, const Vec3* p, const Vec3* ag
     const double length = norm(normal);
     normal = length > 0 ? (1.0 / length) * normal : normal;
   }
-  // The worst corner decides.
+  // The worst corner determines the validity.
   Validity verdict = Valid;
   for (int c = 0; c < t.samples; ++c)
   {

@@ -290,7 +290,7 @@ struct ElementFunction
     slope = select(w > 0.0, finiteOrZero(w * slope), Packet{});
   }
 
-  /// dF/dq of any template; F is only looked at by PowerMean and Maximum.
+  /// dF/dq of any template; F is only used by PowerMean and Maximum.
   template <ObjectiveTemplate Template>
   Packet slope(const BatchContext& context, const Batch& batch, double F) const
   {

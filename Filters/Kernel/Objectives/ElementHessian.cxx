@@ -278,7 +278,7 @@ namespace
 {
 /**
  * @brief Calls work(nodes of a cell, batch, nodes, numbers) with the Hessians of each batch, which
- * are made where place(chunk number, first cell in the chunk) says.
+ * are stored at place(chunk number, first cell in the chunk).
  */
 template <class Place, class Work>
 void makeHessians(const ObjectiveSum& objective, const Place& place, const Work& work)

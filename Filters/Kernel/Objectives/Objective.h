@@ -1,6 +1,6 @@
 /**
  * @file Objective.h
- * @brief Objective functions: a metric of the registry, summed up over the elements by a template.
+ * @brief Objective functions: a metric of the registry, aggregated over the elements by a template.
  *
  * Objectives are always minimised. With q_i the metric of element i, w_i its weight (1 by default)
  * and s = -1 where a larger q is better, s = 1 elsewhere, the templates are
@@ -51,7 +51,7 @@ enum class ObjectiveTemplate : int
   Maximum = 5
 };
 
-/// One objective: what is measured, how it is summed up, and how much it counts.
+/// One objective: the metric, how it is aggregated, and its weight.
 struct Objective
 {
   Metric metric = Metric::InverseMeanRatio;

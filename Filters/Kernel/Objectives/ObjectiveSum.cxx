@@ -168,7 +168,7 @@ double ObjectiveSumState::run(double scale, double* gradient) const
         {
           sum += total.sum();
         }
-        // Infinite terms of both signs: an element at fault decides.
+        // Infinite terms of both signs: an element at fault takes precedence.
         return std::isnan(sum) ? HUGE_VAL : sum;
       }
     });

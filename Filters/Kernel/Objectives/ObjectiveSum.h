@@ -28,7 +28,7 @@ public:
    * range.
    * @param mesh must outlive the sum. The coordinates in its view's array may change between calls;
    * the dimension and the plane remain those found when the mesh was made.
-   * @param threads 0: as objective.evaluation says
+   * @param threads 0: that of objective.evaluation
    */
   ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads = 0);
   ~ObjectiveSum();

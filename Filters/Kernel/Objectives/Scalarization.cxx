@@ -23,7 +23,7 @@ void requirePositive(double value, const std::string& what)
   }
 }
 
-/// c ln(sum exp(x_i / c)) and its derivatives; terms of -infinity count for nothing.
+/// c ln(sum exp(x_i / c)) and its derivatives; terms of -infinity contribute 0.
 double logSumExp(const std::vector<double>& x, double c, std::vector<double>& slopes)
 {
   const double largest = *std::max_element(x.begin(), x.end());

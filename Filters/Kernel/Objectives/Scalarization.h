@@ -55,7 +55,7 @@ struct ScalarizationOptions
   double exponent = 1.0;
   /**
    * @brief By how much an objective of higher rank may rise, relative to its value, while those
-   * after it are lowered (Lexicographic); at least 0. With 0 it may not rise at all.
+   * after it are reduced (Lexicographic); at least 0. With 0 it may not rise at all.
    */
   double tolerance = 0.01;
   /// Utopia values U_i, one per objective, or empty for 0.
@@ -89,7 +89,7 @@ public:
   /// F and dF/dF_i >= 0 in `slopes`, which are all 0 where F is not finite.
   double value(const std::vector<double>& objectives, std::vector<double>& slopes) const;
 
-  /// Lexicographic: the objective that is being lowered; 0 before the first call of next().
+  /// Lexicographic: the objective that is being reduced; 0 before the first call of next().
   int stage() const { return this->Stage; }
   /**
    * @brief Lexicographic: the current objective is as low as it gets, at `objectives`; go on to the

@@ -9,7 +9,7 @@ namespace
 {
 constexpr int maxRounds = 20;
 constexpr int sweepsPerRound = 4;
-/// A round that lowers the worst value by less than this fraction is the last.
+/// A round that reduces the worst value by less than this fraction is the last.
 constexpr double worthwhile = 1e-3;
 /// p: elements at 0.8 of the worst value have a thousandth of its share.
 constexpr double power = 32;

@@ -1,6 +1,7 @@
 /**
  * @file ImproveWorst.h
- * @brief Lowers the worst inverse mean ratio at little cost of the mean. Internal: not installed.
+ * @brief Reduces the largest inverse mean ratio at little cost to the mean. Internal: not
+ * installed.
  */
 #ifndef tautline_ImproveWorst_h
 #define tautline_ImproveWorst_h

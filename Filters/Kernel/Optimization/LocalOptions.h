@@ -11,8 +11,7 @@
 
 namespace tautline
 {
-/// One of the objectives as the sweeps see it: by the power, the size or the metric, whichever is
-/// set.
+/// One of the objectives in the form the sweeps use: power, size or metric, whichever is set.
 struct LocalTerm
 {
   /// The power (1 or 2) of an inverse mean ratio; 0: see metric.

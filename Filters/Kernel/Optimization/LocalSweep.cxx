@@ -77,7 +77,7 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
 #pragma omp for schedule(dynamic)
       for (std::int32_t i = first; i < last; ++i)
       {
-        // A block sees the changes of the colours before, and its own.
+        // A block uses the changes of earlier colours, and its own.
         w.change = total;
         const std::int32_t begin = blocks.byColour[i] * blocks.size;
         const std::int32_t end = std::min(this->Simplices.freeVertices(), begin + blocks.size);

@@ -34,7 +34,7 @@ public:
 
   /**
    * @brief One sweep. Objective values in `values` are those of the mesh before and, up to
-   * rounding, after. A step is taken if it lowers the scalarized objective.
+   * rounding, after. A step is taken if it reduces the scalarized objective.
    */
   SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values);
 

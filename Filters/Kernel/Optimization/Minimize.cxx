@@ -203,8 +203,8 @@ bool Minimizer::search(double first, double curvature, bool strong)
   return true;
 }
 
-/// The first step of all: to a somewhat smaller value, or one of length 1 if the value says
-/// nothing.
+/// The first step of all: to a somewhat smaller value, or one of length 1 if the value gives no
+/// scale.
 double Minimizer::firstStep() const
 {
   return this->F != 0 ? firstDecrease * std::abs(this->F) / std::abs(this->Slope)

@@ -3,7 +3,7 @@
  * @brief Minimises a smooth function of many variables: nonlinear conjugate gradients, L-BFGS,
  * truncated Newton. Internal: not installed.
  *
- * Every accepted step lowers the value (Armijo) and satisfies the weak Wolfe condition, for
+ * Every accepted step reduces the value (Armijo) and satisfies the weak Wolfe condition, for
  * conjugate gradients the strong one, unless largestStep() ends it before. Sources: J. Nocedal and
  * S. J. Wright, "Numerical Optimization", 2nd ed. 2006, sections 3.5 (line search), 5.2
  * (Fletcher-Reeves, Polak-Ribiere+), 7.1 (truncated Newton), 7.2 (L-BFGS).
@@ -26,13 +26,12 @@ public:
   virtual std::size_t size() const = 0;
   /**
    * @brief The value and the gradient at x; +infinity where x is not allowed (an element would
-   * invert), and the gradient is then not looked at. Minimisation calls nothing else to learn of
-   * values.
+   * invert), and the gradient is then ignored. Minimisation gets values from this function only.
    */
   virtual double valueAndGradient(const double* x, double* gradient) = 0;
   /**
    * @brief The largest step t in (0, wanted] for which x + t d is certainly allowed, or `wanted` if
-   * not known: the value then decides. No longer step is tried. Called once per iteration.
+   * not known: the value then limits the step. No longer step is tried. Called once per iteration.
    */
   virtual double largestStep(const double* /*x*/, const double* /*d*/, double wanted)
   {
@@ -45,7 +44,7 @@ public:
    * @brief Makes ready for hessianTimes() and precondition() at x, where the last gradient was
    * taken. Called before every direction of NewtonConjugateGradient; for the others at iterations
    * 0, 1, 3, 9 and so on, at the latest MinimizeOptions::refresh iterations after the last time.
-   * L-BFGS then forgets its pairs, if there is a preconditioner.
+   * L-BFGS then discards its pairs, if there is a preconditioner.
    */
   virtual void linearize(const double* /*x*/) {}
   /// The product of a positive semidefinite approximation of the Hessian with d; false if there is
@@ -71,7 +70,7 @@ struct MinimizeResult
   double gradientNorm = 0;
   int iterations = 0;
   int evaluations = 0;                            ///< of the value and gradient
-  StopReason reason = StopReason::IterationLimit; ///< Aborted if the observer said so
+  StopReason reason = StopReason::IterationLimit; ///< Aborted if the observer stopped it
 };
 
 /**

@@ -306,7 +306,7 @@ LocalTerm OptimizationProblem::fastTerm(const Objective& objective) const
       return term; // several corners make one value
     }
   }
-  // Weights and tensors belong to cells, which the energies do not see.
+  // Weights and tensors belong to cells, which the energies do not distinguish.
   if (this->Moving->blocks().empty() || objective.elementWeights ||
     (objective.evaluation.targets && !objective.evaluation.targets->metricRoots.empty()))
   {

@@ -1,7 +1,7 @@
 /**
  * @file OptimizationProblem.h
- * @brief The state of an optimization: the moving points, the objectives on them, and what the
- * history says of them. Internal: not installed.
+ * @brief The state of an optimization: the moving points, the objectives on them, and their records
+ * in the history. Internal: not installed.
  */
 #ifndef tautline_OptimizationProblem_h
 #define tautline_OptimizationProblem_h
@@ -30,7 +30,7 @@ public:
   std::size_t objectives() const { return this->Resolved.size(); }
   const Scalarizer& scalarizer() const { return *this->TheScalarizer; }
   Scalarizer& scalarizer() { return *this->TheScalarizer; }
-  /// The objective sums, made when first asked for.
+  /// The objective sums, made on first use.
   const ObjectiveSum& sum(std::size_t objective);
   std::vector<LocalTerm> localTerms();
   LocalOptions localOptions() const;
@@ -71,8 +71,7 @@ private:
   std::unique_ptr<SimplexMesh> Simplices;
   std::unique_ptr<SurfaceProjection> Surface;
   std::vector<Objective> Resolved;
-  std::vector<LocalTerm>
-    Terms; ///< of each objective; with the metric's sum only once it was asked for
+  std::vector<LocalTerm> Terms; ///< of each objective; with the metric's sum only once it was used
   bool AllFast = false;
   std::vector<std::unique_ptr<ObjectiveSum>> Sums;
   std::vector<Index> LeftOut; ///< cells that were not valid when the optimization began

@@ -83,7 +83,7 @@ private:
     }
     const double last = history[n - 2].objective - history[n - 1].objective;
     const double before = history[n - 3].objective - history[n - 2].objective;
-    constexpr double slowest = 0.9; // a ratio beyond this says nothing of the limit
+    constexpr double slowest = 0.9; // a ratio above this gives no estimate of the limit
     const double ratio = before > 0 ? std::clamp(last / before, 0.0, slowest) : 0.0;
     return history.front().objective - history.back().objective + last * ratio / (1.0 - ratio);
   }
@@ -106,7 +106,7 @@ private:
   const StoppingCriteria& Stop;
 };
 
-/// Adds a record to the history and calls the observer; false if that asks to stop.
+/// Adds a record to the history and calls the observer; false if that stops the run.
 bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result,
   const IterationRecord& record)
 {
@@ -125,7 +125,7 @@ bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeRes
 }
 
 //------------------------------------------------------------------------------
-/// Whether a sweep was the last worth making, and why; `all`: it visited every vertex.
+/// Whether the sweeps have converged, and why; `all`: it visited every vertex.
 bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,
   double firstGradient, double lowered, double size, StopReason& reason)
 {
@@ -163,7 +163,7 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
   std::vector<double> best(simplices.coordinates(),
     simplices.coordinates() + VertexStride * static_cast<std::size_t>(simplices.freeVertices()));
   // One objective in closed form needs neither the mesh's own points on the way nor a way back:
-  // each step lowers it.
+  // each step reduces it.
   const bool simple = problem.isSimple();
   StopReason reason = StopReason::NoProgress;
   double firstGradient = 0;
@@ -188,7 +188,7 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     const double size = std::abs(now.objective);
     if (!simple && !(lowered >= -roundingOfSums * size))
     {
-      // Blocks of one colour do not see each other's changes of a composite objective.
+      // Blocks of one colour do not use each other's changes of a composite objective.
       std::copy(best.begin(), best.end(), simplices.coordinates());
       problem.store();
       failed = true;
@@ -460,7 +460,7 @@ StopReason optimizeGlobally(
   {
     const int before = result.history.back().iteration;
     MinimizeOptions options;
-    // After sweeps, an iteration may lower little at first.
+    // After sweeps, an iteration may reduce the objective little at first.
     constexpr double afterSweeps = 0.1;
     const bool alone = isGlobal(problem.options().optimizer);
     options.method = alone ? problem.options().optimizer : Optimizer::LimitedMemoryBFGS;
@@ -581,7 +581,7 @@ bool optimizeStage(
 }
 
 //------------------------------------------------------------------------------
-/// Runs untangle() with the time that is left; false if the observer asked to stop.
+/// Runs untangle() with the time that is left; false if the observer stopped it.
 bool untangleFirst(
   const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
 {

@@ -7,7 +7,7 @@
  *     tautline::Mesh mesh(view);
  *     tautline::OptimizeOptions options; // sum of squared inverse mean ratios
  *     tautline::OptimizeResult result = tautline::optimize(mesh, options);
- *     // result.points has the new coordinates; result.reason says why it stopped.
+ *     // result.points has the new coordinates; result.reason is why it stopped.
  */
 #ifndef tautline_Optimize_h
 #define tautline_Optimize_h

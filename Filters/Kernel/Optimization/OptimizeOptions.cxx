@@ -11,7 +11,7 @@ enum class Reach
   Either
 };
 
-/// No default: the compiler asks for the place of an appended optimizer.
+/// No default: the compiler warns of an appended optimizer without a case.
 Reach reachOf(Optimizer optimizer)
 {
   switch (optimizer)

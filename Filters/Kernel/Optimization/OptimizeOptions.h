@@ -16,7 +16,7 @@ namespace tautline
 /// The algorithms. The numbers are stable: ParaView state files hold them.
 enum class Optimizer : int
 {
-  /// LocalNewton; should a sweep fail to lower several objectives, LimitedMemoryBFGS from there
+  /// LocalNewton; should a sweep fail to reduce several objectives, LimitedMemoryBFGS from there
   Automatic = 0,
   LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each
   LocalConjugateGradient = 2, ///< sweeps over one-vertex patches, Polak-Ribiere+ steps in each
@@ -42,7 +42,7 @@ struct StoppingCriteria
   double maximumSeconds = 0.0;
   /// Stop when the gradient's norm has fallen by this factor; 0: never.
   double gradientNorm = 1e-6;
-  /// Stop when an iteration lowers the objective by less than this, relative to it; 0: never.
+  /// Stop when an iteration reduces the objective by less than this, relative to it; 0: never.
   double relativeChange = 1e-5;
   /// "Inaccurate smoothing", section 3.4: stop when all mean qualities keep two decimals.
   bool twoDigits = false;
@@ -103,7 +103,7 @@ struct OptimizeOptions
   bool allowInversion = false;
   /**
    * @brief What to do with an input that has inverted elements and objectives none of which repairs
-   * them: untangle() first (on), or refuse with an Error (off).
+   * them: untangle() first (on), or throw Error (off).
    */
   bool untangleFirst = true;
   /**
@@ -122,7 +122,7 @@ struct OptimizeOptions
    */
   double relaxation = 1.4;
   /**
-   * @brief WorstElement: after the objective has converged, lowers the largest value of the first
+   * @brief WorstElement: after the objective has converged, reduces the largest value of the first
    * objective's metric as long as its mean does not rise by more than this fraction of it; 0: off.
    */
   double improveWorst = 0.0;

@@ -266,7 +266,7 @@ std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
     }
     if (node.count == 0)
     {
-      // The nearer child is looked at first.
+      // The nearer child is searched first.
       const Node &left = this->Nodes[node.first], &right = this->Nodes[node.first + 1];
       const bool leftFirst =
         squareDistance(left.low, left.high, x) <= squareDistance(right.low, right.high, x);

@@ -11,8 +11,7 @@ namespace
 constexpr int maximumHalvings = 12;
 /// Fraction of the way to the first inversion that a step may go.
 constexpr double safety = 0.9;
-/// Changes above this fraction of an objective are seen by the scalarization itself, not by its
-/// slope.
+/// Changes above this fraction of an objective use the scalarization itself, not its slope.
 constexpr double visibleChange = 1e-6;
 
 /// A unit vector at a right angle to n, and the third.
@@ -437,7 +436,7 @@ double VertexOptimizer<Dim>::limited(
 
 //------------------------------------------------------------------------------
 /// Turns `direction` into Polak-Ribiere+'s and returns the step to where the slope would vanish by
-/// its change over a small one; 0 if there is nowhere to go.
+/// its change over a small one; 0 if no step is possible.
 template <int Dim>
 double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum,
   const double* d, int iteration, double* direction, double* lastGradient) const

@@ -39,9 +39,9 @@ public:
     return this->Functions[i]->objective(this->Values[i], change);
   }
   /**
-   * @brief Moves v if that lowers the objective; adds to worker.change.
+   * @brief Moves v if that reduces the objective; adds to worker.change.
    * @param gradient2 gets the square of the gradient's norm added
-   * @return whether it went farther than the culling asks
+   * @return whether it moved farther than the culling threshold
    */
   bool moveVertex(
     std::int32_t v, const Scalarizer& scalarizer, PatchWorker<Dim>& worker, double& gradient2);

@@ -136,7 +136,7 @@ private:
  * Each facet has a random 64-bit number, and each point the exclusive or of those of its facets,
  * which vanishes where each occurs twice: no sorting. A boundary point is overlooked with
  * probability 2^-64, or if its facets belong to an even number of cells. Where nothing seems to be
- * boundary (every cell is there twice, or a closed surface), Mesh::boundary() decides.
+ * boundary (every cell is there twice, or a closed surface), Mesh::boundary() is used.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<char> boundaryPoints(const Mesh& mesh);
 

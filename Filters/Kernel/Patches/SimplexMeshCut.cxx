@@ -130,7 +130,7 @@ void SimplexMesh::cut(
     {
       ++starts[*std::min_element(v, v + corners) + 1];
       ++total;
-      constexpr Index every = 16; // edges make a scale well before all are seen
+      constexpr Index every = 16; // a sample of the edges is enough for a scale
       if (total % every == 1)
       {
         const double length =

@@ -33,8 +33,9 @@ struct InteractionLayerOptions
  * triangulation. Triangles that already belong to an interaction layer stay in it, and count as
  * part of the mesh that the new layer surrounds.
  *
- * Throws Error for a width that is not above 0, a mesh PeridynamicOptions would refuse, a boundary
- * that crosses or touches itself, and an interaction layer of more than ten million triangles.
+ * Throws Error for a width that is not above 0, a mesh that assemblePeridynamics() rejects, a
+ * boundary that crosses or touches itself, and an interaction layer of more than ten million
+ * triangles.
  */
 TAUTLINE_SOLVERS_EXPORT HorizonMesh addInteractionLayer(
   const HorizonMesh& mesh, const InteractionLayerOptions& options);

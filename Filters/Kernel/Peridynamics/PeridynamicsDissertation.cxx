@@ -34,7 +34,7 @@ int innerPoints(RuleSet rules, PeridynamicBasis basis)
   }
 }
 
-/// Points of an inner rule: of whole triangles first, then of pieces of cut ones.
+/// Points of an inner rule: of whole triangles first, then of the parts of cut ones.
 struct InnerPoints
 {
   std::vector<double> x, y, squares, weights, values;

@@ -439,7 +439,7 @@ void PairIntegrator::refine(const Triangle& part, int depth)
   const bool touching = part[0].touches || part[1].touches || part[2].touches;
   this->CutSamples = 0;
   const bool agreed = this->applyRules(part, cut);
-  // Two rules agree on what neither sees.
+  // Two rules also agree if neither has a point in the cut.
   const bool blind = cut && this->CutSamples == 0 && depth < this->BlindDepth;
   if ((agreed && !blind) || depth == MaxDepth || (touching && !cut && depth >= MaxTouchingDepth) ||
     ++this->Parts > MaxParts)

@@ -2,7 +2,7 @@
  * @file CellMetrics.cxx
  * @brief Metrics of whole cells: lengths, angles, sizes. Scalar code, one function a metric.
  *
- * A function returns the value and, when asked, adds the gradient; where an extremum is taken it is
+ * A function returns the value and, on request, adds the gradient; where an extremum is taken it is
  * the gradient of the extremal term. Facts in MetricRegistry.cxx.
  */
 #include "Batch.h"
@@ -15,7 +15,7 @@ namespace
 {
 constexpr double degreesPerRadian = 57.29577951308232;
 
-/// One cell as a metric function sees it.
+/// One cell, the argument of a metric function.
 struct Cell
 {
   const CellTopology& topology;

@@ -80,7 +80,8 @@ void compareMetric(const MetricInfo& info, int dimension, const CellValues& befo
   auto changeOf = [&](Index i)
   {
     const signed char was = before.validity[i], is = after.validity[i];
-    // A change of validity decides; values only compare between elements of the same.
+    // A change of validity takes precedence; values compare only between elements of equal
+    // validity.
     if (was != is)
     {
       return is > was ? 1 : -1;

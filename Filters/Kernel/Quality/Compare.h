@@ -11,7 +11,7 @@
 
 namespace tautline
 {
-/// Says where the points, cells or connectivity of two meshes first differ; empty if nowhere.
+/// Names the first difference of two meshes in points, cells or connectivity; empty if none.
 TAUTLINE_KERNEL_EXPORT std::string connectivityDifference(const Mesh& before, const Mesh& after);
 
 /// Smallest, largest and mean value; can be added to, block after block.
@@ -35,7 +35,7 @@ struct MetricChange
  * @brief Finds for each cell whether its metric became better (1), worse (-1) or neither (0), and
  * adds up the counts.
  *
- * Validity decides first: a cell that becomes valid is better, one that becomes degenerate or
+ * Validity comes first: a cell that becomes valid is better, one that becomes degenerate or
  * inverted is worse. Of two valid cells, and of two inverted ones where the metric orders these
  * (InvertedValue::Larger), the values decide, by the direction of the metric. They are equal if
  * they differ by no more than `tolerance` times the larger magnitude; for metrics without a unit

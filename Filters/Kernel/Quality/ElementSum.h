@@ -4,7 +4,7 @@
  * installed.
  *
  * The elements are cut into chunks and the chunks coloured: those of one colour share no vertex, so
- * that threads add to the gradient without locks and in an order that the mesh alone decides.
+ * that threads add to the gradient without locks and in an order that depends on the mesh only.
  *
  * Where the numbering of the mesh has no locality the cells are visited along a space-filling
  * curve. Sums go over copies of the connectivity in that order and, if they do not fit into the

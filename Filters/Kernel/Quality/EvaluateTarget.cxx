@@ -20,7 +20,7 @@ struct Corner
   Mask degenerate;
 };
 
-/// Frames of a planar mesh are the mesh's; a mirrored mesh is seen from behind.
+/// Frames of a planar mesh are the mesh's; a mirrored mesh is viewed from the other side.
 void planarAxes(const Mesh& mesh, Packet (&axes)[2][3])
 {
   for (int a = 0; a < 2; ++a)
@@ -44,7 +44,8 @@ void surfaceNormal(const Batch& batch, int nodes, Packet (&normal)[3])
 
 /// The frame of a surface corner: first edge, and its perpendicular in the corner's plane on the
 /// side that makes the corner positive when it turns as the cell does. Rotation-invariant metrics
-/// see the corner's Gram matrix and this sign only, so the frame's own motion adds no gradient.
+/// depend on the corner's Gram matrix and this sign only, so the frame's own motion adds no
+/// gradient.
 void surfaceAxes(const Packet* a, const Packet* b, const Packet* normal, Packet (&axes)[2][3])
 {
   Packet own[3];
@@ -378,7 +379,7 @@ Packet combine(
   {
     anyNegative |= negative[s];
   }
-  // Only inverted corners speak for a cell that has some.
+  // In a cell with inverted corners only these count.
   Packet active[MaxNodes], count = {};
   for (int s = 0; s < samples; ++s)
   {
@@ -442,7 +443,7 @@ Packet combine(
   return result;
 }
 
-/// All of it in one piece: calls between the steps would cost more than the steps.
+/// Flattened into one function: calls between the steps would cost more than the steps.
 template <class M, int N, bool WithGradient>
 __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch& batch)
 {

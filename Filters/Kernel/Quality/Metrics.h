@@ -9,8 +9,8 @@
  *
  * Values are always finite, and right for edges between 1e-35 and 1e35; beyond, an element may
  * count as degenerate and be 0. A degenerate element has the value 0 of every metric that is
- * singular there, and so has a cell the metric is not defined on; Mesh::classifyCells() tells them
- * apart.
+ * singular there, and so has a cell the metric is not defined on; Mesh::classifyCells()
+ * distinguishes them.
  */
 #ifndef tautline_Metrics_h
 #define tautline_Metrics_h
@@ -81,7 +81,7 @@ enum class InvertedValue
   Unsigned  ///< in the range of valid elements; only `Validity` differs
 };
 
-/// How a metric is built, which decides what options it takes.
+/// How a metric is built, which determines its options.
 enum class MetricFamily
 {
   Target,  ///< a function of T = A W^-1 at each corner; takes targets and a combination
@@ -94,7 +94,7 @@ struct Parameters
 {
   /**
    * @brief Beta of UntangleBeta: the area or volume every element should at least have. The default
-   * is 0, which asks that no element be inverted; the dissertation uses a positive value.
+   * is 0, which requires that no element be inverted; the dissertation uses a positive value.
    */
   double beta = 0.0;
   /// Epsilon of mu_211 and mu_311, above 0; the rounding of their kink at tau = 0.
@@ -124,7 +124,7 @@ struct MetricInfo
   unsigned cellTypes;
   Range full2D, full3D;             ///< of valid elements
   Range acceptable2D, acceptable3D; ///< of elements most solvers take
-  double ideal2D, ideal3D;          ///< of the ideal element; NaN where size decides
+  double ideal2D, ideal3D;          ///< of the ideal element; NaN where it depends on size
   Direction direction;
   InvertedValue inverted;
   bool barrier;           ///< tends to infinity as the element degenerates from the valid side
@@ -182,7 +182,7 @@ struct Targets
   std::vector<double> inverse;
   /**
    * @brief M^(1/2) of each cell, 9 entries as above, or empty: then T = M^(1/2) A W^-1, the element
-   * as the metric tensor M sees it.
+   * in the metric tensor M.
    */
   std::vector<double> metricRoots;
 };
@@ -221,9 +221,9 @@ class ElementSum;
 /**
  * @brief Sums a power of a metric over the mesh, with its gradient: the workhorse of optimization.
  *
- * The sum runs over |q|^p with the sign of q, so that inverted elements of a signed metric lower
- * it; callers that care classify first. Elements are added in an order fixed by the mesh, and so
- * the sum and the gradient are bitwise the same for any number of threads.
+ * The sum runs over |q|^p with the sign of q, so that inverted elements of a signed metric reduce
+ * it; classify the elements first where this matters. Elements are added in an order fixed by the
+ * mesh, and so the sum and the gradient are bitwise the same for any number of threads.
  */
 class TAUTLINE_KERNEL_EXPORT MetricSum
 {

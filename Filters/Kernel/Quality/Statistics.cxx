@@ -30,7 +30,8 @@ namespace
 {
 /**
  * Finds the values at given places of the sorted order without sorting: counts values by the
- * leading bits of their representation, then sorts only the few buckets that hold a wanted place.
+ * leading bits of their representation, then sorts only the few buckets that hold a requested
+ * place.
  */
 class OrderStatistics
 {
@@ -100,7 +101,7 @@ private:
   }
 
   std::vector<Index> Starts;       ///< number of values in the buckets before each
-  std::vector<signed char> SlotOf; ///< position in Sorted of each bucket that holds a wanted place
+  std::vector<signed char> SlotOf; ///< position in Sorted of each bucket with a requested place
   std::vector<std::vector<double>> Sorted;
 };
 }

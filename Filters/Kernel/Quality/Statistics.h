@@ -20,7 +20,7 @@ constexpr int WorstCount = 10;
  */
 struct MetricStatistics
 {
-  Index measured = 0; ///< elements summed up
+  Index measured = 0; ///< elements in the sums
   double minimum = 0, maximum = 0, mean = 0, rms = 0;
   double standardDeviation = 0; ///< of the whole population (divided by n)
   std::array<double, quantileFractions.size()> quantiles{}; ///< linearly interpolated

@@ -2,8 +2,8 @@
  * @file TargetMetrics.h
  * @brief Metrics that are functions of T = A W^-1 at the corners of a cell.
  *
- * A is the corner Jacobian, W that of the ideal (or otherwise wanted) cell: T = I says the corner
- * is as wanted. Every metric here depends on T through four invariants,
+ * A is the corner Jacobian, W that of the ideal (or another target) cell: T = I if the corner is
+ * that of the target. Every metric here depends on T through four invariants,
  *
  *     norm2 = |T|^2     adj2 = |adj T|^2     det = tau = det T     trace = tr T
  *

@@ -1,6 +1,6 @@
 /**
  * @file Targets.h
- * @brief What the wanted element is: the matrix W of T = A W^-1, for every cell.
+ * @brief Target elements: the matrix W of T = A W^-1, for every cell.
  *
  * The default (no targets) is the ideal cell of each type with unit edges. All functions throw
  * Error on data of the wrong length, and name the first cell whose datum cannot be a target.
@@ -12,7 +12,7 @@
 
 namespace tautline
 {
-/// Which element is wanted.
+/// The kind of target element.
 enum class TargetType : int
 {
   Ideal = 0,     ///< the ideal cell with unit edges
@@ -31,8 +31,8 @@ TAUTLINE_KERNEL_EXPORT Targets referenceTargets(const Mesh& mesh, const Mesh& re
 TAUTLINE_KERNEL_EXPORT Targets sizeTargets(const Mesh& mesh, const double* sizes);
 
 /**
- * @brief The ideal shape seen in a metric tensor M per cell: T = M^(1/2) A W_ideal^-1, so that the
- * wanted edges have length 1 in M.
+ * @brief The ideal shape in a metric tensor M per cell: T = M^(1/2) A W_ideal^-1, so that target
+ * edges have length 1 in M.
  * @param tensors symmetric positive definite 3 x 3 matrices, row by row, 9 per cell of the view.
  * For planar meshes M acts in the plane; for surfaces it must be isotropic in the tangent plane.
  */

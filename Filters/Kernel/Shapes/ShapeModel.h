@@ -31,7 +31,7 @@ struct ShapeEnergy
   bool signedDistortion = false;
   /// Standard deviation of the Gaussian the target is smoothed with, in pixels, above 0.
   double smoothing = 1.5;
-  /// The edge cost sees the gradient along the polygon's inner normal only: the dark side of an
+  /// The edge cost uses the gradient along the polygon's inner normal only: the dark side of an
   /// edge must be outside. Not in the dissertation.
   bool directedEdges = false;
   /// Weight of 1 - cos(angle a triangle turns by); 0, the default: turning is free.
@@ -55,7 +55,7 @@ struct ShapeEnergy
   }
 };
 
-/// A shape to look for.
+/// A shape to match.
 struct ShapeSource
 {
   PolygonMesh mesh;
@@ -70,7 +70,7 @@ struct ShapeSource
 /// The triangulated polygon of a silhouette. Throws Error on a spacing that is not above 0.
 TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(const Silhouette& shape, double spacing);
 
-/// A polygon as the shape to look for; centre and d_max are those of its area and vertices.
+/// A polygon as the shape to match; centre and d_max are those of its area and vertices.
 TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(std::vector<Vec2> polygon);
 
 /**

@@ -201,7 +201,7 @@ LocationSet LocationSet::lattice(const Vec2& first, const Vec2& step, Index colu
 double ShapeTarget::Data::edgeCost(const Vec2& p, const Vec2& q) const
 {
   const double dx = q[0] - p[0], dy = q[1] - p[1], length = std::hypot(dx, dy);
-  // One sample per pixel of length, in the middle of its piece.
+  // One sample per pixel of length, in the middle of its interval.
   const int samples = std::max(1, static_cast<int>(std::ceil(std::min(length, 1e6))));
   double sum = 0.0;
   for (int s = 0; s < samples; ++s)

@@ -123,7 +123,7 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options,
   { return !test.stop(iteration / (iteration + 100.0)); };
   LinearSolver solver(system, solverOptions);
   const PetscSystem& objects = solver.state().Objects;
-  // As a right-hand side, random numbers: they see the whole spectrum.
+  // The right-hand side is random: it has components in the whole spectrum.
   PetscVector start = objects.createVector();
   fillStartVector(start);
   std::vector<double> b = valuesOf(objects, start), x(b.size());

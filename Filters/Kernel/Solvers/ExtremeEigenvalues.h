@@ -13,7 +13,7 @@
 
 namespace tautline
 {
-/// Decides when an eigensolver stops: limits that all methods keep. The ranks stop together.
+/// Stops an eigensolver at limits common to all methods, on all ranks together.
 class EigensolverStoppingTest
 {
 public:

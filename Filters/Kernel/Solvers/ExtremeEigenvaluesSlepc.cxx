@@ -29,7 +29,7 @@ bool isFactorAffordable(Mat matrix, int blockSize)
   return rows <= (neighbours <= PlanarNeighbours ? PlanarFactorLimit : SpatialFactorLimit);
 }
 
-/// Between restarts: SLEPc's own test, then our limits.
+/// Between restarts: SLEPc's own test, then the limits of the options.
 PetscErrorCode testStopping(EPS solver, PetscInt iteration, PetscInt maximum, PetscInt found,
   PetscInt requested, EPSConvergedReason* reason, void* context)
 {

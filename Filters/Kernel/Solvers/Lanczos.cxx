@@ -134,7 +134,7 @@ std::vector<double> startVector(Index n)
   return x;
 }
 
-/// Threads that have to wait for each other after less work than this do not pay.
+/// Below this amount of work several threads are slower than one.
 int threadsFor(const SparseMatrix& matrix, const LanczosOptions& options)
 {
   constexpr Index worthwhile = 300000; // entries

@@ -29,8 +29,8 @@ class TAUTLINE_SOLVERS_EXPORT LinearSolver
 public:
   /**
    * @brief Hands the matrix to PETSc; the SparseMatrix must outlive the solver. Collective over the
-   * ranks. Throws Error for a bad option string (naming the option), an empty matrix, entries that
-   * are not finite, or no memory.
+   * ranks. Throws Error for an invalid option string (naming the option), an empty matrix, entries
+   * that are not finite, or no memory.
    */
   LinearSolver(const LinearSystem& system, const SolverOptions& options);
   ~LinearSolver();

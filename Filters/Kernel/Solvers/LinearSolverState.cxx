@@ -204,7 +204,7 @@ void LinearSolverState::configure()
   this->applyTolerances();
   this->OptionSet.read([&]() { petsc(KSPSetFromOptions(this->Solver)); });
   this->OptionSet.rejectUnused(false);
-  // Our test, called in each iteration, calls the one chosen by now.
+  // The function test(), called in each iteration, calls the one chosen by now.
   petsc(KSPGetAndClearConvergenceTest(
     this->Solver, &this->Test, &this->TestContext, &this->DestroyTest));
   petsc(KSPSetConvergenceTest(this->Solver, test, this, nullptr));

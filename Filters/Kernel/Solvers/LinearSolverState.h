@@ -32,7 +32,7 @@ struct LinearSolverState
   SolveReason Failure = SolveReason::Exact; // of the set-up; Exact: none
   std::string FailureText;
 
-  // The convergence test that PETSc or its options chose; ours calls it first.
+  // The convergence test that PETSc or its options chose; Tautline's calls it first.
   PetscErrorCode (*Test)(KSP, PetscInt, PetscReal, KSPConvergedReason*, void*) = nullptr;
   void* TestContext = nullptr;
   PetscErrorCode (*DestroyTest)(void*) = nullptr;

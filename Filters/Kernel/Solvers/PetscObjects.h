@@ -13,7 +13,7 @@
 
 namespace tautline
 {
-/// A matrix as PETSc sees it, and this rank's view of its vectors.
+/// A matrix in PETSc's format, and this rank's view of its vectors.
 class PetscSystem
 {
 public:
@@ -63,7 +63,7 @@ public:
   bool has(const std::string& name) const;
   /// Whether some option makes PETSc change the matrix it is given.
   bool changesMatrix() const;
-  /// Sets one of ours, unless the user gave it.
+  /// Sets one of Tautline's options, unless the user gave it.
   void setDefault(const std::string& name, const std::string& value);
   /**
    * @brief Throws Error that names the options nothing has read. Before the set-up those that only

@@ -40,7 +40,7 @@ bool mpiFinalized()
   return finalized != 0;
 }
 
-/// MPI that we started ends with the process: mpirun takes it for a crash otherwise.
+/// MPI started here ends with the process: mpirun would report a crash otherwise.
 void finalizeMpi()
 {
   if (!mpiFinalized())
@@ -96,8 +96,7 @@ void ensurePetsc()
     return;
   }
   // On a communicator of one rank nothing is collective: a filter may run on one rank alone. PETSc
-  // wants arguments of its own, or it reads .petscrc; those of the program are none of its
-  // business.
+  // gets arguments of its own, or it would read .petscrc; those of the program are not passed on.
   static char program[] = "tautline", noFiles[] = "-skip_petscrc",
               noSignals[] = "-no_signal_handler";
   static char* list[] = { program, noFiles, noSignals, nullptr };

@@ -47,7 +47,7 @@ void ensureSlepc();
  *
  * The first one of the process initialises PETSc (and MPI if it is not), not collectively, without
  * signal handler, without the program's arguments and without .petscrc. While a scope lives, no
- * other thread of ours uses PETSc, options are looked up in `database` alone, and errors are
+ * other thread of Tautline uses PETSc, options are looked up in `database` alone, and errors are
  * collected rather than printed. Scopes nest.
  */
 class PetscScope

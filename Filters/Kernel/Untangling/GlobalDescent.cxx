@@ -6,8 +6,8 @@ namespace tautline
 {
 namespace
 {
-/// Factors a Hessian block, shifted until it is positive definite. Not inlined: the norm decides on
-/// the shift, and is rounded in the same way wherever it is called.
+/// Factors a Hessian block, shifted until it is positive definite. Not inlined: the norm determines
+/// the shift, and must be rounded in the same way wherever it is called.
 template <int Dim>
 __attribute__((noinline)) void factorBlock(const double (&H)[Dim][Dim], double* L)
 {
@@ -150,7 +150,7 @@ bool GlobalDescent<Dim>::step(double* x)
         return 1.0;
       });
     this->Before = this->Gradient;
-    // Halve the step until it lowers the energy enough.
+    // Halve the step until it reduces the energy enough.
     double t = 1.0;
     const bool descent = slope < 0 && std::isfinite(slope);
     for (int trial = 0; descent && trial < halvings; ++trial, t *= 0.5)

@@ -21,14 +21,14 @@ public:
   /// `tangled` has to live as long as this.
   explicit GlobalDescent(const TangledMesh<Dim>& tangled);
 
-  /// Forgets the past steps and evaluates the energy at x with this regularization, at least 0.
+  /// Discards the past steps and evaluates the energy at x with this regularization, at least 0.
   void start(const double* x, double eps);
 
   /**
    * @brief One step of the minimization.
    * @param x VertexStride coordinates per vertex, those of start() or of the last step; the free
    * ones change
-   * @return false if no step lowers the energy
+   * @return false if no step reduces the energy
    */
   bool step(double* x);
 

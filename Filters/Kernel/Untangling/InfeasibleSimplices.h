@@ -14,7 +14,7 @@ namespace tautline
  * those with a single free vertex, the most violated are taken until a place of the vertex is left
  * for the rest. For Dim 2 and 3.
  * @param x VertexStride coordinates per vertex
- * @param active one flag per free vertex: nonzero to look at its simplices
+ * @param active one flag per free vertex: nonzero to check its simplices
  * @return simplices that are not infeasible yet
  */
 template <int Dim>

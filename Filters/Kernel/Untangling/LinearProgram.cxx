@@ -201,7 +201,7 @@ double chebyshevCenter(
   std::array<double, K> c{}, limit, x{};
   c[Dim] = 1.0;
   limit.fill(1.0);
-  // Deep enough that some centre violates no plane by more.
+  // Large enough that some centre violates no plane by more.
   double deepest = 1.0;
   for (const HalfSpace<K>& h : spaces)
   {

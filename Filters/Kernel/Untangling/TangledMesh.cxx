@@ -142,7 +142,7 @@ void TangledMesh<Dim>::examine(const double* x, Index begin, Index end, MeshStat
     std::int32_t filled[(Dim + 1) * PacketWidth];
     if (lanes < PacketWidth)
     {
-      // The last lanes repeat a simplex; they are not looked at.
+      // The last lanes repeat a simplex; they are not used.
       for (int l = 0; l < PacketWidth; ++l)
       {
         std::copy_n(ids + (Dim + 1) * std::min(l, lanes - 1), Dim + 1, filled + (Dim + 1) * l);
@@ -183,7 +183,7 @@ void TangledMesh<Dim>::examine(const double* x, Index begin, Index end, MeshStat
       D = D * d[2] + (a[1] * b[2] - a[2] * b[1]) * d[0] + (a[2] * b[0] - a[0] * b[2]) * d[1];
     }
     D *= det;
-    // Most packets are valid and need no look at their lanes.
+    // Most packets are valid; their lanes need no check.
     const Mask invalid = ~(D > this->Margin * sizeOf<Dim>(N));
     if (!any(invalid) && !any(D < state.minDeterminant))
     {
@@ -274,7 +274,7 @@ bool TangledMesh<Dim>::relax(
     {
       break;
     }
-    // Halve the step until it lowers the energy and makes no more simplices invalid.
+    // Halve the step until it reduces the energy and makes no more simplices invalid.
     double t = 1.0;
     if (state.invalid == 0)
     {

@@ -206,7 +206,7 @@ void Untangler<Dim>::smoothWorst()
   }
 }
 
-/// Lowers the energy of a valid mesh a little; it stays valid.
+/// Reduces the energy of a valid mesh a little; it stays valid.
 template <int Dim>
 void Untangler<Dim>::smoothAll()
 {

@@ -16,7 +16,7 @@ struct Schedule
 {
   double eps = 1.0;        ///< the first; determinants are 1 for a simplex with mean edges
   double factor = 0.5;     ///< from each to the next
-  double tolerance = 1e-3; ///< a solve ends when an iteration lowers the energy by less of it
+  double tolerance = 1e-3; ///< a solve ends when an iteration reduces the energy by less of it
   int solves = 12;
   int iterations = 30; ///< of a solve, at most
 };

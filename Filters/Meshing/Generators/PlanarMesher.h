@@ -43,7 +43,7 @@ struct PlanarMesh
   std::vector<double> points; ///< x y each
   std::vector<Index> triangles;
   std::vector<int> pointMarkers; ///< lowest marker of a point's segments, 0 off the segments
-  std::vector<Index> edges;      ///< two points each: the segments, in pieces
+  std::vector<Index> edges;      ///< two points each: the segments, subdivided
   std::vector<int> edgeMarkers;
 };
 

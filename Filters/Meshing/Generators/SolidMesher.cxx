@@ -182,7 +182,7 @@ bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>
 {
   for (const int signal : { SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT })
   {
-    ::signal(signal, SIG_DFL); // no backtraces of the program that asked
+    ::signal(signal, SIG_DFL); // no backtraces of the calling program
   }
   const rlimit noCore = { 0, 0 };
   setrlimit(RLIMIT_CORE, &noCore);
@@ -238,8 +238,7 @@ constexpr int Crashed = -1;
 constexpr int Stopped = -2;
 constexpr int TooLong = -3;
 
-/// Everything from the pipe until it closes, asking now and then whether to go on; 0, Stopped or
-/// TooLong.
+/// Reads the pipe until it closes, and regularly checks for a stop; 0, Stopped or TooLong.
 int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
 {
   using Clock = std::chrono::steady_clock;

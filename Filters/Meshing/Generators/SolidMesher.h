@@ -45,7 +45,7 @@ struct SolidMesh
   std::vector<Index> tetrahedra;
   std::vector<int> references;   ///< of the region of each tetrahedron; 0 without regions
   std::vector<int> pointMarkers; ///< lowest marker of a point's facets, 0 inside
-  std::vector<Index> faces;      ///< three points each: the facets, in pieces
+  std::vector<Index> faces;      ///< three points each: the facets, subdivided
   std::vector<int> faceMarkers;
 };
 
