@@ -1,6 +1,6 @@
 // BenchmarkDeformation PART ...: times the warping of meshes on one thread. Prints lines
-// "key<tab>number"; times are seconds of CPU unless the key says otherwise. Run by deformation.py.
-// PARTs:
+// "key<tab>number"; times are seconds of CPU unless the key states another unit. Run by
+// deformation.py. PARTs:
 //   box CELLS REPEATS      the inner box of the domain box-in-box turned by 30 to 180 degrees
 //   domains FACTOR         the hybrid algorithm on the domains of section 4.10, cells times FACTOR
 //   stages CUBES REPEATS   FEMWARP of 5 CUBES^3 tetrahedra without a box in their middle;

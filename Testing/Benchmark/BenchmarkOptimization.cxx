@@ -49,7 +49,7 @@ void print(const std::string& key, double value)
   std::cout << key << '\t' << std::setprecision(12) << value << std::endl;
 }
 
-/// Takes turns of the yardstick and some work, so that both see the same machine.
+/// Alternates the yardstick and some work, so that both run under the same load.
 class Race
 {
 public:
@@ -219,7 +219,7 @@ void makePart(const std::string& recipe, vtkIdType cells, const std::string& fil
 }
 
 //------------------------------------------------------------------------------
-/// A close upper bound of the least sum: Newton's method for all points at once would take far
+/// A close upper bound of the minimum sum: Newton's method for all points at once would take far
 /// longer.
 double bestSum(vtkDataSet* mesh)
 {

@@ -1,5 +1,5 @@
 // BenchmarkQuality PART N REPEATS: times element quality on an N x N x N grid of perturbed cells
-// and prints lines "key<tab>nanoseconds per element" (other units as said below). Run by run.py.
+// and prints lines "key<tab>nanoseconds per element" (other units as stated below). Run by run.py.
 // PARTs:
 //   kernel   plain loops, then the kernel's evaluations, in turns, best of REPEATS
 //   filter   vtkElementQuality and its parts against vtkMeshQuality, in turns, best of REPEATS
@@ -99,7 +99,7 @@ double plainInverseMeanRatio(const MeshData& mesh, double* gradient)
   return sum;
 }
 
-/// Tasks that take turns, so that all of them see the same machine; the best time of each counts.
+/// Tasks that alternate, so that all of them run under the same load; the best time of each counts.
 class Contest
 {
 public:

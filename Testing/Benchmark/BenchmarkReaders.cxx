@@ -1,5 +1,5 @@
 // Reading a mesh of a million tetrahedra from text, one thread: megabytes per second, and the time
-// of ParaView's own reader of legacy ASCII files on the same mesh, divided by ours.
+// of ParaView's own reader of legacy ASCII files on the same mesh, divided by Tautline's.
 //
 // usage: BenchmarkReaders [TETRAHEDRA [DIRECTORY]]
 

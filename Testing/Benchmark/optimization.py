@@ -1,6 +1,6 @@
 """The benchmark of the optimizer: what BenchmarkOptimization measures, against what it must reach.
 
-Figures are passes of CPU time of one thread (see Yardstick.h) unless their name says otherwise. The environment
+Figures are passes of CPU time of one thread (see Yardstick.h) unless their name states another unit. The environment
 variable TAUTLINE_TEST_DATA names a directory with meshes in its folders meshes and tangled, which are used where they
 exist; the others are made by the domain source and the perturbation filter and kept in the output directory.
 """

@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def read(output: Path, name: str) -> tuple[dict[str, float], dict[str, float]]:
-    """Both tables, after a look at the numbers and at the other file that has them."""
+    """Both tables, after a check of the numbers and of the other file that has them."""
     content = json.loads((output / f"{name}.json").read_text())
     measured, ratios = content["measured"], content["ratios"]
     assert all(math.isfinite(x) for x in (*measured.values(), *ratios.values())), content

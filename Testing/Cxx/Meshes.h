@@ -273,7 +273,7 @@ inline std::vector<Vec3> unflatCell(CellType type, bool anywhere, Random& random
 
 /**
  * Cells without common points, half of them well-shaped. On a surface each 2D cell is turned into a
- * plane of its own, where it is seen from its own positive side; `cells` says how it looks from
+ * plane of its own, where it is viewed from its own positive side; `cells` has its coordinates
  * there.
  */
 inline MeshData scatteredCells(

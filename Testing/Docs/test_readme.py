@@ -1,7 +1,7 @@
 """test_readme.py SOURCE BUILD WORK PVPYTHON...: runs every example of README.md as a reader would.
 
 A comment before each block of code says how: <!-- test: sh -->, python3, pvpython (PVPYTHON and its arguments run
-it), file NAME (saves it), install (runs it with this build tree), prefix (runs it and then looks whether what it sets
+it), file NAME (saves it), install (runs it with this build tree), prefix (runs it and then checks that what it sets
 exists), skip. Blocks run one after the other in one directory, which has the sample meshes in Data.
 """
 

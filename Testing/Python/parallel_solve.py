@@ -158,7 +158,7 @@ estimate = update(ConditionEstimator(cube(ghosts=1), Preconditioner="Jacobi"))
 results["condition"] = [estimate.Condition, estimate.PreconditionedCondition]
 results["shares"] = total(estimate, "Share")
 
-# What goes wrong on one rank goes wrong on all, and none waits.
+# An error on one rank is an error on all, and none waits.
 for options in (
     {"SourceType": "Expression", "SourceExpression": "1/(z - 1)"},  # on the uppermost part only
     {"PETScOptions": "-nonsense 1"},

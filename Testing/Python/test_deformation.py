@@ -49,7 +49,7 @@ def test_transforms():
     history = turned.history
     assert history["stage"][0] == "warp" and len(history["inverted"]) == len(history["stage"])
     assert history["inverted"][-1] == 0 and history["iterations"].dtype == int
-    # a transform of VTK, a matrix and words say the same; amount goes along the arc
+    # a transform of VTK, a matrix and words give the same; amount goes along the arc
     vtk = vtkTransform()
     vtk.RotateZ(40)
     for other in (vtk, [vtk.GetMatrix().GetElement(i, j) for i in range(4) for j in range(4)]):

@@ -77,7 +77,7 @@ def test_condition():
     assert math.isnan(ritz.preconditioned_condition) and math.isnan(ritz.spectrum[0]["largest_error"])
     assert 0.9 * known < ritz.condition <= known * (1 + 1e-9) and ritz.share.size == 0
     assert tl.condition(mesh, "elasticity").preconditioned_condition < tl.condition(mesh, "elasticity").condition
-    # A mesh with bad elements: few have most of the largest eigenvalue.
+    # A mesh with poor elements: few contribute most of the largest eigenvalue.
     plate = tl.condition(DATA / "plate.vtu")
     assert np.sort(plate.share)[-10:].sum() > 0.9 and "of 1913 elements have 90 %" in plate.summary
 

@@ -27,7 +27,7 @@ def run(ranks: int) -> dict:
     done = subprocess.run([*command, str(HERE / "parallel_solve.py"), str(file)], env=ENVIRONMENT, timeout=SECONDS,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
     assert file.exists(), done.stdout
-    # Each rank says what is wrong with the three problems that are refused.
+    # Each rank reports the error of the three rejected problems.
     for text in ("is not finite at point", "-nonsense", "without a fixed point"):
         assert done.stdout.count(text) >= ranks, done.stdout
     return json.loads(file.read_text())

@@ -23,5 +23,5 @@ assert (table.RGBPoints[0], table.RGBPoints[-4]) == (LOW, HIGH), table.RGBPoints
 assert table.AutomaticRescaleRangeMode == "Never"
 assert table.UseBelowRangeColor and list(table.BelowRangeColor) == [1, 0, 1]
 
-# An array that is not ours keeps ParaView's own map.
+# An array of another filter keeps ParaView's own map.
 assert simple.GetColorTransferFunction("pressure").AutomaticRescaleRangeMode != "Never"

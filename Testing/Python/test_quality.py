@@ -105,7 +105,7 @@ def test_metrics():
     imr = facts[0]
     assert imr["name"] == "imr" and imr["dimensions"] == [2, 3] and imr["acceptable_3d"] == (1, 3)
     assert imr["ideal_2d"] == 1 and imr["barrier"] is True and imr["unit"] == "" and len(imr["cell_types"]) == 6
-    for f in facts:  # every name and alias can be asked for
+    for f in facts:  # every name and alias can be used
         for name in (f["name"], f["label"], *f["aliases"]):
             assert list(tl.quality(ONE, name).values) == [f["name"]], name
 

@@ -1,4 +1,4 @@
-"""test_readers.py PROGRAM: files of Debian's tetgen or gmsh are read, and ours by it; skipped where it is absent."""
+"""test_readers.py PROGRAM: files of Debian's tetgen or gmsh are read, Tautline's by it; skipped if it is absent."""
 
 import os
 import re
@@ -67,7 +67,7 @@ def test_tetgen():
         assert types.count(24 if "o2" in options else 10) == cells, (options, cells)
         if "o2" not in options:
             assert abs(volume(mesh) - VOLUME) < 1e-9, (options, volume(mesh))
-    # what we write, tetgen takes: the surface, and a mesh to refine
+    # tetgen reads what Tautline writes: the surface, and a mesh to refine
     write("TetGen", read("TetGen", DATA / "cube.smesh"), OUTPUT / "ours.poly")
     run("tetgen", "-pq", "ours.poly")
     assert abs(volume(read("TetGen", OUTPUT / "ours.1.node")) - VOLUME) < 1e-9

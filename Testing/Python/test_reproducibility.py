@@ -7,7 +7,7 @@
 
 The digest of an operation is a list: name, kind and SHA-256 of each array, number and text of its result, in order.
 Times in seconds are left out. Values, names and texts are compared separately, so that a renamed array or a reworded
-message is told from a changed number.
+message is distinguished from a changed number.
 
 --write and --compare prove that a change of the sources changes no result: write before it, compare after it. The
 digests depend on the compiler, the vector units of the processor and the versions of the libraries. They hold for one
@@ -445,7 +445,7 @@ def run(name, threads):
 
 
 def test_digests():
-    """A digest sees a bit that changed, a name, a text and another option; it does not see times."""
+    """A digest detects a changed bit, name, text or option; it ignores times."""
     entries = Digest({"a": np.arange(3.0), "b": "x"}).entries
     assert differences(entries, Digest({"a": np.arange(3.0), "b": "x"}).entries) == []
     bit = np.arange(3.0)

@@ -1,4 +1,4 @@
-"""A state file with our filter loads again once the plugin is loaded."""
+"""A state file with Tautline's filter loads again once the plugin is loaded."""
 
 import os
 from pathlib import Path

@@ -115,7 +115,7 @@ void testAmountZero()
   }
 }
 
-/// The arrays and tables say what the kernel says.
+/// The arrays and tables agree with the kernel.
 void testOutputs()
 {
   const MeshData data = holedBlock(CellType::Tetrahedron, 5);
@@ -210,7 +210,7 @@ void testReuse()
   grid->GetPointData()->AddArray(arrayOf(
     "stay", data.numberOfPoints(), 1, [inner](Index i, int) { return double(i == inner); }));
   vtkNew<vtkMeshWarp> filter;
-  const Messages warnings(filter); // FEMWARP inverts some, which is not what is asked here
+  const Messages warnings(filter); // FEMWARP inverts some, which is not checked here
   filter->SetInputData(grid);
   filter->SetMethod(vtkMeshWarp::FEMWARP);
   filter->SetTransformKind(vtkMeshWarp::ROTATION);

@@ -255,8 +255,8 @@ void testTimeCosts()
   TAUTLINE_CHECK(others.has("The input has no time steps"));
 }
 
-/// The boundary turned and shifted, given in every way there is: the same result, and the summary
-/// says which.
+/// The boundary turned and shifted, given in every possible way: the same result, and the summary
+/// names the way.
 void testTargets()
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
@@ -333,7 +333,7 @@ void testTargets()
     filter->SetCorrespondence(vtkMeshWarp::SAME_BOUNDARY);
     check(moved(cloud), "by the order of the points that move");
     filter->SetMovedPart(vtkMeshWarp::AUTOMATIC_PART);
-    filter->Update(); // that is the hole for what cannot be told otherwise
+    filter->Update(); // that is the hole where nothing else distinguishes the parts
     TAUTLINE_CHECK(messages.has("choose another Correspondence"));
     messages.clear();
     filter->SetCorrespondence(vtkMeshWarp::AUTOMATIC_MATCH);
@@ -363,7 +363,7 @@ void testTargets()
   }
 }
 
-/// The boundary goes to the closest point; the summary says how far at most.
+/// The boundary goes to the closest point; the summary has the maximum distance.
 void testProjection()
 {
   const Index n = 5;

@@ -144,8 +144,8 @@ void testBending()
       TAUTLINE_CHECK(amount > 1e-3 || norm(q - p) < 1e-4);
     }
   }
-  // Held at a point on the way, what is before does not move; a full turn and more is a motion like
-  // any other.
+  // Held at a point on the way, what is before does not move; a full turn and more is an ordinary
+  // motion.
   PointMotion motion;
   motion.kind = MotionKind::Bending;
   motion.angle = 720;
@@ -340,7 +340,7 @@ void testParts()
   }
 }
 
-/// Two pieces with a hole each: four parts, by size, and each piece has an outside.
+/// Two components with a hole each: four parts, by size; each component has an outer part.
 void testBoundaryParts()
 {
   for (CellType type :

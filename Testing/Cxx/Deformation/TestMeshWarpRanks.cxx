@@ -1,5 +1,5 @@
-// Warp Mesh on several processes: a mesh in pieces is refused by all of them, one that is whole on
-// a process is warped there.
+// Warp Mesh on several processes: a distributed mesh is rejected by all of them, one that is whole
+// on a process is warped there.
 #include "WarpingMeshes.h"
 
 #include "vtkMPIController.h"

@@ -268,7 +268,7 @@ void testCoefficients()
   TAUTLINE_CHECK_NEAR(p[3], 6.0 / 37, 1e-14);
   TAUTLINE_CHECK_NEAR(std::abs(p[2]) + std::abs(p[4]) + std::abs(p[5]), 0, 1e-14);
 
-  // Motions along the axes get what the sums say, to rounding.
+  // Motions along the axes agree with the sums, to rounding.
   const auto axes = [](const Vec3& q)
   {
     return Vec3{ q[0] == 4 ? 0.3 : 0.0, q[0] == 0 ? 0.2 : 0.0,

@@ -165,7 +165,7 @@ void testRefused()
 //------------------------------------------------------------------------------
 void testParts()
 {
-  // No interior: two triangles; the boundary does what it is told.
+  // No interior: two triangles; the boundary moves as prescribed.
   const MeshData square = blockMesh(CellType::Triangle, 1, 1, 0);
   const auto stretch = [](const Vec3& p) { return Vec3{ p[0], 0, 0 }; };
   for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
@@ -216,7 +216,7 @@ void testParts()
     TAUTLINE_CHECK(distance(result.points, three.points) > 0.2);
     TAUTLINE_CHECK(
       result.message.find("Without a prescribed point 1 part of the mesh") != std::string::npos);
-    // The part that moves does not care for the others.
+    // The part that moves does not depend on the others.
     const WarpResult alone = warped(one, motion, withMethod(WarpMethod(method)));
     double worst = 0;
     for (std::size_t i = 0; i < own && usesFiniteElements(WarpMethod(method)); ++i)

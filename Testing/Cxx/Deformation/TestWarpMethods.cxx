@@ -9,7 +9,7 @@ using namespace tautline;
 
 namespace
 {
-/// No inverted element, the boundary where it belongs, and a history that says so.
+/// No inverted element, the boundary where it is prescribed, and a history that agrees.
 void checkValid(const MeshData& data, const Field& motion, const WarpResult& result)
 {
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
@@ -71,7 +71,7 @@ void testTurnedBox()
 }
 
 //------------------------------------------------------------------------------
-/// Shape (4.22) is what the metric of the registry says, and 0 for similar elements.
+/// Shape (4.22) agrees with the metric of the registry, and is 0 for similar elements.
 void testSimilarity()
 {
   Random random(2);

@@ -342,14 +342,14 @@ void testManyCenters()
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Hexahedron, 30, 30, 30));
   TAUTLINE_CHECK(std::count(problem.prescribed.begin(), problem.prescribed.end(), 1) > 5000);
-  // A bump that few of the first candidates see.
+  // A bump that few of the first candidates lie on.
   problem.prescribe(
     [](const Vec3& p)
     {
       const Vec3 r = p - Vec3{ 13, 17, 30 };
       return Vec3{ 0, 0, 2 * std::exp(-0.25 * dot(r, r)) };
     });
-  // Prescribed points that are not told what to do show how well they are met.
+  // Prescribed points that are left out show how well they are approximated.
   Problem some = problem;
   const Mesh mesh(problem.data.view());
   Index dropped = 0;
@@ -404,7 +404,7 @@ void testFourNeighbors(double a, double b, double c, double d)
 void testWeights()
 {
   testFourNeighbors(1, 3, 2, 0.5);
-  testFourNeighbors(1e-5, 3e-5, 2, 0.5); // the weights do not know of stretching
+  testFourNeighbors(1e-5, 3e-5, 2, 0.5); // the weights do not account for stretching
   testFourNeighbors(1, 1e4, 2, 0.5);
   // On a grid all weights are the same: the mean of the neighbours, by iteration.
   Problem problem = boundaryProblem(blockMesh(CellType::Triangle, 8, 8, 0));
@@ -441,7 +441,7 @@ void testWeights()
 /// Square and cube that turn in a larger one: how many elements each method inverts.
 void testTurning()
 {
-  // weighted Laplacian and inverse distances give in early, as the dissertation says of methods of
+  // weighted Laplacian and inverse distances fail early, as the dissertation states for methods of
   // this kind
   const Problem disk = holeProblem(CellType::Triangle, 24, 8, 0.4);
   const Problem box = holeProblem(CellType::Tetrahedron, 12, 4, 0.25);
@@ -523,7 +523,7 @@ void testLimits()
     std::all_of(moves.begin() + 3 * first, moves.end(), [](double d) { return d == 0; }));
 }
 
-/// Options out of range; an observer that says stop; fractions that grow.
+/// Options out of range; an observer that stops; fractions that grow.
 void testControl()
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, 6, 6, 6));

@@ -1,6 +1,6 @@
 /**
  * @file WarpingMeshes.h
- * @brief Blocks with a hole, and what the tests of Warp Mesh ask of its output.
+ * @brief Blocks with a hole, and checks of the output of Warp Mesh.
  */
 #ifndef tautline_WarpingMeshes_h
 #define tautline_WarpingMeshes_h

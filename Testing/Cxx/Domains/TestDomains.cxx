@@ -256,7 +256,7 @@ void checkDeterminism(const char* name)
   TAUTLINE_CHECK(!points[0].empty() && points[0] == points[1]);
 }
 
-/// Without the meshers the others are errors that say why.
+/// Without the meshers the others are errors that state the reason.
 void checkMissingMeshers()
 {
   vtkNew<vtkDomainSource> source;

@@ -1,6 +1,6 @@
 // Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms and
-// the study of solvers are those of the whole mesh in one process; what one rank refuses all
-// refuse. Runs on however many ranks it is started on.
+// the study of solvers are those of the whole mesh in one process; what one rank rejects all
+// reject. Runs on any number of ranks.
 #include "Blocks.h"
 #include "Check.h"
 
@@ -166,7 +166,7 @@ void testRefusals(MPI_Comm comm)
   {
     const Share share(comm, whole, false);
     const Mesh mesh(share.data.view());
-    // One rank names it; the others say that one does.
+    // One rank names it; the others report that one does.
     int named = 0;
     try
     {

@@ -1,5 +1,5 @@
-// Solve PDE: known solutions by every way a problem can be described, blocks and partitions, what
-// it refuses.
+// Solve PDE: known solutions by every way a problem can be described, blocks and partitions,
+// rejected input.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -131,7 +131,7 @@ void testLinear()
 }
 
 //------------------------------------------------------------------------------
-/// u = L x - x^2 / 2 on a strip held on the left: the nodes are exact. Told in all ways.
+/// u = L x - x^2 / 2 on a strip held on the left: the nodes are exact. Described in all ways.
 void testWays()
 {
   constexpr Index n = 6;

@@ -565,7 +565,7 @@ void testRefusals()
     TAUTLINE_CHECK_THROWS(stiffnessMatrix(Mesh(data.view()), ElasticOperator()), "not finite");
   }
   data = good;
-  data.addPoint({ NaN, NaN, NaN }); // nobody's
+  data.addPoint({ NaN, NaN, NaN }); // no cell uses it
   TAUTLINE_CHECK(std::isfinite(largest(assemble(data).values)));
 
   const Mesh mesh(good.view());

@@ -115,7 +115,7 @@ void testNames()
   }
   TAUTLINE_CHECK_EQUAL(names.size(), std::size_t(vtkSolverStudy::GetNumberOfCombinations()));
   TAUTLINE_CHECK_EQUAL(std::string(vtkSolverStudy::GetCombinationName(0)), "");
-  // Elasticity: the rigid body modes are worth iterations.
+  // Elasticity: the rigid body modes save iterations.
   vtkNew<vtkSolverStudy> filter;
   filter->SetInputData(toGrid(blockMesh(CellType::Triangle, 24, 24, 0)));
   filter->SetEquation(vtkEllipticAlgorithm::ELASTICITY);

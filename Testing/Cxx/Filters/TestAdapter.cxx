@@ -1,5 +1,4 @@
-// Data sets of VTK seen through MeshAdapter: what is copied, what becomes of the cells, what is
-// said.
+// Data sets of VTK through MeshAdapter: what is copied, what becomes of the cells, the messages.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -80,8 +79,8 @@ void testUnstructuredGrid()
   }
 }
 
-/// Pixels and voxels count rows of points; polygons of three and four points are what they look
-/// like.
+/// Pixels and voxels count rows of points; polygons of three and four points are triangles and
+/// quadrilaterals.
 void testRelatedTypes()
 {
   MeshData data = blockMesh(CellType::Hexahedron, 1, 1, 1); // its points are those of a voxel
@@ -103,7 +102,7 @@ void testRelatedTypes()
   {
     TAUTLINE_CHECK_EQUAL(int(validity[i]), int(expected[i] > 0 ? Valid : NotMeasured));
   }
-  TAUTLINE_CHECK(!contains(adapter.notice(), "vtkVertex")); // nobody expects its quality
+  TAUTLINE_CHECK(!contains(adapter.notice(), "vtkVertex")); // no quality is expected of it
   TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkPolygon"));
   TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkTriangleStrip"));
   TAUTLINE_CHECK(contains(adapter.notice(), "Triangulate"));

@@ -1,4 +1,4 @@
-// What a mesh finds out about itself: dimension and plane, boundary, adjacency; what it refuses.
+// What is derived from a mesh: dimension and plane, boundary, adjacency; rejected meshes.
 #include "Check.h"
 #include "Blocks.h"
 

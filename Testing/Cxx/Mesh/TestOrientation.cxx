@@ -112,7 +112,8 @@ void testOrientation(CellType type)
 }
 
 //------------------------------------------------------------------------------
-/// Inner points mirrored: most cells are inverted, yet the boundary tells which side is inside.
+/// Inner points mirrored: most cells are inverted, yet the boundary determines which side is
+/// inside.
 void testMostlyInverted()
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })

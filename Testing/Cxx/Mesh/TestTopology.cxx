@@ -90,7 +90,7 @@ void testIncidence(const CellTopology& t)
   }
 }
 
-/// What elementary geometry says of the ideal cells; the registry speaks of simplices only.
+/// Facts of elementary geometry on the ideal cells; the registry covers simplices only.
 struct IdealFacts
 {
   CellType type;

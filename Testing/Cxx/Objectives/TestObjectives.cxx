@@ -15,7 +15,7 @@ namespace
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double valueTolerance = 1e-11;
 constexpr double differenceTolerance = 1e-6;
-constexpr double kinkThreshold = 1e-5; // disagreement of two differences that tells of a kink
+constexpr double kinkThreshold = 1e-5; // disagreement of two differences that indicates a kink
 constexpr ObjectiveTemplate templates[] = { ObjectiveTemplate::SumOfSquares,
   ObjectiveTemplate::SumOfSquaredReciprocals, ObjectiveTemplate::SumOfReciprocals,
   ObjectiveTemplate::Sum, ObjectiveTemplate::PowerMean, ObjectiveTemplate::Maximum };
@@ -369,7 +369,7 @@ void testThreads()
   }
 }
 
-/// What the header says of inverted and degenerate elements.
+/// The rules of the header for inverted and degenerate elements.
 void testFaults()
 {
   auto value =

@@ -1,6 +1,6 @@
 /**
  * @file Optimizing.h
- * @brief Meshes to be optimised, and what to ask of the result.
+ * @brief Meshes to be optimised, and checks of the result.
  */
 #ifndef tautline_Optimizing_h
 #define tautline_Optimizing_h
@@ -73,7 +73,7 @@ inline OptimizeResult run(const MeshData& data, const OptimizeOptions& options)
   return optimize(Mesh(data.view()), options);
 }
 
-/// A history whose objective never rises and is what the metric says of the points.
+/// A history whose objective never rises and agrees with the metric at the points.
 inline void checkHistory(const MeshData& data, const OptimizeResult& result)
 {
   for (std::size_t i = 1; i < result.history.size(); ++i)

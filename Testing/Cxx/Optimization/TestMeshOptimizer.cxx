@@ -1,4 +1,4 @@
-// Optimize Mesh against the kernel: every option arrives, arrays and tables tell what happened.
+// Optimize Mesh against the kernel: every option arrives, arrays and tables report what happened.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -236,7 +236,7 @@ void testOptions()
   more("change", [](auto* f, auto& o) { f->SetRelativeChange(o.stopping.relativeChange = 0.05); });
   more("digits", [](auto* f, auto& o) { f->SetTwoDigits(o.stopping.twoDigits = true); });
   more("reduction", [](auto* f, auto& o) { f->SetReduction(o.stopping.reduction = 0.5); });
-  // 0 is a best known value like any other, and counts if it is said to be known only.
+  // 0 is an ordinary best known value, and counts only if it is declared known.
   more("best known 0",
     [](auto* f, auto& o)
     {
@@ -539,7 +539,7 @@ void testLimits()
   TAUTLINE_CHECK(longest > 0.01);
 }
 
-/// With the wanted elements as reference, sizes or tensors, the mesh goes there.
+/// With the target elements as reference, sizes or tensors, the mesh reaches them.
 void testTargets()
 {
   const MeshData data = perturbed(CellType::Triangle, 6);

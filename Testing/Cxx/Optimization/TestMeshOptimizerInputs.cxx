@@ -161,7 +161,7 @@ void testTaken()
   TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 1);
   TAUTLINE_CHECK_NEAR(norm(withPointsOf(one, meshOf(filter)).point(4) - Vec3{ 1, 1, 0 }), 0, 1e-2);
 
-  // Listed the other way round, the points go where they went, and it is said.
+  // Listed the other way round, the points go where they went, and it is reported.
   const MeshData data = perturbed(CellType::Triangle, 6);
   filter->SetInputData(toGrid(data));
   filter->Update();
@@ -373,7 +373,7 @@ void testAnimation()
   TAUTLINE_CHECK(at(34) != at(32));
 }
 
-/// Stops when asked, keeps what it has; a time limit of almost nothing too.
+/// Stops on request, keeps the result so far; a time limit of almost 0 too.
 void testStops()
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 6);
@@ -405,7 +405,7 @@ void testStops()
   TAUTLINE_CHECK_RELATIVE(objective(filter, 0), sumOfSquares(data), 1e-12);
 }
 
-/// The points of a sphere stay on it, and the error is told.
+/// The points of a sphere stay on it, and the error is reported.
 void testSurface()
 {
   vtkNew<vtkSphereSource> sphere;

@@ -57,8 +57,8 @@ struct Rosenbrock : SmoothFunction
   }
 };
 
-/// (x - a)^t H (x - a) / 2 with H = Q D Q, Q a reflection, D from 1 to `condition`; may know H and
-/// D.
+/// (x - a)^t H (x - a) / 2 with H = Q D Q, Q a reflection, D from 1 to `condition`; may provide H
+/// and D.
 struct Quadratic : SmoothFunction
 {
   Vector d, a, u;
@@ -129,7 +129,7 @@ struct Quadratic : SmoothFunction
   }
 };
 
-/// sum c_i x_i - ln(1 - x_i^2): infinite outside |x_i| < 1; counts where it is asked.
+/// sum c_i x_i - ln(1 - x_i^2): infinite outside |x_i| < 1; counts its evaluations.
 struct Barrier : SmoothFunction
 {
   Vector c;
@@ -153,7 +153,7 @@ struct Barrier : SmoothFunction
       if (!(std::abs(x[i]) < 1))
       {
         ++this->outside;
-        std::fill(g, g + this->size(), std::nan("")); // not to be looked at
+        std::fill(g, g + this->size(), std::nan("")); // must not be used
         return infinity;
       }
       f += this->c[i] * x[i] - std::log1p(-x[i] * x[i]);
@@ -377,7 +377,7 @@ void testStopping()
     TAUTLINE_CHECK(m.reason == StopReason::IterationLimit && m.evaluations == 1 && x == before);
     TAUTLINE_CHECK_EQUAL(m.value, value);
 
-    // Until no step lowers the value: it ends, at the minimum, without a tolerance.
+    // Until no step reduces the value: it ends, at the minimum, without a tolerance.
     options.maximumIterations = 5000;
     m = minimize(f, x.data(), options);
     TAUTLINE_CHECK(m.reason == StopReason::NoProgress || m.reason == StopReason::GradientNorm);

@@ -198,7 +198,7 @@ void testScalarizations()
   }
 }
 
-/// Other metrics and templates, in patches and globally: each lowers its own objective and inverts
+/// Other metrics and templates, in patches and globally: each reduces its own objective and inverts
 /// nothing.
 void testMetrics()
 {
@@ -280,7 +280,7 @@ void testTargetsAndWeights()
     valuesOf(b, Metric::InverseMeanRatio)[24] < valuesOf(a, Metric::InverseMeanRatio)[24]);
 }
 
-/// Each criterion ends the run, and says so.
+/// Each criterion ends the run, and is the reason given.
 void testStopping()
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 8, 0.12);
@@ -401,7 +401,7 @@ void testReachOfOptimizers()
   TAUTLINE_CHECK_THROWS(run(data, options), "no optimizer 7");
 }
 
-/// 0 is a best known objective like any other: that of an untangling objective.
+/// 0 is an ordinary best known objective: that of an untangling objective.
 void testBestKnownOfZero()
 {
   const MeshData data = perturbedBlock(CellType::Triangle, 12, 0.8);

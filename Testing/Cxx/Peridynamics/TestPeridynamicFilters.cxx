@@ -41,7 +41,7 @@ vtkSmartPointer<vtkUnstructuredGrid> bareSquare(int n, bool slanted, int precisi
   return toGrid(data, precision);
 }
 
-/// Runs a filter; what it complains of.
+/// Runs a filter; returns its error message.
 std::string errorOf(vtkAlgorithm* filter)
 {
   std::string text;

@@ -1,6 +1,6 @@
-// Condition numbers of Tables 4.1 to 4.3 (h = 0.1 and 0.05) in both readings, against the printed
-// values and against the columns and references of an independent prototype; what the text's own
-// rules give; that unstructured meshes converge to the same limits.
+// Condition numbers of Tables 4.1 to 4.3 (h = 0.1 and 0.05) in both discretizations, against the
+// printed values and against the columns and references of an independent prototype; what the
+// text's own rules give; that unstructured meshes converge to the same limits.
 #include "Check.h"
 #include "HorizonMeshes.h"
 
@@ -51,7 +51,7 @@ void testExact()
   }
 }
 
-/// One outer and three inner points, as the text says: column A of the notes; indefinite for p
+/// One outer and three inner points, as in the text: column A of the notes; indefinite for p
 /// = 2.5.
 void testLiteral()
 {

@@ -184,7 +184,7 @@ void testSlivers(CellType type)
 }
 
 /// A quadrilateral with a straight corner (at 1) and an inverted one (at 2): the inverted one
-/// speaks.
+/// determines the value.
 void testStraightAndInverted()
 {
   const Corners corners = { { 0, 0, 0 }, { 3, 0, 0 }, { 2, 0, 0 }, { 1, 1, 0 } };

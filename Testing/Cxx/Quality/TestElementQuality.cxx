@@ -273,7 +273,7 @@ void testReversed()
     const double sign = mode == vtkElementQuality::MEASURE_AS_GIVEN ? -1 : 1;
     TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 3), sign * values[3], 1e-13);
 
-    // A second measurement of a flipped output finds nothing to complain of; the input stays.
+    // A second measurement of a flipped output reports nothing; the input stays.
     vtkNew<vtkElementQuality> again;
     again->SetInputData(filter->GetOutputDataObject(0));
     Messages second(again);
@@ -303,7 +303,7 @@ void testTargets()
   const auto grid = toGrid(data);
   filter->SetInputData(grid);
 
-  // Against itself every element is as wanted.
+  // Against itself every element has its target shape.
   filter->SetTargetType(vtkElementQuality::REFERENCE);
   filter->SetInputData(1, grid);
   filter->Update();

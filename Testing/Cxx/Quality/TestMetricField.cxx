@@ -1,5 +1,5 @@
 // The field of a metric: ideal at the apex of the ideal cell, symmetric, negative below the base,
-// the same in pieces, and good enough to contour.
+// the same when streamed in pieces, and smooth enough to contour.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -83,7 +83,7 @@ void testIdealApex()
       const double ideal = info.ideal(flat ? 2 : 3);
       if (apex->GetArray(info.name) && std::isfinite(ideal))
       {
-        // mu_98 and mu_14 and their like also want the ideal cell's orientation, which this has.
+        // mu_98, mu_14 and similar metrics also need the ideal cell's orientation, which this has.
         TAUTLINE_CHECK_NEAR(component(apex, info.name, 0), ideal, 1e-6);
       }
     }

@@ -18,7 +18,7 @@ constexpr int cellsPerCloud = 24;
 constexpr double step = 0x1p-13;
 constexpr double tolerance = 1e-7;        // of the norm of the cell's gradient
 constexpr double valueRounding = 1e-10;   // of the value: rounding of the differences
-constexpr double kinkThreshold = 8e-7;    // disagreement of the differences that tells of a kink
+constexpr double kinkThreshold = 8e-7;    // disagreement of the differences that indicates a kink
 constexpr double skippedFraction = 0.001; // of all components that may be skipped
 
 struct Cloud

@@ -271,7 +271,7 @@ void checkInvertedValue(const MetricInfo& info, double valid, double mirrored)
     case InvertedValue::Unsigned:
       if (info.metric == Metric::ShapeProduct)
       {
-        // r (r - 2) with r = |T|^2 / tau, at least 2 in size: no value tells the sign of r.
+        // r (r - 2) with r = |T|^2 / tau, at least 2 in size: no value determines the sign of r.
         TAUTLINE_CHECK(mirrored >= valid + 8);
         break;
       }
@@ -282,7 +282,7 @@ void checkInvertedValue(const MetricInfo& info, double valid, double mirrored)
 
 void testMirror(const Cloud& cloud)
 {
-  // The mirror the kernel looks into: x reversed in space, the axes exchanged in a plane.
+  // The kernel's reflection: x reversed in space, the axes exchanged in a plane.
   const auto reflect = [&](const Vec3& p)
   {
     return cloud.dimension == 2 && !cloud.surface ? Vec3{ p[1], p[0], p[2] }

@@ -1,4 +1,4 @@
-// What the registry says of the metrics, held against their values: names, ranges, direction,
+// The facts of the registry, checked against the values of the metrics: names, ranges, direction,
 // barrier, differentiability, and the options that are refused.
 #include "Check.h"
 #include "Meshes.h"
@@ -146,7 +146,7 @@ void testRange(CellType type, bool surface)
     const double slack = 1e-12 * std::max(1.0, std::isinf(full.high) ? full.low : full.high);
     TAUTLINE_CHECK_NEAR(std::min(low, full.low), full.low, slack);
     TAUTLINE_CHECK_NEAR(std::max(high, full.high), full.high, slack);
-    // The bad ones are worse than the ideal one.
+    // The poor ones are worse than the ideal one.
     const double ideal = valueOnIdeal(info, type);
     if (info.direction == Direction::SmallerIsBetter && info.metric != Metric::UntangleBeta)
     {

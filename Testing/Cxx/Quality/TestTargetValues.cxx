@@ -20,7 +20,7 @@ double squared(double x)
   return x * x;
 }
 
-/// Metrics of T at one corner, with the sign of tau where the registry says so.
+/// Metrics of T at one corner, with the sign of tau where the registry has it.
 double targetFormula(Metric metric, const Matrix& t, double size, const Parameters& p)
 {
   const int n = t.n;

@@ -143,7 +143,7 @@ void testSize(CellType type, bool surface)
   checkIdeal(
     idealMesh, type, sizeTargets(idealMesh, sizes.data()), [](const MetricInfo&) { return true; });
 
-  // Sizes do not change what shape metrics say, and tau of a simplex is its size over the wanted.
+  // Sizes do not change shape metrics, and tau of a simplex is its size over the target size.
   const Targets targets = sizeTargets(mesh, sizes.data());
   options.targets = &targets;
   for (const MetricInfo& info : metricRegistry())
@@ -185,7 +185,8 @@ Columns stretch(const Columns& axes, const Vec3& lengths)
   return result;
 }
 
-/// Where the ideal cell, turned at will, is as large as M wants, all its edges have length 1 in M.
+/// Where the ideal cell, in any rotation, has the size that M prescribes, its edges have length 1
+/// in M.
 void testTensor(CellType type, bool surface)
 {
   Random random(8);

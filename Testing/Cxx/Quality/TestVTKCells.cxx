@@ -1,7 +1,7 @@
-// The cells VTK itself makes are valid for us: local numbering, orientation and corners of every
-// type, linear and of higher order. The wedge is the one to watch: in VTK's linear and quadratic
-// wedges the corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and Bezier
-// wedges from inside.
+// The cells VTK itself makes are valid in Tautline: local numbering, orientation and corners of
+// every type, linear and of higher order. The wedge is the one to watch: in VTK's linear and
+// quadratic wedges the corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and
+// Bezier wedges from inside.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -57,7 +57,7 @@ void testSource(int vtkType, bool higher)
   TAUTLINE_CHECK_EQUAL(mesh.boundary().nonManifold, 0);
 }
 
-/// VTK's own opinion of our ideal cells.
+/// VTK's own measures of Tautline's ideal cells.
 void testIdealCells(CellType type)
 {
   const Context context(topology(type).name);

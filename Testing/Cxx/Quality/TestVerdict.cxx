@@ -22,11 +22,11 @@ constexpr double one = 1;
 enum class Relation
 {
   Equal,
-  AtMost, ///< Verdict's is not above ours
-  AtLeast ///< Verdict's is not below ours
+  AtMost, ///< Verdict's is not above Tautline's
+  AtLeast ///< Verdict's is not below Tautline's
 };
 
-/// Verdict's value is ours to a power, with the corners combined as said.
+/// Verdict's value is Tautline's to a power, with the corners combined as stated.
 struct Comparison
 {
   const char* name;
@@ -92,7 +92,7 @@ const Comparison comparisons[] = {
   { "aspect Frobenius", tet, Q::TetAspectFrobenius, Metric::InverseMeanRatio, Mean, one,
     Relation::Equal },
   { "aspect gamma", tet, Q::TetAspectGamma, Metric::InverseMeanRatio, Mean, 1.5, Relation::Equal },
-  // Verdict forgets the edges 0-2 and 1-3.
+  // Verdict leaves out the edges 0-2 and 1-3.
   { "minimum angle", tet, Q::TetMinAngle, Metric::MinimumAngle, Mean, one, Relation::AtLeast },
   { "condition", tet, Q::TetCondition, Metric::ConditionNumber, Mean, one, Relation::Equal },
   { "scaled Jacobian", tet, Q::TetScaledJacobian, Metric::ScaledJacobian, Mean, one,
@@ -104,7 +104,7 @@ const Comparison comparisons[] = {
     Relation::AtLeast },
 
   { "volume", hex, Q::HexVolume, Metric::Size, Mean, one, Relation::Equal },
-  // Verdict does not look at all pairs of edges.
+  // Verdict does not use all pairs of edges.
   { "edge ratio", hex, Q::HexEdgeRatio, Metric::EdgeRatio, Mean, one, Relation::AtMost },
   { "max edge ratio", hex, Q::HexMaxEdgeRatio, Metric::AspectRatio, Mean, one, Relation::Equal },
   { "condition", hex, Q::HexCondition, Metric::ConditionNumber, Worst, one, Relation::Equal },
@@ -166,7 +166,7 @@ void compare(const Comparison& c)
   }
 }
 
-/// Where Verdict looks at the centre besides the corners, the two agree if all Jacobians are the
+/// Where Verdict uses the centre besides the corners, the two agree if all Jacobians are the
 /// same.
 void testAffineHexahedra()
 {

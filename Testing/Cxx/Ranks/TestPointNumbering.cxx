@@ -189,7 +189,7 @@ void testBoundary(MPI_Comm comm)
       TAUTLINE_CHECK_EQUAL(flags[p] != 0, part.onBoundary(p));
     }
   }
-  // Alone, and without a communicator, what Mesh says.
+  // Alone, and without a communicator, the same as Mesh.
   const Part whole(0, 1, false);
   const Mesh mesh = whole.mesh();
   const std::vector<char> expected = mesh.boundary().isBoundaryPoint;
@@ -406,7 +406,7 @@ void testConditions(MPI_Comm comm)
   }
 }
 
-/// What one rank refuses, all refuse; what one rank stops, all stop.
+/// What one rank rejects, all reject; what one rank stops, all stop.
 void testTogether(MPI_Comm comm)
 {
   const int rank = rankOf(comm), ranks = ranksOf(comm);
@@ -502,7 +502,7 @@ int TestPointNumbering(int, char*[])
 {
   MPI_Init(nullptr, nullptr);
   MPI_Comm comm = MPI_COMM_WORLD;
-  // A rank on its own solves what it likes while the others do not: nothing is collective, not even
+  // A single rank solves a system while the others do not: nothing is collective, not even
   // the initialisation.
   if (rankOf(comm) == 0)
   {

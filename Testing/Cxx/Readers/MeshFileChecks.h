@@ -94,7 +94,7 @@ inline bool same(const MeshFile& a, const MeshFile& b)
     a.fieldStrings.size() == b.fieldStrings.size();
 }
 
-/** What a reader says of a file; empty if it has no complaint. */
+/** The error message of a reader for a file; empty if there is none. */
 inline std::string complaint(const std::string& name, bool lowerCells = true)
 {
   try

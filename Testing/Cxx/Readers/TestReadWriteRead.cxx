@@ -104,7 +104,7 @@ void checkArrays()
     const MeshArray* tensor = findArray(again.cellArrays, "tensor");
     TAUTLINE_CHECK(tensor && tensor->components == 9 && tensor->at(1) == 7.25);
   }
-  // whole numbers and bytes keep their types in the formats that can say so
+  // whole numbers and bytes keep their types in the formats that store types
   mesh.pointArrays.push_back(MeshArray::make("count", 1, 'i', points));
   mesh.cellArrays.push_back(MeshArray::make("flag", 1, 'u', cells));
   std::get<MeshArray::Bytes>(mesh.cellArrays.back().values)[3] = 255;
@@ -133,7 +133,7 @@ void checkStaleCompanions()
   TAUTLINE_CHECK(!fileExists(stem + ".sol"));
 }
 
-/// Writers take any data set, refuse by name, and say when a file cannot be written.
+/// Writers take any data set, reject by name, and report when a file cannot be written.
 void checkWriterClasses()
 {
   vtkNew<vtkImageData> image;

@@ -1,4 +1,4 @@
-// The filters of the module Shapes: arrays and tables they promise, images of all kinds, errors,
+// The filters of the module Shapes: the documented arrays and tables, images of all kinds, errors,
 // the reader.
 
 #include "Check.h"
@@ -210,7 +210,7 @@ void testMatcher()
   TAUTLINE_CHECK_EQUAL(value("Rank"), 1.0);
   TAUTLINE_CHECK_EQUAL(value("Stop"), 0.0);
 
-  // A smaller target after a larger one, in one filter: each image is asked for as a whole.
+  // A smaller target after a larger one, in one filter: each image is requested as a whole.
   fromImage->SetTargetData(makeImage(blob(80, 40, 40, 20)));
   TAUTLINE_CHECK(errorOf(fromImage).empty());
   fromImage->SetInputDataObject(0, makeImage(blob(60, 30, 30, 15)));

@@ -67,7 +67,7 @@ void testEdgeCost()
   TAUTLINE_CHECK_NEAR(target.edgeCost({ 59.5, 30 }, { 59.5, 90 }), 1.0 / 1.1, 0.05);
   TAUTLINE_CHECK_NEAR(target.edgeCost({ 85, 40 }, { 85, 80 }), 10.0, 1e-3);
   const double whole = target.edgeCost({ 40, 60 }, { 80, 60 });
-  TAUTLINE_CHECK(whole > 7.0 && whole < 10.0); // across: most of it sees nothing
+  TAUTLINE_CHECK(whole > 7.0 && whole < 10.0); // across: most of it has no gradient
   ShapeEnergy directed = plain();
   directed.directedEdges = true;
   const ShapeTarget sided(traceSilhouette(picture.view()), {}, directed);
@@ -261,7 +261,7 @@ void testCentreRule()
   MatchOptions options;
   LocationOptions grid;
   grid.columns = grid.rows = 12;
-  // A small triangle fits anywhere on the outline of a disc; the rule wants it in the middle.
+  // A small triangle fits anywhere on the outline of a disc; the rule places it in the middle.
   const ShapeSource source = makeShapeSource({ { 0, 0 }, { 30, 0 }, { 15, 9 } });
   const ShapeTarget target(traceSilhouette(disc(96, 48, 48, 36).view()), grid, options.energy);
   options.centreTolerance = 0.0;

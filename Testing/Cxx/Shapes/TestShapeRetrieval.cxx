@@ -1,4 +1,4 @@
-// Rankings and rates counted by hand; families of shapes are told apart; threads, stops, errors.
+// Rankings and rates counted by hand; families of shapes are distinguished; threads, stops, errors.
 
 #include "Check.h"
 #include "Shapes.h"
@@ -11,7 +11,7 @@ namespace
 {
 void testCounting()
 {
-  // Two classes of two: shape 0 finds its like first, 1 does not, 2 and 3 do.
+  // Two classes of two: shape 0 finds its own class first, 1 does not, 2 and 3 do.
   const std::vector<double> distances = { 0, 1, 2, 3, /**/ 4, 0, 1, 2, /**/ 5, 6, 0, 1, /**/ 3, 3,
     2, 0 };
   const std::vector<Index> ranking = rankShapes(distances, 4);

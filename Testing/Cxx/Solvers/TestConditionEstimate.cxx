@@ -103,7 +103,7 @@ std::array<double, 2> denseEnds(const Dense& a, const Dense& inverse)
   return { solver.eigenvalues()(0), solver.eigenvalues()(a.rows() - 1) };
 }
 
-/// Both values to the tolerance asked for, with bounds that hold.
+/// Both values to the requested tolerance, with bounds that hold.
 void checkEnds(const ConditionEstimate& estimate, double smallest, double largest, double tolerance)
 {
   TAUTLINE_CHECK(estimate.converged);

@@ -1,5 +1,5 @@
 // Linear systems through PETSc: every method with every preconditioner against a direct solve, why
-// a solve fails, options and whose they are, limits, reuse, and whatever is refused.
+// a solve fails, options and their databases, limits, reuse, and whatever is refused.
 #include "Check.h"
 #include "Systems.h"
 
@@ -221,7 +221,7 @@ void testOptions()
   TAUTLINE_CHECK(tight.solution.iterations > loose + 20);
   TAUTLINE_CHECK(relativeResidual(a, tight.x, b) < 1e-10);
 
-  // The string wins over the members, whatever it asks for.
+  // The string takes precedence over the members.
   options.petscOptions = "-ksp_type gmres -pc_type lu -pc_factor_mat_solver_type mumps";
   TAUTLINE_CHECK_EQUAL(solved(systemOf(a), options, b).solution.iterations, 1);
   options.petscOptions = "-pc_type bjacobi -pc_bjacobi_blocks 4 -sub_pc_type icc";
@@ -515,8 +515,7 @@ void testUnchanged()
   TAUTLINE_CHECK_EQUAL(std::string(nameOf(static_cast<KrylovMethod>(99))), std::string("unknown"));
 }
 
-/// A long elastic strip held at one end bends: rigid body modes are what smoothed aggregation needs
-/// to know of it.
+/// A long elastic strip held at one end bends: smoothed aggregation needs its rigid body modes.
 void testRigidBodyModes()
 {
   const int columns = 120, rows = 8;

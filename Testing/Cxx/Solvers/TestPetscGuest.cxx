@@ -66,7 +66,7 @@ int TestPetscGuest(int, char*[])
   TAUTLINE_CHECK_THROWS(LinearSolver(theSystem(), wrong), "none of these");
   TAUTLINE_CHECK_EQUAL(errors, 0);
 
-  // The host's solvers are as it asked.
+  // The host's solvers keep their options.
   KSPCreate(PETSC_COMM_WORLD, &after);
   for (KSP solver : { before, after })
   {
@@ -82,7 +82,7 @@ int TestPetscGuest(int, char*[])
   TAUTLINE_CHECK(errors > 0);
   KSPDestroy(&after);
 
-  // The host ends PETSc: a solver of before refuses, a new one starts PETSc again.
+  // The host ends PETSc: an older solver reports an error, a new one starts PETSc again.
   auto old = std::make_unique<LinearSolver>(theSystem(), SolverOptions());
   old->setUp();
   PetscPopErrorHandler();

@@ -166,7 +166,7 @@ bool samePoint(const MeshData& a, const MeshData& b, Index i)
   return a.point(i) == b.point(i);
 }
 
-/// Untangles and checks that the result keeps its promises and is valid throughout.
+/// Untangles and checks that the result keeps its guarantees and is valid throughout.
 UntangleResult checkUntangles(
   const MeshData& data, const std::string& name, const UntangleOptions& options = {})
 {
@@ -250,7 +250,7 @@ void testLocality()
   TAUTLINE_CHECK_EQUAL(far, 0);
 }
 
-/// Mesquite's tangled meshes and ours, with their own flags and with the boundary fixed.
+/// Mesquite's tangled meshes and Tautline's, with their own flags and with the boundary fixed.
 void testFiles(const std::string& directory)
 {
   for (const char* name : { "rotsq", "tangled_quad", "tangled_tri", "inverted-hole-1",
