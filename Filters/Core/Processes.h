@@ -45,7 +45,7 @@ public:
 
   /**
    * @brief Does work that does not communicate, or that throws on all processes if on any. What it
-   * throws on any process is thrown on all, as Error, so that none waits for another that has
+   * throws on any process is thrown on all, as Error, so that no process waits for one that has
    * failed.
    */
   void together(const std::function<void()>& work) const;

@@ -12,7 +12,7 @@
  * of the input, else 1), 0 elsewhere. Output 1, vtkPolyData `Boundary`: the subdivided segments on
  * the same points, with the cell array `BoundaryMarker`.
  *
- * Deterministic. Progress is reported and abort is obeyed; an aborted run gives an empty output.
+ * Deterministic. Reports progress and can be aborted; an aborted run gives an empty output.
  *
  * Limits: segments must not cross (the message names the first that does). Angles between segments
  * below 60 degrees can leave smaller angles beside them. Other arrays are not carried over.

@@ -13,7 +13,7 @@
  * vtkPolyData: the triangles that meet the disc. Cell arrays: `Case` (int), 1 all three corners
  * inside, 2 two, 3 one, 0 none (an edge is cut, or the disc lies in the triangle: the dissertation
  * leaves these out); `CellId`; `Area` of the part in the disc; `ChordArea`, the same as the
- * dissertation takes it; `Missed`, the difference.
+ * dissertation approximates it; `Missed`, the difference.
  *
  * @par Output port 1 `Horizon`:
  * vtkPolyData: the circle, as a closed line of 256 segments.

@@ -5,7 +5,7 @@
 //   make RECIPE CELLS FILE     a mesh: disk2d or disk3d, then -plain, -perturbed (50 %),
 //                              -tangled (1 % of the cells) or -scattered (30 % of the inner
 //                              points anywhere in the bounding box)
-//   best FILE                  the sum of squared IMR after hundreds of sweeps, close to the least
+//   best FILE                  sum of squared IMR after hundreds of sweeps, close to the minimum
 //   objective FILE REPEATS     value and gradient of the sum of squared IMR
 //   shape FILE REPEATS BEST    95 % of the reduction to BEST, 1.0001 BEST, the presets
 //   threads FILE REPEATS       one thread against two, wall time and that of the main thread

@@ -114,7 +114,7 @@ void checkThrows(const Statement& statement, const std::string& part, const char
 #define TAUTLINE_CHECK(expression) tautline::check((expression), #expression, __FILE__, __LINE__)
 #define TAUTLINE_CHECK_EQUAL(actual, expected) \
   tautline::checkEqual((actual), (expected), #actual, __FILE__, __LINE__)
-/** Within an absolute tolerance; a NaN is near to nothing. */
+/** Within an absolute tolerance; fails for a NaN. */
 #define TAUTLINE_CHECK_NEAR(actual, expected, tolerance) \
   tautline::checkNear((actual), (expected), (tolerance), #actual, __FILE__, __LINE__)
 /** Within a tolerance relative to the expected value. */

@@ -16,7 +16,7 @@ constexpr int TanglePasses = 16;
 constexpr Index VerticesPerReport = 1024;
 constexpr double Never = std::numeric_limits<double>::infinity();
 
-/// What a vertex draws for; each has random numbers of its own.
+/// Purposes of the random numbers of a vertex; each has its own stream.
 enum Stream : std::uint64_t
 {
   ChooseVertex = 1,

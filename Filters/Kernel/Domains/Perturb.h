@@ -57,7 +57,7 @@ struct Perturbation
  * `fixed`.
  *
  * Each goes in a random direction: in space; in the plane of a planar mesh; in the tangent plane of
- * the cells around it on a surface. The distance to inversion is the least at which a corner
+ * the cells around it on a surface. The distance to inversion is the minimum at which a corner
  * Jacobian of a cell around it changes its sign, with the other vertices at their current places.
  * It is exact: each determinant is linear in one vertex. On a surface, a cell inverts where it
  * turns by 90 degrees from what it was. Where no sign changes (possible around inverted elements

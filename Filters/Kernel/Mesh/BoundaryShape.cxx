@@ -54,7 +54,7 @@ void add(Directions& d, const Vec3& area, double cosine)
   }
 }
 
-/// The nodes of a facet in the order its cell walks round it; returns their number.
+/// The nodes of a facet in the order its cell traverses it; returns their number.
 int walk(Index smallest, const FacetUse& use, Index* nodes)
 {
   nodes[0] = smallest;

@@ -18,7 +18,7 @@ struct FacetUse
 {
   std::array<Index, MaxFaceNodes - 1> others; ///< the other nodes in increasing order, then -1
   Index cell;
-  /// The sense in which the cell walks round the facet; two cells agree when theirs differ.
+  /// The sense in which the cell traverses the facet; two cells agree when theirs differ.
   bool forward;
 };
 

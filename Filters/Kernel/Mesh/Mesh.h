@@ -145,8 +145,8 @@ public:
   void classifyCells(signed char* validity, int threads = 0) const;
   /**
    * @brief The same for one cell with the given vertices, which need not be those of the view.
-   * @param against a unit normal that decides the sign of a cell of a surface, instead of its own
-   * (and of a planar mesh, instead of normal()); may be null
+   * @param against a unit normal that determines the sign of a cell of a surface, instead of its
+   * own (and of a planar mesh, instead of normal()); may be null
    */
   Validity classifyCell(
     const CellTopology& t, const Vec3* vertices, const Vec3* against = nullptr) const;

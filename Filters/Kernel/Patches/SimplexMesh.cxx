@@ -232,7 +232,7 @@ SimplexMesh::SimplexMesh(
   if (mesh.view().numberOfPoints > std::numeric_limits<std::int32_t>::max())
   {
     throw Error(
-      "The mesh has more than 2,147,483,647 points, the most the optimizers take: split it.");
+      "The mesh has more than 2,147,483,647 points, the maximum of the optimizers: split it.");
   }
   if (mesh.dimension() == Dimension::Planar)
   {

@@ -60,7 +60,7 @@ struct DiscIntersection
 {
   int corners = 0;      ///< in the disc: 3 is case 1, 2 case 2, 1 case 3, 0 none
   double exactArea = 0; ///< of triangle and disc
-  double chordArea = 0; ///< as the dissertation takes it
+  double chordArea = 0; ///< the dissertation's approximation
   /// The triangles taken for it, x y of three corners each: none, one or two.
   std::vector<double> chords;
 };

@@ -392,7 +392,7 @@ bool PairIntegrator::isCut(const Triangle& part, bool& apart) const
 {
   const double square = this->Horizon * this->Horizon;
   const Vec2* other = this->Pair->second;
-  // The farthest corners decide whether everything is within the horizon, the nearest points of the
+  // The farthest corners show whether everything is within the horizon, the nearest points of the
   // edges whether nothing is.
   double farthest = 0.0, nearest = 1e300;
   for (const Corner& corner : part)

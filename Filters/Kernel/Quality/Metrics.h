@@ -123,7 +123,7 @@ struct MetricInfo
   /// Cell types as bits 1 << topologyIndex(type).
   unsigned cellTypes;
   Range full2D, full3D;             ///< of valid elements
-  Range acceptable2D, acceptable3D; ///< of elements most solvers take
+  Range acceptable2D, acceptable3D; ///< of elements suitable for most solvers
   double ideal2D, ideal3D;          ///< of the ideal element; NaN where it depends on size
   Direction direction;
   InvertedValue inverted;

@@ -79,7 +79,7 @@ struct RankOrder
 template <class Item>
 RankLists<Item> exchange(MPI_Comm communicator, const RankLists<Item>& sent)
 {
-  static_assert(std::is_trivially_copyable<Item>::value, "Items travel as bytes.");
+  static_assert(std::is_trivially_copyable<Item>::value, "Items are sent as bytes.");
   const std::size_t ranks = sent.counts.size();
   RankLists<Item> received;
   received.counts.resize(ranks);

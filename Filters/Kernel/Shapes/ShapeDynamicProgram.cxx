@@ -61,7 +61,7 @@ PairTable transpose(const PairTable& table)
   return result;
 }
 
-/// The least value of each row of slots, for each row of the table.
+/// The minimum of each row of slots, for each row of the table.
 PairTable rowMinima(const PairTable& table, const LocationSet& set)
 {
   PairTable minima(table.rows, (set.rows + FloatWidth - 1) / FloatWidth * FloatWidth, Unreachable);
@@ -190,7 +190,7 @@ bool PlacementSolver::run()
         step.fromI.row(p)[r] += vertex[r];
       }
     }
-    // Eliminates vertex k: the least cost for each pair of places of its parents.
+    // Eliminates vertex k: the minimum cost for each pair of places of its parents.
     PairTable out(this->Problem.sets[i]->size(), this->Problem.sets[j]->size(), Unreachable);
     this->solveStep(number, step, out);
     if (!this->report(static_cast<double>(number + 1) / static_cast<double>(n)))
@@ -247,7 +247,7 @@ public:
   /// Of one thread.
   struct Scratch
   {
-    std::vector<float> best;     ///< least cost for each q
+    std::vector<float> best;     ///< minimum cost for each q
     std::vector<Index> guess;    ///< packet of the best r for each q; where the next p starts
     std::vector<Index> tried;    ///< packet tried first
     std::vector<BaseEdge> edges; ///< from p to each q
@@ -528,8 +528,8 @@ private:
     }
   }
 
-  /// The least cost over all r, at most the limit. The row that was best for the last p and q comes
-  /// first; a row is skipped if the sum of its three minima is no better than what is found.
+  /// The minimum cost over all r, at most the limit. The row that was best for the last p and q
+  /// comes first; a row is skipped if the sum of its three minima is no better than what is found.
   float search(Index p, Index q, Index px, Index py, Slice& slice, Index& guess) const
   {
     const Index width = this->Width;

@@ -1,6 +1,6 @@
 /**
  * @file ShapeDynamicProgram.h
- * @brief The placement of a polygon of least energy, by dynamic programming over its triangles.
+ * @brief The placement of a polygon of minimum energy, by dynamic programming over its triangles.
  * Internal to the kernel: not installed.
  */
 #ifndef tautline_ShapeDynamicProgram_h

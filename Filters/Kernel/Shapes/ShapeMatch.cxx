@@ -58,7 +58,7 @@ double orderingCost(double from, double to, double expected)
 {
   double advance = to - from;
   advance -= std::floor(advance);
-  // A step of nothing counts as a hundredth of the expected one.
+  // A step of length 0 counts as a hundredth of the expected one.
   return std::abs(std::log(std::max(advance, 0.01 * expected) / expected));
 }
 

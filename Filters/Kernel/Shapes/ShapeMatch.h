@@ -1,7 +1,7 @@
 /**
  * @file ShapeMatch.h
  * @brief Finds a deformable shape in an image: the placement of a triangulated polygon with the
- * least energy.
+ * minimum energy.
  *
  * The source is a triangulated polygon (Polygon.h), the target an image with a finite set of
  * locations for its vertices. The energy of a placement is a sum over the triangles (dissertation
@@ -33,7 +33,7 @@
 namespace tautline
 {
 /**
- * @brief The placement of least energy, exact unless coarseToFine or stopped.
+ * @brief The placement of minimum energy, exact unless coarseToFine or stopped.
  *
  * The tables are in single precision; the energies returned are computed again in double. Ties go
  * to the location that comes first.

@@ -140,7 +140,7 @@ struct MatchOptions
   /// passed over for the next best (dissertation equation 5.2). 0: the rule is off. The
   /// dissertation's is 1/3.
   double centreTolerance = 1.0 / 3.0;
-  /// Maximum number of solutions to try for the rule; then the one with the least distance is
+  /// Maximum number of solutions to try for the rule; then the one with the minimum distance is
   /// taken.
   Index maxSolutions = 1000;
   /// Solves on a third of the locations first, then around that solution only; fast, not exact.
@@ -204,7 +204,7 @@ struct ShapeMatch
   double descriptor = 0;    ///< sum of squared differences
   double ordering = 0;      ///< sum of |log|
   std::vector<TriangleEnergy> triangles;
-  Index rank = 1;            ///< of the solution taken: 1 is the least energy
+  Index rank = 1;            ///< of the solution taken: 1 is the minimum energy
   double centreDistance = 0; ///< D, from the mean of the points to the target's centre of mass
   bool centreAccepted = true;
   bool mirrored = false; ///< the source's mirror image was matched

@@ -79,7 +79,7 @@ TAUTLINE_KERNEL_EXPORT Silhouette traceSilhouette(
  *
  * Vertices are chosen among points a twentieth of the spacing apart so that the sum over the edges
  * of (length along the outline / spacing - 1)^2 + (largest distance of the outline from the edge /
- * spacing)^2 is least, with lengths from a half to one and a half spacings (dissertation
+ * spacing)^2 is minimal, with lengths from a half to one and a half spacings (dissertation
  * section 5.2.1; the sum is not in it). Where that polygon has less than 3 vertices or meets
  * itself, the spacing is reduced.
  *

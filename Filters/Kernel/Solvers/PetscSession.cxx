@@ -49,8 +49,7 @@ void finalizeMpi()
   }
 }
 
-/// Keeps the innermost message, which is the one that names the cause; prints nothing, ends
-/// nothing.
+/// Keeps the innermost message, which names the cause; neither prints nor terminates.
 PetscErrorCode collectError(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
   PetscErrorType type, const char* message, void*)
 {

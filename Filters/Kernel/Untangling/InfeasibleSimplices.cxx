@@ -106,7 +106,7 @@ bool validSide(const SimplexMesh& mesh, const double* x, std::int32_t v, std::in
   return true;
 }
 
-/// Removes the most violated of contradicting half-spaces, until the rest leaves a place.
+/// Removes the most violated of contradicting half-spaces, until the rest is feasible.
 template <int Dim>
 void removeContradicting(
   std::vector<ValidSide<Dim>>& sides, double reach, std::vector<std::int32_t>& removed)

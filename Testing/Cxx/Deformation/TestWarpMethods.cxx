@@ -186,7 +186,7 @@ void testSecondStep()
 }
 
 //------------------------------------------------------------------------------
-/// Objectives without a barrier, one of which would rather have some elements inverted, do not get
+/// Objectives without a barrier, one of which is smaller with some elements inverted, do not get
 /// that by small steps.
 void testNoBarrier()
 {

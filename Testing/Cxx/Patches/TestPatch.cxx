@@ -175,7 +175,7 @@ void testEnergy(const char* name, const Energy& energy)
     }
     TAUTLINE_CHECK(slope < 0);
 
-    // At the step to inversion the least D vanishes, and not before.
+    // At the step to inversion the minimum D vanishes, and not before.
     const double zero[Dim] = {};
     const double direction[3] = { 0.3, -0.5, 0.8 };
     const double t = stepToInversion<Dim>(patch, zero, direction);

@@ -79,7 +79,7 @@ void checkConversion()
   TAUTLINE_CHECK(findArray(gmsh.cellArrays, "Reference")->values == reference->values);
 }
 
-/// Arrays of every kind, with hard names and values, survive where a format has room for them.
+/// Arrays of every kind, with unusual names and values, are kept where a format has room for them.
 void checkArrays()
 {
   MeshFile mesh = readByName(data + "/cube.1.ele", false);

@@ -176,7 +176,7 @@ void testInputs()
   TAUTLINE_CHECK(messages.has("Image Data to Point Set"));
   messages.clear();
 
-  // With more than half of the elements inverted it is tangled, not reversed: the boundary shows it.
+  // More than half of the elements are inverted: tangled, not reversed, as the boundary shows.
   MeshData worse = blockMesh(CellType::Triangle, 6, 6, 0);
   Random random(11);
   const auto boundary = Mesh(worse.view()).boundary().isBoundaryPoint;
