@@ -24,6 +24,8 @@ constexpr std::array<const char*, 11> MethodNames = { "Hybrid", "FEMWARP", "Anis
   "Small-step FEMWARP", "FEMWARP and untangling", "Elasticity, iterative stiffening",
   "Elasticity, Jacobian-based stiffening", "Biharmonic", "Inverse distance weighting",
   "Radial basis functions", "Weighted Laplacian" };
+static_assert(MethodNames.size() == static_cast<std::size_t>(WarpMethod::WeightedLaplacian) + 1,
+  "a name for each method");
 
 double norm3(const double* d)
 {

@@ -59,11 +59,7 @@ struct WarpSettings
   std::function<bool(int, double)> progress;  ///< block, fraction; false stops
 
   /// Whether the method has coefficients.
-  bool anisotropic() const
-  {
-    return this->options.method == WarpMethod::Hybrid ||
-      this->options.method == WarpMethod::AnisotropicFemwarp;
-  }
+  bool anisotropic() const { return isAnisotropic(this->options.method); }
 };
 
 /// A mesh at rest, and what was made of it.

@@ -169,8 +169,10 @@ tautline::WarpSettings vtkMeshWarp::GetSettings()
 
   tautline::WarpOptions& options = settings.options;
   options.method = static_cast<tautline::WarpMethod>(this->Method);
-  options.coefficients =
-    static_cast<tautline::WarpCoefficients>(std::min<int>(this->Coefficients, PER_CELL));
+  // Tensors by region become tensors per cell.
+  options.coefficients = settings.tensorsByRegion
+    ? tautline::WarpCoefficients::PerCell
+    : static_cast<tautline::WarpCoefficients>(this->Coefficients);
   std::copy_n(this->Tensor, options.tensor.size(), options.tensor.begin());
   options.steps = this->Steps;
   options.maximumSteps = this->MaximumSteps;

@@ -46,7 +46,7 @@
  * (s)`, `Solve (s)`, `Improve (s)`, `Total (s)`.
  *
  * @par Again and again:
- * Matrices and factorisations are kept as long as the mesh, the points that are given and the
+ * Matrices and factorizations are kept as long as the mesh, the points that are given and the
  * options of the method are the same: animating Amount, or a target over time, computes them once.
  *
  * @par Several processes:

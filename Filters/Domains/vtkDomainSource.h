@@ -11,8 +11,8 @@
  * - `BoundaryMarker`: 0 inside, 1 on the outer boundary, 2, 3, ... on holes and other parts;
  * - `Fixed`: 1 on the boundary, 0 inside, the usual choice of points an optimizer leaves alone;
  * - `Displacement`: 3 components, moving domains only: where boundary points go; 0 inside.
- *   Cell array `Reference`, square only: 1 in the unit square, 2 in the interaction layer around
- * it.
+ *
+ * Cell array `Reference`, square only: 1 in the unit square, 2 in the interaction layer around it.
  *
  * Output 1, vtkPolyData `Deformed Boundary`: the boundary with its points moved by Displacement
  * (not moved for domains at rest), with the cell array `BoundaryMarker` (structured domains: no

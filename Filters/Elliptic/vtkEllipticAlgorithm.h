@@ -3,7 +3,7 @@
  * @brief Base class of the filters for elliptic partial differential equations: the boundary value
  * problem.
  *
- * Abstract. The boundary value problem of dissertation section 2.2, discretised by linear finite
+ * Abstract. The boundary value problem of dissertation section 2.2, discretized by linear finite
  * elements (triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids) on the mesh at
  * input port 0. Input port 1 (optional) is a vtkSelection of points, or of cells with their points,
  * where the solution is given.

@@ -47,7 +47,7 @@ int vtkBoundaryMesher::RequestData(
   {
     this->Generate(input, output, boundary);
   }
-  catch (const tautline::Error& error)
+  catch (const std::exception& error)
   {
     output->Initialize();
     boundary->Initialize();

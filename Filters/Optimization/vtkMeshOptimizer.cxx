@@ -346,7 +346,7 @@ int vtkMeshOptimizer::RequestData(
   }
   tautline::TableRows history, statistics;
   const int succeeded =
-    this->Attempt(outputVector, "optimise the mesh in parts, or reduce Animation Memory",
+    this->Attempt(outputVector, "optimize the mesh in parts, or reduce Animation Memory",
       [&]
       {
         const tautline::OptimizerSettings settings = this->GetSettings();

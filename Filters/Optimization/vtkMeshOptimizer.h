@@ -30,10 +30,9 @@
  * valid element would not be valid when rounded; the summary reports it.
  *
  * @par Output port 1 `History`:
- * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric `<metric>
- * mean` and
- * `<metric> worst`, and with several objectives `<metric> objective`; `Inverted` (with degenerate
- * elements), `N gradient`, `N moving` (points), `Time (s)`. Of composite data sets the rows of each
+ * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric
+ * `<metric> mean` and `<metric> worst`, and with several objectives `<metric> objective`;
+ * `Inverted` (with degenerate elements), `N gradient`, `N moving` (points), `Time (s)`. Of composite data sets the rows of each
  * block follow each other, distinguished by the column `Block`.
  *
  * @par Output port 2 `Statistics`:
@@ -42,7 +41,7 @@
  * `Inverted`, `Degenerate`.
  *
  * @par Several processes:
- * Each optimises its own part. Points of ghost cells stay, so that the parts still fit together;
+ * Each optimizes its own part. Points of ghost cells stay, so that the parts still fit together;
  * without ghost cells the boundary of each part stays. Tables and summary are those of each
  * process.
  *
@@ -51,8 +50,9 @@
  * vtkNew<vtkMeshOptimizer> optimizer;
  * optimizer->SetInputConnection(reader->GetOutputPort());
  * optimizer->AddObjectiveByName("imr");
- * optimizer->AddObjectiveByName("mu_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0,
- * vtkMeshOptimizer::SIZE); optimizer->SetScalarization(vtkMeshOptimizer::OBJECTIVE_PRODUCT);
+ * optimizer->AddObjectiveByName(
+ *   "mu_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::SIZE);
+ * optimizer->SetScalarization(vtkMeshOptimizer::OBJECTIVE_PRODUCT);
  * optimizer->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "size");
  * optimizer->Update();
  * std::cout << optimizer->GetSummary();

@@ -23,7 +23,7 @@
  *
  * A centre off the plane is projected to it.
  *
- * @sa tautline::intersectDisc (tautline/Peridynamics/Peridynamics.h), vtkPeridynamicStiffness
+ * @sa tautline::intersectDisc (tautline/Peridynamics/Horizon.h), vtkPeridynamicStiffness
  */
 
 #ifndef vtkHorizonNeighbors_h

@@ -15,15 +15,15 @@
  * - EXACT: geometry and singularity of the inner integral are exact; converges; symmetric.
  * - DISSERTATION: the rules of section 4.3. With Rules at TABLES it reproduces Tables 4.1 to 4.3.
  *
- * Extreme eigenvalues are by the Lanczos method, with error bounds; nothing is factorised.
+ * Extreme eigenvalues are by the Lanczos method, with error bounds; nothing is factorized.
  *
  * @par Input:
- * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds a
+ * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds an
  * interaction layer; vtkDomainSource's square has one.
  *
  * @par Input arrays (SetInputArrayToProcess):
  * - 0, region: cell array with one component; cells where it is LayerValue are the interaction
- * layer.
+ *   layer.
  * - 1, source b: on points or cells, one component (elastic: two or three). None: UniformSource.
  * - 2, given g: in the interaction layer; on points, or with discontinuous bases on cells. None: 0.
  * - 3, given points: point array, not 0 where the continuous linear basis is given. None: the
@@ -164,14 +164,14 @@ public:
 
   ///@{
   /**
-   * 0, the default: diffusion, (4.6). 1: linearised elasticity with the tensor kernel of (4.4).
+   * 0, the default: diffusion, (4.6). 1: linearized elasticity with the tensor kernel of (4.4).
    */
   vtkSetClampMacro(Elastic, bool, false, true);
   vtkGetMacro(Elastic, bool);
   vtkBooleanMacro(Elastic, bool);
   ///@}
 
-  enum Readings
+  enum Discretizations
   {
     DISSERTATION = 0,
     EXACT = 1
@@ -179,7 +179,7 @@ public:
 
   ///@{
   /**
-   * How the integrals are read. The default is EXACT (1).
+   * The discretization of the integrals. The default is EXACT (1).
    */
   vtkSetClampMacro(Discretization, int, DISSERTATION, EXACT);
   vtkGetMacro(Discretization, int);

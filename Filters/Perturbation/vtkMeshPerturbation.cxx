@@ -3,7 +3,7 @@
 #include "Blocks.h"
 #include "MeshAdapter.h"
 #include "MovableMesh.h"
-#include "tautline/Domains/Perturb.h"
+#include "tautline/Perturbation/Perturb.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"

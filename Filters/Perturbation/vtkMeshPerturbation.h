@@ -59,13 +59,13 @@
  * std::cout << perturbation->GetSummary() << "\n";
  * @endcode
  *
- * @sa tautline::perturb (tautline/Domains/Perturb.h), vtkElementQuality, vtkMeshComparison
+ * @sa tautline::perturb (tautline/Perturbation/Perturb.h), vtkElementQuality, vtkMeshComparison
  */
 
 #ifndef vtkMeshPerturbation_h
 #define vtkMeshPerturbation_h
 
-#include "TautlineDomainsModule.h" // for export macro
+#include "TautlinePerturbationModule.h" // for export macro
 #include "vtkTautlineAlgorithm.h"
 
 class vtkDataSet;
@@ -75,7 +75,7 @@ namespace tautline
 struct Perturbation;
 }
 
-class TAUTLINEDOMAINS_EXPORT vtkMeshPerturbation : public vtkTautlineAlgorithm
+class TAUTLINEPERTURBATION_EXPORT vtkMeshPerturbation : public vtkTautlineAlgorithm
 {
 public:
   static vtkMeshPerturbation* New();

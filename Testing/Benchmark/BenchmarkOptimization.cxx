@@ -22,7 +22,7 @@
 #include "Yardstick.h"
 
 #include "tautline/Objectives/ObjectiveSum.h"
-#include "tautline/Domains/Perturb.h"
+#include "tautline/Perturbation/Perturb.h"
 #include "vtkDomainSource.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"

@@ -24,7 +24,7 @@ SOURCES = (".h", ".cxx")
 FLOORS = (
     ("Core",),
     ("Geometry", "Mesh"),
-    ("Quality", "Shapes", "Domains", "Ranks"),
+    ("Quality", "Shapes", "Domains", "Perturbation", "Ranks"),
     ("Objectives", "Patches", "Solvers"),
     ("Untangling", "Elliptic", "Peridynamics"),
     ("Optimization",),

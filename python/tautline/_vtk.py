@@ -22,7 +22,7 @@ MODULES = frozenset(
 #: The files with functions and commands, in the order of the command line's help, and the compiled module of each.
 CAPABILITIES = {
     "_quality": "TautlineQuality",
-    "_perturbation": "TautlineDomains",
+    "_perturbation": "TautlinePerturbation",
     "_comparison": "TautlineQuality",
     "_metric_field": "TautlineQuality",
     "_metrics": "TautlineQuality",

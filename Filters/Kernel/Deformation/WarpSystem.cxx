@@ -8,10 +8,10 @@ namespace
 {
 /// Former solutions kept; each costs two vectors.
 constexpr std::size_t maxFormer = 12;
-/// Numbers of unknowns up to which a factorisation is faster (measured): its first solve takes at
+/// Numbers of unknowns up to which a factorization is faster (measured): its first solve takes at
 /// most a few tenths of a second longer than multigrid, and each further one a tenth of the time.
 constexpr Index directPlanar = 600000, directVolume = 20000;
-/// Where CG fails, a factorisation is tried that is this much larger at most.
+/// Where CG fails, a factorization is tried that is this much larger at most.
 constexpr Index largestFactor = 10;
 
 /// Bitwise the same for any number of threads.

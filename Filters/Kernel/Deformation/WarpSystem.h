@@ -17,7 +17,7 @@ namespace tautline
 {
 /**
  * @class tautline::WarpSystem
- * @brief Keeps the matrix, its preconditioner or factorisation, and former solutions.
+ * @brief Keeps the matrix, its preconditioner or factorization, and former solutions.
  *
  * A new solve starts from the projection of its right-hand side on the former ones (P. F. Fischer,
  * "Projection techniques for iterative solution of Ax = b with successive right-hand sides", CMAME

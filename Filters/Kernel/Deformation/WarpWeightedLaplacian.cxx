@@ -17,7 +17,7 @@ constexpr int NewtonSteps = 50;
 /// Newton's method is done at this (squared) decrement, which no affine map of the neighbours
 /// changes, and was successful at the second.
 constexpr double Enough = 1e-27, Acceptable = 1e-20;
-/// Of the incomplete factorisation.
+/// Of the incomplete factorization.
 constexpr double DropTolerance = 1e-3;
 constexpr int FillFactor = 6;
 /// Iterations of the linear solver between two checks of the limits, and the number of restarts.
@@ -63,7 +63,7 @@ Vec3 solved(std::array<Vec3, 3> a, Vec3 b, int dimension)
 /**
  * @brief The weights w > 0 with sum 1 and w . offsets = 0 that have the largest product.
  *
- * They are 1 / (n + l . offset): l, which has as many components as space, minimises -sum log(n + l
+ * They are 1 / (n + l . offset): l, which has as many components as space, minimizes -sum log(n + l
  * . offset). Where the point is not inside the convex hull of its neighbours there is no minimum:
  * all weights are the same then.
  */
@@ -227,7 +227,7 @@ private:
 
 /**
  * @brief Solves the system, column by column, by stabilised biconjugate gradients; the matrix is
- * diagonally dominant and an incomplete factorisation exists.
+ * diagonally dominant and an incomplete factorization exists.
  * @return false when the control stopped it
  */
 bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,

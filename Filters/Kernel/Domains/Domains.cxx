@@ -74,7 +74,7 @@ const DomainInfo& findDomain(const std::string& name)
 //------------------------------------------------------------------------------
 void checkDomainSize(double cells, DomainKind kind)
 {
-  // measured at the peak, with the copies for VTK; a mesher's triangulation is larger than a mesh
+  // Estimates of the peak, with the copies for VTK; a mesher's triangulation is larger than a mesh.
   constexpr double StructuredBytes = 200.0, MesherBytes = 600.0, MegaByte = 1048576.0;
   const double needed = cells * (kind == DomainKind::Structured ? StructuredBytes : MesherBytes);
   double memory =

@@ -2,7 +2,7 @@
  * @file Objective.h
  * @brief Objective functions: a metric of the registry, aggregated over the elements by a template.
  *
- * Objectives are always minimised. With q_i the metric of element i, w_i its weight (1 by default)
+ * Objectives are always minimized. With q_i the metric of element i, w_i its weight (1 by default)
  * and s = -1 where a larger q is better, s = 1 elsewhere, the templates are
  *
  *     SumOfSquares            sum w_i q_i^2                       (3.4) of Kim's dissertation

@@ -118,7 +118,7 @@ ObjectiveSumState::ObjectiveSumState(const Mesh& mesh, const Objective& given, i
   }
   if (!(total > 0))
   {
-    throw Error("The weights of all elements are 0: nothing is left to minimise.");
+    throw Error("The weights of all elements are 0: nothing is left to minimize.");
   }
   this->function = { this->objective.objectiveTemplate, this->objective.power,
     info.direction == Direction::LargerIsBetter ? -1.0 : 1.0, faultOf(this->objective), weights,

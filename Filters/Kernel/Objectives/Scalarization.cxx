@@ -80,7 +80,7 @@ Scalarizer::Scalarizer(const ScalarizationOptions& options, const std::vector<do
   const std::size_t n = initial.size();
   if (n == 0)
   {
-    throw Error("There is no objective to minimise: add one.");
+    throw Error("There is no objective to minimize: add one.");
   }
   if (weights.size() != n || (!options.utopia.empty() && options.utopia.size() != n))
   {

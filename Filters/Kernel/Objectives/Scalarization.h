@@ -19,7 +19,7 @@ namespace tautline
  * @brief The methods. z_i = (F_i - U_i) / S_i with the utopia values U_i and the scales S_i of
  * Scalarizer.
  *
- * Three of them are minimised in a form that has the same minima as the textbook's, but cannot
+ * Three of them are minimized in a form that has the same minima as the textbook's, but cannot
  * overflow and whose slopes do not vanish: the logarithm of ExponentialWeighted, the negative
  * logarithm of Rao's product, a smooth maximum in WeightedMinMax. The numbers are stable: ParaView
  * state files hold them.

@@ -14,7 +14,7 @@ constexpr double worthwhile = 1e-3;
 /// p: elements at 0.8 of the worst value have a thousandth of its share.
 constexpr double power = 32;
 
-/// What a round minimises.
+/// What a round minimizes.
 class WorstObjectives
 {
 public:

@@ -1,6 +1,6 @@
 /**
  * @file Minimize.h
- * @brief Minimises a smooth function of many variables: nonlinear conjugate gradients, L-BFGS,
+ * @brief Minimizes a smooth function of many variables: nonlinear conjugate gradients, L-BFGS,
  * truncated Newton. Internal: not installed.
  *
  * Every accepted step reduces the value (Armijo) and satisfies the weak Wolfe condition, for
@@ -18,7 +18,7 @@
 
 namespace tautline
 {
-/// A function to be minimised, on the side of the barrier where the start is.
+/// A function to be minimized, on the side of the barrier where the start is.
 class SmoothFunction
 {
 public:
@@ -26,7 +26,7 @@ public:
   virtual std::size_t size() const = 0;
   /**
    * @brief The value and the gradient at x; +infinity where x is not allowed (an element would
-   * invert), and the gradient is then ignored. Minimisation gets values from this function only.
+   * invert), and the gradient is then ignored. Minimization gets values from this function only.
    */
   virtual double valueAndGradient(const double* x, double* gradient) = 0;
   /**
@@ -74,7 +74,7 @@ struct MinimizeResult
 };
 
 /**
- * @brief Minimises from x, which is overwritten by the best found; it is never worse than the
+ * @brief Minimizes from x, which is overwritten by the best found; it is never worse than the
  * start. From a start that is not allowed nothing is done (NoProgress, value +infinity); without
  * variables, NoFreeVertices.
  */

@@ -11,7 +11,7 @@ namespace tautline
 {
 namespace
 {
-/// Cells of the mesh's own dimension: those that are optimised.
+/// Cells of the mesh's own dimension: those that are optimized.
 bool isElement(const Mesh& mesh, CellType type)
 {
   return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);

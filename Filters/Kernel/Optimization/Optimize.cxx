@@ -511,7 +511,7 @@ Index countInvalid(const Mesh& mesh, int threads)
 }
 
 //------------------------------------------------------------------------------
-/// Optimises from result.points on; returns whether there is more to do, with elements that have
+/// Optimizes from result.points on; returns whether there is more to do, with elements that have
 /// become valid.
 bool optimizeStage(
   const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)

@@ -31,7 +31,7 @@ struct OptimizeResult
 };
 
 /**
- * @brief Optimises. Elements that are not valid at the start are left out of the objectives that
+ * @brief Optimizes. Elements that are not valid at the start are left out of the objectives that
  * cannot repair them, and join as soon as they are valid; the objective in the history rises by
  * their share then. The result is never worse than the input in the scalarized objective, and
  * unless allowInversion no valid element becomes inverted. Throws Error on options that cannot be

@@ -3,8 +3,8 @@
  * @brief Moves one free vertex so that the scalarized objective becomes smaller, given where the
  * others are. Internal: not installed.
  */
-#ifndef tautline_PatchMover_h
-#define tautline_PatchMover_h
+#ifndef tautline_VertexOptimizer_h
+#define tautline_VertexOptimizer_h
 
 #include "LocalOptions.h"
 #include "PatchFunction.h"

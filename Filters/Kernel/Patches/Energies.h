@@ -1,7 +1,7 @@
 /**
  * @file Energies.h
  * @brief Energies f(N, D) of a simplex, N = |T|^2 and D = det T (see SimplexMesh.h): what the fast
- * optimizers minimise. Internal: not installed.
+ * optimizers minimize. Internal: not installed.
  */
 #ifndef tautline_Energies_h
 #define tautline_Energies_h
@@ -96,7 +96,7 @@ private:
 };
 
 /**
- * @brief N / chi^(2/n) with the regularised determinant chi = (D + sqrt(D^2 + eps^2)) / 2, which is
+ * @brief N / chi^(2/n) with the regularized determinant chi = (D + sqrt(D^2 + eps^2)) / 2, which is
  * positive and smooth on inverted simplices, too, and becomes D as eps goes to zero. With eps = 0,
  * a barrier.
  *

@@ -44,7 +44,9 @@ public:
   /**
    * @param fixed one flag per point, or null for the boundary
    * @param targets or null for the ideal cells with edges as long as scale(); metric roots are left
-   * out Vertices of cells that are no elements (lines, polygons, cells of another dimension) and
+   * out
+   *
+   * Vertices of cells that are no elements (lines, polygons, cells of another dimension) and
    * non-finite points are fixed, too; simplices with non-finite points are left out.
    */
   SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads);

@@ -46,7 +46,7 @@ enum class PeridynamicBasis
 enum class PeridynamicModel
 {
   Scalar = 0, ///< diffusion, (4.6)
-  Elastic = 1 ///< linearised elasticity, (4.4)-(4.5): two components per function
+  Elastic = 1 ///< linearized elasticity, (4.4)-(4.5): two components per function
 };
 
 /// How the double integrals are discretized, see Peridynamics.h.

@@ -7,7 +7,7 @@
  *     a(u, w) = s int_Omega' w(x) int_{B(x, delta)} (u(x) - u(y)) k(|x - y|) dy dx,
  *
  * with B the disc of radius delta, the horizon. The kernel k is r^-p with s = 1 / delta^(4-p), or
- * one of the others of KernelShape with s = 1 / delta^4. The linearised elastic model (4.4)-(4.5)
+ * one of the others of KernelShape with s = 1 / delta^4. The linearized elastic model (4.4)-(4.5)
  * has the tensor kernel (y-x) (y-x)^T k(|x - y|) and s divided by delta^2 once more, so that both
  * have a local limit: s a -> pi / (2 (4-p)) times the Laplacian's form. The solution is given in an
  * interaction layer of width delta around the domain Omega (the volume constraint); unknowns are

@@ -37,7 +37,7 @@ struct ConditionEstimate
  * not symmetric or not definite, the time limit and an abort are messages, not exceptions; what was
  * found is kept. Invalid options throw Error, and so does what LinearSolver rejects. Errors are
  * those of the computed vectors: that no eigenvalue lies further out rests on the start vector,
- * which is random, and for a factorised A on its number of negative pivots.
+ * which is random, and for a factorized A on its number of negative pivots.
  */
 TAUTLINE_SOLVERS_EXPORT ConditionEstimate estimateCondition(
   const LinearSystem& system, const ConditionOptions& options);

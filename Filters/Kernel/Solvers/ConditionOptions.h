@@ -14,7 +14,7 @@ enum class SpectrumMethod : int
 {
   Automatic = 0,  ///< Accurate
   RitzValues = 1, ///< of the Krylov solver (CG): cheap, from inside the spectrum, no error bound
-  /// To a tolerance: SLEPc for A and D^-1 A (Krylov-Schur, shift-invert where a factorisation is
+  /// To a tolerance: SLEPc for A and D^-1 A (Krylov-Schur, shift-invert where a factorization is
   /// affordable, else LOBPCG), the Lanczos method in the inner product of P for other P^-1 A.
   Accurate = 2
 };
@@ -29,7 +29,7 @@ struct ConditionOptions
   /// Relative, of each eigenvalue, 0 to 1 (exclusive); multigrid takes ten times longer to 1e-6.
   double tolerance = 1e-4;
   int maximumIterations = 10000; ///< at least 1
-  /// 0: no limit; checked between iterations, not in a factorisation.
+  /// 0: no limit; checked between iterations, not in a factorization.
   double maximumSeconds = 0.0;
   std::string petscOptions; ///< "-name value ...", as SolverOptions::petscOptions
   /// Called with the fraction done, 0 to 1; the estimate stops when it returns false.

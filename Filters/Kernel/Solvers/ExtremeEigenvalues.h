@@ -84,7 +84,7 @@ ExtremeEigenvalues lanczosExtremeEigenvalues(
 
 /**
  * @brief Both eigenvalues of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest
- * by Krylov-Schur on the inverse where a factorisation is affordable, else by LOBPCG with BoomerAMG
+ * by Krylov-Schur on the inverse where a factorization is affordable, else by LOBPCG with BoomerAMG
  * as the preconditioner.
  */
 ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& system, int ranks,

@@ -10,7 +10,7 @@ namespace
 {
 using PetscEigensolver = PetscHandle<EPS, EPSDestroy>;
 
-/// Unknowns up to which a factorisation costs less than an iteration: of plane problems, with few
+/// Unknowns up to which a factorization costs less than an iteration: of plane problems, with few
 /// neighbours, and of others.
 constexpr PetscInt PlanarFactorLimit = 400000, SpatialFactorLimit = 30000;
 /// Up to this mean number of neighbours of a point, itself included, a problem counts as planar.
@@ -153,7 +153,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
   extremes.largest = slepcLargestEigenvalue(matrix, options, optionSet, test);
 
   ExtremeEigenvalue& low = extremes.smallest;
-  const bool factorise = isFactorAffordable(matrix, system.blockSize);
+  const bool factorize = isFactorAffordable(matrix, system.blockSize);
   PetscInt negative = 0;
   test.stage(0.4, 1.0);
   attempt(low,
@@ -165,7 +165,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
       PC pc = nullptr;
       create(matrix, options, test, std::min<PetscInt>(2, rows), solver);
       petsc(EPSGetST(solver, &transformation));
-      if (factorise)
+      if (factorize)
       {
         // MUMPS counts negative pivots (Sylvester): the smallest eigenvalue is the one nearest to 0
         // if there are none.
@@ -200,7 +200,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
       petsc(EPSSetUp(solver));
       optionSet.rejectUnused(true);
       petsc(EPSSolve(solver));
-      if (factorise)
+      if (factorize)
       {
         Mat factor = nullptr;
         petsc(PCFactorGetMatrix(pc, &factor));

@@ -2,7 +2,7 @@
  * @file Lanczos.h
  * @brief Extreme eigenvalues of a sparse symmetric matrix, and the conjugate gradient method.
  *
- * For well-conditioned matrices of any size that fit in memory: nothing is factorised. Results are
+ * For well-conditioned matrices of any size that fit in memory: nothing is factorized. Results are
  * bitwise the same for any number of threads.
  */
 #ifndef tautline_Lanczos_h

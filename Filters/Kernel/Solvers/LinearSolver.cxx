@@ -12,7 +12,7 @@ LinearSolver::LinearSolver(const LinearSystem& system, const SolverOptions& opti
 
 LinearSolver::~LinearSolver()
 {
-  // Once PETSc has gone, nothing is left to destroy, and it must not be initialised for that.
+  // Once PETSc has gone, nothing is left to destroy, and it must not be initialized for that.
   if (petscUsable())
   {
     const PetscScope scope;

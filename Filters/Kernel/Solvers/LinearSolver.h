@@ -4,7 +4,7 @@
  * and direct solvers.
  *
  * Each solver has options of its own; those of other users of PETSc in the process are neither read
- * nor changed. PETSc is initialised at first use, on the MPI the program has (or its own), without
+ * nor changed. PETSc is initialized at first use, on the MPI the program has (or its own), without
  * its signal handler. Its errors become Error.
  */
 #ifndef tautline_LinearSolver_h
@@ -22,7 +22,7 @@ struct LinearSolverState;
 
 /**
  * @class tautline::LinearSolver
- * @brief Keeps a matrix and its preconditioner or factorisation for many right-hand sides.
+ * @brief Keeps a matrix and its preconditioner or factorization for many right-hand sides.
  */
 class TAUTLINE_SOLVERS_EXPORT LinearSolver
 {
@@ -37,7 +37,7 @@ public:
   LinearSolver(const LinearSolver&) = delete;
   LinearSolver& operator=(const LinearSolver&) = delete;
 
-  /// Builds the preconditioner or factorisation, unless it exists; returns the seconds it took.
+  /// Builds the preconditioner or factorization, unless it exists; returns the seconds it took.
   double setUp();
 
   /**

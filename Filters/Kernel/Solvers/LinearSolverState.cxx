@@ -81,7 +81,7 @@ const char* explain(PCFailedReason reason)
     case PC_SUBPC_ERROR:
       return "an inner solver failed: a pivot is zero";
     default:
-      return "the preconditioner or factorisation failed";
+      return "the preconditioner or factorization failed";
   }
 }
 
@@ -430,7 +430,7 @@ void LinearSolverState::measure(Vec b, Vec x, LinearSolution& solution)
                                                                      : solution.reason;
     return;
   }
-  // A factorisation does not notice that a matrix is singular; the residual does.
+  // A factorization does not notice that a matrix is singular; the residual does.
   solution.residuals = { before, after };
   if (converged(solution.reason) && !(after <= DirectTolerance * before))
   {

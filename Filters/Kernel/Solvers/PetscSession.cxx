@@ -101,14 +101,14 @@ void ensurePetsc()
   static char* list[] = { program, noFiles, noSignals, nullptr };
   static char** arguments = list;
   static int count = 3;
-  const MPI_Comm chosen = PETSC_COMM_WORLD; // by other code that is about to initialise PETSc
+  const MPI_Comm chosen = PETSC_COMM_WORLD; // by other code that is about to initialize PETSc
   const MPI_Comm world = chosen == MPI_COMM_NULL ? MPI_COMM_WORLD : chosen;
   PETSC_COMM_WORLD = MPI_COMM_SELF;
   const PetscErrorCode code = PetscInitialize(&count, &arguments, nullptr, nullptr);
   PETSC_COMM_WORLD = world;
   if (code != 0)
   {
-    throw Error("PETSc cannot be initialised (error " + std::to_string(code) + ").");
+    throw Error("PETSc cannot be initialized (error " + std::to_string(code) + ").");
   }
   // Other users of PETSc find what they would have got.
   MPI_Comm_rank(world, &PetscGlobalRank);

@@ -1,6 +1,6 @@
 /**
  * @file PetscSession.h
- * @brief PETSc inside a process that may use it, too: initialised at first use, one thread at a
+ * @brief PETSc inside a process that may use it, too: initialized at first use, one thread at a
  * time, with options and an error handler that leave those of other users alone. Not a public
  * header.
  */
@@ -38,14 +38,14 @@ bool petscUsable();
 /// Counts how often PETSc has been shut down: what was made before is lost, memory and all.
 int petscGeneration();
 
-/// Initialises SLEPc if that has not been done; within a PetscScope.
+/// Initializes SLEPc if that has not been done; within a PetscScope.
 void ensureSlepc();
 
 /**
  * @class tautline::PetscScope
  * @brief Every use of PETSc happens within one.
  *
- * The first one of the process initialises PETSc (and MPI if it is not), not collectively, without
+ * The first one of the process initializes PETSc (and MPI if it is not), not collectively, without
  * signal handler, without the program's arguments and without .petscrc. While a scope lives, no
  * other thread of Tautline uses PETSc, options are looked up in `database` alone, and errors are
  * collected rather than printed. Scopes nest.

@@ -90,7 +90,7 @@ const char* describe(SolveReason reason)
     case SolveReason::NotANumber:
       return "failed: a number is infinite or not a number";
     case SolveReason::PreconditionerFailed:
-      return "failed: the preconditioner or factorisation could not be built";
+      return "failed: the preconditioner or factorization could not be built";
     case SolveReason::TimeLimit:
       return "not converged: the time limit was reached";
     case SolveReason::Aborted:

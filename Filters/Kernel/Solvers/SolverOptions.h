@@ -20,7 +20,7 @@ enum class KrylovMethod : int
   GMRES = 1,
   MINRES = 2,
   BiCGStab = 3,
-  Direct = 4 ///< a Cholesky or LU factorisation; the preconditioner is not used
+  Direct = 4 ///< a Cholesky or LU factorization; the preconditioner is not used
 };
 
 /// The preconditioners of section 2.6, and others. The numbers are stable.
@@ -108,7 +108,7 @@ struct LinearSolution
   std::string message; ///< the message of PETSc on a failure, or ""
   int iterations = 0;
   double setupSeconds =
-    0.0; ///< of the preconditioner or factorisation; 0 when it was there already
+    0.0; ///< of the preconditioner or factorization; 0 when it was there already
   double solveSeconds = 0.0;     ///< without set-up
   double trueResidual = 0.0;     ///< |b - A x| / |b| in the end; 0 if b is 0
   std::vector<double> residuals; ///< norms as the method measures them; [0] is the initial one

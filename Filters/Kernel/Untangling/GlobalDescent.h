@@ -13,7 +13,7 @@
 
 namespace tautline
 {
-/// The minimization of the regularised shape energy of a mesh of dimension Dim, 2 or 3.
+/// The minimization of the regularized shape energy of a mesh of dimension Dim, 2 or 3.
 template <int Dim>
 class GlobalDescent
 {

@@ -9,11 +9,11 @@ namespace tautline
 namespace
 {
 /**
- * @brief Maximises c . x over half-spaces and the box |x_k| <= limit[k]. The expected time is
+ * @brief Maximizes c . x over half-spaces and the box |x_k| <= limit[k]. The expected time is
  * linear in their number if they come in a random order.
  * @param count of the first half-spaces that take part; their normals have length 1 or 0
  * @param tolerance by which a half-space may be violated
- * @param x the maximiser, if there is one
+ * @param x the maximizer, if there is one
  * @return whether there is a feasible point
  */
 template <int K>

@@ -68,8 +68,8 @@ public:
   void gather(const double* x, std::int32_t v, Patch<Dim>& patch) const;
 
   /**
-   * @brief Moves v to reduce the regularised shape energy of its patch, a few Newton steps; never
-   * to more invalid simplices. The regularisation is chosen for the patch, anew in each step.
+   * @brief Moves v to reduce the regularized shape energy of its patch, a few Newton steps; never
+   * to more invalid simplices. The regularization is chosen for the patch, anew in each step.
    * @param tryCenter where simplices stay invalid, try the Chebyshev centre of the patch
    * @param patch work space
    * @return whether v moved

@@ -2,11 +2,11 @@
  * @file Untangle.h
  * @brief Makes the elements of a mesh valid by moving its free vertices.
  *
- * First vertex by vertex around the inverted elements with a regularised determinant (J. M. Escobar
+ * First vertex by vertex around the inverted elements with a regularized determinant (J. M. Escobar
  * et al., "Simultaneous untangling and smoothing of tetrahedral meshes", CMAME 192, 2003), then,
  * for what is left, all vertices at once: from the harmonic map of the mesh, by a foldover-free map
  * energy (V. Garanzha et al., "Foldover-free maps in 50 lines of code", ACM TOG 40, 2021) whose
- * regularisation is driven to zero; around holes that were turned by more than a quarter, by way of
+ * regularization is driven to zero; around holes that were turned by more than a quarter, by way of
  * meshes with the holes turned back. A cell counts as valid when its corner Jacobians are
  * (Mesh::classifyCells()). The connectivity never changes. Planar and volume meshes.
  */

@@ -1,5 +1,5 @@
 /**
- * @file WarpResult.h
+ * @file Warping.h
  * @brief Meshes and boundaries that move, for the tests of warping.
  */
 #ifndef tautline_Warping_h

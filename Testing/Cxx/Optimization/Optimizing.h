@@ -1,6 +1,6 @@
 /**
  * @file Optimizing.h
- * @brief Meshes to be optimised, and checks of the result.
+ * @brief Meshes to be optimized, and checks of the result.
  */
 #ifndef tautline_Optimizing_h
 #define tautline_Optimizing_h

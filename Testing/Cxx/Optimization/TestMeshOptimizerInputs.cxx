@@ -4,7 +4,7 @@
 #include "VtkMeshes.h"
 
 #include "tautline/Optimization/Optimize.h"
-#include "tautline/Domains/Perturb.h"
+#include "tautline/Perturbation/Perturb.h"
 #include "vtkMeshOptimizer.h"
 
 #include "vtkCallbackCommand.h"

@@ -1,4 +1,4 @@
-// The global minimisers on functions whose minima are known.
+// The global minimizers on functions whose minima are known.
 #include "Check.h"
 
 #include "tautline/Optimization/Minimize.h"

@@ -202,7 +202,7 @@ void testEnergies()
   testEnergy<Dim>("IMR", InverseMeanRatioEnergy<Dim, 1>());
   testEnergy<Dim>("IMR^2", InverseMeanRatioEnergy<Dim, 2>());
   testEnergy<Dim>("worst", WorstRatioEnergy<Dim>{ 0.4 });
-  testEnergy<Dim>("regularised", RegularizedShapeEnergy<Dim>{ 0.3 });
+  testEnergy<Dim>("regularized", RegularizedShapeEnergy<Dim>{ 0.3 });
 }
 
 /// Points off a cube's surface come back to it.

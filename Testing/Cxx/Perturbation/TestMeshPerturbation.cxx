@@ -3,7 +3,7 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
-#include "tautline/Domains/Perturb.h"
+#include "tautline/Perturbation/Perturb.h"
 #include "vtkMeshPerturbation.h"
 
 #include "vtkDoubleArray.h"

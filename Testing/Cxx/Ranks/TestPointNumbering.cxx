@@ -503,7 +503,7 @@ int TestPointNumbering(int, char*[])
   MPI_Init(nullptr, nullptr);
   MPI_Comm comm = MPI_COMM_WORLD;
   // A single rank solves a system while the others do not: nothing is collective, not even
-  // the initialisation.
+  // the initialization.
   if (rankOf(comm) == 0)
   {
     const SparseMatrix a = laplacian(20);

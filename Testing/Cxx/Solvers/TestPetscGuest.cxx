@@ -1,4 +1,4 @@
-// Linear solvers as guests of a program that uses PETSc itself: it initialises PETSc first, with
+// Linear solvers as guests of a program that uses PETSc itself: it initializes PETSc first, with
 // arguments, options and an error handler, ends it while solvers exist, and ends MPI.
 #include "Check.h"
 #include "Systems.h"

@@ -2,7 +2,7 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
-#include "tautline/Domains/Perturb.h"
+#include "tautline/Perturbation/Perturb.h"
 #include "tautline/Untangling/Untangle.h"
 #include "vtkMeshUntangler.h"
 

@@ -8,7 +8,7 @@
 #include "Check.h"
 
 #include "tautline/Untangling/LinearProgram.h"
-#include "tautline/Domains/Perturb.h"
+#include "tautline/Perturbation/Perturb.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include "vtkCell.h"
