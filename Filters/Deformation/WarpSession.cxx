@@ -2,6 +2,8 @@
 
 #include "Processes.h"
 
+#include "tautline/Core/Stopwatch.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -10,7 +12,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace tautline
@@ -251,7 +252,7 @@ void WarpSession::plan(double time, vtkMTimeType upstream, vtkMTimeType own)
 void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataObject* selected,
   TableRows& history, TableRows& statistics, WarpTotals& totals)
 {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   auto* input = vtkPointSet::SafeDownCast(block.input);
   if (!input)
   {
@@ -299,7 +300,7 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
     facts.movedPoints += length > 0;
     facts.largestDisplacement = std::max(facts.largestDisplacement, length);
   }
-  facts.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  facts.seconds = clock.seconds();
   addWarpOutput(*kept.rest.mesh, result, facts, block, history, statistics, totals);
 }
 

@@ -45,7 +45,7 @@ void fillCircle(const tautline::HorizonInput& taken, const Disc& disc, vtkPolyDa
   line->InsertNextCell(CirclePieces + 1);
   for (int i = 0; i < CirclePieces; ++i)
   {
-    const double angle = 2.0 * M_PI * i / CirclePieces;
+    const double angle = 2.0 * tautline::Pi * i / CirclePieces;
     line->InsertCellPoint(
       points->InsertNextPoint(taken
                                 .lift(disc.center[0] + disc.radius * std::cos(angle),

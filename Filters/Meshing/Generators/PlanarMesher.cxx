@@ -60,7 +60,7 @@ public:
       : Options(options)
       , Smallest(smallest)
     {
-      const double sine = std::sin(options.minimumAngle * 3.14159265358979323846 / 180.0);
+      const double sine = std::sin(options.minimumAngle * Pi / 180.0);
       this->Bound = sine * sine;
     }
     CGAL::Mesh_2::Face_badness operator()(const Quality& q) const
