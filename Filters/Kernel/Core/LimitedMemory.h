@@ -29,6 +29,9 @@ public:
     : Algebra(algebra)
   {
   }
+  /// A copy of its owner would refer to the algebra of the original.
+  LimitedMemory(const LimitedMemory&) = delete;
+  LimitedMemory& operator=(const LimitedMemory&) = delete;
 
   bool empty() const { return this->Pairs.empty(); }
   const Pair& newest() const { return this->Pairs.back(); }
