@@ -47,7 +47,9 @@ std::string summarize(
        << result.freeVertices << " of " << mesh.mesh().view().numberOfPoints
        << " points were free to move.\nInverted elements: " << result.invertedBefore << " before, "
        << result.invertedAfter << " after, of " << mesh.mesh().view().numberOfCells
-       << (result.untangled ? "; it was untangled first." : ".");
+       << (!result.untangled              ? "."
+              : result.invertedAfter == 0 ? "; it was untangled first."
+                                          : "; untangling came first and left some inverted.");
   text << surfaceErrorSentence(result.surfaceError);
   return text.str();
 }

@@ -147,6 +147,8 @@ def test_untangle():
     assert result.summary == "All elements are valid; 41 were not." and "valid" in result.reason
     worst = tl.optimize(TANGLED)
     assert worst.inverted_before == 41 and worst.inverted == 0 and "untangled first" in worst.summary
+    stopped = tl.optimize(TANGLED, time_limit=1e-6)  # one limit for untangling and optimization
+    assert stopped.inverted > 0 and "untangling came first and left some inverted." in stopped.summary, stopped.summary
     refused("untangle first", tl.optimize, TANGLED, untangle_first=False)
     stuck = tl.untangle(TANGLED, fixed=np.ones(2343))
     assert stuck.inverted == stuck.impossible == 41 and (np.unique(stuck.obstacle) == [0, 2]).all()
