@@ -232,7 +232,7 @@ def with_sizes(mesh, sizes):
 
 
 def outputs(name, mesh=None, array=None, **properties):
-    """All outputs of the filter of this class, of those without a verb."""
+    """All outputs of the filter of this class, which has no function in the package."""
     algorithm = getattr(tl, name)()
     for key, value in properties.items():
         getattr(algorithm, f"Set{key}")(value)
@@ -409,8 +409,9 @@ OPERATIONS = {
     "solver study, 50,000 triangles": lambda t: without_times(
         tl.solver_study(wrench(), "elliptic", [5, 6, 9, 13, 18, 19], reaction=10.0, threads=t)),
     # nonlocal models
-    "collar": lambda t: tl.interaction_layer(tl.domain("rectangle", 5000), 0.1, threads=t),
-    "collar, coarse": lambda t: tl.interaction_layer(tl.domain("wrench", 4000), 0.3, element_size=0.2, threads=t),
+    "interaction layer": lambda t: tl.interaction_layer(tl.domain("rectangle", 5000), 0.1, threads=t),
+    "interaction layer, coarse": lambda t: tl.interaction_layer(
+        tl.domain("wrench", 4000), 0.3, element_size=0.2, threads=t),
     "horizon neighbors": lambda _: outputs(
         "vtkHorizonNeighbors", layered_square(), Center=(0.4, 0.5, 0.0), Horizon=0.13),
     "peridynamics": lambda t: tl.peridynamics(layered_square(0.04), 0.1, 2.5, solve=True, sparsity=64, threads=t),
