@@ -29,8 +29,8 @@ for program in kernel_consumer solvers_consumer module_consumer; do
   "$work/$program/$program"
 done
 
-echo "--- a program that evaluates a metric loads the kernel and the compiler's own libraries, nothing else"
-expected='TautlineKernel|stdc\+\+|m|gomp|gcc_s|c|pthread|dl'
+echo "--- a program that evaluates a metric loads the kernel, oneTBB and the compiler's own libraries, nothing else"
+expected='TautlineKernel|tbb|stdc\+\+|m|gcc_s|c|pthread|dl|rt'
 others="$(ldd "$work/kernel_consumer/kernel_consumer" | awk '{ print $1 }' |
   grep -vE "^(lib($expected)\.so|linux-vdso|/lib.*/ld-linux|libasan|libubsan)" || true)"
 if [[ -n $others ]]; then echo "Tautline::Kernel links $others" >&2; exit 1; fi

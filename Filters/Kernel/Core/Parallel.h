@@ -1,18 +1,35 @@
 /**
  * @file Parallel.h
- * @brief Threaded loops whose result does not depend on the number of threads.
+ * @brief Threaded loops whose result does not depend on the number of threads. Internal: not
+ * installed.
  *
  * Work is cut into chunks of a fixed size. Which thread takes which chunk varies; what a chunk does
  * and the order in which chunk results are combined do not.
+ *
+ * The calling thread runs chunks itself. Workers of oneTBB help when they are free; the caller waits
+ * only for chunks that were begun, first spinning for some microseconds, then asleep, and runs
+ * nothing else meanwhile. Loops may therefore be nested, and be called by several threads. Where
+ * threads cannot be started, and in the child of a fork, the caller does all the work; so it does
+ * in loops that are too short for workers to pay, by what the thread learned from earlier ones.
+ *
+ * `threads` is the largest number of threads of a loop, the caller included; 0 means all cores the
+ * process may use, or OMP_NUM_THREADS if that is set and smaller.
+ *
+ * An exception thrown in a chunk ends the loop and is thrown to the caller. Of several, it is the
+ * one of the first chunk, so that the message does not depend on the number of threads.
  */
 #ifndef tautline_Parallel_h
 #define tautline_Parallel_h
 
 #include "Types.h"
 
-#include <omp.h>
+#include "tautline/KernelExport.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
 
 namespace tautline
 {
@@ -24,22 +41,150 @@ inline Index numberOfChunks(Index n)
   return (n + ChunkSize - 1) / ChunkSize;
 }
 
-/// The number of threads a `threads` option stands for; 0 means all cores.
-inline int resolveThreads(int threads)
+/// The number of threads a `threads` option stands for.
+TAUTLINE_KERNEL_EXPORT int resolveThreads(int threads);
+
+/// Refers to what a chunk does; the callable outlives the loop.
+class ChunkWork
 {
-  return threads > 0 ? threads : omp_get_max_threads();
-}
+public:
+  using Function = void (*)(const void*, Index);
+
+  template <class Work>
+  ChunkWork(const Work& work)
+    : Object(&work)
+    , Call([](const void* object, Index chunk) { (*static_cast<const Work*>(object))(chunk); })
+  {
+  }
+  void operator()(Index chunk) const { this->Call(this->Object, chunk); }
+  /// One for each type of callable.
+  Function function() const { return this->Call; }
+
+private:
+  const void* Object;
+  Function Call;
+};
+
+/// Called by the calling thread between its chunks, with the fraction done; false ends the loop.
+using Proceed = std::function<bool(double)>;
+
+/**
+ * @brief Calls work(chunk) for each chunk from 0 to chunks - 1; they begin in this order.
+ * @return false if `proceed` ended the loop before all chunks were begun
+ */
+TAUTLINE_KERNEL_EXPORT bool runChunks(
+  Index chunks, int threads, ChunkWork work, const Proceed& proceed = nullptr);
 
 /// Calls work(chunk, begin, end) for each chunk of [0, n).
 template <class Work>
 void forEachChunk(Index n, int threads, const Work& work)
 {
-  const Index chunks = numberOfChunks(n);
-#pragma omp parallel for schedule(dynamic) num_threads(resolveThreads(threads)) if (chunks > 1)
-  for (Index chunk = 0; chunk < chunks; ++chunk)
+  runChunks(numberOfChunks(n), threads,
+    [&](Index chunk) { work(chunk, chunk * ChunkSize, std::min(n, (chunk + 1) * ChunkSize)); });
+}
+
+/// Calls work(i) for each i in [0, n), `grain` of them in a chunk.
+template <class Work>
+bool parallelFor(
+  Index n, Index grain, int threads, const Work& work, const Proceed& proceed = nullptr)
+{
+  return runChunks((n + grain - 1) / grain, threads,
+    [&](Index chunk)
+    {
+      const Index end = std::min(n, (chunk + 1) * grain);
+      for (Index i = chunk * grain; i < end; ++i)
+      {
+        work(i);
+      }
+    },
+    proceed);
+}
+
+/**
+ * @class tautline::ScratchPool
+ * @brief Work space for chunks: a chunk borrows one that no other uses, and gives it back.
+ *
+ * As many are made as there are threads, when they are first needed. A chunk finds in it what an
+ * earlier one left there.
+ */
+template <class Scratch>
+class ScratchPool
+{
+public:
+  /// `make` returns a new work space; it may be called by several threads at once.
+  explicit ScratchPool(std::function<Scratch()> make = [] { return Scratch(); })
+    : Make(std::move(make))
   {
-    work(chunk, chunk * ChunkSize, std::min(n, (chunk + 1) * ChunkSize));
   }
+
+  /// Calls use(scratch).
+  template <class Use>
+  void with(const Use& use)
+  {
+    const Loan loan(*this);
+    use(*loan.Item);
+  }
+
+private:
+  struct Loan
+  {
+    explicit Loan(ScratchPool& pool)
+      : Pool(pool)
+      , Item(pool.take())
+    {
+    }
+    ~Loan()
+    {
+      const std::lock_guard<std::mutex> lock(this->Pool.Mutex);
+      this->Pool.Free.push_back(std::move(this->Item)); // has the capacity
+    }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+
+    ScratchPool& Pool;
+    std::unique_ptr<Scratch> Item;
+  };
+
+  std::unique_ptr<Scratch> take()
+  {
+    {
+      const std::lock_guard<std::mutex> lock(this->Mutex);
+      if (!this->Free.empty())
+      {
+        std::unique_ptr<Scratch> item = std::move(this->Free.back());
+        this->Free.pop_back();
+        return item;
+      }
+      this->Free.reserve(++this->Made);
+    }
+    return std::unique_ptr<Scratch>(new Scratch(this->Make()));
+  }
+
+  std::function<Scratch()> Make;
+  std::mutex Mutex;
+  std::vector<std::unique_ptr<Scratch>> Free;
+  std::size_t Made = 0;
+};
+
+/// Calls work(scratch, i) for each i in [0, n), `grain` of them in a chunk.
+template <class Scratch, class Work>
+bool parallelFor(Index n, Index grain, int threads, ScratchPool<Scratch>& pool, const Work& work,
+  const Proceed& proceed = nullptr)
+{
+  return runChunks((n + grain - 1) / grain, threads,
+    [&](Index chunk)
+    {
+      pool.with(
+        [&](Scratch& scratch)
+        {
+          const Index end = std::min(n, (chunk + 1) * grain);
+          for (Index i = chunk * grain; i < end; ++i)
+          {
+            work(scratch, i);
+          }
+        });
+    },
+    proceed);
 }
 }
 #endif

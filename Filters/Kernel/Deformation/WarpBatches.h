@@ -30,12 +30,8 @@ bool forEachBatch(std::size_t n, double from, WarpControl& control, const Work& 
       return false;
     }
     const Index end = std::min(size, begin + run);
-#pragma omp parallel for schedule(dynamic, Grain) \
-  num_threads(resolveThreads(control.options().threads))
-    for (Index i = begin; i < end; ++i)
-    {
-      work(static_cast<std::size_t>(i));
-    }
+    parallelFor(end - begin, Grain, control.options().threads,
+      [&](Index i) { work(static_cast<std::size_t>(begin + i)); });
   }
   return true;
 }

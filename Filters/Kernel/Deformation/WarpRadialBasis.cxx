@@ -20,6 +20,7 @@ constexpr double Independence = 1e-12;
 constexpr std::size_t LeafSize = 32;
 /// Number of products from which a choice uses several threads.
 constexpr Index ParallelWork = 200000;
+constexpr Index ProductsPerChunk = 30000; ///< of such a choice
 /// Chosen points between two checks of the limits.
 constexpr std::size_t ClockInterval = 16;
 
@@ -57,14 +58,15 @@ public:
   void catchUp(std::size_t from)
   {
     const auto count = static_cast<Index>(this->Points.size());
-#pragma omp parallel for schedule(dynamic, 16) num_threads(resolveThreads(this->Threads))
-    for (auto i = static_cast<Index>(from); i < count; ++i)
-    {
-      for (std::size_t k = 0; k < this->Chosen.size(); ++k)
+    constexpr Index grain = 16;
+    parallelFor(count - static_cast<Index>(from), grain, this->Threads,
+      [&](Index i)
       {
-        this->append(static_cast<std::size_t>(i), k);
-      }
-    }
+        for (std::size_t k = 0; k < this->Chosen.size(); ++k)
+        {
+          this->append(from + static_cast<std::size_t>(i), k);
+        }
+      });
   }
 
   /// Chooses until all residuals are at most `enough`; false when the control stopped it.
@@ -99,28 +101,23 @@ public:
       this->Weights.push_back((1 / pivot) * this->Residuals[best]);
       const auto count = static_cast<Index>(this->Points.size());
       const bool worthIt = count * static_cast<Index>(k) > ParallelWork;
+      const Index grain = 1 + ProductsPerChunk / (1 + static_cast<Index>(k));
       // Its own row last: the others read it.
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(this->Threads)) if (worthIt)
-      for (Index i = 0; i < count; ++i)
-      {
-        if (static_cast<std::size_t>(i) != best)
+      parallelFor(count, grain, worthIt ? this->Threads : 1,
+        [&](Index i)
         {
-          this->append(static_cast<std::size_t>(i), k);
-        }
-      }
+          if (static_cast<std::size_t>(i) != best)
+          {
+            this->append(static_cast<std::size_t>(i), k);
+          }
+        });
       this->append(best, k);
     }
     return true;
   }
 
-  std::size_t chosen() const
-  {
-    return this->Chosen.size();
-  }
-  const Vec3& center(std::size_t k) const
-  {
-    return this->Points[this->Chosen[k]];
-  }
+  std::size_t chosen() const { return this->Chosen.size(); }
+  const Vec3& center(std::size_t k) const { return this->Points[this->Chosen[k]]; }
 
   /// The coefficients of the functions: the transposed factor, solved backwards.
   std::vector<Vec3> coefficients() const

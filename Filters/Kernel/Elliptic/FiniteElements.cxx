@@ -85,13 +85,12 @@ void AssemblyPattern::findUses(const unsigned char* skip)
       }
     }
   };
-  const int threads = static_cast<int>(parts);
-#pragma omp parallel for num_threads(threads) if (parts > 1)
-  for (Index part = 0; part < parts; ++part)
-  {
-    next[part].assign(points, 0);
-    forEachUse(part, [&](Index node, Index) { ++next[part][node]; });
-  }
+  runChunks(parts, this->Threads,
+    [&](Index part)
+    {
+      next[part].assign(points, 0);
+      forEachUse(part, [&](Index node, Index) { ++next[part][node]; });
+    });
   // Turns the counts of the parts into positions behind those of the parts before.
   this->UseOffsets.assign(points + 1, 0);
   for (Index point = 0; point < points; ++point)
@@ -106,14 +105,14 @@ void AssemblyPattern::findUses(const unsigned char* skip)
     this->UseOffsets[point + 1] = this->UseOffsets[point] + sum;
   }
   this->Uses.resize(this->UseOffsets.back());
-#pragma omp parallel for num_threads(threads) if (parts > 1)
-  for (Index part = 0; part < parts; ++part)
-  {
-    forEachUse(part,
-      [&](Index node, Index use) {
-        this->Uses[this->UseOffsets[node] + next[part][node]++] = static_cast<std::uint32_t>(use);
-      });
-  }
+  runChunks(parts, this->Threads,
+    [&](Index part)
+    {
+      forEachUse(part,
+        [&](Index node, Index use) {
+          this->Uses[this->UseOffsets[node] + next[part][node]++] = static_cast<std::uint32_t>(use);
+        });
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -126,12 +125,15 @@ void AssemblyPattern::findColumns()
   std::vector<std::vector<std::int32_t>> chunks(numberOfChunks(points));
   // Each thread marks the points it meets with their place in the row at hand, and clears the marks
   // after each row.
-#pragma omp parallel num_threads(resolveThreads(this->Threads)) if (chunks.size() > 1)
+  struct Marks
   {
-    std::vector<std::int32_t> place(points, -1), row;
-#pragma omp for schedule(dynamic)
-    for (Index chunk = 0; chunk < static_cast<Index>(chunks.size()); ++chunk)
+    std::vector<std::int32_t> place, row;
+  };
+  ScratchPool<Marks> pool([points] { return Marks{ std::vector<std::int32_t>(points, -1), {} }; });
+  parallelFor(static_cast<Index>(chunks.size()), 1, this->Threads, pool,
+    [&](Marks& marks, Index chunk)
     {
+      std::vector<std::int32_t>&place = marks.place, &row = marks.row;
       const Index end = std::min(points, (chunk + 1) * ChunkSize);
       for (Index point = chunk * ChunkSize; point < end; ++point)
       {
@@ -174,8 +176,7 @@ void AssemblyPattern::findColumns()
         chunks[chunk].insert(chunks[chunk].end(), row.begin(), row.end());
         this->Offsets[point + 1] = static_cast<Index>(row.size());
       }
-    }
-  }
+    });
   // The rows of all chunks one after the other.
   std::partial_sum(this->Offsets.begin(), this->Offsets.end(), this->Offsets.begin());
   this->Columns.resize(this->Offsets.back());

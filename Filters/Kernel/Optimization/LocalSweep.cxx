@@ -67,44 +67,40 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
   std::vector<Index> visited(numberOfBlocks, 0), moved(numberOfBlocks, 0);
   std::vector<unsigned char> next(this->Simplices.freeVertices(), 0);
   std::vector<double> total(n, 0.0);
-#pragma omp parallel num_threads(resolveThreads(this->Options.threads)) if (numberOfBlocks > 1)
+  ScratchPool<PatchWorker<Dim>> workers([&] { return this->Mover.makeWorker(); });
+  const auto sweepBlock = [&](PatchWorker<Dim>& w, Index i)
   {
-    PatchWorker<Dim> w = this->Mover.makeWorker();
-    for (std::size_t colour = 0; colour + 1 < blocks.colourStarts.size(); ++colour)
+    // A block uses the changes of earlier colours, and its own.
+    w.change = total;
+    const std::int32_t begin = blocks.byColour[i] * blocks.size;
+    const std::int32_t end = std::min(this->Simplices.freeVertices(), begin + blocks.size);
+    for (std::int32_t v = begin; v < end; ++v)
     {
-      const std::int32_t first = blocks.colourStarts[colour],
-                         last = blocks.colourStarts[colour + 1];
-#pragma omp for schedule(dynamic)
-      for (std::int32_t i = first; i < last; ++i)
+      if (this->Active[v])
       {
-        // A block uses the changes of earlier colours, and its own.
-        w.change = total;
-        const std::int32_t begin = blocks.byColour[i] * blocks.size;
-        const std::int32_t end = std::min(this->Simplices.freeVertices(), begin + blocks.size);
-        for (std::int32_t v = begin; v < end; ++v)
+        ++visited[i];
+        if (this->Mover.moveVertex(v, scalarizer, w, gradient2[i]))
         {
-          if (this->Active[v])
-          {
-            ++visited[i];
-            if (this->Mover.moveVertex(v, scalarizer, w, gradient2[i]))
-            {
-              ++moved[i];
-              this->wake(v, next);
-            }
-          }
-        }
-        for (std::size_t k = 0; k < n; ++k)
-        {
-          changes[n * i + k] = w.change[k] - total[k];
+          ++moved[i];
+          this->wake(v, next);
         }
       }
-#pragma omp single
-      for (std::int32_t i = first; i < last; ++i)
+    }
+    for (std::size_t k = 0; k < n; ++k)
+    {
+      changes[n * i + k] = w.change[k] - total[k];
+    }
+  };
+  for (std::size_t colour = 0; colour + 1 < blocks.colourStarts.size(); ++colour)
+  {
+    const std::int32_t first = blocks.colourStarts[colour], last = blocks.colourStarts[colour + 1];
+    parallelFor(last - first, 1, this->Options.threads, workers,
+      [&](PatchWorker<Dim>& w, Index i) { sweepBlock(w, first + i); });
+    for (std::int32_t i = first; i < last; ++i)
+    {
+      for (std::size_t k = 0; k < n; ++k)
       {
-        for (std::size_t k = 0; k < n; ++k)
-        {
-          total[k] += changes[n * i + k];
-        }
+        total[k] += changes[n * i + k];
       }
     }
   }

@@ -76,15 +76,17 @@ double layerDeficit(const HorizonMesh& mesh, double horizon, int threads)
   }
   // The distance from the boundary of the domain to the outer boundary of the mesh.
   std::vector<double> nearest(domain.size(), horizon * horizon);
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads))
-  for (std::size_t i = 0; i < domain.size(); ++i)
-  {
-    for (const auto& edge : outer)
+  constexpr Index pairsPerChunk = 10000;
+  const Index grain = 1 + pairsPerChunk / (1 + static_cast<Index>(outer.size()));
+  parallelFor(static_cast<Index>(domain.size()), grain, threads,
+    [&](Index i)
     {
-      nearest[i] =
-        std::min(nearest[i], squaredSegmentDistance(domain[i][0], domain[i][1], edge[0], edge[1]));
-    }
-  }
+      for (const auto& edge : outer)
+      {
+        nearest[i] = std::min(
+          nearest[i], squaredSegmentDistance(domain[i][0], domain[i][1], edge[0], edge[1]));
+      }
+    });
   const double reach =
     domain.empty() ? horizon : std::sqrt(*std::min_element(nearest.begin(), nearest.end()));
   const double deficit = horizon - reach;

@@ -136,23 +136,21 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
   const auto m = static_cast<Index>(columns), n = static_cast<Index>(rows);
   std::vector<Vec2> points(m * n);
   std::vector<char> kept(m * n, 0);
-  Index done = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(resolveThreads(options.threads))
-  for (Index j = 0; j < n; ++j)
-  {
-    for (Index i = 0; i < m; ++i)
+  runChunks(n, options.threads,
+    [&](Index j)
     {
-      const double shift = j % 2 == 0 ? 0.0 : 0.5;
-      const Vec2 p = { from[0] + (static_cast<double>(i) + shift + Jitter * noise(i, j, 0)) * size,
-        from[1] + (static_cast<double>(j)) * rise + Jitter * noise(i, j, 1) * size };
-      const Place place = placeOf(p, edges);
-      points[j * m + i] = p;
-      kept[j * m + i] =
-        !place.inside && !place.crowds && place.distance > MinGap * size && place.distance < reach;
-    }
-#pragma omp atomic
-    ++done;
-  }
+      for (Index i = 0; i < m; ++i)
+      {
+        const double shift = j % 2 == 0 ? 0.0 : 0.5;
+        const Vec2 p = { from[0] +
+            (static_cast<double>(i) + shift + Jitter * noise(i, j, 0)) * size,
+          from[1] + (static_cast<double>(j)) * rise + Jitter * noise(i, j, 1) * size };
+        const Place place = placeOf(p, edges);
+        points[j * m + i] = p;
+        kept[j * m + i] = !place.inside && !place.crowds && place.distance > MinGap * size &&
+          place.distance < reach;
+      }
+    });
   std::vector<Vec2> chosen;
   for (std::size_t i = 0; i < points.size(); ++i)
   {

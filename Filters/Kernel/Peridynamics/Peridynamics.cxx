@@ -6,8 +6,6 @@
 #include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 
 #include <unistd.h>
 
@@ -190,8 +188,8 @@ void checkLayer(const HorizonMesh& mesh, const PeridynamicOptions& options, doub
         number(options.horizon) + " is needed (Interaction Layer makes it), or allow a thin one");
 }
 
-/// Time limit, observer and progress of an assembly; the first reason to stop counts, from any
-/// thread.
+/// Time limit, observer and progress of an assembly; the first reason to stop counts. For the
+/// calling thread only.
 class AssemblyControl
 {
 public:
@@ -201,32 +199,24 @@ public:
     , Last(last)
   {
   }
-  /// Reports the fraction done; false when the work has to stop. May be called by all threads.
+  /// Reports the fraction done; false when the work has to stop.
   bool proceed(double fraction)
   {
-    if (this->Stopped)
+    if (this->Time.reached(this->Options.timeLimit))
     {
-      return false;
-    }
-    const bool late = this->Time.reached(this->Options.timeLimit);
-    if (late && !this->Claimed.exchange(true))
-    {
-      this->Stopped = true;
       this->Reason = "the time limit of " + number(this->Options.timeLimit) +
         " s is over; take a smaller horizon, larger elements or a longer limit";
     }
-    if (!this->Stopped && omp_get_thread_num() == 0 && this->Options.progress &&
-      !this->Options.progress(this->First + (this->Last - this->First) * fraction) &&
-      !this->Claimed.exchange(true))
+    else if (this->Options.progress &&
+      !this->Options.progress(this->First + (this->Last - this->First) * fraction))
     {
-      this->Stopped = true;
       this->Reason = "stopped by the user";
     }
-    return !this->Stopped;
+    return this->Reason.empty();
   }
   void throwIfStopped() const
   {
-    if (this->Stopped)
+    if (!this->Reason.empty())
     {
       throw Error(this->Reason);
     }
@@ -240,7 +230,6 @@ public:
 private:
   const PeridynamicOptions& Options;
   double First, Last;
-  std::atomic<bool> Stopped{ false }, Claimed{ false };
   std::string Reason;
   Stopwatch Time;
 };
@@ -252,14 +241,13 @@ SparseMatrix makePattern(const FunctionSpace& space, const BoxGrid& supports, do
   const Index rows = space.unknowns;
   pattern.size = rows * components;
   std::vector<Index> counts(rows);
+  constexpr Index grain = 64;
+  ScratchPool<std::vector<std::int32_t>> lists;
   // First pass: lengths of the rows; second pass: their columns.
   for (const bool fill : { false, true })
   {
-#pragma omp parallel num_threads(resolveThreads(threads))
-    {
-      std::vector<std::int32_t> found;
-#pragma omp for schedule(dynamic, 64)
-      for (Index row = 0; row < rows; ++row)
+    parallelFor(rows, grain, threads, lists,
+      [&](std::vector<std::int32_t>& found, Index row)
       {
         neighbours(space, supports, horizon, row, found);
         counts[row] = static_cast<Index>(found.size());
@@ -274,8 +262,7 @@ SparseMatrix makePattern(const FunctionSpace& space, const BoxGrid& supports, do
             }
           }
         }
-      }
-    }
+      });
     if (!fill)
     {
       pattern.offsets.assign(pattern.size + 1, 0);
@@ -418,33 +405,40 @@ PeridynamicSystem assemblePeridynamics(
   const auto colours = colourTriangles(triangles, space, space.trianglesWithUnknowns(triangles));
   const double scale = kernelScale(options);
   Index done = 0;
-#pragma omp parallel num_threads(resolveThreads(options.threads))
+  struct Scratch
   {
-    // Within a colour no two threads write to the same row; the colours have a fixed order.
-    RowSums sums(space.functions, static_cast<int>(system.components));
-    const std::unique_ptr<TriangleAssembler> assembler =
-      exact ? makeExactAssembler(work, *integrals) : makeDissertationAssembler(work);
+    RowSums sums;
+    std::unique_ptr<TriangleAssembler> assembler;
     std::vector<std::int32_t> near;
-    for (const std::vector<std::int32_t>& colour : colours)
+  };
+  ScratchPool<Scratch> scratches(
+    [&]
     {
-#pragma omp for schedule(dynamic, 16)
-      for (std::size_t k = 0; k < colour.size(); ++k)
+      return Scratch{ RowSums(space.functions, static_cast<int>(system.components)),
+        exact ? makeExactAssembler(work, *integrals) : makeDissertationAssembler(work), {} };
+    });
+  constexpr Index grain = 16;
+  // Within a colour no two threads write to the same row; the colours have a fixed order.
+  for (const std::vector<std::int32_t>& colour : colours)
+  {
+    const auto size = static_cast<Index>(colour.size());
+    parallelFor(
+      size, grain, options.threads, scratches,
+      [&](Scratch& scratch, Index k)
       {
-        if (k % 64 == 0 &&
-          !control.proceed(static_cast<double>(done) / static_cast<double>(triangles.size())))
-        {
-          continue;
-        }
         const Index t = colour[k];
-        grid.near(triangles.low[t], triangles.high[t], options.horizon, near);
-        assembler->assemble(t, near, sums);
-        flush(work, t, near, sums, scale, given, system);
-      }
-#pragma omp single
-      done += static_cast<Index>(colour.size());
-    }
+        grid.near(triangles.low[t], triangles.high[t], options.horizon, scratch.near);
+        scratch.assembler->assemble(t, scratch.near, scratch.sums);
+        flush(work, t, scratch.near, scratch.sums, scale, given, system);
+      },
+      [&](double fraction)
+      {
+        const double before = static_cast<double>(done), now = fraction * static_cast<double>(size);
+        return control.proceed((before + now) / static_cast<double>(triangles.size()));
+      });
+    control.throwIfStopped();
+    done += size;
   }
-  control.throwIfStopped();
   system.asymmetry = symmetrize(system.matrix, options.threads);
   dropZeros(system.matrix);
   if (exact)

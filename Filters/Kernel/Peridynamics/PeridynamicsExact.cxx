@@ -4,7 +4,6 @@
 #include "tautline/Core/Parallel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <map>
 #include <unordered_map>
 
@@ -410,26 +409,30 @@ void PairIntegrals::integrate(const std::function<bool(double)>& proceed)
   const auto count = static_cast<Index>(this->Examples.size());
   this->Integrated = count;
   this->Rows.assign(static_cast<std::size_t>(2 * count) * this->RowSize, 0.0);
-  std::atomic<Index> done{ 0 };
-#pragma omp parallel num_threads(resolveThreads(this->Work.options.threads))
+  struct Scratch
   {
-    PairIntegrator integrator(this->Work.options, this->Functions);
-    std::vector<double> block(integrator.blockSize());
-#pragma omp for schedule(dynamic, 4)
-    for (Index i = 0; i < count; ++i)
+    PairIntegrator integrator;
+    std::vector<double> block;
+  };
+  ScratchPool<Scratch> scratches(
+    [&]
     {
-      if (i % 16 == 0 && !proceed(static_cast<double>(done) / static_cast<double>(count)))
-      {
-        continue;
-      }
+      Scratch scratch{ PairIntegrator(this->Work.options, this->Functions), {} };
+      scratch.block.resize(scratch.integrator.blockSize());
+      return scratch;
+    });
+  constexpr Index grain = 4;
+  parallelFor(
+    count, grain, this->Work.options.threads, scratches,
+    [&](Scratch& scratch, Index i)
+    {
       const TrianglePair pair =
         this->pair(this->Examples[i].first, this->Examples[i].second, false);
-      integrator.integrate(pair, block.data());
-      this->toRows(pair, block.data(), this->Rows.data() + 2 * i * this->RowSize,
+      scratch.integrator.integrate(pair, scratch.block.data());
+      this->toRows(pair, scratch.block.data(), this->Rows.data() + 2 * i * this->RowSize,
         this->Rows.data() + (2 * i + 1) * this->RowSize);
-      ++done;
-    }
-  }
+    },
+    proceed);
 }
 
 //------------------------------------------------------------------------------

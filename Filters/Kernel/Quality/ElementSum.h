@@ -125,15 +125,10 @@ public:
   template <class Work>
   void forEachChunk(const Work& work) const
   {
-    const int threads = resolveThreads(this->Options.threads);
     for (std::size_t colour = 0; colour + 1 < this->ColourStarts.size(); ++colour)
     {
       const Index first = this->ColourStarts[colour], last = this->ColourStarts[colour + 1];
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (last - first > 1)
-      for (Index i = first; i < last; ++i)
-      {
-        work(i);
-      }
+      runChunks(last - first, this->Options.threads, [&](Index i) { work(first + i); });
     }
   }
 

@@ -4,7 +4,6 @@
 #include "ShapeEnergy.h"
 
 #include <algorithm>
-#include <atomic>
 
 namespace tautline
 {
@@ -393,31 +392,18 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
     this->distances(&si, &sj), this->distances(&si, &sk), this->distances(&sj, &sk));
   const Index count = static_cast<Index>(si.used.size());
   const double triangles = static_cast<double>(this->Problem.mesh->triangles.size());
-  std::atomic<bool> stopped{ false };
+  const int threads = count * sj.size() * sk.size() > SmallStep ? this->Problem.threads : 1;
+  constexpr Index grain = 4;
+  ScratchPool<RowSearch::Scratch> scratches([&] { return RowSearch::Scratch(sj.size()); });
   dispatch(this->Problem.energy,
     [&](auto distortion, auto rotation, auto mirrored)
     {
-#pragma omp parallel num_threads( \
-  resolveThreads(this->Problem.threads)) if (count * sj.size() * sk.size() > SmallStep)
-      {
-        RowSearch::Scratch scratch(sj.size());
-#pragma omp for schedule(dynamic, 4)
-        for (Index at = 0; at < count; ++at)
-        {
-          if (stopped)
-          {
-            continue;
-          }
-          search.solve<distortion, rotation, mirrored>(si.used[at], scratch, out);
-          if (omp_get_thread_num() == 0 && at % 16 == 0 &&
-            !this->report(
-              (static_cast<double>(number) + static_cast<double>(at) / static_cast<double>(count)) /
-              triangles))
-          {
-            stopped = true;
-          }
-        }
-      }
+      parallelFor(
+        count, grain, threads, scratches,
+        [&](RowSearch::Scratch& scratch, Index at)
+        { search.solve<distortion, rotation, mirrored>(si.used[at], scratch, out); },
+        [&](double done)
+        { return this->report((static_cast<double>(number) + done) / triangles); });
     });
 }
 
@@ -600,30 +586,17 @@ void PlacementSolver::solveGrid(std::size_t number, const Step& step, PairTable&
     *this->Problem.sets[step.elimination.vertex], bounds, bounds ? this->StepLimit : Unreachable);
   const Index offsets = search.offsets();
   const double triangles = static_cast<double>(this->Problem.mesh->triangles.size());
-  std::atomic<bool> stopped{ false };
+  constexpr Index grain = 8;
+  ScratchPool<GridSearch::Slice> slices([&] { return GridSearch::Slice(search); });
   dispatch(this->Problem.energy,
     [&](auto distortion, auto rotation, auto mirrored)
     {
-#pragma omp parallel num_threads(resolveThreads(this->Problem.threads))
-      {
-        GridSearch::Slice slice(search);
-#pragma omp for schedule(dynamic, 8)
-        for (Index offset = 0; offset < offsets; ++offset)
-        {
-          if (stopped)
-          {
-            continue;
-          }
-          search.solve<distortion, rotation, mirrored>(offset, slice, out);
-          if (omp_get_thread_num() == 0 && offset % 32 == 0 &&
-            !this->report((static_cast<double>(number) +
-                            static_cast<double>(offset) / static_cast<double>(offsets)) /
-              triangles))
-          {
-            stopped = true;
-          }
-        }
-      }
+      parallelFor(
+        offsets, grain, this->Problem.threads, slices,
+        [&](GridSearch::Slice& slice, Index offset)
+        { search.solve<distortion, rotation, mirrored>(offset, slice, out); },
+        [&](double done)
+        { return this->report((static_cast<double>(number) + done) / triangles); });
     });
 }
 

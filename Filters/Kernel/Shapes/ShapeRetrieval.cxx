@@ -4,8 +4,6 @@
 #include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <map>
 #include <numeric>
 
@@ -100,8 +98,7 @@ Recognition recognize(
 //------------------------------------------------------------------------------
 namespace
 {
-/// Compares each shape with each other one, on several threads. OpenMP lets no exception leave a
-/// thread: the one of the first item of work is kept and thrown at the end.
+/// Compares each shape with each other one, on several threads.
 class Comparison
 {
 public:
@@ -113,7 +110,6 @@ public:
     , Work(Count + Count * Count)
     , Sources(shapes.size())
     , Targets(shapes.size())
-    , ErrorAt(Work)
   {
     this->Match.threads = 1;
     this->Match.timeLimit = 0;
@@ -124,41 +120,31 @@ public:
   std::vector<double> run()
   {
     std::vector<double> energies(static_cast<std::size_t>(this->Count * this->Count), -1.0);
-#pragma omp parallel num_threads(resolveThreads(this->Options.match.threads))
+    const int threads = this->Options.match.threads;
+    runChunks(
+      this->Count, threads, [&](Index s) { this->named(s, [&] { this->prepare(s); }); },
+      [this](double fraction) { return this->proceed(0, this->Count, fraction); });
+    if (this->Stop == MatchStop::Complete)
     {
-#pragma omp for schedule(dynamic, 1)
-      for (Index s = 0; s < this->Count; ++s)
-      {
-        this->guarded(s, [&] { this->prepare(s); });
-      }
-#pragma omp for schedule(dynamic, 4)
-      for (Index pair = 0; pair < this->Count * this->Count; ++pair)
-      {
-        if (this->stop() != MatchStop::Complete)
+      runChunks(
+        this->Count * this->Count, threads,
+        [&](Index pair)
         {
-          continue;
-        }
-        const Index s = pair / this->Count, t = pair % this->Count;
-        this->guarded(this->Count + s,
-          [&]
-          {
-            energies[pair] =
-              s == t ? 0.0 : matchShape(this->Sources[s], *this->Targets[t], this->Match).energy;
-          });
-        this->report();
-      }
-    }
-    if (this->Caught)
-    {
-      std::rethrow_exception(this->Caught);
+          const Index s = pair / this->Count, t = pair % this->Count;
+          this->named(s,
+            [&]
+            {
+              energies[pair] =
+                s == t ? 0.0 : matchShape(this->Sources[s], *this->Targets[t], this->Match).energy;
+            });
+        },
+        [this](double fraction)
+        { return this->proceed(this->Count, this->Count * this->Count, fraction); });
     }
     return energies;
   }
 
-  MatchStop stop() const
-  {
-    return this->Stop;
-  }
+  MatchStop stop() const { return this->Stop; }
 
   std::vector<Index> vertices() const
   {
@@ -178,39 +164,25 @@ private:
       std::make_unique<ShapeTarget>(this->Shapes[s], this->Options.locations, this->Match.energy);
   }
 
-  /// Only the first thread calls back; the others check the flag.
-  void report()
+  /// Checks the limits and reports, when `before` and a fraction of `now` items are done.
+  bool proceed(Index before, Index now, double fraction)
   {
-    if (omp_get_thread_num() != 0)
-    {
-      return;
-    }
     const MatchOptions& match = this->Options.match;
+    const double done = static_cast<double>(before) + fraction * static_cast<double>(now);
     if (this->Time.reached(match.timeLimit))
     {
       this->Stop = MatchStop::TimeLimit;
     }
-    else if (match.progress &&
-      !match.progress(static_cast<double>(this->Done) / static_cast<double>(this->Work)))
+    else if (match.progress && !match.progress(done / static_cast<double>(this->Work)))
     {
       this->Stop = MatchStop::Stopped;
     }
+    return this->Stop == MatchStop::Complete;
   }
 
-  /// Keeps the exception of the lowest item, so that the message is always the same.
-  void keep(Index item, const std::exception_ptr& error)
-  {
-#pragma omp critical(TautlineRetrieval)
-    if (item < this->ErrorAt)
-    {
-      this->ErrorAt = item;
-      this->Caught = error;
-    }
-    this->Stop = MatchStop::Stopped;
-  }
-
+  /// Adds the number of the shape to the message of an error.
   template <class Action>
-  void guarded(Index item, const Action& action)
+  static void named(Index shape, const Action& action)
   {
     try
     {
@@ -218,15 +190,8 @@ private:
     }
     catch (const tautline::Error& caught)
     {
-      this->keep(item,
-        std::make_exception_ptr(
-          tautline::Error("Shape " + std::to_string(item % this->Count) + ": " + caught.what())));
+      throw tautline::Error("Shape " + std::to_string(shape) + ": " + caught.what());
     }
-    catch (...)
-    {
-      this->keep(item, std::current_exception());
-    }
-    ++this->Done;
   }
 
   const std::vector<Silhouette>& Shapes;
@@ -237,10 +202,7 @@ private:
   std::vector<ShapeSource> Sources;
   std::vector<std::unique_ptr<ShapeTarget>> Targets;
   Stopwatch Time;
-  std::atomic<MatchStop> Stop{ MatchStop::Complete };
-  std::atomic<Index> Done{ 0 };
-  Index ErrorAt;
-  std::exception_ptr Caught;
+  MatchStop Stop = MatchStop::Complete;
 };
 
 /// The symmetric distance: the sum of both energies, each divided by the number of triangles.

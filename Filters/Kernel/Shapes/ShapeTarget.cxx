@@ -229,20 +229,20 @@ PairTable ShapeTarget::Data::edgeTable(const LocationSet& a, const LocationSet& 
   PairTable table(a.size(), b.size(), Unreachable);
   const bool symmetric = &a == &b && !this->energy.directedEdges;
   const Index n = static_cast<Index>(a.points.size());
-#pragma omp parallel for schedule(dynamic, 8) \
-  num_threads(resolveThreads(this->threads)) if (n > 200)
-  for (Index i = 0; i < n; ++i)
-  {
-    for (Index j = symmetric ? i : 0; j < static_cast<Index>(b.points.size()); ++j)
+  constexpr Index grain = 8, few = 200;
+  parallelFor(n, grain, n > few ? this->threads : 1,
+    [&](Index i)
     {
-      const float value = static_cast<float>(this->edgeCost(a.points[i], b.points[j]));
-      table.row(a.slots[i])[b.slots[j]] = value;
-      if (symmetric)
+      for (Index j = symmetric ? i : 0; j < static_cast<Index>(b.points.size()); ++j)
       {
-        table.row(b.slots[j])[a.slots[i]] = value;
+        const float value = static_cast<float>(this->edgeCost(a.points[i], b.points[j]));
+        table.row(a.slots[i])[b.slots[j]] = value;
+        if (symmetric)
+        {
+          table.row(b.slots[j])[a.slots[i]] = value;
+        }
       }
-    }
-  }
+    });
   return table;
 }
 

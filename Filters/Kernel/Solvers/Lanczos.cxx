@@ -13,6 +13,7 @@ namespace tautline
 namespace
 {
 constexpr Index VectorChunk = 1024; // entries per chunk of the ordered sums
+constexpr Index ChunksAtOnce = 4;   // that a thread takes
 
 Index chunksOf(Index n)
 {
@@ -24,11 +25,8 @@ template <class Work>
 void forEachPiece(Index n, int threads, const Work& work)
 {
   const Index chunks = chunksOf(n);
-#pragma omp parallel for schedule(static) num_threads(resolveThreads(threads)) if (chunks > 3)
-  for (Index chunk = 0; chunk < chunks; ++chunk)
-  {
-    work(chunk, chunk * VectorChunk, std::min(n, (chunk + 1) * VectorChunk));
-  }
+  parallelFor(chunks, ChunksAtOnce, threads,
+    [&](Index chunk) { work(chunk, chunk * VectorChunk, std::min(n, (chunk + 1) * VectorChunk)); });
 }
 
 /// A scalar product with eight sums side by side, for the vector units; the order is fixed.

@@ -14,11 +14,8 @@ void forEachRowRange(const SparseMatrix& matrix, int threads, const Work& work)
 {
   constexpr Index entries = 1 << 15; // long enough to hide the scheduling
   const Index ranges = std::max<Index>(1, std::min(matrix.size, matrix.nonzeros() / entries));
-#pragma omp parallel for schedule(dynamic) num_threads(resolveThreads(threads)) if (ranges > 1)
-  for (Index range = 0; range < ranges; ++range)
-  {
-    work(range * matrix.size / ranges, (range + 1) * matrix.size / ranges);
-  }
+  runChunks(ranges, threads,
+    [&](Index range) { work(range * matrix.size / ranges, (range + 1) * matrix.size / ranges); });
 }
 
 /// Where an entry is; -1 if it is not stored.

@@ -96,12 +96,10 @@ double GlobalDescent<Dim>::evaluate(const double* x)
   const Index chunks = (free + Chunk - 1) / Chunk;
   std::vector<double> energies(chunks, 0.0);
   const double zero[Dim] = {};
-#pragma omp parallel num_threads(resolveThreads(this->Tangled.threads())) if (chunks > 1)
-  {
-    Patch<Dim> patch;
-#pragma omp for schedule(dynamic)
-    for (Index chunk = 0; chunk < chunks; ++chunk)
+  runChunks(chunks, this->Tangled.threads(),
+    [&](Index chunk)
     {
+      Patch<Dim> patch;
       double energy = 0;
       for (Index i = chunk * Chunk; i < std::min(free, (chunk + 1) * Chunk); ++i)
       {
@@ -116,8 +114,7 @@ double GlobalDescent<Dim>::evaluate(const double* x)
         this->addEnergy(v, patch, energy);
       }
       energies[chunk] = energy;
-    }
-  }
+    });
   return std::accumulate(energies.begin(), energies.end(), 0.0);
 }
 

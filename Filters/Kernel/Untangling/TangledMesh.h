@@ -84,16 +84,14 @@ public:
   {
     const VertexBlocks& blocks = this->Simplices.blocks();
     const std::int32_t free = this->Simplices.freeVertices();
+    ScratchPool<Patch<Dim>> patches;
     for (std::size_t colour = 0; colour + 1 < blocks.colourStarts.size(); ++colour)
     {
       const std::int32_t begin = blocks.colourStarts[colour], end = blocks.colourStarts[colour + 1];
-#pragma omp parallel num_threads(resolveThreads(this->Threads)) if (end - begin > 1)
-      {
-        Patch<Dim> patch;
-#pragma omp for schedule(dynamic)
-        for (std::int32_t b = begin; b < end; ++b)
+      parallelFor(end - begin, 1, this->Threads, patches,
+        [&](Patch<Dim>& patch, Index i)
         {
-          const std::int32_t first = blocks.byColour[b] * blocks.size;
+          const std::int32_t first = blocks.byColour[begin + i] * blocks.size;
           for (std::int32_t v = first; v < std::min(free, first + blocks.size); ++v)
           {
             if (!flags || flags[v])
@@ -101,8 +99,7 @@ public:
               visit(v, patch);
             }
           }
-        }
-      }
+        });
     }
   }
 

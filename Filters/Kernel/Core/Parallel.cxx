@@ -1,0 +1,395 @@
+#include "Parallel.h"
+
+#include <pthread.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstdlib>
+#include <exception>
+#include <limits>
+#include <map>
+#include <system_error>
+#include <thread>
+#include <unordered_map>
+
+#include <ctime>
+
+namespace tautline
+{
+namespace
+{
+/// How long the caller looks for the end of the last chunks before it sleeps: about the time that
+/// waking up takes.
+constexpr std::chrono::microseconds SpinTime(20);
+constexpr int PausesPerLook = 16;
+
+void pauseBriefly()
+{
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+/// All threads of the process, or the number in OMP_NUM_THREADS if it is smaller.
+int allThreads()
+{
+  static const int wanted = []
+  {
+    const char* text = std::getenv("OMP_NUM_THREADS");
+    const int number = text ? std::atoi(text) : 0;
+    return number > 0 ? number : std::numeric_limits<int>::max();
+  }();
+  return std::min(wanted,
+    static_cast<int>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+}
+
+using Clock = std::chrono::steady_clock;
+
+double seconds(Clock::duration duration)
+{
+  return std::chrono::duration<double>(duration).count();
+}
+
+/// What the calling thread has computed for; on a busy machine less than the time that passed.
+double threadSeconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  constexpr double nano = 1e-9;
+  return static_cast<double>(time.tv_sec) + nano * static_cast<double>(time.tv_nsec);
+}
+
+//------------------------------------------------------------------------------
+/**
+ * What a thread learns from its loops. A worker is worth its start only in a loop that takes longer
+ * than that. Where other processes compete for the cores, a worker that has begun a chunk often
+ * loses its core, and the caller waits for a time slice of each competitor: then only loops that
+ * are longer than many time slices get workers.
+ */
+class Experience
+{
+public:
+  /// Seconds that a loop would take the caller alone.
+  double expected(ChunkWork::Function function, Index chunks) const
+  {
+    constexpr double unknown = 1e-3;
+    const auto found = this->ChunkSeconds.find(function);
+    return found == this->ChunkSeconds.end() ? unknown
+                                             : found->second * static_cast<double>(chunks);
+  }
+
+  /// Whether workers are worth their start in such a loop.
+  static bool brief(double expected)
+  {
+    constexpr double start = 20e-6;
+    return expected < start;
+  }
+
+  /// Whether workers are worth while in a loop that is not brief.
+  bool inviteWorkers(double expected) const
+  {
+    constexpr double share = 0.4, enough = 1e-3, manySlices = 0.3;
+    const bool busy = this->Passed > enough && this->Computed < share * this->Passed;
+    return !busy || expected > manySlices;
+  }
+
+  /// Adds the seconds that the caller computed for in a loop.
+  void addChunks(ChunkWork::Function function, Index chunks, double computed)
+  {
+    if (chunks > 0)
+    {
+      const double chunk = computed / static_cast<double>(chunks);
+      const auto [place, isNew] = this->ChunkSeconds.emplace(function, chunk);
+      constexpr double weight = 0.25; // of the newest loop
+      place->second += isNew ? 0.0 : weight * (chunk - place->second);
+    }
+  }
+
+  /// Adds the seconds that passed, and for how many of them the caller had a core.
+  void addTime(double computed, double passed)
+  {
+    constexpr double memory = 0.2; // seconds
+    const double fading = std::exp(-passed / memory);
+    this->Computed = fading * this->Computed + computed;
+    this->Passed = fading * this->Passed + passed;
+  }
+
+private:
+  std::unordered_map<ChunkWork::Function, double> ChunkSeconds; ///< by what a chunk does
+  double Computed = 0, Passed = 0;                              ///< in loops, older ones less
+};
+
+//------------------------------------------------------------------------------
+/**
+ * A loop under way. A worker that comes late finds no chunk left. It holds the loop, not what the
+ * caller has: that exists only as long as a chunk is being run.
+ */
+class Loop
+{
+public:
+  Loop(Index chunks, ChunkWork work)
+    : Chunks(chunks)
+    , Work(work)
+  {
+  }
+
+  /// What a worker does.
+  void help() noexcept
+  {
+    while (this->runNext())
+    {
+    }
+  }
+
+  /// What the caller does; returns the number of chunks it ran.
+  Index lead(const Proceed& proceed)
+  {
+    Index run = 0;
+    try
+    {
+      while (this->Next < this->Chunks && this->mayProceed(proceed) && this->runNext())
+      {
+        ++run;
+      }
+    }
+    catch (...)
+    {
+      this->fail(-1, std::current_exception()); // of `proceed`
+    }
+    this->close();
+    return run;
+  }
+
+  /// Waits for the chunks of the workers. Returns false if `proceed` ended the loop.
+  bool join()
+  {
+    this->wait();
+    if (this->Caught)
+    {
+      std::rethrow_exception(this->Caught);
+    }
+    return !this->Stopped;
+  }
+
+private:
+  bool mayProceed(const Proceed& proceed)
+  {
+    this->Stopped =
+      proceed && !proceed(static_cast<double>(this->Done) / static_cast<double>(this->Chunks));
+    return !this->Stopped;
+  }
+
+  bool runNext() noexcept
+  {
+    const Index chunk = this->Next.fetch_add(1);
+    if (chunk >= this->Chunks)
+    {
+      return false;
+    }
+    try
+    {
+      this->Work(chunk);
+    }
+    catch (...)
+    {
+      this->fail(chunk, std::current_exception());
+    }
+    this->finish(1);
+    return true;
+  }
+
+  /// Chunks begin in order: all before the first one that fails are run, whatever fails first.
+  void fail(Index chunk, std::exception_ptr error)
+  {
+    this->close();
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (!this->Caught || chunk < this->Failed)
+    {
+      this->Failed = chunk;
+      this->Caught = std::move(error);
+    }
+  }
+
+  /// Lets no other chunk begin.
+  void close()
+  {
+    const Index next = this->Next.exchange(this->Chunks);
+    if (next < this->Chunks)
+    {
+      this->finish(this->Chunks - next);
+    }
+  }
+
+  void finish(Index chunks)
+  {
+    if (this->Done.fetch_add(chunks) + chunks == this->Chunks)
+    {
+      const std::lock_guard<std::mutex> lock(this->Mutex);
+      this->Finished.notify_one();
+    }
+  }
+
+  void wait()
+  {
+    const Clock::time_point limit = Clock::now() + SpinTime;
+    while (this->Done < this->Chunks && Clock::now() < limit)
+    {
+      for (int i = 0; i < PausesPerLook; ++i)
+      {
+        pauseBriefly();
+      }
+    }
+    std::unique_lock<std::mutex> lock(this->Mutex);
+    this->Finished.wait(lock, [this] { return this->Done == this->Chunks; });
+  }
+
+  const Index Chunks;
+  const ChunkWork Work;
+  std::atomic<Index> Next{ 0 }, Done{ 0 };
+  std::mutex Mutex;
+  std::condition_variable Finished;
+  std::exception_ptr Caught;
+  Index Failed = 0;
+  bool Stopped = false; ///< by `proceed`
+};
+
+//------------------------------------------------------------------------------
+/// The threads of oneTBB. One arena for each number of workers asked for, kept for ever: they may
+/// outlive all other static objects.
+class Workers
+{
+public:
+  static Workers& instance()
+  {
+    static Workers* const workers = new Workers;
+    return *workers;
+  }
+
+  /// Asks so many workers to help. They need not come: the caller can do all by itself.
+  void invite(int number, const std::shared_ptr<Loop>& loop) noexcept
+  {
+    if (this->Forked)
+    {
+      return;
+    }
+    try
+    {
+      if (tbb::task_arena* arena = this->arena(number))
+      {
+        const int invited = arena->max_concurrency();
+        for (int i = 0; i < invited; ++i)
+        {
+          arena->enqueue([loop] { loop->help(); });
+        }
+      }
+    }
+    catch (const std::exception&)
+    {
+      // no memory for another worker
+    }
+  }
+
+private:
+  Workers()
+  {
+    pthread_atfork(nullptr, nullptr, [] { Workers::instance().Forked = true; });
+  }
+
+  /// Null if no thread can be started.
+  tbb::task_arena* arena(int number)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    const auto found = this->Arenas.find(number);
+    if (found != this->Arenas.end())
+    {
+      return found->second.get();
+    }
+    constexpr unsigned reservedForCallers = 0;
+    const int workers = startable(number);
+    return this->Arenas
+      .emplace(number,
+        workers > 0 ? std::make_unique<tbb::task_arena>(workers, reservedForCallers) : nullptr)
+      .first->second.get();
+  }
+
+  /// How many of so many threads can be started at the same time: oneTBB ends the process where it
+  /// cannot start one.
+  static int startable(int number)
+  {
+    std::vector<std::thread> threads;
+    std::mutex gate;
+    try
+    {
+      threads.reserve(static_cast<std::size_t>(number));
+      const std::lock_guard<std::mutex> closed(gate);
+      for (int i = 0; i < number; ++i)
+      {
+        threads.emplace_back([&gate] { const std::lock_guard<std::mutex> opened(gate); });
+      }
+    }
+    catch (const std::exception&)
+    {
+      // as many as there are
+    }
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+    return static_cast<int>(threads.size());
+  }
+
+  std::mutex Mutex;
+  std::map<int, std::unique_ptr<tbb::task_arena>> Arenas;
+  std::atomic<bool> Forked{ false };
+};
+}
+
+//------------------------------------------------------------------------------
+int resolveThreads(int threads)
+{
+  return threads > 0 ? threads : allThreads();
+}
+
+//------------------------------------------------------------------------------
+bool runChunks(Index chunks, int threads, ChunkWork work, const Proceed& proceed)
+{
+  if (chunks <= 0)
+  {
+    return true;
+  }
+  // More workers than oneTBB has would not come.
+  const Index most = std::min({ static_cast<Index>(resolveThreads(threads)), chunks,
+    static_cast<Index>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) });
+  const auto loop = std::make_shared<Loop>(chunks, work);
+  if (most < 2)
+  {
+    loop->lead(proceed);
+    return loop->join();
+  }
+  static thread_local Experience experience;
+  const double expected = experience.expected(work.function(), chunks);
+  const Clock::time_point start = Clock::now();
+  if (Experience::brief(expected))
+  {
+    const Index run = loop->lead(proceed);
+    experience.addChunks(work.function(), run, seconds(Clock::now() - start));
+    return loop->join();
+  }
+  if (experience.inviteWorkers(expected))
+  {
+    Workers::instance().invite(static_cast<int>(most - 1), loop);
+  }
+  const double before = threadSeconds();
+  const Index run = loop->lead(proceed);
+  const double computed = threadSeconds() - before;
+  experience.addChunks(work.function(), run, computed);
+  experience.addTime(computed, seconds(Clock::now() - start));
+  return loop->join();
+}
+}
