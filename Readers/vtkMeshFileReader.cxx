@@ -1,6 +1,7 @@
 #include "vtkMeshFileReader.h"
 
 #include "MeshFileAdapter.h"
+#include "tautline/Core/Memory.h"
 
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
@@ -78,9 +79,10 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
   {
     this->ErrorText = error.what();
   }
-  catch (const std::bad_alloc&)
+  catch (const std::bad_alloc& error)
   {
-    this->ErrorText = std::string(this->FileName) + ": not enough memory";
+    this->ErrorText = std::string(this->FileName) + ": " +
+      tautline::errorText(error, "read it where there is more, or a part of the mesh");
   }
   if (!this->ErrorText.empty())
   {

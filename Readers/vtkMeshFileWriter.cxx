@@ -1,6 +1,7 @@
 #include "vtkMeshFileWriter.h"
 
 #include "MeshFileAdapter.h"
+#include "tautline/Core/Memory.h"
 
 #include "vtkDataSet.h"
 #include "vtkErrorCode.h"
@@ -44,9 +45,10 @@ void vtkMeshFileWriter::WriteData()
     }
     this->FilesWritten = this->WriteMesh(tautline::fromDataSet(input), this->FileName);
   }
-  catch (const tautline::Error& error)
+  catch (const std::exception& error)
   {
-    this->ErrorText = error.what();
+    this->ErrorText =
+      tautline::errorText(error, std::string(this->FileName) + " cannot be written");
     this->SetErrorCode(vtkErrorCode::CannotOpenFileError);
     vtkErrorMacro(<< this->ErrorText);
   }

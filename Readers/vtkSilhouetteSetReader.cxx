@@ -1,5 +1,6 @@
 #include "vtkSilhouetteSetReader.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/Types.h"
 
 #include "vtkCompositeDataSet.h"
@@ -236,7 +237,7 @@ int vtkSilhouetteSetReader::RequestData(
   catch (const std::exception& error)
   {
     output->Initialize();
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< tautline::errorText(error, "read the set in parts"));
     return 0;
   }
   return 1;

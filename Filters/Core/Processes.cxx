@@ -1,6 +1,7 @@
 #include "Processes.h"
 
 #include "Blocks.h"
+#include "tautline/Core/Memory.h"
 
 #include "vtkDataSet.h"
 #include "vtkMultiProcessController.h"
@@ -11,7 +12,6 @@
 #endif
 
 #include <algorithm>
-#include <new>
 #include <numeric>
 #include <string>
 
@@ -117,13 +117,9 @@ void Processes::together(const std::function<void()>& work) const
     work();
     failed = false;
   }
-  catch (const std::bad_alloc&)
-  {
-    message = "Not enough memory.";
-  }
   catch (const std::exception& error)
   {
-    message = error.what();
+    message = errorText(error, "take a coarser mesh, or more processes");
   }
   // The first process with a specific message sends it to all others.
   const bool vague = message.rfind(Vague, 0) == 0;

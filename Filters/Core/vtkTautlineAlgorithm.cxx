@@ -1,5 +1,7 @@
 #include "vtkTautlineAlgorithm.h"
 
+#include "tautline/Core/Memory.h"
+
 #include "vtkDataObject.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkInformation.h"
@@ -8,7 +10,6 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <new>
 
 namespace
 {
@@ -96,13 +97,9 @@ std::string vtkTautlineAlgorithm::FailureOf(
   {
     work();
   }
-  catch (const std::bad_alloc&)
-  {
-    return std::string("Not enough memory: ") + memoryRemedy + ".";
-  }
   catch (const std::exception& error)
   {
-    return error.what();
+    return tautline::errorText(error, memoryRemedy);
   }
   return "";
 }

@@ -2,6 +2,7 @@
 
 #include "MeshOutput.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Domains/Domains.h"
 
 #include "vtkCellData.h"
@@ -18,7 +19,6 @@
 
 #include <cmath>
 #include <functional>
-#include <new>
 
 #if TAUTLINE_HAS_MESH_GENERATORS
 #include "PlanarMesher.h"
@@ -243,14 +243,9 @@ int vtkDomainSource::RequestData(
       : fromStructured(
           tautline::structuredSquare(this->ElementSize, this->AspectRatio, this->LayerWidth));
   }
-  catch (const Error& error)
+  catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
-    return 0;
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro(<< "not enough memory for " << cells << " cells");
+    vtkErrorMacro(<< tautline::errorText(error, "choose fewer cells or larger elements"));
     return 0;
   }
   output->SetPoints(tautline::makePoints(made.points, made.dimension));

@@ -1,6 +1,6 @@
 #include "vtkBoundaryMesher.h"
 
-#include "tautline/Core/Types.h"
+#include "tautline/Core/Memory.h"
 
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
@@ -51,7 +51,7 @@ int vtkBoundaryMesher::RequestData(
   {
     output->Initialize();
     boundary->Initialize();
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< tautline::errorText(error, "choose larger elements"));
     return 0;
   }
   return 1;

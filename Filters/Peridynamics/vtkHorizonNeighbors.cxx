@@ -1,6 +1,7 @@
 #include "vtkHorizonNeighbors.h"
 
 #include "HorizonInput.h"
+#include "tautline/Core/Memory.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -201,7 +202,7 @@ int vtkHorizonNeighbors::RequestData(
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< tautline::errorText(error, "choose a smaller horizon or a coarser mesh"));
     for (vtkPolyData* output : { triangles, circle, pieces })
     {
       output->Initialize();

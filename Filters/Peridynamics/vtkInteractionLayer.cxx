@@ -2,6 +2,7 @@
 
 #include "HorizonInput.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Peridynamics/InteractionLayer.h"
 
 #include "vtkCellData.h"
@@ -118,7 +119,7 @@ int vtkInteractionLayer::RequestData(
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< tautline::errorText(error, "choose larger elements or a narrower layer"));
     output->Initialize();
     return 0;
   }

@@ -6,6 +6,7 @@
 #include "MetricSelection.h"
 #include "QualityTotals.h"
 #include "TargetChoice.h"
+#include "tautline/Core/Memory.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -165,6 +166,10 @@ void vtkElementQuality::Measure(
   MeshAdapter adapter(input, this->Threads);
   Mesh& mesh = adapter.mesh();
   const Index cells = mesh.view().numberOfCells;
+  requireMemory(
+    static_cast<double>(cells) * static_cast<double>(totals.metrics().size() * sizeof(double)),
+    "the arrays of " + std::to_string(totals.metrics().size()) + " metrics",
+    "choose fewer metrics or measure the mesh in parts");
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(cells);

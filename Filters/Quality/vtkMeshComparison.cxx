@@ -2,6 +2,7 @@
 
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
+#include "tautline/Core/Memory.h"
 #include "tautline/Quality/Compare.h"
 
 #include "vtkCellData.h"
@@ -182,6 +183,11 @@ void vtkMeshComparison::Compare(
     throw Error("The meshes have different connectivity: " + difference +
       ". Compare meshes that differ in their coordinates only.");
   }
+  constexpr std::size_t arrays = 3; // of each metric
+  requireMemory(static_cast<double>(is.mesh().view().numberOfCells) *
+      static_cast<double>(arrays * totals.metrics.size() * sizeof(double)),
+    "the arrays of " + std::to_string(totals.metrics.size()) + " metrics",
+    "choose fewer metrics or compare the mesh in parts");
   output->ShallowCopy(after);
   totals.largestDisplacement = std::max(
     totals.largestDisplacement, addDisplacement(output, was.mesh().view(), is.mesh().view()));

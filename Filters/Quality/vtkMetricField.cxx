@@ -1,6 +1,7 @@
 #include "vtkMetricField.h"
 
 #include "MetricSelection.h"
+#include "tautline/Core/Memory.h"
 #include "tautline/Quality/MetricField.h"
 
 #include "vtkDataObject.h"
@@ -112,6 +113,9 @@ int vtkMetricField::RequestData(
       tautline::EvaluationOptions options;
       options.threads = this->Threads;
       const std::vector<tautline::Metric> metrics = this->GetSelection().metrics();
+      tautline::requireMemory(static_cast<double>(grid.count()) *
+          static_cast<double>(1 + metrics.size() * sizeof(double)),
+        "the field", "choose smaller Dimensions or fewer metrics");
       for (std::size_t i = 0; i < metrics.size() && !this->GetAbortExecute(); ++i)
       {
         vtkNew<vtkDoubleArray> values;

@@ -1,6 +1,7 @@
 #include "vtkSilhouetteMesher.h"
 
 #include "ShapeAdapter.h"
+#include "tautline/Core/Memory.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -150,7 +151,7 @@ int vtkSilhouetteMesher::RequestData(
   {
     output->Initialize();
     outline->Initialize();
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< tautline::errorText(error, "choose a larger spacing or a smaller image"));
     return 0;
   }
   return 1;

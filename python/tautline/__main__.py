@@ -33,6 +33,7 @@ def _run_study(arguments: argparse.Namespace) -> int:
 def main(arguments: list[str] | None = None) -> int:
     """Run a command. Returns 0, or 1 after an error, which is printed to stderr; wrong usage exits with 2."""
     parsed = _parser().parse_args(arguments)
+    _vtk.CLASSES["vtkUpdateGuard"].EndWithMessage()
     try:
         check_outputs(parsed)
         return parsed.run(parsed) or 0

@@ -10,10 +10,14 @@ from typing import Any, Callable, Iterable, TypeVar
 
 from vtkmodules.vtkCommonCore import vtkCommand
 
+from ._vtk import CLASSES
+
 # VTK puts file, line, class and address before the text of a message.
 _PREAMBLE = re.compile(r"^(ERROR|Warning): In .*?, line \d+\s*\n?\w+ \(.*?\): ", re.DOTALL)
 # Parts of the executive's message that follows the message of a filter.
 _CONSEQUENCE = ("returned failure for request", "Algorithm vtk")
+
+_MEMORY_REMEDY = "take a smaller mesh, or a higher limit on the memory of the process"
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -31,7 +35,10 @@ def unknown(what: str, name: str, known: Iterable[str]) -> Error:
 
 
 def checked(function: Function) -> Function:
-    """A function that raises Error, not TypeError, for arguments that it does not have or that are missing."""
+    """A function that raises Error, not TypeError, for arguments that it does not have or that are missing.
+
+    Nor does it raise MemoryError.
+    """
     parameters = signature(function).parameters
     keywords = [p.name for p in parameters.values() if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     others = any(p.kind is p.VAR_KEYWORD for p in parameters.values())
@@ -45,7 +52,10 @@ def checked(function: Function) -> Function:
             signature(function).bind(*arguments, **options)
         except TypeError as error:
             raise Error(f"{function.__name__}(): {error}") from None
-        return function(*arguments, **options)
+        try:
+            return function(*arguments, **options)
+        except MemoryError:
+            raise Error(f"Not enough memory: {_MEMORY_REMEDY}.") from None
 
     return call
 
@@ -77,7 +87,8 @@ def run(algorithm: Any, messages: Messages | None = None) -> Messages:
     """Update a filter; returns its messages. Raises Error with them if it fails."""
     messages = messages or watch(algorithm)
     messages.raise_errors()
-    algorithm.Update()
+    if failure := CLASSES["vtkUpdateGuard"].Update(algorithm):
+        raise Error(failure)  # VTK's own message comes with it, and says less
     messages.raise_errors()
     return messages
 

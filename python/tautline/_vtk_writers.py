@@ -25,6 +25,7 @@ from vtkmodules.vtkCommonDataModel import (
 from ._errors import Error, watch
 from ._files import check_target, locked, replace_bytes, sync_folder, temporary_name
 from ._formats import FORMATS, Format
+from ._vtk import CLASSES
 
 # What blocks can be beside the meshes in the table of formats.
 _OTHER_BLOCKS = {
@@ -109,15 +110,18 @@ def _content(data: vtkDataObject, name: str, form: Format) -> bytes:
     return content
 
 
-def _through_memory(writer: Any) -> tuple[bytes, int]:
-    """The bytes a writer of VTK writes to a file in memory, and the result of Write()."""
+def _through_memory(writer: Any) -> tuple[bytes, bool]:
+    """The bytes a writer of VTK writes to a file in memory, and whether it wrote all of them."""
     memory = os.memfd_create("tautline")
     try:
         with TemporaryDirectory() as folder:  # of a link, because vtkPLYWriter accepts no other ending than .ply
             link = os.path.join(folder, "content.ply")
             os.symlink(f"/proc/self/fd/{memory}", link)
             writer.SetFileName(link)
-            written = writer.Write()
+            writer.Modified()  # as Write() does
+            if failure := CLASSES["vtkUpdateGuard"].UpdateWholeExtent(writer):
+                raise Error(failure)
+            written = not writer.GetErrorCode()
         with open(f"/proc/self/fd/{memory}", "rb") as file:
             return file.read(), written
     finally:

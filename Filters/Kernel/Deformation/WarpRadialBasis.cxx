@@ -1,6 +1,7 @@
 #include "WarpPointwise.h"
 
 #include "WarpBatches.h"
+#include "tautline/Core/Memory.h"
 #include "tautline/Geometry/PointTree.h"
 
 namespace tautline
@@ -276,6 +277,13 @@ bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, W
   {
     add(i);
   }
+  const auto require = [](std::size_t more)
+  {
+    requireMemory(static_cast<double>(more * MaxCenters * sizeof(double)),
+      "the dense system of radial functions",
+      "prescribe the motion of fewer points, or choose another method");
+  };
+  require(candidates);
   std::vector<double> errors(all.size());
   while (fit.choose(enough, control))
   {
@@ -309,6 +317,7 @@ bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, W
       [&](std::size_t a, std::size_t b)
       { return errors[a] > errors[b] || (errors[a] == errors[b] && a < b); });
     missed.resize(std::min(missed.size(), MoreCandidates));
+    require(missed.size());
     const std::size_t from = candidates;
     for (const std::size_t i : missed)
     {

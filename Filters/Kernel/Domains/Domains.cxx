@@ -1,10 +1,9 @@
 #include "Domains.h"
 
+#include "tautline/Core/Memory.h"
+
 #include <algorithm>
 #include <cstdio>
-
-#include <sys/resource.h>
-#include <unistd.h>
 
 namespace tautline
 {
@@ -75,24 +74,11 @@ const DomainInfo& findDomain(const std::string& name)
 void checkDomainSize(double cells, DomainKind kind)
 {
   // Estimates of the peak, with the copies for VTK; a mesher's triangulation is larger than a mesh.
-  constexpr double StructuredBytes = 200.0, MesherBytes = 600.0, MegaByte = 1048576.0;
+  constexpr double StructuredBytes = 200.0, MesherBytes = 600.0;
   const double needed = cells * (kind == DomainKind::Structured ? StructuredBytes : MesherBytes);
-  double memory =
-    static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-  {
-    memory = std::min(memory, static_cast<double>(limit.rlim_cur));
-  }
-  if (!(needed <= memory))
-  {
-    char text[200];
-    std::snprintf(text, sizeof(text),
-      "%.3g cells need about %.3g MiB of memory, and %.3g MiB are there; "
-      "choose fewer cells, larger elements or a narrower layer",
-      cells, needed / MegaByte, memory / MegaByte);
-    throw Error(text);
-  }
+  char what[64];
+  std::snprintf(what, sizeof(what), "a mesh of %.3g cells", cells);
+  requireMemory(needed, what, "choose fewer cells, larger elements or a narrower layer");
 }
 
 //------------------------------------------------------------------------------

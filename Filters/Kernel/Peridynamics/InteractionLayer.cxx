@@ -1,5 +1,6 @@
 #include "InteractionLayer.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "PeridynamicsGeometry.h"
 #include "tautline/Geometry/PlanarDelaunay.h"
@@ -17,6 +18,7 @@ constexpr double MinGap = 0.55; // of lattice points from the boundary, in eleme
 constexpr double Margin = 2.5;  // of lattice points beyond the width, in element sizes
 constexpr double Jitter = 0.02; // of lattice points, in element sizes: no four on a circle
 constexpr double MaxPoints = 5e6;
+constexpr double BytesPerPoint = 300; // of the lattice, with its triangulation
 
 struct Edge
 {
@@ -133,6 +135,8 @@ std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<E
     throw Error("an interaction layer of this width with elements of size " + std::to_string(size) +
       " has too many of them: give a larger element size");
   }
+  requireMemory(
+    columns * rows * BytesPerPoint, "the interaction layer", "give a larger element size");
   const auto m = static_cast<Index>(columns), n = static_cast<Index>(rows);
   std::vector<Vec2> points(m * n);
   std::vector<char> kept(m * n, 0);

@@ -2,12 +2,11 @@
 
 #include "TriangleAssembler.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
-
-#include <unistd.h>
 
 namespace tautline
 {
@@ -155,22 +154,12 @@ double bytesFor(const HorizonMesh& mesh, const FunctionSpace& space, const BoxGr
   return perEntry * nonzeros + (300.0 + 6.5 * perPair) * triangles + sums;
 }
 
-double availableMemory()
-{
-  return static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) *
-    static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
 void checkMemory(double needed, const PeridynamicOptions& options)
 {
-  const double limit = options.memoryLimit > 0.0 ? options.memoryLimit : 0.9 * availableMemory();
-  if (needed > limit)
-  {
-    throw Error("the matrix takes about " + number(needed / 1048576.0) + " MiB and " +
-      number(limit / 1048576.0) +
-      " MiB are allowed: take a smaller horizon, larger elements or a piecewise linear basis, or "
-      "raise the limit");
-  }
+  constexpr double share = 0.9; // the rest is for the solver and the output
+  requireMemory(needed, "the matrix",
+    "take a smaller horizon, larger elements or a piecewise linear basis, or raise the limit",
+    options.memoryLimit > 0.0 ? options.memoryLimit : std::max(1.0, share * availableMemory()));
 }
 
 void checkLayer(const HorizonMesh& mesh, const PeridynamicOptions& options, double deficit)

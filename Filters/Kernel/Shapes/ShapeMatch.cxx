@@ -2,6 +2,7 @@
 
 #include "ShapeDynamicProgram.h"
 #include "ShapeEnergy.h"
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
@@ -137,12 +138,14 @@ public:
       return this->refine(first);
     }
     PlacementProblem problem = this->fullProblem();
-    if (PlacementSolver::memory(problem) > MemoryLimit)
+    const double needed = PlacementSolver::memory(problem);
+    if (needed > MemoryLimit)
     {
       throw Error("The tables of an exact search over " +
         std::to_string(this->Target.locations.points.size()) +
         " locations would take more than 4 GiB: use fewer locations, or coarse to fine.");
     }
+    requireMemory(needed, "An exact search", "use fewer locations, or coarse to fine.");
     if (haveFirst && this->Options.bounds)
     {
       // The coarse locations are some of the full ones: the best is no worse.

@@ -1,5 +1,6 @@
 #include "ShapeRetrieval.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
@@ -239,6 +240,10 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
   {
     throw Error("A label per shape and at least 1 best match are needed.");
   }
+  // Distances in both directions, their sums, and the ranking.
+  constexpr double bytesPerPair = 3 * sizeof(double) + sizeof(Index);
+  requireMemory(bytesPerPair * static_cast<double>(count) * static_cast<double>(count),
+    "The table of all pairs of " + std::to_string(count) + " shapes", "use fewer shapes.");
   Retrieval result;
   result.count = count;
   Comparison comparison(shapes, options);

@@ -1,5 +1,6 @@
 #include "ShapeTarget.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/PacketFloat.h"
 #include "tautline/Core/Parallel.h"
 #include "ShapeEnergy.h"
@@ -352,6 +353,9 @@ ShapeTarget::ShapeTarget(const Silhouette& shape, const LocationOptions& options
     throw Error("A table over all pairs of " + std::to_string(d.locations.points.size()) +
       " locations would take more than 4 GiB: use fewer locations.");
   }
+  requireMemory(tableSize * sizeof(float),
+    "A table over all pairs of " + std::to_string(d.locations.points.size()) + " locations",
+    "use fewer locations.");
   d.edges = d.edgeTable(d.locations, d.locations);
   d.chooseCoarse();
   if (energy.descriptor > 0.0)

@@ -1,5 +1,6 @@
 #include "Lanczos.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Random.h"
 #include "tautline/Core/Stopwatch.h"
@@ -169,6 +170,13 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
   Index nextCheck = std::min<Index>(maxSteps, 12);
   for (Index k = 0; k < maxSteps; ++k)
   {
+    // Memory for as many vectors as there are, whenever their number has doubled.
+    if ((k & (k - 1)) == 0)
+    {
+      requireMemory(static_cast<double>(k) * static_cast<double>(n) * sizeof(double),
+        "room for " + std::to_string(k) + " more basis vectors",
+        "allow fewer iterations, or take a smaller matrix");
+    }
     basis.push_back(w);
     matrix.multiply(basis[k].data(), w.data(), threads);
     const double alpha = product(basis[k], w, threads);

@@ -1,5 +1,7 @@
 #include "PetscSession.h"
 
+#include "tautline/Core/Memory.h"
+
 #include <slepcsys.h>
 
 #include <cstdlib>
@@ -76,6 +78,10 @@ void ensureMpi()
   MPI_Initialized(&initialized);
   if (!initialized)
   {
+    // Open MPI ends the process where memory does not suffice for its threads and shared segments.
+    constexpr double mpiAndPetsc = 256 * 1048576.0; // address space, measured
+    requireMemory(mpiAndPetsc, "the start of MPI and PETSc",
+      "raise the limit on the memory of the process, or end other programs");
     int provided = 0;
     if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     {

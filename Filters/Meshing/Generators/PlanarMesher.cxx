@@ -1,5 +1,7 @@
 #include "PlanarMesher.h"
 
+#include "tautline/Core/Memory.h"
+
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_mesh_criteria_2.h>
 #include <CGAL/Delaunay_mesh_face_base_2.h>
@@ -238,6 +240,9 @@ void refine(Triangulation& triangulation, const PlanarOptions& options, double s
     triangulation, Criteria(options, smallest));
   mesher.init(true);
   constexpr int Steps = 1000;
+  // Memory for a quarter more, whenever there are a quarter more points.
+  constexpr double BytesPerPoint = 600, Growth = 1.25;
+  double checked = 1e5;
   while (!mesher.is_refinement_done())
   {
     for (int step = 0; step < Steps && mesher.try_one_step_refine_mesh(); ++step)
@@ -248,6 +253,13 @@ void refine(Triangulation& triangulation, const PlanarOptions& options, double s
     {
       throw Error("the triangulation has more than " + std::to_string(options.pointLimit) +
         " points; choose larger triangles or a smaller angle");
+    }
+    if (static_cast<double>(points) > checked)
+    {
+      requireMemory((Growth - 1) * checked * BytesPerPoint,
+        "a triangulation of more than " + std::to_string(points) + " points",
+        "choose larger triangles or a smaller angle");
+      checked *= Growth;
     }
     if (options.progress && !options.progress(points))
     {

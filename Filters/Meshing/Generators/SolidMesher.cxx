@@ -1,5 +1,7 @@
 #include "SolidMesher.h"
 
+#include "tautline/Core/Memory.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -178,7 +180,7 @@ bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>
 
 /// In a process of its own: TetGen, then its result into the pipe. Does not return.
 [[noreturn]] void work(const std::string& switches, const SolidBoundary& boundary,
-  const SolidOptions& options, bool numbers, int pipe)
+  const SolidOptions& options, bool numbers, double available, int pipe)
 {
   for (const int signal : { SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT })
   {
@@ -186,6 +188,7 @@ bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>
   }
   const rlimit noCore = { 0, 0 };
   setrlimit(RLIMIT_CORE, &noCore);
+  limitMemory(available); // TetGen reports the lack of it; the system would end a process
   const int nowhere = ::open("/dev/null", O_WRONLY);
   ::dup2(nowhere, STDOUT_FILENO); // TetGen prints even with -Q
   ::dup2(nowhere, STDERR_FILENO);
@@ -280,11 +283,12 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   {
     throw Error(std::string("no pipe for TetGen: ") + std::strerror(errno));
   }
+  const double available = availableMemory();
   const pid_t child = ::fork();
   if (child == 0)
   {
     ::close(ends[0]);
-    work(switches, boundary, options, numbers, ends[1]);
+    work(switches, boundary, options, numbers, available, ends[1]);
   }
   ::close(ends[1]);
   std::vector<char> bytes;

@@ -1,0 +1,49 @@
+/**
+ * @file Memory.h
+ * @brief The memory that is available, and the check before large allocations. Internal: not
+ * installed.
+ *
+ * Linux grants memory that it does not have and ends a process that uses it; and libraries that get
+ * none often crash. So what needs much memory in proportion to a product of its inputs (a dense
+ * matrix, all pairs of elements, cells of a given size) is estimated and checked before.
+ */
+#ifndef tautline_Memory_h
+#define tautline_Memory_h
+
+#include "tautline/KernelExport.h"
+
+#include <exception>
+#include <string>
+
+namespace tautline
+{
+/**
+ * @brief Bytes this process can still take: the least of what is free on the machine, what the
+ * control groups of the process leave, and what the limits on its address space and data leave
+ * (`ulimit -v`, `ulimit -d`).
+ */
+TAUTLINE_KERNEL_EXPORT double availableMemory();
+
+/**
+ * @brief Throws Error if so many bytes are not available.
+ *
+ * The message is "what takes about 3.2 GiB of memory and 1.5 GiB are available: remedy".
+ * @param bytes an estimate; NaN and infinity are too much
+ * @param what the subject of a sentence, in the singular: "the matrix"
+ * @param remedy what the user can do: "take a smaller horizon"
+ * @param limit bytes that a user allows, or 0 for all that is available
+ */
+TAUTLINE_KERNEL_EXPORT void requireMemory(
+  double bytes, const std::string& what, const std::string& remedy, double limit = 0.0);
+
+/// Makes allocations of this process fail when it has taken so many more bytes.
+TAUTLINE_KERNEL_EXPORT void limitMemory(double more);
+
+/// The message of an error for the user: "Not enough memory: remedy." for std::bad_alloc.
+TAUTLINE_KERNEL_EXPORT std::string errorText(
+  const std::exception& error, const std::string& remedy);
+
+/// "512 MiB", "3.2 GiB": three digits.
+TAUTLINE_KERNEL_EXPORT std::string memoryText(double bytes);
+}
+#endif
