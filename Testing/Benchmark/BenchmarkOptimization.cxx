@@ -9,6 +9,7 @@
 //   objective FILE REPEATS     value and gradient of the sum of squared IMR
 //   shape FILE REPEATS BEST    95 % of the reduction to BEST, 1.0001 BEST, the presets
 //   threads FILE REPEATS       one thread against two, wall time and that of the main thread
+//   busy PROCESSES REPEATS     one thread against all, in seconds, while so many processes compute
 //   untangle FILE REPEATS      vtkMeshUntangler, then the best shape
 //   converge FILE REPEATS      the preset that untangles and then improves
 //   worst FILE                 the preset for the worst element against the best shape
@@ -37,6 +38,11 @@
 #include <iostream>
 #include <limits>
 #include <map>
+
+#include <csignal>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 using namespace tautline;
 
@@ -419,9 +425,8 @@ void sweepsPart(const std::string& file, int repeats)
 //------------------------------------------------------------------------------
 /// Arrays made in the size they need: a builder that grows would itself need more than the
 /// optimizer.
-Grid perturbedCubes(Index n)
+Grid perturbed(MeshData data, int cellType)
 {
-  MeshData data = cutIntoTetrahedra(blockMesh(CellType::Hexahedron, n, n, n), n);
   PerturbOptions options;
   options.threads = 1;
   data.points = perturb(Mesh(data.view()), nullptr, options).points;
@@ -431,11 +436,89 @@ Grid perturbedCubes(Index n)
   cells->AllocateExact(data.numberOfCells(), static_cast<vtkIdType>(data.connectivity.size()));
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)
   {
-    const Index* nodes = &data.connectivity[4 * cell];
-    cells->InsertNextCell({ nodes[0], nodes[1], nodes[2], nodes[3] });
+    cells->InsertNextCell(
+      data.offsets[cell + 1] - data.offsets[cell], &data.connectivity[data.offsets[cell]]);
   }
-  grid->SetCells(VTK_TETRA, cells);
+  grid->SetCells(cellType, cells);
   return grid;
+}
+
+Grid perturbedCubes(Index n)
+{
+  return perturbed(cutIntoTetrahedra(blockMesh(CellType::Hexahedron, n, n, n), n), VTK_TETRA);
+}
+
+//------------------------------------------------------------------------------
+/// Processes that compute until this object is deleted.
+class BusyProcesses
+{
+public:
+  explicit BusyProcesses(int number)
+  {
+    for (int i = 0; i < number; ++i)
+    {
+      const pid_t child = fork();
+      if (child == 0)
+      {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        for (volatile unsigned count = 0;; count = count + 1)
+        {
+        }
+      }
+      this->Children.push_back(child);
+    }
+  }
+  ~BusyProcesses()
+  {
+    for (const pid_t child : this->Children)
+    {
+      if (child > 0)
+      {
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+      }
+    }
+  }
+  BusyProcesses(const BusyProcesses&) = delete;
+  BusyProcesses& operator=(const BusyProcesses&) = delete;
+
+private:
+  std::vector<pid_t> Children;
+};
+
+double median(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+void busyPart(int processes, int repeats)
+{
+  constexpr Index columns = 60, rows = 40, cubes = 10;
+  MeshData surface = blockMesh(CellType::Triangle, columns, rows, 0);
+  surface.transform(
+    [](const Vec3& p) {
+      return Vec3{ p[0], p[1], std::sin(0.2 * p[0]) * std::cos(0.2 * p[1]) };
+    });
+  const std::pair<const char*, Grid> meshes[] = { { "surface", perturbed(surface, VTK_TRIANGLE) },
+    { "solid", perturbedCubes(cubes) } };
+  const BusyProcesses busy(processes);
+  for (const auto& [name, grid] : meshes)
+  {
+    const auto filter = optimizerOf(grid, vtkMeshOptimizer::BEST_SHAPE);
+    std::vector<double> seconds[2];
+    for (int turn = 0; turn < 2 * repeats; ++turn)
+    {
+      const bool all = turn % 2 == 1;
+      filter->SetThreads(all ? 0 : 1);
+      const double start = wallTime();
+      run(filter);
+      seconds[all].push_back(wallTime() - start);
+    }
+    print(std::string(name) + " elements", static_cast<double>(grid->GetNumberOfCells()));
+    print(std::string(name) + " one thread", median(seconds[0]));
+    print(std::string(name) + " all threads", median(seconds[1]));
+  }
 }
 
 void memoryPart(Index n)
@@ -477,6 +560,7 @@ const std::map<std::string, Part> parts = {
   { "objective", { 2, [](const Arguments& a) { objectivePart(a[0], number(a[1])); } } },
   { "shape", { 3, [](const Arguments& a) { shapePart(a[0], number(a[1]), std::stod(a[2])); } } },
   { "threads", { 2, [](const Arguments& a) { threadsPart(a[0], number(a[1])); } } },
+  { "busy", { 2, [](const Arguments& a) { busyPart(std::stoi(a[0]), number(a[1])); } } },
   { "untangle", { 2, [](const Arguments& a) { untanglePart(a[0], number(a[1])); } } },
   { "converge", { 2, [](const Arguments& a) { convergePart(a[0], number(a[1])); } } },
   { "worst", { 1, [](const Arguments& a) { worstPart(a[0]); } } },

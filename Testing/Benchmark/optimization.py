@@ -28,6 +28,7 @@ CELLS = {"disk2d-perturbed": (500_000, 600), "disk3d-tangled": (1_000_000, 800),
          "disk2d-tangled": (1_000_000, 600), "disk3d-scattered": (250_000, 800)}
 HUGE, HUGE_QUICK = 119, 4  # cubes along an edge: 10,110,954 tetrahedra
 GIB = 2.0**30
+BUSY, BUSY_REPEATS = 20, 15  # processes that compute meanwhile; the median of so many turns counts
 
 
 class Optimization:
@@ -103,6 +104,16 @@ class Optimization:
                     rows.append((f"  by CPU time of the main thread, {what}", m[f"{what} speed-up by CPU time"], ""))
         return rows
 
+    def busy(self) -> list[Row]:
+        rows: list[Row] = []
+        for processes in (0, BUSY):
+            m = self.run("busy", processes, self.repeats if self.quick else BUSY_REPEATS)
+            self.measured |= {f"busy {processes}: {key}": value for key, value in m.items()}
+            for mesh in ("surface", "solid"):
+                rows.append((f"{mesh} of {m[f'{mesh} elements']:.0f}: all threads / one, {processes} busy processes",
+                             m[f"{mesh} all threads"] / m[f"{mesh} one thread"], f"<= {1.3 if processes else 1}"))
+        return rows
+
     def untangling(self) -> list[Row]:
         rows: list[Row] = []
         for mesh, valid, passes, converge in TANGLED:
@@ -161,7 +172,7 @@ def run(program: Path, output: Path, repeats: int, quick: bool, huge: bool) -> t
     benchmark = Optimization(program, output, repeats, quick)
     benchmark.measured |= benchmark.run("yardstick", repeats)
     rows: list[Row] = [("yardstick, ns per element", benchmark.measured["yardstick"], "")]
-    rows += benchmark.shapes() + benchmark.untangling() + benchmark.worst() + benchmark.sweeps()
+    rows += benchmark.shapes() + benchmark.busy() + benchmark.untangling() + benchmark.worst() + benchmark.sweeps()
     return benchmark.measured, rows + (benchmark.memory() if huge else [])
 
 

@@ -45,6 +45,9 @@ def check_optimization(output: Path) -> None:
         assert measured[f"untangle {mesh}: inverted before"] > 0, measured
         assert measured[f"untangle {mesh}: inverted left"] == 0, measured
         assert measured[f"converge {mesh}: inverted left"] == 0, measured
+    for threads in ("one thread", "all threads"):
+        assert measured[f"busy 20: surface {threads}"] > 0 and measured[f"busy 0: solid {threads}"] > 0, measured
+    assert measured["busy 20: surface elements"] == 4800 and measured["busy 20: solid elements"] == 6000, measured
     for method in ("conjugate gradient", "Newton"):
         assert measured[f"sweeps disk2d-perturbed: {method} sweeps"] == 10, measured
 

@@ -46,7 +46,7 @@ def smallest_limit() -> int:
 
 def commands(large: str, small: str, layer: str) -> dict[str, list[str]]:
     """The arguments by name."""
-    out = str(FOLDER / "result.vtu")
+    out, field = str(FOLDER / "result.vtu"), str(FOLDER / "result.vti")
     return {
         "quality": ["quality", large, "--metrics", "imr,radius_ratio,scaled_jacobian,size", "-o", out],
         "optimize": ["optimize", large, "-o", out],
@@ -60,7 +60,7 @@ def commands(large: str, small: str, layer: str) -> dict[str, list[str]]:
         "peridynamics": ["peridynamics", layer, "-o", out],
         "match": ["match", str(DATA / "fish.png"), str(DATA / "fish-bent.png"), "-o", out],
         "convert": ["convert", large, str(FOLDER / "result.vtk")],
-        "field": ["field", "--cell", "tetrahedron", "--dimensions", "150", "150", "150", "-o", str(FOLDER / "result.vti")],
+        "field": ["field", "--cell", "tetrahedron", "--dimensions", "150", "150", "150", "-o", field],
     }
 
 

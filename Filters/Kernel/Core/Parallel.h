@@ -6,7 +6,7 @@
  * Work is cut into chunks of a fixed size. Which thread takes which chunk varies; what a chunk does
  * and the order in which chunk results are combined do not.
  *
- * The calling thread runs chunks itself. Workers of oneTBB help when they are free; the caller waits
+ * The calling thread runs chunks itself. Workers of oneTBB help where they are free; it then waits
  * only for chunks that were begun, first spinning for some microseconds, then asleep, and runs
  * nothing else meanwhile. Loops may therefore be nested, and be called by several threads. Where
  * threads cannot be started, and in the child of a fork, the caller does all the work; so it does

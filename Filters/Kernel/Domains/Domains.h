@@ -77,8 +77,8 @@ TAUTLINE_KERNEL_EXPORT const std::vector<DomainInfo>& domains();
 TAUTLINE_KERNEL_EXPORT const DomainInfo& findDomain(const std::string& name);
 
 /**
- * @brief Throws Error if a mesh of so many cells needs more memory than is available. Estimated from
- * the number alone, before anything is allocated.
+ * @brief Throws Error if a mesh of so many cells needs more memory than is available. Estimated
+ * from the number alone, before anything is allocated.
  */
 TAUTLINE_KERNEL_EXPORT void checkDomainSize(double cells, DomainKind kind);
 

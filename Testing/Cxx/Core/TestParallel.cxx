@@ -124,7 +124,8 @@ void testScratch()
 }
 
 //------------------------------------------------------------------------------
-/// Several chunks fail, the later ones sooner: the message is that of the first. The next loop runs.
+/// Several chunks fail, the later ones sooner: the message is that of the first. The next loop
+/// runs.
 void testErrors()
 {
   constexpr Index n = 40, first = 5, repetitions = 20;
