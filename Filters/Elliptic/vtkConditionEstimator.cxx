@@ -175,11 +175,12 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
   options.omega = this->Omega;
   options.tolerance = this->Tolerance;
   options.maximumIterations = this->MaximumIterations;
-  options.maximumSeconds = this->TimeLimit;
+  options.maximumSeconds = this->GetSecondsLeft();
   options.petscOptions = this->PETScOptions;
   const double share = this->Preconditioner == none ? 1.0 : 0.5;
   options.progress = [&](double fraction)
   { return this->Report(mesh, share * fraction + (plain ? 0.0 : share)); };
+  options.cancelled = this->Cancelled();
   const tautline::ConditionEstimate found =
     tautline::estimateCondition(input.system().linearSystem(), options);
 
@@ -232,8 +233,11 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
       this->Estimate(input, this->Preconditioner, mesh, table, found));
   }
 
+  tautline::ConditionOptions limits;
+  limits.maximumSeconds = this->GetSecondsLeft();
+  limits.cancelled = this->Cancelled();
   const tautline::ElementContributions elements =
-    tautline::elementContributions(system, this->ComputeShares, this->Threads);
+    tautline::elementContributions(system, this->ComputeShares, this->Threads, limits);
   // A process without elements has none; all go the same way.
   const bool shares = processes.maximum(static_cast<tautline::Index>(elements.share.size())) > 0;
   mesh.output->GetPointData()->SetActiveScalars(nullptr);
@@ -250,6 +254,11 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
     text << "\n"
          << few << " of " << all << " elements have " << 100 * NamedFraction
          << " % of the largest eigenvalue.";
+  }
+  else if (this->ComputeShares)
+  {
+    text << "\nThe shares of the elements are missing: the time limit was reached before.";
+    this->Warn();
   }
   tautline::addArray(mesh.output, true, "Excess", excess(elements.largestEigenvalue, processes), 1);
   for (const Contribution& element : largest(elements, system.mesh(), processes))

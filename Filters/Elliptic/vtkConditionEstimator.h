@@ -12,7 +12,8 @@
  * `Excess`, its log10 over the geometric mean of all elements (1: ten times); and, if ComputeShares
  * is on, `Share`: the fraction of the largest eigenvalue of A that is due to the element, which is
  * x_e^T A_e x_e of its eigenvector x over the sum of all elements. Shares add up to 1; often a few
- * elements have most of it. All are 0 for cells that are not solved on.
+ * elements have most of it. It is missing where the time limit was reached before. All are 0 for
+ * cells that are not solved on.
  *
  * @par Output port 1 `Spectrum`:
  * A vtkTable with a row for A and one for P^-1 A (per block): `Matrix`, `Smallest`, `Largest`,

@@ -9,6 +9,7 @@
 #include "vtkSelection.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace
@@ -75,6 +76,8 @@ int vtkEllipticAlgorithm::RequestData(
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   this->Summary.clear();
   this->Failed = false;
+  this->Fraction = 0.0;
+  this->Begin = std::chrono::steady_clock::now();
   this->Unknowns = 0;
   this->AssemblySeconds = 0.0;
   this->Reset();
@@ -128,7 +131,22 @@ void vtkEllipticAlgorithm::Describe(const tautline::LocalMesh& mesh, const std::
 //------------------------------------------------------------------------------
 bool vtkEllipticAlgorithm::Report(const tautline::LocalMesh& mesh, double fraction)
 {
-  return this->Proceed((mesh.number + fraction) / mesh.meshes);
+  this->Fraction = (mesh.number + fraction) / mesh.meshes;
+  return this->Proceed(this->Fraction);
+}
+
+//------------------------------------------------------------------------------
+std::function<bool()> vtkEllipticAlgorithm::Cancelled()
+{
+  return [this]() { return !this->Proceed(this->Fraction); };
+}
+
+//------------------------------------------------------------------------------
+double vtkEllipticAlgorithm::GetSecondsLeft() const
+{
+  constexpr double smallest = 1e-3; // 0 would mean no limit
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - this->Begin;
+  return this->TimeLimit > 0 ? std::max(smallest, this->TimeLimit - spent.count()) : 0.0;
 }
 
 //------------------------------------------------------------------------------

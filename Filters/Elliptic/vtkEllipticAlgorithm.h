@@ -33,7 +33,9 @@
 #include "TautlineEllipticModule.h" // for export macro
 #include "vtkTautlineTimedAlgorithm.h"
 
-#include <string> // for expressions
+#include <chrono>     // for Begin
+#include <functional> // for Cancelled()
+#include <string>     // for expressions
 
 namespace tautline
 {
@@ -197,8 +199,9 @@ public:
   ///@{
   /**
    * Options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5". They override other
-   * properties. The options of other users of PETSc in the process are neither read nor changed. An
-   * option unknown to PETSc is an error.
+   * properties. Permitted are options that choose and tune methods and preconditioners; those that
+   * read, write or display something, load code or need data from a program are refused by name.
+   * The options of other users of PETSc in the process are neither read nor changed.
    */
   vtkSetMacro(PETScOptions, std::string);
   vtkGetMacro(PETScOptions, std::string);
@@ -228,6 +231,11 @@ protected:
   void Warn() { this->Failed = true; }
   /// Reports a fraction of the work on a mesh. @return false to stop
   bool Report(const tautline::LocalMesh& mesh, double fraction);
+  /// For the kernel, while it has nothing to report: reports the last fraction again. The result
+  /// of the function is true to stop.
+  std::function<bool()> Cancelled();
+  /// What is left of the time limit for this data set, above 0; 0: no limit.
+  double GetSecondsLeft() const;
 
   double Omega = 1.0;
   std::string PETScOptions;
@@ -257,6 +265,8 @@ private:
   double GivenDisplacement[3] = { 0.0, 0.0, 0.0 };
   std::string GivenExpression;
   bool Failed = false;
+  double Fraction = 0.0;
+  std::chrono::steady_clock::time_point Begin;
   vtkIdType Unknowns = 0;
   double AssemblySeconds = 0.0;
 };

@@ -18,6 +18,7 @@ vtkStandardNewMacro(vtkEllipticSolver);
 namespace
 {
 constexpr int HistoryPort = 1;
+constexpr double ReportInterval = 0.05; // of progress, in seconds
 
 /// How far a Krylov method is, by the digits it has gained.
 double fractionOf(double first, double residual, double tolerance)
@@ -86,13 +87,11 @@ tautline::SolverOptions vtkEllipticSolver::GetSolverOptions() const
   options.method = static_cast<tautline::KrylovMethod>(this->Solver);
   options.preconditioner = static_cast<tautline::Preconditioner>(this->Preconditioner);
   this->SetCommonOptions(options);
-  options.maximumSeconds = this->TimeLimit;
-  // The user's options override others, and an option without effect would be an error.
-  const std::string& own = this->PETScOptions;
+  options.maximumSeconds = this->GetSecondsLeft();
   if (this->FastMultigrid && this->Preconditioner == AMG && this->Solver != DIRECT &&
-    own.find("-pc_") == std::string::npos)
+    this->PETScOptions.find("-pc_") == std::string::npos)
   {
-    options.petscOptions = tautline::fastMultigridOptions() + (" " + own);
+    options.defaultPetscOptions = tautline::fastMultigridOptions();
   }
   return options;
 }
@@ -109,6 +108,8 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
     first = iteration == 0 ? residual : first;
     return this->Report(mesh, fractionOf(first, residual, this->RelativeTolerance));
   };
+  options.observerSeconds = ReportInterval;
+  options.cancelled = this->Cancelled();
 
   tautline::LinearSystem linear = system.linearSystem();
   linear.coordinates = this->RigidBodyModes ? linear.coordinates : nullptr;

@@ -63,8 +63,8 @@ public:
   ///@}
 
   ///@{
-  /// Seconds for each combination; 0 is no limit. The default is 60. TimeLimit is that of the whole
-  /// study.
+  /// Seconds for each combination, with its set-up; 0 is no limit. The default is 60. TimeLimit is
+  /// that of the whole study. The next combination waits for a set-up that was given up.
   vtkSetClampMacro(CombinationTimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(CombinationTimeLimit, double);
   ///@}

@@ -67,11 +67,12 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
           static_cast<std::int32_t>(static_cast<Index>(this->Free.size()) * block + k);
       }
       this->Free.push_back(p);
-      this->Coordinates.insert(this->Coordinates.end(), points + 3 * p, points + 3 * p + 3);
+      this->Inner->coordinates.insert(
+        this->Inner->coordinates.end(), points + 3 * p, points + 3 * p + 3);
     }
   }
-  this->Inner.size = static_cast<Index>(this->Free.size()) * block;
-  this->Inner.offsets.reserve(this->Inner.size + 1);
+  this->Inner->matrix.size = static_cast<Index>(this->Free.size()) * block;
+  this->Inner->matrix.offsets.reserve(this->Inner->matrix.size + 1);
   this->Starts.assign(1, 0);
   for (const Index p : this->Free)
   {
@@ -82,8 +83,8 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
         const std::int32_t column = unknown[all.columns[e]];
         if (column >= 0)
         {
-          this->Inner.columns.push_back(column);
-          this->Inner.values.push_back(all.values[e]);
+          this->Inner->matrix.columns.push_back(column);
+          this->Inner->matrix.values.push_back(all.values[e]);
         }
         else if (all.values[e] != 0)
         {
@@ -91,38 +92,41 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
           this->Values.push_back(all.values[e]);
         }
       }
-      this->Inner.offsets.push_back(this->Inner.nonzeros());
+      this->Inner->matrix.offsets.push_back(this->Inner->matrix.nonzeros());
       this->Starts.push_back(static_cast<Index>(this->Columns.size()));
     }
   }
   this->DirectLimit = dimension == 2 ? directPlanar : directVolume;
-  this->Method = !options.automaticSolver   ? options.solver.method
-    : this->Inner.size <= this->DirectLimit ? KrylovMethod::Direct
-                                            : KrylovMethod::ConjugateGradient;
+  this->Method = !options.automaticSolver           ? options.solver.method
+    : this->Inner->matrix.size <= this->DirectLimit ? KrylovMethod::Direct
+                                                    : KrylovMethod::ConjugateGradient;
 }
 
 //------------------------------------------------------------------------------
-void WarpSystem::makeSolver(KrylovMethod method)
+void WarpSystem::makeSolver(KrylovMethod method, WarpControl& control)
 {
   SolverOptions options = this->Options.solver;
   options.method = method;
   options.initialGuess = false;
   options.threads = this->Options.threads;
   options.observer = nullptr;
+  options.maximumSeconds = control.secondsLeft();
+  options.cancelled = nullptr;
   if (this->Options.automaticSolver && method == KrylovMethod::ConjugateGradient)
   {
     // Coarser and sparser levels than BoomerAMG's own choice: a third of the time for 10^6
     // tetrahedra.
     options.preconditioner = Preconditioner::BoomerAMG;
-    options.petscOptions =
+    options.defaultPetscOptions =
       "-pc_hypre_boomeramg_strong_threshold 0.5 -pc_hypre_boomeramg_coarsen_type HMIS "
       "-pc_hypre_boomeramg_interp_type ext+i -pc_hypre_boomeramg_P_max 4 "
       "-pc_hypre_boomeramg_agg_nl 1";
   }
   LinearSystem system;
-  system.matrix = &this->Inner;
+  system.matrix = &this->Inner->matrix;
   system.blockSize = this->Block;
-  system.coordinates = this->Coordinates.data();
+  system.coordinates = this->Inner->coordinates.data();
+  system.owner = this->Inner;
   this->Solver = std::make_unique<LinearSolver>(system, options);
   this->Method = method;
 }
@@ -131,8 +135,8 @@ void WarpSystem::makeSolver(KrylovMethod method)
 /// -A_B times the given values.
 std::vector<double> WarpSystem::rightHandSide(const std::vector<double>& values) const
 {
-  std::vector<double> right(this->Inner.size);
-  forEachChunk(this->Inner.size, this->Options.threads,
+  std::vector<double> right(this->Inner->matrix.size);
+  forEachChunk(this->Inner->matrix.size, this->Options.threads,
     [&](Index, Index begin, Index end)
     {
       for (Index i = begin; i < end; ++i)
@@ -170,10 +174,10 @@ void WarpSystem::remember(const std::vector<double>& solution)
 {
   const int threads = this->Options.threads;
   Former former;
-  former.right.resize(this->Inner.size);
-  this->Inner.multiply(solution.data(), former.right.data(), threads);
+  former.right.resize(this->Inner->matrix.size);
+  this->Inner->matrix.multiply(solution.data(), former.right.data(), threads);
   const double before = std::sqrt(product(former.right, former.right, threads));
-  std::vector<double> spanned(this->Inner.size, 0.0);
+  std::vector<double> spanned(this->Inner->matrix.size, 0.0);
   const double length = this->project(former.right, spanned);
   constexpr double nothingNew = 1e-6;
   if (!(length > nothingNew * before) || !std::isfinite(length))
@@ -202,19 +206,24 @@ bool WarpSystem::runSolver(const std::vector<double>& right, double tolerance,
 {
   if (!this->Solver)
   {
-    this->makeSolver(this->Method);
+    this->makeSolver(this->Method, control);
   }
   this->Solver->options().relativeTolerance = tolerance;
   this->Solver->options().maximumSeconds = control.secondsLeft();
+  constexpr double interval = 0.05; // of progress reports, in seconds
   this->Solver->options().observer = [&control](int, double) { return control.proceed(0.5); };
+  this->Solver->options().observerSeconds = interval;
+  this->Solver->options().cancelled = [&control]() { return !control.proceed(0.5); };
   control.result().setupSeconds += this->Solver->setUp();
-  solution.assign(this->Inner.size, 0.0);
+  solution.assign(this->Inner->matrix.size, 0.0);
   const LinearSolution done = this->Solver->solve(right.data(), solution.data());
   this->Solver->options().observer = nullptr;
+  this->Solver->options().cancelled = nullptr;
   control.result().setupSeconds += done.setupSeconds;
   control.result().solveSeconds += done.solveSeconds;
   control.addIterations(done.iterations);
   this->Failure = converged(done.reason) ? "" : describe(done.reason);
+  this->Failure += done.message.empty() ? "" : ": " + done.message;
   if (done.reason == SolveReason::TimeLimit)
   {
     control.result().timeLimit = true;
@@ -229,7 +238,7 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
   this->Failure.clear();
   std::vector<double> right = this->rightHandSide(values);
   const double whole = std::sqrt(product(right, right, threads));
-  std::vector<double> x(this->Inner.size, 0.0);
+  std::vector<double> x(this->Inner->matrix.size, 0.0);
   bool good = true;
   if (whole > 0)
   {
@@ -243,9 +252,9 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
       good = this->runSolver(right, std::min(loosest, tolerance * whole / rest), y, control);
       if (!good && !control.stopped() && this->Options.automaticSolver &&
         this->Method != KrylovMethod::Direct &&
-        this->Inner.size <= largestFactor * this->DirectLimit)
+        this->Inner->matrix.size <= largestFactor * this->DirectLimit)
       {
-        this->makeSolver(KrylovMethod::Direct);
+        this->makeSolver(KrylovMethod::Direct, control);
         good = this->runSolver(right, tolerance, y, control);
       }
       const bool finite =

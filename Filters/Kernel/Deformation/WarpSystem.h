@@ -57,16 +57,22 @@ private:
   void remember(const std::vector<double>& solution);
   bool runSolver(const std::vector<double>& right, double tolerance, std::vector<double>& solution,
     WarpControl& control);
-  void makeSolver(KrylovMethod method);
+  void makeSolver(KrylovMethod method, WarpControl& control);
+
+  /// What a set-up that was given up may still read.
+  struct InnerSystem
+  {
+    SparseMatrix matrix;             ///< A_I
+    std::vector<double> coordinates; ///< of the free points
+  };
 
   const WarpOptions& Options;
   int Block;
-  std::vector<Index> Free;    ///< points that are not held
-  SparseMatrix Inner;         ///< A_I
+  std::vector<Index> Free; ///< points that are not held
+  std::shared_ptr<InnerSystem> Inner = std::make_shared<InnerSystem>();
   std::vector<Index> Starts;  ///< of the rows of A_B
   std::vector<Index> Columns; ///< of A_B: unknowns of all points
   std::vector<double> Values;
-  std::vector<double> Coordinates; ///< of the free points
   std::unique_ptr<LinearSolver> Solver;
   KrylovMethod Method = KrylovMethod::ConjugateGradient;
   Index DirectLimit = 0; ///< unknowns

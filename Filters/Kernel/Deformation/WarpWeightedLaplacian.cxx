@@ -227,7 +227,7 @@ private:
 
 /**
  * @brief Solves the system, column by column, by stabilised biconjugate gradients; the matrix is
- * diagonally dominant and an incomplete factorization exists.
+ * diagonally dominant and an incomplete factorization exists. Solutions are verified.
  * @return false when the control stopped it
  */
 bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
@@ -257,7 +257,9 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
       }
       const Eigen::VectorXd start = x;
       x = solver.solveWithGuess(right.col(k), start);
-    } while (solver.info() != Eigen::Success);
+      // The method updates its residual step by step; another run begins with the real one.
+    } while (solver.info() != Eigen::Success ||
+      !((right.col(k) - matrix * x).norm() <= ResidualFactor * tolerance * right.col(k).norm()));
     solution.col(k) = x;
   }
   return true;

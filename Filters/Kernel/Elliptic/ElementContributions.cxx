@@ -2,8 +2,9 @@
 
 #include "ElementMatrices.h"
 #include "tautline/Core/Parallel.h"
-#include "tautline/Solvers/SmallEigenvalues.h"
 #include "tautline/Solvers/ExtremeEigenvalues.h"
+#include "tautline/Solvers/LinearSolverState.h"
+#include "tautline/Solvers/SmallEigenvalues.h"
 
 #include <limits>
 
@@ -114,28 +115,37 @@ void visitCells(Work& work, const Element& element)
     });
 }
 
-/// The eigenvector of the largest eigenvalue; empty if it is not found.
-std::vector<double> topEigenvector(const EllipticSystem& system)
+/// The eigenvector of the largest eigenvalue; empty if it is not found within the limits.
+std::vector<double> topEigenvector(const EllipticSystem& system, const ConditionOptions& limits)
 {
-  const PetscScope scope;
-  PetscOptionSet optionSet("");
-  const PetscScope own(optionSet.database());
-  const PetscSystem objects(system.linearSystem());
-  const ConditionOptions options;
-  EigensolverStoppingTest test(objects, options);
-  const ExtremeEigenvalue end = slepcLargestEigenvalue(objects.matrix(), options, optionSet, test);
-  std::vector<double> vector;
-  if (end.found)
-  {
-    vector.resize(static_cast<std::size_t>(objects.localSize()));
-    objects.copyOut(end.vector, vector.data());
-  }
-  return vector;
+  const LinearSystem linear = system.linearSystem();
+  const auto vector = std::make_shared<std::vector<double>>();
+  ConditionOptions options;
+  options.maximumSeconds = limits.maximumSeconds;
+  options.cancelled = limits.cancelled;
+  const WatchResult end = watchPetsc(hardLimits(limits.maximumSeconds, limits.cancelled, linear),
+    [linear, vector, options](WatchedWork* work)
+    {
+      const PetscScope scope;
+      PetscOptionSet optionSet("");
+      const PetscScope own(optionSet.database());
+      const PetscSystem objects(linear);
+      EigensolverStoppingTest test(objects, options, work);
+      const ExtremeEigenvalue found =
+        slepcLargestEigenvalue(objects.matrix(), options, optionSet, test);
+      if (found.found)
+      {
+        vector->resize(static_cast<std::size_t>(objects.localSize()));
+        objects.copyOut(found.vector, vector->data());
+      }
+    });
+  return end == WatchResult::Finished ? *vector : std::vector<double>();
 }
 }
 
 //------------------------------------------------------------------------------
-ElementContributions elementContributions(const EllipticSystem& system, bool shares, int threads)
+ElementContributions elementContributions(
+  const EllipticSystem& system, bool shares, int threads, const ConditionOptions& limits)
 {
   const Mesh& mesh = system.mesh();
   const MeshView& view = mesh.view();
@@ -143,7 +153,8 @@ ElementContributions elementContributions(const EllipticSystem& system, bool sha
   ElementContributions result;
   const auto cells = static_cast<std::size_t>(view.numberOfCells);
   result.largestEigenvalue.assign(cells, std::numeric_limits<double>::quiet_NaN());
-  const std::vector<double> vector = shares ? topEigenvector(system) : std::vector<double>();
+  const std::vector<double> vector =
+    shares ? topEigenvector(system, limits) : std::vector<double>();
   // A rank without unknowns has an empty vector, too.
   const bool found =
     shares && numbering.maximum(vector.empty() && !system.freePoints().empty() ? 1.0 : 0.0) == 0.0;

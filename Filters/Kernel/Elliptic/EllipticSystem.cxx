@@ -226,7 +226,7 @@ void EllipticSystem::Implementation::reduce(
 //------------------------------------------------------------------------------
 EllipticSystem::EllipticSystem(
   const Mesh& mesh, const EllipticProblem& problem, const MeshPart& part, int threads)
-  : Impl(std::make_unique<Implementation>(mesh, problem, part, threads))
+  : Impl(std::make_shared<Implementation>(mesh, problem, part, threads))
 {
 }
 
@@ -298,6 +298,7 @@ LinearSystem EllipticSystem::linearSystem() const
     impl.Problem.pde != Pde::Elliptic || impl.Problem.diffusion.reaction >= 0;
   system.coordinates = impl.Components > 1 ? impl.Coordinates.data() : nullptr;
   system.numbering = impl.Part.communicator ? impl.Numbering.get() : nullptr;
+  system.owner = this->Impl;
   return system;
 }
 

@@ -50,6 +50,8 @@ public:
   EllipticSystem(
     const Mesh& mesh, const EllipticProblem& problem, const MeshPart& part = {}, int threads = 0);
   ~EllipticSystem();
+  EllipticSystem(const EllipticSystem&) = delete;
+  EllipticSystem& operator=(const EllipticSystem&) = delete;
 
   Index unknowns() const;         ///< on all ranks
   int blockSize() const;          ///< unknowns per point: 1, 2 or 3
@@ -75,7 +77,7 @@ public:
 
 private:
   struct Implementation;
-  std::unique_ptr<Implementation> Impl;
+  std::shared_ptr<Implementation> Impl; // a set-up that was given up may still read the matrix
 };
 }
 #endif

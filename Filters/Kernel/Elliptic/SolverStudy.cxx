@@ -171,10 +171,14 @@ LinearSolution Study::solveOnce(const SolverCombination& combination, std::size_
   {
     options.petscOptions.clear();
   }
+  // To begin, a combination may wait for the set-up of another one that was given up.
+  SolverOptions beginning = options;
+  beginning.maximumSeconds = 0.0;
   if (this->Options.maximumSeconds > 0)
   {
     constexpr double smallest = 1e-3; // 0 would mean no limit
     const double left = std::max(smallest, this->Options.maximumSeconds - this->Time.seconds());
+    beginning.maximumSeconds = left;
     options.maximumSeconds =
       options.maximumSeconds > 0 ? std::min(options.maximumSeconds, left) : left;
   }
@@ -183,6 +187,8 @@ LinearSolution Study::solveOnce(const SolverCombination& combination, std::size_
   double first = 0;
   if (this->Options.progress)
   {
+    constexpr double interval = 0.05; // of progress reports, in seconds
+    options.observerSeconds = options.observer ? options.observerSeconds : interval;
     options.observer = [&](int iteration, double norm)
     {
       // The residual falls about evenly on a logarithmic scale.
@@ -194,7 +200,8 @@ LinearSolution Study::solveOnce(const SolverCombination& combination, std::size_
         (!this->Options.solver.observer || this->Options.solver.observer(iteration, norm));
     };
   }
-  LinearSolver solver(this->systemFor(combination), options);
+  LinearSolver solver(this->systemFor(combination), beginning);
+  solver.options() = options;
   std::vector<double> unknowns(this->System.matrix().size, 0.0);
   return solver.solve(this->System.rightHandSide().data(), unknowns.data());
 }

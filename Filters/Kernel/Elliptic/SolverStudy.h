@@ -34,7 +34,7 @@ struct SolverStudyOptions
   /**
    * @brief The rest: tolerances, restart, omega, limits per combination. PETSc options go to the
    * combinations in which they have an effect; one that has none in any of them is an error. The
-   * observer is called, too.
+   * observer is called, too, and `cancelled` ends the study.
    */
   SolverOptions solver;
   /// Estimate the condition of each P^-1 A by the Ritz values of CG, which is run besides where it

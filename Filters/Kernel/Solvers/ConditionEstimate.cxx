@@ -4,6 +4,7 @@
 #include "LinearSolver.h"
 #include "LinearSolverState.h"
 
+#include <atomic>
 #include <limits>
 
 namespace tautline
@@ -220,21 +221,16 @@ ExtremeEigenvalues plainExtremeEigenvalues(const LinearSystem& system, const Pet
   }
   return extremes;
 }
-}
 
-//------------------------------------------------------------------------------
-ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionOptions& options)
+/// In the thread that works.
+ConditionEstimate estimate(
+  const LinearSystem& system, const ConditionOptions& options, WatchedWork* work)
 {
-  check(options);
-  if (!system.symmetric)
-  {
-    throw Error("Condition numbers are found for symmetric matrices only.");
-  }
   const PetscScope scope;
   PetscOptionSet optionSet(options.petscOptions);
   const PetscScope own(optionSet.database());
   const PetscSystem objects(system);
-  EigensolverStoppingTest test(objects, options);
+  EigensolverStoppingTest test(objects, options, work);
   ConditionEstimate result;
   try
   {
@@ -258,10 +254,57 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
   {
     result = ConditionEstimate();
     result.smallestError = result.largestError = std::numeric_limits<double>::infinity();
-    result.message = error.what();
+    result.message = optionSet.explain(error,
+      options.method == SpectrumMethod::RitzValues ? "Method = Ritz values" : "Method = accurate");
   }
   test.rethrow();
   result.seconds = test.seconds();
+  return result;
+}
+}
+
+//------------------------------------------------------------------------------
+ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionOptions& options)
+{
+  check(options);
+  if (!system.symmetric)
+  {
+    throw Error("Condition numbers are found for symmetric matrices only.");
+  }
+  const WatchLimits limits = hardLimits(options.maximumSeconds, options.cancelled, system);
+  struct Job
+  {
+    LinearSystem system;
+    ConditionOptions options;
+    std::atomic<bool> begun{ false };
+    ConditionEstimate result;
+  };
+  const auto job = std::make_shared<Job>();
+  job->system = petscWatchable(limits) ? owned(system) : system;
+  job->options = options;
+  const Stopwatch time;
+  const WatchResult end = watchPetsc(limits,
+    [job, time](WatchedWork* work)
+    {
+      const PetscScope scope;
+      job->begun = true;
+      // Other work may have taken a part of the time.
+      double& seconds = job->options.maximumSeconds;
+      constexpr double smallest = 1e-3; // 0 would mean no limit
+      seconds = seconds > 0.0 ? std::max(smallest, seconds - time.seconds()) : 0.0;
+      job->result = estimate(job->system, job->options, work);
+    });
+  if (end == WatchResult::Finished)
+  {
+    return job->result;
+  }
+  ConditionEstimate result;
+  result.smallestError = result.largestError = std::numeric_limits<double>::infinity();
+  result.seconds = time.seconds();
+  result.message = end == WatchResult::Cancelled ? "Stopped by the user."
+    : job->begun ? "The time limit was reached before anything was found: choose the method Ritz "
+                   "values, a coarser mesh or a longer time limit."
+                 : BusyMessage;
   return result;
 }
 }

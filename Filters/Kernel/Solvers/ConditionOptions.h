@@ -29,11 +29,14 @@ struct ConditionOptions
   /// Relative, of each eigenvalue, 0 to 1 (exclusive); multigrid takes ten times longer to 1e-6.
   double tolerance = 1e-4;
   int maximumIterations = 10000; ///< at least 1
-  /// 0: no limit; checked between iterations, not in a factorization.
+  /// Wall time; 0: no limit. As SolverOptions::maximumSeconds.
   double maximumSeconds = 0.0;
   std::string petscOptions; ///< "-name value ...", as SolverOptions::petscOptions
-  /// Called with the fraction done, 0 to 1; the estimate stops when it returns false.
+  /// Called with the fraction done, 0 to 1, from the calling thread; the estimate stops when it
+  /// returns false.
   std::function<bool(double)> progress;
+  /// Whether to stop: as SolverOptions::cancelled.
+  std::function<bool()> cancelled;
 };
 }
 #endif

@@ -10,22 +10,48 @@ void EigensolverStoppingTest::stage(double begin, double end)
   this->End = end;
 }
 
-bool EigensolverStoppingTest::stop(double fraction)
+/// Whether the progress function or the user ends the work. No exception may pass through PETSc.
+bool EigensolverStoppingTest::userStops(double fraction)
 {
-  bool aborted = this->Aborted;
   try
   {
-    aborted = aborted ||
-      (this->Options.progress &&
-        !this->Options.progress(this->Begin + fraction * (this->End - this->Begin)));
+    if (this->Work && this->Work->abandoned())
+    {
+      return true;
+    }
+    // The waiting thread is asked now and then; switching to it takes longer than a short step.
+    const bool due = this->SinceAsked.reached(WatchInterval);
+    if (!this->Work && due && this->Options.cancelled && this->Options.cancelled())
+    {
+      return true;
+    }
+    const double done = this->Begin + fraction * (this->End - this->Begin);
+    bool proceed = true;
+    if (this->Options.progress && !this->Work)
+    {
+      proceed = this->Options.progress(done);
+    }
+    else if (this->Options.progress && due)
+    {
+      proceed = this->Work->inCaller([&]() { proceed = this->Options.progress(done); }) && proceed;
+    }
+    if (due)
+    {
+      this->SinceAsked = Stopwatch();
+    }
+    return !proceed;
   }
   catch (...)
   {
-    // No exception may pass through PETSc.
     this->Thrown = std::current_exception();
-    aborted = true;
+    return true;
   }
-  if (this->Options.progress)
+}
+
+bool EigensolverStoppingTest::stop(double fraction)
+{
+  const bool aborted = this->Aborted || this->userStops(fraction);
+  if (this->Options.progress || this->Options.cancelled || this->Work)
   {
     this->Aborted = this->System.anywhere(aborted);
   }

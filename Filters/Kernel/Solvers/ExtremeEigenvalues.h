@@ -8,6 +8,7 @@
 
 #include "ConditionOptions.h"
 #include "PetscObjects.h"
+#include "Watchdog.h"
 
 #include "tautline/Core/Stopwatch.h"
 
@@ -17,9 +18,12 @@ namespace tautline
 class EigensolverStoppingTest
 {
 public:
-  EigensolverStoppingTest(const PetscSystem& system, const ConditionOptions& options)
+  /// @param work where progress() is called: in the thread that waits; null: in this one
+  EigensolverStoppingTest(
+    const PetscSystem& system, const ConditionOptions& options, WatchedWork* work = nullptr)
     : System(system)
     , Options(options)
+    , Work(work)
   {
   }
   /// Reports the fraction done of the present stage; whether to stop.
@@ -34,9 +38,12 @@ public:
   void rethrow() const;
 
 private:
+  bool userStops(double fraction);
+
   const PetscSystem& System;
   const ConditionOptions& Options;
-  Stopwatch Time;
+  WatchedWork* Work;
+  Stopwatch Time, SinceAsked;
   double Begin = 0.0, End = 1.0;
   bool Late = false, Aborted = false;
   std::exception_ptr Thrown;

@@ -106,7 +106,7 @@ void collect(Mat matrix, EPS solver, bool smallest, ExtremeEigenvalue& extreme)
 
 /// Runs a solver; a failure of SLEPc, or of a library below, becomes a message.
 template <class Call>
-void attempt(ExtremeEigenvalue& extreme, const Call& call)
+void attempt(ExtremeEigenvalue& extreme, const PetscOptionSet& options, const Call& call)
 {
   try
   {
@@ -114,7 +114,7 @@ void attempt(ExtremeEigenvalue& extreme, const Call& call)
   }
   catch (const PetscError& error)
   {
-    extreme.message = error.what();
+    extreme.message = options.explain(error, "Method = accurate");
   }
 }
 }
@@ -128,7 +128,7 @@ ExtremeEigenvalue slepcLargestEigenvalue(Mat matrix, const ConditionOptions& opt
   extreme.method = "Krylov-Schur";
   PetscInt rows = 0;
   petsc(MatGetSize(matrix, &rows, nullptr));
-  attempt(extreme,
+  attempt(extreme, optionSet,
     [&]()
     {
       PetscEigensolver solver;
@@ -156,7 +156,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
   const bool factorize = isFactorAffordable(matrix, system.blockSize);
   PetscInt negative = 0;
   test.stage(0.4, 1.0);
-  attempt(low,
+  attempt(low, optionSet,
     [&]()
     {
       PetscEigensolver solver;

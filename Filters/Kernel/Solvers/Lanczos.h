@@ -60,7 +60,8 @@ TAUTLINE_SOLVERS_EXPORT Spectrum extremeEigenvalues(
 struct SolveReport
 {
   Index iterations = 0;
-  double residual = 0.0; ///< norm of b - A x over that of b
+  double residual = 0.0; ///< norm of b - A x over that of b, computed from x
+  /// The method reached the tolerance, and `residual` is at most ResidualFactor times that.
   bool converged = false;
 };
 

@@ -2,40 +2,241 @@
 
 #include "LinearSolverState.h"
 
+#include "tautline/Ranks/PointNumbering.h"
+
+#include <algorithm>
+#include <atomic>
+
 namespace tautline
 {
-LinearSolver::LinearSolver(const LinearSystem& system, const SolverOptions& options)
+namespace
 {
-  const PetscScope scope;
-  this->Impl = std::make_unique<LinearSolverState>(system, options);
-}
+/// What work does while it can be given up.
+enum class Stage
+{
+  Waiting, // for other work that uses PETSc
+  SetUp,
+  Solve
+};
 
-LinearSolver::~LinearSolver()
+/// What one piece of work owns: it may go on when the solver has gone.
+struct Job
 {
-  // Once PETSc has gone, nothing is left to destroy, and it must not be initialized for that.
-  if (petscUsable())
+  std::shared_ptr<LinearSolverState> state;
+  SolverOptions options;
+  Stopwatch time; // since the caller has begun to wait
+  std::atomic<Stage> stage{ Stage::Waiting };
+  std::vector<double> b, x;
+  double seconds = 0.0;
+  LinearSolution solution;
+
+  /// In the thread that works: its limits, and where its callbacks are called.
+  void begin(WatchedWork* work)
   {
-    const PetscScope scope;
-    this->Impl.reset();
+    this->state->Options = this->options;
+    this->state->Work = work;
+    this->state->Time = this->time;
   }
+};
+
+const char* remedyFor(const SolverOptions& options)
+{
+  return options.method == KrylovMethod::Direct
+    ? "choose CG with BoomerAMG, a coarser mesh or a longer time limit"
+    : "choose a cheaper preconditioner such as Jacobi or SSOR, a coarser mesh or a longer time "
+      "limit";
+}
 }
 
+//------------------------------------------------------------------------------
+LinearSystem owned(const LinearSystem& system)
+{
+  struct Copies
+  {
+    SparseMatrix matrix;
+    std::vector<double> coordinates;
+  };
+  if (system.owner || !system.matrix)
+  {
+    return system;
+  }
+  const auto copies = std::make_shared<Copies>();
+  LinearSystem own = system;
+  copies->matrix = *system.matrix;
+  own.matrix = &copies->matrix;
+  if (system.coordinates && system.blockSize > 0)
+  {
+    const Index points = system.matrix->size / system.blockSize;
+    copies->coordinates.assign(system.coordinates, system.coordinates + 3 * points);
+    own.coordinates = copies->coordinates.data();
+  }
+  own.owner = copies;
+  return own;
+}
+
+WatchLimits hardLimits(
+  double maximumSeconds, const std::function<bool()>& cancelled, const LinearSystem& system)
+{
+  if (system.numbering && system.numbering->ranks() > 1)
+  {
+    return {};
+  }
+  constexpr double fraction = 0.1, least = 0.5, most = 5.0;
+  const double grace = std::clamp(fraction * maximumSeconds, least, most);
+  return { maximumSeconds > 0.0 ? maximumSeconds + grace : 0.0, cancelled };
+}
+
+//------------------------------------------------------------------------------
+LinearSolver::LinearSolver(const LinearSystem& system, const SolverOptions& options)
+  : Options(options)
+{
+  const WatchLimits limits = hardLimits(options.maximumSeconds, options.cancelled, system);
+  struct Making
+  {
+    LinearSystem system;
+    SolverOptions options;
+    std::shared_ptr<LinearSolverState> state;
+  };
+  const auto making = std::make_shared<Making>();
+  making->system = petscWatchable(limits) ? owned(system) : system;
+  making->options = options;
+  const WatchResult result = watchPetsc(limits,
+    [making](WatchedWork*)
+    {
+      const PetscScope scope;
+      making->state = { new LinearSolverState(making->system, making->options),
+        PetscDelete<LinearSolverState>() };
+    });
+  if (result != WatchResult::Finished)
+  {
+    throw Error(result == WatchResult::Cancelled ? "Stopped by the user." : BusyMessage);
+  }
+  this->Impl = std::move(making->state);
+}
+
+LinearSolver::~LinearSolver() = default;
+
+//------------------------------------------------------------------------------
+void LinearSolver::abandon(SolveReason reason, const std::string& stage)
+{
+  this->Lost = reason;
+  this->LostMessage = stage;
+  this->Impl.reset(); // the work has it as long as it goes on
+}
+
+namespace
+{
+/// Why a piece of work was given up.
+std::string givenUp(WatchResult result, Stage stage, const SolverOptions& options)
+{
+  if (result == WatchResult::Cancelled)
+  {
+    return "";
+  }
+  std::string text = BusyMessage;
+  if (stage != Stage::Waiting)
+  {
+    text = options.method == KrylovMethod::Direct
+      ? "The factorization"
+      : std::string(stage == Stage::SetUp ? "The set-up of " : "An iteration with ") +
+        nameOf(options.preconditioner);
+    text += std::string(" was not finished in time: ") + remedyFor(options) + ".";
+  }
+  return text;
+}
+
+SolveReason reasonOf(WatchResult result)
+{
+  return result == WatchResult::Cancelled ? SolveReason::Aborted : SolveReason::TimeLimit;
+}
+}
+
+//------------------------------------------------------------------------------
 double LinearSolver::setUp()
 {
+  if (!this->Impl)
+  {
+    return 0.0;
+  }
   this->Impl->requireAlive();
-  const PetscScope scope(this->Impl->OptionSet.database());
-  return this->Impl->setUp();
+  const auto job = std::make_shared<Job>();
+  job->state = this->Impl;
+  job->options = this->Options;
+  const WatchResult result = watchPetsc(
+    hardLimits(this->Options.maximumSeconds, this->Options.cancelled, this->Impl->System),
+    [job](WatchedWork* work)
+    {
+      const PetscScope scope(job->state->OptionSet.database());
+      job->stage = Stage::SetUp;
+      job->begin(work);
+      job->seconds = job->state->setUp();
+    });
+  if (result != WatchResult::Finished)
+  {
+    this->abandon(reasonOf(result), givenUp(result, job->stage, this->Options));
+    return job->time.seconds();
+  }
+  return job->seconds;
 }
 
+//------------------------------------------------------------------------------
 LinearSolution LinearSolver::solve(const double* b, double* x)
 {
+  LinearSolution solution;
+  if (!this->Impl)
+  {
+    solution.reason = this->Lost;
+    solution.message = this->LostMessage;
+    return solution;
+  }
   this->Impl->requireAlive();
-  const PetscScope scope(this->Impl->OptionSet.database());
-  return this->Impl->solve(b, x);
+  const std::shared_ptr<LinearSolverState> state = this->Impl;
+  const auto job = std::make_shared<Job>();
+  job->state = state;
+  job->options = this->Options;
+  const WatchLimits limits =
+    hardLimits(this->Options.maximumSeconds, this->Options.cancelled, state->System);
+  const Index n = state->Objects.localSize();
+  const bool watched = petscWatchable(limits);
+  if (watched)
+  {
+    job->b.assign(b, b + n);
+    job->x.assign(x, x + n);
+    b = job->b.data();
+  }
+  double* target = watched ? job->x.data() : x;
+  const WatchResult result = watchPetsc(limits,
+    [job, b, target](WatchedWork* work)
+    {
+      const PetscScope scope(job->state->OptionSet.database());
+      job->stage = Stage::SetUp;
+      job->begin(work);
+      job->seconds = job->state->setUp();
+      job->stage = Stage::Solve;
+      job->solution = job->state->solve(b, target);
+      job->solution.setupSeconds += job->seconds;
+    });
+  if (result != WatchResult::Finished)
+  {
+    if (!this->Options.initialGuess)
+    {
+      std::fill_n(x, n, 0.0);
+    }
+    solution.reason = reasonOf(result);
+    solution.message = givenUp(result, job->stage, this->Options);
+    solution.setupSeconds = job->stage == Stage::SetUp ? job->time.seconds() : 0.0;
+    this->abandon(solution.reason, solution.message);
+    return solution;
+  }
+  if (watched)
+  {
+    std::copy(job->x.begin(), job->x.end(), x);
+  }
+  return job->solution;
 }
 
 SolverOptions& LinearSolver::options()
 {
-  return this->Impl->Options;
+  return this->Options;
 }
 }

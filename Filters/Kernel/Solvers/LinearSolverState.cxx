@@ -1,6 +1,10 @@
 #include "LinearSolverState.h"
 
+#include "PetscOptionRules.h"
+
 #include <algorithm>
+#include <limits>
+#include <sstream>
 
 namespace tautline
 {
@@ -9,9 +13,14 @@ namespace
 /// A direct solve must leave a residual below this, relative to b; a singular matrix does not.
 constexpr double DirectTolerance = 1e-6;
 
-/// A solution that leaves this fraction of the right-hand side is hardly better than 0, though the
-/// preconditioned residual may be small.
+/// A solution that leaves this fraction of the right-hand side is hardly better than 0.
 constexpr double FalseResidual = 0.5;
+
+/// How often a method goes on where its own test was met but the residual is not small.
+constexpr int Rounds = 4;
+
+/// A residual is rounding if it is below this many units in the last place of |A| |x| + |b|.
+constexpr double RoundingUnits = 16.0;
 
 KSPType typeOf(KrylovMethod method)
 {
@@ -72,16 +81,18 @@ const char* explain(PCFailedReason reason)
   switch (reason)
   {
     case PC_FACTOR_STRUCT_ZEROPIVOT:
-      return "a pivot is zero: the matrix has an empty row";
+      return "A pivot is zero: the matrix has an empty row.";
     case PC_FACTOR_NUMERIC_ZEROPIVOT:
-      return "a pivot is zero: the matrix is singular, or not definite enough for this "
-             "preconditioner";
+      return "A pivot is zero: the matrix is singular, or not definite enough for this "
+             "preconditioner; choose Preconditioner = Jacobi or BoomerAMG.";
     case PC_FACTOR_OUTMEMORY:
-      return "not enough memory for the factors";
+      return "The memory does not suffice for the factors; choose Solver = CG with "
+             "Preconditioner = BoomerAMG.";
     case PC_SUBPC_ERROR:
-      return "an inner solver failed: a pivot is zero";
+      return "An inner solver failed: a pivot is zero; choose Preconditioner = Jacobi or "
+             "BoomerAMG.";
     default:
-      return "the preconditioner or factorization failed";
+      return "The preconditioner or factorization failed; choose another one.";
   }
 }
 
@@ -144,6 +155,14 @@ void LinearSolverState::requireAlive() const
   }
 }
 
+/// The user's choice, for messages.
+std::string LinearSolverState::subject() const
+{
+  return this->Options.method == KrylovMethod::Direct
+    ? "Solver = direct"
+    : std::string("Preconditioner = ") + nameOf(this->Options.preconditioner);
+}
+
 void LinearSolverState::configure()
 {
   const bool direct = this->Options.method == KrylovMethod::Direct;
@@ -201,6 +220,10 @@ void LinearSolverState::configure()
   {
     petsc(KSPSetComputeSingularValues(this->Solver, PETSC_TRUE));
   }
+  for (const PetscOption& option : parsePetscOptions(this->Options.defaultPetscOptions))
+  {
+    this->OptionSet.setDefault(option.name, option.value);
+  }
   this->applyTolerances();
   this->OptionSet.read([&]() { petsc(KSPSetFromOptions(this->Solver)); });
   this->OptionSet.rejectUnused(false);
@@ -223,6 +246,7 @@ void LinearSolverState::applyTolerances()
     unlessGiven("-ksp_rtol", this->Options.relativeTolerance, relative),
     unlessGiven("-ksp_atol", this->Options.absoluteTolerance, absolute), divergence,
     this->OptionSet.has("-ksp_max_it") ? iterations : this->Options.maximumIterations));
+  petsc(KSPGetTolerances(this->Solver, &this->Relative, &this->Absolute, nullptr, nullptr));
 }
 
 //------------------------------------------------------------------------------
@@ -231,9 +255,11 @@ PetscErrorCode LinearSolverState::test(
 {
   auto& self = *static_cast<LinearSolverState*>(context);
   // GMRES reports the residual at a restart twice.
+  iteration += self.Before;
   self.Residuals.resize(static_cast<std::size_t>(iteration));
   self.Residuals.push_back(norm);
-  const PetscErrorCode code = self.Test(solver, iteration, norm, reason, self.TestContext);
+  const PetscErrorCode code =
+    self.Test(solver, iteration - self.Before, norm, reason, self.TestContext);
   if (code == 0 && *reason == KSP_CONVERGED_ITERATING && self.shouldStop(iteration, norm))
   {
     *reason = KSP_DIVERGED_ITS;
@@ -241,23 +267,56 @@ PetscErrorCode LinearSolverState::test(
   return code;
 }
 
-bool LinearSolverState::shouldStop(int iteration, double norm)
+/// Whether the observer or the user ends the solve. No exception may pass through PETSc.
+bool LinearSolverState::userStops(int iteration, double norm)
 {
-  bool aborted = false;
-  // No exception may pass through PETSc.
   try
   {
-    aborted = this->Options.observer && !this->Options.observer(iteration, norm);
+    if (this->Work && this->Work->abandoned())
+    {
+      return true;
+    }
+    if (!this->Work && this->Options.cancelled && this->SinceAsked.reached(WatchInterval))
+    {
+      this->SinceAsked = Stopwatch();
+      if (this->Options.cancelled())
+      {
+        return true;
+      }
+    }
+    const double interval = this->Options.observerSeconds;
+    if (!this->Options.observer ||
+      (iteration > 0 && interval > 0.0 && !this->SinceObserved.reached(interval)))
+    {
+      return false;
+    }
+    this->SinceObserved = Stopwatch();
+    bool proceed = true;
+    const auto observe = [&]() { proceed = this->Options.observer(iteration, norm); };
+    if (this->Work)
+    {
+      proceed = this->Work->inCaller(observe) && proceed;
+    }
+    else
+    {
+      observe();
+    }
+    return !proceed;
   }
   catch (...)
   {
     this->Thrown = std::current_exception();
-    aborted = true;
+    return true;
   }
+}
+
+bool LinearSolverState::shouldStop(int iteration, double norm)
+{
+  bool aborted = this->userStops(iteration, norm);
   const bool limited = this->Options.maximumSeconds > 0.0;
   bool late = this->Time.reached(this->Options.maximumSeconds);
   // The ranks stop together.
-  aborted = this->Options.observer && this->Objects.anywhere(aborted);
+  aborted = (this->Options.observer || this->Options.cancelled) && this->Objects.anywhere(aborted);
   late = limited && this->Objects.anywhere(late);
   if (aborted || late)
   {
@@ -285,7 +344,8 @@ double LinearSolverState::setUp()
     const bool indefinite =
       std::string(error.what()).find("not positive definite") != std::string::npos;
     this->Failure = indefinite ? SolveReason::IndefiniteMatrix : SolveReason::PreconditionerFailed;
-    this->FailureText = error.what();
+    this->FailureText = indefinite ? "A pivot of the factorization is not positive."
+                                   : this->OptionSet.explain(error, this->subject());
     this->Ready = true;
     return time.seconds();
   }
@@ -311,7 +371,7 @@ void LinearSolverState::findEmptyRows()
   petsc(VecMin(diagonal, &row, &smallest));
   if (smallest == 0.0)
   {
-    throw PetscError(PETSC_ERR_MAT_CH_ZRPVT,
+    throw PetscError(OwnError,
       "The matrix is singular: the diagonal entry of row " + std::to_string(row) +
         ", a pivot, is 0.");
   }
@@ -331,7 +391,7 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
     solution.reason = this->Stopped != SolveReason::Exact
       ? this->Stopped
       : translate(reason, this->Options.method == KrylovMethod::Direct);
-    solution.iterations = iterations;
+    solution.iterations = this->Before + iterations;
     solution.residuals = this->Residuals;
     if (solution.reason == SolveReason::PreconditionerFailed)
     {
@@ -341,7 +401,6 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
       petsc(PCGetFailedReason(pc, &why));
       solution.message = explain(why);
     }
-    this->measure(b, x, solution);
     if (this->Options.ritzValues)
     {
       this->ritzValues(solution);
@@ -350,7 +409,7 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
   catch (const PetscError& error)
   {
     solution.reason = SolveReason::OtherFailure;
-    solution.message = error.what();
+    solution.message = this->OptionSet.explain(error, this->subject());
   }
 }
 
@@ -358,7 +417,6 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
 LinearSolution LinearSolverState::solve(const double* b, double* x)
 {
   LinearSolution solution;
-  this->Time = Stopwatch();
   this->Residuals.clear();
   this->Stopped = SolveReason::Exact;
   this->Thrown = nullptr;
@@ -391,53 +449,160 @@ LinearSolution LinearSolverState::solve(const double* b, double* x)
   const bool direct = this->Options.method == KrylovMethod::Direct;
   petsc(KSPSetInitialGuessNonzero(
     this->Solver, this->Options.initialGuess && !direct ? PETSC_TRUE : PETSC_FALSE));
-  this->runSolver(rightHandSide, unknowns, solution);
-  solution.solveSeconds = time.seconds();
-  if (this->Thrown)
+  PetscInt most = 0;
+  petsc(KSPGetTolerances(this->Solver, nullptr, nullptr, nullptr, &most));
+  this->Before = 0;
+  bool again = true;
+  for (int round = 0; again; ++round)
   {
-    std::rethrow_exception(this->Thrown);
+    solution.message.clear();
+    this->runSolver(rightHandSide, unknowns, solution);
+    if (this->Thrown)
+    {
+      std::rethrow_exception(this->Thrown);
+    }
+    const bool relative = solution.reason == SolveReason::RelativeTolerance;
+    this->takeSolution(b, unknowns, x, solution);
+    // The method goes on from here where its own test was met too early.
+    again = solution.reason == SolveReason::FalseConvergence && relative && round < Rounds &&
+      !this->Options.ritzValues && solution.iterations < most && solution.trueResidual > 0.0 &&
+      this->tighten(solution, most);
   }
+  petsc(KSPSetTolerances(this->Solver, this->Relative, this->Absolute, PETSC_DEFAULT, most));
+  solution.solveSeconds = time.seconds();
+  return solution;
+}
 
-  // x stays as it was where the solution is not finite.
+/// Tolerances for another round that leaves less than the allowed residual; false if there are
+/// none.
+bool LinearSolverState::tighten(const LinearSolution& solution, int most)
+{
+  constexpr double margin = 0.1;
+  PetscReal relative = 0.0;
+  petsc(KSPGetTolerances(this->Solver, &relative, nullptr, nullptr, nullptr));
+  relative *= margin * this->allowedResidual() / solution.trueResidual;
+  if (!(relative > std::numeric_limits<double>::epsilon()))
+  {
+    return false;
+  }
+  this->Before = solution.iterations;
+  petsc(KSPSetTolerances(
+    this->Solver, relative, this->Absolute, PETSC_DEFAULT, most - solution.iterations));
+  petsc(KSPSetInitialGuessNonzero(this->Solver, PETSC_TRUE));
+  return true;
+}
+
+/// Copies the solution to x and verifies it. x stays as it was where it is not finite.
+void LinearSolverState::takeSolution(
+  const double* b, Vec unknowns, double* x, LinearSolution& solution)
+{
+  const Index n = this->Objects.localSize();
   std::vector<double> values(static_cast<std::size_t>(n));
   this->Objects.copyOut(unknowns, values.data());
   if (!this->Objects.anywhere(!finite(values.data(), n)))
   {
     std::copy(values.begin(), values.end(), x);
+    this->verify(b, x, solution);
   }
   else if (converged(solution.reason))
   {
     solution.reason = SolveReason::NotANumber;
   }
-  return solution;
 }
 
-void LinearSolverState::measure(Vec b, Vec x, LinearSolution& solution)
+//------------------------------------------------------------------------------
+/// The 2-norm of a vector of this rank's contributions, without overflow.
+double LinearSolverState::norm(const std::vector<double>& contributions) const
 {
-  PetscVector residual = this->Objects.createVector();
-  PetscReal before = 0.0, after = 0.0;
-  petsc(VecNorm(b, NORM_2, &before));
-  petsc(MatMult(this->Objects.matrix(), x, residual));
-  petsc(VecAYPX(residual, -1.0, b));
-  petsc(VecNorm(residual, NORM_2, &after));
-  solution.trueResidual = before > 0.0 && std::isfinite(after) ? after / before : 0.0;
-  if (this->Options.method != KrylovMethod::Direct)
+  if (this->Objects.ranks() > 1)
   {
-    // A preconditioner may make a large residual look small.
-    const bool relative = solution.reason == SolveReason::RelativeTolerance;
-    const double acceptable = std::max(FalseResidual, this->Options.relativeTolerance);
-    solution.reason = relative && solution.trueResidual > acceptable ? SolveReason::FalseConvergence
-                                                                     : solution.reason;
+    PetscReal norm = 0.0;
+    PetscVector rows = this->Objects.createVector();
+    this->Objects.add(contributions.data(), rows);
+    petsc(VecNorm(rows, NORM_2, &norm));
+    return norm;
+  }
+  double largest = 0.0;
+  for (const double value : contributions)
+  {
+    largest = std::max(largest, std::abs(value));
+  }
+  double sum = 0.0;
+  for (const double value : contributions)
+  {
+    const double scaled = largest > 0.0 ? value / largest : 0.0;
+    sum += scaled * scaled;
+  }
+  return largest * std::sqrt(sum);
+}
+
+/// Relative to the right-hand side.
+double LinearSolverState::allowedResidual() const
+{
+  return this->Options.method == KrylovMethod::Direct
+    ? DirectTolerance
+    : std::min(ResidualFactor * this->Relative, std::max(FalseResidual, this->Relative));
+}
+
+/// What rounding may leave of b - A x.
+double LinearSolverState::roundingLevel(const double* b, const double* x) const
+{
+  const SparseMatrix& matrix = *this->System.matrix;
+  std::vector<double> sizes(static_cast<std::size_t>(matrix.size));
+  for (Index row = 0; row < matrix.size; ++row)
+  {
+    sizes[row] = std::abs(b[row]);
+    for (Index k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k)
+    {
+      sizes[row] += std::abs(matrix.values[k] * x[matrix.columns[k]]);
+    }
+  }
+  return RoundingUnits * std::numeric_limits<double>::epsilon() * this->norm(sizes);
+}
+
+/**
+ * @brief The residual of the system itself, by Tautline's own product: a preconditioner may make a
+ * large one look small, a factorization does not notice that a matrix is singular, and some methods
+ * report success without any work.
+ */
+void LinearSolverState::verify(const double* b, const double* x, LinearSolution& solution)
+{
+  const auto n = static_cast<std::size_t>(this->Objects.localSize());
+  std::vector<double> residual(n);
+  this->System.matrix->multiply(x, residual.data(), this->Options.threads);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    residual[i] = b[i] - residual[i];
+  }
+  const double before = this->norm(std::vector<double>(b, b + n)), after = this->norm(residual);
+  solution.trueResidual = before > 0.0 && std::isfinite(after) ? after / before : 0.0;
+  const bool direct = this->Options.method == KrylovMethod::Direct;
+  if (direct)
+  {
+    solution.residuals = { before, after };
+  }
+  if (!converged(solution.reason))
+  {
     return;
   }
-  // A factorization does not notice that a matrix is singular; the residual does.
-  solution.residuals = { before, after };
-  if (converged(solution.reason) && !(after <= DirectTolerance * before))
+  const double allowed = this->allowedResidual();
+  if (after <= std::max(allowed * before, ResidualFactor * this->Absolute) ||
+    after <= this->roundingLevel(b, x))
   {
-    solution.reason = SolveReason::PreconditionerFailed;
-    solution.message = "The matrix is singular or nearly so: a direct solve leaves a residual of " +
-      std::to_string(before > 0.0 ? after / before : after) + " times the right-hand side.";
+    return;
   }
+  std::ostringstream text;
+  text.precision(2);
+  const char* unit = before > 0.0 ? " times the right-hand side" : "";
+  text << (direct ? "The matrix is singular or nearly so: a direct solve leaves a residual of "
+                  : "The residual is ")
+       << (before > 0.0 ? after / before : after) << unit;
+  if (!direct)
+  {
+    text << ", allowed is " << (before > 0.0 ? allowed : ResidualFactor * this->Absolute);
+  }
+  solution.reason = direct ? SolveReason::PreconditionerFailed : SolveReason::FalseConvergence;
+  solution.message = text.str() + ".";
 }
 
 void LinearSolverState::ritzValues(LinearSolution& solution)

@@ -7,11 +7,20 @@
 
 #include "PetscObjects.h"
 #include "SolverOptions.h"
+#include "Watchdog.h"
 
 #include "tautline/Core/Stopwatch.h"
 
 namespace tautline
 {
+/// Limits of work on a system that is given up, some time after those at which it ends by itself;
+/// none on several ranks, where all have to end together.
+WatchLimits hardLimits(
+  double maximumSeconds, const std::function<bool()>& cancelled, const LinearSystem& system);
+
+/// The system, with copies of what it does not own.
+LinearSystem owned(const LinearSystem& system);
+
 /// The objects of one solver.
 struct LinearSolverState
 {
@@ -37,22 +46,33 @@ struct LinearSolverState
   void* TestContext = nullptr;
   PetscErrorCode (*DestroyTest)(void*) = nullptr;
 
-  // Of the current solve.
+  // Of the current set-up or solve.
+  WatchedWork* Work = nullptr; // calls back to the thread that waits; null: this one does all
   Stopwatch Time;
+  Stopwatch SinceObserved, SinceAsked;
   std::vector<double> Residuals;
+  int Before = 0;                           // iterations of earlier rounds
+  double Relative = 0.0, Absolute = 0.0;    // tolerances
   SolveReason Stopped = SolveReason::Exact; // TimeLimit or Aborted
   std::exception_ptr Thrown;                // by the observer
 
   ~LinearSolverState();
 
 private:
+  std::string subject() const;
   void configure();
   void applyTolerances();
   void findEmptyRows();
   void runSolver(Vec b, Vec x, LinearSolution& solution);
-  void measure(Vec b, Vec x, LinearSolution& solution);
+  bool tighten(const LinearSolution& solution, int most);
+  void takeSolution(const double* b, Vec unknowns, double* x, LinearSolution& solution);
+  double allowedResidual() const;
+  double norm(const std::vector<double>& contributions) const;
+  double roundingLevel(const double* b, const double* x) const;
+  void verify(const double* b, const double* x, LinearSolution& solution);
   void ritzValues(LinearSolution& solution);
   bool shouldStop(int iteration, double norm);
+  bool userStops(int iteration, double norm);
   static PetscErrorCode test(
     KSP solver, PetscInt iteration, PetscReal norm, KSPConvergedReason* reason, void* self);
 };

@@ -7,6 +7,8 @@
 
 #include "SparseMatrix.h"
 
+#include <memory>
+
 namespace tautline
 {
 class PointNumbering;
@@ -28,6 +30,9 @@ struct LinearSystem
   const double* coordinates = nullptr;
   /// How this rank's points are numbered among all; null: one rank.
   const PointNumbering* numbering = nullptr;
+  /// Owns the matrix and the coordinates. A set-up that is given up at its time limit goes on in
+  /// the background and reads them; null: a solver with limits copies them.
+  std::shared_ptr<const void> owner;
 };
 }
 #endif

@@ -1,11 +1,11 @@
 #include "PetscObjects.h"
 
+#include "PetscOptionRules.h"
+
 #include <algorithm>
 
 #include "tautline/Ranks/PointNumbering.h"
 #include "tautline/Ranks/RankExchange.h"
-
-#include <sstream>
 
 namespace tautline
 {
@@ -33,16 +33,9 @@ Index firstBadRow(const SparseMatrix& matrix)
   return None;
 }
 
-/// Options that something reads only when an inner solver is set up, or after the solve.
+/// Options that something reads only when an inner solver is set up.
 bool readLater(const std::string& name, bool afterSetUp)
 {
-  for (const char* part : { "view", "converged_reason", "monitor" })
-  {
-    if (name.find(part) != std::string::npos)
-    {
-      return true;
-    }
-  }
   for (const char* prefix : { "-sub_", "-mg_", "-mat_", "-redundant_", "-telescope_",
          "-fieldsplit_", "-gamg_est_", "-pc_gamg_esteig_", "-esteig_" })
   {
@@ -59,27 +52,19 @@ bool readLater(const std::string& name, bool afterSetUp)
 PetscOptionSet::PetscOptionSet(const std::string& text)
   : Text(text)
 {
+  const std::vector<PetscOption> options = parsePetscOptions(text);
   petsc(PetscOptionsCreate(this->Database.out()));
-  // Alternately names and values; a name may have no value, but not two.
-  std::istringstream words(text);
-  std::string word;
-  bool value = false;
-  while (words >> word)
+  // One by one: PETSc would act upon some names in a whole text.
+  for (const PetscOption& option : options)
   {
-    PetscBool isKey = PETSC_FALSE;
-    petsc(PetscOptionsValidKey(word.c_str(), &isKey));
-    if (isKey)
-    {
-      this->Given.push_back(word);
-    }
-    else if (!value)
-    {
-      throw Error("PETSc options \"" + text + "\": \"" + word +
-        "\" is not the name of an option; write -name value -name value ...");
-    }
-    value = isKey == PETSC_TRUE;
+    this->Given.push_back(option.name);
+    this->read(
+      [&]()
+      {
+        petsc(PetscOptionsSetValue(this->Database, option.name.c_str(),
+          option.value.empty() ? nullptr : option.value.c_str()));
+      });
   }
-  this->read([&]() { petsc(PetscOptionsInsertString(this->Database, text.c_str())); });
 }
 
 bool PetscOptionSet::has(const std::string& name) const
@@ -121,6 +106,14 @@ void PetscOptionSet::rejectUnused(bool afterSetUp) const
       ". Check the spelling, and that the method or preconditioner it belongs to is the one "
       "chosen.");
   }
+}
+
+std::string PetscOptionSet::explain(const PetscError& error, const std::string& subject) const
+{
+  const std::string text = explainPetsc(error, subject);
+  return this->Text.empty() || error.code() == OwnError
+    ? text
+    : text + " PETSc options \"" + this->Text + "\": " + error.what();
 }
 
 void PetscOptionSet::rethrow(const PetscError& error) const

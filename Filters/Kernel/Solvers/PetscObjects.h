@@ -57,7 +57,7 @@ private:
 class PetscOptionSet
 {
 public:
-  /// Throws Error for text that is not a list of options.
+  /// Throws Error for text that is not a list of permitted options (PetscOptionRules.h).
   explicit PetscOptionSet(const std::string& text);
   PetscOptions database() const { return this->Database; }
   bool has(const std::string& name) const;
@@ -70,6 +70,8 @@ public:
    * an inner solver or a viewer reads are not yet missed.
    */
   void rejectUnused(bool afterSetUp) const;
+  /// explainPetsc(); if the user gave options, with these and the error as it is.
+  std::string explain(const PetscError& error, const std::string& subject) const;
   /// Runs a call that reads options; an error then quotes their text.
   template <class Call>
   void read(const Call& call) const

@@ -4,7 +4,10 @@
 
 #include <slepcsys.h>
 
+#include <atomic>
 #include <cstdlib>
+#include <regex>
+#include <vector>
 
 namespace tautline
 {
@@ -28,10 +31,30 @@ std::string& collected()
 int generation = 0;
 bool watched = false;
 
+/// Scopes of this thread.
+thread_local int depth = 0;
+
+/// Whether Tautline, not the host, has started PETSc.
+std::atomic<bool> ownPetsc{ false };
+
+/// What is to be destroyed when PETSc is free; guarded by a mutex of its own.
+struct PutOff
+{
+  std::mutex Mutex;
+  std::vector<std::pair<void*, void (*)(void*)>> Objects;
+};
+
+PutOff& putOff()
+{
+  static auto* list = new PutOff;
+  return *list;
+}
+
 PetscErrorCode petscEnds()
 {
   ++generation;
   watched = false;
+  ownPetsc = false;
   return 0;
 }
 
@@ -83,7 +106,7 @@ void ensureMpi()
     requireMemory(mpiAndPetsc, "the start of MPI and PETSc",
       "raise the limit on the memory of the process, or end other programs");
     int provided = 0;
-    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided) != MPI_SUCCESS)
     {
       throw Error("MPI cannot be started: linear systems cannot be solved in this process.");
     }
@@ -119,8 +142,23 @@ void ensurePetsc()
   // Other users of PETSc find what they would have got.
   MPI_Comm_rank(world, &PetscGlobalRank);
   MPI_Comm_size(world, &PetscGlobalSize);
+  ownPetsc = true;
   PetscOptionsClearValue(nullptr, noFiles);
   PetscOptionsClearValue(nullptr, noSignals);
+}
+
+/// Within a scope.
+void destroyPutOff()
+{
+  decltype(PutOff::Objects) objects;
+  {
+    const std::lock_guard<std::mutex> lock(putOff().Mutex);
+    objects.swap(putOff().Objects);
+  }
+  for (const auto& [object, destroy] : objects)
+  {
+    destroy(object);
+  }
 }
 }
 
@@ -166,10 +204,16 @@ PetscScope::PetscScope(PetscOptions database)
   std::swap(this->Outer, collected());
   PetscPushErrorHandler(collectError, nullptr);
   PetscOptionsPush(database);
+  ++depth;
 }
 
 PetscScope::~PetscScope()
 {
+  if (depth == 1)
+  {
+    destroyPutOff();
+  }
+  --depth;
   // Another user of PETSc may have ended it meanwhile, from a callback.
   if (petscUsable() && this->Generation == generation)
   {
@@ -181,6 +225,76 @@ PetscScope::~PetscScope()
     }
   }
   std::swap(this->Outer, collected());
+}
+
+//------------------------------------------------------------------------------
+std::string explainPetsc(const PetscError& error, const std::string& subject)
+{
+  switch (error.code())
+  {
+    case OwnError:
+      return error.what();
+    case PETSC_ERR_MAT_LU_ZRPVT:
+    case PETSC_ERR_MAT_CH_ZRPVT:
+      return "A pivot is zero with " + subject +
+        ": the matrix is singular, or not positive definite. Check that enough points are fixed "
+        "and that the coefficients are positive, or choose Preconditioner = Jacobi or BoomerAMG.";
+    case PETSC_ERR_MEM:
+      return "The memory does not suffice with " + subject +
+        ": choose Preconditioner = Jacobi or SSOR, or a coarser mesh.";
+    case PETSC_ERR_MISSING_FACTOR:
+      return "No package of this PETSc factorizes this matrix with " + subject +
+        ": choose another preconditioner or package; Solver = direct takes one that is there.";
+    default:
+      break;
+  }
+  // Sentences that name an option are advice on options that nobody has given.
+  static const std::regex advice("[^.;:]*\\s-[A-Za-z]+_[A-Za-z_]+[^.;]*[.;]?");
+  return subject + " failed: " + std::regex_replace(std::string(error.what()), advice, "") +
+    " Choose another preconditioner or solver.";
+}
+
+//------------------------------------------------------------------------------
+bool petscWatchable(const WatchLimits& limits)
+{
+  if (depth > 0 || !(limits.any() || insideWatchedCall()))
+  {
+    return false;
+  }
+  if (!petscUsable())
+  {
+    const PetscScope scope; // starts MPI in this thread, which has to end it
+  }
+  int level = MPI_THREAD_SINGLE;
+  return ownPetsc && MPI_Query_thread(&level) == MPI_SUCCESS && level == MPI_THREAD_MULTIPLE;
+}
+
+WatchResult watchPetsc(const WatchLimits& limits, const std::function<void(WatchedWork*)>& work)
+{
+  if (petscWatchable(limits))
+  {
+    return runWatched([work](WatchedWork& watched) { work(&watched); }, limits);
+  }
+  work(nullptr);
+  return WatchResult::Finished;
+}
+
+void destroyInSession(void* object, void (*destroy)(void*))
+{
+  // Once PETSc has gone, nothing of it is left to destroy, and it must not be started for that.
+  if (!petscUsable())
+  {
+    destroy(object);
+    return;
+  }
+  if (const std::unique_lock<std::recursive_mutex> lock(sessionMutex(), std::try_to_lock); lock)
+  {
+    const PetscScope scope;
+    destroy(object);
+    return;
+  }
+  const std::lock_guard<std::mutex> lock(putOff().Mutex);
+  putOff().Objects.emplace_back(object, destroy);
 }
 
 const std::string& petscMessage()

@@ -7,17 +7,21 @@
 #ifndef tautline_PetscSession_h
 #define tautline_PetscSession_h
 
+#include "Watchdog.h"
+
 #include "tautline/Core/Types.h"
 
 #include <petscksp.h>
 
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <utility>
 
 namespace tautline
 {
-/// A failed call of PETSc or SLEPc, with its text.
+/// A failed call of PETSc or SLEPc, with its text; OwnError: Tautline's, for the user as it is.
+constexpr PetscErrorCode OwnError = -1;
 class PetscError : public Error
 {
 public:
@@ -31,6 +35,14 @@ public:
 private:
   PetscErrorCode Code;
 };
+
+/**
+ * @brief An error of PETSc in terms of what the user chose, with a remedy.
+ * @param subject the choice: "Preconditioner = ILU(0)"
+ *
+ * Advice to set options of PETSc is left out.
+ */
+std::string explainPetsc(const PetscError& error, const std::string& subject);
 
 /// MPI and PETSc are there and not yet shut down, so that objects can be destroyed.
 bool petscUsable();
@@ -46,9 +58,11 @@ void ensureSlepc();
  * @brief Every use of PETSc happens within one.
  *
  * The first one of the process initializes PETSc (and MPI if it is not), not collectively, without
- * signal handler, without the program's arguments and without .petscrc. While a scope lives, no
- * other thread of Tautline uses PETSc, options are looked up in `database` alone, and errors are
- * collected rather than printed. Scopes nest.
+ * signal handler, without the program's arguments and without .petscrc (of the working directory
+ * or of the home directory). PETSC_OPTIONS of the environment is read as in any program with PETSc;
+ * of it only what is about PETSc as a whole has an effect here, not options of solvers. While a
+ * scope lives, no other thread of Tautline uses PETSc, options are looked up in `database` alone,
+ * and errors are collected rather than printed. Scopes nest.
  */
 class PetscScope
 {
@@ -64,6 +78,44 @@ private:
   PetscOptions Own = nullptr;
   int Generation = 0;
   std::string Outer; // what was collected outside
+};
+
+/**
+ * @brief Runs work that uses PETSc, and nothing of whose time can be limited, under limits.
+ *
+ * Where petscWatchable() holds, the watchdog's thread does it, and `work` gets the object for its
+ * calls back; else this thread does it, `work` gets null, the limits do not apply, and the result
+ * is Finished. The work begins its own PetscScope.
+ */
+WatchResult watchPetsc(const WatchLimits& limits, const std::function<void(WatchedWork*)>& work);
+
+/// The error where a limit is reached before the work could begin.
+constexpr const char* BusyMessage =
+  "An earlier computation that was given up at its limit still occupies PETSc: wait until it has "
+  "ended, or restart the program.";
+
+/**
+ * @brief Whether watchPetsc() uses the watchdog's thread.
+ *
+ * It does if there are limits, if MPI has been started with MPI_THREAD_MULTIPLE (as Tautline does;
+ * abandoned work calls MPI beside the host) and if Tautline has started PETSc (else the host may
+ * use it beside abandoned work). It does not within a PetscScope. pvserver, pvbatch and programs
+ * that call MPI_Init() have a lower level: there a limit is checked after each set-up.
+ */
+bool petscWatchable(const WatchLimits& limits);
+
+/// Destroys what owns objects of PETSc within a PetscScope; while another thread uses PETSc, that
+/// is put off until it has finished.
+void destroyInSession(void* object, void (*destroy)(void*));
+
+/// destroyInSession() as the deleter of a pointer.
+template <class Owner>
+struct PetscDelete
+{
+  void operator()(Owner* owner) const
+  {
+    destroyInSession(owner, [](void* object) { delete static_cast<Owner*>(object); });
+  }
 };
 
 /// The message of PETSc on the last failed call in this scope.

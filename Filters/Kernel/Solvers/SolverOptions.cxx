@@ -96,8 +96,8 @@ const char* describe(SolveReason reason)
     case SolveReason::Aborted:
       return "stopped by the user";
     case SolveReason::FalseConvergence:
-      return "failed: the residual of the system is not small, only the preconditioned one; try "
-             "another preconditioner";
+      return "not converged: the method stopped, but the residual of the system itself is above "
+             "the tolerance; try another solver or preconditioner, or a smaller tolerance";
     case SolveReason::OtherFailure:
       break;
   }

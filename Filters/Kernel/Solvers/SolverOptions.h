@@ -44,7 +44,7 @@ TAUTLINE_SOLVERS_EXPORT const char* nameOf(Preconditioner preconditioner);
 /**
  * @brief PETSc options that make BoomerAMG's set-up and iterations several times cheaper than
  * PETSc's defaults in 3D, for a few iterations more: HMIS coarsening, aggressive on the finest
- * level, and ext+i interpolation from at most four points. For SolverOptions::petscOptions. The
+ * level, and ext+i interpolation from at most four points. For SolverOptions::defaultPetscOptions. The
  * tables of chapter 2 have PETSc's defaults.
  *
  * Source: H. De Sterck, U. M. Yang, J. J. Heys, SIAM J. Matrix Anal. Appl. 27 (2006); U. M. Yang,
@@ -62,16 +62,30 @@ struct SolverOptions
   int maximumIterations = 10000;    ///< at least 0
   int restart = 30;                 ///< m of GMRES(m), at least 1
   double omega = 1.0;               ///< of SSOR, 0 to 2 (exclusive)
-  double maximumSeconds = 0.0;      ///< 0: no limit; checked between iterations, not in a set-up
-  bool initialGuess = false;        ///< start from the x passed in rather than from 0
-  bool ritzValues = false;          ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
+  /// Wall time of setUp(), and of solve() with its set-up; 0: no limit. Checked between iterations.
+  /// What cannot be interrupted, such as a factorization or the set-up of multigrid, is given up
+  /// half a second (a tenth of longer limits, at most 5 s) later and ends in the background; see
+  /// LinearSolver.
+  double maximumSeconds = 0.0;
+  bool initialGuess = false; ///< start from the x passed in rather than from 0
+  bool ritzValues = false;   ///< estimate extreme eigenvalues of P^-1 A (CG, GMRES)
   /// PETSc options, "-ksp_rtol 1e-8 -pc_hypre_boomeramg_strong_threshold 0.5"; they take precedence
-  /// over the above.
+  /// over the above. Permitted are those that choose and tune methods and preconditioners and
+  /// neither read, write nor display anything; others throw Error.
   std::string petscOptions;
+  /// As petscOptions, but of the program: those of the user take precedence, and messages do not
+  /// speak of them.
+  std::string defaultPetscOptions;
   int threads = 0; ///< 0: all cores; used where Tautline itself works
   /// Called with iteration and residual norm, from the calling thread; the solve stops when it
   /// returns false. On several ranks all have one or none has.
   std::function<bool(int, double)> observer;
+  /// Least wall time between two calls of the observer; 0: every iteration. Each call takes about
+  /// 20 microseconds where a limit is set.
+  double observerSeconds = 0.0;
+  /// Whether to stop: asked about twenty times a second from the calling thread, in a set-up, too.
+  /// On several ranks as the observer.
+  std::function<bool()> cancelled;
 };
 
 /// How a solve ended. The numbers are stable.
@@ -91,10 +105,21 @@ enum class SolveReason : int
   TimeLimit = 11,
   Aborted = 12,
   OtherFailure = 13,
-  /// The preconditioned residual is small, that of the system is as large as the right-hand side:
-  /// a false convergence.
+  /// The method reported convergence, but |b - A x| exceeds ResidualFactor times the tolerance.
   FalseConvergence = 14
 };
+
+/**
+ * @brief How much larger than the tolerance the residual of the system itself may be.
+ *
+ * Methods test the preconditioned residual (2.7), which may be smaller by about the condition
+ * number of the preconditioner. A solve has converged only if |b - A x| is at most ResidualFactor
+ * times relativeTolerance |b| (but at most half of |b|, or the tolerance if that is larger), at
+ * most ResidualFactor times absoluteTolerance, or as small as rounding allows. A method whose own
+ * test is met before goes on from there with a smaller tolerance, up to four times. Direct solves
+ * leave at most 1e-6 |b|.
+ */
+constexpr double ResidualFactor = 1e3;
 
 /// Whether a solve reached its tolerance.
 TAUTLINE_SOLVERS_EXPORT bool converged(SolveReason reason);

@@ -1,0 +1,364 @@
+// PETSc options given as text: what is permitted, what is refused before PETSc sees it, files that
+// nothing reads or writes, and every method and preconditioner that this PETSc has.
+#include "Check.h"
+#include "Systems.h"
+
+#include "tautline/Solvers/ConditionEstimate.h"
+#include "tautline/Solvers/LinearSolver.h"
+
+#include <petscksp.h>
+
+#include <cstdio>
+#include <fstream>
+#include <unistd.h>
+
+using namespace tautline;
+
+namespace
+{
+std::string directory; // to write to
+
+LinearSystem systemOf(const SparseMatrix& matrix)
+{
+  LinearSystem system;
+  system.matrix = &matrix;
+  return system;
+}
+
+bool exists(const std::string& file)
+{
+  return std::ifstream(file).good();
+}
+
+/// The error of a solver with these options; "" if there is none.
+std::string errorOf(const std::string& text, const SparseMatrix& matrix)
+{
+  SolverOptions options;
+  options.preconditioner = Preconditioner::Jacobi;
+  options.petscOptions = text;
+  const std::vector<double> b = someVector(matrix.size);
+  std::vector<double> x(b.size());
+  try
+  {
+    LinearSolver solver(systemOf(matrix), options);
+    solver.solve(b.data(), x.data());
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+//------------------------------------------------------------------------------
+void testRefused()
+{
+  const SparseMatrix a = laplacian(8);
+  const std::string file = directory + "/petsc_wrote_this.txt";
+  std::remove(file.c_str());
+  const std::vector<std::string> refused = { "-ksp_view ascii:" + file,
+    "-ksp_view ascii:" + file + "::append", "-ksp_view binary:" + file, "-ksp_view hdf5:" + file,
+    "-ksp_view_mat ascii:" + file, "-ksp_view_solution ascii:" + file,
+    "-ksp_view_rhs ascii:" + file, "-ksp_view_pre ascii:" + file,
+    "-ksp_view_eigenvalues ascii:" + file, "-ksp_monitor ascii:" + file,
+    "-ksp_monitor_true_residual ascii:" + file, "-ksp_monitor_python " + file,
+    "-ksp_converged_reason ascii:" + file, "-ksp_converged_rate ascii:" + file,
+    "-ksp_error_if_not_converged", "-pc_view ascii:" + file, "-mat_view ascii:" + file,
+    "-vec_view ascii:" + file, "-mat_view_info", "-eps_view ascii:" + file,
+    "-eps_monitor ascii:" + file, "-st_pc_view ascii:" + file, "-mg_levels_ksp_view ascii:" + file,
+    "-sub_ksp_monitor ascii:" + file, "-options_file " + file, "-options_file_yaml " + file,
+    "-options_string_yaml {a: 1}", "-prefix_push ksp_", "-options_left",
+    "-options_view ascii:" + file, "-options_monitor", "-help", "-h", "-version", "-info " + file,
+    "-log_view ascii:" + file, "-log_trace " + file, "-history " + file, "-malloc_dump",
+    "-malloc_debug", "-memory_view", "-start_in_debugger", "-on_error_attach_debugger",
+    "-on_error_abort", "-fp_trap", "-dll_prepend /tmp/lib.so", "-dll_append /tmp/lib.so",
+    "-python /tmp/lib.so", "-pc_shell_name x", "-pc_python_type module.Class",
+    "-ksp_python_type module.Class", "-mat_mumps_icntl_1 6", "-mat_mumps_icntl_3 6",
+    "-mat_mumps_icntl_22 1", "-mat_mumps_ooc_tmpdir /tmp", "-pc_mg_dump_binary",
+    "-pc_hypre_boomeramg_print_statistics", "-nox", "-on_error_malloc_dump", "-cuda_device 0",
+    "-mpi_linear_solver_server", "-matload_block_size 2", "--ksp_rtol 1e-3",
+    "-KSP_VIEW ascii:" + file };
+  for (const std::string& option : refused)
+  {
+    const Context context(option);
+    const std::string error = errorOf(option, a);
+    TAUTLINE_CHECK(contains(error, option.substr(0, option.find(' '))));
+    TAUTLINE_CHECK(contains(error, "not permitted"));
+    TAUTLINE_CHECK(contains(error, "-ksp_..."));
+    // The condition estimate reads the same options.
+    ConditionOptions condition;
+    condition.petscOptions = option;
+    TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(a), condition), "not permitted");
+  }
+  TAUTLINE_CHECK(!exists(file));
+
+  // Values cannot be files, programs or out of range.
+  const std::vector<std::string> impossible = { "-ksp_type python", "-ksp_type lmvm",
+    "-ksp_type hpddm", "-ksp_type ./lib.so:create", "-pc_type python", "-pc_type shell",
+    "-pc_type mg", "-pc_type lmvm", "-pc_type hpddm", "-pc_type", "-ksp_rtol", "-ksp_rtol nan",
+    "-ksp_rtol inf", "-ksp_rtol 0x1p-3", "-ksp_rtol 2", "-ksp_max_it -3", "-ksp_max_it 1.5",
+    "-ksp_max_it 99999999999", "-ksp_diagonal_scale /etc/passwd",
+    "-pc_factor_mat_solver_type /tmp/lib.so", "-pc_jacobi_type ascii:" + file, "-sub_pc_type shell",
+    "-mg_levels_2_pc_type python", "-mg_levels_ksp_max_it 1000000000", "-pc_sor_its 1000000000",
+    "-ksp_chebyshev_eigenvalues 1,two", "-pc_hypre_boomeramg_coarsen_type nonsense" };
+  for (const std::string& option : impossible)
+  {
+    const Context context(option);
+    const std::string error = errorOf(option, a);
+    TAUTLINE_CHECK(contains(error, option.substr(0, option.find(' '))));
+    TAUTLINE_CHECK(contains(error, "possible is"));
+  }
+  TAUTLINE_CHECK(contains(errorOf("-pc_type python", a), "jacobi"));
+  TAUTLINE_CHECK(contains(errorOf("-ksp_rtoll 1e-3", a), "Did you mean -ksp_rtol"));
+  TAUTLINE_CHECK(contains(errorOf("-ksp_gmres_rstart 5", a), "-ksp_gmres_restart"));
+  TAUTLINE_CHECK(contains(errorOf("-pc_sor_nonsense_at_all 1", a), "-pc_sor_omega"));
+
+  // An options file is not even read: its content does not come back in the error.
+  std::ofstream(file) << "thesecret content of a file\n";
+  const std::string error = errorOf("-options_file " + file, a);
+  TAUTLINE_CHECK(contains(error, "-options_file"));
+  TAUTLINE_CHECK(!contains(error, "thesecret"));
+  std::remove(file.c_str());
+}
+
+/// .petscrc of the working directory and options in the environment do not reach our solvers.
+void testSurroundings()
+{
+  char before[4096];
+  TAUTLINE_CHECK(getcwd(before, sizeof(before)) != nullptr);
+  TAUTLINE_CHECK_EQUAL(chdir(directory.c_str()), 0);
+  for (const char* name : { ".petscrc", "petscrc" })
+  {
+    std::ofstream(name) << "-ksp_max_it 1\n-fromfile 1\n";
+  }
+  setenv("PETSC_OPTIONS", "-ksp_max_it 2 -pc_type none", 1);
+  const SparseMatrix a = laplacian(20);
+  const std::vector<double> b = someVector(a.size);
+  std::vector<double> x(b.size());
+  LinearSolver solver(systemOf(a), {});
+  const LinearSolution solution = solver.solve(b.data(), x.data());
+  TAUTLINE_CHECK(converged(solution.reason));
+  TAUTLINE_CHECK(solution.iterations > 2);
+  TAUTLINE_CHECK(relativeResidual(a, x, b) < 1e-3);
+  PetscBool found = PETSC_TRUE;
+  PetscOptionsHasName(nullptr, nullptr, "-fromfile", &found);
+  TAUTLINE_CHECK(!found);
+  std::remove(".petscrc");
+  std::remove("petscrc");
+  unsetenv("PETSC_OPTIONS");
+  TAUTLINE_CHECK_EQUAL(chdir(before), 0);
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> namesIn(PetscFunctionList list)
+{
+  const char** names = nullptr;
+  int count = 0;
+  PetscFunctionListGet(list, &names, &count);
+  std::vector<std::string> all;
+  for (int i = 0; i < count && names[i]; ++i)
+  {
+    all.emplace_back(names[i]);
+  }
+  PetscFree(names);
+  return all;
+}
+
+/// What became of one choice.
+enum class Outcome
+{
+  Refused,
+  Failed, // with a reason, or an error
+  Solved
+};
+
+/// Solves; whatever claims to have converged has, by the test's own product.
+Outcome attempt(
+  const LinearSystem& system, const std::string& text, SolverOptions options, const std::string& of)
+{
+  const Context context(text);
+  const SparseMatrix& a = *system.matrix;
+  const std::vector<double> b = someVector(a.size);
+  std::vector<double> x(b.size(), 0.0);
+  options.petscOptions = text;
+  options.maximumIterations = 2000;
+  options.maximumSeconds = 20.0;
+  LinearSolution solution;
+  try
+  {
+    LinearSolver solver(system, options);
+    solution = solver.solve(b.data(), x.data());
+  }
+  catch (const Error& error)
+  {
+    TAUTLINE_CHECK(contains(error.what(), of));
+    return contains(error.what(), "possible is") ? Outcome::Refused : Outcome::Failed;
+  }
+  for (const double value : x)
+  {
+    TAUTLINE_CHECK(std::isfinite(value));
+  }
+  const double residual = relativeResidual(a, x, b);
+  if (converged(solution.reason))
+  {
+    TAUTLINE_CHECK(residual <= ResidualFactor * options.relativeTolerance);
+    TAUTLINE_CHECK_NEAR(solution.trueResidual, residual, 1e-12 + 1e-6 * residual);
+    return Outcome::Solved;
+  }
+  TAUTLINE_CHECK(solution.reason != SolveReason::TimeLimit);
+  return Outcome::Failed;
+}
+
+/// All that are registered, those that a user may not choose, too.
+void testEveryType()
+{
+  const SparseMatrix a = laplacian(12), indefinite = laplacian(12, 1.0, -2.1);
+  LinearSystem shifted = systemOf(indefinite);
+  shifted.positiveDefinite = false;
+  int solved = 0, refused = 0;
+  for (const std::string& type : namesIn(KSPList))
+  {
+    bool any = false, none = true;
+    for (const Preconditioner preconditioner :
+      { Preconditioner::None, Preconditioner::Jacobi, Preconditioner::ILU, Preconditioner::GAMG })
+    {
+      SolverOptions options;
+      options.preconditioner = preconditioner;
+      const std::string text = "-ksp_type " + type;
+      const Outcome outcome = attempt(systemOf(a), text, options, "-ksp_type");
+      any = any || outcome == Outcome::Solved;
+      none = none && outcome == Outcome::Refused;
+      attempt(shifted, text, options, "-ksp_type");
+    }
+    // A permitted method solves this with some preconditioner.
+    TAUTLINE_CHECK_EQUAL(
+      any || type == "preonly" ? "solves" : type, none ? type : std::string("solves"));
+    solved += any;
+    refused += none;
+  }
+  TAUTLINE_CHECK(solved >= 25);
+  TAUTLINE_CHECK(refused >= 5);
+  solved = refused = 0;
+  for (const std::string& type : namesIn(PCList))
+  {
+    bool any = false, none = true;
+    for (const char* method : { "cg", "gmres", "preonly", "bcgs" })
+    {
+      for (const int block : { 1, 2 })
+      {
+        LinearSystem system = systemOf(a);
+        system.blockSize = block;
+        const std::string text = "-pc_type " + type + " -ksp_type " + method;
+        const Outcome outcome = attempt(system, text, {}, "-pc_type");
+        any = any || outcome == Outcome::Solved;
+        none = none && outcome == Outcome::Refused;
+      }
+    }
+    TAUTLINE_CHECK_EQUAL(any ? "solves" : type, none ? type : std::string("solves"));
+    solved += any;
+    refused += none;
+  }
+  TAUTLINE_CHECK(solved >= 15);
+  TAUTLINE_CHECK(refused >= 10);
+}
+
+/// Errors speak of the user's choice, not of options that nobody gave.
+void testWording()
+{
+  const int n = 12;
+  SparseMatrix empty = laplacian(n);
+  for (Index row = 0; row < empty.size; ++row)
+  {
+    for (Index k = empty.offsets[row]; k < empty.offsets[row + 1]; ++k)
+    {
+      empty.values[k] = row == 30 || empty.columns[k] == 30 ? 0.0 : empty.values[k];
+    }
+  }
+  const std::vector<double> b = someVector(empty.size);
+  int failed = 0;
+  for (const bool definite : { true, false })
+  {
+    for (int choice = 0; choice <= static_cast<int>(Preconditioner::None) + 1; ++choice)
+    {
+      LinearSystem system = systemOf(empty);
+      system.positiveDefinite = definite;
+      SolverOptions options;
+      const bool direct = choice > static_cast<int>(Preconditioner::None);
+      options.method = direct ? KrylovMethod::Direct : KrylovMethod::GMRES;
+      options.preconditioner = direct ? Preconditioner::None : static_cast<Preconditioner>(choice);
+      options.maximumIterations = 200;
+      options.defaultPetscOptions = fastMultigridOptions();
+      std::vector<double> x(b.size());
+      LinearSolver solver(system, options);
+      const LinearSolution solution = solver.solve(b.data(), x.data());
+      const Context context(std::string(nameOf(options.preconditioner)) + ": " + solution.message);
+      TAUTLINE_CHECK(!converged(solution.reason));
+      for (const char* foreign : { " -pc_", " -mat_", " -ksp_", "configure", "boomeramg" })
+      {
+        TAUTLINE_CHECK(!contains(solution.message, foreign));
+      }
+      failed += solution.reason == SolveReason::PreconditionerFailed;
+    }
+  }
+  TAUTLINE_CHECK(failed >= 8);
+
+  // With an option of the user, the error of PETSc is added.
+  SolverOptions options;
+  options.petscOptions = "-pc_type lu -pc_factor_mat_solver_type klu";
+  LinearSystem system = systemOf(empty);
+  system.positiveDefinite = false;
+  std::vector<double> x(b.size());
+  LinearSolver solver(system, options);
+  const LinearSolution solution = solver.solve(b.data(), x.data());
+  TAUTLINE_CHECK(!converged(solution.reason));
+  TAUTLINE_CHECK(!solution.message.empty());
+}
+
+/// Methods that stop without a solution, though PETSc calls that convergence.
+void testFalseConvergence()
+{
+  const SparseMatrix a = laplacian(40);
+  for (const char* text :
+    { "-ksp_type preonly", "-ksp_convergence_test skip -ksp_max_it 3",
+      "-ksp_norm_type none -ksp_max_it 3", "-ksp_rtol 1e-7 -ksp_converged_maxits -ksp_max_it 5" })
+  {
+    const Context context(text);
+    SolverOptions options;
+    options.preconditioner = Preconditioner::Jacobi;
+    options.petscOptions = text;
+    const std::vector<double> b = someVector(a.size);
+    std::vector<double> x(b.size());
+    LinearSolver solver(systemOf(a), options);
+    const LinearSolution solution = solver.solve(b.data(), x.data());
+    TAUTLINE_CHECK(solution.reason == SolveReason::FalseConvergence);
+    TAUTLINE_CHECK(contains(solution.message, "residual"));
+    TAUTLINE_CHECK_RELATIVE(solution.trueResidual, relativeResidual(a, x, b), 1e-10);
+  }
+  // A system scaled while it is solved is verified unscaled.
+  SolverOptions options;
+  options.preconditioner = Preconditioner::Jacobi;
+  options.petscOptions = "-ksp_diagonal_scale";
+  const std::vector<double> b = someVector(a.size);
+  std::vector<double> x(b.size());
+  LinearSolver solver(systemOf(a), options);
+  const LinearSolution solution = solver.solve(b.data(), x.data());
+  TAUTLINE_CHECK_RELATIVE(solution.trueResidual, relativeResidual(a, x, b), 1e-10);
+  TAUTLINE_CHECK(!converged(solution.reason) || relativeResidual(a, x, b) < 1e-2);
+}
+}
+
+int TestPetscOptions(int argc, char* argv[])
+{
+  directory = argc > 2 ? argv[2] : ".";
+  testSurroundings(); // before PETSc is initialized
+  testRefused();
+  testEveryType();
+  testWording();
+  testFalseConvergence();
+  return exitCode();
+}
