@@ -88,7 +88,7 @@ class ConditionResult:
     #: (relative bounds; nan: unknown), converged, iterations, seconds, method, message; of composite data also block.
     spectrum: list[dict[str, Any]]
     #: Per cell, m: the largest eigenvalue of its matrix, and its share of the largest eigenvalue of A; the shares add
-    #: up to 1. `share` is empty if not computed.
+    #: up to 1. `share` is empty if not computed, for lack of time, too.
     largest_eigenvalue: np.ndarray
     share: np.ndarray
     #: Number of unknowns.
@@ -161,7 +161,8 @@ def solve(
         youngs_modulus (1), poisson_ratio (0.3), plane ("strain" or "stress", of planar meshes): of "elasticity".
         stiffness: name or values of a cell array of factors of Young's modulus.
         omega: relaxation of SSOR (1).
-        petsc_options: options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5".
+        petsc_options: options of PETSc that choose and tune methods and preconditioners, such as
+            "-pc_hypre_boomeramg_strong_threshold 0.5". Others, which read, write or display something, are refused.
         time_limit: seconds (600); 0 is no limit.
         threads: number of threads; 0, the default, is all cores. The result does not depend on it.
 
@@ -180,7 +181,7 @@ def solve(
     filter_.SetFastMultigrid(bool(fast_multigrid))
     filter_.SetSolutionName(solution_name)
     filter_.SetComputeGradient(bool(gradient))
-    output = _execute(filter_, mesh, pde, problem)
+    output = _execute(solve, filter_, mesh, pde, problem)
     fields = "Stress" if elastic else "Gradient"
     history = columns(filter_.GetHistory())
     names = {"Log10 residual": "log10_residual", "N residual": "residual", "Block": "block"}
@@ -233,7 +234,7 @@ def condition(
     filter_.SetTolerance(within("tolerance", tolerance, 1e-15, 1))
     filter_.SetMaximumIterations(int(within("maximum_iterations", maximum_iterations, 1, _MAX_ITERATIONS)))
     filter_.SetComputeShares(bool(shares))
-    output = _execute(filter_, mesh, pde, problem)
+    output = _execute(condition, filter_, mesh, pde, problem)
     spectrum = _rows(filter_.GetSpectrum(), {"SmallestError": "smallest_error", "LargestError": "largest_error"})
     for row in spectrum:
         row["condition"] = row["condition"] or np.nan
@@ -246,7 +247,7 @@ def condition(
         preconditioned_condition=filter_.GetPreconditionedCondition() or np.nan,
         spectrum=spectrum,
         largest_eigenvalue=cell_array(output, "LargestEigenvalue"),
-        share=cell_array(output, "Share") if shares else np.zeros(0),
+        share=cell_array(output, "Share") if shares and has_array(output, "Share") else np.zeros(0),
         unknowns=filter_.GetUnknowns(),
         summary=filter_.GetSummary(),
     )
@@ -301,7 +302,7 @@ def solver_study(
     filter_.SetEstimateConditions(bool(conditions))
     filter_.SetRepetitions(int(within("repetitions", repetitions, 1, 100)))
     filter_.SetCombinationTimeLimit(within("combination_time_limit", combination_time_limit, 0, np.inf))
-    _execute(filter_, mesh, pde, problem)
+    _execute(solver_study, filter_, mesh, pde, problem)
     rows = _rows(filter_.GetStudy(), _STUDY_COLUMNS)
     for row in rows:
         row["number"], row["iterations"] = int(row["number"]), int(row["iterations"])
@@ -328,11 +329,14 @@ def _set_tolerances(filter_: Any, relative: float, absolute: float, iterations: 
 _FILTER_ARGUMENTS = 3
 
 
-def _execute(filter_: Any, mesh: Mesh, pde: str, problem: dict[str, Any]) -> vtkDataObject:
-    """Set the problem and run the filter; returns its first output without the arrays given as numbers."""
+def _execute(
+    function: Callable[..., Any], filter_: Any, mesh: Mesh, pde: str, problem: dict[str, Any]
+) -> vtkDataObject:
+    """Set the problem and run the filter of a function; returns its first output without the arrays given as numbers."""
     messages = watch(filter_)
     inputs = InputArrays(filter_, as_mesh(mesh))
-    check_options(problem, list(signature(_set_problem).parameters)[_FILTER_ARGUMENTS:])
+    own = [p.name for p in signature(function).parameters.values() if p.kind is not p.VAR_KEYWORD]
+    check_options(problem, [*own, *list(signature(_set_problem).parameters)[_FILTER_ARGUMENTS:]])
     _set_problem(filter_, inputs, pde, **problem)
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_, messages)
