@@ -2,7 +2,7 @@
 
 #include "Blocks.h"
 #include "tautline/Mesh/BoundaryShape.h"
-#include "tautline/Patches/SimplexMesh.h"
+#include "tautline/Mesh/BoundaryPoints.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

@@ -1,7 +1,7 @@
 #include "MovedBoundary.h"
 
 #include "Blocks.h"
-#include "tautline/Patches/SimplexMesh.h"
+#include "tautline/Mesh/BoundaryPoints.h"
 
 #include "vtkCellData.h"
 #include "vtkCellType.h"

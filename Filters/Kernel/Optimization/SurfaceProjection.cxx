@@ -1,5 +1,7 @@
 #include "SurfaceProjection.h"
 
+#include "tautline/Mesh/BoundaryPoints.h"
+
 #include "tautline/Core/Parallel.h"
 
 #include <algorithm>

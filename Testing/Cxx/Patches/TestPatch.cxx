@@ -3,6 +3,7 @@
 #include "Check.h"
 
 #include "tautline/Patches/Energies.h"
+#include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Patches/SimplexMesh.h"
 #include "tautline/Optimization/SurfaceProjection.h"
 
