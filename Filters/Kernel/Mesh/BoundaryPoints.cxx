@@ -16,9 +16,28 @@ inline std::uint64_t mix(std::uint64_t z)
   return z ^ (z >> 31);
 }
 
+/// What the facets leave at a point.
+struct Mark
+{
+  std::uint64_t parity = 0; ///< exclusive or of their numbers
+  std::uint64_t sum = 0;    ///< of their numbers with the sign of the sense
+  bool any() const { return this->parity != 0 || this->sum != 0; }
+};
+
+/// A number that changes its sign if the order is reversed, and not if it is rotated.
+inline std::uint64_t signedNumber(const std::uint64_t* number, const int* member, int size)
+{
+  std::uint64_t sum = 0;
+  for (int k = 0; k < (size == 2 ? 1 : size); ++k)
+  {
+    const std::uint64_t x = number[member[k]], y = number[member[k + 1 < size ? k + 1 : 0]];
+    sum += x * y * (x - y);
+  }
+  return sum;
+}
+
 /// What the facets of a cell leave at its nodes.
-template <class Marks>
-void addMarks(const CellTopology& t, const Index* node, Marks&& marks)
+void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks)
 {
   std::uint64_t number[MaxNodes];
   for (int k = 0; k < t.nodes; ++k)
@@ -26,7 +45,7 @@ void addMarks(const CellTopology& t, const Index* node, Marks&& marks)
     number[k] = mix(static_cast<std::uint64_t>(node[k]));
   }
   const int facets = t.dimension == 3 ? t.faces : t.edges;
-  std::uint64_t sum[MaxNodes] = {};
+  Mark own[MaxNodes] = {};
   for (int f = 0; f < facets; ++f)
   {
     const int size = t.dimension == 3 ? t.faceSizes[f] : 2;
@@ -37,14 +56,41 @@ void addMarks(const CellTopology& t, const Index* node, Marks&& marks)
       facet += number[member[k]];
     }
     facet = mix(facet);
+    const std::uint64_t sense = signedNumber(number, member, size);
     for (int k = 0; k < size; ++k)
     {
-      sum[member[k]] ^= facet;
+      own[member[k]].parity ^= facet;
+      own[member[k]].sum += sense;
     }
   }
   for (int k = 0; k < t.nodes; ++k)
   {
-    marks[node[k]] ^= sum[k];
+    marks[node[k]].parity ^= own[k].parity;
+    marks[node[k]].sum += own[k].sum;
+  }
+}
+
+/// The same for a tetrahedron, unrolled: a face has the number of the vertex opposite to it.
+inline void addTetrahedron(const Index* node, std::vector<Mark>& marks)
+{
+  std::uint64_t a[4], face[4], sense[4];
+  for (int k = 0; k < 4; ++k)
+  {
+    a[k] = mix(static_cast<std::uint64_t>(node[k]));
+  }
+  constexpr int round[4][3] = { { 1, 2, 3 }, { 2, 0, 3 }, { 0, 1, 3 }, { 0, 2, 1 } };
+  for (int k = 0; k < 4; ++k)
+  {
+    const std::uint64_t x = a[round[k][0]], y = a[round[k][1]], z = a[round[k][2]];
+    face[k] = mix(x + y + z);
+    sense[k] = (x - y) * (y - z) * (z - x);
+  }
+  const std::uint64_t all = face[0] ^ face[1] ^ face[2] ^ face[3];
+  const std::uint64_t sum = sense[0] + sense[1] + sense[2] + sense[3];
+  for (int k = 0; k < 4; ++k)
+  {
+    marks[node[k]].parity ^= all ^ face[k];
+    marks[node[k]].sum += sum - sense[k];
   }
 }
 
@@ -52,57 +98,136 @@ int dimensionOf(const Mesh& mesh)
 {
   return mesh.dimension() == Dimension::Volume ? 3 : 2;
 }
+
+/// Calls visit(cell, its type, its nodes) for the cells of the mesh's dimension.
+template <class Visit>
+void forEachElement(const Mesh& mesh, const Visit& visit)
+{
+  const MeshView& view = mesh.view();
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; t.dimension == dimensionOf(mesh) && i < block.count; ++i)
+    {
+      visit(block.cell(i), t, view.connectivity + view.offsets[block.cell(i)]);
+    }
+  }
+}
+
+std::vector<Mark> marksOf(const Mesh& mesh)
+{
+  std::vector<Mark> marks(mesh.view().numberOfPoints);
+  forEachElement(mesh,
+    [&marks](Index, const CellTopology& t, const Index* node)
+    {
+      if (t.type == CellType::Tetrahedron)
+      {
+        addTetrahedron(node, marks);
+      }
+      else
+      {
+        addMarks(t, node, marks);
+      }
+    });
+  return marks;
+}
+
+/// A cell with a number that depends on its points only, not on their order.
+struct KeyedCell
+{
+  std::uint64_t key;
+  Index cell;
+};
+
+/// Of some cells those that have the same points as another one with a smaller id.
+std::vector<DuplicateCell> duplicatesAmong(const Mesh& mesh, std::vector<KeyedCell>& cells)
+{
+  const MeshView& view = mesh.view();
+  std::sort(cells.begin(), cells.end(),
+    [](const KeyedCell& a, const KeyedCell& b)
+    { return a.key != b.key ? a.key < b.key : a.cell < b.cell; });
+  const auto same = [&view](Index a, Index b)
+  {
+    const CellType type = cornerType(view.cellTypes[a]);
+    const Index *first = view.connectivity + view.offsets[a],
+                *second = view.connectivity + view.offsets[b];
+    return type == cornerType(view.cellTypes[b]) &&
+      std::is_permutation(first, first + topology(type).nodes, second);
+  };
+  std::vector<DuplicateCell> duplicates;
+  for (std::size_t i = 0; i < cells.size();)
+  {
+    std::size_t j = i + 1;
+    for (; j < cells.size() && cells[j].key == cells[i].key; ++j)
+    {
+      if (same(cells[i].cell, cells[j].cell))
+      {
+        duplicates.push_back({ cells[j].cell, cells[i].cell });
+      }
+    }
+    i = j;
+  }
+  std::sort(duplicates.begin(), duplicates.end(),
+    [](const DuplicateCell& a, const DuplicateCell& b) { return a.cell < b.cell; });
+  return duplicates;
+}
+
+/// The duplicate cells among those with a point that satisfies a condition.
+template <class Condition>
+std::vector<DuplicateCell> duplicatesWhere(const Mesh& mesh, const Condition& condition)
+{
+  std::vector<KeyedCell> cells;
+  forEachElement(mesh,
+    [&](Index cell, const CellTopology& t, const Index* node)
+    {
+      if (std::any_of(node, node + t.nodes, condition))
+      {
+        std::uint64_t key = static_cast<std::uint64_t>(t.type);
+        std::for_each(node, node + t.nodes,
+          [&key](Index point) { key += mix(static_cast<std::uint64_t>(point)); });
+        cells.push_back({ key, cell });
+      }
+    });
+  return duplicatesAmong(mesh, cells);
+}
+}
+
+//------------------------------------------------------------------------------
+MeshSkin findSkin(const Mesh& mesh)
+{
+  MeshSkin skin;
+  std::vector<char>& boundary = skin.boundaryPoints;
+  boundary.resize(mesh.view().numberOfPoints);
+  bool consistent = true;
+  {
+    const std::vector<Mark> marks = marksOf(mesh);
+    std::transform(
+      marks.begin(), marks.end(), boundary.begin(), [](const Mark& mark) { return mark.any(); });
+    // Else duplicate cells, or cells that are listed in opposite senses: their two uses of a facet
+    // have no parity, but a sum.
+    consistent = std::all_of(marks.begin(), marks.end(),
+      [](const Mark& mark) { return (mark.parity == 0) == (mark.sum == 0); });
+  }
+  // A region of duplicates has facets of three cells, or of two in the same sense, around it: its
+  // points there are marked, as if they were on a boundary.
+  const auto marked = [&boundary](Index point) { return boundary[point] != 0; };
+  const bool closed = std::find(boundary.begin(), boundary.end(), 1) == boundary.end();
+  if (!consistent || !duplicatesWhere(mesh, marked).empty())
+  {
+    skin.duplicates = duplicatesWhere(mesh, [](Index) { return true; });
+  }
+  if (closed || !consistent || !skin.duplicates.empty() || mesh.dimension() == Dimension::Surface)
+  {
+    boundary = mesh.boundary().isBoundaryPoint;
+  }
+  return skin;
 }
 
 //------------------------------------------------------------------------------
 std::vector<char> boundaryPoints(const Mesh& mesh)
 {
-  const MeshView& view = mesh.view();
-  std::vector<std::uint64_t> marks(view.numberOfPoints, 0);
-  for (const CellBlock& block : mesh.blocks())
-  {
-    const CellTopology& t = topology(block.type);
-    if (t.dimension != dimensionOf(mesh))
-    {
-      continue;
-    }
-    if (block.type == CellType::Tetrahedron)
-    {
-      // The same, unrolled: a face's number is that of the sum of its nodes.
-      for (Index i = 0; i < block.count; ++i)
-      {
-        const Index* node = view.connectivity + view.offsets[block.cell(i)];
-        std::uint64_t a[4], face[4];
-        for (int k = 0; k < 4; ++k)
-        {
-          a[k] = mix(static_cast<std::uint64_t>(node[k]));
-        }
-        for (int k = 0; k < 4; ++k)
-        {
-          face[k] = mix(a[(k + 1) & 3] + a[(k + 2) & 3] + a[(k + 3) & 3]);
-        }
-        const std::uint64_t all = face[0] ^ face[1] ^ face[2] ^ face[3];
-        for (int k = 0; k < 4; ++k)
-        {
-          marks[node[k]] ^= all ^ face[k];
-        }
-      }
-      continue;
-    }
-    for (Index i = 0; i < block.count; ++i)
-    {
-      addMarks(t, view.connectivity + view.offsets[block.cell(i)], marks);
-    }
-  }
-  std::vector<char> boundary(view.numberOfPoints);
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    boundary[p] = marks[p] != 0;
-  }
-  if (std::find(boundary.begin(), boundary.end(), 1) == boundary.end())
-  {
-    return mesh.boundary().isBoundaryPoint;
-  }
-  return boundary;
+  // On surfaces more than two cells often meet at an edge, which only the facets show.
+  return mesh.dimension() == Dimension::Surface ? mesh.boundary().isBoundaryPoint
+                                                : findSkin(mesh).boundaryPoints;
 }
 }

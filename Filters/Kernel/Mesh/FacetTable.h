@@ -20,22 +20,38 @@ struct FacetUse
   Index cell;
   /// The sense in which the cell traverses the facet; two cells agree when theirs differ.
   bool forward;
+  Index sum; ///< of the cell's nodes; that of a duplicate is equal
 };
 
-/// The facets (edges or faces) of a mesh's cells of highest dimension, filed by smallest node.
+/// Whether two cells have the same nodes, in any order.
+inline bool sameNodes(const MeshView& view, Index a, Index b)
+{
+  const Index size = view.offsets[a + 1] - view.offsets[a];
+  return size == view.offsets[b + 1] - view.offsets[b] &&
+    std::is_permutation(view.connectivity + view.offsets[a],
+      view.connectivity + view.offsets[a] + size, view.connectivity + view.offsets[b]);
+}
+
+/**
+ * @brief The facets (edges or faces) of a mesh's cells of highest dimension, filed by smallest
+ * node. Of cells with the same nodes the first one counts: the facets of a duplicate on the
+ * boundary are used once.
+ */
 class FacetTable
 {
 public:
-  explicit FacetTable(const Mesh& mesh)
-    : Starts(mesh.view().numberOfPoints + 1, 0)
+  /// @param skip one flag per cell: it does not count; may be null
+  explicit FacetTable(const Mesh& mesh, const unsigned char* skip = nullptr)
+    : View(mesh.view())
+    , Starts(mesh.view().numberOfPoints + 1, 0)
   {
     const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
-    forEachUse(
-      mesh, dimension, [&](Index smallest, const FacetUse&) { ++this->Starts[smallest + 1]; });
+    forEachUse(mesh, dimension, skip,
+      [&](Index smallest, const FacetUse&) { ++this->Starts[smallest + 1]; });
     std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
     this->Uses.resize(this->Starts.back());
     std::vector<Index> next(this->Starts.begin(), this->Starts.end() - 1);
-    forEachUse(mesh, dimension,
+    forEachUse(mesh, dimension, skip,
       [&](Index smallest, const FacetUse& use) { this->Uses[next[smallest]++] = use; });
   }
 
@@ -60,15 +76,39 @@ public:
         {
           ++j;
         }
-        visit(node, &this->Uses[i], j - i);
+        visit(node, &this->Uses[i], this->dropDuplicates(i, j) - i);
         i = j;
       }
     }
   }
 
 private:
+  /// Moves the uses of a facet by distinct cells to the front. @return the end of these
+  Index dropDuplicates(Index begin, Index end)
+  {
+    constexpr Index many = 64; // cells at a facet: it is not manifold in any case
+    if (end - begin > many)
+    {
+      return end;
+    }
+    Index kept = begin + 1;
+    for (Index i = begin + 1; i < end; ++i)
+    {
+      const FacetUse& use = this->Uses[i];
+      const bool duplicate = std::any_of(this->Uses.begin() + begin, this->Uses.begin() + kept,
+        [&](const FacetUse& other)
+        { return other.sum == use.sum && sameNodes(this->View, other.cell, use.cell); });
+      if (!duplicate)
+      {
+        this->Uses[kept++] = use;
+      }
+    }
+    return kept;
+  }
+
   template <class Visit>
-  static void forEachUse(const Mesh& mesh, int dimension, const Visit& visit)
+  static void forEachUse(
+    const Mesh& mesh, int dimension, const unsigned char* skip, const Visit& visit)
   {
     const MeshView& view = mesh.view();
     for (const CellBlock& block : mesh.blocks())
@@ -82,7 +122,12 @@ private:
       for (Index i = 0; i < block.count; ++i)
       {
         const Index cell = block.cell(i);
+        if (skip && skip[cell])
+        {
+          continue;
+        }
         const Index* node = view.connectivity + view.offsets[cell];
+        const Index sum = std::accumulate(node, node + t.nodes, Index(0));
         for (int f = 0; f < facets; ++f)
         {
           Index nodes[MaxFaceNodes] = {};
@@ -97,7 +142,7 @@ private:
           // whether the smallest node comes first.
           const Index next = nodes[(smallest + 1) % size];
           const Index previous = nodes[(smallest + size - 1) % size];
-          FacetUse use = { { next, -1, -1 }, cell, smallest == 0 };
+          FacetUse use = { { next, -1, -1 }, cell, smallest == 0, sum };
           if (size > 2)
           {
             use.forward = next < previous;
@@ -113,6 +158,7 @@ private:
     }
   }
 
+  MeshView View;
   std::vector<Index> Starts;
   std::vector<FacetUse> Uses;
 };

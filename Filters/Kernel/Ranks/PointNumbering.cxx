@@ -360,16 +360,16 @@ using LocalFacet = std::array<Index, MaxFaceNodes>;
 template <class Visit>
 void forEachOpenFacet(const Mesh& mesh, const unsigned char* skip, const Visit& visit)
 {
-  FacetTable(mesh).forEachFacet(
-    [&](Index smallest, const FacetUse* uses, Index count)
-    {
-      const auto counted = static_cast<int>(std::count_if(
-        uses, uses + count, [&](const FacetUse& use) { return !skip || !skip[use.cell]; }));
-      if (counted != 0 && counted != 2)
+  FacetTable(mesh, skip)
+    .forEachFacet(
+      [&](Index smallest, const FacetUse* uses, Index count)
       {
-        visit(LocalFacet{ smallest, uses->others[0], uses->others[1], uses->others[2] }, counted);
-      }
-    });
+        if (count != 2)
+        {
+          visit(LocalFacet{ smallest, uses->others[0], uses->others[1], uses->others[2] },
+            static_cast<int>(count));
+        }
+      });
 }
 
 /// The number of cells of each facet on all ranks, added up by a directory spread over the ranks.
