@@ -1,0 +1,502 @@
+#include "CoincidentPoints.h"
+
+#include "tautline/Core/UnionFind.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+/// Scrambles the bits (the finaliser of SplitMix64).
+std::uint64_t scramble(std::uint64_t z)
+{
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+std::uint64_t hashOf(const std::array<std::uint64_t, 3>& key)
+{
+  std::uint64_t hash = 0x9e3779b97f4a7c15u;
+  for (std::uint64_t part : key)
+  {
+    hash = scramble(hash + part);
+  }
+  return hash;
+}
+
+/// The bits of the coordinates; those of 0 for -0.
+std::array<std::uint64_t, 3> placeOf(const MeshView& view, Index point)
+{
+  std::array<std::uint64_t, 3> bits;
+  for (int c = 0; c < 3; ++c)
+  {
+    const double x = view.points[3 * point + c] + 0.0;
+    std::memcpy(&bits[c], &x, sizeof x);
+  }
+  return bits;
+}
+
+/// Ids filed under keys that a function gives for an id: open addressing, linear probing.
+class IdTable
+{
+public:
+  explicit IdTable(Index count)
+  {
+    std::size_t size = 16;
+    while (size < 2 * static_cast<std::size_t>(count))
+    {
+      size *= 2;
+    }
+    this->Slots.assign(size, -1);
+  }
+
+  /// The id that was filed with an equal key, or this one, which is filed.
+  template <class Key, class KeyOf>
+  Index insert(Index id, const Key& key, const KeyOf& keyOf)
+  {
+    const std::size_t mask = this->Slots.size() - 1;
+    for (std::size_t slot = hashOf(key) & mask;; slot = (slot + 1) & mask)
+    {
+      if (this->Slots[slot] < 0)
+      {
+        this->Slots[slot] = id;
+        return id;
+      }
+      if (keyOf(this->Slots[slot]) == key)
+      {
+        return this->Slots[slot];
+      }
+    }
+  }
+
+  /// The id that was filed with an equal key, or -1.
+  template <class Key, class KeyOf>
+  Index find(const Key& key, const KeyOf& keyOf) const
+  {
+    const std::size_t mask = this->Slots.size() - 1;
+    for (std::size_t slot = hashOf(key) & mask; this->Slots[slot] >= 0; slot = (slot + 1) & mask)
+    {
+      if (keyOf(this->Slots[slot]) == key)
+      {
+        return this->Slots[slot];
+      }
+    }
+    return -1;
+  }
+
+private:
+  std::vector<Index> Slots;
+};
+
+bool isFinite(const MeshView& view, Index point)
+{
+  const double* p = view.points + 3 * point;
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+/// One flag per point: a finite corner of a supported cell.
+std::vector<char> usedPoints(const Mesh& mesh)
+{
+  const MeshView& view = mesh.view();
+  std::vector<char> used(view.numberOfPoints, 0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      std::for_each(node, node + nodes, [&used](Index point) { used[point] = 1; });
+    }
+  }
+  for (Index p = 0; mesh.nonFinitePoints() > 0 && p < view.numberOfPoints; ++p)
+  {
+    used[p] = used[p] && isFinite(view, p);
+  }
+  return used;
+}
+
+/// The places at which several points are.
+struct Places
+{
+  std::vector<Index> of;     ///< per point: the smallest point at its place
+  std::vector<char> several; ///< per point: there are others at its place
+  bool any = false;
+};
+
+Places findPlaces(const Mesh& mesh)
+{
+  const MeshView& view = mesh.view();
+  const std::vector<char> used = usedPoints(mesh);
+  Places places;
+  IdTable table(std::count(used.begin(), used.end(), 1));
+  const auto keyOf = [&view](Index point) { return placeOf(view, point); };
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    const Index same = used[p] ? table.insert(p, keyOf(p), keyOf) : p;
+    if (same != p && !places.any)
+    {
+      places.any = true;
+      places.several.assign(view.numberOfPoints, 0);
+      places.of.resize(view.numberOfPoints);
+      std::iota(places.of.begin(), places.of.end(), Index(0));
+    }
+    if (same != p)
+    {
+      places.of[p] = same;
+      places.several[p] = places.several[same] = 1;
+    }
+  }
+  return places;
+}
+
+using FacetNodes = std::array<Index, MaxFaceNodes>;
+
+/// A use of a facet with a point that has others at its place.
+struct SeamFacet
+{
+  FacetNodes places; ///< in increasing order; a missing one is -1 and first
+  FacetNodes nodes;  ///< in the order of their places
+  Index cell;
+  bool forward;    ///< the sense in which the cell traverses it, by its places
+  bool collapsing; ///< it has a place where a cell has two points
+};
+
+/// The facet of a cell, and the sense of walking, by places.
+SeamFacet seamFacet(const Index* nodes, int size, Index cell, const Places& places)
+{
+  SeamFacet facet;
+  facet.places.fill(-1);
+  facet.nodes.fill(-1);
+  facet.cell = cell;
+  std::array<std::pair<Index, Index>, MaxFaceNodes> sorted;
+  int smallest = 0;
+  for (int k = 0; k < size; ++k)
+  {
+    sorted[k] = { places.of[nodes[k]], nodes[k] };
+    smallest = sorted[k].first < sorted[smallest].first ? k : smallest;
+  }
+  // For an edge, whether its smallest node comes first; for a face, which neighbour of its smallest
+  // node follows it.
+  const Index next = sorted[(smallest + 1) % size].first;
+  const Index previous = sorted[(smallest + size - 1) % size].first;
+  facet.forward = size == 2 ? smallest == 0 : next < previous;
+  for (int k = 1; k < size; ++k)
+  {
+    for (int j = k; j > 0 && sorted[j] < sorted[j - 1]; --j)
+    {
+      std::swap(sorted[j], sorted[j - 1]);
+    }
+  }
+  for (int k = 0; k < size; ++k)
+  {
+    facet.places[MaxFaceNodes - size + k] = sorted[k].first;
+    facet.nodes[MaxFaceNodes - size + k] = sorted[k].second;
+  }
+  return facet;
+}
+
+/// The facets of cells of the mesh's dimension with a point that has others at its place; marks the
+/// places where a cell has two points.
+std::vector<SeamFacet> seamFacets(
+  const Mesh& mesh, const Places& places, std::vector<char>& collapses)
+{
+  const MeshView& view = mesh.view();
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  std::vector<SeamFacet> facets;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    const int count = t.dimension == 3 ? t.faces : t.edges;
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      const Index* node = view.connectivity + view.offsets[cell];
+      if (std::none_of(node, node + t.nodes, [&](Index p) { return places.several[p] != 0; }))
+      {
+        continue;
+      }
+      for (int a = 0; a < t.nodes; ++a)
+      {
+        for (int b = 0; places.several[node[a]] && b < a; ++b)
+        {
+          if (node[a] != node[b] && places.of[node[a]] == places.of[node[b]])
+          {
+            collapses[places.of[node[a]]] = 1;
+          }
+        }
+      }
+      for (int f = 0; t.dimension == dimension && f < count; ++f)
+      {
+        const int size = dimension == 3 ? t.faceSizes[f] : 2;
+        const int* member = dimension == 3 ? t.faceNodes[f].data() : t.edgeNodes[f].data();
+        if (std::any_of(member, member + size, [&](int k) { return places.several[node[k]] != 0; }))
+        {
+          Index nodes[MaxFaceNodes];
+          std::transform(member, member + size, nodes, [node](int k) { return node[k]; });
+          facets.push_back(seamFacet(nodes, size, cell, places));
+        }
+      }
+    }
+  }
+  return facets;
+}
+
+/// What becomes of the uses of the facets at one place.
+class SeamJoiner
+{
+public:
+  explicit SeamJoiner(const Mesh& mesh)
+    : Sided(mesh.dimension() != Dimension::Surface)
+    , Points(mesh.view().numberOfPoints)
+    , Seams(mesh.view().numberOfPoints)
+    , OnSeam(mesh.view().numberOfPoints, 0)
+  {
+  }
+
+  /// Joins the points of two boundary facets at the same place, or counts why they stay apart.
+  void visit(const SeamFacet* uses, Index count)
+  {
+    // Uses of the same nodes stand together: two are a facet inside of the mesh.
+    std::array<const SeamFacet*, 2> boundary = {};
+    Index facets = 0;
+    for (Index i = 0; i < count;)
+    {
+      Index j = i + 1;
+      while (j < count && uses[j].nodes == uses[i].nodes)
+      {
+        ++j;
+      }
+      if (facets < 2)
+      {
+        boundary[facets] = j == i + 1 ? &uses[i] : nullptr;
+      }
+      ++facets;
+      i = j;
+    }
+    if (facets < 2)
+    {
+      return;
+    }
+    Index& reason = uses->collapsing                         ? this->Found.collapsing
+      : facets > 2 || !boundary[0] || !boundary[1]           ? this->Found.crowded
+      : this->Sided && uses->forward == boundary[1]->forward ? this->Found.overlapping
+                                                             : this->Found.facets;
+    ++reason;
+    if (&reason == &this->Found.facets)
+    {
+      this->join(boundary[0]->nodes, boundary[1]->nodes);
+      return;
+    }
+    for (Index point : uses->nodes)
+    {
+      if (point >= 0 && (this->Found.firstApart < 0 || point < this->Found.firstApart))
+      {
+        this->Found.firstApart = point;
+      }
+    }
+  }
+
+  CoincidentPoints finish()
+  {
+    const Index points = static_cast<Index>(this->OnSeam.size());
+    if (this->Found.facets > 0)
+    {
+      this->Found.representative.resize(points);
+      for (Index p = 0; p < points; ++p)
+      {
+        const Index one = this->Points.find(p);
+        this->Found.representative[p] = one;
+        this->Found.merged += one != p;
+        this->Found.first = this->Found.first < 0 && one != p ? p : this->Found.first;
+        this->Found.seams += this->OnSeam[p] && this->Seams.find(p) == p;
+      }
+    }
+    return std::move(this->Found);
+  }
+
+private:
+  void join(const FacetNodes& a, const FacetNodes& b)
+  {
+    for (int k = 0; k < MaxFaceNodes; ++k)
+    {
+      if (a[k] < 0)
+      {
+        continue;
+      }
+      this->Points.join(a[k], b[k]);
+      this->Seams.join(a[MaxFaceNodes - 1], a[k]);
+      this->Seams.join(a[MaxFaceNodes - 1], b[k]);
+      this->OnSeam[a[k]] = this->OnSeam[b[k]] = 1;
+    }
+  }
+
+  bool Sided;
+  UnionFind Points, Seams;
+  std::vector<char> OnSeam;
+  CoincidentPoints Found;
+};
+}
+
+//------------------------------------------------------------------------------
+CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* reversed)
+{
+  const Places places = findPlaces(mesh);
+  if (!places.any)
+  {
+    return {};
+  }
+  std::vector<char> collapses(mesh.view().numberOfPoints, 0);
+  std::vector<SeamFacet> facets = seamFacets(mesh, places, collapses);
+  for (SeamFacet& facet : facets)
+  {
+    facet.collapsing = std::any_of(facet.places.begin(), facet.places.end(),
+      [&collapses](Index place) { return place >= 0 && collapses[place]; });
+    facet.forward = facet.forward != (reversed && reversed[facet.cell]);
+  }
+  std::sort(facets.begin(), facets.end(),
+    [](const SeamFacet& a, const SeamFacet& b)
+    {
+      return a.places != b.places ? a.places < b.places
+        : a.nodes != b.nodes      ? a.nodes < b.nodes
+                                  : a.cell < b.cell;
+    });
+  SeamJoiner joiner(mesh);
+  for (std::size_t i = 0; i < facets.size();)
+  {
+    std::size_t j = i + 1;
+    while (j < facets.size() && facets[j].places == facets[i].places)
+    {
+      ++j;
+    }
+    joiner.visit(&facets[i], static_cast<Index>(j - i));
+    i = j;
+  }
+  return joiner.finish();
+}
+
+namespace
+{
+/// The length of the shortest edge between flagged points, above 0; infinite if there is none.
+double shortestEdge(const Mesh& mesh, const std::vector<char>& flags)
+{
+  const MeshView& view = mesh.view();
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      bool flagged[MaxNodes];
+      std::transform(node, node + t.nodes, flagged, [&flags](Index p) { return flags[p] != 0; });
+      for (int e = 0; e < t.edges; ++e)
+      {
+        const int a = t.edgeNodes[e][0], b = t.edgeNodes[e][1];
+        if (flagged[a] && flagged[b])
+        {
+          const double length = norm(pointOf(view, node[a]) - pointOf(view, node[b]));
+          shortest = length > 0 ? std::min(shortest, length) : shortest;
+        }
+      }
+    }
+  }
+  return shortest;
+}
+
+/// Whether two points are of a common cell.
+bool neighbors(const Mesh& mesh, VertexCells& around, Index a, Index b)
+{
+  const MeshView& view = mesh.view();
+  if (around.offsets.empty())
+  {
+    around = mesh.vertexCells(); // as a rule, no points are near
+  }
+  return std::any_of(around.cells.begin() + around.offsets[a],
+    around.cells.begin() + around.offsets[a + 1],
+    [&](Index cell)
+    {
+      const Index* node = view.connectivity + view.offsets[cell];
+      const Index* end = view.connectivity + view.offsets[cell + 1];
+      return std::find(node, end, b) != end;
+    });
+}
+}
+
+//------------------------------------------------------------------------------
+Index countNearPoints(
+  const Mesh& mesh, const std::vector<char>& boundary, Index* first, double tolerance)
+{
+  constexpr double LargestIndex = 1e15; // of a box of the grid; above it, boxes are not exact
+  const MeshView& view = mesh.view();
+  std::vector<char> flags = boundary;
+  for (Index p = 0; mesh.nonFinitePoints() > 0 && p < view.numberOfPoints; ++p)
+  {
+    flags[p] = flags[p] && isFinite(view, p);
+  }
+  const double distance = tolerance * shortestEdge(mesh, flags);
+  if (!(distance > 0) || !std::isfinite(distance))
+  {
+    return 0;
+  }
+  // Boxes twice as wide as the distance: a point is near those of eight boxes only.
+  const double width = 2 * distance;
+  using Box = std::array<std::uint64_t, 3>;
+  const auto boxOf = [&](const Vec3& p)
+  {
+    Box box;
+    std::transform(p.begin(), p.end(), box.begin(),
+      [&](double x)
+      { return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / width))); });
+    return box;
+  };
+  const auto keyOf = [&](Index point) { return boxOf(pointOf(view, point)); };
+  // The points of a box are a list, which begins at the one that is filed.
+  std::vector<Index> next(view.numberOfPoints, -1);
+  IdTable table(std::count(flags.begin(), flags.end(), 1));
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (flags[p])
+    {
+      const Vec3 x = pointOf(view, p);
+      if (std::max({ std::abs(x[0]), std::abs(x[1]), std::abs(x[2]) }) / width > LargestIndex)
+      {
+        return 0; // the distance is below the resolution of the coordinates
+      }
+      const Index head = table.insert(p, keyOf(p), keyOf);
+      if (head != p)
+      {
+        next[p] = next[head];
+        next[head] = p;
+      }
+    }
+  }
+  VertexCells around;
+  Index near = 0;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    const Vec3 x = pointOf(view, p);
+    bool found = false;
+    for (int corner = 0; flags[p] && !found && corner < 8; ++corner)
+    {
+      const Box box = boxOf({ x[0] + (corner & 1 ? distance : -distance),
+        x[1] + (corner & 2 ? distance : -distance), x[2] + (corner & 4 ? distance : -distance) });
+      for (Index q = table.find(box, keyOf); q >= 0 && !found; q = next[q])
+      {
+        const double apart = norm(pointOf(view, q) - x);
+        found = apart > 0 && apart <= distance && !neighbors(mesh, around, p, q);
+      }
+    }
+    if (found && near++ == 0 && first)
+    {
+      *first = p;
+    }
+  }
+  return near;
+}
+}
