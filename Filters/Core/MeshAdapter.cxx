@@ -34,6 +34,40 @@ MeshAdapter::MeshAdapter(vtkDataSet* input, int threads)
 }
 
 //------------------------------------------------------------------------------
+void MeshAdapter::mergeCoincidentPoints(int threads)
+{
+  this->Coincident = findCoincidentPoints(*this->TheMesh);
+  if (!this->Coincident.any())
+  {
+    return;
+  }
+  MeshView merged = this->View;
+  const Index* first = merged.connectivity;
+  this->MergedConnectivity.assign(first, first + merged.offsets[merged.numberOfCells]);
+  for (Index& node : this->MergedConnectivity)
+  {
+    // Cells that are not supported may have any number here.
+    if (node >= 0 && node < merged.numberOfPoints)
+    {
+      node = this->Coincident.representative[node];
+    }
+  }
+  merged.connectivity = this->MergedConnectivity.data();
+  this->Given = std::move(this->TheMesh);
+  this->TheMesh = std::make_unique<Mesh>(merged, threads);
+}
+
+//------------------------------------------------------------------------------
+void MeshAdapter::setMirrored(bool mirrored)
+{
+  this->TheMesh->setMirrored(mirrored);
+  if (this->Given)
+  {
+    this->Given->setMirrored(mirrored);
+  }
+}
+
+//------------------------------------------------------------------------------
 void MeshAdapter::takePoints(vtkDataSet* input)
 {
   const Index count = input->GetNumberOfPoints();

@@ -14,6 +14,7 @@
 
 #include "TautlineCoreModule.h" // for export macro
 
+#include "tautline/Mesh/CoincidentPoints.h"
 #include "tautline/Mesh/Mesh.h"
 
 #include "vtkSmartPointer.h"
@@ -35,6 +36,18 @@ public:
 
   Mesh& mesh() { return *this->TheMesh; }
   const Mesh& mesh() const { return *this->TheMesh; }
+
+  /**
+   * @brief Treats coincident points on seams as one, see findCoincidentPoints(): in mesh(), cells
+   * use the representatives, and the other points are of no cell. Ids do not change.
+   */
+  void mergeCoincidentPoints(int threads = 0);
+  /// What was merged; empty before mergeCoincidentPoints().
+  const CoincidentPoints& coincident() const { return this->Coincident; }
+  /// Of mesh() and given(), see Mesh::setMirrored().
+  void setMirrored(bool mirrored);
+  /// The mesh with the points that its cells have in the data set.
+  const Mesh& given() const { return this->Given ? *this->Given : *this->TheMesh; }
 
   /**
    * @brief Remarks for the user on how the mesh is interpreted, as sentences, or "":
@@ -60,6 +73,9 @@ private:
   std::vector<Index> Connectivity;
   const unsigned char* Ghosts = nullptr;
   MeshView View;
+  CoincidentPoints Coincident;
+  std::vector<Index> MergedConnectivity;
+  std::unique_ptr<Mesh> Given; ///< null if it is TheMesh
   std::unique_ptr<Mesh> TheMesh;
 };
 

@@ -1,6 +1,7 @@
 #include "MovableMesh.h"
 
 #include "Blocks.h"
+#include "PointMerge.h"
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 
@@ -33,11 +34,16 @@ vtkDataSet* withPoints(vtkDataSet* input)
 }
 
 //------------------------------------------------------------------------------
-MovableMesh::MovableMesh(vtkDataSet* input, int threads)
+MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints)
   : Input(vtkPointSet::SafeDownCast(withPoints(input)))
   , Adapter(input, threads)
   , Threads(threads)
+  , MergePoints(mergePoints)
 {
+  if (mergePoints)
+  {
+    this->Adapter.mergeCoincidentPoints(threads);
+  }
   Mesh& mesh = this->Adapter.mesh();
   if (mesh.dimension() == Dimension::None)
   {
@@ -59,11 +65,14 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads)
   if (orientation.state == Orientation::Reversed)
   {
     this->Notice = describe(orientation, mesh) + " It is treated as if its cells were flipped.";
-    mesh.setMirrored(true);
+    this->Adapter.setMirrored(true);
     mesh.classifyCells(this->Validity.data(), threads);
   }
-  const std::string more = this->Adapter.notice();
-  this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
+  for (const std::string& more : { describeMerged(this->Adapter.coincident(), this->given()),
+         describeDuplicates(findSkin(mesh).duplicates), this->Adapter.notice() })
+  {
+    this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
+  }
   this->Skip = cellsToSkip(this->Adapter);
   this->Fixed.assign(mesh.view().numberOfPoints, 0);
   this->fixWhatStays();
@@ -120,14 +129,22 @@ void MovableMesh::fix(vtkDataArray* array, bool ofCells)
   {
     this->Fixed[i] |= array->GetComponent(i, 0) != 0;
   }
+  this->uniteFixed();
+}
+
+//------------------------------------------------------------------------------
+void MovableMesh::uniteFixed()
+{
+  unite(this->Fixed, this->representative());
 }
 
 //------------------------------------------------------------------------------
 void MovableMesh::fixBoundary()
 {
-  const std::vector<char> boundary = boundaryPoints(this->mesh());
-  std::transform(this->Fixed.begin(), this->Fixed.end(), boundary.begin(), this->Fixed.begin(),
-    [](unsigned char fixed, char on) { return fixed || on; });
+  this->Boundary = boundaryPoints(this->mesh());
+  std::transform(this->Fixed.begin(), this->Fixed.end(), this->Boundary.begin(),
+    this->Fixed.begin(), [](unsigned char fixed, char on) { return fixed || on; });
+  this->uniteFixed();
 }
 
 //------------------------------------------------------------------------------
@@ -135,11 +152,68 @@ void MovableMesh::fixCorners(const BoundaryShape& shape)
 {
   std::transform(this->Fixed.begin(), this->Fixed.end(), shape.fixed.begin(), this->Fixed.begin(),
     [](unsigned char fixed, unsigned char corner) { return fixed || corner; });
+  this->SlidingFixed = true;
+  this->uniteFixed();
 }
 
 //------------------------------------------------------------------------------
-std::string MovableMesh::move(vtkPointSet* output, const std::vector<double>& points) const
+std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
 {
+  const Mesh& mesh = this->mesh();
+  const MeshView& view = mesh.view();
+  const VertexCells cells = mesh.vertexCells();
+  Index used = 0, fixed = 0, onBoundary = 0;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (cells.offsets[p] < cells.offsets[p + 1])
+    {
+      ++used;
+      fixed += this->Fixed[p] != 0;
+      onBoundary += !this->Boundary.empty() && this->Boundary[p];
+    }
+  }
+  if (fixed < used)
+  {
+    return "";
+  }
+  if (onBoundary == 0)
+  {
+    return this->SlidingFixed
+      ? "Every point is fixed, by an array or a selection or because it is on the boundary and "
+        "cannot slide: " +
+        boundaryRemedy + ", or fix fewer points."
+      : "Every point is fixed by an array or a selection: fix fewer points.";
+  }
+  std::string text = onBoundary == used
+    ? "Every point is on the boundary of the mesh, which is fixed"
+    : std::to_string(onBoundary) + " of the " + std::to_string(used) +
+      " points are on the boundary of the mesh, which is fixed, and the others are fixed by an "
+      "array, a selection or cells that stay";
+  // Pieces whose points are not merged are the usual cause.
+  const Index coincident = this->MergePoints ? 0 : findCoincidentPoints(mesh).merged;
+  Index first = 0;
+  const Index near = coincident > 0 ? 0 : countNearPoints(mesh, boundaryPoints(mesh), &first);
+  if (coincident > 0)
+  {
+    return text + ". " + std::to_string(coincident) +
+      " points are at the place of another one, so that neighbouring elements are not connected: "
+      "switch Merge Coincident Points on, or run Clean to Grid first.";
+  }
+  if (near > 0)
+  {
+    return text + ". " + std::to_string(near) +
+      " points nearly coincide with another one, the first is " + placeOf(view, first) +
+      ", so that neighbouring elements are not connected: run Clean to Grid with a tolerance "
+      "first.";
+  }
+  return text + ": " + boundaryRemedy + ", or refine the mesh.";
+}
+
+//------------------------------------------------------------------------------
+std::string MovableMesh::move(vtkPointSet* output, const std::vector<double>& moved) const
+{
+  std::vector<double> points = moved;
+  spread(points, 3, this->representative());
   const Mesh& mesh = this->mesh();
   vtkPoints* like = this->Input->GetPoints();
   std::string note;

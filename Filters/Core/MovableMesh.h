@@ -32,10 +32,18 @@ public:
   /**
    * @brief Throws Error that names the remedy for points that are implicit (image data), cells of
    * higher order, no cell at all that is measured, and mixed orientation.
+   * @param mergePoints whether coincident points on seams are one: they move together
    */
-  MovableMesh(vtkDataSet* input, int threads);
+  MovableMesh(vtkDataSet* input, int threads, bool mergePoints);
 
   const Mesh& mesh() const { return this->Adapter.mesh(); }
+  /// The same with the points that the cells have in the data set, for what is compared with it.
+  const Mesh& given() const { return this->Adapter.given(); }
+  /// One per point, see CoincidentPoints; empty if no points are one.
+  const std::vector<Index>& representative() const
+  {
+    return this->Adapter.coincident().representative;
+  }
   /// One per cell of the input.
   const std::vector<signed char>& validity() const { return this->Validity; }
   /// Remarks for the user on how the mesh is interpreted, as sentences, or "".
@@ -56,20 +64,29 @@ public:
    * that are not measured (lines, polygons, polyhedra) and of surfaces inside a volume mesh.
    */
   const std::vector<unsigned char>& fixed() const { return this->Fixed; }
+  /**
+   * @brief Why no point is free, and what to do about it, in sentences; "" if one is.
+   * @param boundaryRemedy how to free the boundary in this filter: "choose another Boundary"
+   */
+  std::string whyNoneIsFree(const std::string& boundaryRemedy) const;
 
   /**
    * @brief Gives the output new points, in the precision of the input unless a valid cell would not
-   * be valid in it, and the point array `Displacement`.
+   * be valid in it, and the point array `Displacement`. Points that are one get the same place.
    * @return a sentence if single precision did not do, else ""
    */
-  std::string move(vtkPointSet* output, const std::vector<double>& points) const;
+  std::string move(vtkPointSet* output, const std::vector<double>& moved) const;
 
 private:
   void fixWhatStays();
+  void uniteFixed();
 
   vtkPointSet* Input;
   MeshAdapter Adapter;
   int Threads;
+  bool MergePoints;
+  std::vector<char> Boundary; ///< the points fixBoundary() fixed
+  bool SlidingFixed = false;  ///< whether fixCorners() fixed any
   std::vector<signed char> Validity;
   std::vector<unsigned char> Skip, Fixed;
   std::string Notice;

@@ -186,4 +186,30 @@ void requireOneProcess(vtkDataObject* input)
       "in ParaView by Aggregate Dataset.");
   }
 }
+
+//------------------------------------------------------------------------------
+void requireFirstProcess(vtkDataObject* input, const char* filter)
+{
+  vtkMultiProcessController* controller = manyProcesses();
+  if (!controller)
+  {
+    return;
+  }
+  Index cells = 0;
+  forEachLeaf(
+    input, [&cells](unsigned int, vtkDataSet* data) { cells += data->GetNumberOfCells(); });
+  const int own = cells > 0;
+  const int elsewhere = own != 0 && controller->GetLocalProcessId() > 0;
+  int having = own, notFirst = elsewhere;
+  controller->AllReduce(&own, &having, 1, vtkCommunicator::SUM_OP);
+  controller->AllReduce(&elsewhere, &notFirst, 1, vtkCommunicator::SUM_OP);
+  if (notFirst > 0)
+  {
+    throw Error(std::string(filter) + " does not support meshes on several processes, and " +
+      std::to_string(having) + " of " + std::to_string(controller->GetNumberOfProcesses()) +
+      " have cells: gather the mesh on the first process, in ParaView by Aggregate Dataset with "
+      "one "
+      "process, or run ParaView with one process.");
+  }
+}
 }

@@ -62,5 +62,12 @@ TAUTLINECORE_EXPORT int minimumOverProcesses(int own);
 /// Throws Error, on all processes, if a data set has cells on several of them. Collective; MPI is
 /// not needed.
 TAUTLINECORE_EXPORT void requireOneProcess(vtkDataObject* input);
+
+/**
+ * @brief Throws Error, on all processes, if any of them but the first has cells: for filters whose
+ * numbers and summary are those of one process. Collective; MPI is not needed.
+ * @param filter its name, for the message: "Optimize Mesh"
+ */
+TAUTLINECORE_EXPORT void requireFirstProcess(vtkDataObject* input, const char* filter);
 }
 #endif

@@ -3,14 +3,20 @@
  * @brief Base class of the filters that move the points of a mesh: fixed points, blocks, history.
  *
  * Abstract. Such a filter keeps the connectivity. Its input on port 0 is a data set with explicit
- * points, or blocks of these, which are treated one after the other, each with its own boundary. A
- * mesh that is reversed throughout is treated as its mirror image; mixed orientation, image data
+ * points, or blocks of these, which are treated one after the other, each with its own boundary: a
+ * seam between two blocks stays in place with the boundary, and is a warning; if the boundary can
+ * slide or move freely, it is an error, as the blocks would come apart (Merge Blocks is the remedy).
+ * A mesh that is reversed throughout is treated as its mirror image; mixed orientation, image data
  * (implicit points) and cells of higher order are refused.
  *
  * @par Fixed points:
  * A point does not move where a point array (SetInputArrayToProcess(); the index is in the
  * documentation of the filter) is not 0, and where a vtkSelection contains it or a cell of it. The
  * points of ghost cells never move, so that the parts of a distributed mesh still fit together.
+ *
+ * @par Coincident points:
+ * A mesh in pieces has several points at the same place on its seams. They are one point by default
+ * (MergeCoincidentPoints) and move together; the output has the points of the input.
  *
  * @par Outputs:
  * Port 0 has the new points, in the precision of the input unless a valid element would become
@@ -37,6 +43,18 @@ class TAUTLINECORE_EXPORT vtkMeshMotionAlgorithm : public vtkTautlineTimedAlgori
 {
 public:
   vtkTypeMacro(vtkMeshMotionAlgorithm, vtkTautlineTimedAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Whether points with the same coordinates on facets that match are treated as one, as on the
+   * seams of a mesh in pieces; off: they move apart, as a crack or a contact needs it. The default
+   * is on. See tautline/Mesh/CoincidentPoints.h.
+   */
+  vtkSetMacro(MergeCoincidentPoints, bool);
+  vtkGetMacro(MergeCoincidentPoints, bool);
+  vtkBooleanMacro(MergeCoincidentPoints, bool);
+  ///@}
 
   /// The table of output port 1.
   vtkTable* GetHistory() { return this->GetOutputTable(HistoryPort); }
@@ -56,10 +74,15 @@ protected:
    * arrays of the input. Data sets without points or cells are passed on without a call.
    * @param reference a data object of the same structure, or null
    * @param fixedPort the input port with the selection of fixed points
+   * @param boundaryMoves whether points of the boundary can move by themselves, so that a seam
+   * between two blocks would open: Error if there is one; else a warning
    */
   void ForEachBlock(vtkInformationVector** inputVector, vtkInformationVector* outputVector,
-    vtkDataObject* reference, int fixedPort,
+    vtkDataObject* reference, int fixedPort, bool boundaryMoves,
     const std::function<void(const tautline::InputBlock&)>& visit);
+
+  /// Remarks on seams between blocks, or ""; known after ForEachBlock().
+  const std::string& GetBlockNotice() const { return this->BlockNotice; }
 
   /// The number of data sets of the input, at least 1; known within ForEachBlock().
   int GetNumberOfBlocks() const { return this->NumberOfBlocks; }
@@ -67,11 +90,14 @@ protected:
   /// Reports the progress on a block, 0 to 1. @return false if the execution is to be aborted
   bool ProceedInBlock(int block, double fraction);
 
+  bool MergeCoincidentPoints = true;
+
 private:
   vtkMeshMotionAlgorithm(const vtkMeshMotionAlgorithm&) = delete;
   void operator=(const vtkMeshMotionAlgorithm&) = delete;
 
   int NumberOfBlocks = 1;
+  std::string BlockNotice;
 };
 
 #endif

@@ -1,5 +1,6 @@
 #include "WarpSession.h"
 
+#include "PointMerge.h"
 #include "Processes.h"
 
 #include "tautline/Core/Stopwatch.h"
@@ -126,19 +127,20 @@ bool staysAtRest(const WarpTask& task)
 }
 
 //------------------------------------------------------------------------------
-void RestingMesh::take(vtkPointSet* input, int threads)
+void RestingMesh::take(vtkPointSet* input, int threads, bool mergePoints)
 {
   // What was taken shares its arrays with its owner, who may have changed them in place.
-  if (this->data && this->data->GetMTime() <= this->time &&
+  if (this->data && this->data->GetMTime() <= this->time && mergePoints == this->MergePoints &&
     input->HasAnyGhostCells() == this->data->HasAnyGhostCells() &&
-    sameMesh(MeshAdapter(input, threads).mesh().view(), this->mesh->mesh().view()))
+    sameMesh(MeshAdapter(input, threads).mesh().view(), this->mesh->given().view()))
   {
     return;
   }
   this->warper.reset();
   this->data = nullptr; // so that it is not taken for good if what follows throws
   vtkSmartPointer<vtkPointSet> copy = structureOf(input);
-  this->mesh = std::make_unique<MovableMesh>(copy, threads);
+  this->mesh = std::make_unique<MovableMesh>(copy, threads, mergePoints);
+  this->MergePoints = mergePoints;
   requireElements(*this->mesh);
   this->boundary = boundaryOf(this->mesh->mesh());
   this->Parts.reset();
@@ -256,7 +258,7 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
   auto* input = vtkPointSet::SafeDownCast(block.input);
   if (!input)
   {
-    MovableMesh refused(block.input, this->settings.options.threads); // throws the remedy
+    MovableMesh refused(block.input, this->settings.options.threads, false); // throws the remedy
   }
   WarpBlock& kept = this->Blocks[block.number];
   const bool inSequence = this->sequence();
@@ -270,7 +272,8 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
   {
     return; // only the mesh at the first time step was requested
   }
-  kept.rest.take(inSequence ? kept.first.Get() : input, this->settings.options.threads);
+  kept.rest.take(inSequence ? kept.first.Get() : input, this->settings.options.threads,
+    this->settings.mergePoints);
   const MeshView& view = kept.rest.mesh->mesh().view();
   if (view.numberOfPoints != input->GetNumberOfPoints() ||
     view.numberOfCells != input->GetNumberOfCells())
@@ -326,9 +329,12 @@ WarpTask WarpSession::task(const InputBlock& block, const RestingMesh& rest, vtk
   switch (set.motion)
   {
     case MotionSource::Displacement:
-      task.displacement =
-        displacementsOf(displacementArray(set.arrays, block.input), rest.boundary);
+    {
+      vtkDataArray* array = displacementArray(set.arrays, block.input);
+      requireEqualValues(array, rest.mesh->representative(), "displacements");
+      task.displacement = displacementsOf(array, rest.boundary);
       break;
+    }
     case MotionSource::TimeSteps:
       this->moveOverTime(block, rest, task);
       break;
@@ -368,6 +374,13 @@ void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, Wa
     false, task.stay);
   markPoints(mesh, block.selected, task.stay);
   markGhosts(block.input, task.stay);
+  // Of points that are one, the representative is of the mesh.
+  const std::vector<Index>& one = rest.mesh->representative();
+  for (std::size_t p = 0; p < one.size(); ++p)
+  {
+    task.stay[one[p]] |= task.stay[p];
+    task.stay[p] = static_cast<std::size_t>(one[p]) == p && task.stay[p];
+  }
   task.prescribed = rest.boundary;
   for (std::size_t i = 0; i < task.stay.size(); ++i)
   {
@@ -387,6 +400,8 @@ void WarpSession::moveOverTime(
   {
     throw Error("The input has no time steps its boundary could move over: choose another Motion.");
   }
+  requireEqualValues(vtkPointSet::SafeDownCast(block.input)->GetPoints()->GetData(),
+    rest.mesh->representative(), "positions at this time step");
   const MeshView& view = rest.mesh->mesh().view();
   task.displacement.assign(3 * view.numberOfPoints, 0.0);
   for (Index i = 0; i < view.numberOfPoints; ++i)
@@ -427,7 +442,7 @@ void WarpSession::moveToTarget(const InputBlock& block, const RestingMesh& rest,
   const WarpSettings& set = this->settings;
   TargetRequest request;
   request.mesh = block.input;
-  request.view = &rest.mesh->mesh();
+  request.view = &rest.mesh->given();
   request.target = targetOf(block, target);
   request.correspondence = set.correspondence;
   request.ids = targetIds(request.target, set.targetIds);
@@ -536,6 +551,7 @@ WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, b
   {
     result.message += " Cells are counted without lines, vertices and the surfaces of volumes.";
   }
+  spread(result.points, 3, rest.mesh->representative());
   if (stepwise)
   {
     this->limitMemory(kept);
@@ -555,7 +571,7 @@ WarpResult WarpSession::warpFromPrevious(
   std::string note;
   try
   {
-    step.take(data, this->settings.options.threads);
+    step.take(data, this->settings.options.threads, this->settings.mergePoints);
   }
   catch (const Error&) // tangled; the step goes the whole way from the mesh at rest
   {

@@ -54,6 +54,7 @@ struct WarpSettings
   PointMotion transform;                      ///< of MotionSource::Transform
   bool tensorsByRegion = false;               ///< PerCell: from `regions`, not from TensorArray
   std::vector<std::array<double, 4>> regions; ///< value, alpha, beta, gamma
+  bool mergePoints = true;                    ///< whether coincident points on seams are one
   WarpOptions options;                        ///< all that needs no data set
   vtkAlgorithm* arrays = nullptr;             ///< whose input arrays are chosen
   std::function<bool(int, double)> progress;  ///< block, fraction; false stops
@@ -79,7 +80,7 @@ struct RestingMesh
   std::unique_ptr<Warper> warper;
 
   /// Takes a data set, unless it is the one that is here. Throws Error if nothing can be warped.
-  void take(vtkPointSet* input, int threads);
+  void take(vtkPointSet* input, int threads, bool mergePoints);
   /// What is warped.
   const Mesh& warped() const { return this->elements ? *this->elements : this->mesh->mesh(); }
 
@@ -89,6 +90,7 @@ struct RestingMesh
 private:
   void takeElements(int threads);
 
+  bool MergePoints = true;
   mutable std::unique_ptr<BoundaryParts> Parts;
 };
 

@@ -168,6 +168,7 @@ tautline::WarpSettings vtkMeshWarp::GetSettings()
   settings.regions = this->Regions;
 
   tautline::WarpOptions& options = settings.options;
+  settings.mergePoints = this->MergeCoincidentPoints;
   options.method = static_cast<tautline::WarpMethod>(this->Method);
   // Tensors by region become tensors per cell.
   options.coefficients = settings.tensorsByRegion
@@ -278,10 +279,9 @@ int vtkMeshWarp::RequestData(
                                   "off), or warp the mesh in parts",
     [&]
     {
-      tautline::requireOneProcess(input);
       const auto moved =
         tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
-      this->ForEachBlock(inputVector, outputVector, nullptr, FixedPort,
+      this->ForEachBlock(inputVector, outputVector, nullptr, FixedPort, false,
         [&](const tautline::InputBlock& block)
         { session.visit(block, target, moved, history, statistics, totals); });
       session.forgetFrom(this->GetNumberOfBlocks());
@@ -316,6 +316,7 @@ int vtkMeshWarp::RequestData(
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Summary = totals.summary;
+  this->AddToSummary(this->GetBlockNotice());
   this->InvertedAfterWarp = totals.invertedAfterWarp;
   this->Inverted = totals.inverted;
   this->Impossible = totals.impossible;

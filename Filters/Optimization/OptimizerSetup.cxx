@@ -30,7 +30,7 @@ std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
 
 //------------------------------------------------------------------------------
 OptimizerSetup::OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block)
-  : TheMesh(block.input, settings.options.threads)
+  : TheMesh(block.input, settings.options.threads, settings.mergePoints)
   , Options(settings.options)
 {
   this->setFixed(settings, block);
@@ -86,6 +86,12 @@ void OptimizerSetup::setLimits(const OptimizerSettings& settings, const InputBlo
   {
     this->Limits.assign(this->TheMesh.mesh().view().numberOfPoints, settings.maximumDisplacement);
   }
+  // Points that are one may move as far as the one with the smallest limit.
+  const std::vector<Index>& one = this->TheMesh.representative();
+  for (std::size_t p = 0; !this->Limits.empty() && p < one.size(); ++p)
+  {
+    this->Limits[one[p]] = std::min(this->Limits[one[p]], this->Limits[p]);
+  }
   this->Options.limits = this->Limits.empty() ? nullptr : this->Limits.data();
 }
 
@@ -107,7 +113,7 @@ const Targets* OptimizerSetup::target(
     (size ? choice.size : choice.tensor) =
       settings.targetArray(size ? SizeArray : TensorArray, block.input);
   }
-  made = makeTargets(this->TheMesh.mesh(), choice, this->Options.threads);
+  made = makeTargets(this->TheMesh.given(), choice, this->Options.threads);
   return &made;
 }
 

@@ -49,6 +49,7 @@ struct OptimizerSettings
   double flatAngle = 1.0;           ///< degrees
   double featureAngle = 30.0;       ///< degrees
   double maximumDisplacement = 0.0; ///< 0: any distance
+  bool mergePoints = true;          ///< whether coincident points on seams are one
   /// All that needs no data set. Of CUSTOM, too, what a preset replaces.
   OptimizeOptions options;
   vtkAlgorithm* arrays = nullptr; ///< whose input arrays are chosen, see OptimizerArrays

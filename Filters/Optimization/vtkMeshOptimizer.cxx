@@ -3,6 +3,7 @@
 #include "BeforeAfter.h"
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
+#include "Processes.h"
 
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
@@ -290,6 +291,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
   settings.flatAngle = this->FlatAngle;
   settings.featureAngle = this->FeatureAngle;
   settings.maximumDisplacement = this->MaximumDisplacement;
+  settings.mergePoints = this->MergeCoincidentPoints;
   settings.arrays = this;
   settings.targetArray = [this](int index, vtkDataSet* input)
   {
@@ -345,22 +347,24 @@ int vtkMeshOptimizer::RequestData(
     this->Runs.clear();
   }
   tautline::TableRows history, statistics;
-  const int succeeded =
-    this->Attempt(outputVector, "optimize the mesh in parts, or reduce Animation Memory",
-      [&]
-      {
-        const tautline::OptimizerSettings settings = this->GetSettings();
-        this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
-          [&](const tautline::InputBlock& block)
+  const int succeeded = this->Attempt(outputVector,
+    "optimize the mesh in parts, or reduce Animation Memory",
+    [&]
+    {
+      const tautline::OptimizerSettings settings = this->GetSettings();
+      tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), "Optimize Mesh");
+      this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
+        this->Boundary != FIXED,
+        [&](const tautline::InputBlock& block)
+        {
+          while (this->Runs.size() <= static_cast<std::size_t>(block.number))
           {
-            while (this->Runs.size() <= static_cast<std::size_t>(block.number))
-            {
-              this->Runs.push_back(std::make_unique<tautline::OptimizerRun>());
-            }
-            this->Optimize(
-              settings, block, *this->Runs[block.number], done, time, history, statistics);
-          });
-      });
+            this->Runs.push_back(std::make_unique<tautline::OptimizerRun>());
+          }
+          this->Optimize(
+            settings, block, *this->Runs[block.number], done, time, history, statistics);
+        });
+    });
   if (!succeeded)
   {
     this->Runs.clear();
@@ -425,7 +429,10 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   if (!done)
   {
     run.summary = tautline::summarize(run.result, mesh, block.name) + qualities;
-    for (const std::string& sentence : { note, mesh.notice() })
+    const std::string why = run.result.reason == tautline::StopReason::NoFreeVertices
+      ? mesh.whyNoneIsFree("choose another Boundary")
+      : std::string();
+    for (const std::string& sentence : { why, note, mesh.notice() })
     {
       run.summary += (sentence.empty() ? "" : "\n") + sentence;
     }
@@ -456,6 +463,10 @@ void vtkMeshOptimizer::Report()
     this->InvertedAfter += result.invertedAfter;
     this->SurfaceError = std::max(this->SurfaceError, result.surfaceError);
     this->AddToSummary(run->summary);
+  }
+  if (!this->Runs.empty())
+  {
+    this->AddToSummary(this->GetBlockNotice());
   }
 }
 

@@ -1,8 +1,11 @@
 #include "vtkMeshPerturbation.h"
 
 #include "Blocks.h"
+#include "BlockSeams.h"
 #include "MeshAdapter.h"
 #include "MovableMesh.h"
+#include "PointMerge.h"
+#include "Processes.h"
 #include "tautline/Perturbation/Perturb.h"
 
 #include "vtkDataArray.h"
@@ -76,64 +79,97 @@ int vtkMeshPerturbation::FillOutputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkMeshPerturbation::FillInputPortInformation(int, vtkInformation* info)
-{
-  // Also types that cannot be moved, so that the message can name the remedy.
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 int vtkMeshPerturbation::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
-  vtkDataSet* output = vtkDataSet::GetData(outputVector);
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   this->Report({});
-  auto* points = vtkPointSet::SafeDownCast(input);
-  auto* moved = vtkPointSet::SafeDownCast(output);
-  if (!points || !moved)
-  {
-    vtkErrorMacro("The points of " << input->GetClassName()
-                                   << " are implicit and cannot move: run Image Data to Point Set "
-                                      "or Rectilinear Data to Point Set "
-                                      "first, which give them coordinates.");
-    return 0;
-  }
-  output->ShallowCopy(input);
-  if (input->GetNumberOfPoints() == 0 || input->GetNumberOfCells() == 0)
-  {
-    return 1;
-  }
   return this->Attempt(outputVector, "perturb the mesh in parts",
     [&]
     {
-      tautline::MeshAdapter adapter(input, this->Threads);
-      tautline::Mesh& mesh = adapter.mesh();
-      if (mesh.dimension() == tautline::Dimension::None)
+      tautline::requireFirstProcess(input, "Perturb Mesh");
+      const std::string seams = this->MergeCoincidentPoints
+        ? tautline::describeBlockSeams(input, this->Threads)
+        : std::string();
+      tautline::Perturbation total;
+      std::string notices;
+      tautline::forEachBlock(input, nullptr, nullptr, vtkDataObject::GetData(outputVector),
+        [&](const tautline::InputBlock& block) { this->Perturb(block, total, notices); });
+      this->Report(total);
+      this->AddToSummary(notices);
+      this->AddToSummary(seams);
+      if (!seams.empty())
       {
-        throw tautline::Error("There is no element to perturb. " + adapter.notice());
+        vtkWarningMacro(<< seams);
       }
-      settleOrientation(mesh, this->Threads);
-      const std::vector<unsigned char> fixed =
-        fixedPoints(tautline::chosenArray(this, FixedArray, input, "of fixed points"), adapter,
-          input->GetNumberOfPoints());
-      const int type = points->GetPoints()->GetDataType();
-
-      tautline::PerturbOptions options;
-      options.percentage = this->Percentage;
-      options.fraction = this->Fraction;
-      options.tangledFraction = this->TangledFraction;
-      options.seed = static_cast<std::uint64_t>(this->Seed);
-      options.singlePrecision = type == VTK_FLOAT;
-      options.threads = this->Threads;
-      options.progress = [this](double fraction) { return this->Proceed(fraction); };
-      const tautline::Perturbation result = tautline::perturb(mesh, fixed.data(), options);
-      moved->SetPoints(
-        tautline::makePoints(result.points, type == VTK_FLOAT ? points->GetPoints() : nullptr));
-      tautline::addDisplacement(moved, mesh.view().points, result.points);
-      this->Report(result);
     });
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshPerturbation::Perturb(
+  const tautline::InputBlock& block, tautline::Perturbation& total, std::string& notices)
+{
+  auto* points = vtkPointSet::SafeDownCast(block.input);
+  auto* moved = vtkPointSet::SafeDownCast(block.output);
+  if (!points || !moved)
+  {
+    throw tautline::Error(std::string("The points of ") + block.input->GetClassName() +
+      " are implicit and cannot move: run Image Data to Point Set or Rectilinear Data to Point Set "
+      "first, which give them coordinates.");
+  }
+  moved->ShallowCopy(points);
+  if (points->GetNumberOfPoints() == 0 || points->GetNumberOfCells() == 0)
+  {
+    return;
+  }
+  tautline::MeshAdapter adapter(points, this->Threads);
+  if (this->MergeCoincidentPoints)
+  {
+    adapter.mergeCoincidentPoints(this->Threads);
+  }
+  tautline::Mesh& mesh = adapter.mesh();
+  if (mesh.dimension() == tautline::Dimension::None)
+  {
+    throw tautline::Error("There is no element to perturb. " + adapter.notice());
+  }
+  settleOrientation(mesh, this->Threads);
+  const std::vector<tautline::Index>& one = adapter.coincident().representative;
+  std::vector<unsigned char> fixed =
+    fixedPoints(tautline::chosenArray(this, FixedArray, points, "of fixed points"), adapter,
+      points->GetNumberOfPoints());
+  tautline::unite(fixed, one);
+  const int type = points->GetPoints()->GetDataType();
+  const int blocks = tautline::countBlocks(this->GetInputDataObject(0, 0));
+
+  tautline::PerturbOptions options;
+  options.percentage = this->Percentage;
+  options.fraction = this->Fraction;
+  options.tangledFraction = this->TangledFraction;
+  options.seed = static_cast<std::uint64_t>(this->Seed);
+  options.singlePrecision = type == VTK_FLOAT;
+  options.threads = this->Threads;
+  options.progress = [this, &block, blocks](double fraction)
+  { return this->Proceed((block.number + fraction) / blocks); };
+  tautline::Perturbation result = tautline::perturb(mesh, fixed.data(), options);
+  tautline::spread(result.points, 3, one);
+  moved->SetPoints(
+    tautline::makePoints(result.points, type == VTK_FLOAT ? points->GetPoints() : nullptr));
+  tautline::addDisplacement(moved, mesh.view().points, result.points);
+
+  total.movable += result.movable;
+  total.moved += result.moved;
+  total.elements += result.elements;
+  total.invertedBefore += result.invertedBefore;
+  total.invertedAfter += result.invertedAfter;
+  total.largestDisplacement = std::max(total.largestDisplacement, result.largestDisplacement);
+  total.stopped = total.stopped || result.stopped;
+  for (const std::string& notice :
+    { tautline::describeMerged(adapter.coincident(), adapter.given()),
+      tautline::describeDuplicates(tautline::findSkin(mesh).duplicates) })
+  {
+    notices += (notices.empty() || notice.empty() ? "" : "\n") +
+      (notice.empty() || block.name.empty() ? "" : "In " + block.name + ": ") + notice;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -163,4 +199,5 @@ void vtkMeshPerturbation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Fraction: " << this->Fraction << "\n";
   os << indent << "TangledFraction: " << this->TangledFraction << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
 }

@@ -45,8 +45,8 @@
  *
  * @par Limitations:
  * Validity is that of the corners; a hexahedron with positive corners may still be folded inside.
- * Quadratic cells are refused. In parallel, points shared by two pieces are on the boundary of each
- * and stay.
+ * Quadratic cells are refused, and so are meshes on several processes. Points shared by two blocks
+ * are on the boundary of each and stay.
  *
  * @par Example:
  * @code
@@ -72,6 +72,7 @@ class vtkDataSet;
 
 namespace tautline
 {
+struct InputBlock;
 struct Perturbation;
 }
 
@@ -118,9 +119,20 @@ public:
 
   ///@{
   /**
-   * Results of the last execution (for multiblock data, of its last block): vertices inside the
-   * mesh that were free to move; those that did; the elements inverted before and after, and the
-   * fraction of the elements that the latter are; the largest displacement.
+   * Whether points with the same coordinates on facets that match are treated as one, as on the
+   * seams of a mesh in pieces, and move together. The default is on. See
+   * tautline/Mesh/CoincidentPoints.h.
+   */
+  vtkSetMacro(MergeCoincidentPoints, bool);
+  vtkGetMacro(MergeCoincidentPoints, bool);
+  vtkBooleanMacro(MergeCoincidentPoints, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Results of the last execution, of all blocks: vertices inside the mesh that were free to move;
+   * those that did; the elements inverted before and after, and the fraction of the elements that
+   * the latter are; the largest displacement.
    */
   vtkGetMacro(NumberOfMovablePoints, vtkIdType);
   vtkGetMacro(NumberOfMovedPoints, vtkIdType);
@@ -137,7 +149,6 @@ protected:
   vtkMeshPerturbation();
   ~vtkMeshPerturbation() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -145,12 +156,16 @@ private:
   vtkMeshPerturbation(const vtkMeshPerturbation&) = delete;
   void operator=(const vtkMeshPerturbation&) = delete;
 
+  /// Perturbs a data set and adds its numbers and remarks.
+  void Perturb(
+    const tautline::InputBlock& block, tautline::Perturbation& total, std::string& notices);
   void Report(const tautline::Perturbation& result);
 
   double Percentage = 50.0;
   double Fraction = 0.5;
   double TangledFraction = 0.0;
   int Seed = 0;
+  bool MergeCoincidentPoints = true;
 
   vtkIdType NumberOfMovablePoints = 0;
   vtkIdType NumberOfMovedPoints = 0;

@@ -4,6 +4,7 @@
 #include "ColorMaps.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
+#include "PointMerge.h"
 #include "QualityTotals.h"
 #include "TargetChoice.h"
 #include "tautline/Core/Memory.h"
@@ -176,6 +177,7 @@ void vtkElementQuality::Measure(
   this->SettleOrientation(adapter, validity->GetPointer(0), output);
   const std::vector<unsigned char> skip = cellsToSkip(adapter);
   const unsigned char* skipped = skip.empty() ? nullptr : skip.data();
+  this->CheckConnections(mesh, skipped);
   totals.addBlock(mesh, validity->GetPointer(0), skipped, this->Threads);
 
   const Targets targets = this->MakeTargets(input, reference, adapter);
@@ -232,6 +234,25 @@ void vtkElementQuality::SettleOrientation(
     }
   }
   for (const std::string& sentence : { text, adapter.notice() })
+  {
+    this->Notice += (this->Notice.empty() || sentence.empty() ? "" : " ") + sentence;
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkElementQuality::CheckConnections(const tautline::Mesh& mesh, const unsigned char* skip)
+{
+  const tautline::MeshSkin skin = tautline::findSkin(mesh);
+  tautline::Index first = 0;
+  const tautline::Index near = tautline::countNearPoints(mesh, skin.boundaryPoints, &first);
+  const std::string nearly = near == 0 ? std::string()
+                                       : std::to_string(near) + (near == 1 ? " point" : " points") +
+      " of the boundary nearly coincide with another one, the first is " +
+      tautline::placeOf(mesh.view(), first) +
+      ": the elements there are not connected; Clean to Grid with a tolerance merges such points.";
+  for (const std::string& sentence :
+    { tautline::describeSeams(tautline::findCoincidentPoints(mesh), mesh), nearly,
+      tautline::describeDuplicates(skin.duplicates, skip) })
   {
     this->Notice += (this->Notice.empty() || sentence.empty() ? "" : " ") + sentence;
   }

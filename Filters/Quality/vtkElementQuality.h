@@ -75,6 +75,7 @@ class vtkPolyData;
 
 namespace tautline
 {
+class Mesh;
 class MeshAdapter;
 class QualityTotals;
 struct EvaluationOptions;
@@ -216,6 +217,8 @@ private:
   void Measure(
     vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output, tautline::QualityTotals& totals);
   void SettleOrientation(tautline::MeshAdapter& adapter, signed char* validity, vtkDataSet* output);
+  /// Adds remarks on coincident points and duplicate cells.
+  void CheckConnections(const tautline::Mesh& mesh, const unsigned char* skip);
   tautline::Targets MakeTargets(
     vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter);
 

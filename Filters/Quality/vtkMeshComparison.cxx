@@ -2,6 +2,7 @@
 
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
+#include "Processes.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Quality/Compare.h"
 
@@ -118,6 +119,7 @@ int vtkMeshComparison::RequestData(
   return this->Attempt(outputVector, "choose fewer metrics or compare the mesh in parts",
     [&]
     {
+      tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[1]), "Compare Meshes");
       this->CompareBlocks(vtkDataObject::GetData(inputVector[0]),
         vtkDataObject::GetData(inputVector[1]), vtkDataObject::GetData(outputVector, 0), totals);
       this->Tabulate(totals, vtkDataObject::GetData(outputVector, 1));

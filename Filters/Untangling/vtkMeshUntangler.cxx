@@ -3,6 +3,7 @@
 #include "Blocks.h"
 #include "IterationHistory.h"
 #include "MovableMesh.h"
+#include "Processes.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include "vtkCellData.h"
@@ -114,9 +115,11 @@ int vtkMeshUntangler::RequestData(
   return this->Attempt(outputVector, "untangle the mesh in parts",
     [&]
     {
+      tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), "Untangle Mesh");
       tautline::TableRows history;
-      this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort,
+      this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, !this->FixBoundary,
         [&](const tautline::InputBlock& block) { this->Untangle(block, history); });
+      this->AddToSummary(this->GetBlockNotice());
       history.fill(vtkTable::GetData(outputVector, HistoryPort));
       if (this->NotValid > 0)
       {
@@ -128,7 +131,7 @@ int vtkMeshUntangler::RequestData(
 //------------------------------------------------------------------------------
 void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::TableRows& history)
 {
-  tautline::MovableMesh mesh(block.input, this->Threads);
+  tautline::MovableMesh mesh(block.input, this->Threads, this->MergeCoincidentPoints);
   mesh.fix(tautline::chosenArray(this, FixedArray, block.input, "of fixed points"), false);
   tautline::fixSelected(mesh, block.selected);
   if (this->FixBoundary)
@@ -163,6 +166,10 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   this->NotValid += static_cast<vtkIdType>(remaining.size());
   this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
     verdict(result, remaining, moved) + tautline::surfaceErrorSentence(result.surfaceError));
+  if (result.reason == tautline::StopReason::NoFreeVertices)
+  {
+    this->AddToSummary(mesh.whyNoneIsFree("switch Fix Boundary off"));
+  }
   this->AddToSummary(note);
   this->AddToSummary(mesh.notice());
 }

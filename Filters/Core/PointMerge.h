@@ -1,0 +1,84 @@
+/**
+ * @file PointMerge.h
+ * @brief Coincident points on the seams of a mesh in pieces: what is done with them, in words, and
+ * values for all of them.
+ */
+#ifndef tautline_PointMerge_h
+#define tautline_PointMerge_h
+
+#include "TautlineCoreModule.h" // for export macro
+
+#include "tautline/Mesh/BoundaryPoints.h"
+#include "tautline/Mesh/CoincidentPoints.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+
+namespace tautline
+{
+/**
+ * @brief Sentences for the user on points that are treated as one, and on those that coincide but
+ * stay apart; "" if there are none.
+ * @param mesh before its points were merged
+ */
+TAUTLINECORE_EXPORT std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh);
+
+/// The same for a mesh whose points are not merged: how many, where, and what they do.
+TAUTLINECORE_EXPORT std::string describeSeams(const CoincidentPoints& points, const Mesh& mesh);
+
+/// "point 17 at (0.5, 0, 1)"
+TAUTLINECORE_EXPORT std::string placeOf(const MeshView& view, Index point);
+
+/// Sets a flag where one of the points that are one has it, for all of them.
+template <class Flag>
+void unite(std::vector<Flag>& flags, const std::vector<Index>& representative)
+{
+  for (std::size_t p = 0; p < representative.size(); ++p)
+  {
+    flags[representative[p]] |= flags[p];
+  }
+  for (std::size_t p = 0; p < representative.size(); ++p)
+  {
+    flags[p] = flags[representative[p]];
+  }
+}
+
+/// Gives every point the values of its representative, `components` per point.
+template <class Value>
+void spread(
+  std::vector<Value>& values, std::size_t components, const std::vector<Index>& representative)
+{
+  for (std::size_t p = 0; p < representative.size(); ++p)
+  {
+    const std::size_t from = static_cast<std::size_t>(representative[p]);
+    if (from != p)
+    {
+      std::copy_n(&values[components * from], components, &values[components * p]);
+    }
+  }
+}
+
+/**
+ * @brief Throws Error if the values of points that are one differ.
+ * @param array of points; may be null
+ * @param values what they are, for the message: "displacements"
+ */
+TAUTLINECORE_EXPORT void requireEqualValues(
+  vtkDataArray* array, const std::vector<Index>& representative, const char* values);
+
+/**
+ * @brief Throws Error if the mesh has cells with the same points as another one: they would count
+ * twice.
+ * @param skip one flag per cell: it does not count; may be null
+ */
+TAUTLINECORE_EXPORT void requireDistinctCells(
+  const Mesh& mesh, const unsigned char* skip = nullptr);
+
+/// A sentence on duplicate cells, or "". @param skip as for requireDistinctCells()
+TAUTLINECORE_EXPORT std::string describeDuplicates(
+  const std::vector<DuplicateCell>& found, const unsigned char* skip = nullptr);
+}
+#endif
