@@ -1,6 +1,7 @@
 #include "EllipticInput.h"
 
 #include "Blocks.h"
+#include "PointMerge.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -77,7 +78,9 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
     {
       this->Adapter = std::make_unique<MeshAdapter>(mesh.input, threads);
       this->Skip = cellsToSkip(*this->Adapter);
-      this->Notice = this->Adapter->notice();
+      requireDistinctCells(this->Adapter->mesh(), this->Skip.empty() ? nullptr : this->Skip.data());
+      const std::string more = this->Adapter->notice();
+      this->Notice = mesh.notice + (mesh.notice.empty() || more.empty() ? "" : " ") + more;
       this->Problem.pde = choice.pde;
       if (mesh.input->GetNumberOfPoints() > 0)
       {

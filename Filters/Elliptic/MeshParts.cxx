@@ -1,7 +1,9 @@
 #include "MeshParts.h"
 
+#include "BlockSeams.h"
 #include "MergedPieces.h"
 #include "MeshAdapter.h"
+#include "PointMerge.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCellData.h"
@@ -17,6 +19,8 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace tautline
 {
@@ -27,6 +31,7 @@ struct Group
 {
   std::string name;
   std::vector<Piece> pieces;
+  std::string notice;
 };
 
 //------------------------------------------------------------------------------
@@ -115,7 +120,7 @@ private:
   void begin()
   {
     this->groups.push_back(
-      { this->FlatIndex > 0 ? "block " + std::to_string(this->FlatIndex) : "", {} });
+      { this->FlatIndex > 0 ? "block " + std::to_string(this->FlatIndex) : "", {}, "" });
   }
 
   vtkDataSet* add(vtkDataObject* input, vtkDataObject* selected)
@@ -317,7 +322,8 @@ std::vector<std::vector<Index>> globalIdsOf(
         {
           throw Error(std::to_string(repeated) +
             " points are at the place of another one, or have its global id, and cannot be "
-            "from points of other parts: run Clean to Grid first, or solve in one process.");
+            "distinguished from points of other parts: run Clean to Grid first, or solve in one "
+            "process.");
         }
       }
     });
@@ -325,10 +331,98 @@ std::vector<std::vector<Index>> globalIdsOf(
 }
 
 //------------------------------------------------------------------------------
-void visitGroup(const Group& group, LocalMesh& mesh, const Processes& processes,
+/// A sentence on point arrays that differ between points that are one, or "".
+std::string differingArrays(vtkDataSet* input, const std::vector<Index>& representative)
+{
+  std::string names;
+  for (int i = 0; i < input->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = input->GetPointData()->GetArray(i);
+    const bool ids = array && array == input->GetPointData()->GetGlobalIds();
+    bool differs = false;
+    for (std::size_t p = 0; array && !ids && !differs && p < representative.size(); ++p)
+    {
+      for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+      {
+        const double own = array->GetComponent(static_cast<vtkIdType>(p), c);
+        const double other = array->GetComponent(representative[p], c);
+        differs = differs || (own != other && !(std::isnan(own) && std::isnan(other)));
+      }
+    }
+    names += differs ? (names.empty() ? "'" : ", '") + std::string(array->GetName()) + "'" : "";
+  }
+  return names.empty() ? ""
+                       : "Their values differ in the point array" +
+      std::string(names.find(',') == std::string::npos ? " " : "s ") + names +
+      ": those of the point with the smallest id are taken.";
+}
+
+/// The pieces with their coincident points as one, and the way back.
+class Seamless
+{
+public:
+  std::vector<Piece> pieces;
+  std::string notice;
+
+  Seamless(const std::vector<Piece>& given, bool mergePoints)
+    : pieces(given)
+    , Given(given)
+    , Made(given.size())
+  {
+    for (std::size_t i = 0; mergePoints && i < given.size(); ++i)
+    {
+      vtkDataSet* input = given[i].input;
+      const MeshAdapter adapter(input);
+      const CoincidentPoints found = findCoincidentPoints(adapter.mesh());
+      this->add(describeMerged(found, adapter.mesh()));
+      if (found.apart() > 0)
+      {
+        throw Error(this->notice + " Or switch Merge Coincident Points off to keep all apart.");
+      }
+      if (found.any())
+      {
+        this->add(differingArrays(input, found.representative));
+        this->Made[i] = std::make_unique<Merged>(
+          std::vector<Piece>{ given[i] }, std::vector<std::vector<Index>>{ found.representative });
+        this->Outputs.push_back(vtkSmartPointer<vtkUnstructuredGrid>::New());
+        this->Outputs.back()->ShallowCopy(this->Made[i]->Input);
+        this->pieces[i] = { this->Made[i]->Input, this->Made[i]->Selected, this->Outputs.back() };
+      }
+    }
+  }
+
+  /// Hands what is new in the outputs of the pieces to those that were given.
+  void scatter() const
+  {
+    for (std::size_t i = 0; i < this->Made.size(); ++i)
+    {
+      if (this->Made[i])
+      {
+        this->Made[i]->scatter(this->pieces[i].output, { this->Given[i] });
+      }
+    }
+  }
+
+private:
+  void add(const std::string& sentence)
+  {
+    this->notice += (this->notice.empty() || sentence.empty() ? "" : " ") + sentence;
+  }
+
+  std::vector<Piece> Given;
+  std::vector<std::unique_ptr<Merged>> Made; ///< null where no points are one
+  std::vector<vtkSmartPointer<vtkUnstructuredGrid>> Outputs;
+};
+
+//------------------------------------------------------------------------------
+void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, const Processes& processes,
   const std::function<void(LocalMesh&)>& visit)
 {
-  const std::vector<Piece>& pieces = group.pieces;
+  std::unique_ptr<Seamless> seamless;
+  processes.together([&]() { seamless = std::make_unique<Seamless>(group.pieces, mergePoints); });
+  const std::vector<Piece>& pieces = seamless->pieces;
+  mesh.notice =
+    group.notice + (group.notice.empty() || seamless->notice.empty() ? "" : " ") + seamless->notice;
   std::vector<std::vector<Index>> ids;
   if (processes.maximum(static_cast<Index>(pieces.size())) > 1 || processes.count() > 1)
   {
@@ -362,12 +456,73 @@ void visitGroup(const Group& group, LocalMesh& mesh, const Processes& processes,
   {
     merged->scatter(mesh.output, pieces);
   }
+  seamless->scatter();
+}
+
+//------------------------------------------------------------------------------
+/// Makes one of the groups with seams between them. Collective.
+void joinGroups(std::vector<Group>& groups, const Processes& processes)
+{
+  std::vector<vtkDataSet*> data;
+  std::vector<std::string> names;
+  std::vector<std::size_t> groupOf;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    for (const Piece& piece : groups[g].pieces)
+    {
+      data.push_back(piece.input);
+      names.push_back(groups[g].name);
+      groupOf.push_back(g);
+    }
+  }
+  BlockSeams seams;
+  processes.together(
+    [&]()
+    {
+      if (groups.size() < 2)
+      {
+        return;
+      }
+      seams = findBlockSeams(data, names, 0);
+      bool between = false; // seams of the partitions of one group do not matter
+      for (std::size_t i = 0; i < data.size(); ++i)
+      {
+        between = between || groupOf[i] != groupOf[seams.group[i]];
+      }
+      if (between && processes.count() > 1)
+      {
+        throw Error(std::to_string(seams.points) +
+          " points of a block coincide with those of another one, the first is " + seams.first +
+          ": on several processes run Merge Blocks first, or switch Merge Coincident Points off to "
+          "solve on each block by itself.");
+      }
+    });
+  std::vector<std::size_t> to(groups.size());
+  std::iota(to.begin(), to.end(), std::size_t(0));
+  for (std::size_t i = 0; seams.points > 0 && i < data.size(); ++i)
+  {
+    const std::size_t a = to[groupOf[i]], b = to[groupOf[seams.group[i]]];
+    std::replace(to.begin(), to.end(), std::max(a, b), std::min(a, b));
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    Group& target = groups[to[g]];
+    if (to[g] == g)
+    {
+      continue;
+    }
+    target.pieces.insert(target.pieces.end(), groups[g].pieces.begin(), groups[g].pieces.end());
+    target.name += ", " + groups[g].name;
+    target.notice = "Blocks with a seam between them are one mesh; switch Merge Coincident Points "
+                    "off to solve on each by itself.";
+    groups[g].pieces.clear();
+  }
 }
 }
 
 //------------------------------------------------------------------------------
 void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* output,
-  const Processes& processes, const std::function<void(LocalMesh&)>& visit)
+  bool mergePoints, const Processes& processes, const std::function<void(LocalMesh&)>& visit)
 {
   if (auto* blocks = vtkCompositeDataSet::SafeDownCast(input))
   {
@@ -377,6 +532,10 @@ void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* o
   collector.collect(input, selected, output);
   std::vector<Group>& groups = collector.groups;
   groups.resize(static_cast<std::size_t>(processes.maximum(static_cast<Index>(groups.size()))));
+  if (mergePoints)
+  {
+    joinGroups(groups, processes);
+  }
   for (std::size_t g = 0; g < groups.size(); ++g)
   {
     Index cells = 0;
@@ -394,7 +553,7 @@ void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* o
     mesh.meshes = static_cast<int>(groups.size());
     try
     {
-      visitGroup(groups[g], mesh, processes, visit);
+      visitGroup(groups[g], mesh, mergePoints, processes, visit);
     }
     catch (const Error& error)
     {

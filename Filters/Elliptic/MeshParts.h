@@ -29,6 +29,7 @@ struct LocalMesh
   vtkSmartPointer<vtkDataSet> selected; ///< the same with the marks of markSelected(), or null
   vtkSmartPointer<vtkDataSet> output;   ///< a shallow copy of the input, gets the results
   std::vector<Index> globalIds; ///< of the points, without repetition; empty with one process
+  std::string notice;           ///< remarks for the user on points that are treated as one, or ""
 };
 
 /**
@@ -40,10 +41,14 @@ struct LocalMesh
  * processes or partitions are identified by the global point ids of the input, or else by equal
  * coordinates. Throws Error if points of one partition cannot be distinguished.
  *
+ * With mergePoints, coincident points of a data set are one as findCoincidentPoints() has it, and
+ * blocks with a seam between them are one mesh; on several processes these throw Error. Points that
+ * are one have the arrays of the first of them.
+ *
  * @param selected what markSelected() returned
  * @param output of the class of the input; gets its structure
  */
 void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* output,
-  const Processes& processes, const std::function<void(LocalMesh&)>& visit);
+  bool mergePoints, const Processes& processes, const std::function<void(LocalMesh&)>& visit);
 }
 #endif

@@ -93,7 +93,7 @@ int vtkEllipticAlgorithm::RequestData(
           selected =
             tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
         });
-      tautline::forEachMesh(input, selected, output, processes,
+      tautline::forEachMesh(input, selected, output, this->MergeCoincidentPoints, processes,
         [&](tautline::LocalMesh& mesh)
         {
           const tautline::EllipticInput problem(mesh, choice, this, processes, this->Threads);
@@ -157,5 +157,6 @@ void vtkEllipticAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SourceType: " << this->SourceType << "\n";
   os << indent << "FixedPart: " << this->FixedPart << "\n";
   os << indent << "GivenType: " << this->GivenType << "\n";
+  os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
   os << indent << "PETScOptions: " << this->PETScOptions << "\n";
 }

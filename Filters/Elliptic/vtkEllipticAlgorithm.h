@@ -8,14 +8,16 @@
  * input port 0. Input port 1 (optional) is a vtkSelection of points, or of cells with their points,
  * where the solution is given.
  *
- * Each block of a multiblock data set is a mesh of its own; the partitions of a partitioned data
- * set are one mesh. With several MPI processes (pvserver, pvbatch) the parts of all processes are
+ * Points at the same place on facets that match, as on the seams of a mesh in pieces, are one point
+ * by default (MergeCoincidentPoints); the output has the points of the input, with the same value at
+ * all that are one. Each block of a multiblock data set is a mesh of its own, unless there is a seam
+ * between them; the partitions of a partitioned data set are one mesh. With several MPI processes (pvserver, pvbatch) the parts of all processes are
  * one mesh, which they solve together; ghost cells are left out. Points on several processes are
  * identified by their global ids if the mesh has them, else by equal coordinates. Tables are those
  * of process 0.
  *
  * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted
- * and degenerate elements, polygons, polyhedra, cells of higher order, mixed orientation, parts
+ * and degenerate elements, duplicate cells, coincident facets that cannot be merged, polygons, polyhedra, cells of higher order, mixed orientation, parts
  * without a point where the solution is given, values and coefficients that are not finite.
  *
  * Arrays (SetInputArrayToProcess), by index: 0 fixed points (of points or cells), 1 source, 2 given
@@ -66,6 +68,17 @@ public:
    */
   vtkSetClampMacro(Equation, int, POISSON, ELASTICITY);
   vtkGetMacro(Equation, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether points with the same coordinates on facets that match are treated as one, and blocks
+   * with a seam between them as one mesh; off: as a crack or a contact needs it. The default is on.
+   * See tautline/Mesh/CoincidentPoints.h.
+   */
+  vtkSetMacro(MergeCoincidentPoints, bool);
+  vtkGetMacro(MergeCoincidentPoints, bool);
+  vtkBooleanMacro(MergeCoincidentPoints, bool);
   ///@}
 
   ///@{
@@ -239,6 +252,7 @@ protected:
 
   double Omega = 1.0;
   std::string PETScOptions;
+  bool MergeCoincidentPoints = true;
   int Equation = POISSON;
 
 private:
