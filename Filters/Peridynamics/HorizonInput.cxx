@@ -1,22 +1,34 @@
 #include "HorizonInput.h"
 
+#include "Blocks.h"
 #include "MeshAdapter.h"
+#include "PointMerge.h"
 
+#include "vtkAppendFilter.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <string>
 
 namespace tautline
 {
 //------------------------------------------------------------------------------
-HorizonInput::HorizonInput(vtkDataSet* input, vtkDataArray* region, double layerValue, int threads)
+HorizonInput::HorizonInput(
+  vtkDataSet* input, vtkDataArray* region, double layerValue, bool mergePoints, int threads)
 {
-  const MeshAdapter adapter(input, threads);
+  MeshAdapter adapter(input, threads);
+  if (mergePoints)
+  {
+    adapter.mergeCoincidentPoints(threads);
+    this->Representative = adapter.coincident().representative;
+    this->Notice = describeMerged(adapter.coincident(), adapter.given());
+  }
   const class Mesh& mesh = adapter.mesh();
   const MeshView& view = mesh.view();
   const CellBlock* triangles = nullptr;
@@ -44,6 +56,7 @@ HorizonInput::HorizonInput(vtkDataSet* input, vtkDataArray* region, double layer
       "the mesh has ghost cells, and a nonlocal matrix needs the whole mesh: gather it on "
       "one process first");
   }
+  requireDistinctCells(mesh);
   this->Frame = mesh.frame();
   const Vec3 first = pointOf(view, view.connectivity[view.offsets[triangles->cell(0)]]);
   this->Offset = dot(first, mesh.normal()) * mesh.normal();
@@ -91,6 +104,50 @@ void HorizonInput::setGivenPoints(vtkDataArray* array)
   {
     this->Mesh.givenPoints.push_back(array->GetComponent(i, 0) != 0.0);
   }
+  unite(this->Mesh.givenPoints, this->Representative);
+}
+
+//------------------------------------------------------------------------------
+void HorizonInput::spread(vtkDataArray* ofPoints) const
+{
+  for (std::size_t p = 0; p < this->Representative.size(); ++p)
+  {
+    const auto to = static_cast<vtkIdType>(p),
+               from = static_cast<vtkIdType>(this->Representative[p]);
+    if (from != to)
+    {
+      ofPoints->SetTuple(to, from, ofPoints);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkDataSet> wholeMesh(vtkDataObject* input)
+{
+  std::vector<vtkDataSet*> parts;
+  forEachLeaf(input,
+    [&parts](unsigned int, vtkDataSet* data)
+    {
+      if (data->GetNumberOfCells() > 0)
+      {
+        parts.push_back(data);
+      }
+    });
+  if (auto* single = vtkDataSet::SafeDownCast(input))
+  {
+    return single;
+  }
+  if (parts.empty())
+  {
+    return vtkSmartPointer<vtkUnstructuredGrid>::New();
+  }
+  vtkNew<vtkAppendFilter> append;
+  for (vtkDataSet* part : parts)
+  {
+    append->AddInputData(part);
+  }
+  append->Update();
+  return append->GetOutput();
 }
 
 //------------------------------------------------------------------------------

@@ -8,12 +8,15 @@
 #include "tautline/Mesh/Mesh.h"
 #include "tautline/Peridynamics/Peridynamics.h"
 
+#include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <string>
 #include <vector>
 
 class vtkAlgorithm;
 class vtkDataArray;
+class vtkDataObject;
 class vtkDataSet;
 class vtkInformation;
 
@@ -26,14 +29,23 @@ public:
    * @brief Takes the triangles of a planar mesh; points keep their numbers.
    *
    * Vertices and lines are left out; other cells, surfaces in space and an input without triangles
-   * throw Error.
+   * throw Error, and so do duplicate cells.
    * @param region cell array, may be null; @param layerValue its value in the interaction layer
+   * @param mergePoints whether coincident points on seams are one; then triangles have their
+   * representatives, and the other points are of no triangle
    */
-  HorizonInput(vtkDataSet* input, vtkDataArray* region, double layerValue, int threads);
+  HorizonInput(
+    vtkDataSet* input, vtkDataArray* region, double layerValue, bool mergePoints, int threads);
 
   const HorizonMesh& mesh() const { return this->Mesh; }
   /// Marks the points where the continuous linear basis is given: those where the array is not 0.
   void setGivenPoints(vtkDataArray* array);
+  /// Gives points that were merged the values of their representatives.
+  void spread(vtkDataArray* ofPoints) const;
+  /// Remarks for the user on coincident points, as sentences, or "".
+  const std::string& notice() const { return this->Notice; }
+  /// One per point, see CoincidentPoints; empty if no points are one.
+  const std::vector<Index>& representative() const { return this->Representative; }
   /// The cell a triangle is.
   vtkIdType cell(Index triangle) const { return this->Cells[static_cast<std::size_t>(triangle)]; }
   /// A place in the plane, in space.
@@ -46,9 +58,17 @@ public:
 private:
   HorizonMesh Mesh;
   std::vector<vtkIdType> Cells;
+  std::vector<Index> Representative;
+  std::string Notice;
   std::array<Vec3, 2> Frame;
   Vec3 Offset; ///< normal to the plane
 };
+
+/**
+ * @brief The mesh in a data object: a data set itself; the data sets of composite data put together
+ * to one unstructured grid, with the arrays that all of them have. Never null.
+ */
+vtkSmartPointer<vtkDataSet> wholeMesh(vtkDataObject* input);
 
 /**
  * @brief The array an information of SetInputArrayToProcess names, or null if it names none.

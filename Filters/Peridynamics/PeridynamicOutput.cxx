@@ -129,6 +129,14 @@ void addRowData(const PeridynamicResult& result, vtkDataSet* output)
       diagonal->SetComponent(place.tuple, place.corner * c + i, a.at(row, row));
     }
   }
+  for (vtkDataArray* array :
+    std::initializer_list<vtkDataArray*>{ unknown, neighbors, sum, diagonal })
+  {
+    if (onPoints(result.basis))
+    {
+      result.input.spread(array);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -152,6 +160,10 @@ void addRowVector(const PeridynamicResult& result, const std::vector<double>& va
     {
       array->SetComponent(place.tuple, place.corner * width + i, v[i]);
     }
+  }
+  if (onPoints(result.basis))
+  {
+    result.input.spread(array);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "vtkHorizonNeighbors.h"
 
 #include "HorizonInput.h"
+#include "Processes.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkCellArray.h"
@@ -169,7 +170,9 @@ vtkHorizonNeighbors::vtkHorizonNeighbors()
 //------------------------------------------------------------------------------
 int vtkHorizonNeighbors::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  // The composite type first: its data sets are one mesh.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   return 1;
 }
 
@@ -177,21 +180,23 @@ int vtkHorizonNeighbors::FillInputPortInformation(int, vtkInformation* info)
 int vtkHorizonNeighbors::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
   vtkPolyData* triangles = vtkPolyData::GetData(outputVector, 0);
   vtkPolyData* circle = vtkPolyData::GetData(outputVector, 1);
   vtkPolyData* pieces = vtkPolyData::GetData(outputVector, 2);
-  if (input->GetNumberOfCells() == 0)
-  {
-    return 1;
-  }
   try
   {
+    tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[0]), "Horizon Neighbors");
+    const vtkSmartPointer<vtkDataSet> input =
+      tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
+    if (input->GetNumberOfCells() == 0)
+    {
+      return 1;
+    }
     if (!(this->Horizon > 0.0) || !std::isfinite(this->Horizon))
     {
       throw tautline::Error("the horizon has to be above 0");
     }
-    const tautline::HorizonInput taken(input, nullptr, 0.0, 0);
+    const tautline::HorizonInput taken(input, nullptr, 0.0, false, 0); // of places only
     const Disc disc = { taken.project({ this->Center[0], this->Center[1], this->Center[2] }),
       this->Horizon };
     fillCircle(taken, disc, circle);

@@ -1,6 +1,7 @@
 #include "vtkInteractionLayer.h"
 
 #include "HorizonInput.h"
+#include "Processes.h"
 
 #include "tautline/Core/Memory.h"
 #include "tautline/Peridynamics/InteractionLayer.h"
@@ -55,7 +56,9 @@ void passData(vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkIdTy
 //------------------------------------------------------------------------------
 int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  // The composite type first: its data sets are one mesh.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   return 1;
 }
 
@@ -63,15 +66,18 @@ int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
 int vtkInteractionLayer::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
-  if (input->GetNumberOfCells() == 0)
-  {
-    return 1;
-  }
   try
   {
-    const tautline::HorizonInput taken(input, nullptr, 0.0, this->Threads);
+    tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[0]), "Interaction Layer");
+    const vtkSmartPointer<vtkDataSet> input =
+      tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
+    if (input->GetNumberOfCells() == 0)
+    {
+      return 1;
+    }
+    const tautline::HorizonInput taken(
+      input, nullptr, 0.0, this->MergeCoincidentPoints, this->Threads);
     tautline::InteractionLayerOptions options;
     options.width = this->Width;
     options.elementSize = this->ElementSize;
@@ -133,4 +139,5 @@ void vtkInteractionLayer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Width: " << this->Width << "\n";
   os << indent << "ElementSize: " << this->ElementSize << "\n";
   os << indent << "Threads: " << this->Threads << "\n";
+  os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
 }

@@ -9,11 +9,13 @@
  * has the edges and points of the boundary.
  *
  * @par Input:
- * Any vtkDataSet of triangles in a plane. Other cells but vertices and lines are refused.
+ * Any vtkDataSet of triangles in a plane. Other cells but vertices and lines are refused. The data
+ * sets of composite data are one mesh. A mesh on several processes is refused.
  *
  * @par Output:
  * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the interaction
- * layer. Points of the input come first and keep their numbers. Point and cell data of the input
+ * layer. Points of the input come first and keep their numbers; of coincident points that are one,
+ * cells have the one with the smallest number. Point and cell data of the input
  * pass, with zeros in the interaction layer. The cell array `Reference` (int) is 1 in the domain, 2
  * in the interaction layer: vtkPeridynamicStiffness takes it.
  *
@@ -48,6 +50,16 @@ public:
   static vtkInteractionLayer* New();
   vtkTypeMacro(vtkInteractionLayer, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Whether points with the same coordinates on edges that match are treated as one, as on the
+   * seams of a mesh in pieces. The default is on. See tautline/Mesh/CoincidentPoints.h.
+   */
+  vtkSetMacro(MergeCoincidentPoints, bool);
+  vtkGetMacro(MergeCoincidentPoints, bool);
+  vtkBooleanMacro(MergeCoincidentPoints, bool);
+  ///@}
 
   ///@{
   /**
@@ -87,6 +99,7 @@ private:
   double Width = 0.2;
   double ElementSize = 0.0;
   int Threads = 0;
+  bool MergeCoincidentPoints = true;
 };
 
 #endif

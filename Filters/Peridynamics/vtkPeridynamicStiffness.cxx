@@ -2,6 +2,8 @@
 
 #include "HorizonInput.h"
 #include "PeridynamicOutput.h"
+#include "PointMerge.h"
+#include "Processes.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -14,6 +16,7 @@
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <sstream>
@@ -74,13 +77,6 @@ void vtkPeridynamicStiffness::ClearKernelValues()
 }
 
 //------------------------------------------------------------------------------
-int vtkPeridynamicStiffness::FillInputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 int vtkPeridynamicStiffness::FillOutputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(),
@@ -88,6 +84,20 @@ int vtkPeridynamicStiffness::FillOutputPortInformation(int port, vtkInformation*
       : port == SpectrumPort ? "vtkTable"
                              : "vtkImageData");
   return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkPeridynamicStiffness::RequestDataObject(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  const int succeeded = this->Superclass::RequestDataObject(request, inputVector, outputVector);
+  vtkInformation* info = outputVector->GetInformationObject(MeshPort);
+  // The data sets of composite data become one mesh.
+  if (succeeded && !vtkDataSet::GetData(info))
+  {
+    info->Set(vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkUnstructuredGrid>::New());
+  }
+  return succeeded;
 }
 
 //------------------------------------------------------------------------------
@@ -136,21 +146,25 @@ tautline::PeridynamicOptions vtkPeridynamicStiffness::GetOptions()
 int vtkPeridynamicStiffness::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
+  vtkDataObject* given = vtkDataObject::GetData(inputVector[0]);
   vtkDataSet* output = vtkDataSet::GetData(outputVector, MeshPort);
   vtkTable* table = vtkTable::GetData(outputVector, SpectrumPort);
   vtkImageData* picture = vtkImageData::GetData(outputVector, SparsityPort);
   this->Condition = this->SmallestEigenvalue = this->LargestEigenvalue = 0.0;
   this->Summary.clear();
-  output->ShallowCopy(input);
   table->Initialize();
   picture->Initialize();
-  if (input->GetNumberOfCells() == 0)
-  {
-    return 1;
-  }
   return this->Attempt(outputVector, "choose a smaller horizon or a coarser mesh",
-    [&] { this->Compute(input, output, table, picture); });
+    [&]
+    {
+      tautline::requireFirstProcess(given, "Peridynamic Condition");
+      const vtkSmartPointer<vtkDataSet> input = tautline::wholeMesh(given);
+      output->ShallowCopy(input);
+      if (input->GetNumberOfCells() > 0)
+      {
+        this->Compute(input, output, table, picture);
+      }
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -185,7 +199,8 @@ void vtkPeridynamicStiffness::Compute(
   vtkDataSet* input, vtkDataSet* output, vtkTable* table, vtkImageData* picture)
 {
   const tautline::PeridynamicOptions options = this->GetOptions();
-  tautline::HorizonInput taken(input, this->GetRegion(input), this->LayerValue, this->Threads);
+  tautline::HorizonInput taken(
+    input, this->GetRegion(input), this->LayerValue, this->MergeCoincidentPoints, this->Threads);
   bool onPoints = false;
   if (vtkDataArray* points = tautline::chosenArray(
         this->GetInputArrayInformation(GivenPointArray), input, "given points", onPoints))
@@ -202,6 +217,8 @@ void vtkPeridynamicStiffness::Compute(
         this->GetInputArrayInformation(GivenArray), input, "given solution", onPoints);
       array && this->Solve)
   {
+    tautline::requireEqualValues(
+      onPoints ? array : nullptr, taken.representative(), "given values");
     given = tautline::onFunctions(taken, options.basis, components, array, onPoints);
   }
 
@@ -220,7 +237,7 @@ void vtkPeridynamicStiffness::Compute(
   }
   if (this->Solve)
   {
-    this->SolveSystem(taken, system, given, output);
+    this->SolveSystem(taken, system, given, input, output);
   }
   vtkDataSetAttributes* data = this->Basis == PIECEWISE_LINEAR
     ? static_cast<vtkDataSetAttributes*>(output->GetPointData())
@@ -232,20 +249,24 @@ void vtkPeridynamicStiffness::Compute(
     tautline::drawSparsity(system.matrix, this->SparsityPixels, picture);
   }
   this->Report(system, spectrum);
+  this->AddToSummary(taken.notice());
 }
 
 //------------------------------------------------------------------------------
 void vtkPeridynamicStiffness::SolveSystem(const tautline::HorizonInput& input,
-  const tautline::PeridynamicSystem& system, const std::vector<double>& given, vtkDataSet* output)
+  const tautline::PeridynamicSystem& system, const std::vector<double>& given, vtkDataSet* data,
+  vtkDataSet* output)
 {
   const auto basis = static_cast<tautline::PeridynamicBasis>(this->Basis);
   const tautline::Index components = system.components;
   bool onPoints = false;
-  vtkDataArray* array = tautline::chosenArray(this->GetInputArrayInformation(SourceArray),
-    vtkDataSet::SafeDownCast(this->GetInputDataObject(0, 0)), "source", onPoints);
+  vtkDataArray* array =
+    tautline::chosenArray(this->GetInputArrayInformation(SourceArray), data, "source", onPoints);
   std::vector<double> source;
   if (array)
   {
+    tautline::requireEqualValues(
+      onPoints ? array : nullptr, input.representative(), "values of the source");
     source = tautline::onMesh(input, components, array, onPoints);
   }
   else
@@ -319,6 +340,7 @@ void vtkPeridynamicStiffness::Report(
 void vtkPeridynamicStiffness::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
   os << indent << "Horizon: " << this->Horizon << "\n";
   os << indent << "Kernel: " << this->Kernel << "\n";
   os << indent << "Exponent: " << this->Exponent << "\n";

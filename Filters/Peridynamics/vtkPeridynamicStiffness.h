@@ -19,7 +19,8 @@
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds an
- * interaction layer; vtkDomainSource's square has one.
+ * interaction layer; vtkDomainSource's square has one. The data sets of composite data are one mesh;
+ * the output is then a vtkUnstructuredGrid. A mesh on several processes is refused.
  *
  * @par Input arrays (SetInputArrayToProcess):
  * - 0, region: cell array with one component; cells where it is LayerValue are the interaction
@@ -92,6 +93,16 @@ public:
   static vtkPeridynamicStiffness* New();
   vtkTypeMacro(vtkPeridynamicStiffness, vtkTautlineTimedAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Whether points with the same coordinates on edges that match are treated as one, as on the
+   * seams of a mesh in pieces. The default is on. See tautline/Mesh/CoincidentPoints.h.
+   */
+  vtkSetMacro(MergeCoincidentPoints, bool);
+  vtkGetMacro(MergeCoincidentPoints, bool);
+  vtkBooleanMacro(MergeCoincidentPoints, bool);
+  ///@}
 
   ///@{
   /**
@@ -311,8 +322,8 @@ public:
 protected:
   vtkPeridynamicStiffness();
   ~vtkPeridynamicStiffness() override = default;
-  int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -326,9 +337,10 @@ private:
   tautline::Spectrum FindSpectrum(const tautline::PeridynamicSystem& system);
   void Report(const tautline::PeridynamicSystem& system, const tautline::Spectrum* spectrum);
   void SolveSystem(const tautline::HorizonInput& input, const tautline::PeridynamicSystem& system,
-    const std::vector<double>& given, vtkDataSet* output);
+    const std::vector<double>& given, vtkDataSet* data, vtkDataSet* output);
   bool ProceedWithin(double from, double to, double fraction);
 
+  bool MergeCoincidentPoints = true;
   double Horizon = 0.2;
   int Kernel = POWER;
   double Exponent = 1.0;
