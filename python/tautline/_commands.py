@@ -34,6 +34,12 @@ def add_time_limit(parser: argparse.ArgumentParser, default: float = 0.0) -> Non
                         help=f"0 is no limit (default: {default:g})")  # fmt: skip
 
 
+def add_merge_points(parser: argparse.ArgumentParser) -> None:
+    """Add the option of the points at the same place."""
+    parser.add_argument("--merge-coincident-points", action=argparse.BooleanOptionalAction, default=True,
+                        help="whether points at the same place on matching facets are one")  # fmt: skip
+
+
 def _names(text: str) -> list[str]:
     return [name.strip() for name in text.split(",") if name.strip()]
 
@@ -92,4 +98,5 @@ def add_moving_points(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", required=True)
     parser.add_argument("--csv", metavar="FILE", help="write the history, a row per iteration")
     parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
+    add_merge_points(parser)
     add_time_limit(parser)

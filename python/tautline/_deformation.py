@@ -105,6 +105,7 @@ def warp(
     preconditioner: str = "boomeramg",
     time_limit: float = 0.0,
     threads: int = 0,
+    merge_coincident_points: bool = True,
     **options: Any,
 ) -> WarpResult:
     """Deform the interior of a mesh to follow a prescribed boundary motion, with valid elements of similar shapes.
@@ -140,6 +141,8 @@ def warp(
     preconditioner: of the linear systems: "jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none".
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
+    merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
+        of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
     options: properties of vtkMeshWarp: steps (1; 0: as many as needed), maximum_steps (100), tolerance (1e-10),
         poisson_ratio (0.3), stiffening_power (1), stiffening_factor (2), maximum_stiffenings (50), distance_power (3),
         support_radius (0: automatic), fit_tolerance (1e-3), untangle_first (True), untangling_beta (0),
@@ -157,6 +160,7 @@ def warp(
     filter_.SetAmount(within("amount", amount, 0, np.inf))
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
+    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     filter_.SetAutomaticSolver(pick("solver", solver, SOLVERS) == 0)
     filter_.SetSolver(max(pick("solver", solver, SOLVERS) - 1, 0))
     filter_.SetPreconditioner(pick("preconditioner", preconditioner, PRECONDITIONERS))
@@ -391,12 +395,13 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--steps", type=int, default=1, help="0: as many as are needed (default: 1)")
     parser.add_argument("--solver", choices=SOLVERS, default="automatic")
     parser.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")
+    _commands.add_merge_points(parser)
     _commands.add_time_limit(parser)
 
 
 def _run(arguments: argparse.Namespace) -> int:
     names = ("displacement", "target", "method", "amount", "correspondence", "target_ids", "values", "fixed", "steps",
-             "solver", "preconditioner", "time_limit", "threads")  # fmt: skip
+             "solver", "preconditioner", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
     options = _commands.given(arguments, names)
     options["coefficients"] = _commands.numbers_or_text(arguments.coefficients)
     if arguments.moved:

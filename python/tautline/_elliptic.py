@@ -165,6 +165,9 @@ def solve(
             "-pc_hypre_boomeramg_strong_threshold 0.5". Others, which read, write or display something, are refused.
         time_limit: seconds (600); 0 is no limit.
         threads: number of threads; 0, the default, is all cores. The result does not depend on it.
+        merge_coincident_points: whether points at the same place on facets that match are treated as one (True), as on
+            the seams of a mesh in pieces, and blocks with a seam between them as one mesh; the result keeps them all.
+            False: they stay apart, as a crack or a contact needs it.
 
     A method that does not converge is not an error: see converged, reason and summary of the result, which has the best
     solution found. Raises Error for wrong arguments and for meshes that the filter refuses.
@@ -364,6 +367,7 @@ def _set_problem(
     petsc_options: str = "",
     time_limit: float = 600.0,
     threads: int = 0,
+    merge_coincident_points: bool = True,
 ) -> None:
     """Set the equation with its functions and boundary conditions; see solve()."""
     filter_.SetEquation(pick("pde", pde, PDES))
@@ -378,6 +382,7 @@ def _set_problem(
     filter_.SetPETScOptions(petsc_options)
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
+    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     set_function = _set_vector_function if pde == "elasticity" else _set_scalar_function
     if source is not None:
         set_function(filter_, inputs, "source", source, _SOURCE)
@@ -484,6 +489,7 @@ def _add_problem(commands: Any, name: str, run_command: _commands.Run, text: str
     made.add_argument("--stiffness", metavar="ARRAY", help="of elasticity: cell array of factors of Young's modulus")
     made.add_argument("--omega", type=float, default=1.0, help="relaxation of SSOR (default: 1)")
     made.add_argument("--petsc-options", default="", metavar="TEXT")
+    _commands.add_merge_points(made)
     _commands.add_time_limit(made, 600.0)
     return made
 
@@ -499,7 +505,7 @@ def _combinations(text: str) -> list[int]:
 
 _PROBLEM = (
     *("source", "fixed", "given", "alpha", "beta", "gamma", "reaction", "tensor", "youngs_modulus", "poisson_ratio"),
-    *("plane", "stiffness", "omega", "petsc_options", "time_limit", "threads"),
+    *("plane", "stiffness", "omega", "petsc_options", "time_limit", "threads", "merge_coincident_points"),
 )
 
 

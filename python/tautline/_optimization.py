@@ -126,6 +126,7 @@ def optimize(
     allow_inversion: bool = False,
     time_limit: float = 0.0,
     threads: int = 0,
+    merge_coincident_points: bool = True,
     **options: Any,
 ) -> OptimizeResult:
     """Move the points of a mesh so that its elements become better; the objective never becomes worse.
@@ -156,6 +157,8 @@ def optimize(
     allow_inversion: whether steps may invert valid elements.
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
+    merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
+        of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
     options: properties of vtkMeshOptimizer. Stopping: maximum_iterations (100), gradient_norm (1e-6), relative_change
         (1e-5), two_digits (False), reduction (1: off), best_known (None: estimated), stop_when_valid (False).
         Scalarization: c (0: automatic), exponent (1), tolerance (0.01), utopia (one number per objective). Metrics:
@@ -182,6 +185,7 @@ def optimize(
     filter_.SetAllowInversion(bool(allow_inversion))
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
+    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     if _is_number(size):
         size = np.full(inputs.mesh.GetNumberOfCells(), size)
     if _is_number(limits):
@@ -342,7 +346,7 @@ def _objective(text: str) -> Objective:
 
 def _run_optimize(arguments: argparse.Namespace) -> None:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
-             "boundary", "time_limit", "threads")  # fmt: skip
+             "boundary", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
     result = optimize(arguments.mesh, arguments.objective, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))

@@ -88,6 +88,7 @@ def peridynamics(
     memory_limit: float = 0.0,
     time_limit: float = 0.0,
     threads: int = 0,
+    merge_coincident_points: bool = True,
 ) -> PeridynamicsResult:
     """Assemble the matrix of a nonlocal (bond-based peridynamic) model, compute its condition number, and solve.
 
@@ -120,6 +121,8 @@ def peridynamics(
     memory_limit: MiB; 0 is the free memory.
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
+    merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
+        of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
 
     Raises Error, with the remedy, for wrong arguments and where a model cannot be assembled: no layer or too thin a
     one, an exponent at the singular limit, inverted triangles, too little memory, the time limit.
@@ -150,6 +153,7 @@ def peridynamics(
     filter_.SetMemoryLimit(within("memory_limit", memory_limit, 0, np.inf))
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
+    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     if region is None:
         filter_.SetInputArrayToProcess(_REGION, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "None")
     elif not (isinstance(region, str) and region == _DEFAULT_REGION):
@@ -200,7 +204,14 @@ def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity:
 
 
 @checked
-def interaction_layer(mesh: Mesh, width: float = 0.2, *, element_size: float = 0.0, threads: int = 0) -> vtkDataSet:
+def interaction_layer(
+    mesh: Mesh,
+    width: float = 0.2,
+    *,
+    element_size: float = 0.0,
+    threads: int = 0,
+    merge_coincident_points: bool = True,
+) -> vtkDataSet:
     """Add an interaction layer (collar, nonlocal boundary layer) of triangles around a mesh and in its holes.
 
     A nonlocal model has its boundary condition not on the boundary but in this layer, see peridynamics() and
@@ -211,6 +222,8 @@ def interaction_layer(mesh: Mesh, width: float = 0.2, *, element_size: float = 0
     width: least width of the layer, above 0, in the mesh's unit.
     element_size: edge length of the layer's triangles; 0 is the mean edge length of the boundary.
     threads: number of threads; 0 is all cores. The result does not depend on it.
+    merge_coincident_points: whether points at the same place on edges that match are treated as one, as on the seams of
+        a mesh in pieces. The points keep their numbers; cells have the one with the smallest.
 
     The cell array `Reference` of the result is 1 in the mesh and 2 in the layer. Raises Error for wrong arguments and
     for a boundary that crosses itself.
@@ -221,6 +234,7 @@ def interaction_layer(mesh: Mesh, width: float = 0.2, *, element_size: float = 0
     filter_.SetWidth(float(width))
     filter_.SetElementSize(float(element_size))
     set_threads(filter_, threads)
+    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     filter_.SetInputDataObject(as_data_set(mesh))
     run(filter_)
     return filter_.GetOutput()
@@ -254,6 +268,7 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--solve", action="store_true", help="solve for a source of 1, and 0 in the layer")
     made.add_argument("--memory-limit", type=float, default=0.0, metavar="MIB",
                       help="0, the default, is the free memory")  # fmt: skip
+    _commands.add_merge_points(made)
     _commands.add_time_limit(made)
 
     made = _commands.add_command(
@@ -264,20 +279,24 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--width", type=float, default=0.2, help="least width (default: 0.2)")
     made.add_argument("--element-size", type=float, default=0.0,
                       help="edge length of its triangles (default: that of the boundary)")  # fmt: skip
+    _commands.add_merge_points(made)
 
 
 def _run_peridynamics(arguments: argparse.Namespace) -> None:
     mesh = as_data_set(arguments.mesh)
     if arguments.add_layer:
-        mesh = interaction_layer(mesh, arguments.delta, threads=arguments.threads)
+        options = _commands.given(arguments, ("threads", "merge_coincident_points"))
+        mesh = interaction_layer(mesh, arguments.delta, **options)
     names = ("delta", "p", "basis", "kernel", "width", "model", "discretization", "rules", "tolerance", "region",
-             "allow_thin_layer", "solve", "memory_limit", "time_limit", "threads")  # fmt: skip
+             "allow_thin_layer", "solve", "memory_limit", "time_limit", "threads",
+             "merge_coincident_points")  # fmt: skip
     result = peridynamics(mesh, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments)
 
 
 def _run_layer(arguments: argparse.Namespace) -> None:
-    made = interaction_layer(arguments.mesh, **_commands.given(arguments, ("width", "element_size", "threads")))
+    names = ("width", "element_size", "threads", "merge_coincident_points")
+    made = interaction_layer(arguments.mesh, **_commands.given(arguments, names))
     print(_commands.counts(made))
     _commands.save(made, arguments)

@@ -21,7 +21,7 @@ _SEEDS = 2**31
 
 @dataclass(frozen=True)
 class PerturbResult:
-    """The result of perturb(). Of composite data, the numbers are those of the last block."""
+    """The result of perturb(). Of composite data, the numbers are those of all blocks."""
 
     #: The mesh with the new points and the point array `Displacement`; shares the rest with the input.
     mesh: vtkDataObject
@@ -49,6 +49,7 @@ def perturb(
     tangle: float = 0.0,
     fixed: str | Sequence | None = None,
     threads: int = 0,
+    merge_coincident_points: bool = True,
 ) -> PerturbResult:
     """Move interior points at random, without inverting an element or until a fraction of the elements is inverted.
 
@@ -60,6 +61,8 @@ def perturb(
     fixed: points that stay in place besides the boundary: one number or truth value per point, n, or the name of a
         point array; points with values other than 0 stay.
     threads: number of threads; 0 is all cores. The result does not depend on it.
+    merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
+        of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
 
     Raises Error for wrong arguments and for meshes that the filter refuses (quadratic cells, image data).
 
@@ -73,6 +76,7 @@ def perturb(
     filter_.SetTangledFraction(within("tangle", tangle, 0, 1))
     filter_.SetSeed(int(within("seed", seed, -_SEEDS, _SEEDS - 1)))
     set_threads(filter_, threads)
+    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     if fixed is not None and not isinstance(fixed, str) and np.ndim(fixed) != 1:
         raise Error(f"fixed has the shape {np.shape(fixed)}; one value for each point is expected")
     inputs.use(_FIXED, fixed, "fixed", POINTS)
@@ -106,10 +110,11 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--seed", type=int, default=1, help="seed of the random numbers (default: 1)")
     parser.add_argument("--tangle", type=float, default=0.0, help="fraction of elements to invert, 0 to 1 (default: 0)")
     parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
+    _commands.add_merge_points(parser)
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    names = ("fraction", "percentage", "seed", "tangle", "fixed", "threads")
+    names = ("fraction", "percentage", "seed", "tangle", "fixed", "threads", "merge_coincident_points")
     result = perturb(arguments.mesh, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments)

@@ -54,6 +54,7 @@ def untangle(
     fix_boundary: bool = True,
     time_limit: float = 0.0,
     threads: int = 0,
+    merge_coincident_points: bool = True,
 ) -> UntangleResult:
     """Make the elements of a mesh valid by moving its points; the number of inverted elements never grows.
 
@@ -63,6 +64,8 @@ def untangle(
     fix_boundary: whether the points of the boundary stay in place.
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
+    merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
+        of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
 
     Raises Error for wrong arguments and for meshes that the filter refuses. Elements that remain inverted are not an
     error: see inverted, obstacle and summary of the result.
@@ -76,6 +79,7 @@ def untangle(
     filter_.SetFixBoundary(bool(fix_boundary))
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
+    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     inputs.use(_FIXED, fixed, "fixed", POINTS)
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_)
@@ -105,7 +109,8 @@ def add_commands(commands: Any) -> None:
 
 
 def _run_untangle(arguments: argparse.Namespace) -> int:
-    result = untangle(arguments.mesh, **_commands.given(arguments, ("effort", "fixed", "time_limit", "threads")))
+    names = ("effort", "fixed", "time_limit", "threads", "merge_coincident_points")
+    result = untangle(arguments.mesh, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))
     return 1 if result.inverted else 0
