@@ -5,9 +5,9 @@
  * Abstract. Such a filter keeps the connectivity. Its input on port 0 is a data set with explicit
  * points, or blocks of these, which are treated one after the other, each with its own boundary: a
  * seam between two blocks stays in place with the boundary, and is a warning; if the boundary can
- * slide or move freely, it is an error, as the blocks would come apart (Merge Blocks is the remedy).
- * A mesh that is reversed throughout is treated as its mirror image; mixed orientation, image data
- * (implicit points) and cells of higher order are refused.
+ * slide or move freely, it is an error, as the blocks would come apart (Merge Blocks is the
+ * remedy). A mesh that is reversed throughout is treated as its mirror image; mixed orientation,
+ * image data (implicit points) and cells of higher order are refused.
  *
  * @par Fixed points:
  * A point does not move where a point array (SetInputArrayToProcess(); the index is in the

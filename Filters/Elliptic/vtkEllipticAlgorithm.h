@@ -9,16 +9,17 @@
  * where the solution is given.
  *
  * Points at the same place on facets that match, as on the seams of a mesh in pieces, are one point
- * by default (MergeCoincidentPoints); the output has the points of the input, with the same value at
- * all that are one. Each block of a multiblock data set is a mesh of its own, unless there is a seam
- * between them; the partitions of a partitioned data set are one mesh. With several MPI processes (pvserver, pvbatch) the parts of all processes are
- * one mesh, which they solve together; ghost cells are left out. Points on several processes are
- * identified by their global ids if the mesh has them, else by equal coordinates. Tables are those
- * of process 0.
+ * by default (MergeCoincidentPoints); the output has the points of the input, with the same value
+ * at all that are one. Each block of a multiblock data set is a mesh of its own, unless there is a
+ * seam between them; the partitions of a partitioned data set are one mesh. With several MPI
+ * processes (pvserver, pvbatch) the parts of all processes are one mesh, which they solve together;
+ * ghost cells are left out. Points on several processes are identified by their global ids if the
+ * mesh has them, else by equal coordinates. Tables are those of process 0.
  *
  * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted
- * and degenerate elements, duplicate cells, coincident facets that cannot be merged, polygons, polyhedra, cells of higher order, mixed orientation, parts
- * without a point where the solution is given, values and coefficients that are not finite.
+ * and degenerate elements, duplicate cells, coincident facets that cannot be merged, polygons,
+ * polyhedra, cells of higher order, mixed orientation, parts without a point where the solution is
+ * given, values and coefficients that are not finite.
  *
  * Arrays (SetInputArrayToProcess), by index: 0 fixed points (of points or cells), 1 source, 2 given
  * values (of points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.

@@ -1,0 +1,355 @@
+// Meshes in pieces, with several points at each place of their seams: filters that move or measure
+// points take them as the whole mesh; duplicate cells; why no point is free.
+#include "Seams.h"
+
+#include "vtkElementQuality.h"
+#include "vtkEllipticSolver.h"
+#include "vtkMeshOptimizer.h"
+#include "vtkMeshPerturbation.h"
+#include "vtkMeshUntangler.h"
+#include "vtkMeshWarp.h"
+
+#include "vtkDoubleArray.h"
+
+#include <cmath>
+
+using namespace tautline;
+
+namespace
+{
+void testOptimize()
+{
+  for (CellType type :
+    { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron, CellType::Hexahedron })
+  {
+    const Context context(topology(type).name);
+    const Case both = quarters(type, 6);
+    for (int boundary : { vtkMeshOptimizer::FIXED, vtkMeshOptimizer::SLIDING })
+    {
+      vtkNew<vtkMeshOptimizer> pieces, whole;
+      Messages messages(pieces);
+      pieces->SetBoundary(boundary);
+      whole->SetBoundary(boundary);
+      runBoth(both, pieces.Get(), whole.Get());
+      TAUTLINE_CHECK(messages.empty());
+      TAUTLINE_CHECK(whole->GetFreePoints() > 0);
+      TAUTLINE_CHECK_EQUAL(pieces->GetFreePoints(), whole->GetFreePoints());
+      TAUTLINE_CHECK_NEAR(farthest(both, pointsOf(pieces), pointsOf(whole)), 0, 1e-12);
+      TAUTLINE_CHECK(contains(pieces->GetSummary(), said(both)));
+      TAUTLINE_CHECK(!contains(whole->GetSummary(), "coincident"));
+      TAUTLINE_CHECK_EQUAL(
+        pointsOf(pieces)->GetNumberOfPoints(), both.pieces.mesh.numberOfPoints());
+    }
+    // Kept apart, the seams are boundary.
+    vtkNew<vtkMeshOptimizer> apart;
+    apart->MergeCoincidentPointsOff();
+    apart->SetInputDataObject(0, toGrid(both.pieces.mesh));
+    apart->Update();
+    const Mesh mesh(both.pieces.mesh.view());
+    const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
+    TAUTLINE_CHECK_EQUAL(apart->GetFreePoints(), std::count(boundary.begin(), boundary.end(), 0));
+    TAUTLINE_CHECK(!contains(apart->GetSummary(), "coincident"));
+  }
+  // An array of fixed points that has one of several at a place, and limits.
+  const Case both = quarters(CellType::Triangle, 6);
+  Index copy = -1; // the last one inside
+  const std::vector<char> boundary = Mesh(both.whole.view()).boundary().isBoundaryPoint;
+  std::vector<char> seen(both.whole.numberOfPoints(), 0);
+  for (Index p = 0; p < both.pieces.mesh.numberOfPoints(); ++p)
+  {
+    copy = seen[both.wholeId[p]] && !boundary[both.wholeId[p]] ? p : copy;
+    seen[both.wholeId[p]] = 1;
+  }
+  TAUTLINE_CHECK(copy > 0);
+  const auto grid = toGrid(both.pieces.mesh);
+  vtkNew<vtkDoubleArray> marks, limits;
+  marks->SetName("marks");
+  limits->SetName("limits");
+  for (Index p = 0; p < both.pieces.mesh.numberOfPoints(); ++p)
+  {
+    marks->InsertNextValue(p == copy);
+    limits->InsertNextValue(p == copy ? 1e-3 : -1);
+  }
+  grid->GetPointData()->AddArray(marks);
+  grid->GetPointData()->AddArray(limits);
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputDataObject(0, grid);
+  const auto moved = [&]()
+  {
+    filter->Update();
+    const double* d = pointsOf(filter)->GetPointData()->GetArray("Displacement")->GetTuple3(copy);
+    return std::hypot(d[0], d[1]);
+  };
+  TAUTLINE_CHECK(moved() > 0.01);
+  filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "limits");
+  TAUTLINE_CHECK(moved() > 0 && moved() <= 1.001e-3);
+  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "marks");
+  TAUTLINE_CHECK_EQUAL(moved(), 0.0);
+}
+
+void testUntangle()
+{
+  const Case both = quarters(CellType::Triangle, 8, 0.9);
+  vtkNew<vtkMeshUntangler> pieces, whole;
+  runBoth(both, pieces.Get(), whole.Get());
+  TAUTLINE_CHECK(whole->GetInvertedBefore() > 10);
+  TAUTLINE_CHECK_EQUAL(pieces->GetInvertedBefore(), whole->GetInvertedBefore());
+  TAUTLINE_CHECK_EQUAL(pieces->GetInvertedAfter(), 0);
+  TAUTLINE_CHECK_NEAR(farthest(both, pointsOf(pieces), pointsOf(whole)), 0, 1e-12);
+  TAUTLINE_CHECK(contains(pieces->GetSummary(), "treated as one"));
+  pieces->MergeCoincidentPointsOff();
+  pieces->Update();
+  TAUTLINE_CHECK(pieces->GetInvertedAfter() > 0); // tangled points of the seam stay
+}
+
+void testPerturb()
+{
+  for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
+  {
+    const Case both = quarters(type, 6, 0.0);
+    vtkNew<vtkMeshPerturbation> pieces, whole;
+    pieces->SetPercentage(100);
+    whole->SetPercentage(100);
+    runBoth(both, pieces.Get(), whole.Get());
+    TAUTLINE_CHECK_EQUAL(pieces->GetNumberOfMovablePoints(), whole->GetNumberOfMovablePoints());
+    TAUTLINE_CHECK(contains(pieces->GetSummary(), said(both)));
+    // All points of a place move together, those of the seams, too.
+    MeshData moved = both.whole;
+    for (Index p = both.pieces.mesh.numberOfPoints() - 1; p >= 0; --p)
+    {
+      Vec3 x;
+      pointsOf(pieces)->GetPoint(p, x.data());
+      moved.setPoint(both.wholeId[p], x);
+    }
+    Index seam = 0;
+    std::vector<char> seen(both.whole.numberOfPoints(), 0);
+    for (Index p = 0; p < both.pieces.mesh.numberOfPoints(); ++p)
+    {
+      Vec3 x;
+      pointsOf(pieces)->GetPoint(p, x.data());
+      TAUTLINE_CHECK(x == moved.point(both.wholeId[p]));
+      seam += seen[both.wholeId[p]] && x != both.pieces.mesh.point(p);
+      seen[both.wholeId[p]] = 1;
+    }
+    TAUTLINE_CHECK(seam > 5);
+    const std::vector<signed char> validity = validityOf(moved);
+    TAUTLINE_CHECK_EQUAL(
+      std::count(validity.begin(), validity.end(), Valid), moved.numberOfCells());
+  }
+}
+
+void addDisplacement(vtkDataSet* grid, double difference, Index at)
+{
+  vtkNew<vtkDoubleArray> displacement;
+  displacement->SetName("Displacement");
+  displacement->SetNumberOfComponents(3);
+  for (vtkIdType p = 0; p < grid->GetNumberOfPoints(); ++p)
+  {
+    const double* x = grid->GetPoint(p);
+    displacement->InsertNextTuple3(
+      0.1 * x[1] + (p == at ? difference : 0.0), 0.02 * x[0] * x[0], 0);
+  }
+  grid->GetPointData()->AddArray(displacement);
+}
+
+void testWarp()
+{
+  for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
+  {
+    const Case both = quarters(type, 4, 0.1);
+    for (int method : { vtkMeshWarp::FEMWARP, vtkMeshWarp::HYBRID, vtkMeshWarp::INVERSE_DISTANCE })
+    {
+      vtkNew<vtkMeshWarp> pieces, whole;
+      Messages messages(pieces);
+      const auto grid = toGrid(both.pieces.mesh), single = toGrid(both.whole);
+      addDisplacement(grid, 0, -1);
+      addDisplacement(single, 0, -1);
+      for (vtkMeshWarp* each : { pieces.Get(), whole.Get() })
+      {
+        each->SetMotion(vtkMeshWarp::DISPLACEMENT);
+        each->SetMethod(method);
+        each->SetInputDataObject(0, each == whole.Get() ? single : grid);
+        each->Update();
+      }
+      TAUTLINE_CHECK(messages.empty());
+      TAUTLINE_CHECK_NEAR(farthest(both, pointsOf(pieces), pointsOf(whole)), 0, 1e-12);
+      TAUTLINE_CHECK(contains(pieces->GetSummary(), said(both)));
+      // The same mesh again: nothing is computed anew.
+      pieces->SetAmount(0.5);
+      pieces->Update();
+      TAUTLINE_CHECK_EQUAL(pieces->GetReused(), 1);
+    }
+  }
+  // Two points at a place on the boundary that are to move apart.
+  const Case both = quarters(CellType::Triangle, 4, 0.1);
+  const auto grid = toGrid(both.pieces.mesh);
+  Index copy = -1;
+  std::vector<char> seen(both.whole.numberOfPoints(), 0);
+  for (Index p = 0; p < both.pieces.mesh.numberOfPoints(); ++p)
+  {
+    copy = seen[both.wholeId[p]] && both.pieces.mesh.point(p)[1] == 0 ? p : copy;
+    seen[both.wholeId[p]] = 1;
+  }
+  addDisplacement(grid, 0.01, copy);
+  vtkNew<vtkMeshWarp> filter;
+  Messages messages(filter);
+  filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
+  filter->SetInputDataObject(0, grid);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("different displacements"));
+  TAUTLINE_CHECK(messages.has("switch Merge Coincident Points off"));
+  messages.clear();
+  filter->MergeCoincidentPointsOff();
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+}
+
+void testQuality()
+{
+  const Case both = quarters(CellType::Tetrahedron, 4, 0.1);
+  vtkNew<vtkElementQuality> filter;
+  Messages messages(filter);
+  const auto notice = [&](const MeshData& data)
+  {
+    filter->SetInputDataObject(0, toGrid(data));
+    filter->Update();
+    return std::string(filter->GetNotice());
+  };
+  TAUTLINE_CHECK_EQUAL(notice(both.whole), "");
+  TAUTLINE_CHECK(messages.empty());
+  const std::string text = notice(both.pieces.mesh);
+  TAUTLINE_CHECK(contains(text,
+    std::to_string(both.pieces.copies) +
+      " points on 1 seam are at the place of another one, the "
+      "first is point "));
+  TAUTLINE_CHECK(messages.has("Clean to Grid"));
+  MeshData nearly = both.pieces.mesh;
+  for (Index p = 0; p < nearly.numberOfPoints() / 2; ++p)
+  {
+    nearly.points[3 * p] += 1e-9;
+  }
+  TAUTLINE_CHECK(contains(notice(nearly), "nearly coincide with another one"));
+  MeshData twice = both.whole;
+  for (Index cell : { 7, 9 })
+  {
+    twice.addCell(CellType::Tetrahedron,
+      std::vector<Index>(
+        twice.connectivity.begin() + 4 * cell, twice.connectivity.begin() + 4 * cell + 4));
+  }
+  const Index cells = both.whole.numberOfCells();
+  TAUTLINE_CHECK(contains(notice(twice),
+    "2 duplicate cells have the same points as another one: " + std::to_string(cells) +
+      " (those of 7), " + std::to_string(cells + 1) + " (those of 9)."));
+}
+
+void testDuplicateCells()
+{
+  // The boundary is fixed at duplicate cells, too.
+  const MeshData data = rough(CellType::Tetrahedron, 4, 0.2);
+  MeshData twice = data;
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    twice.addCell(CellType::Tetrahedron,
+      std::vector<Index>(
+        data.connectivity.begin() + 4 * cell, data.connectivity.begin() + 4 * cell + 4));
+  }
+  MeshData some = data;
+  for (Index cell = 0; cell < 5; ++cell) // at a corner of the block
+  {
+    some.addCell(CellType::Tetrahedron,
+      std::vector<Index>(
+        data.connectivity.begin() + 4 * cell, data.connectivity.begin() + 4 * cell + 4));
+  }
+  const auto check = [&](auto* filter)
+  {
+    for (const MeshData* mesh : std::initializer_list<const MeshData*>{ &data, &some, &twice })
+    {
+      filter->SetInputDataObject(0, toGrid(*mesh));
+      filter->Update();
+      TAUTLINE_CHECK_EQUAL(
+        contains(filter->GetSummary(), "the same points as another one"), mesh != &data);
+      const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+      Index moved = 0;
+      for (Index p = 0; p < data.numberOfPoints(); ++p)
+      {
+        Vec3 x;
+        pointsOf(filter)->GetPoint(p, x.data());
+        TAUTLINE_CHECK(!boundary[p] || x == data.point(p));
+        moved += x != data.point(p);
+      }
+      TAUTLINE_CHECK(moved > 10);
+    }
+  };
+  vtkNew<vtkMeshOptimizer> optimizer;
+  check(optimizer.Get());
+  vtkNew<vtkMeshPerturbation> perturbation;
+  perturbation->SetPercentage(100);
+  check(perturbation.Get());
+  for (const MeshData* mesh : { &some, &twice })
+  {
+    vtkNew<vtkEllipticSolver> solver;
+    Messages messages(solver);
+    solver->SetInputDataObject(0, toGrid(*mesh));
+    solver->Update();
+    TAUTLINE_CHECK(messages.has("Clean Cells to Grid"));
+  }
+}
+
+void testNothingFree()
+{
+  const Case all(exploded(blockMesh(CellType::Triangle, 4, 4, 0)));
+  vtkNew<vtkMeshOptimizer> filter;
+  const auto summary = [&](const MeshData& data)
+  {
+    filter->SetInputDataObject(0, toGrid(data));
+    filter->Update();
+    return std::string(filter->GetSummary());
+  };
+  TAUTLINE_CHECK(!contains(summary(all.pieces.mesh), "No vertex is free"));
+  TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 9);
+  filter->MergeCoincidentPointsOff();
+  std::string text = summary(all.pieces.mesh);
+  TAUTLINE_CHECK(contains(text, "No vertex is free"));
+  TAUTLINE_CHECK(contains(text, "switch Merge Coincident Points on, or run Clean to Grid first"));
+  filter->MergeCoincidentPointsOn();
+  MeshData nearly = all.pieces.mesh;
+  Random random(1);
+  nearly.transform([&](Vec3 p) { return p + random.vector(-1e-9, 1e-9); });
+  nearly.transform([](Vec3 p) { return Vec3{ p[0], p[1], 0 }; });
+  TAUTLINE_CHECK(contains(summary(nearly), "run Clean to Grid with a tolerance first"));
+  text = summary(blockMesh(CellType::Triangle, 3, 1, 0));
+  TAUTLINE_CHECK(contains(text, "Every point is on the boundary of the mesh, which is fixed"));
+  TAUTLINE_CHECK(contains(text, "choose another Boundary, or refine the mesh"));
+  TAUTLINE_CHECK(!contains(text, "Clean to Grid"));
+  const auto grid = toGrid(blockMesh(CellType::Triangle, 4, 4, 0));
+  vtkNew<vtkDoubleArray> marks;
+  marks->SetName("marks");
+  marks->SetNumberOfTuples(grid->GetNumberOfPoints());
+  marks->Fill(1);
+  grid->GetPointData()->AddArray(marks);
+  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "marks");
+  filter->SetBoundary(vtkMeshOptimizer::FREE);
+  filter->SetInputDataObject(0, grid);
+  filter->Update();
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "fixed by an array or a selection"));
+  vtkNew<vtkMeshUntangler> untangler;
+  MeshData tangled = blockMesh(CellType::Triangle, 3, 1, 0);
+  std::swap(tangled.points[3 * 1], tangled.points[3 * 2]);
+  untangler->SetInputDataObject(0, toGrid(tangled));
+  untangler->Update();
+  TAUTLINE_CHECK(contains(untangler->GetSummary(), "switch Fix Boundary off"));
+}
+}
+
+//------------------------------------------------------------------------------
+int TestSeams(int, char*[])
+{
+  testOptimize();
+  testUntangle();
+  testPerturb();
+  testWarp();
+  testQuality();
+  testDuplicateCells();
+  testNothingFree();
+  return exitCode();
+}

@@ -1,0 +1,140 @@
+"""A mesh in pieces (.pvtu, appended parts) gives what the whole mesh gives, in the functions and on the shell."""
+
+import numpy as np
+import tautline as tl
+from checks import OUT, points, refused, run_tests, shell, square
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
+from vtkmodules.vtkFiltersExtraction import vtkExtractCells
+from vtkmodules.vtkCommonCore import vtkIdList
+
+N = 12
+TIGHT = 1e-12
+
+
+def rough():
+    """A square whose inner points are moved."""
+    return tl.perturb(square(N), fraction=0.4, percentage=100, seed=4).mesh
+
+
+def parts(mesh) -> list:
+    """Its quarters, a data set each."""
+    connectivity = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 3)
+    centers = points(mesh)[connectivity].mean(axis=1)
+    quarter = (centers[:, 0] > 0.5) + 2 * (centers[:, 1] > 0.5)
+    made = []
+    for number in range(4):
+        ids = vtkIdList()
+        for cell in np.flatnonzero(quarter == number):
+            ids.InsertNextId(int(cell))
+        extract = vtkExtractCells()
+        extract.SetInputData(mesh)
+        extract.SetCellList(ids)
+        extract.Update()
+        made.append(extract.GetOutput())
+    return made
+
+
+def in_pieces(mesh):
+    """Its quarters in one data set, with the points of each."""
+    append = vtkAppendFilter()
+    for part in parts(mesh):
+        append.AddInputData(part)
+    append.Update()
+    return append.GetOutput()
+
+
+def pvtu(mesh):
+    """A .pvtu file of its quarters."""
+    pieces = []
+    for number, part in enumerate(parts(mesh)):
+        tl.write(part, OUT / f"seams_{number}.vtu")
+        pieces.append(f'<Piece Source="seams_{number}.vtu"/>')
+    file = OUT / "seams.pvtu"
+    file.write_text('<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian"><PUnstructuredGrid>'
+                    '<PPoints><PDataArray type="Float64" Name="Points" NumberOfComponents="3"/></PPoints>'
+                    + "".join(pieces) + "</PUnstructuredGrid></VTKFile>")  # fmt: skip
+    return file
+
+
+def by_place(mesh, values) -> dict:
+    """The value at each place; all points of a place have the same."""
+    found = {}
+    for place, value in zip(map(tuple, points(mesh)), values):
+        assert np.array_equal(found.setdefault(place, value), value), place
+    return found
+
+
+def test_solve() -> None:
+    mesh = rough()
+    whole = tl.solve(mesh, source=50, relative_tolerance=TIGHT)
+    for given in (in_pieces(mesh), pvtu(mesh)):
+        result = tl.solve(given, source=50, relative_tolerance=TIGHT)
+        assert result.unknowns == whole.unknowns == (N - 1) ** 2
+        assert abs(result.solution.max() / whole.solution.max() - 1) < 1e-12
+        assert len(result.solution) == (N + 1) ** 2 + 2 * (N + 1) + 1
+        expected = by_place(mesh, whole.solution)
+        for place, value in by_place(result.mesh, result.solution).items():
+            assert abs(value - expected[place]) < 1e-10 * whole.solution.max()
+        assert "27 coincident points on 1 seam were treated as one" in result.summary, result.summary
+        apart = tl.solve(given, source=50, relative_tolerance=TIGHT, merge_coincident_points=False)
+        assert apart.solution.max() < 0.5 * whole.solution.max() and "coincident" not in apart.summary
+        condition = tl.condition(given, preconditioner="jacobi")
+        assert abs(condition.condition / tl.condition(mesh, preconditioner="jacobi").condition - 1) < 1e-6
+    assert "27 coincident points" in shell("solve", pvtu(mesh))
+    assert "coincident" not in shell("solve", pvtu(mesh), "--no-merge-coincident-points")
+
+
+def test_blocks() -> None:
+    mesh = rough()
+    blocks = vtkMultiBlockDataSet()
+    for number, part in enumerate(parts(mesh)):
+        blocks.SetBlock(number, part)
+    whole = tl.solve(mesh, source=50, relative_tolerance=TIGHT)
+    result = tl.solve(blocks, source=50, relative_tolerance=TIGHT)
+    assert result.unknowns == whole.unknowns and "one mesh" in result.summary
+    assert abs(result.solution.max() / whole.solution.max() - 1) < 1e-10
+    refused("Merge Blocks", tl.optimize, blocks, boundary="free")
+
+
+def test_motion() -> None:
+    mesh = rough()
+    given = in_pieces(mesh)
+    for function, options in (
+        (tl.optimize, {}), (tl.untangle, {}), (tl.warp, {"transform": {"rotate": 10}, "moved": "whole boundary"}),
+    ):  # fmt: skip
+        whole, result = function(mesh, **options), function(given, **options)
+        assert "27 coincident points on 1 seam" in result.summary, result.summary
+        moved = dict(zip(map(tuple, points(mesh)), whole.displacement))
+        for place, displacement in zip(map(tuple, points(given)), result.displacement):
+            assert np.abs(displacement - moved[place]).max() < 1e-10, (function, place)
+        assert result.mesh.GetNumberOfPoints() == given.GetNumberOfPoints()
+        assert "coincident" not in function(given, merge_coincident_points=False, **options).summary
+    perturbed = tl.perturb(given, percentage=100)
+    by_place(given, perturbed.displacement)
+    assert perturbed.movable == (N - 1) ** 2 and perturbed.inverted == 0
+    output = OUT / "seams_optimized.vtu"
+    tl.write(given, OUT / "seams_given.vtu")
+    assert "27 coincident points" in shell("optimize", OUT / "seams_given.vtu", "-o", output)
+    assert tl.read(output).GetNumberOfPoints() == given.GetNumberOfPoints()
+
+
+def test_peridynamics() -> None:
+    mesh = tl.interaction_layer(square(8), 0.25)
+    reference = vtk_to_numpy(mesh.GetCellData().GetArray("Reference"))
+    assert (reference == 2).any()
+    whole = tl.peridynamics(mesh, delta=0.25)
+    result = tl.peridynamics(in_pieces(mesh), delta=0.25)
+    assert result.rows == whole.rows and abs(result.condition / whole.condition - 1) < 1e-9
+    layered = tl.interaction_layer(in_pieces(square(8)), 0.25)
+    assert layered.GetNumberOfCells() == mesh.GetNumberOfCells()
+
+
+def test_element_quality() -> None:
+    result = tl.quality(in_pieces(rough()), ["imr"])
+    assert "27 points on 1 seam are at the place of another one" in result.notice, result.notice
+    assert tl.quality(rough(), ["imr"]).notice == ""
+
+
+run_tests(globals())
