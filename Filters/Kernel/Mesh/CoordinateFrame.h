@@ -1,0 +1,100 @@
+/**
+ * @file CoordinateFrame.h
+ * @brief Coordinates of extreme size or far from the origin, and the frame that they are computed
+ * in.
+ *
+ * Double precision holds lengths from 1e-308 to 1e308, but the square of a volume only between
+ * lengths of 1e-51 and 1e51. Measuring functions scale each cell for themselves (Metrics.h). What
+ * moves points or assembles matrices takes cells of SmallestExtent to LargestExtent;
+ * requireOrdinaryScale() refuses others. A CoordinateFrame brings a mesh there and back.
+ *
+ *     const tautline::CoordinateFrame frame(tautline::coordinateRange(view));
+ *     std::vector<double> points(view.points, view.points + 3 * view.numberOfPoints);
+ *     frame.enter(points);
+ *     view.points = points.data();                     // ... move the points ...
+ *     frame.leave(points);
+ */
+#ifndef tautline_CoordinateFrame_h
+#define tautline_CoordinateFrame_h
+
+#include "tautline/Core/Types.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace tautline
+{
+struct MeshView;
+
+/**
+ * @brief Cells whose longest extent along an axis is between these, 5e-20 and 2e19, are computed
+ * with in the unit of the mesh. Products of twelve lengths of others could overflow or vanish.
+ */
+constexpr double SmallestExtent = 0x1p-64, LargestExtent = 0x1p64;
+
+/// The power of two to divide coordinates by where cells extend so far: 1 if it is between the
+/// limits above, 0 or not finite.
+inline double unitOfExtent(double extent)
+{
+  constexpr int farthest = 1022; // so that its reciprocal is normal, too
+  const bool usual = extent > SmallestExtent && extent < LargestExtent;
+  return usual || !(extent > 0) || !std::isfinite(extent)
+    ? 1.0
+    : std::ldexp(1.0, std::max(-farthest, std::min(farthest, std::ilogb(extent))));
+}
+
+/// Where the cells of a mesh are and how large; of at most 1000 cells, evenly spread over the mesh.
+struct TAUTLINE_KERNEL_EXPORT CoordinateRange
+{
+  double extent = 0; ///< median of the longest extents along an axis; 0: none
+  Vec3 low = { 0, 0, 0 }, high = { 0, 0, 0 }; ///< the box around the cells
+  /// The largest absolute coordinate.
+  double farthest() const;
+  /**
+   * @brief The step between neighbouring numbers of this precision at the largest coordinate.
+   * @param singlePrecision 24 bits, as in float; else 53
+   */
+  double spacing(bool singlePrecision) const;
+};
+
+/// Cells with a coordinate that is not finite, and those without extent, do not count.
+TAUTLINE_KERNEL_EXPORT CoordinateRange coordinateRange(const MeshView& view);
+
+/**
+ * @class tautline::CoordinateFrame
+ * @brief An origin and a unit of length, so that cells are of ordinary size and near the origin.
+ *
+ * It is the identity unless needed. The unit is a power of two: 1 for cells of SmallestExtent to
+ * LargestExtent. The origin is 0 along each axis along which the mesh is not far away: farther than
+ * 2^20 cells and 2^10 times its own extent. Entering a frame is exact there; leaving rounds to the
+ * digits that coordinates have so far from the origin.
+ */
+class TAUTLINE_KERNEL_EXPORT CoordinateFrame
+{
+public:
+  CoordinateFrame() = default;
+  /// @param shifted off: the origin stays where it is
+  explicit CoordinateFrame(const CoordinateRange& range, bool shifted = true);
+
+  const Vec3& origin() const { return this->Origin; }
+  double unit() const { return this->Unit; }
+  bool isIdentity() const { return this->Unit == 1 && this->Origin == Vec3{ 0, 0, 0 }; }
+
+  /// Coordinates of a mesh in this frame, and back; in place, 3 per point.
+  void enter(std::vector<double>& points) const;
+  void leave(std::vector<double>& points) const;
+
+private:
+  Vec3 Origin = { 0, 0, 0 };
+  double Unit = 1;
+};
+
+/**
+ * @brief Throws Error if the typical cell is not between SmallestExtent and LargestExtent long.
+ * @param work what cannot be done, the subject of the message: "Untangling"
+ */
+TAUTLINE_KERNEL_EXPORT void requireOrdinaryScale(const MeshView& view, const std::string& work);
+}
+#endif
