@@ -5,6 +5,7 @@
 #ifndef tautline_CellBatch_h
 #define tautline_CellBatch_h
 
+#include "CoordinateFrame.h"
 #include "Mesh.h"
 #include "tautline/Core/Packet.h"
 
@@ -26,6 +27,8 @@ struct CellVertices
   Index cells[PacketWidth]; ///< the last one repeated to fill the packet
   int count = 0;
   Packet points[MaxNodes][3];
+  bool scaled = false; ///< whether normalizeExtents() has scaled a cell
+  Packet unit;         ///< if scaled: the length that is 1 in the points; a power of two
 };
 
 /// Calls work(N) with the number of nodes as a compile-time constant, so that loops over it unroll.
@@ -85,6 +88,33 @@ void loadNodes(
     for (int k = 0; k < Nodes; ++k)
     {
       batch.points[k][0] = -batch.points[k][0];
+    }
+  }
+}
+
+/// Scales cells that are extremely small or large, by powers of two: exactly.
+template <int Nodes>
+void normalizeExtents(CellVertices& batch)
+{
+  Packet extent = {};
+  for (int k = 1; k < Nodes; ++k)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      extent = max(extent, abs(batch.points[k][c] - batch.points[0][c]));
+    }
+  }
+  batch.scaled = any(~((extent > SmallestExtent) & (extent < LargestExtent)));
+  if (batch.scaled)
+  {
+    batch.unit = each(extent, unitOfExtent);
+    const Packet perUnit = 1.0 / batch.unit;
+    for (int k = 0; k < Nodes; ++k)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        batch.points[k][c] *= perUnit;
+      }
     }
   }
 }

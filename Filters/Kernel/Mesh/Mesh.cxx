@@ -1,5 +1,6 @@
 #include "Mesh.h"
 
+#include "CellBatch.h"
 #include "tautline/Core/Parallel.h"
 
 #include <Eigen/Eigenvalues>
@@ -213,7 +214,9 @@ void Mesh::findPlane()
     return;
   }
   const Vec3 extent = high - low;
-  const double diagonal = norm(extent);
+  // Scaled by a power of two, so that squares neither overflow nor vanish.
+  const double unit = unitOfExtent(std::max({ extent[0], extent[1], extent[2] }));
+  const double diagonal = unit * norm((1 / unit) * extent);
   if (!(diagonal > 0) || !std::isfinite(diagonal))
   {
     return;

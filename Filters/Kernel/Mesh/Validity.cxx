@@ -8,8 +8,23 @@
 
 namespace tautline
 {
-Validity Mesh::classifyCell(const CellTopology& t, const Vec3* p, const Vec3* against) const
+Validity Mesh::classifyCell(const CellTopology& t, const Vec3* vertices, const Vec3* against) const
 {
+  // Cells of extreme size are scaled, as normalizeExtents() does.
+  double extent = 0;
+  for (int k = 1; k < t.nodes; ++k)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      extent = std::max(extent, std::abs(vertices[k][c] - vertices[0][c]));
+    }
+  }
+  const double perUnit = 1 / unitOfExtent(extent);
+  Vec3 p[MaxNodes];
+  for (int k = 0; k < t.nodes; ++k)
+  {
+    p[k] = perUnit * vertices[k];
+  }
   const bool surface = t.dimension == 2 && this->Dim != Dimension::Planar;
   const double sign = this->Mirrored && !surface ? -1.0 : 1.0;
   Vec3 normal = against ? *against : this->Normal;

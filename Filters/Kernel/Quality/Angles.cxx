@@ -137,6 +137,7 @@ std::array<Index, angleBins.size() - 1> angleDistribution(
             {
               const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
               gather<Nodes>(source, nullptr, i, count, batch, nodes);
+              normalizeExtents<Nodes>(batch);
               Mask use = {};
               for (int l = 0; l < count; ++l)
               {

@@ -15,6 +15,8 @@ struct BatchContext : CellSource
 {
   const EvaluationOptions* options = nullptr;
   bool largerIsBetter = false;
+  bool scaleInvariant = false; ///< the metric does not depend on the size of T
+  int lengthPower = 0;         ///< of metrics that are not functions of T: their unit
 };
 
 /// Cells and their vertices, with the values and gradients that an evaluator finds.
@@ -23,6 +25,16 @@ struct Batch : CellVertices
   Packet value;
   Packet gradient[MaxNodes][3];
 };
+
+/// x times the unit of the cells to a power, for cells that normalizeExtents() has scaled.
+inline Packet timesUnit(const CellVertices& batch, Packet x, int power)
+{
+  for (int i = 0; batch.scaled && i < std::abs(power); ++i)
+  {
+    x = power > 0 ? Packet(x * batch.unit) : Packet(x / batch.unit);
+  }
+  return x;
+}
 
 using BatchEvaluator = void (*)(const BatchContext&, Batch&);
 

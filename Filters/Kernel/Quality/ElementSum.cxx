@@ -1,5 +1,7 @@
 #include "ElementSum.h"
 
+#include "tautline/Mesh/CoordinateFrame.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -53,7 +55,8 @@ std::vector<Index> spatialOrder(const Mesh& mesh, const CellBlock& block)
   }
   const Vec3 extent = high - low;
   const double longest = std::max({ extent[0], extent[1], extent[2] });
-  const double scale = longest > 0 ? 0x1fffff / longest : 0.0;
+  const double most = longest > 0 ? 0x1fffff / longest : 0.0;
+  const double scale = std::isfinite(most) ? most : 0.0;
   std::vector<std::pair<std::uint64_t, Index>> keys(block.count);
   for (Index i = 0; i < block.count; ++i)
   {
@@ -136,6 +139,7 @@ ElementSum::ElementSum(const Mesh& mesh, Metric metric, const EvaluationOptions&
   , Options(options)
 {
   checkEvaluation(mesh, metricInfo(metric), options);
+  requireOrdinaryScale(mesh.view(), "A sum over the elements");
   this->Order.resize(mesh.blocks().size());
 
   for (bool reordered : { false, true })

@@ -42,6 +42,7 @@ void scatter(const BatchContext& context, const Batch& batch, Packet factor, con
 {
   const bool mirrored = context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
   VectorLanes lanes[Nodes];
+  factor = timesUnit(batch, factor, context.lengthPower - 1);
   for (int k = 0; k < Nodes; ++k)
   {
     Packet g[3];

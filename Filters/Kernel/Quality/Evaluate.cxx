@@ -1,6 +1,8 @@
 #include "ElementSum.h"
 
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 namespace tautline
 {
@@ -57,13 +59,51 @@ BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& c
 BatchContext contextFor(
   const Mesh& mesh, const CellBlock& block, Metric metric, const EvaluationOptions& options)
 {
-  return { &mesh, &block, &topology(block.type), &options,
-    metricInfo(metric).direction == Direction::LargerIsBetter };
+  const MetricInfo& info = metricInfo(metric);
+  const CellTopology& t = topology(block.type);
+  return { { &mesh, &block, &t }, &options, info.direction == Direction::LargerIsBetter,
+    info.scaleInvariant, info.family == MetricFamily::Target ? 0 : info.lengthPower(t.dimension) };
 }
 
 namespace
 {
-void evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values,
+/// The smallest number with all digits.
+constexpr double smallestNormal = std::numeric_limits<double>::min();
+
+/**
+ * @brief How many cells of a batch have a value that double precision cannot hold. Other elements
+ * without a finite value are degenerate or not finite.
+ * @param measured the values before they were converted from the units of the cells
+ */
+Index countBeyond(const BatchContext& context, const MetricInfo& info, const Batch& batch,
+  Packet measured, const BatchNodes& nodes)
+{
+  const Packet value = batch.value;
+  const Mask vanished = (abs(value) < smallestNormal) & (measured != 0.0);
+  // Areas and volumes that vanish make a function of them vanish, too.
+  const bool ofSize = info.inverted == InvertedValue::Larger && info.lengthPower(1) > 0;
+  const Mask suspect = ~(abs(value) <= std::numeric_limits<double>::max()) | vanished |
+    ((value == 0.0) & (ofSize ? -1 : 0));
+  Index count = 0;
+  for (int l = 0; l < batch.count && any(suspect); ++l)
+  {
+    if (!suspect[l])
+    {
+      continue;
+    }
+    Vec3 p[MaxNodes];
+    for (int k = 0; k < context.topology->nodes; ++k)
+    {
+      p[k] = pointOf(context.mesh->view(), nodes[l][k]);
+    }
+    const Validity validity = context.mesh->classifyCell(*context.topology, p);
+    const bool zero = value[l] == 0 && measured[l] == 0;
+    count += zero ? validity == Inverted : validity == Valid || validity == Inverted;
+  }
+  return count;
+}
+
+Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values,
   double* gradients)
 {
   checkEvaluation(mesh, metricInfo(metric), options);
@@ -83,6 +123,8 @@ void evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& optio
   {
     std::fill(gradients, gradients + 3 * view.offsets[view.numberOfCells], 0.0);
   }
+  const MetricInfo& info = metricInfo(metric);
+  std::atomic<Index> beyond{ 0 };
   for (const CellBlock& block : mesh.blocks())
   {
     const BatchEvaluator evaluate = evaluatorFor(mesh, metric, code, block, gradients != nullptr);
@@ -104,7 +146,14 @@ void evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& optio
             {
               const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
               gather<Nodes>(context, nullptr, i, count, batch, nodes);
+              normalizeExtents<Nodes>(batch);
               evaluate(context, batch);
+              const Packet measured = batch.value;
+              batch.value = timesUnit(batch, measured, context.lengthPower);
+              if (!info.scaleInvariant)
+              {
+                beyond += countBeyond(context, info, batch, measured, nodes);
+              }
               batch.value = finiteOrZero(batch.value);
               for (int l = 0; l < count; ++l)
               {
@@ -120,20 +169,34 @@ void evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& optio
           });
       });
   }
+  return beyond;
 }
 }
 
 //------------------------------------------------------------------------------
-void evaluateMetric(
+Index evaluateMetric(
   const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values)
 {
-  evaluateAll(mesh, metric, options, values, nullptr);
+  return evaluateAll(mesh, metric, options, values, nullptr);
 }
 
 //------------------------------------------------------------------------------
-void evaluateMetricGradient(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
+void requireInRange(const MetricInfo& info, Index beyond)
+{
+  if (beyond > 0)
+  {
+    throw Error(std::string(info.label) + " of " + std::to_string(beyond) +
+      " elements is beyond the range of double precision: it depends on the size of the elements, "
+      "which is extreme. Choose a metric without a unit, " +
+      (info.family == MetricFamily::Target ? "a target of the size of the elements, " : "") +
+      "or scale the mesh first (filter Transform).");
+  }
+}
+
+//------------------------------------------------------------------------------
+Index evaluateMetricGradient(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
   double* values, double* gradients)
 {
-  evaluateAll(mesh, metric, options, values, gradients);
+  return evaluateAll(mesh, metric, options, values, gradients);
 }
 }

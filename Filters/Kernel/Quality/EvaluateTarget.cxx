@@ -201,6 +201,56 @@ void loadInverse(const BatchContext& context, const Batch& batch, int sample, Co
   }
 }
 
+/// Multiplies the matrix of each cell by a number of the cell.
+template <int N>
+void scaleMatrices(Packet factor, Packet (&matrix)[N][N])
+{
+  for (int r = 0; r < N; ++r)
+  {
+    for (int c = 0; c < N; ++c)
+    {
+      matrix[r][c] *= factor;
+    }
+  }
+}
+
+/// Powers of two that bring the largest entry of each matrix near 1.
+template <int N>
+Packet perMagnitude(const Packet (&matrix)[N][N])
+{
+  Packet largest = {};
+  for (int r = 0; r < N; ++r)
+  {
+    for (int c = 0; c < N; ++c)
+    {
+      largest = max(largest, abs(matrix[r][c]));
+    }
+  }
+  return 1.0 / each(largest, unitOfExtent);
+}
+
+/**
+ * @brief Scales the targets of cells or targets of extreme size: T is of the size it has in the
+ * unit of the mesh, or, where only its shape counts, near 1. Not inlined: it is rare.
+ */
+template <class M, int N>
+__attribute__((noinline)) void scaleTarget(
+  const BatchContext& context, const Batch& batch, Corner<N>& corner, Packet (&a)[N][N])
+{
+  if (!context.scaleInvariant)
+  {
+    scaleMatrices<N>(batch.scaled ? batch.unit : broadcast(1.0), corner.inverse);
+    return;
+  }
+  scaleMatrices<N>(perMagnitude<N>(corner.inverse), corner.inverse);
+  if (seenByTensor<M>(context))
+  {
+    const Packet factor = perMagnitude<N>(corner.root);
+    scaleMatrices<N>(factor, corner.root);
+    scaleMatrices<N>(factor, a);
+  }
+}
+
 /// T = A W^-1 with its invariants and cofactors.
 template <class M, int N>
 void findInvariants(const Packet (&a)[N][N], Corner<N>& corner)
@@ -267,6 +317,10 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
     applyTensor<N>(context, batch, corner, a);
   }
   loadInverse<M, N>(context, batch, sample, corner);
+  if (batch.scaled || (context.options->targets && context.options->targets->extreme))
+  {
+    scaleTarget<M, N>(context, batch, corner, a);
+  }
   findInvariants<M, N>(a, corner);
   // Relative to the lengths of the columns.
   const double tolerance = Mesh::degenerateTolerance() * Mesh::degenerateTolerance();

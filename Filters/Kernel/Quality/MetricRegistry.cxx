@@ -237,6 +237,13 @@ const MetricInfo& metricInfo(Metric metric)
   return registry[number];
 }
 
+int MetricInfo::lengthPower(int dimension) const
+{
+  return std::string(this->unit) == "length^n" ? dimension
+    : std::string(this->unit) == "1/length"    ? -1
+                                               : 0;
+}
+
 const MetricInfo* findMetric(const std::string& name)
 {
   const std::string wanted = lowerCase(name);

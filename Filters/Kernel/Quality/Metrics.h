@@ -7,9 +7,11 @@
  *     std::vector<double> imr(mesh.view().numberOfCells);
  *     tautline::evaluateMetric(mesh, tautline::Metric::InverseMeanRatio, {}, imr.data());
  *
- * Values are always finite, and right for edges between 1e-35 and 1e35; beyond, an element may
- * count as degenerate and be 0. A degenerate element has the value 0 of every metric that is
- * singular there, and so has a cell the metric is not defined on; Mesh::classifyCells()
+ * Values are always finite. Cells of extreme size (below 2^-64 or above 2^64) are scaled by powers
+ * of two before they are measured, so that metrics without a unit are right for edges between
+ * 1e-300 and 1e300. A value with a unit, or relative to a target, that double precision cannot hold
+ * is 0, and evaluateMetric() counts it. A degenerate element has the value 0 of every metric that
+ * is singular there, and so has a cell the metric is not defined on; Mesh::classifyCells()
  * distinguishes them.
  */
 #ifndef tautline_Metrics_h
@@ -139,6 +141,8 @@ struct MetricInfo
     return dimension == 2 ? acceptable2D : acceptable3D;
   }
   double ideal(int dimension) const { return dimension == 2 ? ideal2D : ideal3D; }
+  /// The power of the length in the unit of the metric: n of "length^n", -1 of "1/length", else 0.
+  TAUTLINE_KERNEL_EXPORT int lengthPower(int dimension) const;
   bool definedOn(CellType type) const { return (cellTypes >> topologyIndex(type)) & 1u; }
 };
 
@@ -185,6 +189,8 @@ struct Targets
    * in the metric tensor M.
    */
   std::vector<double> metricRoots;
+  /// Set by the functions of Targets.h where entries are beyond 2^-64 to 2^64: they are scaled.
+  bool extreme = false;
 };
 
 /// How to evaluate a metric.
@@ -204,16 +210,22 @@ struct EvaluationOptions
 /**
  * @brief Writes one value per cell of the mesh. Cells of unsupported types, or on which the metric
  * is not defined, get 0.
+ * @return how many valid or inverted cells have a value beyond the range of double precision (a
+ * volume of 1e-450, a size of 1e-150 against a target of 1 cubed); they get 0
  */
-TAUTLINE_KERNEL_EXPORT void evaluateMetric(
+TAUTLINE_KERNEL_EXPORT Index evaluateMetric(
   const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values);
+
+/// Throws Error that names the metric and the remedy if evaluateMetric() returned more than 0.
+TAUTLINE_KERNEL_EXPORT void requireInRange(const MetricInfo& info, Index beyond);
 
 /**
  * @brief Values as above and the gradient of each with respect to the vertices of its cell.
  * @param gradients entry (offsets[i] + k) * 3 + c is the derivative of the value of cell i by
  * coordinate c of its k-th node; 3 x the size of the connectivity. Nodes beyond the corners get 0.
+ * @return as evaluateMetric()
  */
-TAUTLINE_KERNEL_EXPORT void evaluateMetricGradient(const Mesh& mesh, Metric metric,
+TAUTLINE_KERNEL_EXPORT Index evaluateMetricGradient(const Mesh& mesh, Metric metric,
   const EvaluationOptions& options, double* values, double* gradients);
 
 class ElementSum;

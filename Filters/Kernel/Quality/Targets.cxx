@@ -1,6 +1,10 @@
 #include "Targets.h"
 
+#include "tautline/Mesh/CellBatch.h"
+
 #include <Eigen/Dense>
+
+#include <algorithm>
 
 namespace tautline
 {
@@ -10,6 +14,19 @@ using Matrix = Eigen::Matrix3d;
 
 /// Relative deviation up to which a tensor on a surface counts as isotropic.
 constexpr double isotropyTolerance = 1e-6;
+
+/// Whether numbers are beyond the sizes that are measured as they are.
+bool anyExtreme(const std::vector<double>& numbers)
+{
+  return std::any_of(numbers.begin(), numbers.end(),
+    [](double x)
+    { return std::abs(x) >= LargestExtent || (x != 0 && std::abs(x) <= SmallestExtent); });
+}
+
+void setExtreme(Targets& targets)
+{
+  targets.extreme = anyExtreme(targets.inverse) || anyExtreme(targets.metricRoots);
+}
 
 /// Calls make(cell, sample, topology) for each sample of each cell and stores the matrix it
 /// returns.
@@ -45,6 +62,7 @@ Targets makeTargets(const Mesh& mesh, const Make& make)
       }
     }
   }
+  setExtreme(targets);
   return targets;
 }
 
@@ -90,11 +108,21 @@ Targets referenceTargets(const Mesh& mesh, const Mesh& reference)
       const Index* node = other.connectivity + other.offsets[cell];
       Matrix w = Matrix::Identity();
       Vec3 edge[3];
-      double scale = 1;
+      double extent = 0, scale = 1;
       for (int k = 0; k < t.dimension; ++k)
       {
         edge[k] =
           pointOf(other, node[t.cornerNodes[s][k + 1]]) - pointOf(other, node[t.cornerNodes[s][0]]);
+        for (double x : edge[k])
+        {
+          extent = std::max(extent, std::abs(x));
+        }
+      }
+      // Cells of extreme size are scaled for their determinants.
+      const double unit = unitOfExtent(extent);
+      for (int k = 0; k < t.dimension; ++k)
+      {
+        edge[k] = (1 / unit) * edge[k];
         scale *= norm(edge[k]);
       }
       if (t.dimension == 3)
@@ -121,7 +149,7 @@ Targets referenceTargets(const Mesh& mesh, const Mesh& reference)
         Vec3 p[MaxNodes];
         for (int k = 0; k < t.nodes; ++k)
         {
-          p[k] = pointOf(other, node[k]);
+          p[k] = (1 / unit) * pointOf(other, node[k]);
         }
         const Vec3 own = cross(edge[0], edge[1]);
         const double length = norm(edge[0]), turn = dot(own, vectorArea(t, p)) < 0 ? -1 : 1;
@@ -134,7 +162,7 @@ Targets referenceTargets(const Mesh& mesh, const Mesh& reference)
       {
         refuse(cell, "it is inverted or degenerate in the reference mesh. Repair that mesh first.");
       }
-      return w.inverse();
+      return (1 / unit) * w.inverse();
     });
 }
 
@@ -160,6 +188,16 @@ Targets sizeTargets(const Mesh& mesh, const double* sizes)
       }
       return scaled;
     });
+}
+
+//------------------------------------------------------------------------------
+void scaleTargets(Targets& targets, double unit)
+{
+  for (double& entry : targets.inverse)
+  {
+    entry *= unit;
+  }
+  setExtreme(targets);
 }
 
 //------------------------------------------------------------------------------
@@ -221,6 +259,7 @@ Targets tensorTargets(const Mesh& mesh, const double* tensors)
       Eigen::Map<RowMajor>(targets.metricRoots.data() + 9 * cell) = root;
     }
   }
+  setExtreme(targets);
   return targets;
 }
 }

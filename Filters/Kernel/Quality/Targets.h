@@ -30,6 +30,10 @@ TAUTLINE_KERNEL_EXPORT Targets referenceTargets(const Mesh& mesh, const Mesh& re
 /// The ideal shape scaled to the given area or volume (> 0) per cell of the view.
 TAUTLINE_KERNEL_EXPORT Targets sizeTargets(const Mesh& mesh, const double* sizes);
 
+/// Multiplies the matrices W^-1: for a mesh whose coordinates were divided by `unit`, a power of
+/// two.
+TAUTLINE_KERNEL_EXPORT void scaleTargets(Targets& targets, double unit);
+
 /**
  * @brief The ideal shape in a metric tensor M per cell: T = M^(1/2) A W_ideal^-1, so that target
  * edges have length 1 in M.

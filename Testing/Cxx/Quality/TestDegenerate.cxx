@@ -122,7 +122,7 @@ void testNonFinite(CellType type)
 }
 
 //------------------------------------------------------------------------------
-/// Well-shaped cells of any size: measured as such between 1e-30 and 1e30, finite beyond.
+/// Well-shaped cells of any size are measured as such.
 void testMagnitudes(CellType type)
 {
   for (double scale : { 1e-300, 1e-150, 1e-100, 1e-60, 1e-30, 1e30, 1e60, 1e100, 1e150, 1e300 })
@@ -136,18 +136,15 @@ void testMagnitudes(CellType type)
     }
     const MeshData data = singleCell(type, scaled);
     checkFinite(data, false);
-    if (scale >= 1e-30 && scale <= 1e30)
+    TAUTLINE_CHECK_EQUAL(int(validityOf(data)[0]), int(Valid));
+    for (const MetricInfo& info : metricRegistry())
     {
-      TAUTLINE_CHECK_EQUAL(int(validityOf(data)[0]), int(Valid));
-      for (const MetricInfo& info : metricRegistry())
+      if (info.scaleInvariant && info.definedOn(type))
       {
-        if (info.scaleInvariant && info.definedOn(type))
-        {
-          const Context name(info.name);
-          const double expected = valueOf(type, corners, info.metric);
-          TAUTLINE_CHECK_NEAR(
-            valuesOf(data, info.metric)[0], expected, 1e-12 * std::max(1.0, std::abs(expected)));
-        }
+        const Context name(info.name);
+        const double expected = valueOf(type, corners, info.metric);
+        TAUTLINE_CHECK_NEAR(
+          valuesOf(data, info.metric)[0], expected, 1e-12 * std::max(1.0, std::abs(expected)));
       }
     }
   }
