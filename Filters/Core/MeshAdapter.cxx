@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <map>
+#include <sstream>
 
 namespace tautline
 {
@@ -23,6 +24,7 @@ static_assert(sizeof(vtkIdType) == sizeof(Index), "Tautline needs a VTK with 64-
 
 //------------------------------------------------------------------------------
 MeshAdapter::MeshAdapter(vtkDataSet* input, int threads)
+  : Threads(threads)
 {
   this->takePoints(input);
   this->takeCells(input);
@@ -31,6 +33,67 @@ MeshAdapter::MeshAdapter(vtkDataSet* input, int threads)
     this->Ghosts = ghosts->GetPointer(0);
   }
   this->TheMesh = std::make_unique<Mesh>(this->View, threads);
+  this->InputView = this->View;
+}
+
+//------------------------------------------------------------------------------
+void MeshAdapter::enterFrame(bool shifted)
+{
+  this->Frame = CoordinateFrame(coordinateRange(this->InputView), shifted);
+  if (this->Frame.isIdentity())
+  {
+    return;
+  }
+  this->FramedPoints.assign(
+    this->InputView.points, this->InputView.points + 3 * this->InputView.numberOfPoints);
+  this->Frame.enter(this->FramedPoints);
+  this->View.points = this->FramedPoints.data();
+  for (std::unique_ptr<Mesh>* mesh : { &this->Given, &this->TheMesh })
+  {
+    if (*mesh)
+    {
+      MeshView view = (*mesh)->view();
+      view.points = this->FramedPoints.data();
+      auto framed = std::make_unique<Mesh>(view, this->Threads);
+      framed->setMirrored((*mesh)->mirrored());
+      *mesh = std::move(framed);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> MeshAdapter::leaveFrame(const std::vector<double>& points) const
+{
+  std::vector<double> result = points;
+  if (!this->Frame.isIdentity())
+  {
+    this->Frame.leave(result);
+    for (std::size_t i = 0; i < result.size(); ++i)
+    {
+      result[i] = points[i] == this->View.points[i] ? this->InputView.points[i] : result[i];
+    }
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::string MeshAdapter::coarseness() const
+{
+  constexpr double enoughSteps = 100;
+  const CoordinateRange range = coordinateRange(this->InputView);
+  const double step = range.spacing(this->SinglePrecision);
+  std::ostringstream text;
+  text.precision(2);
+  if (range.extent > 0 && range.extent < enoughSteps * step)
+  {
+    text << "The coordinates are too coarse for the elements: these are about " << range.extent
+         << " long and up to " << range.farthest() << " from the origin, where coordinates in "
+         << (this->SinglePrecision ? "single" : "double") << " precision have steps of " << step
+         << ". Lengths and angles are those of the rounded points, and points move in these steps "
+            "only. Create the mesh near the origin"
+         << (this->SinglePrecision ? ", or in double precision." : ".");
+  }
+  return text.str();
 }
 
 //------------------------------------------------------------------------------
@@ -76,6 +139,7 @@ void MeshAdapter::takePoints(vtkDataSet* input)
   if (pointSet && pointSet->GetPoints())
   {
     vtkDataArray* data = pointSet->GetPoints()->GetData();
+    this->SinglePrecision = data->GetDataType() == VTK_FLOAT;
     if (auto* doubles = vtkDoubleArray::SafeDownCast(data))
     {
       this->View.points = doubles->GetPointer(0);
@@ -279,6 +343,8 @@ std::string MeshAdapter::notice() const
     text += std::to_string(mesh.nonFinitePoints()) +
       " points have a NaN or infinite coordinate; cells that use them have Validity -3. ";
   }
+  const std::string coarse = this->coarseness();
+  text += coarse.empty() ? "" : coarse + " ";
   if (!text.empty())
   {
     text.pop_back();

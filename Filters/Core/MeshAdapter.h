@@ -15,6 +15,7 @@
 #include "TautlineCoreModule.h" // for export macro
 
 #include "tautline/Mesh/CoincidentPoints.h"
+#include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/Mesh.h"
 
 #include "vtkSmartPointer.h"
@@ -52,9 +53,31 @@ public:
   /**
    * @brief Remarks for the user on how the mesh is interpreted, as sentences, or "":
    * higher-order cells measured on their corners, cells left out (by type and number), points with
-   * NaN coordinates.
+   * NaN coordinates, coarse coordinates.
    */
   std::string notice() const;
+
+  /**
+   * @brief A sentence on coordinates that are too coarse for the cells, which lie far from the
+   * origin, with the remedy; "" for others.
+   */
+  std::string coarseness() const;
+
+  /**
+   * @brief Replaces the mesh by the same in a frame in which its cells are of ordinary size and
+   * near the origin. Without effect on most meshes.
+   * @param shifted off: the origin stays where it is
+   */
+  void enterFrame(bool shifted = true);
+  /// The frame of the mesh; the identity before enterFrame().
+  const CoordinateFrame& frame() const { return this->Frame; }
+  /**
+   * @brief Points of mesh() in the coordinates of the data set. Those that are where they were in
+   * mesh() have exactly the coordinates that they had.
+   */
+  std::vector<double> leaveFrame(const std::vector<double>& points) const;
+  /// The mesh with the coordinates of the data set; not checked again.
+  const MeshView& inputView() const { return this->InputView; }
 
   /// Bytes copied because VTK's arrays had other types.
   std::size_t copiedBytes() const;
@@ -72,7 +95,11 @@ private:
   std::vector<Index> Offsets;
   std::vector<Index> Connectivity;
   const unsigned char* Ghosts = nullptr;
-  MeshView View;
+  int Threads;
+  bool SinglePrecision = false;
+  MeshView View, InputView;
+  CoordinateFrame Frame;
+  std::vector<double> FramedPoints;
   CoincidentPoints Coincident;
   std::vector<Index> MergedConnectivity;
   std::unique_ptr<Mesh> Given; ///< null if it is TheMesh

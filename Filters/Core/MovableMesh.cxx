@@ -31,10 +31,22 @@ vtkDataSet* withPoints(vtkDataSet* input)
   }
   return input;
 }
+
+std::vector<signed char> validityOf(const Mesh& mesh, int threads)
+{
+  std::vector<signed char> validity(mesh.view().numberOfCells);
+  mesh.classifyCells(validity.data(), threads);
+  return validity;
+}
+
+bool isInvalid(signed char validity)
+{
+  return validity == Inverted || validity == Degenerate;
+}
 }
 
 //------------------------------------------------------------------------------
-MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints)
+MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool framed)
   : Input(vtkPointSet::SafeDownCast(withPoints(input)))
   , Adapter(input, threads)
   , Threads(threads)
@@ -43,6 +55,11 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints)
   if (mergePoints)
   {
     this->Adapter.mergeCoincidentPoints(threads);
+    this->Notice = describeMerged(this->Adapter.coincident(), this->given());
+  }
+  if (framed)
+  {
+    this->Adapter.enterFrame();
   }
   Mesh& mesh = this->Adapter.mesh();
   if (mesh.dimension() == Dimension::None)
@@ -64,12 +81,13 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints)
   }
   if (orientation.state == Orientation::Reversed)
   {
-    this->Notice = describe(orientation, mesh) + " It is treated as if its cells were flipped.";
+    this->Notice += (this->Notice.empty() ? "" : " ") + describe(orientation, mesh) +
+      " It is treated as if its cells were flipped.";
     this->Adapter.setMirrored(true);
     mesh.classifyCells(this->Validity.data(), threads);
   }
-  for (const std::string& more : { describeMerged(this->Adapter.coincident(), this->given()),
-         describeDuplicates(findSkin(mesh).duplicates), this->Adapter.notice() })
+  for (const std::string& more :
+    { describeDuplicates(findSkin(mesh).duplicates), this->Adapter.notice() })
   {
     this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
   }
@@ -202,7 +220,7 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
   if (near > 0)
   {
     return text + ". " + std::to_string(near) +
-      " points nearly coincide with another one, the first is " + placeOf(view, first) +
+      " points nearly coincide with another one, the first is " + placeOf(this->Adapter.inputView(), first) +
       ", so that neighbouring elements are not connected: run Clean to Grid with a tolerance "
       "first.";
   }
@@ -214,15 +232,16 @@ std::string MovableMesh::move(vtkPointSet* output, const std::vector<double>& mo
 {
   std::vector<double> points = moved;
   spread(points, 3, this->representative());
-  const Mesh& mesh = this->mesh();
+  const std::vector<double> actual = this->actual(points);
   vtkPoints* like = this->Input->GetPoints();
   std::string note;
   if (like->GetDataType() == VTK_FLOAT)
   {
     std::vector<double> rounded(points.size());
-    std::transform(points.begin(), points.end(), rounded.begin(),
+    std::transform(actual.begin(), actual.end(), rounded.begin(),
       [](double x) { return static_cast<double>(static_cast<float>(x)); });
-    const auto before = this->validityAt(points), after = this->validityAt(rounded);
+    const auto before = this->validityAt(points),
+               after = validityOf(this->actualMesh(rounded), this->Threads);
     const auto lost = std::inner_product(before.begin(), before.end(), after.begin(), Index(0),
       std::plus<>(), [](signed char a, signed char b) { return Index(a == Valid && b != Valid); });
     if (lost > 0)
@@ -232,9 +251,45 @@ std::string MovableMesh::move(vtkPointSet* output, const std::vector<double>& mo
         std::to_string(lost) + " valid elements would not be valid.";
     }
   }
-  output->SetPoints(makePoints(points, like));
-  addDisplacement(output, mesh.view().points, points);
+  output->SetPoints(makePoints(actual, like));
+  addDisplacement(output, this->Adapter.inputView().points, actual);
   return note;
+}
+
+//------------------------------------------------------------------------------
+Mesh MovableMesh::actualMesh(const std::vector<double>& actualPoints) const
+{
+  MeshView view = this->Adapter.inputView();
+  view.points = actualPoints.data();
+  Mesh moved(view, this->Threads);
+  moved.setMirrored(this->mesh().mirrored());
+  return moved;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> MovableMesh::settle(const std::vector<double>& points, std::string& note) const
+{
+  if (this->frame().isIdentity())
+  {
+    return points;
+  }
+  std::vector<double> settled = this->actual(points);
+  this->frame().enter(settled);
+  const auto invalid = [](const std::vector<signed char>& validity)
+  { return std::count_if(validity.begin(), validity.end(), isInvalid); };
+  const auto count = invalid(this->validityAt(settled));
+  if (count <= invalid(this->Validity))
+  {
+    return settled;
+  }
+  note =
+    "The points stay where they are: so far from the origin coordinates have too few digits, and "
+    "rounded to these " +
+    std::to_string(count) +
+    " elements would not be valid. Create the "
+    "mesh near the origin.";
+  const double* input = this->mesh().view().points;
+  return { input, input + points.size() };
 }
 
 //------------------------------------------------------------------------------
@@ -244,9 +299,7 @@ std::vector<signed char> MovableMesh::validityAt(const std::vector<double>& poin
   view.points = points.data();
   Mesh moved(view, this->Threads);
   moved.setMirrored(this->mesh().mirrored());
-  std::vector<signed char> validity(view.numberOfCells);
-  moved.classifyCells(validity.data(), this->Threads);
-  return validity;
+  return validityOf(moved, this->Threads);
 }
 
 //------------------------------------------------------------------------------

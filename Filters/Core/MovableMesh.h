@@ -33,8 +33,10 @@ public:
    * @brief Throws Error that names the remedy for points that are implicit (image data), cells of
    * higher order, no cell at all that is measured, and mixed orientation.
    * @param mergePoints whether coincident points on seams are one: they move together
+   * @param framed whether mesh() is in a frame of its own where cells are of extreme size or far
+   * from the origin; all points and lengths given and taken here are then in it
    */
-  MovableMesh(vtkDataSet* input, int threads, bool mergePoints);
+  MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool framed = false);
 
   const Mesh& mesh() const { return this->Adapter.mesh(); }
   /// The same with the points that the cells have in the data set, for what is compared with it.
@@ -44,6 +46,23 @@ public:
   {
     return this->Adapter.coincident().representative;
   }
+  /// How mesh() is placed in the coordinates of the input.
+  const CoordinateFrame& frame() const { return this->Adapter.frame(); }
+  /// Points of mesh() in the coordinates of the input.
+  std::vector<double> actual(const std::vector<double>& points) const
+  {
+    return this->Adapter.leaveFrame(points);
+  }
+  /// The input with other points, given in its own coordinates, which must outlive the mesh.
+  Mesh actualMesh(const std::vector<double>& actualPoints) const;
+  /**
+   * @brief Rounds points to the digits that coordinates have in the input. If more elements would
+   * be invalid than in the input, the points of the input are returned.
+   * @param note gets a sentence if so
+   */
+  std::vector<double> settle(const std::vector<double>& points, std::string& note) const;
+  /// A sentence on coordinates that are too coarse, see MeshAdapter::coarseness().
+  std::string coarseness() const { return this->Adapter.coarseness(); }
   /// One per cell of the input.
   const std::vector<signed char>& validity() const { return this->Validity; }
   /// Remarks for the user on how the mesh is interpreted, as sentences, or "".

@@ -141,6 +141,15 @@ void vtkTautlineAlgorithm::AddToSummary(const std::string& paragraph)
 }
 
 //------------------------------------------------------------------------------
+void vtkTautlineAlgorithm::Warn(const std::string& text)
+{
+  if (!text.empty())
+  {
+    vtkWarningMacro(<< text);
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkTautlineAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

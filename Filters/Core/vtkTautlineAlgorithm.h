@@ -103,6 +103,9 @@ protected:
   /// Adds a paragraph to the summary, unless it is empty.
   void AddToSummary(const std::string& paragraph);
 
+  /// Reports a warning, unless it is empty.
+  void Warn(const std::string& text);
+
   int Threads = 0;
   std::string Summary;
 

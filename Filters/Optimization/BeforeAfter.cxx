@@ -10,6 +10,7 @@
 #include "vtkSignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace tautline
@@ -24,12 +25,18 @@ struct Measurement
   double worst = 0;
 };
 
-Measurement measure(const Mesh& mesh, const MeasuredMetric& what, const signed char* validity,
-  const unsigned char* skip, double* values)
+/// @param unit the length that is 1 in the coordinates of the mesh
+Measurement measure(const Mesh& mesh, double unit, const MeasuredMetric& what,
+  const signed char* validity, const unsigned char* skip, double* values)
 {
   const MetricInfo& info = metricInfo(what.metric);
   const Index cells = mesh.view().numberOfCells;
   evaluateMetric(mesh, what.metric, what.options, values);
+  const int power = info.lengthPower(mesh.dimension() == Dimension::Volume ? 3 : 2);
+  for (Index i = 0; i < cells && unit != 1 && power != 0; ++i)
+  {
+    values[i] *= std::pow(unit, power);
+  }
   const CellValues data = { cells, values, validity, mesh.view().cellTypes, skip };
   Measurement result;
   result.statistics = summarize(
@@ -113,12 +120,13 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
   validity->SetNumberOfValues(view.numberOfCells);
   moved.classifyCells(validity->GetPointer(0), threads);
 
+  const double unit = mesh.frame().unit();
   std::ostringstream text;
   for (const MeasuredMetric& what : metrics)
   {
-    const Measurement before = measure(mesh.mesh(), what, mesh.validity().data(), mesh.skipped(),
-      addCellArray(output, what.name + "_before")->GetPointer(0));
-    const Measurement after = measure(moved, what, validity->GetPointer(0), mesh.skipped(),
+    const Measurement before = measure(mesh.mesh(), unit, what, mesh.validity().data(),
+      mesh.skipped(), addCellArray(output, what.name + "_before")->GetPointer(0));
+    const Measurement after = measure(moved, unit, what, validity->GetPointer(0), mesh.skipped(),
       addCellArray(output, what.name)->GetPointer(0));
     rows.begin(block);
     rows.addText("Metric", what.name);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace tautline
 {
@@ -30,7 +31,7 @@ std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
 
 //------------------------------------------------------------------------------
 OptimizerSetup::OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block)
-  : TheMesh(block.input, settings.options.threads, settings.mergePoints)
+  : TheMesh(block.input, settings.options.threads, settings.mergePoints, true)
   , Options(settings.options)
 {
   this->setFixed(settings, block);
@@ -86,6 +87,10 @@ void OptimizerSetup::setLimits(const OptimizerSettings& settings, const InputBlo
   {
     this->Limits.assign(this->TheMesh.mesh().view().numberOfPoints, settings.maximumDisplacement);
   }
+  for (double& limit : this->Limits)
+  {
+    limit /= this->TheMesh.frame().unit();
+  }
   // Points that are one may move as far as the one with the smallest limit.
   const std::vector<Index>& one = this->TheMesh.representative();
   for (std::size_t p = 0; !this->Limits.empty() && p < one.size(); ++p)
@@ -114,6 +119,8 @@ const Targets* OptimizerSetup::target(
       settings.targetArray(size ? SizeArray : TensorArray, block.input);
   }
   made = makeTargets(this->TheMesh.given(), choice, this->Options.threads);
+  // T has the size it has in the coordinates of the input.
+  scaleTargets(made, this->TheMesh.frame().unit());
   return &made;
 }
 
@@ -154,8 +161,37 @@ void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const Inpu
   }
   for (Objective& objective : objectives)
   {
+    this->setUnit(objective);
     objective.evaluation.threads = this->Options.threads;
     objective.elementWeights = this->Weights.empty() ? nullptr : this->Weights.data();
+  }
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::setUnit(Objective& objective) const
+{
+  const double unit = this->TheMesh.frame().unit();
+  const MetricInfo& info = metricInfo(objective.metric);
+  if (unit == 1 || info.scaleInvariant)
+  {
+    return;
+  }
+  // A metric with a unit is reduced in that of the frame; one relative to the target, as it is.
+  const int power = info.lengthPower(this->TheMesh.mesh().dimension() == Dimension::Volume ? 3 : 2);
+  const double value = std::pow(unit, power);
+  double& beta = objective.evaluation.parameters.beta;
+  beta /= power > 0 ? value : 1.0;
+  const bool ofTarget = power == 0 && !objective.evaluation.targets;
+  if (ofTarget || !std::isnormal(value) || !std::isfinite(beta))
+  {
+    std::ostringstream text;
+    text.precision(2);
+    text << info.label << " cannot be optimized on elements that are about " << unit << " long: "
+         << (ofTarget ? "it compares them with a target of length 1. Choose a target by reference, "
+                        "size or tensor, or scale"
+                      : "it is beyond the range of double precision. Scale")
+         << " the mesh first (filter Transform).";
+    throw Error(text.str());
   }
 }
 

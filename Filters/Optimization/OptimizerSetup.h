@@ -86,6 +86,7 @@ private:
   void setFixed(const OptimizerSettings& settings, const InputBlock& block);
   void setLimits(const OptimizerSettings& settings, const InputBlock& block);
   void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
+  void setUnit(Objective& objective) const;
   const Targets* target(
     const OptimizerSettings& settings, const InputBlock& block, TargetType type);
 

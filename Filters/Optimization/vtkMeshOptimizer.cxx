@@ -417,6 +417,14 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     };
     run.iterations = -1;
     run.result = tautline::optimize(mesh.mesh(), options);
+    run.result.surfaceError *= mesh.frame().unit();
+    std::string note;
+    run.result.points = mesh.settle(run.result.points, note);
+    if (!note.empty())
+    {
+      run.result.invertedAfter = run.result.invertedBefore;
+      this->Warn(note);
+    }
     run.iterations = std::max(run.iterations, run.result.iterations);
   }
   const std::vector<double> points = run.at(time, view);
@@ -436,6 +444,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     {
       run.summary += (sentence.empty() ? "" : "\n") + sentence;
     }
+    this->Warn(mesh.coarseness());
   }
 }
 

@@ -57,6 +57,7 @@ HorizonInput::HorizonInput(
       "one process first");
   }
   requireDistinctCells(mesh);
+  requireOrdinaryScale(view, "A nonlocal model");
   this->Frame = mesh.frame();
   const Vec3 first = pointOf(view, view.connectivity[view.offsets[triangles->cell(0)]]);
   this->Offset = dot(first, mesh.normal()) * mesh.normal();

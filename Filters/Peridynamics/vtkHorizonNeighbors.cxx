@@ -3,6 +3,7 @@
 #include "HorizonInput.h"
 #include "Processes.h"
 #include "tautline/Core/Memory.h"
+#include "tautline/Mesh/CoordinateFrame.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -17,6 +18,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -195,6 +197,15 @@ int vtkHorizonNeighbors::RequestData(
     if (!(this->Horizon > 0.0) || !std::isfinite(this->Horizon))
     {
       throw tautline::Error("the horizon has to be above 0");
+    }
+    using tautline::LargestExtent;
+    using tautline::SmallestExtent;
+    const bool near = std::all_of(
+      this->Center, this->Center + 3, [](double x) { return std::abs(x) <= LargestExtent; });
+    if (!near || this->Horizon < SmallestExtent || this->Horizon > LargestExtent)
+    {
+      throw tautline::Error("the horizon has to be between 5e-20 and 2e19, and the center within "
+                            "2e19 of the origin: scale the mesh first (filter Transform)");
     }
     const tautline::HorizonInput taken(input, nullptr, 0.0, false, 0); // of places only
     const Disc disc = { taken.project({ this->Center[0], this->Center[1], this->Center[2] }),

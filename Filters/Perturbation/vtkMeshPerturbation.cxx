@@ -127,6 +127,7 @@ void vtkMeshPerturbation::Perturb(
   {
     adapter.mergeCoincidentPoints(this->Threads);
   }
+  adapter.enterFrame(false);
   tautline::Mesh& mesh = adapter.mesh();
   if (mesh.dimension() == tautline::Dimension::None)
   {
@@ -152,9 +153,12 @@ void vtkMeshPerturbation::Perturb(
   { return this->Proceed((block.number + fraction) / blocks); };
   tautline::Perturbation result = tautline::perturb(mesh, fixed.data(), options);
   tautline::spread(result.points, 3, one);
+  result.points = adapter.leaveFrame(result.points);
+  result.largestDisplacement *= adapter.frame().unit();
   moved->SetPoints(
     tautline::makePoints(result.points, type == VTK_FLOAT ? points->GetPoints() : nullptr));
-  tautline::addDisplacement(moved, mesh.view().points, result.points);
+  tautline::addDisplacement(moved, adapter.inputView().points, result.points);
+  this->Warn(adapter.coarseness());
 
   total.movable += result.movable;
   total.moved += result.moved;

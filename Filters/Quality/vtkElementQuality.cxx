@@ -194,7 +194,7 @@ void vtkElementQuality::Measure(
     vtkNew<vtkDoubleArray> values;
     values->SetName(info.name);
     values->SetNumberOfValues(cells);
-    evaluateMetric(mesh, info.metric, options, values->GetPointer(0));
+    requireInRange(info, evaluateMetric(mesh, info.metric, options, values->GetPointer(0)));
     output->GetCellData()->AddArray(values);
     totals.addValues(m, mesh,
       { cells, values->GetPointer(0), validity->GetPointer(0), mesh.view().cellTypes, skipped },

@@ -217,8 +217,8 @@ void vtkMeshComparison::Compare(
     double* low = addCellArray(output, std::string(info.name) + "_before");
     double* high = addCellArray(output, std::string(info.name) + "_after");
     double* delta = addCellArray(output, std::string(info.name) + "_difference");
-    evaluateMetric(was.mesh(), info.metric, options, low);
-    evaluateMetric(is.mesh(), info.metric, options, high);
+    requireInRange(info, evaluateMetric(was.mesh(), info.metric, options, low));
+    requireInRange(info, evaluateMetric(is.mesh(), info.metric, options, high));
     compareMetric(info, dimension, { cells, low, validBefore, types, is.ghostCells() },
       { cells, high, validAfter, types, is.ghostCells() }, this->Tolerance, change.data(),
       totals.changes[m]);

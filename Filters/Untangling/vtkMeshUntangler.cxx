@@ -131,7 +131,7 @@ int vtkMeshUntangler::RequestData(
 //------------------------------------------------------------------------------
 void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::TableRows& history)
 {
-  tautline::MovableMesh mesh(block.input, this->Threads, this->MergeCoincidentPoints);
+  tautline::MovableMesh mesh(block.input, this->Threads, this->MergeCoincidentPoints, true);
   mesh.fix(tautline::chosenArray(this, FixedArray, block.input, "of fixed points"), false);
   tautline::fixSelected(mesh, block.selected);
   if (this->FixBoundary)
@@ -146,7 +146,14 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   options.threads = this->Threads;
   options.observer = [&](const tautline::IterationState& state)
   { return this->ProceedInBlock(block.number, state.progress); };
-  const tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);
+  tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);
+  std::string unsettled;
+  result.points = mesh.settle(result.points, unsettled);
+  if (!unsettled.empty())
+  {
+    result.invertedAfter = result.invertedBefore;
+    this->Warn(unsettled);
+  }
 
   const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), result.points);
   addFlags(block.output, "Validity", mesh.validityAt(result.points));
@@ -159,19 +166,20 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   this->InvertedBefore += result.invertedBefore;
   this->InvertedAfter += result.invertedAfter;
   this->Impossible += result.impossible;
-  tautline::MeshView view = mesh.mesh().view();
-  view.points = result.points.data();
-  const tautline::Mesh moved(view, this->Threads);
+  const std::vector<double> points = mesh.actual(result.points);
+  const tautline::Mesh moved = mesh.actualMesh(points);
   const Remaining remaining = remainingOf(result, moved);
   this->NotValid += static_cast<vtkIdType>(remaining.size());
   this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
-    verdict(result, remaining, moved) + tautline::surfaceErrorSentence(result.surfaceError));
+    verdict(result, remaining, moved) +
+    tautline::surfaceErrorSentence(mesh.frame().unit() * result.surfaceError));
   if (result.reason == tautline::StopReason::NoFreeVertices)
   {
     this->AddToSummary(mesh.whyNoneIsFree("switch Fix Boundary off"));
   }
   this->AddToSummary(note);
   this->AddToSummary(mesh.notice());
+  this->Warn(mesh.coarseness());
 }
 
 //------------------------------------------------------------------------------

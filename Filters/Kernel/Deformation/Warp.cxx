@@ -4,6 +4,7 @@
 #include "WarpPath.h"
 #include "WarpStep.h"
 #include "WarpSteps.h"
+#include "tautline/Mesh/CoordinateFrame.h"
 
 #include <sstream>
 
@@ -88,6 +89,7 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
   {
     throw Error("Only planar and volume meshes can be deformed: this is a surface in space.");
   }
+  requireOrdinaryScale(mesh.view(), "Warping");
   for (const CellBlock& block : mesh.blocks())
   {
     const bool supported = block.type != CellType::Wedge && block.type != CellType::Pyramid;

@@ -3,6 +3,7 @@
 #include "ElementMatrices.h"
 #include "FiniteElements.h"
 #include "tautline/Core/UnionFind.h"
+#include "tautline/Mesh/CoordinateFrame.h"
 
 namespace tautline
 {
@@ -150,7 +151,16 @@ void EllipticChecks::requireValidElements() const
   if (nonFinite.count > 0)
   {
     throw Error(elements(nonFinite.count, nonFinite.first) +
-      " have coordinates that are not finite, or beyond 1e100. Check the points array.");
+      " have coordinates that are not finite. Check the points array.");
+  }
+  // Of the cells of all ranks, so that all ranks refuse.
+  const CoordinateRange range = coordinateRange(this->Input.view());
+  if (this->Numbering.sum(Index(unitOfExtent(range.extent) != 1)) > 0)
+  {
+    requireOrdinaryScale(this->Input.view(), "A finite element matrix");
+    throw Error(
+      "A finite element matrix needs cells of ordinary size on every rank: scale the mesh "
+      "first (filter Transform).");
   }
   if (degenerate.count > 0)
   {

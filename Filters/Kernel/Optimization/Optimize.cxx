@@ -1,5 +1,6 @@
 #include "Optimize.h"
 
+#include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Objectives/ElementHessian.h"
 #include "ImproveWorst.h"
 #include "Minimize.h"
@@ -622,6 +623,7 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
     result.reason = StopReason::NoFreeVertices;
     return result;
   }
+  requireOrdinaryScale(view, "Optimization");
   result.invertedBefore = result.invertedAfter = countInvalid(mesh, options.threads);
   const bool repairs =
     std::any_of(options.objectives.begin(), options.objectives.end(), canUntangle);

@@ -1,5 +1,7 @@
 #include "PeridynamicsGeometry.h"
 
+#include "tautline/Mesh/CoordinateFrame.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -68,9 +70,15 @@ PlanarTriangles::PlanarTriangles(const HorizonMesh& mesh)
     const Vec2 a = this->corner(t, 0), b = this->corner(t, 1), c = this->corner(t, 2);
     const double area = 0.5 * cross(b - a, c - a);
     const double squares = dot(b - a, b - a) + dot(c - a, c - a) + dot(c - b, c - b);
-    if (!std::isfinite(squares) || squares > 1e200)
+    if (!std::isfinite(squares))
     {
-      throw Error(triangleName(t) + " has coordinates that are not finite, or beyond 1e100");
+      throw Error(triangleName(t) + " has coordinates that are not finite, or too large");
+    }
+    if (squares > 0.0 && unitOfExtent(std::sqrt(squares)) != 1.0)
+    {
+      throw Error(triangleName(t) +
+        " is of extreme size: nonlocal models are for triangles between "
+        "5e-20 and 2e19 long. Scale the mesh first (filter Transform)");
     }
     if (std::abs(area) <= 1e-12 * squares)
     {

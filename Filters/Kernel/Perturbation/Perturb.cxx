@@ -1,6 +1,7 @@
 #include "Perturb.h"
 
 #include "tautline/Core/Random.h"
+#include "tautline/Mesh/CoordinateFrame.h"
 
 #include <algorithm>
 #include <limits>
@@ -560,6 +561,7 @@ void check(const Mesh& mesh, const PerturbOptions& options)
 Perturbation perturb(const Mesh& mesh, const unsigned char* fixed, const PerturbOptions& options)
 {
   check(mesh, options);
+  requireOrdinaryScale(mesh.view(), "Perturbation");
   Perturber perturber(mesh, fixed, options);
   perturber.move();
   perturber.tangle();

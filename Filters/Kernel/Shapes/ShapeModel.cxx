@@ -1,6 +1,7 @@
 #include "ShapeModel.h"
 
 #include "ShapeDescriptors.h"
+#include "tautline/Mesh/CoordinateFrame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,6 +91,17 @@ ShapeSource makeShapeSource(const Silhouette& shape, double spacing)
 
 ShapeSource makeShapeSource(std::vector<Vec2> polygon)
 {
+  double extent = 0.0;
+  for (const Vec2& p : polygon)
+  {
+    extent = std::max({ extent, std::abs(p[0] - polygon[0][0]), std::abs(p[1] - polygon[0][1]) });
+  }
+  if (unitOfExtent(extent) != 1.0)
+  {
+    throw Error(
+      "The polygon is of extreme size: shapes are matched between 5e-20 and 2e19. Scale it "
+      "first (filter Transform).");
+  }
   ShapeSource source;
   source.mesh = triangulatePolygon(std::move(polygon));
   source.centre = centreOfMass(source.mesh.points);

@@ -1,6 +1,7 @@
 #include "Untangle.h"
 
 #include "Untangler.h"
+#include "tautline/Mesh/CoordinateFrame.h"
 
 namespace tautline
 {
@@ -185,6 +186,7 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options)
   {
     return result;
   }
+  requireOrdinaryScale(view, "Untangling");
   // Nothing to do, or nothing that may move.
   SimplexMesh simplices(mesh, options.fixed, nullptr, options.threads);
   if (result.invertedBefore == 0 || simplices.freeVertices() == 0)

@@ -1,0 +1,305 @@
+// Filters on meshes of extreme size or far from the origin: the result is that of the mesh of
+// ordinary size, or an error or a warning names the problem and the remedy.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "tautline/Perturbation/Perturb.h"
+#include "vtkConditionEstimator.h"
+#include "vtkElementQuality.h"
+#include "vtkHorizonNeighbors.h"
+#include "vtkInteractionLayer.h"
+#include "vtkMeshComparison.h"
+#include "vtkMeshOptimizer.h"
+#include "vtkMeshPerturbation.h"
+#include "vtkMeshUntangler.h"
+#include "vtkMeshWarp.h"
+#include "tautline/Optimization/OptimizeOptions.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkTable.h"
+
+#include <functional>
+
+using namespace tautline;
+
+namespace
+{
+/// 1e-150, 1e-100, 1e-30, 1e-12 and so on, as exponents of two.
+constexpr int exponents[] = { -498, -332, -100, -40, 40, 100, 332, 498 };
+
+MeshData scaled(MeshData data, int exponent)
+{
+  data.transform([=](const Vec3& p) { return std::ldexp(1.0, exponent) * p; });
+  return data;
+}
+
+MeshData moved(MeshData data, double distance)
+{
+  data.transform([=](const Vec3& p) { return p + Vec3{ distance, distance, 0 }; });
+  return data;
+}
+
+/// A block with its inner points moved at random; some elements inverted if tangled.
+MeshData perturbed(CellType type, bool tangled = false)
+{
+  const Index n = topology(type).dimension == 2 ? 10 : 4;
+  MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
+  PerturbOptions options;
+  options.percentage = 100;
+  options.fraction = 0.7;
+  options.tangledFraction = tangled ? 0.05 : 0.0;
+  options.seed = 3;
+  data.points = perturb(Mesh(data.view()), nullptr, options).points;
+  return data;
+}
+
+std::vector<double> pointsOf(vtkAlgorithm* filter)
+{
+  auto* set = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+  std::vector<double> points(3 * set->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < set->GetNumberOfPoints(); ++i)
+  {
+    set->GetPoint(i, points.data() + 3 * i);
+  }
+  return points;
+}
+
+/// The largest distance between points, those of the first divided by a power of two.
+double difference(const std::vector<double>& a, int exponent, const std::vector<double>& b)
+{
+  double most = a.size() == b.size() ? 0.0 : HUGE_VAL;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    most = std::max(most, std::abs(std::ldexp(a[i], -exponent) - b[i]));
+  }
+  return most;
+}
+
+double statistic(vtkTable* table, const char* column)
+{
+  return table->GetValueByName(0, column).ToDouble();
+}
+
+//------------------------------------------------------------------------------
+/// Filters that move points give the points of the mesh of ordinary size, scaled.
+template <class Filter>
+void testMoving(const char* name, bool tangled, const std::function<void(Filter*)>& setUp)
+{
+  for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
+  {
+    const MeshData data = perturbed(type, tangled);
+    vtkNew<Filter> filter;
+    setUp(filter);
+    Messages messages(filter);
+    filter->SetInputData(toGrid(data));
+    filter->Update();
+    const std::vector<double> expected = pointsOf(filter);
+    TAUTLINE_CHECK(difference(expected, 0, data.points) > 0.05);
+    for (int exponent : exponents)
+    {
+      const Context context(std::string(name) + ", 2^" + std::to_string(exponent));
+      filter->SetInputData(toGrid(scaled(data, exponent)));
+      filter->Update();
+      TAUTLINE_CHECK_NEAR(difference(pointsOf(filter), exponent, expected), 0, 1e-9);
+      auto* displacement = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))
+                             ->GetPointData()
+                             ->GetArray("Displacement");
+      double most = 0;
+      for (vtkIdType i = 0; i < displacement->GetNumberOfTuples(); ++i)
+      {
+        most = std::max(most, std::abs(displacement->GetComponent(i, 0)));
+      }
+      TAUTLINE_CHECK(std::ldexp(most, -exponent) > 0.05);
+      TAUTLINE_CHECK(messages.empty());
+      messages.clear();
+    }
+  }
+}
+
+void testStatistics()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron);
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->AddObjectiveByName("imr");
+  filter->SetInputData(toGrid(data));
+  filter->Update();
+  const double before = statistic(filter->GetStatistics(), "MeanBefore");
+  const double after = statistic(filter->GetStatistics(), "MeanAfter");
+  const std::string reason = filter->GetReason();
+  TAUTLINE_CHECK(after < before - 0.02);
+  for (int exponent : exponents)
+  {
+    const Context context("2^" + std::to_string(exponent));
+    filter->SetInputData(toGrid(scaled(data, exponent)));
+    filter->Update();
+    TAUTLINE_CHECK_NEAR(statistic(filter->GetStatistics(), "MeanBefore"), before, 1e-12);
+    TAUTLINE_CHECK_NEAR(statistic(filter->GetStatistics(), "MeanAfter"), after, 1e-9);
+    TAUTLINE_CHECK_EQUAL(std::string(filter->GetReason()), reason);
+  }
+}
+
+/// An objective that compares with a target of length 1 is refused; with a reference it is not.
+void testTargets()
+{
+  const MeshData data = scaled(perturbed(CellType::Triangle), -498);
+  vtkNew<vtkMeshOptimizer> filter;
+  Messages messages(filter);
+  filter->AddObjectiveByName("mu_size");
+  filter->SetInputData(toGrid(data));
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("Size, barrier cannot be optimized on elements that are about"));
+  TAUTLINE_CHECK(messages.has("target by reference"));
+  messages.clear();
+  filter->RemoveAllObjectives();
+  filter->AddObjectiveByName(
+    "mu_shape_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::REFERENCE);
+  filter->SetInputData(1, toGrid(scaled(blockMesh(CellType::Triangle, 10, 10, 0), -498)));
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK(statistic(filter->GetStatistics(), "MeanAfter") <
+    0.05 * statistic(filter->GetStatistics(), "MeanBefore"));
+}
+
+//------------------------------------------------------------------------------
+/// Far from the origin points move as near to it, to the digits of the coordinates; where these are
+/// too few for the elements, a warning says so.
+void testOffsets()
+{
+  const MeshData data = perturbed(CellType::Triangle);
+  vtkNew<vtkMeshOptimizer> filter;
+  Messages messages(filter);
+  filter->AddObjectiveByName("imr");
+  filter->SetInputData(toGrid(data));
+  filter->Update();
+  const double after = statistic(filter->GetStatistics(), "MeanAfter");
+  for (double distance : { 1e3, 1e6, 1e9, 1e12 })
+  {
+    const Context context("at " + std::to_string(distance));
+    filter->SetInputData(toGrid(moved(data, distance)));
+    filter->Update();
+    TAUTLINE_CHECK(messages.empty());
+    // Coordinates of 1e12 have steps of 1.2e-4.
+    TAUTLINE_CHECK_NEAR(statistic(filter->GetStatistics(), "MeanAfter"), after, 1e-4);
+    const std::vector<double> values =
+      valuesOf(withPointsOf(data, vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))),
+        Metric::InverseMeanRatio);
+    double sum = 0;
+    for (double q : values)
+    {
+      sum += q / static_cast<double>(values.size());
+    }
+    TAUTLINE_CHECK_NEAR(sum, statistic(filter->GetStatistics(), "MeanAfter"), 1e-12);
+  }
+  // Steps of 0.125 at 1e15.
+  filter->SetInputData(toGrid(moved(data, 1e15)));
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("The coordinates are too coarse for the elements"));
+  TAUTLINE_CHECK(messages.has("double precision have steps of 0.12"));
+  TAUTLINE_CHECK(messages.has("near the origin"));
+  TAUTLINE_CHECK(filter->GetInvertedAfter() <= filter->GetInvertedBefore());
+
+  vtkNew<vtkElementQuality> quality;
+  quality->SetInputData(toGrid(moved(data, 1e5), VTK_FLOAT));
+  quality->Update();
+  TAUTLINE_CHECK(quality->GetNotice() == std::string());
+  quality->SetInputData(toGrid(moved(data, 1e6), VTK_FLOAT));
+  quality->Update();
+  TAUTLINE_CHECK(std::string(quality->GetNotice()).find("single precision have steps of 0.062") !=
+    std::string::npos);
+}
+
+//------------------------------------------------------------------------------
+void testMeasuring()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron);
+  vtkNew<vtkElementQuality> quality;
+  vtkNew<vtkMeshComparison> comparison;
+  Messages messages(quality), compared(comparison);
+  quality->AddMetricByName("scaled_jacobian");
+  quality->SetInputData(toGrid(data));
+  quality->Update();
+  const double mean = statistic(quality->GetStatistics(), "Mean");
+  for (int exponent : exponents)
+  {
+    const Context context("2^" + std::to_string(exponent));
+    const MeshData far = scaled(data, exponent);
+    quality->SetInputData(toGrid(far));
+    quality->Update();
+    TAUTLINE_CHECK_EQUAL(statistic(quality->GetStatistics(), "Mean"), mean);
+    comparison->SetInputData(0, toGrid(far));
+    comparison->SetInputData(1, toGrid(scaled(perturbed(CellType::Tetrahedron, true), exponent)));
+    comparison->Update();
+    auto* table = vtkTable::SafeDownCast(comparison->GetOutputDataObject(1));
+    TAUTLINE_CHECK(statistic(table, "InvertedAfter") > 0 && statistic(table, "Worse") > 0);
+  }
+  TAUTLINE_CHECK(messages.empty() && compared.empty());
+  quality->AddMetricByName("size");
+  quality->SetInputData(toGrid(scaled(data, -100)));
+  quality->Update();
+  TAUTLINE_CHECK(messages.empty());
+  quality->SetInputData(toGrid(scaled(data, -498)));
+  quality->Update();
+  TAUTLINE_CHECK(messages.has("Size (area or volume) of 320 elements is beyond the range"));
+}
+
+/// What assembles matrices refuses extreme sizes by name.
+void testRefusals()
+{
+  const auto refuses = [](vtkAlgorithm* filter, const MeshData& data, const char* text)
+  {
+    for (int exponent : { -498, -100, 100, 498 })
+    {
+      const Context context(
+        std::string(filter->GetClassName()) + ", 2^" + std::to_string(exponent));
+      Messages messages(filter);
+      auto grid = toGrid(scaled(data, exponent));
+      vtkNew<vtkDoubleArray> d;
+      d->SetName("d");
+      d->SetNumberOfComponents(3);
+      d->SetNumberOfTuples(grid->GetNumberOfPoints());
+      d->Fill(std::ldexp(0.1, exponent));
+      grid->GetPointData()->AddArray(d);
+      filter->SetInputDataObject(0, grid);
+      filter->Update();
+      TAUTLINE_CHECK(messages.has(text));
+      TAUTLINE_CHECK(messages.has("cale the mesh first (filter Transform)"));
+    }
+  };
+  const MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
+  vtkNew<vtkMeshWarp> warp;
+  warp->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
+  refuses(warp, data, "Warping needs cells between 5.4e-20 and 1.8e+19 long");
+  vtkNew<vtkConditionEstimator> condition;
+  refuses(condition, data, "A finite element matrix needs cells between");
+  vtkNew<vtkHorizonNeighbors> neighbors;
+  refuses(neighbors, data, "A nonlocal model needs cells between");
+  vtkNew<vtkInteractionLayer> layer;
+  refuses(layer, data, "A nonlocal model needs cells between");
+
+  Messages messages(neighbors);
+  neighbors->SetInputData(toGrid(data));
+  neighbors->SetHorizon(1e200);
+  neighbors->Update();
+  TAUTLINE_CHECK(messages.has("the horizon has to be between 5e-20 and 2e19"));
+}
+}
+
+int TestScaleFilters(int, char*[])
+{
+  testMoving<vtkMeshOptimizer>(
+    "optimize", false, [](vtkMeshOptimizer* filter) { filter->AddObjectiveByName("imr"); });
+  testMoving<vtkMeshOptimizer>("L-BFGS", false,
+    [](vtkMeshOptimizer* filter)
+    {
+      filter->AddObjectiveByName("imr");
+      filter->SetOptimizer(static_cast<int>(Optimizer::LimitedMemoryBFGS));
+    });
+  testMoving<vtkMeshUntangler>("untangle", true, [](vtkMeshUntangler*) {});
+  testMoving<vtkMeshPerturbation>("perturb", false, [](vtkMeshPerturbation*) {});
+  testStatistics();
+  testTargets();
+  testOffsets();
+  testMeasuring();
+  testRefusals();
+  return exitCode();
+}
