@@ -22,16 +22,22 @@ namespace
 constexpr const char* ShapeArray = "TMP shape";
 constexpr double Rounding = 1e-13; // smaller values are those of the same shape
 
-/// A metric over the valid elements; the values of all cells go to `values`.
-MetricStatistics measure(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
+struct Measurement
+{
+  double worst = 0, mean = 0;
+};
+
+/// A metric over the measured elements (Statistics.h); the values of all cells go to `values`.
+Measurement measure(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
   const signed char* validity, const unsigned char* skip, double* values)
 {
   const MetricInfo& info = metricInfo(metric);
   evaluateMetric(mesh, metric, options, values);
   const CellValues data = { mesh.view().numberOfCells, values, validity, mesh.view().cellTypes,
     skip };
-  return summarize(
+  const MetricStatistics statistics = summarize(
     info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data), false);
+  return { worstValue(info, statistics, worstElements(info, data)), statistics.mean };
 }
 
 template <class Array, class Values>
@@ -61,7 +67,7 @@ void addHistory(const WarpResult& result, const std::string& block, TableRows& r
 
 struct Qualities
 {
-  MetricStatistics shape, before, after;
+  Measurement shape, before, after;
   Index elements = 0, inverted = 0;
 };
 
@@ -78,11 +84,11 @@ void addStatistics(const WarpResult& result, const WarpFacts& facts, const Quali
   rows.add("Inverted", static_cast<double>(q.inverted));
   rows.add("Impossible", static_cast<double>(result.impossible));
   rows.add("Crossings", static_cast<double>(result.crossings));
-  rows.add("Worst shape", q.shape.maximum);
+  rows.add("Worst shape", q.shape.worst);
   rows.add("Mean shape", q.shape.mean);
-  rows.add("Worst IMR before", q.before.maximum);
+  rows.add("Worst IMR before", q.before.worst);
   rows.add("Mean IMR before", q.before.mean);
-  rows.add("Worst IMR", q.after.maximum);
+  rows.add("Worst IMR", q.after.worst);
   rows.add("Mean IMR", q.after.mean);
   constexpr std::array<const char*, 6> names = { "Cxx", "Cyy", "Czz", "Cxy", "Cyz", "Cxz" };
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -123,7 +129,7 @@ std::string describe(const WarpResult& result, const WarpFacts& facts, const Qua
          << " of them cannot be valid wherever the interior goes: the moved boundary is not valid "
             "itself. This is the best mesh found.";
   }
-  text << "\nShape against the mesh at rest: mean " << q.shape.mean << ", worst " << q.shape.maximum
+  text << "\nShape against the mesh at rest: mean " << q.shape.mean << ", worst " << q.shape.worst
        << " (0 is the same).\n"
        << facts.movedPoints << " of " << facts.boundaryPoints << " given points moved, by at most "
        << facts.largestDisplacement << ".";
@@ -201,7 +207,7 @@ void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const Warp
   totals.inverted += q.inverted;
   totals.impossible += result.impossible;
   totals.incomplete |= result.amount < 1;
-  totals.worstShape = std::max(totals.worstShape, q.shape.maximum);
+  totals.worstShape = std::max(totals.worstShape, q.shape.worst);
   totals.reused += facts.reused;
 }
 }

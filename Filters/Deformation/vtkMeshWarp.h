@@ -41,9 +41,10 @@
  * `Moved points`, `Largest displacement`, `Amount`, `Inverted after warp`, `Inverted`, `Impossible`
  * (elements no place of the interior makes valid), `Crossings` (pairs of boundary edges or
  * triangles that cross and did not), `Worst shape`, `Mean shape`, `Worst IMR before`, `Mean IMR
- * before`, `Worst IMR`, `Mean IMR` (inverse mean ratio), `Cxx` ... `Cxz` (the coefficients),
- * `Decoupled`, `Regularization`, `Reused` (1: matrices of the run before), `Assemble (s)`, `Set-up
- * (s)`, `Solve (s)`, `Improve (s)`, `Total (s)`.
+ * before`, `Worst IMR`, `Mean IMR` (inverse mean ratio; of the valid and the inverted elements, an
+ * inverted one is the worst), `Cxx` ... `Cxz` (the coefficients), `Decoupled`, `Regularization`,
+ * `Reused` (1: matrices of the run before), `Assemble (s)`, `Set-up (s)`, `Solve (s)`, `Improve
+ * (s)`, `Total (s)`.
  *
  * @par Again and again:
  * Matrices and factorizations are kept as long as the mesh, the points that are given and the

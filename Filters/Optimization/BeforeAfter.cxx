@@ -42,8 +42,7 @@ Measurement measure(const Mesh& mesh, double unit, const MeasuredMetric& what,
   result.statistics = summarize(
     info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data), false);
   result.counts = countValidity(validity, skip, cells);
-  result.worst = info.direction == Direction::LargerIsBetter ? result.statistics.minimum
-                                                             : result.statistics.maximum;
+  result.worst = worstValue(info, result.statistics, worstElements(info, data));
   return result;
 }
 

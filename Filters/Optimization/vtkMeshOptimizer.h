@@ -31,15 +31,15 @@
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric
- * `<metric> mean` and `<metric> worst`, and with several objectives `<metric> objective`;
- * `Inverted` (with degenerate elements), `N gradient`, `N moving` (points), `Time (s)`. Of
- * composite data sets the rows of each block follow each other, distinguished by the column
- * `Block`.
+ * `<metric> mean` and `<metric> worst` (of the valid elements), and with several objectives
+ * `<metric> objective`; `Inverted` (with degenerate elements), `N gradient`, `N moving` (points),
+ * `Time (s)`. Of composite data sets the rows of each block follow each other, distinguished by the
+ * column `Block`.
  *
  * @par Output port 2 `Statistics`:
  * A vtkTable with a row per metric (and block): `Metric`, `Label`, and `Before` and `After` of:
  * `Minimum`, `Mean`, `Maximum`, `RMS`, `StandardDeviation`, `Worst`, `OutsideAcceptable`,
- * `Inverted`, `Degenerate`.
+ * `Inverted`, `Degenerate`; over the elements of the statistics of vtkElementQuality.
  *
  * @par Several processes:
  * Each optimizes its own part. Points of ghost cells stay, so that the parts still fit together;

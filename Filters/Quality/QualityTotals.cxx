@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <sstream>
 
 namespace tautline
@@ -236,6 +237,15 @@ void QualityTotals::fillStatistics(vtkTable* statistics) const
       static_cast<int>(std::lround(100 * quantileFractions[q])));
     reals(name, [q](S s, I) { return s.quantiles[q]; });
   }
+  auto* worst = addColumn<vtkDoubleArray>(statistics, "Worst", rows);
+  for (vtkIdType m = 0; m < rows; ++m)
+  {
+    const PerMetric& result = this->Results[m];
+    std::vector<WorstElement> elements;
+    std::transform(result.worst.begin(), result.worst.end(), std::back_inserter(elements),
+      [](const Worst& w) { return w.element; });
+    worst->SetValue(m, worstValue(metricInfo(this->Metrics[m]), result.statistics, elements));
+  }
   const int dimension = this->Dimension;
   counts("OutsideAcceptable", [](S s, I) { return s.outsideAcceptable; });
   reals("AcceptableLow", [=](S, I i) { return i.acceptable(dimension).low; });
@@ -347,7 +357,7 @@ std::string QualityTotals::summary() const
     {
       text << "\n"
            << info.label << ": " << s.minimum << " to " << s.maximum << ", mean " << s.mean << "; "
-           << s.outsideAcceptable << " outside the acceptable range.";
+           << s.outsideAcceptable << " of " << s.measured << " outside the acceptable range.";
     }
   }
   return text.str();

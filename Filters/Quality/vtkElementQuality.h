@@ -19,14 +19,18 @@
  * @par Output port 1 `Statistics`:
  * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (number of elements), `Minimum`,
  * `Maximum`, `Mean`, `RMS`, `StandardDeviation`, `Quantile01`, `05`, `25`, `50`, `75`, `95`, `99`,
- * `OutsideAcceptable`, `AcceptableLow`, `AcceptableHigh`, then the same in each row: `Inverted`,
- * `Degenerate`, `NotMeasured`, `NonFinite`; `WorstCells` (10 components: ids, worst first, -1 where
- * there are fewer) and `WorstPositions` (30 components: their centres). Statistics are over the
- * valid elements of the highest dimension in the data; ghost cells do not count.
+ * `Worst`, `OutsideAcceptable`, `AcceptableLow`, `AcceptableHigh`, then the same in each row:
+ * `Inverted`, `Degenerate`, `NotMeasured`, `NonFinite`; `WorstCells` (10 components: ids, worst
+ * first, -1 where there are fewer) and `WorstPositions` (30 components: their centres). Statistics
+ * are over the measured elements: the valid and the inverted ones of the highest dimension in the
+ * data on which the metric is defined; degenerate elements and ghost cells do not count. `Worst` is
+ * the value of an inverted element if there are any, else the maximum or minimum, by the direction
+ * of the metric. The ten worst elements are the inverted, then the degenerate, then the worst
+ * others.
  *
  * @par Output port 2 `Distribution`:
  * A vtkTable with HistogramBins rows; for each metric the columns `<metric> value` (middle of the
- * bin) and `<metric> count`.
+ * bin) and `<metric> count`, of the measured elements.
  *
  * @par Output port 3 `Angles`:
  * A vtkTable with the five bins of dissertation Table 2.7: `From`, `To` (degrees), `Count`,

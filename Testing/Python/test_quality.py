@@ -33,13 +33,17 @@ def test_quality():
     validity, values = result.validity, result.values["imr"]
     assert result.inverted == np.count_nonzero(validity == -1) == np.count_nonzero(values < 0) == 41
     facts = result.statistics["imr"]
-    assert facts["measured"] == np.count_nonzero(validity == 1) == result.distribution["imr"]["count"].sum()
+    measured = values[abs(validity) == 1]  # the valid and the inverted elements
+    assert facts["measured"] == len(measured) == result.distribution["imr"]["count"].sum()
     assert len(result.distribution["rr"]["value"]) == 7
-    assert np.isclose(facts["mean"], values[validity == 1].mean(), rtol=1e-13)
-    assert facts["maximum"] == values[validity == 1].max() and facts["minimum"] == values[validity == 1].min()
+    assert np.isclose(facts["mean"], measured.mean(), rtol=1e-13)
+    assert np.isclose(facts["standard_deviation"], measured.std(), rtol=1e-12)
+    assert facts["maximum"] == measured.max() and facts["minimum"] == measured.min() < 0
     assert facts["worst"] == facts["worst_values"][0] == values[facts["worst_cells"][0]] < 0
     assert len(facts["worst_cells"]) == 10 and facts["worst_positions"].shape == (10, 3)
     assert result.worst.GetNumberOfPoints() == 20
+    sine = tl.quality(TANGLED, "scaled_jacobian").statistics["scaled_jacobian"]
+    assert sine["worst"] == sine["minimum"] < 0, "larger is better: the minimum is the worst"
     one = tl.quality(TANGLED, ["imr", "rr"], threads=1)
     assert all((one.values[name] == result.values[name]).all() for name in one.values)
 

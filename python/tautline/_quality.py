@@ -34,12 +34,14 @@ class QualityResult:
     values: dict[str, np.ndarray]
     #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to quantile_99,
-    #: outside_acceptable, acceptable_low, acceptable_high, inverted, degenerate, not_measured, non_finite; worst (the
-    #: worst value; nan if nothing was measured); and of the k worst elements, at most ten, the worst first:
-    #: worst_cells (k), worst_values (k), worst_positions (k x 3).
+    #: Per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to quantile_99, worst
+    #: (nan if nothing was measured), outside_acceptable, acceptable_low, acceptable_high, inverted, degenerate,
+    #: not_measured, non_finite. All are over the measured elements: the valid and the inverted ones on which the metric
+    #: is defined. The worst value is that of an inverted element if there are any, else the maximum or minimum, by the
+    #: direction of the metric. Of the k elements to repair first, at most ten: worst_cells (k), worst_values (k),
+    #: worst_positions (k x 3); inverted elements come first, then degenerate ones, then the worst of the others.
     statistics: dict[str, dict[str, Any]]
-    #: Per metric the histogram of the valid elements: value (centers of the bins) and count.
+    #: Per metric the histogram of the measured elements: value (centers of the bins) and count.
     distribution: dict[str, dict[str, np.ndarray]]
     #: Angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
     angles: dict[str, np.ndarray]
@@ -164,7 +166,7 @@ def _statistics(table: dict[str, Any], worst: vtkPolyData) -> dict[str, dict[str
         facts = {snake(key): _plain(table[key][row]) for key in table if key not in _NOT_NUMBERS}
         mine = np.flatnonzero(of == numbers[name])
         positions = np.asarray(table["WorstPositions"][row]).reshape(-1, 3)
-        facts["worst"] = float(values[mine[0]]) if len(mine) else float("nan")
+        facts["worst"] = facts["worst"] if facts["measured"] else float("nan")
         facts["worst_cells"] = ids[mine]
         facts["worst_values"] = values[mine]
         facts["worst_positions"] = positions[: len(mine)].copy()

@@ -128,14 +128,12 @@ ValidityCounts countValidity(const signed char* validity, const unsigned char* s
 std::vector<double> measuredValues(const MetricInfo& info, const CellValues& data)
 {
   const auto defined = definedTypes(info);
-  const bool withInverted = info.inverted == InvertedValue::Larger;
   std::vector<double> kept;
   kept.reserve(data.cells);
   for (Index i = 0; i < data.cells; ++i)
   {
     const signed char v = data.validity[i];
-    if ((v == Valid || (withInverted && v == Inverted)) && defined[data.cellTypes[i]] &&
-      !(data.skip && data.skip[i]))
+    if ((v == Valid || v == Inverted) && defined[data.cellTypes[i]] && !(data.skip && data.skip[i]))
     {
       kept.push_back(data.values[i]);
     }
@@ -186,6 +184,17 @@ std::vector<WorstElement> worstElements(const MetricInfo& info, const CellValues
   }
   std::sort_heap(heap.begin(), heap.end(), worse);
   return heap;
+}
+
+//------------------------------------------------------------------------------
+double worstValue(const MetricInfo& info, const MetricStatistics& statistics,
+  const std::vector<WorstElement>& worst)
+{
+  if (statistics.measured > 0 && !worst.empty() && worst.front().validity == Inverted)
+  {
+    return worst.front().value;
+  }
+  return info.direction == Direction::SmallerIsBetter ? statistics.maximum : statistics.minimum;
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,12 @@
 /**
  * @file Statistics.h
  * @brief Summaries of a metric over a mesh: moments, quantiles, worst elements, histogram, angles.
+ *
+ * All statistics of a metric - minimum, maximum, mean, RMS, deviation, quantiles, worst value,
+ * histogram - are over the same elements, the measured ones: valid and inverted elements on which
+ * the metric is defined. An inverted element counts with the value it has, which most metrics make
+ * negative (InvertedValue). Left out, and counted by ValidityCounts, are degenerate elements, on
+ * which many metrics are infinite, elements that are not measured or not finite, and ghosts.
  */
 #ifndef tautline_Statistics_h
 #define tautline_Statistics_h
@@ -55,10 +61,7 @@ struct CellValues
 TAUTLINE_KERNEL_EXPORT ValidityCounts countValidity(
   const signed char* validity, const unsigned char* skip, Index cells);
 
-/**
- * @brief The values that statistics are made of: of valid elements on which the metric is defined
- * and, for metrics that order inverted elements (InvertedValue::Larger), of inverted ones too.
- */
+/// The values that statistics are made of: of the measured elements, in the order of the cells.
 TAUTLINE_KERNEL_EXPORT std::vector<double> measuredValues(
   const MetricInfo& info, const CellValues& data);
 
@@ -71,12 +74,20 @@ TAUTLINE_KERNEL_EXPORT MetricStatistics summarize(const MetricInfo& info, int di
   const std::vector<double>& measured, bool withQuantiles = true);
 
 /**
- * @brief Up to WorstCount elements, worst first. Inverted elements come first, then degenerate
- * ones, then the worst of the valid ones in the metric's direction (for neutral metrics the
- * smallest); equals by cell.
+ * @brief Up to WorstCount elements to repair, worst first. Inverted elements come first, then
+ * degenerate ones (which the statistics leave out), then the worst of the valid ones in the
+ * metric's direction (for neutral metrics the smallest); equals by cell.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<WorstElement> worstElements(
   const MetricInfo& info, const CellValues& data);
+
+/**
+ * @brief The value of the worst measured element: of an inverted one if there are any, else the
+ * maximum or, for neutral metrics and where larger is better, the minimum. 0 without any.
+ * @param worst of the same cells
+ */
+TAUTLINE_KERNEL_EXPORT double worstValue(const MetricInfo& info, const MetricStatistics& statistics,
+  const std::vector<WorstElement>& worst);
 
 /// The order of worstElements(): whether a is worse than b.
 TAUTLINE_KERNEL_EXPORT bool isWorse(

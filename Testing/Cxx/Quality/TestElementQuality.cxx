@@ -68,20 +68,21 @@ void testTables()
     TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Validity", i), validity[i]);
   }
   TAUTLINE_CHECK_EQUAL(std::string(cellsOf(filter)->GetScalars()->GetName()), "imr");
-  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 4);
+  // The valid and the inverted triangles are measured, the degenerate one is left out.
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 5);
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 1);
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Degenerate"), 1);
-  TAUTLINE_CHECK_NEAR(statistic(filter, "Minimum"), 1, 1e-14);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Minimum"), imrOf(-0.3), 1e-14);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Worst"), imrOf(-0.3), 1e-14);
   TAUTLINE_CHECK_NEAR(statistic(filter, "Maximum"), imrOf(0.1), 1e-14);
-  const double sum = 1 + imrOf(0.2) + imrOf(0.1) + imrOf(2.0);
-  TAUTLINE_CHECK_NEAR(statistic(filter, "Mean"), sum / 4, 1e-14);
-  TAUTLINE_CHECK_NEAR(
-    statistic(filter, "Quantile50"), 0.5 * (imrOf(0.2) + std::min(imrOf(2.0), imrOf(0.1))), 1e-14);
-  // Only the triangle of height 0.1 has an inverse mean ratio above 3.
-  TAUTLINE_CHECK_EQUAL(statistic(filter, "OutsideAcceptable"), 1);
-  // mu_2 = IMR - 1; the mean area of the four valid triangles.
-  TAUTLINE_CHECK_NEAR(statistic(filter, "Mean", 1), sum / 4 - 1, 1e-14);
-  TAUTLINE_CHECK_NEAR(statistic(filter, "Mean", 2), 0.125 * (height + 0.2 + 0.1 + 2.0), 1e-14);
+  const double sum = 1 + imrOf(0.2) + imrOf(-0.3) + imrOf(0.1) + imrOf(2.0);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Mean"), sum / 5, 1e-14);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Quantile50"), std::min(imrOf(0.2), imrOf(2.0)), 1e-14);
+  // The triangle of height 0.1 has an inverse mean ratio above 3, the inverted one below 1.
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "OutsideAcceptable"), 2);
+  // mu_2 = IMR - 1 with the sign of the area; the mean of the five signed areas.
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Mean", 2), 0.1 * (height + 0.2 - 0.3 + 0.1 + 2.0), 1e-14);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Worst", 2), -0.15, 1e-14);
 
   // Inverted first, then degenerate, then by value; none beyond the six.
   auto* worst =
@@ -99,12 +100,44 @@ void testTables()
   TAUTLINE_CHECK_EQUAL(filter->GetWorst()->GetNumberOfVerts(), 18);
 
   TAUTLINE_CHECK_EQUAL(filter->GetDistribution()->GetNumberOfRows(), 4);
-  const double width = (imrOf(0.1) - 1) / 4;
-  TAUTLINE_CHECK_NEAR(
-    filter->GetDistribution()->GetValueByName(0, "imr value").ToDouble(), 1 + width / 2, 1e-14);
+  const double width = (imrOf(0.1) - imrOf(-0.3)) / 4;
+  TAUTLINE_CHECK_NEAR(filter->GetDistribution()->GetValueByName(0, "imr value").ToDouble(),
+    imrOf(-0.3) + width / 2, 1e-14);
+  TAUTLINE_CHECK_EQUAL(filter->GetDistribution()->GetValueByName(0, "imr count").ToInt(), 1);
   TAUTLINE_CHECK_EQUAL(filter->GetDistribution()->GetValueByName(3, "imr count").ToInt(), 1);
   TAUTLINE_CHECK(
     std::string(filter->GetSummary()).find("4 valid elements, 1 inverted, 1 degenerate") == 0);
+}
+
+/// One meaning for all statistics: of larger-is-better metrics the minimum is the worst, also where
+/// it is of an inverted element; a degenerate element is listed but no statistic has its value.
+void testWorst()
+{
+  vtkNew<vtkElementQuality> filter;
+  const auto measure = [&](const std::vector<double>& heights)
+  {
+    filter->SetInputData(toGrid(triangles(heights)));
+    filter->Update();
+  };
+  filter->AddMetricByName("scaled_jacobian");
+  filter->AddMetricByName("imr");
+  measure({ height, 0.1, -0.05, 0.0 });
+  TAUTLINE_CHECK(statistic(filter, "Minimum") < 0);
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Worst"), statistic(filter, "Minimum"));
+  TAUTLINE_CHECK_EQUAL(
+    statistic(filter, "Worst"), component(cellsOf(filter), "scaled_jacobian", 2));
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Worst", 1), imrOf(-0.05), 1e-13);
+  measure({ height, 0.1, 0.0 });
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Worst"), statistic(filter, "Minimum"));
+  TAUTLINE_CHECK(statistic(filter, "Worst") > 0.05);
+  TAUTLINE_CHECK_NEAR(statistic(filter, "Worst", 1), imrOf(0.1), 1e-13);
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Worst", 1), statistic(filter, "Maximum", 1));
+  auto* listed =
+    vtkIdTypeArray::SafeDownCast(filter->GetStatistics()->GetColumnByName("WorstCells"));
+  TAUTLINE_CHECK_EQUAL(listed->GetTypedComponent(0, 0), 2);
+  measure({ 0.0, 0.0 });
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 0);
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Worst"), 0);
 }
 
 void testAngles()
@@ -436,6 +469,7 @@ void testAbort()
 int TestElementQuality(int, char*[])
 {
   testTables();
+  testWorst();
   testAngles();
   testDataSets();
   testBlocks();

@@ -52,12 +52,12 @@ void testMeasured()
   cells.add(3, Valid, triangle, true);
   cells.add(4, Valid, quadraticTriangle);
   cells.add(5, Valid, tetrahedron);
-  TAUTLINE_CHECK((measuredValues(imr, cells.view()) == std::vector<double>{ 1, 4, 5 }));
-  TAUTLINE_CHECK((measuredValues(imr, cells.view(false)) == std::vector<double>{ 1, 3, 4, 5 }));
+  TAUTLINE_CHECK((measuredValues(imr, cells.view()) == std::vector<double>{ 1, -2, 4, 5 }));
+  TAUTLINE_CHECK((measuredValues(imr, cells.view(false)) == std::vector<double>{ 1, -2, 3, 4, 5 }));
   TAUTLINE_CHECK((measuredValues(untangle, cells.view()) == std::vector<double>{ 1, -2, 4, 5 }));
   // W/w is of triangles only.
   const MetricInfo& width = metricInfo(Metric::WidthRatio);
-  TAUTLINE_CHECK((measuredValues(width, cells.view()) == std::vector<double>{ 1, 4 }));
+  TAUTLINE_CHECK((measuredValues(width, cells.view()) == std::vector<double>{ 1, -2, 4 }));
 
   const ValidityCounts counts = countValidity(cells.validity.data(), cells.skip.data(), 8);
   TAUTLINE_CHECK_EQUAL(counts.valid, 3);
@@ -66,6 +66,32 @@ void testMeasured()
   TAUTLINE_CHECK_EQUAL(counts.notMeasured, 1);
   TAUTLINE_CHECK_EQUAL(counts.nonFinite, 1);
   TAUTLINE_CHECK_EQUAL(countValidity(cells.validity.data(), nullptr, 8).valid, 4);
+}
+
+/// The worst value is one of the measured ones: of an inverted element if there are any, else the
+/// extreme in the direction of the metric.
+void testWorstValue()
+{
+  const auto worst = [](const MetricInfo& info, const Cells& cells)
+  {
+    const CellValues data = cells.view();
+    return worstValue(
+      info, summarize(info, 2, measuredValues(info, data)), worstElements(info, data));
+  };
+  Cells cells;
+  TAUTLINE_CHECK_EQUAL(worst(imr, cells), 0.0);
+  cells.add(2);
+  cells.add(0.5);
+  cells.add(0, Degenerate);
+  cells.add(9, Valid, triangle, true);
+  TAUTLINE_CHECK_EQUAL(worst(imr, cells), 2.0);
+  TAUTLINE_CHECK_EQUAL(worst(meanRatio, cells), 0.5);
+  TAUTLINE_CHECK_EQUAL(worst(size, cells), 0.5);
+  cells.add(-0.25, Inverted);
+  cells.add(-3, Inverted);
+  TAUTLINE_CHECK_EQUAL(worst(imr, cells), -0.25);
+  TAUTLINE_CHECK_EQUAL(worst(meanRatio, cells), -3.0);
+  TAUTLINE_CHECK_EQUAL(worst(size, cells), -3.0);
 }
 
 void testByHand()
@@ -348,6 +374,7 @@ void testAngles()
 int TestStatistics(int, char*[])
 {
   testMeasured();
+  testWorstValue();
   testByHand();
   testRandom();
   testMagnitudes();
