@@ -126,7 +126,8 @@ void testSecondStep()
   const Field motion = turnedBox(60, true);
   const double untangled =
     warped(data, motion, withMethod(WarpMethod::FemwarpUntangling)).history.back().worstShape;
-  for (const double beta : { -1.0, 0.0, 0.1 })
+  std::vector<double> smallest;
+  for (const double beta : { -1.0, 0.0, 0.1, 0.6 })
   {
     WarpOptions options = withMethod(WarpMethod::Hybrid);
     options.untangleFirst = beta < 0;
@@ -135,7 +136,15 @@ void testSecondStep()
     checkValid(data, motion, result);
     TAUTLINE_CHECK(result.history.back().worstShape < untangled);
     TAUTLINE_CHECK_EQUAL(result.history[1].stage, std::string(beta < 0 ? "untangle" : "optimize"));
+    MeshData moved = data;
+    moved.points = result.points;
+    const std::vector<double> sizes = valuesOf(moved, Metric::Size);
+    smallest.push_back(*std::min_element(sizes.begin(), sizes.end()));
   }
+  // Beta is the area, relative to the mean, that elements are to have.
+  std::cout << "smallest areas: " << smallest[1] << ", " << smallest[2] << ", " << smallest[3]
+            << "\n";
+  TAUTLINE_CHECK(smallest[3] > 1.05 * smallest[1]);
   // The unit of length does not matter.
   const WarpResult unit = warped(data, motion, withMethod(WarpMethod::Hybrid));
   for (const double scale : { 0x1p-27, 0x1p27, 1e-8, 1e8 })

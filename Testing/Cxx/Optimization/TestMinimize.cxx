@@ -221,6 +221,82 @@ double distance(const Vector& a, const Vector& b)
   return d;
 }
 
+/// Sum of exp(a_i x_i) - x_i with a_i from 1 to 3: convex, and no quadratic.
+struct Convex : SmoothFunction
+{
+  std::size_t size() const override { return 12; }
+  double valueAndGradient(const double* x, double* g) override
+  {
+    double f = 0;
+    for (std::size_t i = 0; i < this->size(); ++i)
+    {
+      const double a = 1 + 2.0 * static_cast<double>(i) / 11, e = std::exp(a * x[i]);
+      f += e - x[i];
+      g[i] = a * e - 1;
+    }
+    return f;
+  }
+};
+
+/// Each direction is -g + beta d with the formula of the method, not with that of the other.
+void testConjugateDirections()
+{
+  const auto dot = [](const Vector& a, const Vector& b)
+  { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); };
+  const auto combined = [](double p, const Vector& a, double q, const Vector& b)
+  {
+    Vector sum(a.size());
+    std::transform(a.begin(), a.end(), b.begin(), sum.begin(),
+      [=](double x, double y) { return p * x + q * y; });
+    return sum;
+  };
+  for (Optimizer method :
+    { Optimizer::ConjugateGradientFletcherReeves, Optimizer::ConjugateGradientPolakRibiere })
+  {
+    const Context name(nameOf(method));
+    Convex f;
+    Vector x(f.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+    {
+      x[i] = std::cos(static_cast<double>(i));
+    }
+    std::vector<Vector> points(1, x);
+    MinimizeOptions options = optionsFor(method, 6, 0);
+    options.observer = [&](int, double, double, const double* now)
+    {
+      points.emplace_back(now, now + f.size());
+      return true;
+    };
+    minimize(f, x.data(), options);
+    Vector before(f.size()), now(f.size()), direction;
+    int telling = 0; // steps whose direction would be another by the other formula
+    for (std::size_t k = 0; k + 1 < points.size(); ++k)
+    {
+      f.valueAndGradient(points[k].data(), now.data());
+      const Vector step = combined(1, points[k + 1], -1, points[k]);
+      const auto sine = [&](const Vector& d)
+      {
+        const Vector off = combined(1, step, -dot(step, d) / dot(d, d), d);
+        return std::sqrt(dot(off, off) / dot(step, step));
+      };
+      const double overlap = dot(before, now), square = dot(now, now), last = dot(before, before);
+      // Powell's restart where successive gradients are far from orthogonal.
+      const bool restart = k == 0 || std::abs(overlap) > 0.2 * square;
+      const double fletcherReeves = restart ? 0 : square / last;
+      const double polakRibiere = restart ? 0 : std::max(0.0, (square - overlap) / last);
+      direction = direction.empty() ? Vector(f.size()) : direction;
+      const Vector byFletcher = combined(-1, now, fletcherReeves, direction);
+      const Vector byPolak = combined(-1, now, polakRibiere, direction);
+      const bool fletcher = method == Optimizer::ConjugateGradientFletcherReeves;
+      direction = fletcher ? byFletcher : byPolak;
+      TAUTLINE_CHECK(sine(direction) < 1e-6);
+      telling += sine(fletcher ? byPolak : byFletcher) > 1e-3;
+      before = now;
+    }
+    TAUTLINE_CHECK(telling > 0);
+  }
+}
+
 //------------------------------------------------------------------------------
 void testRosenbrock()
 {
@@ -407,6 +483,7 @@ void testStopping()
 
 int TestMinimize(int, char*[])
 {
+  testConjugateDirections();
   testRosenbrock();
   testQuadratic();
   testBarrier();
