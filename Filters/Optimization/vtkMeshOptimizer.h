@@ -262,21 +262,23 @@ public:
   ///@{
   /**
    * The algorithm: local ones sweep over the points, others move all at once. AUTOMATIC, the
-   * default, is LOCAL_NEWTON; should a sweep fail to reduce several objectives, LIMITED_MEMORY_BFGS
-   * continues.
+   * default, is LOCAL_NEWTON. Where sweeps of one objective converge slowly,
+   * NEWTON_CONJUGATE_GRADIENT starts from the input; should a sweep fail to reduce several
+   * objectives, LIMITED_MEMORY_BFGS continues.
    */
   vtkSetClampMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);
   vtkGetMacro(Optimizer, int);
   ///@}
 
   ///@{
-  /// Sweeps of the local algorithms, iterations of the others. The default is 100.
+  /// Sweeps of the local algorithms, iterations of the others. The default is 300.
   vtkSetClampMacro(MaximumIterations, int, 0, 1000000);
   vtkGetMacro(MaximumIterations, int);
   ///@}
 
   ///@{
-  /// Stop when the gradient's norm has fallen by this factor; 0: never. The default is 1e-6.
+  /// Stop when the gradient's norm has fallen by this factor; 0: never. The default is 1e-6. Not
+  /// used by NEWTON_CONJUGATE_GRADIENT.
   vtkSetClampMacro(GradientNorm, double, 0.0, 1.0);
   vtkGetMacro(GradientNorm, double);
   ///@}
@@ -514,7 +516,7 @@ private:
   double Exponent = 1.0;
   double Tolerance = 0.01;
   int Optimizer = AUTOMATIC;
-  int MaximumIterations = 100;
+  int MaximumIterations = 300;
   double GradientNorm = 1e-6;
   double RelativeChange = 1e-5;
   bool TwoDigits = false;

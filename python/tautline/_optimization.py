@@ -159,7 +159,7 @@ def optimize(
     threads: number of threads; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
         of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
-    options: properties of vtkMeshOptimizer. Stopping: maximum_iterations (100), gradient_norm (1e-6), relative_change
+    options: properties of vtkMeshOptimizer. Stopping: maximum_iterations (300), gradient_norm (1e-6), relative_change
         (1e-5), two_digits (False), reduction (1: off), best_known (None: estimated), stop_when_valid (False).
         Scalarization: c (0: automatic), exponent (1), tolerance (0.01), utopia (one number per objective). Metrics:
         power (8), combination ("mean", "worst", "power mean"), beta (0). Methods: culling (1e-3), patch_iterations
@@ -323,7 +323,7 @@ def add_commands(commands: Any) -> None:
                         help="a metric, optionally with template=, weight= and target=; may be repeated")  # fmt: skip
     parser.add_argument("--scalarization", choices=SCALARIZATIONS, help="(default: exponential sum)")
     parser.add_argument("--optimizer", choices=OPTIMIZERS, help="(default: automatic)")
-    parser.add_argument("--iterations", type=int, dest="maximum_iterations", help="the maximum (default: 100)")
+    parser.add_argument("--iterations", type=int, dest="maximum_iterations", help="the maximum (default: 300)")
     parser.add_argument("--reference", metavar="FILE", help="target: the same cells of this mesh")
     parser.add_argument("--size", metavar="ARRAY", help="target: the size in this array")
     parser.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array")

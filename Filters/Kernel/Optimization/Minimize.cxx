@@ -32,8 +32,15 @@ constexpr double minDescent = 1e-8;    // cosine between -g and a direction
 constexpr double restartOverlap = 0.2; // of successive gradients (Powell)
 // Early steps change the Hessian most: linearize() at iterations 0, 1, 3, 9, ...
 constexpr int refreshGrowth = 2;
-constexpr int maxInnerIterations = 200;
-constexpr double loosestForcing = 0.25; // of the inner residual
+constexpr int maxInnerIterations = 5000;
+// Nash and Sofer's test: the share of the model's decrease that one more inner iteration would add.
+constexpr double innerShare = 0.3;
+// Where the Hessian does not curve upwards, it is shifted by this times what would make it flat, and
+// less in the next iteration.
+constexpr double shiftGrowth = 4, shiftDecay = 0.3;
+constexpr double smallestShift = 0.01;
+constexpr int maxShifts = 8;            // in an iteration
+constexpr double innerResidual = 1e-12; // of the preconditioned residual's square, relative
 constexpr double differenceStep = 1e-7;
 
 /// What conjugate gradients, L-BFGS and Newton share: the point, its gradient, the line search.
@@ -74,6 +81,7 @@ private:
   void quasiNewton();
   void conjugate();
   void newton();
+  double solveNewton(double shift);
   void hessianTimes(const Vector& d, Vector& product);
   bool iterate();
 
@@ -88,6 +96,8 @@ private:
   double F = infinity, Norm = 0, FirstNorm = 0, Slope = 0;
   double Step = 0, StepSlope = 0; ///< of the last step
   double First = 1;               ///< first trial step along D
+  double Shift = 0;               ///< of Newton's system, in units of the preconditioner
+  double Promised = infinity;     ///< by Newton's quadratic model, of the next step
   bool Preconditioned = false;
   bool Fresh = true; ///< D does not use the history
   MinimizeResult Result;
@@ -299,49 +309,88 @@ void Minimizer::hessianTimes(const Vector& d, Vector& product)
   this->Algebra.each([&](Index i) { product[i] = good ? (product[i] - this->G[i]) / t : 0.0; });
 }
 
-/// Conjugate gradients on the Newton system, ended at directions that do not curve upwards.
-void Minimizer::newton()
+/**
+ * @brief Conjugate gradients on (H + shift M) p = -g with the preconditioner M, until the model
+ * hardly decreases any more. D is the step.
+ * @return 0, or the shift that the first direction that does not curve upwards asks for; D is then
+ * not changed
+ */
+double Minimizer::solveNewton(double shift)
 {
-  Vector p(this->Size, 0.0), r(this->G), d(this->Size), product(this->Size);
+  Vector p(this->Size, 0.0), r(this->G), d(this->Size), md(this->Size), product(this->Size);
   this->precondition(r, this->Z);
-  double rz = this->dot(r, this->Z);
-  this->Algebra.each([&](Index i) { d[i] = -this->Z[i]; });
-  const double forcing = std::min(loosestForcing, std::sqrt(this->Norm / this->FirstNorm));
-  this->First = 1;
-  this->Fresh = false;
+  double rz = this->dot(r, this->Z), model = 0;
+  const double first = rz;
+  // M d follows from the residuals: M need not be applied.
+  this->Algebra.each(
+    [&](Index i)
+    {
+      d[i] = -this->Z[i];
+      md[i] = -r[i];
+    });
+  this->Promised = infinity;
+  bool complete = false;
   const int maxInner = static_cast<int>(std::min<std::size_t>(2 * this->Size, maxInnerIterations));
-  for (int i = 0; i < maxInner; ++i)
+  for (int i = 1; i <= maxInner && !complete; ++i)
   {
     this->hessianTimes(d, product);
-    const double curvature = this->dot(d, product), dd = this->dot(d, d);
-    if (!(curvature > 0) || !std::isfinite(rz / curvature) || !(dd > 0))
+    const double dmd = this->dot(d, md), unshifted = this->dot(d, product);
+    const double curvature = unshifted + shift * dmd;
+    if (!(curvature > 0) || !std::isfinite(rz / curvature))
     {
-      if (i == 0)
-      {
-        this->steepest();
-        return;
-      }
-      break;
+      const double flat = std::max(shift, -unshifted / dmd);
+      return std::isfinite(flat) && dmd > 0 ? std::max(smallestShift, shiftGrowth * flat)
+                                            : infinity;
     }
-    const double a = rz / curvature;
-    const double rr = this->Algebra.sum(
+    const double a = rz / curvature, decrease = 0.5 * a * rz;
+    this->Algebra.each(
       [&](Index k)
       {
         p[k] += a * d[k];
-        r[k] += a * product[k];
-        return r[k] * r[k];
+        r[k] += a * (product[k] + shift * md[k]);
       });
-    if (std::sqrt(rr) <= forcing * this->Norm)
+    model += decrease;
+    this->precondition(r, this->Z);
+    const double next = this->dot(r, this->Z), beta = next / rz;
+    complete = i * decrease <= innerShare * model || !(next > innerResidual * first);
+    if (this->Options.outOfTime && this->Options.outOfTime())
     {
       break;
     }
-    this->precondition(r, this->Z);
-    const double next = this->dot(r, this->Z), beta = next / rz;
     rz = next;
-    this->Algebra.each([&](Index k) { d[k] = beta * d[k] - this->Z[k]; });
+    this->Algebra.each(
+      [&](Index k)
+      {
+        d[k] = beta * d[k] - this->Z[k];
+        md[k] = beta * md[k] - r[k];
+      });
   }
+  this->Promised = complete && shift == 0 ? model : infinity;
   std::swap(this->D, p);
   this->Slope = this->dot(this->G, this->D);
+  this->First = 1;
+  this->Fresh = false;
+  return 0;
+}
+
+/// The direction of Newton's method; where the Hessian does not curve upwards, with a shift.
+void Minimizer::newton()
+{
+  for (int attempt = 0; attempt < maxShifts; ++attempt)
+  {
+    const double wanted = this->solveNewton(this->Shift);
+    if (wanted == 0)
+    {
+      this->Shift = this->Shift * shiftDecay > smallestShift ? this->Shift * shiftDecay : 0.0;
+      return;
+    }
+    if (!std::isfinite(wanted))
+    {
+      break;
+    }
+    this->Shift = wanted;
+  }
+  this->steepest();
 }
 
 //------------------------------------------------------------------------------
@@ -421,6 +470,7 @@ MinimizeResult Minimizer::run()
         std::min(std::max(1, refreshGrowth * this->Result.iterations), this->Options.refresh);
     }
     const double before = this->F;
+    this->Promised = infinity;
     const bool moved = this->iterate();
     this->Norm = std::sqrt(this->dot(this->G, this->G));
     this->Result.gradientNorm = this->Norm;
@@ -448,6 +498,11 @@ MinimizeResult Minimizer::run()
       this->Result.reason = StopReason::NoProgress;
       return this->Result;
     }
+    if (this->Promised <= this->Options.decrement * std::abs(this->F))
+    {
+      this->Result.reason = StopReason::RelativeChange;
+      return this->Result;
+    }
     if (this->Options.relativeChange > 0 &&
       before - this->F <= this->Options.relativeChange * std::abs(this->F))
     {
@@ -468,7 +523,7 @@ MinimizeResult minimize(SmoothFunction& function, double* x, const MinimizeOptio
     throw Error("This optimizer works on one vertex at a time; choose a global one.");
   }
   if (options.maximumIterations < 0 || options.refresh < 1 || !(options.gradientNorm >= 0) ||
-    !(options.relativeChange >= 0))
+    !(options.relativeChange >= 0) || !(options.decrement >= 0))
   {
     throw Error("Iterations and tolerances must be at least 0.");
   }

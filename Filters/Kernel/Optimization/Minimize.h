@@ -6,7 +6,8 @@
  * Every accepted step reduces the value (Armijo) and satisfies the weak Wolfe condition, for
  * conjugate gradients the strong one, unless largestStep() ends it before. Sources: J. Nocedal and
  * S. J. Wright, "Numerical Optimization", 2nd ed. 2006, sections 3.5 (line search), 5.2
- * (Fletcher-Reeves, Polak-Ribiere+), 7.1 (truncated Newton), 7.2 (L-BFGS).
+ * (Fletcher-Reeves, Polak-Ribiere+), 7.1 (truncated Newton), 7.2 (L-BFGS); S. G. Nash and A. Sofer,
+ * "Assessing a search direction within a truncated-Newton method", Oper. Res. Lett. 9 (1990).
  */
 #ifndef tautline_Minimize_h
 #define tautline_Minimize_h
@@ -47,8 +48,7 @@ public:
    * L-BFGS then discards its pairs, if there is a preconditioner.
    */
   virtual void linearize(const double* /*x*/) {}
-  /// The product of a positive semidefinite approximation of the Hessian with d; false if there is
-  /// none.
+  /// The product of the Hessian, which may be indefinite, with d; false if there is none.
   virtual bool hessianTimes(const double* /*d*/, double* /*product*/) { return false; }
 };
 
@@ -58,8 +58,17 @@ struct MinimizeOptions
   int maximumIterations = 100;
   double gradientNorm = 1e-6;  ///< relative to the first; 0: never
   double relativeChange = 0.0; ///< of the value in an iteration; 0: never
-  int refresh = 20;            ///< most iterations between calls of linearize(); at least 1
-  int threads = 0;             ///< 0: all cores. The result does not depend on it.
+  /**
+   * @brief NewtonConjugateGradient: stop after a step of which the quadratic model promised less
+   * than this, relative to the value; 0: never. Half of the squared Newton decrement estimates how
+   * far the value is above its minimum, wherever the iteration started (S. Boyd and L.
+   * Vandenberghe, "Convex Optimization", 2004, section 9.5.1).
+   */
+  double decrement = 0.0;
+  /// Asked between the inner iterations of Newton's method: true ends them at what they have.
+  std::function<bool()> outOfTime;
+  int refresh = 20; ///< most iterations between calls of linearize(); at least 1
+  int threads = 0;  ///< 0: all cores. The result does not depend on it.
   /// After each iteration: iteration, value, gradient norm, x. Returns false to stop.
   std::function<bool(int, double, double, const double*)> observer;
 };

@@ -664,6 +664,12 @@ void OptimizationProblem::start(const IterationRecord& first)
 }
 
 //------------------------------------------------------------------------------
+void OptimizationProblem::restart(const std::vector<double>& points)
+{
+  this->Points = points;
+  this->Simplices->load(this->Points.data(), this->Options.threads);
+}
+
 bool OptimizationProblem::outOfTime() const
 {
   return this->Clock.reached(this->Options.stopping.maximumSeconds);

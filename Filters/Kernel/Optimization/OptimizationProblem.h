@@ -37,6 +37,8 @@ public:
 
   /// Writes the simplices' coordinates to the points.
   void store();
+  /// Goes back to other points.
+  void restart(const std::vector<double>& points);
   /// One objective in closed form, of every element.
   bool isSimple() const
   {

@@ -1,5 +1,6 @@
 #include "Optimize.h"
 
+#include "GlobalFunction.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Objectives/ElementHessian.h"
 #include "ImproveWorst.h"
@@ -126,16 +127,56 @@ bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeRes
 }
 
 //------------------------------------------------------------------------------
+/// What sweeps have gained so far, and what is to be expected of further ones.
+class SweepGains
+{
+public:
+  void add(double gain) { this->Gains.push_back(gain); }
+
+  /// The objective's distance from its minimum if the gains go on as a geometric series; at least
+  /// the last gain.
+  double remaining() const
+  {
+    const double ratio = std::min(this->ratio(), slowest);
+    return this->Gains.back() * std::max(1.0, ratio / (1.0 - ratio));
+  }
+
+  /// Whether sweeps converge so slowly that a global method is worth its start.
+  bool stiff(double objective) const
+  {
+    constexpr double slow = 0.6;     // isotropic meshes have ratios below a half
+    constexpr double worthIt = 0.01; // of the objective, that is still to be gained
+    return this->Gains.size() >= trial && this->ratio() > slow &&
+      this->remaining() > worthIt * objective;
+  }
+
+private:
+  static constexpr std::size_t trial = 7;  // sweeps before they are judged
+  static constexpr std::size_t window = 3; // sweeps that a ratio is the mean of
+  static constexpr double slowest = 0.99;  // ratio that gives an estimate
+
+  /// Of a gain to the one before; 0 where there are too few, or none.
+  double ratio() const
+  {
+    const std::size_t n = this->Gains.size();
+    return n > window && this->Gains[n - 1 - window] > 0 && this->Gains[n - 1] > 0
+      ? std::cbrt(this->Gains[n - 1] / this->Gains[n - 1 - window])
+      : 0.0;
+  }
+
+  std::vector<double> Gains;
+};
+
 /// Whether the sweeps have converged, and why; `all`: it visited every vertex.
 bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,
-  double firstGradient, double lowered, double size, StopReason& reason)
+  double firstGradient, double lowered, double remaining, double size, StopReason& reason)
 {
   if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient)
   {
     reason = StopReason::GradientNorm;
     return true;
   }
-  if (lowered <= stop.relativeChange * size)
+  if (remaining <= stop.relativeChange * size)
   {
     reason = StopReason::RelativeChange;
     return true;
@@ -153,9 +194,10 @@ bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,
  * @brief Sweeps to convergence.
  * @param failed set where a sweep raised the objective, as those of several objectives can
  * @param repaired set where an element that was left out has become valid
+ * @param stiff set, if not null, where they converge too slowly
  */
 StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& watch,
-  OptimizeResult& result, bool& failed, bool& repaired)
+  OptimizeResult& result, bool& failed, bool& repaired, bool* stiff)
 {
   const StoppingCriteria& stop = problem.options().stopping;
   SimplexMesh& simplices = problem.simplices();
@@ -169,6 +211,7 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
   StopReason reason = StopReason::NoProgress;
   double firstGradient = 0;
   bool all = true; // whether the next sweep visits every vertex
+  SweepGains gains;
   for (int iteration = result.history.back().iteration + 1;; ++iteration)
   {
     if (watch.ends(result.history, reason))
@@ -210,8 +253,15 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
       return StopReason::NoProgress;
     }
 
+    gains.add(lowered);
+    if (stiff && gains.stiff(size))
+    {
+      *stiff = true;
+      return StopReason::NoProgress;
+    }
+
     // Convergence is only believed of a sweep over all vertices.
-    if (!converged(stop, sweep, all, firstGradient, lowered, size, reason))
+    if (!converged(stop, sweep, all, firstGradient, lowered, gains.remaining(), size, reason))
     {
       all = sweep.moved == 0;
       if (all)
@@ -237,216 +287,8 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
 }
 
 //------------------------------------------------------------------------------
-/// The scalarized objective as a function of the coordinates of the free points.
-class GlobalFunction : public SmoothFunction
-{
-public:
-  explicit GlobalFunction(OptimizationProblem& problem)
-    : Problem(problem)
-    , Validity(problem.moving().view().numberOfCells)
-    , Gradient(3 * problem.moving().view().numberOfPoints)
-    , Objectives(problem.objectives())
-    , Slopes(problem.objectives(), 1.0)
-  {
-    problem.moving().classifyCells(this->Validity.data(), problem.options().threads);
-    this->Start = this->Validity;
-  }
-
-  std::size_t size() const override
-  {
-    return 3 * static_cast<std::size_t>(this->Problem.simplices().freeVertices());
-  }
-
-  void load(double* x) const
-  {
-    this->forEachFree([&](std::size_t i, std::size_t p)
-      { std::copy_n(this->Problem.points().data() + 3 * p, 3, x + 3 * i); });
-  }
-
-  void put(const double* x)
-  {
-    this->forEachFree([&](std::size_t i, std::size_t p)
-      { std::copy_n(x + 3 * i, 3, this->Problem.points().data() + 3 * p); });
-    this->Problem.simplices().load(this->Problem.points().data(), this->Problem.options().threads);
-  }
-
-  double valueAndGradient(const double* x, double* gradient) override
-  {
-    this->forEachFree([&](std::size_t i, std::size_t p)
-      { std::copy_n(x + 3 * i, 3, this->Problem.points().data() + 3 * p); });
-    const double infinity = std::numeric_limits<double>::infinity();
-    if (!this->allowed())
-    {
-      return infinity;
-    }
-    const std::size_t n = this->Objectives.size();
-    double value = 0;
-    if (n > 1)
-    {
-      for (std::size_t i = 0; i < n; ++i)
-      {
-        this->Objectives[i] = this->Problem.sum(i).value();
-      }
-      value = this->Problem.scalarizer().value(this->Objectives, this->Slopes);
-      if (!std::isfinite(value))
-      {
-        return infinity;
-      }
-    }
-    std::fill(this->Gradient.begin(), this->Gradient.end(), 0.0);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      const double own = this->Problem.sum(i).addGradient(this->Slopes[i], this->Gradient.data());
-      value = n == 1 ? own : value;
-    }
-    this->forEachFree(
-      [&](std::size_t i, std::size_t p)
-      {
-        Vec3 g = { this->Gradient[3 * p], this->Gradient[3 * p + 1], this->Gradient[3 * p + 2] };
-        g = this->project(p, g);
-        std::copy(g.begin(), g.end(), gradient + 3 * i);
-      });
-    return std::isnan(value) ? infinity : value;
-  }
-
-  /// Newton takes the Hessians of the elements, the others their diagonal blocks.
-  void linearize(const double*) override
-  {
-    const Index points = this->Problem.moving().view().numberOfPoints;
-    const bool newton = this->Problem.options().optimizer == Optimizer::NewtonConjugateGradient;
-    this->Blocks.assign(6 * points, 0.0);
-    this->Hessians.resize(newton ? this->Objectives.size() : 0);
-    for (std::size_t i = 0; i < this->Objectives.size(); ++i)
-    {
-      if (!newton)
-      {
-        addDiagonalBlocks(this->Problem.sum(i), this->Slopes[i], this->Blocks.data());
-        continue;
-      }
-      if (!this->Hessians[i])
-      {
-        this->Hessians[i] = std::make_unique<ElementHessian>(this->Problem.sum(i));
-      }
-      this->Hessians[i]->assemble();
-      this->Hessians[i]->addDiagonal(this->Slopes[i], this->Blocks.data());
-    }
-    this->SlopesThere = this->Slopes;
-    invertBlocks(this->Blocks.data(), points, this->Problem.options().threads);
-  }
-
-  bool precondition(const double* r, double* z) override
-  {
-    this->inAllPoints(r, z,
-      [&](const double* from, double* to)
-      {
-        applyBlocks(this->Blocks.data(), this->Problem.moving().view().numberOfPoints,
-          this->Problem.options().threads, from, to);
-      });
-    return true;
-  }
-
-  bool hessianTimes(const double* d, double* product) override
-  {
-    if (this->Hessians.empty())
-    {
-      return false;
-    }
-    this->inAllPoints(d, product,
-      [&](const double* from, double* to)
-      {
-        for (std::size_t i = 0; i < this->Hessians.size(); ++i)
-        {
-          this->Hessians[i]->addTimes(this->SlopesThere[i], from, to);
-        }
-      });
-    return true;
-  }
-
-private:
-  /// Applies a linear map of all points to free ones, with zeros at the others; to() starts at
-  /// zero.
-  template <class Map>
-  void inAllPoints(const double* x, double* y, const Map& map)
-  {
-    this->From.assign(this->Gradient.size(), 0.0);
-    this->To.assign(this->Gradient.size(), 0.0);
-    this->forEachFree(
-      [&](std::size_t i, std::size_t p)
-      {
-        const Vec3 free = this->project(p, { x[3 * i], x[3 * i + 1], x[3 * i + 2] });
-        std::copy(free.begin(), free.end(), this->From.data() + 3 * p);
-      });
-    map(this->From.data(), this->To.data());
-    this->forEachFree(
-      [&](std::size_t i, std::size_t p)
-      {
-        const Vec3 free =
-          this->project(p, { this->To[3 * p], this->To[3 * p + 1], this->To[3 * p + 2] });
-        std::copy(free.begin(), free.end(), y + 3 * i);
-      });
-  }
-
-  template <class Visit>
-  void forEachFree(const Visit& visit) const
-  {
-    const SimplexMesh& s = this->Problem.simplices();
-    for (std::int32_t v = 0; v < s.freeVertices(); ++v)
-    {
-      visit(static_cast<std::size_t>(v), static_cast<std::size_t>(s.point(v)));
-    }
-  }
-
-  /// No element that was valid at the start has become invalid.
-  bool allowed()
-  {
-    if (this->Problem.options().allowInversion)
-    {
-      return true;
-    }
-    this->Problem.moving().classifyCells(this->Validity.data(), this->Problem.options().threads);
-    for (std::size_t i = 0; i < this->Validity.size(); ++i)
-    {
-      if (this->Start[i] == Valid && this->Validity[i] != Valid)
-      {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  /// The part of a vector a point may follow: in a planar mesh's plane, along its line or plane.
-  Vec3 project(std::size_t p, Vec3 g) const
-  {
-    const OptimizeOptions& options = this->Problem.options();
-    if (this->Problem.moving().dimension() == Dimension::Planar)
-    {
-      const Vec3& normal = this->Problem.moving().normal();
-      g = g - dot(g, normal) * normal;
-    }
-    const auto along = [&](const double* u)
-    {
-      const Vec3 n = { u[3 * p], u[3 * p + 1], u[3 * p + 2] };
-      const double n2 = dot(n, n);
-      return n2 > 0 ? (dot(g, n) / n2) * n : Vec3{ 0, 0, 0 };
-    };
-    const auto given = [&](const double* u)
-    { return u && (u[3 * p] != 0 || u[3 * p + 1] != 0 || u[3 * p + 2] != 0); };
-    return given(options.slideLines) ? along(options.slideLines)
-      : given(options.slidePlanes)   ? g - along(options.slidePlanes)
-                                     : g;
-  }
-
-  OptimizationProblem& Problem;
-  std::vector<signed char> Start, Validity;
-  std::vector<double> Gradient;
-  std::vector<double> Objectives, Slopes, SlopesThere;
-  std::vector<std::unique_ptr<ElementHessian>> Hessians;
-  std::vector<double> Blocks; ///< 6 per point: inverses of the diagonal blocks
-  std::vector<double> From, To;
-};
-
 StopReason optimizeGlobally(
-  OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result)
+  OptimizationProblem& problem, const StoppingTest& watch, Optimizer method, OptimizeResult& result)
 {
   const StoppingCriteria& stop = problem.options().stopping;
   StopReason reason = StopReason::NoProgress;
@@ -454,20 +296,27 @@ StopReason optimizeGlobally(
   {
     return reason;
   }
-  GlobalFunction function(problem);
-  std::vector<double> x(function.size());
-  function.load(x.data());
+  // After sweeps, an iteration may reduce the objective little at first.
+  constexpr double afterSweeps = 0.1;
+  const bool alone = isGlobal(problem.options().optimizer);
+  GlobalFunction function(problem, method);
+  std::vector<double> x(function.size(), 0.0);
   for (;;)
   {
     const int before = result.history.back().iteration;
     MinimizeOptions options;
-    // After sweeps, an iteration may reduce the objective little at first.
-    constexpr double afterSweeps = 0.1;
-    const bool alone = isGlobal(problem.options().optimizer);
-    options.method = alone ? problem.options().optimizer : Optimizer::LimitedMemoryBFGS;
+    options.method = method;
     options.maximumIterations = stop.maximumIterations - before;
     options.gradientNorm = stop.gradientNorm;
     options.relativeChange = alone ? stop.relativeChange : afterSweeps * stop.relativeChange;
+    if (method == Optimizer::NewtonConjugateGradient)
+    {
+      // Its steps tell how far the minimum is. A gradient small beside that of a start with nearly
+      // flat elements tells nothing.
+      options.decrement = stop.relativeChange;
+      options.relativeChange = options.gradientNorm = 0;
+    }
+    options.outOfTime = [&] { return problem.outOfTime(); };
     options.threads = problem.options().threads;
     bool ended = false;
     options.observer = [&](int iteration, double, double gradientNorm, const double* now)
@@ -501,6 +350,17 @@ StopReason optimizeGlobally(
       return found.reason;
     }
   }
+}
+
+/// Whether Automatic may go over to Newton's method: for one sum that is wanted at its minimum.
+bool mayUseNewton(const OptimizeOptions& options)
+{
+  const ObjectiveTemplate objectiveTemplate = options.objectives[0].objectiveTemplate;
+  const bool sum = objectiveTemplate != ObjectiveTemplate::PowerMean &&
+    objectiveTemplate != ObjectiveTemplate::Maximum;
+  const StoppingCriteria& stop = options.stopping;
+  return options.optimizer == Optimizer::Automatic && options.objectives.size() == 1 && sum &&
+    !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;
 }
 
 Index countInvalid(const Mesh& mesh, int threads)
@@ -543,14 +403,34 @@ bool optimizeStage(
   bool failed = false, repaired = false;
   if (isGlobal(options.optimizer))
   {
-    result.reason = optimizeGlobally(problem, watch, result);
+    result.reason = optimizeGlobally(problem, watch, options.optimizer, result);
   }
   else
   {
     const bool onlyLocal = isLocal(options.optimizer) || options.limits || options.slideSurface ||
       mesh.dimension() == Dimension::Surface;
-    result.reason = optimizeLocally(problem, watch, result, failed, repaired);
-    result.reason = failed && !onlyLocal ? optimizeGlobally(problem, watch, result) : result.reason;
+    bool stiff = false;
+    const std::vector<double> start = result.points;
+    result.reason = optimizeLocally(problem, watch, result, failed, repaired,
+      onlyLocal || !mayUseNewton(options) ? nullptr : &stiff);
+    if (failed && !onlyLocal)
+    {
+      result.reason = optimizeGlobally(problem, watch, Optimizer::LimitedMemoryBFGS, result);
+    }
+    else if (stiff)
+    {
+      // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
+      problem.store();
+      const std::vector<double> swept = result.points;
+      const double reached = result.history.back().objective;
+      problem.restart(start);
+      result.reason = optimizeGlobally(problem, watch, Optimizer::NewtonConjugateGradient, result);
+      if (result.history.back().objective > reached)
+      {
+        problem.restart(swept);
+        result.history.back() = problem.record(result.history.back().iteration);
+      }
+    }
   }
   const bool going =
     result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit && !repaired;

@@ -16,7 +16,12 @@ namespace tautline
 /// The algorithms. The numbers are stable: ParaView state files hold them.
 enum class Optimizer : int
 {
-  /// LocalNewton; should a sweep fail to reduce several objectives, LimitedMemoryBFGS from there
+  /**
+   * @brief LocalNewton. Where its sweeps of one objective converge slowly (seven are judged by the
+   * ratio of their gains), NewtonConjugateGradient from the start; not on surfaces, with limits or
+   * with points that slide on the boundary. Should a sweep fail to reduce several objectives,
+   * LimitedMemoryBFGS from there.
+   */
   Automatic = 0,
   LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each
   LocalConjugateGradient = 2, ///< sweeps over one-vertex patches, Polak-Ribiere+ steps in each
@@ -36,13 +41,18 @@ TAUTLINE_KERNEL_EXPORT bool isGlobal(Optimizer optimizer);
 struct StoppingCriteria
 {
   /// Sweeps of the local algorithms, iterations of the others; at least 0.
-  int maximumIterations = 100;
+  int maximumIterations = 300;
   /// Seconds of wall time for the whole run, untangling included; 0: no limit. Honoured within two
   /// iterations.
   double maximumSeconds = 0.0;
-  /// Stop when the gradient's norm has fallen by this factor; 0: never.
+  /// Stop when the gradient's norm has fallen by this factor; 0: never. Not used by
+  /// NewtonConjugateGradient.
   double gradientNorm = 1e-6;
-  /// Stop when an iteration reduces the objective by less than this, relative to it; 0: never.
+  /**
+   * @brief Stop when the objective hardly changes any more; 0: never. Relative to it: the decrease
+   * of an iteration; of sweeps also what further ones would gain if their gains went on as a
+   * geometric series; of NewtonConjugateGradient half of the squared Newton decrement.
+   */
   double relativeChange = 1e-5;
   /// "Inaccurate smoothing", section 3.4: stop when all mean qualities keep two decimals.
   bool twoDigits = false;

@@ -1,0 +1,509 @@
+#include "HessianMatrix.h"
+
+#include "ElementHessianBatches.h"
+#include "tautline/Core/Parallel.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+
+bool isElement(const Mesh& mesh, CellType type)
+{
+  return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
+}
+
+/// y += A x for one block.
+template <int Dim>
+void addProduct(const double* block, const double* x, double* y)
+{
+  for (int r = 0; r < Dim; ++r)
+  {
+    double sum = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      sum += block[Dim * r + c] * x[c];
+    }
+    y[r] += sum;
+  }
+}
+}
+
+std::array<Vec3, 3> coordinateAxes(const Mesh& mesh)
+{
+  return hessianAxes(mesh);
+}
+
+//------------------------------------------------------------------------------
+HessianMatrix::HessianMatrix(
+  const Mesh& mesh, std::vector<std::int32_t> rowOfPoint, Index rows, Pattern pattern, int threads)
+  : TheMesh(mesh)
+  , RowOfPoint(std::move(rowOfPoint))
+  , Rows(rows)
+  , ThePattern(pattern)
+  , Threads(threads)
+  , Size(mesh.dimension() == Dimension::Planar ? 2 : 3)
+{
+  this->findPattern();
+  const std::size_t numbers = static_cast<std::size_t>(this->Size) * this->Size;
+  this->Blocks.assign(numbers * this->Columns.size(), 0.0);
+  this->Inverse.assign(numbers * this->Rows, 0.0);
+}
+
+std::int32_t HessianMatrix::place(std::int32_t row, std::int32_t column) const
+{
+  const auto begin = this->Columns.begin() + this->Starts[row],
+             end = this->Columns.begin() + this->Starts[row + 1];
+  const auto found = std::lower_bound(begin, end, column);
+  return found != end && *found == column ? static_cast<std::int32_t>(found - this->Columns.begin())
+                                          : -1;
+}
+
+void HessianMatrix::findPattern()
+{
+  const MeshView& view = this->TheMesh.view();
+  const bool full = this->ThePattern == Pattern::Full;
+  // The cells of each row.
+  std::vector<Index> cellStarts(this->Rows + 1, 0);
+  std::vector<Index> cells;
+  const auto forEachNode = [&](const auto& visit)
+  {
+    for (const CellBlock& block : this->TheMesh.blocks())
+    {
+      if (!isElement(this->TheMesh, block.type))
+      {
+        continue;
+      }
+      const int nodes = topology(block.type).nodes;
+      for (Index i = 0; i < block.count; ++i)
+      {
+        const Index cell = block.cell(i);
+        for (int k = 0; k < nodes; ++k)
+        {
+          const std::int32_t row = this->RowOfPoint[view.connectivity[view.offsets[cell] + k]];
+          if (row >= 0)
+          {
+            visit(row, cell);
+          }
+        }
+      }
+    }
+  };
+  this->PlaceStarts.assign(view.numberOfCells + 1, 0);
+  for (const CellBlock& block : this->TheMesh.blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; i < block.count && isElement(this->TheMesh, block.type); ++i)
+    {
+      this->PlaceStarts[block.cell(i) + 1] = full ? nodes * nodes : nodes;
+    }
+  }
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    this->PlaceStarts[cell + 1] += this->PlaceStarts[cell];
+  }
+  forEachNode([&](std::int32_t row, Index) { ++cellStarts[row + 1]; });
+  for (Index row = 0; row < this->Rows; ++row)
+  {
+    cellStarts[row + 1] += cellStarts[row];
+  }
+  cells.resize(cellStarts[this->Rows]);
+  std::vector<Index> next(cellStarts.begin(), cellStarts.end() - 1);
+  forEachNode([&](std::int32_t row, Index cell) { cells[next[row]++] = cell; });
+
+  // The neighbours of each row, chunk by chunk.
+  std::vector<std::vector<std::int32_t>> columns(numberOfChunks(this->Rows));
+  std::vector<std::int32_t> lengths(this->Rows, 0);
+  forEachChunk(this->Rows, this->Threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      std::vector<std::int32_t> own;
+      for (Index row = begin; row < end; ++row)
+      {
+        own.assign(1, static_cast<std::int32_t>(row));
+        for (Index i = cellStarts[row]; full && i < cellStarts[row + 1]; ++i)
+        {
+          const Index first = view.offsets[cells[i]], last = view.offsets[cells[i] + 1];
+          const int nodes = topology(cornerType(view.cellTypes[cells[i]])).nodes;
+          for (Index k = first; k < std::min(last, first + nodes); ++k)
+          {
+            const std::int32_t column = this->RowOfPoint[view.connectivity[k]];
+            if (column >= 0)
+            {
+              own.push_back(column);
+            }
+          }
+        }
+        std::sort(own.begin(), own.end());
+        own.erase(std::unique(own.begin(), own.end()), own.end());
+        lengths[row] = static_cast<std::int32_t>(own.size());
+        columns[chunk].insert(columns[chunk].end(), own.begin(), own.end());
+      }
+    });
+  Index total = 0;
+  for (const auto& part : columns)
+  {
+    total += static_cast<Index>(part.size());
+  }
+  if (total > std::numeric_limits<std::int32_t>::max())
+  {
+    throw Error("The mesh has too many points for Newton's method: choose Local Newton or L-BFGS.");
+  }
+  this->Columns.reserve(total);
+  for (const auto& part : columns)
+  {
+    this->Columns.insert(this->Columns.end(), part.begin(), part.end());
+  }
+  this->Starts.assign(this->Rows + 1, 0);
+  std::partial_sum(lengths.begin(), lengths.end(), this->Starts.begin() + 1);
+  this->Diagonal.resize(this->Rows);
+
+  // Where the blocks of each cell go.
+  this->Places.assign(this->PlaceStarts.back(), -1);
+  forEachChunk(this->Rows, this->Threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        const auto r = static_cast<std::int32_t>(row);
+        this->Diagonal[row] = this->place(r, r);
+        for (Index i = cellStarts[row]; i < cellStarts[row + 1]; ++i)
+        {
+          const Index* points = view.connectivity + view.offsets[cells[i]];
+          const int nodes = topology(cornerType(view.cellTypes[cells[i]])).nodes;
+          std::int32_t* places = this->Places.data() + this->PlaceStarts[cells[i]];
+          for (int k = 0; k < nodes; ++k)
+          {
+            if (this->RowOfPoint[points[k]] != r)
+            {
+              continue;
+            }
+            for (int m = 0; full && m < nodes; ++m)
+            {
+              const std::int32_t column = this->RowOfPoint[points[m]];
+              places[nodes * k + m] = column >= 0 ? this->place(r, column) : -1;
+            }
+            if (!full)
+            {
+              places[k] = this->Diagonal[row];
+            }
+          }
+        }
+      }
+    });
+}
+
+std::size_t HessianMatrix::memory() const
+{
+  const auto bytes = [](const auto& v) { return v.size() * sizeof(v[0]); };
+  return bytes(this->RowOfPoint) + bytes(this->Starts) + bytes(this->Columns) +
+    bytes(this->Diagonal) + bytes(this->Places) + bytes(this->PlaceStarts) + bytes(this->Blocks) +
+    bytes(this->Inverse);
+}
+
+void HessianMatrix::clear()
+{
+  std::fill(this->Blocks.begin(), this->Blocks.end(), 0.0);
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale)
+{
+  const bool full = this->ThePattern == Pattern::Full;
+  forEachHessian<Dim>(objective,
+    [&](auto nodesOfCell, const Batch& batch, const BatchNodes&, Packet* h)
+    {
+      constexpr int Nodes = decltype(nodesOfCell)::value;
+      // The blocks of the first node are minus the sums of the others'.
+      Packet block[Nodes][Nodes][Dim][Dim];
+      for (int r = 0; r < Dim; ++r)
+      {
+        for (int c = 0; c < Dim; ++c)
+        {
+          block[0][0][r][c] = Packet{};
+          for (int k = 1; k < Nodes; ++k)
+          {
+            Packet rowSum = {}, columnSum = {};
+            for (int m = 1; m < Nodes; ++m)
+            {
+              block[k][m][r][c] = scale * h[triangleEntry(Dim * (k - 1) + r, Dim * (m - 1) + c)];
+              rowSum += block[k][m][r][c];
+              columnSum += scale * h[triangleEntry(Dim * (m - 1) + r, Dim * (k - 1) + c)];
+            }
+            block[k][0][r][c] = -rowSum;
+            block[0][k][r][c] = -columnSum;
+            block[0][0][r][c] += rowSum;
+          }
+        }
+      }
+      for (int l = 0; l < batch.count; ++l)
+      {
+        const std::int32_t* places = this->Places.data() + this->PlaceStarts[batch.cells[l]];
+        for (int k = 0; k < Nodes; ++k)
+        {
+          for (int m = full ? 0 : k; m < (full ? Nodes : k + 1); ++m)
+          {
+            const std::int32_t place = full ? places[Nodes * k + m] : places[k];
+            if (place < 0)
+            {
+              continue;
+            }
+            double* to = this->Blocks.data() + static_cast<Index>(Dim * Dim) * place;
+            for (int r = 0; r < Dim; ++r)
+            {
+              for (int c = 0; c < Dim; ++c)
+              {
+                to[Dim * r + c] += block[k][m][r][c][l];
+              }
+            }
+          }
+        }
+      }
+    });
+}
+
+void HessianMatrix::add(const ObjectiveSum& objective, double scale)
+{
+  this->Size == 2 ? this->addBlocks<2>(objective, scale) : this->addBlocks<3>(objective, scale);
+}
+
+//------------------------------------------------------------------------------
+void HessianMatrix::restrict(Index row, const double* projector)
+{
+  const int n = this->Size;
+  const auto multiply = [n](const double* a, const double* b, double* product)
+  {
+    for (int r = 0; r < n; ++r)
+    {
+      for (int c = 0; c < n; ++c)
+      {
+        product[n * r + c] = 0;
+        for (int k = 0; k < n; ++k)
+        {
+          product[n * r + c] += a[n * r + k] * b[n * k + c];
+        }
+      }
+    }
+  };
+  double product[9];
+  for (std::int32_t place = this->Starts[row]; place < this->Starts[row + 1]; ++place)
+  {
+    double* block = this->Blocks.data() + static_cast<Index>(n * n) * place;
+    multiply(projector, block, product);
+    if (place != this->Diagonal[row])
+    {
+      std::copy_n(product, n * n, block);
+      // P is symmetric, and so is the matrix.
+      double* other = this->Blocks.data() +
+        static_cast<Index>(n * n) *
+          this->place(this->Columns[place], static_cast<std::int32_t>(row));
+      for (int r = 0; r < n; ++r)
+      {
+        for (int c = 0; c < n; ++c)
+        {
+          other[n * c + r] = product[n * r + c];
+        }
+      }
+      continue;
+    }
+    double trace = 0;
+    for (int r = 0; r < n; ++r)
+    {
+      trace += std::abs(block[n * r + r]);
+    }
+    multiply(product, projector, block);
+    const double elsewhere = trace > 0 ? trace / n : 1.0;
+    for (int r = 0; r < n; ++r)
+    {
+      for (int c = 0; c < n; ++c)
+      {
+        block[n * r + c] += elsewhere * ((r == c ? 1.0 : 0.0) - projector[n * r + c]);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Positive definite inverses: of |eigenvalue|, and of a thousandth of the largest where one is
+/// smaller. Blocks of zeros become the identity.
+template <int Dim>
+void HessianMatrix::invertDiagonal()
+{
+  constexpr double flattest = 1e-3; // smallest eigenvalue, relative to the largest
+  constexpr int sweeps = 5;
+  forEachChunk(this->Rows, this->Threads,
+    [this](Index, Index begin, Index end)
+    {
+      for (Index first = begin; first < end; first += PacketWidth)
+      {
+        const int lanes = static_cast<int>(std::min<Index>(PacketWidth, end - first));
+        Packet a[Dim][Dim] = {}, v[Dim][Dim] = {};
+        for (int r = 0; r < Dim; ++r)
+        {
+          v[r][r] = broadcast(1.0);
+          for (int c = 0; c < Dim; ++c)
+          {
+            for (int l = 0; l < lanes; ++l)
+            {
+              const double* block =
+                this->Blocks.data() + static_cast<Index>(Dim * Dim) * this->Diagonal[first + l];
+              a[r][c][l] = 0.5 * (block[Dim * r + c] + block[Dim * c + r]);
+            }
+          }
+        }
+        for (int sweep = 0; sweep < sweeps; ++sweep)
+        {
+          for (int p = 0; p < Dim; ++p)
+          {
+            for (int q = p + 1; q < Dim; ++q)
+            {
+              rotate<Dim>(a, v, p, q);
+            }
+          }
+        }
+        Packet largest = {};
+        for (int k = 0; k < Dim; ++k)
+        {
+          largest = max(largest, abs(a[k][k]));
+        }
+        Packet inverse[Dim];
+        for (int k = 0; k < Dim; ++k)
+        {
+          inverse[k] = 1.0 / max(abs(a[k][k]), flattest * largest);
+          // A point without elements, or beyond arithmetic, is left as it is.
+          inverse[k] =
+            select((largest > 0.0) & (inverse[k] < HUGE_VAL), inverse[k], broadcast(1.0));
+        }
+        for (int r = 0; r < Dim; ++r)
+        {
+          for (int c = 0; c < Dim; ++c)
+          {
+            Packet sum = {};
+            for (int k = 0; k < Dim; ++k)
+            {
+              sum += inverse[k] * v[r][k] * v[c][k];
+            }
+            for (int l = 0; l < lanes; ++l)
+            {
+              this->Inverse[Dim * Dim * (first + l) + Dim * r + c] = sum[l];
+            }
+          }
+        }
+      }
+    });
+}
+
+void HessianMatrix::factorize()
+{
+  this->Size == 2 ? this->invertDiagonal<2>() : this->invertDiagonal<3>();
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void HessianMatrix::multiply(const double* d, double* product) const
+{
+  forEachChunk(this->Rows, this->Threads,
+    [=](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        double sum[Dim] = {};
+        for (std::int32_t place = this->Starts[row]; place < this->Starts[row + 1]; ++place)
+        {
+          addProduct<Dim>(this->Blocks.data() + static_cast<Index>(Dim * Dim) * place,
+            d + static_cast<Index>(Dim) * this->Columns[place], sum);
+        }
+        std::copy_n(sum, Dim, product + Dim * row);
+      }
+    });
+}
+
+void HessianMatrix::times(const double* d, double* product) const
+{
+  this->Size == 2 ? this->multiply<2>(d, product) : this->multiply<3>(d, product);
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void HessianMatrix::applyDiagonal(const double* r, double* z) const
+{
+  forEachChunk(this->Rows, this->Threads,
+    [=](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        double sum[Dim] = {};
+        addProduct<Dim>(this->Inverse.data() + Dim * Dim * row, r + Dim * row, sum);
+        std::copy_n(sum, Dim, z + Dim * row);
+      }
+    });
+}
+
+/// (L + D) D^-1 (D + U) z = r inside each range of rows.
+template <int Dim>
+void HessianMatrix::sweep(const double* r, double* z) const
+{
+  forEachChunk(this->Rows, this->Threads,
+    [=](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        double sum[Dim] = {};
+        for (std::int32_t place = this->Starts[row]; place < this->Diagonal[row]; ++place)
+        {
+          if (this->Columns[place] >= begin)
+          {
+            addProduct<Dim>(this->Blocks.data() + static_cast<Index>(Dim * Dim) * place,
+              z + static_cast<Index>(Dim) * this->Columns[place], sum);
+          }
+        }
+        double rest[Dim], own[Dim] = {};
+        for (int c = 0; c < Dim; ++c)
+        {
+          rest[c] = r[Dim * row + c] - sum[c];
+        }
+        addProduct<Dim>(this->Inverse.data() + Dim * Dim * row, rest, own);
+        std::copy_n(own, Dim, z + Dim * row);
+      }
+      for (Index row = end - 1; row >= begin; --row)
+      {
+        double sum[Dim] = {};
+        for (std::int32_t place = this->Diagonal[row] + 1; place < this->Starts[row + 1]; ++place)
+        {
+          if (this->Columns[place] < end)
+          {
+            addProduct<Dim>(this->Blocks.data() + static_cast<Index>(Dim * Dim) * place,
+              z + static_cast<Index>(Dim) * this->Columns[place], sum);
+          }
+        }
+        double own[Dim] = {};
+        addProduct<Dim>(this->Inverse.data() + Dim * Dim * row, sum, own);
+        for (int c = 0; c < Dim; ++c)
+        {
+          z[Dim * row + c] -= own[c];
+        }
+      }
+    });
+}
+
+void HessianMatrix::precondition(const double* r, double* z) const
+{
+  if (this->Size == 2)
+  {
+    this->applyDiagonal<2>(r, z);
+  }
+  else if (this->ThePattern == Pattern::Diagonal)
+  {
+    this->applyDiagonal<3>(r, z);
+  }
+  else
+  {
+    this->sweep<3>(r, z);
+  }
+}
+}

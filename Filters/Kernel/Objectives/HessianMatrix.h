@@ -1,0 +1,102 @@
+/**
+ * @file HessianMatrix.h
+ * @brief The Hessian of objectives over the free points of a mesh, as a sparse matrix of small
+ * blocks with preconditioners. Internal: not installed.
+ *
+ * A free point is a row of blocks of hessianAxes() coordinates: 2 x 2 numbers in a planar mesh,
+ * 3 x 3 in a volume. Vectors have as many entries a free point. Surfaces in space have no such
+ * matrix.
+ */
+#ifndef tautline_HessianMatrix_h
+#define tautline_HessianMatrix_h
+
+#include "ObjectiveSum.h"
+
+namespace tautline
+{
+/// The axes of the coordinates: right-handed for the elements, so that a mirrored mesh has mirrored
+/// axes. The first two are in the plane of a planar mesh.
+TAUTLINE_KERNEL_EXPORT std::array<Vec3, 3> coordinateAxes(const Mesh& mesh);
+
+class TAUTLINE_KERNEL_EXPORT HessianMatrix
+{
+public:
+  enum class Pattern
+  {
+    Full,    ///< blocks between all points that share an element
+    Diagonal ///< the block of each point only
+  };
+
+  /**
+   * @brief Takes the memory it needs; all blocks are 0.
+   * @param mesh planar or a volume; must outlive the matrix
+   * @param rowOfPoint row of each point of the mesh, -1 for points that are not free
+   * @param rows number of free points
+   * @param threads 0: all cores. The result does not depend on it, bitwise.
+   * Throws Error if there are more blocks than 32-bit numbers.
+   */
+  HessianMatrix(const Mesh& mesh, std::vector<std::int32_t> rowOfPoint, Index rows, Pattern pattern,
+    int threads);
+
+  int blockSize() const { return this->Size; }
+  /// Entries of a vector.
+  std::size_t size() const { return static_cast<std::size_t>(this->Rows * this->Size); }
+  /// Bytes of the blocks and their places.
+  std::size_t memory() const;
+
+  void clear();
+  /**
+   * @brief Adds scale times the Hessian of an objective, which may be indefinite, at the points of
+   * the mesh's view. Elements at fault and elements with edges of length 0 add 0. For PowerMean and Maximum the rank-one term
+   * that couples all elements is left out: the derivative of the slopes with the mean or the maximum
+   * itself held fixed.
+   */
+  void add(const ObjectiveSum& objective, double scale);
+  /**
+   * @brief Replaces the matrix by P A P for points that may move in some directions only, with the
+   * mean of its diagonal in the other directions.
+   * @param row of the point
+   * @param projector the point's block of P, row by row
+   */
+  void restrict(Index row, const double* projector);
+  /// Prepares precondition(): to be called when the matrix is complete.
+  void factorize();
+
+  /// product = A d. Not of the diagonal pattern.
+  void times(const double* d, double* product) const;
+  /**
+   * @brief z = M^-1 r, with M symmetric and positive definite: the diagonal blocks with the absolute
+   * values of their eigenvalues; with symmetric Gauss-Seidel inside fixed ranges of rows in volumes
+   * (in planar meshes it does not pay).
+   */
+  void precondition(const double* r, double* z) const;
+
+private:
+  template <int Dim>
+  void addBlocks(const ObjectiveSum& objective, double scale);
+  template <int Dim>
+  void invertDiagonal();
+  template <int Dim>
+  void multiply(const double* d, double* product) const;
+  template <int Dim>
+  void applyDiagonal(const double* r, double* z) const;
+  template <int Dim>
+  void sweep(const double* r, double* z) const;
+  void findPattern();
+  std::int32_t place(std::int32_t row, std::int32_t column) const;
+
+  const Mesh& TheMesh;
+  std::vector<std::int32_t> RowOfPoint;
+  Index Rows;
+  Pattern ThePattern;
+  int Threads;
+  int Size;                                  ///< of a block
+  std::vector<std::int32_t> Starts, Columns; ///< of each row, ascending
+  std::vector<std::int32_t> Diagonal;        ///< place of the diagonal block of each row
+  std::vector<std::int32_t> Places;          ///< of the blocks of each cell; -1: none
+  std::vector<Index> PlaceStarts;            ///< of each cell
+  std::vector<double> Blocks;                ///< Size x Size numbers for each place
+  std::vector<double> Inverse;               ///< of the diagonal blocks
+};
+}
+#endif

@@ -1,0 +1,240 @@
+#include "GlobalFunction.h"
+
+#include "tautline/Objectives/ObjectiveSumState.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// Whether a point has a direction of its own in an array of 3 per point, or null.
+bool slides(const double* directions, std::size_t p)
+{
+  return directions &&
+    (directions[3 * p] != 0 || directions[3 * p + 1] != 0 || directions[3 * p + 2] != 0);
+}
+}
+
+//------------------------------------------------------------------------------
+GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer)
+  : Problem(problem)
+  , Newton(optimizer == Optimizer::NewtonConjugateGradient)
+  , Size(problem.moving().dimension() == Dimension::Planar ? 2 : 3)
+  , Axes(coordinateAxes(problem.moving()))
+  , Origin(problem.points())
+  , Validity(problem.moving().view().numberOfCells)
+  , Gradient(3 * problem.moving().view().numberOfPoints)
+  , Objectives(problem.objectives())
+  , Slopes(problem.objectives(), 1.0)
+{
+  problem.moving().classifyCells(this->Validity.data(), problem.options().threads);
+  this->Start = this->Validity;
+  // An objective that is infinite on inverted elements needs no other check.
+  const bool someInvalid =
+    std::any_of(this->Start.begin(), this->Start.end(), [](signed char v) { return v != Valid; });
+  this->Check = !problem.options().allowInversion;
+  for (std::size_t i = 0; i < problem.objectives() && !someInvalid; ++i)
+  {
+    const Fault fault = problem.sum(i).state().function.fault;
+    const bool all = !problem.sum(i).objective().elementWeights;
+    this->Check =
+      this->Check && !(all && (fault == Fault::NotPositive || fault == Fault::Jacobian));
+  }
+}
+
+//------------------------------------------------------------------------------
+std::size_t GlobalFunction::size() const
+{
+  return static_cast<std::size_t>(this->Size * this->Problem.simplices().freeVertices());
+}
+
+template <class Visit>
+void GlobalFunction::forEachFree(const Visit& visit) const
+{
+  const SimplexMesh& s = this->Problem.simplices();
+  for (std::int32_t v = 0; v < s.freeVertices(); ++v)
+  {
+    visit(static_cast<std::size_t>(v), static_cast<std::size_t>(s.point(v)));
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Sets the free points.
+void GlobalFunction::move(const double* x)
+{
+  this->forEachFree(
+    [&](std::size_t i, std::size_t p)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        double sum = this->Origin[3 * p + c];
+        for (int a = 0; a < this->Size; ++a)
+        {
+          sum += x[this->Size * i + a] * this->Axes[a][c];
+        }
+        this->Problem.points()[3 * p + c] = sum;
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void GlobalFunction::put(const double* x)
+{
+  this->move(x);
+  this->Problem.simplices().load(this->Problem.points().data(), this->Problem.options().threads);
+}
+
+//------------------------------------------------------------------------------
+/// No element that was valid at the start has become invalid.
+bool GlobalFunction::allowed()
+{
+  if (!this->Check)
+  {
+    return true;
+  }
+  this->Problem.moving().classifyCells(this->Validity.data(), this->Problem.options().threads);
+  for (std::size_t i = 0; i < this->Validity.size(); ++i)
+  {
+    if (this->Start[i] == Valid && this->Validity[i] != Valid)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+/// The part of a vector a point may follow: in a planar mesh's plane, along its line or plane.
+Vec3 GlobalFunction::project(std::size_t p, Vec3 g) const
+{
+  const OptimizeOptions& options = this->Problem.options();
+  if (this->Problem.moving().dimension() == Dimension::Planar)
+  {
+    const Vec3& normal = this->Problem.moving().normal();
+    g = g - dot(g, normal) * normal;
+  }
+  const auto along = [&](const double* u)
+  {
+    const Vec3 n = { u[3 * p], u[3 * p + 1], u[3 * p + 2] };
+    const double n2 = dot(n, n);
+    return n2 > 0 ? (dot(g, n) / n2) * n : Vec3{ 0, 0, 0 };
+  };
+  return slides(options.slideLines, p) ? along(options.slideLines)
+    : slides(options.slidePlanes, p)   ? g - along(options.slidePlanes)
+                                       : g;
+}
+
+//------------------------------------------------------------------------------
+double GlobalFunction::valueAndGradient(const double* x, double* gradient)
+{
+  this->move(x);
+  const double infinity = std::numeric_limits<double>::infinity();
+  if (!this->allowed())
+  {
+    return infinity;
+  }
+  const std::size_t n = this->Objectives.size();
+  double value = 0;
+  if (n > 1)
+  {
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      this->Objectives[i] = this->Problem.sum(i).value();
+    }
+    value = this->Problem.scalarizer().value(this->Objectives, this->Slopes);
+    if (!std::isfinite(value))
+    {
+      return infinity;
+    }
+  }
+  std::fill(this->Gradient.begin(), this->Gradient.end(), 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double own = this->Problem.sum(i).addGradient(this->Slopes[i], this->Gradient.data());
+    value = n == 1 ? own : value;
+  }
+  this->forEachFree(
+    [&](std::size_t i, std::size_t p)
+    {
+      const double* full = this->Gradient.data() + 3 * p;
+      const Vec3 g = this->project(p, { full[0], full[1], full[2] });
+      for (int a = 0; a < this->Size; ++a)
+      {
+        gradient[this->Size * i + a] = dot(g, this->Axes[a]);
+      }
+    });
+  return std::isnan(value) ? infinity : value;
+}
+
+//------------------------------------------------------------------------------
+void GlobalFunction::makeMatrix()
+{
+  std::vector<std::int32_t> rows(this->Problem.moving().view().numberOfPoints, -1);
+  this->forEachFree([&](std::size_t i, std::size_t p) { rows[p] = static_cast<std::int32_t>(i); });
+  this->Hessian = std::make_unique<HessianMatrix>(this->Problem.moving(), std::move(rows),
+    this->Problem.simplices().freeVertices(),
+    this->Newton ? HessianMatrix::Pattern::Full : HessianMatrix::Pattern::Diagonal,
+    this->Problem.options().threads);
+}
+
+//------------------------------------------------------------------------------
+/// Lets a point that slides move along its line or plane only.
+void GlobalFunction::restrict(std::size_t row, std::size_t p)
+{
+  if (!slides(this->Problem.options().slideLines, p) &&
+    !slides(this->Problem.options().slidePlanes, p))
+  {
+    return;
+  }
+  double projector[9];
+  for (int a = 0; a < this->Size; ++a)
+  {
+    const Vec3 along = this->project(p, this->Axes[a]);
+    for (int b = 0; b < this->Size; ++b)
+    {
+      projector[this->Size * a + b] = dot(along, this->Axes[b]);
+    }
+  }
+  this->Hessian->restrict(static_cast<Index>(row), projector);
+}
+
+//------------------------------------------------------------------------------
+void GlobalFunction::linearize(const double*)
+{
+  if (!this->Hessian)
+  {
+    this->makeMatrix();
+  }
+  this->Hessian->clear();
+  for (std::size_t i = 0; i < this->Objectives.size(); ++i)
+  {
+    this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
+  }
+  const OptimizeOptions& options = this->Problem.options();
+  if (options.slideLines || options.slidePlanes)
+  {
+    this->forEachFree([&](std::size_t i, std::size_t p) { this->restrict(i, p); });
+  }
+  this->Hessian->factorize();
+}
+
+//------------------------------------------------------------------------------
+bool GlobalFunction::precondition(const double* r, double* z)
+{
+  this->Hessian->precondition(r, z);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool GlobalFunction::hessianTimes(const double* d, double* product)
+{
+  if (!this->Newton)
+  {
+    return false;
+  }
+  this->Hessian->times(d, product);
+  return true;
+}
+}
