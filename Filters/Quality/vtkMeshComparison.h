@@ -31,8 +31,8 @@
  * A vtkTable with a row per metric: `Metric` (its name); `Better`, `Worse`, `Equal`, numbers of
  * elements on which the metric is defined, ghost cells left out; `InvertedBefore`, `InvertedAfter`,
  * numbers of inverted elements; `MinimumBefore`, `MinimumAfter`, `MeanBefore`, `MeanAfter`,
- * `MaximumBefore`, `MaximumAfter` over the valid elements (for metrics that order inverted
- * elements, over these too; 0 without any); `LargestDisplacement`. For composite data, over all
+ * `MaximumBefore`, `MaximumAfter` over the valid and the inverted elements (0 without any);
+ * `LargestDisplacement`. For composite data, over all
  * blocks.
  *
  * @par Limitations:

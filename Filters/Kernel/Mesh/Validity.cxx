@@ -8,9 +8,14 @@
 
 namespace tautline
 {
-Validity Mesh::classifyCell(const CellTopology& t, const Vec3* vertices, const Vec3* against) const
+namespace
 {
-  // Cells of extreme size are scaled, as normalizeExtents() does.
+/// Products of edges of such length overflow.
+constexpr double StrayExtent = 1e100;
+
+/// The longest distance of a vertex from the first along an axis.
+double extentOf(const CellTopology& t, const Vec3* vertices)
+{
   double extent = 0;
   for (int k = 1; k < t.nodes; ++k)
   {
@@ -19,7 +24,15 @@ Validity Mesh::classifyCell(const CellTopology& t, const Vec3* vertices, const V
       extent = std::max(extent, std::abs(vertices[k][c] - vertices[0][c]));
     }
   }
-  const double perUnit = 1 / unitOfExtent(extent);
+  return extent;
+}
+}
+
+//------------------------------------------------------------------------------
+Validity Mesh::classifyCell(const CellTopology& t, const Vec3* vertices, const Vec3* against) const
+{
+  // Cells of extreme size are scaled, as normalizeExtents() does.
+  const double perUnit = 1 / unitOfExtent(extentOf(t, vertices));
   Vec3 p[MaxNodes];
   for (int k = 0; k < t.nodes; ++k)
   {
@@ -112,6 +125,8 @@ void Mesh::classifyCells(signed char* validity, int threads) const
   {
     std::fill(validity, validity + this->View.numberOfCells, NotMeasured);
   }
+  // In a mesh of ordinary size, cells that are many times larger have a vertex astray.
+  const bool ordinary = unitOfExtent(coordinateRange(this->View).extent) == 1;
   for (const CellBlock& block : this->Blocks)
   {
     const CellTopology& t = topology(block.type);
@@ -138,7 +153,10 @@ void Mesh::classifyCells(signed char* validity, int threads) const
                 {
                   p[k] = pointOf(this->View, nodes[l][k]);
                 }
-                validity[batch.cells[l]] = allValid ? Valid : this->classifyCell(t, p);
+                const bool stray = ordinary && !allValid && extentOf(t, p) > StrayExtent;
+                validity[batch.cells[l]] = allValid ? Valid
+                  : stray                           ? NonFinite
+                                                    : this->classifyCell(t, p);
               }
             }
           });

@@ -1,5 +1,6 @@
 #include "ElementSum.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -95,6 +96,14 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
     for (int k = 0; k < context.topology->nodes; ++k)
     {
       p[k] = pointOf(context.mesh->view(), nodes[l][k]);
+    }
+    // Vertices astray make no cell that is measured; see NonFinite.
+    constexpr double stray = 1e100;
+    const bool near = std::all_of(
+      p + 1, p + context.topology->nodes, [&](const Vec3& q) { return norm(q - p[0]) < stray; });
+    if (!near && unitOfExtent(coordinateRange(context.mesh->view()).extent) == 1)
+    {
+      continue;
     }
     const Validity validity = context.mesh->classifyCell(*context.topology, p);
     const bool zero = value[l] == 0 && measured[l] == 0;

@@ -257,6 +257,21 @@ void testTogether()
   }
 }
 
+/// A vertex astray in a mesh of ordinary size is no reason to refuse it: its cells are not finite.
+void testStray()
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, 3, 3, 3);
+  data.setPoint(0, { 1e200, 0, 0 });
+  const Mesh mesh(data.view());
+  const std::vector<signed char> validity = validityOf(mesh);
+  const auto cells = mesh.vertexCells();
+  TAUTLINE_CHECK_EQUAL(
+    std::count(validity.begin(), validity.end(), NonFinite), cells.offsets[1] - cells.offsets[0]);
+  std::vector<double> values(validity.size());
+  TAUTLINE_CHECK_EQUAL(evaluateMetric(mesh, Metric::Size, {}, values.data()), 0);
+  TAUTLINE_CHECK_EQUAL(evaluateMetric(mesh, Metric::SizeBarrierSquared, {}, values.data()), 0);
+}
+
 //------------------------------------------------------------------------------
 void testRange()
 {
@@ -343,6 +358,7 @@ int TestScales(int, char*[])
   testTensors();
   testBeyond();
   testTogether();
+  testStray();
   testRange();
   testFrame();
   testRefusal();
