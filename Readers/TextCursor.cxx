@@ -7,8 +7,10 @@
 #include <limits>
 #include <new>
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace tautline
 {
@@ -41,12 +43,24 @@ std::string found(const char* at, const char* end)
 }
 
 //------------------------------------------------------------------------------
+OpenFile openFile(const std::string& name)
+{
+  // Without O_NONBLOCK a pipe that nobody writes to would be opened only then.
+  const int descriptor = open(name.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  std::FILE* file = descriptor < 0 ? nullptr : fdopen(descriptor, "rb");
+  if (descriptor >= 0 && !file)
+  {
+    close(descriptor);
+  }
+  return OpenFile(file, [](std::FILE* f) { return f ? std::fclose(f) : 0; });
+}
+
+//------------------------------------------------------------------------------
 FileContent::FileContent(const std::string& name, const std::string& why)
   : Name(name)
 {
   struct stat status;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
-    std::fopen(name.c_str(), "rb"), [](std::FILE* f) { return f ? std::fclose(f) : 0; });
+  const OpenFile file = openFile(name);
   const std::string reason = why.empty() ? std::string() : " (" + why + ")";
   if (!file)
   {
@@ -54,7 +68,7 @@ FileContent::FileContent(const std::string& name, const std::string& why)
   }
   if (fstat(fileno(file.get()), &status) != 0 || !S_ISREG(status.st_mode))
   {
-    throw FileError(name + ": is not a file" + reason);
+    throw FileError(name + ": is not a regular file" + reason);
   }
   this->Size = static_cast<std::size_t>(status.st_size);
   this->allocate();
@@ -78,7 +92,10 @@ void FileContent::allocate()
   {
     throw std::bad_alloc();
   }
-  adviseLargePages(this->Bytes.get(), size);
+  if (large)
+  {
+    adviseLargePages(this->Bytes.get(), size);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -289,8 +306,7 @@ void adviseLargePages(void* memory, std::size_t bytes)
 //------------------------------------------------------------------------------
 std::string firstWord(const std::string& name)
 {
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
-    std::fopen(name.c_str(), "rb"), [](std::FILE* f) { return f ? std::fclose(f) : 0; });
+  const OpenFile file = openFile(name);
   char bytes[256];
   const std::size_t size = file ? std::fread(bytes, 1, sizeof(bytes), file.get()) : 0;
   const FileContent start(name, std::string_view(bytes, size));

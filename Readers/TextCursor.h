@@ -13,6 +13,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -20,6 +21,10 @@
 
 namespace tautline
 {
+using OpenFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+/// The file opened for reading, or null; never waits, whatever kind of file it is.
+OpenFile openFile(const std::string& name);
+
 /// The bytes of a file, read at once.
 class FileContent
 {
