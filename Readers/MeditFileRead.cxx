@@ -1,6 +1,7 @@
 #include "MeditFile.h"
 
 #include "FileNames.h"
+#include "FileSet.h"
 #include "TextCursor.h"
 
 #include <algorithm>
@@ -453,6 +454,8 @@ MeshFile readMedit(const std::string& name, bool lowerCells)
   const bool solution = extension == "sol";
   const std::string meshName = solution ? stem + ".mesh" : name;
   const FileContent file(meshName, solution ? "the mesh of " + name : std::string());
+  SetCheck set;
+  set.add(file);
   TextCursor cursor(file, Comment);
   readHeader(cursor);
   Contents contents;
@@ -461,7 +464,7 @@ MeshFile readMedit(const std::string& name, bool lowerCells)
   const std::string solutionName = stem + ".sol";
   if (solution || fileExists(solutionName))
   {
-    readMeditSolution(FileContent(solutionName), mesh);
+    readMeditSolution(set.add(FileContent(solutionName)), mesh);
   }
   if (!lowerCells)
   {

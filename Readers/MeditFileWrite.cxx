@@ -2,7 +2,7 @@
 
 #include "FileNames.h"
 #include "TextCursor.h"
-#include "TextOutput.h"
+#include "FileSet.h"
 
 #include <algorithm>
 #include <array>
@@ -278,8 +278,8 @@ std::vector<Index> numbersTo(Index count)
   return all;
 }
 
-/// The finished file of the arrays, if there are any; see writeMedit.
-std::optional<AtomicFile> solutionFile(const MeshFile& mesh, const std::string& name)
+/// The file of the arrays, if there are any; see writeMedit.
+std::optional<TextOutput> solutionFile(const MeshFile& mesh, const std::string& name)
 {
   const int dimension = mesh.planar() ? 2 : 3;
   const auto points = columnsOf(mesh.pointArrays, dimension);
@@ -300,7 +300,7 @@ std::optional<AtomicFile> solutionFile(const MeshFile& mesh, const std::string& 
     writeSolutionSection(out, MeditSections[i].name, cells, sections[i], dimension);
   }
   out << "\nEnd\n";
-  return out.finish();
+  return out;
 }
 }
 
@@ -335,16 +335,15 @@ std::vector<std::string> writeMedit(const MeshFile& mesh, const std::string& nam
     }
   }
   out << "\nEnd\n";
-  std::vector<AtomicFile> files;
-  files.push_back(out.finish());
+  std::vector<TextOutput> files;
+  files.push_back(std::move(out));
   const std::string solution = stem + ".sol";
-  if (std::optional<AtomicFile> values = solutionFile(mesh, solution))
+  if (std::optional<TextOutput> values = solutionFile(mesh, solution))
   {
     files.push_back(std::move(*values));
-    replaceAll(files);
-    return { name, solution };
+    return replaceSet(files);
   }
-  replaceAll(files);
+  replaceSet(files);
   std::remove(solution.c_str());
   return { name };
 }

@@ -1,6 +1,7 @@
 #include "TetGenFile.h"
 
 #include "FileNames.h"
+#include "FileSet.h"
 #include "TextCursor.h"
 
 #include <algorithm>
@@ -168,9 +169,11 @@ NodeList readNodes(TextCursor& cursor, const FileContent& file, MeshFile& mesh)
   return nodes;
 }
 
-NodeList readNodeFile(const std::string& name, const std::string& why, MeshFile& mesh)
+NodeList readNodeFile(
+  const std::string& name, const std::string& why, MeshFile& mesh, SetCheck& set)
 {
   const FileContent file(name, why);
+  set.add(file);
   TextCursor cursor(file, Comment);
   const NodeList nodes = readNodes(cursor, file, mesh);
   cursor.expectFileEnd("vertex");
@@ -341,22 +344,23 @@ MeshFile readTetGen(const std::string& name, bool lowerCells)
       name + ": .node, .ele, .face, .edge, .poly or .smesh is expected as the file's ending");
   }
   MeshFile mesh;
+  SetCheck set;
   const NodeList nodes = readNodeFile(
-    stem + ".node", extension == "node" ? std::string() : "the vertices of " + name, mesh);
+    stem + ".node", extension == "node" ? std::string() : "the vertices of " + name, mesh, set);
   const bool elements = extension == "ele" || fileExists(stem + ".ele");
   if (elements)
   {
-    readElements(FileContent(stem + ".ele"), nodes, mesh);
+    readElements(set.add(FileContent(stem + ".ele")), nodes, mesh);
   }
   const bool withLower = lowerCells || !elements;
   const bool faces = withLower && (extension == "face" || fileExists(stem + ".face"));
   if (faces)
   {
-    readBoundary(FileContent(stem + ".face"), nodes, true, mesh);
+    readBoundary(set.add(FileContent(stem + ".face")), nodes, true, mesh);
   }
   if (withLower && (extension == "edge" || fileExists(stem + ".edge")))
   {
-    readBoundary(FileContent(stem + ".edge"), nodes, false, mesh);
+    readBoundary(set.add(FileContent(stem + ".edge")), nodes, false, mesh);
   }
   else if (!elements && !faces)
   {
@@ -529,7 +533,9 @@ MeshFile readTetGenComplex(const FileContent& file, const std::string& stem, boo
   NodeList nodes = readNodes(cursor, file, mesh);
   if (nodes.header.count == 0)
   {
-    nodes = readNodeFile(stem + ".node", "the vertices of " + file.name(), mesh);
+    SetCheck set;
+    set.add(file);
+    nodes = readNodeFile(stem + ".node", "the vertices of " + file.name(), mesh, set);
   }
   nextLine(cursor, "facet");
   const Index count = cursor.count("number of facets or segments", 4);

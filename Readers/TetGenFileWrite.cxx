@@ -2,7 +2,7 @@
 
 #include "FileNames.h"
 #include "TextCursor.h"
-#include "TextOutput.h"
+#include "FileSet.h"
 
 #include <algorithm>
 #include <array>
@@ -181,7 +181,7 @@ void writeCorners(TextOutput& out, const MeshFile& mesh, Index cell)
   }
 }
 
-AtomicFile writeElements(const MeshFile& mesh, const Plan& plan, const std::string& name)
+TextOutput writeElements(const MeshFile& mesh, const Plan& plan, const std::string& name)
 {
   TextOutput out(name);
   const MeshArray* own = findArray(mesh.cellArrays, "BoundaryMarker");
@@ -205,10 +205,10 @@ AtomicFile writeElements(const MeshFile& mesh, const Plan& plan, const std::stri
     writeTuple(out, columns, plan.elements[i]);
     out.endLine();
   }
-  return out.finish();
+  return out;
 }
 
-AtomicFile writeBoundary(
+TextOutput writeBoundary(
   const MeshFile& mesh, const std::vector<Index>& cells, const std::string& name)
 {
   TextOutput out(name);
@@ -226,7 +226,7 @@ AtomicFile writeBoundary(
     }
     out.endLine();
   }
-  return out.finish();
+  return out;
 }
 
 /// Rows of a field array behind a count; `skip` leading components are not written.
@@ -388,8 +388,8 @@ std::vector<std::string> writeTetGen(const MeshFile& mesh, const std::string& na
   const Plan plan = planFiles(mesh, name);
   TextOutput nodes(stem + ".node");
   writeNodes(nodes, mesh, plan.planar);
-  std::vector<AtomicFile> files;
-  files.push_back(nodes.finish());
+  std::vector<TextOutput> files;
+  files.push_back(std::move(nodes));
   if (!plan.elements.empty())
   {
     files.push_back(writeElements(mesh, plan, stem + ".ele"));
@@ -402,12 +402,7 @@ std::vector<std::string> writeTetGen(const MeshFile& mesh, const std::string& na
   {
     files.push_back(writeBoundary(mesh, plan.edges, stem + ".edge"));
   }
-  replaceAll(files);
-  std::vector<std::string> written;
-  for (const AtomicFile& file : files)
-  {
-    written.push_back(file.name());
-  }
+  const std::vector<std::string> written = replaceSet(files);
   for (const char* companion : { ".ele", ".face", ".edge" })
   {
     const std::string file = stem + companion;

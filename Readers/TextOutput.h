@@ -10,6 +10,7 @@
 #include "MeshFile.h"
 
 #include <charconv>
+#include <cstdint>
 #include <string_view>
 
 namespace tautline
@@ -20,6 +21,7 @@ class TextOutput
 public:
   /// Throws FileError when the file cannot be created.
   explicit TextOutput(const std::string& name);
+  TextOutput(TextOutput&&) noexcept = default;
   TextOutput(const TextOutput&) = delete;
   TextOutput& operator=(const TextOutput&) = delete;
 
@@ -46,6 +48,8 @@ public:
   }
   /// Ends a line and hands full buffers to the system.
   void endLine();
+  /// A check sum of the content so far, not of cryptographic strength.
+  std::uint64_t checkSum() const;
   /// The complete file, to be replaced with others; throws FileError when a byte was not written.
   AtomicFile finish();
   /// Replaces the file; throws FileError when anything could not be written.
@@ -64,6 +68,10 @@ private:
 
   AtomicFile File;
   std::string Buffer;
+  std::uint64_t FlushedSum = 0; ///< of what is no longer in the buffer
 };
+
+/// A check sum of two check sums in this order.
+std::uint64_t combine(std::uint64_t first, std::uint64_t second);
 }
 #endif

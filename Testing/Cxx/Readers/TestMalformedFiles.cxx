@@ -1,5 +1,6 @@
 // Malformed files: the message names file, line and problem. Then seeded mutations of every sample:
-// whatever a file holds, a reader returns a consistent mesh or throws FileError.
+// whatever a file holds, a reader returns a consistent mesh or throws FileError. Sets with files of
+// two writes are refused.
 
 #include "MeshFileChecks.h"
 
@@ -273,6 +274,39 @@ void testMutations()
   std::cout << runs << " mutations, " << meshes << " read without complaint\n";
   TAUTLINE_CHECK(runs > 20 && meshes > 0 && meshes < runs);
 }
+
+/// The parts of two writes, as a process leaves them that is killed between two renames.
+void testMixedSets()
+{
+  MeshFile mesh;
+  mesh.points = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  mesh.addCells(FileTetrahedron, { 0, 1, 2, 3 });
+  mesh.addCells(FileTriangle, { 0, 1, 2 });
+  mesh.addCells(FileLine, { 0, 1 });
+  mesh.pointArrays.push_back({ "t", 1, MeshArray::Doubles{ 1, 2, 3, 4 } });
+  MeshFile moved = mesh; // the same counts
+  moved.points[0] = -1;
+  for (const std::vector<std::string>& endings :
+    { std::vector<std::string>{ "node", "ele", "face", "edge" }, { "mesh", "sol" } })
+  {
+    const std::string older = output + "/older." + endings[0], mixed = output + "/mixed.";
+    const bool medit = endings[0] == "mesh";
+    medit ? writeMedit(mesh, older) : writeTetGen(mesh, older);
+    for (const std::string& ending : endings)
+    {
+      const Context context(ending);
+      medit ? writeMedit(moved, mixed + "mesh") : writeTetGen(moved, mixed + "node");
+      TAUTLINE_CHECK_EQUAL(complaint(mixed + endings[0]), std::string());
+      const std::string whole = readText(output + "/older." + ending);
+      writeText(mixed + ending, whole);
+      const std::string message = complaint(mixed + endings[0]);
+      TAUTLINE_CHECK(message.find("does not belong to " + mixed) != std::string::npos);
+      // Without its mark, as other programs write it, the file is taken.
+      writeText(mixed + ending, whole.substr(0, whole.rfind("# Tautline set")));
+      TAUTLINE_CHECK_EQUAL(complaint(mixed + endings[0]), std::string());
+    }
+  }
+}
 }
 
 int TestMalformedFiles(int, char* argv[])
@@ -285,6 +319,7 @@ int TestMalformedFiles(int, char* argv[])
   testTetGenMessages();
   testOtherMessages();
   testHarmlessForms();
+  testMixedSets();
   testMutations();
   return exitCode();
 }
