@@ -1,13 +1,13 @@
 #include "vtkSilhouetteSetReader.h"
 
+#include "ImageFile.h"
+#include "ImageFileAdapter.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Types.h"
 
 #include "vtkCompositeDataSet.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkImageReader2.h"
-#include "vtkImageReader2Factory.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiBlockDataSet.h"
@@ -78,6 +78,10 @@ std::size_t columnOf(
 
 std::vector<Entry> readList(const fs::path& list)
 {
+  if (!fs::is_regular_file(list))
+  {
+    throw Error(list.string() + ": is not a regular file"); // opening a pipe would wait for ever
+  }
   std::ifstream stream(list);
   std::string line;
   if (!stream || !std::getline(stream, line))
@@ -121,22 +125,12 @@ std::vector<Entry> readList(const fs::path& list)
   return entries;
 }
 
-vtkSmartPointer<vtkImageReader2> makeReader(const fs::path& file)
-{
-  std::error_code ignored;
-  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
-  {
-    throw Error(file.string() + ": is not a regular file"); // opening a pipe would wait for ever
-  }
-  return vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(file.string().c_str()));
-}
-
 std::vector<Entry> readFolder(const fs::path& folder)
 {
   std::vector<Entry> entries;
   for (const fs::directory_entry& item : fs::directory_iterator(folder))
   {
-    if (item.is_regular_file() && makeReader(item.path()))
+    if (tautline::findImageFormat(item.path().string()) != tautline::ImageFormat::None)
     {
       const std::string name = item.path().stem().string();
       entries.push_back({ item.path(), name.substr(0, name.find_first_of("0123456789 ")) });
@@ -171,13 +165,14 @@ vtkSilhouetteSetReader::~vtkSilhouetteSetReader()
 //------------------------------------------------------------------------------
 int vtkSilhouetteSetReader::CanReadFile(const char* name)
 {
-  if (!name || !fs::exists(name))
-  {
-    return 0;
-  }
-  if (fs::is_directory(name))
+  std::error_code ignored;
+  if (name && fs::is_directory(name, ignored))
   {
     return 1;
+  }
+  if (!name || !fs::is_regular_file(name, ignored))
+  {
+    return 0;
   }
   std::ifstream stream(name);
   std::string line;
@@ -208,24 +203,12 @@ int vtkSilhouetteSetReader::RequestData(
                                                               : readFolder(path.parent_path());
     if (entries.empty())
     {
-      throw Error(path.string() + ": no images");
+      throw Error(path.string() + ": no images (" + tautline::ImageFormats + ")");
     }
     output->SetNumberOfBlocks(static_cast<unsigned int>(entries.size()));
     for (unsigned int i = 0; i < entries.size() && !this->GetAbortExecute(); ++i)
     {
-      const vtkSmartPointer<vtkImageReader2> reader = makeReader(entries[i].file);
-      if (!reader)
-      {
-        throw Error(entries[i].file.string() + ": not an image VTK can read");
-      }
-      reader->SetFileName(entries[i].file.string().c_str());
-      reader->Update();
-      vtkNew<vtkImageData> image;
-      image->ShallowCopy(reader->GetOutput());
-      if (image->GetNumberOfPoints() == 0)
-      {
-        throw Error(entries[i].file.string() + ": the image cannot be read");
-      }
+      const vtkSmartPointer<vtkImageData> image = tautline::readImage(entries[i].file.string());
       addText(image, "Label", entries[i].label);
       addText(image, "File", entries[i].file.filename().string());
       output->SetBlock(i, image);

@@ -8,12 +8,15 @@
  * - a folder: all images in it, in the order of their names; the label is the name up to the first
  *   digit or blank;
  * - an image in such a folder: the same as the folder.
- *   Images are those VTK reads by their contents: PNG, JPEG, TIFF, BMP, PNM and others.
+ *
+ * Images are those of vtkImageFileReader: PNG, JPEG, TIFF, BMP, binary PGM and PPM, by their
+ * content; other files of a folder are skipped. An image that is truncated or damaged, and a file
+ * of a list that is no image, is an error that names the file.
  *
  * The output is a vtkMultiBlockDataSet of vtkImageData. The name of a block is that of the file
  * without its ending; field arrays of the image: `Label` and `File`, strings.
  *
- * @sa vtkShapeRetrieval
+ * @sa vtkImageFileReader vtkShapeRetrieval
  */
 #ifndef vtkSilhouetteSetReader_h
 #define vtkSilhouetteSetReader_h

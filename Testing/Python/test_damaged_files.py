@@ -1,6 +1,7 @@
 """Truncated and malformed files are errors: VTK's readers return what they have, or memory that nobody filled."""
 
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -222,6 +223,25 @@ def test_not_a_file() -> None:
     )
     refused("is not a regular file", tl.read, folder / "blocks.vtm")
     assert time.monotonic() - start < 5.0
+
+
+def test_images() -> None:
+    """A truncated image, and a file that is none of the formats, is refused by name; VTK crashes on some."""
+    folder = FOLDER / "images"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(Path(DATA).parent / "Testing/Fuzz/Corpus/image", folder)
+    files = sorted(folder.iterdir())
+    blocks = tl.read_silhouettes(folder)
+    assert blocks.GetNumberOfBlocks() == len(files) - 1, "all but the TGA file"
+    refused("it is none of PNG, JPEG, TIFF, BMP", tl.silhouette, folder / "short.tga")
+    for file in files:
+        whole = file.read_bytes()
+        for size in range(0, len(whole), max(1, len(whole) // CUTS)):
+            file.write_bytes(whole[:size])
+            refused(str(file), tl.silhouette, file)
+            if size > 8 and file.suffix != ".tga":
+                refused(f"{file}: the image cannot be read", tl.read_silhouettes, folder)
+        file.write_bytes(whole)
 
 
 def test_no_permission() -> None:

@@ -17,7 +17,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 PARAVIEW = r"(vtkSM(?!P(Tools|Thread|Range))|vtkSI[A-Z]|vtkPV|vtkClientServer|vtkProcessModule|vtkRemoting|pq|Q[A-Z])"
 FORBIDDEN = {"kernel": re.compile(r"(vtk|pq|Q[A-Z])"), "filter": re.compile(PARAVIEW)}
 # Parsers and calls of mesh generators are plain C++, too.
-PLAIN = re.compile(r"Readers/(?!vtk|MeshFileAdapter)|Filters/Meshing/Generators/")
+PLAIN = re.compile(r"Readers/(?!vtk|(Mesh|Image)FileAdapter)|Filters/Meshing/Generators/")
 SOURCES = (".h", ".cxx")
 
 #: The rooms of the kernel, from the lowest floor up.

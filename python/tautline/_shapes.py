@@ -20,7 +20,6 @@ from vtkmodules.vtkCommonDataModel import (
     vtkTable,
     vtkUnstructuredGrid,
 )
-from vtkmodules.vtkIOImage import vtkImageReader2Factory
 
 from . import _commands, _vtk
 from ._arguments import check_options, number, pick
@@ -45,17 +44,15 @@ _OPTIONS = {
 def as_image(image: Any) -> vtkImageData:
     """The vtkImageData of a vtkImageData, a file name, or an array [row, column] or [row, column, channel].
 
-    The first row of an array is at y = 0, the lower edge of the image. Raises Error for anything else, and for a file
-    that cannot be read.
+    A file is PNG, JPEG, TIFF, BMP, binary PGM or PPM. The first row of an array is at y = 0, the lower edge of the
+    image. Raises Error for anything else, and for a file that cannot be read.
     """
     if isinstance(image, vtkImageData):
         return image
     if isinstance(image, (str, PathLike)):
         name = file_name(image)
         check_input(name)
-        reader = vtkImageReader2Factory.CreateImageReader2(name)
-        if reader is None:
-            raise Error(f"{name}: not an image VTK can read")
+        reader = _vtk.vtkImageFileReader()
         reader.SetFileName(name)
         run(reader)
         return reader.GetOutput()
@@ -249,7 +246,8 @@ def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
 
     folder: a folder with a list labels.csv; a folder of images without one, whose classes are their file names up to
         the first digit or blank; or another list (.csv). A list has the columns file (relative to the list, or to the
-        folder images beside it) and class.
+        folder images beside it) and class. Images are PNG, JPEG, TIFF, BMP, binary PGM and PPM files; other files of
+        a folder are skipped.
 
     Returns a block per image, with the field arrays `Label` and `File`. Raises Error for a list or an image that cannot
     be read.

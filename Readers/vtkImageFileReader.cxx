@@ -1,0 +1,89 @@
+#include "vtkImageFileReader.h"
+
+#include "ImageFile.h"
+#include "ImageFileAdapter.h"
+
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <new>
+
+vtkStandardNewMacro(vtkImageFileReader);
+
+//------------------------------------------------------------------------------
+vtkImageFileReader::vtkImageFileReader()
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkImageFileReader::~vtkImageFileReader()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+bool vtkImageFileReader::CanReadFile(const char* name)
+{
+  return name && tautline::findImageFormat(name) != tautline::ImageFormat::None;
+}
+
+//------------------------------------------------------------------------------
+int vtkImageFileReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  return this->Guarded(
+    [&](const std::string& name)
+    {
+      const tautline::ImageHeader header = tautline::checkImage(name);
+      const int extent[6] = { 0, static_cast<int>(header.width) - 1, 0,
+        static_cast<int>(header.height) - 1, 0, 0 };
+      outputVector->GetInformationObject(0)->Set(
+        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkImageFileReader::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  vtkImageData* output = vtkImageData::GetData(outputVector);
+  output->Initialize();
+  return this->Guarded(
+    [&](const std::string& name) { output->ShallowCopy(tautline::readImage(name)); });
+}
+
+//------------------------------------------------------------------------------
+int vtkImageFileReader::Guarded(const std::function<void(const std::string&)>& work)
+{
+  const std::string name = this->FileName ? this->FileName : "";
+  try
+  {
+    if (name.empty())
+    {
+      throw tautline::Error("no file name is set");
+    }
+    work(name);
+  }
+  catch (const tautline::Error& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro(<< name << ": not enough memory");
+    return 0;
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkImageFileReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+}

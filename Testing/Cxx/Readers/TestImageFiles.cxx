@@ -1,0 +1,192 @@
+// Image files: every format is read with the pixels that were written; a file that is cut anywhere,
+// damaged, of another kind or no file at all is an error that names it, for one image and for a
+// folder.
+
+#include "Check.h"
+#include "MeshFileChecks.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkExecutive.h"
+#include "vtkImageData.h"
+#include "vtkImageFileReader.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSilhouetteSetReader.h"
+#include "vtkTestErrorObserver.h"
+
+#include <filesystem>
+
+#include <sys/stat.h>
+
+using namespace tautline;
+namespace fs = std::filesystem;
+
+namespace
+{
+fs::path corpus; ///< images of 4 x 3 pixels, and a BMP file with a palette of 3 x 2
+fs::path folder; ///< to write to
+
+/// What a reader reports; its executive reports that it failed.
+std::string errorOf(vtkAlgorithm* reader)
+{
+  vtkNew<vtkTest::ErrorObserver> errors, executive;
+  reader->AddObserver(vtkCommand::ErrorEvent, errors);
+  reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executive);
+  reader->Update();
+  return errors->GetErrorMessage();
+}
+
+/// The error message of reading an image of these bytes.
+std::string complaintOf(const std::string& bytes)
+{
+  const std::string name = (folder / "image").string();
+  writeText(name, bytes);
+  vtkNew<vtkImageFileReader> reader;
+  reader->SetFileName(name.c_str());
+  const std::string message = errorOf(reader);
+  TAUTLINE_CHECK(message.empty() || message.find(name) != message.npos);
+  TAUTLINE_CHECK(message.empty() == (reader->GetOutput()->GetNumberOfPoints() > 0));
+  return message;
+}
+
+void expect(const std::string& bytes, const std::string& part)
+{
+  const std::string message = complaintOf(bytes);
+  if (message.find(part) == message.npos)
+  {
+    std::cerr << "message: " << message << "\nnot: " << part << "\n";
+    TAUTLINE_CHECK(!"message");
+  }
+}
+
+/// The bytes with others at a place.
+std::string with(std::string bytes, std::size_t at, const std::string& others)
+{
+  return bytes.replace(at, others.size(), others);
+}
+
+void testPixels()
+{
+  for (const char* name : { "grey.png", "alpha.png", "colour.tif", "colour.bmp", "grey.pgm",
+         "colour.ppm", "colour.jpg", "grey.jpg" })
+  {
+    const Context context(name);
+    vtkNew<vtkImageFileReader> reader;
+    reader->SetFileName((corpus / name).string().c_str());
+    TAUTLINE_CHECK(reader->CanReadFile(reader->GetFileName()));
+    TAUTLINE_CHECK_EQUAL(errorOf(reader), std::string());
+    const int* size = reader->GetOutput()->GetDimensions();
+    TAUTLINE_CHECK(size[0] == 4 && size[1] == 3 && size[2] == 1);
+    vtkDataArray* values = reader->GetOutput()->GetPointData()->GetScalars();
+    const bool lossy = std::string(name).find(".jpg") != std::string::npos;
+    for (vtkIdType i = 0; values && !lossy && i < 12 * values->GetNumberOfComponents(); ++i)
+    {
+      const int components = values->GetNumberOfComponents();
+      TAUTLINE_CHECK_EQUAL(values->GetComponent(i / components, static_cast<int>(i % components)),
+        static_cast<double>(i * 37 % 256));
+    }
+  }
+  // VTK alone takes the last bytes of a BMP file for the pixels.
+  const std::string bmp = readText((corpus / "colour.bmp").string());
+  TAUTLINE_CHECK_EQUAL(complaintOf(bmp + "xyz"), std::string());
+  vtkNew<vtkImageFileReader> longer;
+  longer->SetFileName((folder / "image").string().c_str());
+  longer->Update();
+  TAUTLINE_CHECK_EQUAL(longer->GetOutput()->GetPointData()->GetScalars()->GetComponent(0, 1), 37.0);
+}
+
+/// Cut anywhere, a file is an error; with a changed byte it is one or an image.
+void testDamage()
+{
+  for (const auto& entry : fs::directory_iterator(corpus))
+  {
+    const Context context(entry.path().filename().string());
+    const std::string bytes = readText(entry.path().string());
+    for (std::size_t size = 0; size < bytes.size(); size += size < 100 ? 1 : 7)
+    {
+      TAUTLINE_CHECK(!complaintOf(bytes.substr(0, size)).empty());
+    }
+    for (std::size_t at = 0; at < std::min<std::size_t>(bytes.size(), 150); ++at)
+    {
+      complaintOf(with(bytes, at, "\xff"));
+      complaintOf(with(bytes, at, std::string(1, '\0')));
+    }
+  }
+}
+
+void testMessages()
+{
+  const auto text = [](const char* name) { return readText((corpus / name).string()); };
+  expect("", "it is none of PNG, JPEG");
+  expect("no picture", "it is none of PNG, JPEG, TIFF, BMP, binary PGM and PPM");
+  expect(text("short.tga"), "it is none of PNG");
+  expect(with(text("grey.png"), 20, "\x01"), "the check sum of a chunk is wrong");
+  expect("P5\n4 3\n65535\n" + std::string(24, 'x'), "its largest value is 65535");
+  expect("P5\n0 3\n255\n", "its size is 0 x 3");
+  expect("P5\n99999 99999\n255\n", "its size is 99999 x 99999");
+  expect("P5\n4 3\n255\nabc", "the file is truncated");
+  expect("P2\n1 1\n255\n7\n", "it is none of");
+  expect(with(text("colour.bmp"), 30, "\x01"), "not compressed");
+  expect(with(text("colour.bmp"), 28, "\x04"), "8 or 24 bits per pixel");
+  TAUTLINE_CHECK_EQUAL(complaintOf("P5 # a comment\n2 1 # another\n255\nab"), std::string());
+}
+
+void testFolder()
+{
+  const fs::path set = folder / "set";
+  fs::remove_all(set);
+  fs::create_directories(set);
+  fs::copy_file(corpus / "grey.png", set / "b1.png");
+  fs::copy_file(corpus / "grey.pgm", set / "a1.txt");
+  fs::copy_file(corpus / "short.tga", set / "short.tga");
+  writeText((set / "notes.png").string(), "no picture");
+  TAUTLINE_CHECK(mkfifo((set / "pipe.png").string().c_str(), 0600) == 0);
+  vtkNew<vtkSilhouetteSetReader> reader;
+  reader->SetFileName(set.string().c_str());
+  TAUTLINE_CHECK_EQUAL(errorOf(reader), std::string());
+  auto* blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(blocks->GetNumberOfBlocks(), 2u); // by content, in the order of the names
+  // A list that names what is no image, and a damaged image of a folder.
+  for (const char* name : { "short.tga", "notes.png", "pipe.png" })
+  {
+    writeText((set / "list.csv").string(), "file,class\nb1.png,b\n" + std::string(name) + ",c\n");
+    vtkNew<vtkSilhouetteSetReader> listed;
+    listed->SetFileName((set / "list.csv").string().c_str());
+    TAUTLINE_CHECK(errorOf(listed).find(name) != std::string::npos);
+  }
+  const std::string whole = readText((set / "b1.png").string());
+  writeText((set / "b1.png").string(), whole.substr(0, whole.size() / 2));
+  vtkNew<vtkSilhouetteSetReader> damaged;
+  damaged->SetFileName(set.string().c_str());
+  const std::string message = errorOf(damaged);
+  TAUTLINE_CHECK(
+    message.find("b1.png: the image cannot be read: the file is truncated") != std::string::npos);
+  fs::remove(set / "b1.png");
+  fs::remove(set / "a1.txt");
+  vtkNew<vtkSilhouetteSetReader> none;
+  none->SetFileName(set.string().c_str());
+  TAUTLINE_CHECK(errorOf(none).find("no images (PNG") != std::string::npos);
+  for (const char* name : { "", "nowhere.png", "pipe.png" })
+  {
+    vtkNew<vtkImageFileReader> single;
+    single->SetFileName(*name ? (set / name).string().c_str() : "");
+    TAUTLINE_CHECK(!errorOf(single).empty());
+    TAUTLINE_CHECK(!single->CanReadFile(single->GetFileName()));
+  }
+}
+}
+
+int TestImageFiles(int, char* argv[])
+{
+  corpus = fs::path(argv[1]) / "../Testing/Fuzz/Corpus/image";
+  folder = fs::path(argv[2]) / "image-files";
+  fs::create_directories(folder);
+  testPixels();
+  testDamage();
+  testMessages();
+  testFolder();
+  return exitCode();
+}

@@ -1,0 +1,212 @@
+"""Makes the first inputs of the fuzzers, Corpus/TARGET/*: one small file of each kind.
+
+Inputs that failed once are added beside them by hand. usage: make_corpus.py
+"""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkBMPWriter, vtkJPEGWriter, vtkPNGWriter, vtkPNMWriter, vtkTIFFWriter
+
+CORPUS = Path(__file__).parent / "Corpus"
+
+NODE_3D = "5 3 1 1\n1 0 0 0 0.5 1\n2 1 0 0 0 1\n3 0 1 0 1 1\n4 0 0 1 2 0\n5 1 1 1 -1 2\n"
+NODE_2D = "# plane\n4 2 0 1\n0 0 0 1\n1 1 0 1\n2 1 1 1\n3 0 1 1\n"
+SQUARE = "4 2 0 0\n1 0 0\n2 3 0\n3 3 3\n4 0 3\n4 1\n1 1 2 1\n2 2 3 1\n3 3 4 1\n4 4 1 2\n"
+TETGEN = {
+    "tetrahedra": "@ele\n2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 8\n@node\n" + NODE_3D
+    + "@face\n1 1\n1 1 2 3 4\n@edge\n1 1\n1 1 2 3\n",
+    "quadratic": "@ele\n1 6 0\n0 0 1 2 3 4 5\n@node\n6 2 0 0\n0 0 0\n1 2 0\n2 0 2\n3 1 1\n4 0 1\n5 1 0\n",
+    "points": "@node\n" + NODE_2D,
+    "poly": "@poly\n" + SQUARE + "1\n1 1 1\n1\n1 .5 .5 2 .1\n",
+    "poly-nodes": "@poly\n0 2 0 1\n4 0\n0 0 1\n1 1 2\n2 2 3\n3 3 0\n0\n@node\n" + NODE_2D,
+    "facets": "@poly\n" + NODE_3D + "2 1\n1 1 1\n3 1 2 3\n1 .2 .2 0\n2 0 3\n3 1 2 4\n2 3 4\n0\n0\n",
+    "smesh": "@smesh\n" + NODE_3D + "2 1\n3 1 2 3 5\n4 1 2\n3 4 6\n0\n0\n",
+}  # fmt: skip
+MESH = (
+    "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 0\n1 1 1 0\n"
+    "Tetrahedra\n2\n1 2 3 4 5\n2 3 4 5 6\nTriangles\n1\n1 2 3 9\nEdges\n1\n1 2 3\nRidges 1 1\nCorners\n2\n1\n2\n"
+    "RequiredVertices\n1\n3\nEnd\n"
+)
+PLANE = (
+    "MeshVersionFormatted 1\nDimension 2\nVertices 4\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+    "Quadrilaterals 1\n1 2 3 4 0\nEnd\n"
+)
+SOL = "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n5\n3 1 2 3\n" + "1 2 3 4 5 6 7 8 9 10\n" * 5 + "End\n"
+MEDIT = {
+    "tetrahedra": "@mesh\n" + MESH,
+    "quadrilateral": "@mesh\n" + PLANE,
+    "solution": "@sol\n" + SOL + "@mesh\n" + MESH,
+    "scalar": "@mesh\n" + PLANE + "@sol\nMeshVersionFormatted 2\nDimension 2\nSolAtVertices 4\n1 1\n1\n2\n3\n4\nEnd\n",
+}
+GMSH_41 = """$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+2 7 "plate"
+$EndPhysicalNames
+$Entities
+0 0 1 0
+1 0 0 0 1 1 0 1 7 0
+$EndEntities
+$Nodes
+1 4 1 4
+2 1 0 4
+1
+2
+3
+4
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+$EndNodes
+$Elements
+2 3 1 3
+2 1 2 2
+1 1 2 3
+2 1 3 4
+1 1 1 1
+3 1 2
+$EndElements
+$NodeData
+1
+"t"
+1
+0.0
+3
+0
+1
+4
+1 1
+2 2
+3 3
+4 4
+$EndNodeData
+"""
+GMSH_22 = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+4
+1 0 0 0
+2 1 0 0
+3 0 1 0
+9 0 0 1
+$EndNodes
+$Elements
+2
+1 4 2 5 6 1 2 3 9
+2 2 2 7 8 1 2 3
+$EndElements
+$ElementData
+1
+"e"
+1
+0
+3
+0
+1
+1
+1 2.5
+$EndElementData
+"""
+
+
+def gmsh_binary() -> bytes:
+    """Version 2.2, binary: a triangle."""
+    text = b"$MeshFormat\n2.2 1 8\n" + struct.pack("<i", 1) + b"\n$EndMeshFormat\n$Nodes\n3\n"
+    for number, (x, y) in enumerate([(0, 0), (1, 0), (0, 1)], 1):
+        text += struct.pack("<iddd", number, x, y, 0)
+    element = struct.pack("<iiiiiiiii", 2, 1, 2, 1, 4, 5, 1, 2, 3)
+    return text + b"\n$EndNodes\n$Elements\n1\n" + element + b"\n$EndElements\n"
+
+
+GMSH = {
+    "text-41": GMSH_41,
+    "text-22": GMSH_22,
+    "binary-22": gmsh_binary(),
+    "freefem-2d": "3 1 3\n0 0 1\n1 0 1\n0 1 2\n1 2 3 0\n1 2 1\n2 3 2\n3 1 2\n",
+    "freefem-3d": "4 1 1\n0 0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 2\n1 2 3 4 0\n1 2 3 1\n",
+}
+OFF = {
+    "off": "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3 255 0 0\n",
+    "coff": "COFF # colours\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n0 1 0 0 0 255 255\n3 0 1 2 0.5 0.5 0.5\n",
+    "noff": "NOFF\n4 3 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\n2 0 1\n1 3\n",
+}
+LIST = {
+    "classes": "file,class\na.pgm,disc\n",
+    "quoted": 'class_id, "file"\r\n"a, b", a.pgm\r\n\r\n',
+    "missing": "file,label\na.pgm\n",
+}
+
+
+def image(components: int) -> vtkImageData:
+    """4 x 3 pixels."""
+    made = vtkImageData()
+    made.SetDimensions(4, 3, 1)
+    values = (np.arange(12 * components) * 37 % 256).astype(np.uint8).reshape(12, components)
+    made.GetPointData().SetScalars(numpy_to_vtk(values, deep=True))
+    return made
+
+
+def write_images(folder: Path) -> None:
+    for name, make, components in (
+        ("grey.png", vtkPNGWriter, 1), ("alpha.png", vtkPNGWriter, 4), ("colour.jpg", vtkJPEGWriter, 3),
+        ("grey.jpg", vtkJPEGWriter, 1), ("colour.tif", vtkTIFFWriter, 3), ("colour.bmp", vtkBMPWriter, 3),
+        ("grey.pgm", vtkPNMWriter, 1), ("colour.ppm", vtkPNMWriter, 3),
+    ):  # fmt: skip
+        writer = make()
+        writer.SetInputData(image(components))
+        writer.SetFileName(str(folder / name))
+        writer.Write()
+    palette = b"".join(bytes([i, i, i, 0]) for i in range(256))
+    header = struct.pack("<IHHI", 14 + 40 + 1024 + 8, 0, 0, 14 + 40 + 1024)
+    header += struct.pack("<IiiHHIIiiII", 40, 3, -2, 1, 8, 0, 8, 0, 0, 256, 0)
+    (folder / "palette.bmp").write_bytes(b"BM" + header + palette + bytes(range(8)))
+    targa = struct.pack("<BBBHHBHHHHBB", 0, 0, 10, 0, 0, 0, 0, 0, 4000, 4000, 24, 0)
+    (folder / "short.tga").write_bytes(targa + b"\xff\x01\x02\x03")
+
+
+def main() -> None:
+    texts = {"tetgen": TETGEN, "medit": MEDIT, "gmsh": GMSH, "off": OFF, "imagelist": LIST}
+    for target, inputs in texts.items():
+        (CORPUS / target).mkdir(parents=True, exist_ok=True)
+        for name, content in inputs.items():
+            data = content if isinstance(content, bytes) else content.encode()
+            (CORPUS / target / name).write_bytes(data)
+    (CORPUS / "image").mkdir(exist_ok=True)
+    write_images(CORPUS / "image")
+
+    random = np.random.default_rng(14)
+
+    def noise(count: int, below: int = 256) -> bytes:
+        return bytes(random.integers(0, below, count).astype(np.uint8))
+
+    disc = bytes(int(80 < (i % 21 - 10) ** 2 + (i // 21 - 10) ** 2) for i in range(441))
+    grey = np.float32(0.5).tobytes() + bytes([1]) + random.random(100, np.float32).tobytes()
+    cells = ([10, 4, 0, 1, 2, 3, 5, 3, 1, 2, 3], [12, 8, *range(8), 9, 4, 0, 1, 2, 3, 0, 1, 5], [7, 3, 0, 9, 200])
+    numbers = {
+        "silhouette": [
+            bytes([20, 20, 5, 0, 1, 0]) + disc,
+            bytes([9, 9, 3, 2, 0]) + grey,
+            bytes([30, 10, 12, 1, 1, 0]) + noise(341, 2),
+        ],
+        "quality": [bytes([kind, kind * 7, kind % 3, 1, 1, 1]) + noise(90) for kind in range(6)],
+        "mesh": [bytes([8]) + noise(24, 40) + bytes(list_of_cells) for list_of_cells in cells],
+        "move": [bytes([kind, kind % 2, 1]) + noise(80 + 200 * (kind % 2 == 0), 32) for kind in range(4)],
+    }
+    for target, inputs in numbers.items():
+        (CORPUS / target).mkdir(parents=True, exist_ok=True)
+        for number, data in enumerate(inputs):
+            (CORPUS / target / str(number)).write_bytes(data)
+
+
+if __name__ == "__main__":
+    main()
