@@ -1,11 +1,7 @@
-// Malformed files: the message names file, line and problem. Then seeded mutations of every sample:
-// whatever a file holds, a reader returns a consistent mesh or throws FileError. Sets with files of
-// two writes are refused.
+// Malformed files: the message names file, line and problem. Sets with files of two writes are
+// refused. (Mutations of samples: TestFuzzTargets.)
 
 #include "MeshFileChecks.h"
-
-#include <chrono>
-#include <random>
 
 using namespace tautline;
 
@@ -152,129 +148,6 @@ void testHarmlessForms()
   }
 }
 
-/// One random change of a file's bytes.
-void mutate(std::string& bytes, std::mt19937& random)
-{
-  const char* const words[] = { "-1", "0", "4294967296", "9223372036854775807", "1e308", "nan", "#",
-    "\"", "$Nodes", "End", "\n", " ", "$EndElements", "Triangles", "1000000" };
-  const auto below = [&](std::size_t n) { return n ? random() % n : 0; };
-  const std::size_t at = below(bytes.size() + 1), length = 1 + below(12);
-  switch (random() % 7)
-  {
-    case 0:
-      bytes.resize(at);
-      break;
-    case 1:
-      bytes.erase(at, length);
-      break;
-    case 2:
-      bytes.insert(at, words[below(std::size(words))]);
-      break;
-    case 3:
-      bytes.insert(at, bytes.substr(below(bytes.size()), 1 + below(200)));
-      break;
-    case 4: // another number
-      for (std::size_t i = at; i < bytes.size(); ++i)
-      {
-        if (bytes[i] >= '0' && bytes[i] <= '9')
-        {
-          bytes[i] = static_cast<char>('0' + random() % 10);
-          break;
-        }
-      }
-      break;
-    case 5:
-      bytes.replace(at, std::min(length, bytes.size() - at), words[below(std::size(words))]);
-      break;
-    default:
-      for (std::size_t i = at; i < std::min(bytes.size(), at + length); ++i)
-      {
-        bytes[i] = static_cast<char>(random());
-      }
-  }
-}
-
-/// What a mesh without complaint must satisfy.
-bool consistent(const MeshFile& mesh)
-{
-  const auto points = static_cast<std::size_t>(mesh.numberOfPoints());
-  const auto cells = mesh.cellTypes.size();
-  bool good = mesh.offsets.size() == cells + 1 && mesh.offsets.front() == 0 &&
-    mesh.offsets.back() == static_cast<Index>(mesh.connectivity.size());
-  for (const Index node : mesh.connectivity)
-  {
-    good = good && node >= 0 && node < mesh.numberOfPoints();
-  }
-  for (const double coordinate : mesh.points)
-  {
-    good = good && std::isfinite(coordinate);
-  }
-  for (const MeshArray& array : mesh.pointArrays)
-  {
-    good = good && array.size() == points * static_cast<std::size_t>(array.components);
-  }
-  for (const MeshArray& array : mesh.cellArrays)
-  {
-    good = good && array.size() == cells * static_cast<std::size_t>(array.components);
-  }
-  return good;
-}
-
-/// TAUTLINE_FUZZ_SECONDS (2 by default) of mutations of every sample.
-void testMutations()
-{
-  const char* seconds = std::getenv("TAUTLINE_FUZZ_SECONDS");
-  const double limit = seconds ? std::atof(seconds) : 2.0;
-  const std::vector<std::string> samples = { "cube.1.node", "cube.1.ele", "cube.1.face",
-    "quadratic.1.ele", "quadratic.1.face", "cube.smesh", "box.poly", "plate.poly", "zoo.mesh",
-    "zoo.sol", "part.msh", "part22-binary.msh", "wedges.msh", "tent.msh", "house.off",
-    "part-binary.msh" };
-  std::mt19937 random(20261121);
-  long runs = 0, meshes = 0;
-  const auto start = std::chrono::steady_clock::now();
-  const auto elapsed = [&]
-  { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  while (elapsed() < limit)
-  {
-    const std::string& sample = samples[random() % samples.size()];
-    const auto [stem, extension] = splitExtension(sample);
-    for (const char* companion : { "node", "ele", "face", "edge", "mesh", "sol" })
-    {
-      std::remove((output + "/fuzz." + companion).c_str());
-      if (extension != "msh" && extension != "off" &&
-        fileExists(data + "/" + stem + "." + companion))
-      {
-        writeText(output + "/fuzz." + companion, readText(data + "/" + stem + "." + companion));
-      }
-    }
-    const std::string folder = sample == "part-binary.msh" ? output : data;
-    std::string bytes = readText(folder + "/" + sample);
-    for (auto times = 1 + random() % 4; times > 0; --times)
-    {
-      mutate(bytes, random);
-    }
-    const std::string name = output + "/fuzz." + extension;
-    writeText(name, bytes);
-    ++runs;
-    try
-    {
-      const MeshFile mesh = readByName(name, random() % 2);
-      ++meshes;
-      if (!consistent(mesh))
-      {
-        writeText(output + "/fuzz-failure." + extension, bytes);
-        TAUTLINE_CHECK(!"consistent");
-      }
-    }
-    catch (const FileError& error)
-    {
-      TAUTLINE_CHECK(std::string(error.what()).find(output) == 0);
-    }
-  }
-  std::cout << runs << " mutations, " << meshes << " read without complaint\n";
-  TAUTLINE_CHECK(runs > 20 && meshes > 0 && meshes < runs);
-}
-
 /// The parts of two writes, as a process leaves them that is killed between two renames.
 void testMixedSets()
 {
@@ -315,11 +188,9 @@ int TestMalformedFiles(int, char* argv[])
   output = std::string(argv[2]) + "/malformed";
   const std::string makeFolder = "mkdir -p '" + output + "'";
   TAUTLINE_CHECK(std::system(makeFolder.c_str()) == 0);
-  writeGmsh(readGmsh(data + "/part.msh", true), output + "/part-binary.msh", true);
   testTetGenMessages();
   testOtherMessages();
   testHarmlessForms();
   testMixedSets();
-  testMutations();
   return exitCode();
 }

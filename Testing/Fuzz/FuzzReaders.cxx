@@ -1,0 +1,181 @@
+// Mesh files of arbitrary bytes: a reader returns a consistent mesh or throws FileError with the
+// name of the file; what it returns can be written, and reads back the same.
+
+#include "Readers/MeshFileChecks.h"
+#include "FuzzTargets.h"
+
+#include "MeshFileAdapter.h"
+
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+using Read = MeshFile (*)(const std::string&, bool);
+using Write = std::vector<std::string> (*)(const MeshFile&, const std::string&);
+
+/// Files of one set: parts of the bytes that begin with a line "@ending"; the first one is read.
+std::vector<std::pair<std::string, std::string_view>> splitSet(
+  std::string_view bytes, const std::vector<std::string>& endings)
+{
+  std::vector<std::pair<std::string, std::string_view>> parts;
+  while (!bytes.empty() && bytes[0] == '@')
+  {
+    const std::size_t line = bytes.find('\n');
+    const std::string ending(bytes.substr(1, line == bytes.npos ? line : line - 1));
+    if (line == bytes.npos || std::find(endings.begin(), endings.end(), ending) == endings.end())
+    {
+      break;
+    }
+    bytes.remove_prefix(line + 1);
+    const std::size_t next = bytes.find("\n@");
+    parts.emplace_back(ending, bytes.substr(0, next == bytes.npos ? next : next + 1));
+    bytes.remove_prefix(next == bytes.npos ? bytes.size() : next + 1);
+  }
+  return parts;
+}
+
+void expectArrays(const std::vector<MeshArray>& arrays, std::size_t tuples)
+{
+  for (const MeshArray& array : arrays)
+  {
+    expectThat(array.size() == tuples * static_cast<std::size_t>(array.components),
+      "an array has a value per point or cell");
+  }
+}
+
+void expectConsistent(const MeshFile& mesh)
+{
+  const std::size_t cells = mesh.cellTypes.size();
+  expectThat(mesh.offsets.size() == cells + 1 && mesh.offsets.front() == 0 &&
+      mesh.offsets.back() == static_cast<Index>(mesh.connectivity.size()) &&
+      std::is_sorted(mesh.offsets.begin(), mesh.offsets.end()),
+    "offsets enclose the connectivity");
+  for (const Index node : mesh.connectivity)
+  {
+    expectThat(node >= 0 && node < mesh.numberOfPoints(), "the nodes of cells exist");
+  }
+  for (const double coordinate : mesh.points)
+  {
+    expectThat(std::isfinite(coordinate), "coordinates are finite");
+  }
+  for (std::size_t i = 0; i < cells; ++i)
+  {
+    const int nodes = cellNodes(mesh.cellTypes[i]);
+    expectThat(nodes == 0 || mesh.offsets[i + 1] - mesh.offsets[i] == nodes,
+      "a cell has the nodes of its type");
+  }
+  expectArrays(mesh.pointArrays, static_cast<std::size_t>(mesh.numberOfPoints()));
+  expectArrays(mesh.cellArrays, cells);
+}
+
+/// To VTK and back nothing is lost.
+void expectAdapted(const MeshFile& mesh)
+{
+  vtkNew<vtkUnstructuredGrid> grid;
+  toGrid(MeshFile(mesh), grid);
+  const MeshFile back = fromDataSet(grid);
+  expectThat(same(mesh.points, back.points) && mesh.cellTypes == back.cellTypes &&
+      mesh.connectivity == back.connectivity,
+    "VTK has the mesh of the file");
+}
+
+/// Writes the mesh in the format it was read from, and reads that again.
+void expectRoundTrip(const MeshFile& mesh, const std::string& name, Read read, Write write)
+{
+  try
+  {
+    write(mesh, name);
+  }
+  catch (const Error&)
+  {
+    return; // the format cannot hold this mesh
+  }
+  const MeshFile again = read(name, true);
+  expectThat(same(mesh.points, again.points), "points that were written read back");
+  expectThat(mesh.cellTypes == again.cellTypes && mesh.connectivity == again.connectivity,
+    "cells that were written read back");
+}
+
+void readAndCheck(const std::string& name, Read read, Write write)
+{
+  MeshFile mesh;
+  try
+  {
+    read(name, false);
+    mesh = read(name, true);
+  }
+  catch (const FileError& error)
+  {
+    const std::string stem = splitExtension(name).first;
+    expectThat(std::string(error.what()).compare(0, stem.size(), stem) == 0,
+      "the message begins with the name of the file: " + std::string(error.what()));
+    return;
+  }
+  expectConsistent(mesh);
+  expectAdapted(mesh);
+  expectRoundTrip(mesh, fuzzFolder() + "/fuzz-out." + splitExtension(name).second, read, write);
+}
+
+void fuzzSet(
+  std::string_view bytes, const std::vector<std::string>& endings, Read read, Write write)
+{
+  const auto parts = splitSet(bytes, endings);
+  if (parts.empty())
+  {
+    return;
+  }
+  const std::string stem = fuzzFolder() + "/fuzz.";
+  for (const std::string& ending : endings)
+  {
+    std::remove((stem + ending).c_str());
+  }
+  for (const auto& [ending, content] : parts)
+  {
+    writeText(stem + ending, std::string(content));
+  }
+  readAndCheck(stem + parts[0].first, read, write);
+}
+
+void fuzzFile(std::string_view bytes, const char* ending, Read read, Write write)
+{
+  const std::string name = fuzzFolder() + "/fuzz." + ending;
+  writeText(name, std::string(bytes));
+  readAndCheck(name, read, write);
+}
+
+std::vector<std::string> writeGmshText(const MeshFile& mesh, const std::string& name)
+{
+  return writeGmsh(mesh, name, false);
+}
+}
+
+//------------------------------------------------------------------------------
+void fuzzTetGen(std::string_view bytes)
+{
+  fuzzSet(bytes, { "node", "ele", "face", "edge", "poly", "smesh" }, readTetGen, writeTetGen);
+}
+
+//------------------------------------------------------------------------------
+void fuzzMedit(std::string_view bytes)
+{
+  fuzzSet(bytes, { "mesh", "sol" }, readMedit, writeMedit);
+}
+
+//------------------------------------------------------------------------------
+void fuzzGmsh(std::string_view bytes)
+{
+  fuzzFile(bytes, "msh", readGmsh, writeGmshText);
+}
+
+//------------------------------------------------------------------------------
+void fuzzOff(std::string_view bytes)
+{
+  fuzzFile(bytes, "off", readOff, writeOff);
+}
+}

@@ -1,0 +1,46 @@
+#include "FuzzTargets.h"
+
+#include <cstdlib>
+#include <stdexcept>
+
+namespace tautline
+{
+const std::vector<FuzzTarget>& fuzzTargets()
+{
+  static const std::vector<FuzzTarget> targets = { { "tetgen", fuzzTetGen }, { "medit", fuzzMedit },
+    { "gmsh", fuzzGmsh }, { "off", fuzzOff }, { "image", fuzzImage },
+    { "imagelist", fuzzImageList }, { "silhouette", fuzzSilhouette }, { "quality", fuzzQuality },
+    { "mesh", fuzzMesh }, { "move", fuzzMove } };
+  return targets;
+}
+
+const FuzzTarget* findFuzzTarget(const std::string& name)
+{
+  for (const FuzzTarget& target : fuzzTargets())
+  {
+    if (name == target.name)
+    {
+      return &target;
+    }
+  }
+  return nullptr;
+}
+
+const std::string& fuzzFolder()
+{
+  static const std::string folder = []
+  {
+    const char* given = std::getenv("TAUTLINE_FUZZ_DIR");
+    return std::string(given ? given : "/tmp");
+  }();
+  return folder;
+}
+
+void expectThat(bool holds, const std::string& property)
+{
+  if (!holds)
+  {
+    throw std::logic_error("not true: " + property);
+  }
+}
+}
