@@ -1,0 +1,33 @@
+// The driver of libFuzzer: TAUTLINE_FUZZ_TARGET names the target; the arguments are libFuzzer's.
+
+#include "FuzzTargets.h"
+
+#include "vtkObject.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+namespace
+{
+const tautline::FuzzTarget* target = nullptr;
+}
+
+extern "C" int LLVMFuzzerInitialize(int*, char***)
+{
+  const char* name = std::getenv("TAUTLINE_FUZZ_TARGET");
+  target = tautline::findFuzzTarget(name ? name : "");
+  if (!target)
+  {
+    std::fprintf(stderr, "TAUTLINE_FUZZ_TARGET names no target: %s\n", name ? name : "(not set)");
+    std::exit(EXIT_FAILURE);
+  }
+  vtkObject::GlobalWarningDisplayOff();
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  target->run({ reinterpret_cast<const char*>(data), size }); // an exception ends the program
+  return 0;
+}

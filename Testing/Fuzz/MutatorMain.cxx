@@ -1,0 +1,32 @@
+// The driver without libFuzzer: TautlineFuzzer TARGET CORPUS SECONDS SEED INPUT. The file INPUT has
+// the bytes that failed.
+
+#include "Mutator.h"
+
+#include "vtkObject.h"
+
+#include <cstdlib>
+#include <iostream>
+
+int main(int argc, char* argv[])
+{
+  const tautline::FuzzTarget* target = argc == 6 ? tautline::findFuzzTarget(argv[1]) : nullptr;
+  if (!target)
+  {
+    std::cerr << "usage: " << argv[0] << " TARGET CORPUS SECONDS SEED INPUT\n";
+    return EXIT_FAILURE;
+  }
+  vtkObject::GlobalWarningDisplayOff();
+  try
+  {
+    const long runs = tautline::runTarget(*target, tautline::readCorpus(argv[2]),
+      std::atof(argv[3]), static_cast<unsigned>(std::atoi(argv[4])), argv[5]);
+    std::cout << runs << " runs\n";
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << argv[1] << ": " << error.what() << "; the input is in " << argv[5] << "\n";
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# fuzz.sh BUILD SECONDS: runs every fuzz target for so many seconds, two at a time, and fails on any finding.
+# New inputs that reach new code are kept in BUILD/corpus; an input that fails is saved in BUILD/findings. To keep
+# one as a regression test, mend the cause and copy it to Testing/Fuzz/Corpus/TARGET.
+set -euo pipefail
+build="$1" seconds="$2"
+top="$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)"
+fuzzer="$build/bin/TautlineFuzzer"
+targets=("$top"/Corpus/*/)
+parallel=2
+# Memory and time of one input: far above what any input of the corpus needs.
+memory=2048 longest=20
+
+work="$(mktemp -d "${TMPDIR:-/tmp}/tautline-fuzz-XXXXXX")"
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$build/findings"
+[[ -w /dev/shm ]] && { rm -rf "$work"; work="$(mktemp -d /dev/shm/tautline-fuzz-XXXXXX)"; } # files in memory
+
+fuzz() {
+  local target="$1"
+  export TAUTLINE_FUZZ_TARGET="$target" TAUTLINE_FUZZ_DIR="$work/$target"
+  mkdir -p "$TAUTLINE_FUZZ_DIR" "$build/corpus/$target"
+  if "$fuzzer" -help=1 2>/dev/null | grep -q max_total_time; then
+    "$fuzzer" -max_total_time="$seconds" -timeout="$longest" -rss_limit_mb="$memory" -max_len=16384 -print_final_stats=1 \
+      -artifact_prefix="$build/findings/$target-" "$build/corpus/$target" "$top/Corpus/$target"
+  else
+    "$fuzzer" "$target" "$top/Corpus/$target" "$seconds" "$RANDOM" "$build/findings/$target-input"
+    rm -f "$build/findings/$target-input"
+  fi
+}
+
+failed=()
+finish() { # the oldest of the running ones
+  local target="${running[0]%%:*}" pid="${running[0]##*:}"
+  running=("${running[@]:1}")
+  if wait "$pid"; then
+    echo "fuzz: $target: $(grep -oE 'number_of_executed_units: .*|^[0-9]+ runs' "$work/$target.log" | grep -oE '[0-9]+') inputs"
+  else
+    failed+=("$target")
+    tail -n 60 "$work/$target.log" >&2
+    echo "fuzz: $target FAILED; the input is in $build/findings" >&2
+  fi
+}
+running=()
+for folder in "${targets[@]}"; do
+  target="$(basename "$folder")"
+  fuzz "$target" >"$work/$target.log" 2>&1 &
+  running+=("$target:$!")
+  ((${#running[@]} < parallel)) || finish
+done
+while ((${#running[@]} > 0)); do finish; done
+((${#failed[@]} == 0)) || { echo "fuzz: findings in ${failed[*]}" >&2; exit 1; }
