@@ -4,6 +4,9 @@ Every writer of the package and every own writer that ParaView uses is tried. Af
 file that belongs to it, must be the older or a complete new one.
 """
 
+import argparse
+import contextlib
+import io
 import os
 import random
 import shutil
@@ -16,7 +19,9 @@ from pathlib import Path
 
 import tautline as tl
 from checks import DATA, OUT, refused, shell, square
-from tautline import _files
+from tautline import _files, studies
+from tautline.__main__ import _parser as shell_parser
+from tautline.__main__ import main as shell_main
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
@@ -291,6 +296,59 @@ def test_name_first() -> None:
     assert "there is no directory" in shell("quality", no_mesh, "--csv", absent / "x.csv", code=1)
     (FOLDER / "folder.vtu").mkdir(exist_ok=True)
     refused("it is a directory", tl.write, no_mesh, FOLDER / "folder.vtu")
+
+
+def commands() -> dict[str, argparse.ArgumentParser]:
+    """The commands of the shell by name."""
+    found = [a for a in shell_parser()._actions if isinstance(a, argparse._SubParsersAction)]
+    return {name: parser for name, parser in found[0].choices.items() if name != "study"}
+
+
+def call(arguments: list[str]) -> str:
+    """What a command prints to stderr before it exits with 1."""
+    with contextlib.redirect_stderr(io.StringIO()) as said:
+        assert shell_main(arguments) == 1, arguments
+    return said.getvalue()
+
+
+def test_every_output_first() -> None:
+    """Every command with an output refuses a name that cannot be written before it reads its input."""
+    absent, no_mesh = FOLDER / "absent", str(FOLDER / "no-mesh.vtu")
+    shutil.rmtree(absent, ignore_errors=True)
+    needed = {"warp": ["--target", no_mesh]}  # options of which one must be given
+    outputs = 0
+    for name, parser in commands().items():
+        inputs, options = [], []
+        for action in parser._actions:
+            writes = action.dest in ("output", "csv")
+            named = action.nargs != 0 and (action.help or "").startswith("write ")
+            assert writes or not named, f"{name}: --{action.dest} is not checked"
+            if writes:
+                options.append(action)
+            elif not action.option_strings and action.nargs not in ("*", "?"):
+                inputs.append(action.choices[0] if action.choices else no_mesh)
+        for option in options:
+            others = [o for o in options if o.required and o is not option and o.option_strings]
+            fixed = inputs + needed.get(name, []) + [text for o in others for text in (o.option_strings[0], "x.vtu")]
+            for file, text in ((absent / "x.vtu", "there is no directory"), (FOLDER / "x.docx", ".docx")):
+                if option.dest == "csv" and file.suffix == ".docx":
+                    continue  # a table may have any name
+                flag = option.option_strings[-1:]
+                error = call([name, *fixed, *flag, str(file)])
+                assert text in error and "no-mesh" not in error, (name, option.dest, error)
+                outputs += 1
+    assert outputs > 30, outputs
+
+
+def test_every_study_first() -> None:
+    """Every study refuses a directory that cannot be made before it works."""
+    blocked = FOLDER / "a-file"
+    blocked.write_text("")
+    for name in studies.names():
+        signal.alarm(20)  # ends the test with an error
+        refused("cannot be made", studies.main, [name, "--out", str(blocked / "out")])
+    signal.alarm(0)
+    assert len(studies.names()) > 20
 
 
 def test_streams() -> None:

@@ -126,7 +126,7 @@ def picture(mesh: Path, file: Path) -> None:
 
 def main(mesh: Path | None, output: Path) -> None:
     """Write quality.vtu, quality.csv and quality.png of a mesh, better.vtu and better.png of the improved one."""
-    output.mkdir(parents=True, exist_ok=True)
+    _files.make_folder(output)
     mesh = mesh or start(output)
     # The colours of the plugin, which need not be built for the demo.
     vtkSMSettings.GetInstance().AddCollectionFromString(tautline.vtkElementQuality.GetColorMapSettings(), LOW_PRIORITY)
