@@ -191,10 +191,15 @@ bool vtkDomainSource::HasMeshing()
 //------------------------------------------------------------------------------
 void vtkDomainSource::SetDomain(int domain)
 {
-  const int clamped = std::max(0, std::min(domain, vtkDomainSource::GetNumberOfDomains() - 1));
-  if (this->Domain != clamped)
+  const std::string error = tautline::rangeError(
+    "Domain", domain, 0, vtkDomainSource::GetNumberOfDomains() - 1, this->Domain);
+  if (!error.empty())
   {
-    this->Domain = clamped;
+    vtkErrorMacro(<< error);
+  }
+  else if (this->Domain != domain)
+  {
+    this->Domain = domain;
     this->Modified();
   }
 }

@@ -29,6 +29,7 @@
 #define vtkDomainSource_h
 
 #include "TautlineDomainsModule.h" // for export macro
+#include "vtkTautlineSetRange.h"   // for the setters
 #include "vtkUnstructuredGridAlgorithm.h"
 
 #include <string> // for the name
@@ -42,7 +43,8 @@ public:
 
   ///@{
   /**
-   * Which domain, as an index into GetDomainName(). The default is 0, the wrench.
+   * Which domain, as an index into GetDomainName(). The default is 0, the wrench. Another number is
+   * an error, and the domain stays.
    */
   void SetDomain(int domain);
   vtkGetMacro(Domain, int);
@@ -71,7 +73,7 @@ public:
    * Number of cells; 0 is that of the dissertation's example. The default is 0. The square is
    * determined by ElementSize instead.
    */
-  vtkSetClampMacro(NumberOfCells, vtkIdType, 0, 100000000);
+  vtkTautlineSetRangeMacro(NumberOfCells, vtkIdType, 0, 100000000);
   vtkGetMacro(NumberOfCells, vtkIdType);
   ///@}
 
@@ -79,7 +81,7 @@ public:
   /**
    * How much of its motion a moving boundary makes; negative is the other way. The default is 1.
    */
-  vtkSetClampMacro(Amount, double, -10.0, 10.0);
+  vtkTautlineSetRangeMacro(Amount, double, -10.0, 10.0);
   vtkGetMacro(Amount, double);
   ///@}
 
@@ -87,7 +89,7 @@ public:
   /**
    * Square only: leg of the isotropic right triangle. The default is 0.1.
    */
-  vtkSetClampMacro(ElementSize, double, 1e-4, 1.0);
+  vtkTautlineSetRangeMacro(ElementSize, double, 1e-4, 1.0);
   vtkGetMacro(ElementSize, double);
   ///@}
 
@@ -95,7 +97,7 @@ public:
   /**
    * Square only: ratio of the legs, at the same number of triangles. The default is 1.
    */
-  vtkSetClampMacro(AspectRatio, double, 1.0, 1e4);
+  vtkTautlineSetRangeMacro(AspectRatio, double, 1.0, 1e4);
   vtkGetMacro(AspectRatio, double);
   ///@}
 
@@ -103,7 +105,7 @@ public:
   /**
    * Square only: minimum width of the interaction layer. The default is 0.2.
    */
-  vtkSetClampMacro(LayerWidth, double, 0.0, 10.0);
+  vtkTautlineSetRangeMacro(LayerWidth, double, 0.0, 10.0);
   vtkGetMacro(LayerWidth, double);
   ///@}
 

@@ -1,0 +1,58 @@
+/**
+ * @file vtkTautlineSetRange.h
+ * @brief A setter of a number with a range; a value outside is refused with a message.
+ *
+ *     vtkTautlineSetRangeMacro(Threads, int, 0, 1024);
+ *
+ * In contrast to vtkSetClampMacro, which replaces a value outside the range by the nearest one
+ * without a message, the property keeps its value, and an error names the property, the value, the
+ * range and the value that is kept. NaN is outside of every range. GetThreadsMinValue() and
+ * GetThreadsMaxValue() return the range.
+ */
+#ifndef vtkTautlineSetRange_h
+#define vtkTautlineSetRange_h
+
+#include <sstream>
+#include <string>
+
+namespace tautline
+{
+/// The message about a value outside its range; empty for a value inside.
+template <class T>
+std::string rangeError(const char* name, T value, T low, T high, T kept)
+{
+  if (value >= low && value <= high)
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text << name << " is " << value << "; from " << low << " to " << high << " is allowed; " << kept
+       << " is kept";
+  return text.str();
+}
+}
+
+#define vtkTautlineSetRangeMacro(name, type, low, high)                                        \
+  virtual void Set##name(type value)                                                           \
+  {                                                                                            \
+    const std::string error = tautline::rangeError<type>(#name, value, low, high, this->name); \
+    if (!error.empty())                                                                        \
+    {                                                                                          \
+      vtkErrorMacro(<< error);                                                                 \
+    }                                                                                          \
+    else if (this->name != value)                                                              \
+    {                                                                                          \
+      this->name = value;                                                                      \
+      this->Modified();                                                                        \
+    }                                                                                          \
+  }                                                                                            \
+  virtual type Get##name##MinValue()                                                           \
+  {                                                                                            \
+    return low;                                                                                \
+  }                                                                                            \
+  virtual type Get##name##MaxValue()                                                           \
+  {                                                                                            \
+    return high;                                                                               \
+  }
+
+#endif
