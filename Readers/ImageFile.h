@@ -10,7 +10,7 @@
  * |---|---|---|
  * | PNG | 89 P N G 0D 0A 1A 0A | all; the check sums of all chunks are compared |
  * | JPEG | FF D8 FF | baseline and progressive, grey or YCbCr |
- * | TIFF | I I 2A 00, M M 00 2A | one page; 1 to 4 samples of 8 or 16 bits; not compressed, LZW or PackBits |
+ * | TIFF | I I 2A 00, M M 00 2A | one page, 8 or 16 bits; not compressed, LZW, PackBits |
  * | BMP | B M | 8 or 24 bits per pixel, not compressed |
  * | PGM, PPM | P5, P6 | binary, values up to 255 |
  */

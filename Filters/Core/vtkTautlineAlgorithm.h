@@ -32,6 +32,7 @@
 
 #include "TautlineCoreModule.h" // for export macro
 #include "vtkDataObjectAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 #include <functional>       // for work
 #include <initializer_list> // for ports
@@ -51,7 +52,7 @@ public:
    * Number of threads, 0 to 1024; 0, the default, is one per core. The result does not depend on
    * it.
    */
-  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkTautlineSetRangeMacro(Threads, int, 0, 1024);
   vtkGetMacro(Threads, int);
   ///@}
 

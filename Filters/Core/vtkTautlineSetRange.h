@@ -6,17 +6,32 @@
  *
  * In contrast to vtkSetClampMacro, which replaces a value outside the range by the nearest one
  * without a message, the property keeps its value, and an error names the property, the value, the
- * range and the value that is kept. NaN is outside of every range. GetThreadsMinValue() and
+ * range and the value that is kept. NaN is outside of every range; infinity counts as the largest
+ * number, so that it is inside where there is no limit (VTK_DOUBLE_MAX). GetThreadsMinValue() and
  * GetThreadsMaxValue() return the range.
  */
 #ifndef vtkTautlineSetRange_h
 #define vtkTautlineSetRange_h
 
+#include <limits>
 #include <sstream>
 #include <string>
+#include <type_traits>
 
 namespace tautline
 {
+/// The number nearest to a value, which may be infinite.
+template <class T>
+T nearestNumber(T value)
+{
+  if constexpr (std::is_floating_point_v<T>)
+  {
+    constexpr T Largest = std::numeric_limits<T>::max();
+    return value > Largest ? Largest : value < -Largest ? -Largest : value;
+  }
+  return value;
+}
+
 /// The message about a value outside its range; empty for a value inside.
 template <class T>
 std::string rangeError(const char* name, T value, T low, T high, T kept)
@@ -33,8 +48,9 @@ std::string rangeError(const char* name, T value, T low, T high, T kept)
 }
 
 #define vtkTautlineSetRangeMacro(name, type, low, high)                                        \
-  virtual void Set##name(type value)                                                           \
+  virtual void Set##name(type given)                                                           \
   {                                                                                            \
+    const type value = tautline::nearestNumber<type>(given);                                   \
     const std::string error = tautline::rangeError<type>(#name, value, low, high, this->name); \
     if (!error.empty())                                                                        \
     {                                                                                          \

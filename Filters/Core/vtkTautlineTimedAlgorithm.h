@@ -13,6 +13,7 @@
 
 #include "TautlineCoreModule.h" // for export macro
 #include "vtkTautlineAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class TAUTLINECORE_EXPORT vtkTautlineTimedAlgorithm : public vtkTautlineAlgorithm
 {
@@ -25,7 +26,7 @@ public:
    * Seconds for each data set and time step, at least 0; 0 is no limit. The default is 600, unless
    * a filter documents another one.
    */
-  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);
   ///@}
 

@@ -75,7 +75,8 @@
 
 #include "TautlineDeformationModule.h" // for export macro
 #include "vtkMeshMotionAlgorithm.h"
-#include "vtkSmartPointer.h" // for Transform
+#include "vtkSmartPointer.h"     // for Transform
+#include "vtkTautlineSetRange.h" // for the setters
 
 #include <array>  // for RegionCoefficients
 #include <memory> // for Session
@@ -107,7 +108,7 @@ public:
   };
   ///@{
   /// How the boundary moves. The default is TRANSFORM.
-  vtkSetClampMacro(Motion, int, DISPLACEMENT, TIME_STEPS);
+  vtkTautlineSetRangeMacro(Motion, int, DISPLACEMENT, TIME_STEPS);
   vtkGetMacro(Motion, int);
   ///@}
 
@@ -116,7 +117,7 @@ public:
    * How much of the motion, along its path: 0 is the input (bitwise), 1 all; above 1 it is
    * extrapolated. At least 0. The default is 1.
    */
-  vtkSetClampMacro(Amount, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(Amount, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Amount, double);
   ///@}
 
@@ -131,7 +132,7 @@ public:
   ///@{
   /// Which point of the target corresponds to which point of the mesh. The default is
   /// AUTOMATIC_MATCH; the summary names it.
-  vtkSetClampMacro(Correspondence, int, AUTOMATIC_MATCH, CLOSEST_POINT);
+  vtkTautlineSetRangeMacro(Correspondence, int, AUTOMATIC_MATCH, CLOSEST_POINT);
   vtkGetMacro(Correspondence, int);
   ///@}
 
@@ -159,7 +160,7 @@ public:
    * Which part of the boundary moves, by a transform or to a target; the rest of it stays. Of
    * values and selections the points on the boundary count. The default is AUTOMATIC_PART.
    */
-  vtkSetClampMacro(MovedPart, int, AUTOMATIC_PART, SELECTION);
+  vtkTautlineSetRangeMacro(MovedPart, int, AUTOMATIC_PART, SELECTION);
   vtkGetMacro(MovedPart, int);
   ///@}
 
@@ -186,7 +187,7 @@ public:
   };
   ///@{
   /// The default is MATRIX.
-  vtkSetClampMacro(TransformKind, int, MATRIX, BENDING);
+  vtkTautlineSetRangeMacro(TransformKind, int, MATRIX, BENDING);
   vtkGetMacro(TransformKind, int);
   ///@}
 
@@ -250,7 +251,7 @@ public:
    * From which mesh a time step is warped, if the input or the target has several. Either way the
    * result at a time is the same in whatever order times are requested. The default is FIRST_STEP.
    */
-  vtkSetClampMacro(StartFrom, int, FIRST_STEP, PREVIOUS_STEP);
+  vtkTautlineSetRangeMacro(StartFrom, int, FIRST_STEP, PREVIOUS_STEP);
   vtkGetMacro(StartFrom, int);
   ///@}
 
@@ -270,7 +271,7 @@ public:
   };
   ///@{
   /// How the interior follows, see tautline::WarpMethod. The default is HYBRID.
-  vtkSetClampMacro(Method, int, HYBRID, WEIGHTED_LAPLACIAN);
+  vtkTautlineSetRangeMacro(Method, int, HYBRID, WEIGHTED_LAPLACIAN);
   vtkGetMacro(Method, int);
   ///@}
 
@@ -284,7 +285,7 @@ public:
   };
   ///@{
   /// The coefficients of HYBRID and ANISOTROPIC_FEMWARP. The default is DISPLACEMENT_SUMS.
-  vtkSetClampMacro(Coefficients, int, DISPLACEMENT_SUMS, PER_REGION);
+  vtkTautlineSetRangeMacro(Coefficients, int, DISPLACEMENT_SUMS, PER_REGION);
   vtkGetMacro(Coefficients, int);
   ///@}
 
@@ -306,9 +307,9 @@ public:
    * element to invert, up to MaximumSteps. Steps of a transform follow its path. The defaults are 1
    * and 100.
    */
-  vtkSetClampMacro(Steps, int, 0, 10000);
+  vtkTautlineSetRangeMacro(Steps, int, 0, 10000);
   vtkGetMacro(Steps, int);
-  vtkSetClampMacro(MaximumSteps, int, 1, 10000);
+  vtkTautlineSetRangeMacro(MaximumSteps, int, 1, 10000);
   vtkGetMacro(MaximumSteps, int);
   ///@}
 
@@ -322,15 +323,15 @@ public:
   vtkSetMacro(AutomaticSolver, bool);
   vtkGetMacro(AutomaticSolver, bool);
   vtkBooleanMacro(AutomaticSolver, bool);
-  vtkSetClampMacro(Solver, int, 0, 4);
+  vtkTautlineSetRangeMacro(Solver, int, 0, 4);
   vtkGetMacro(Solver, int);
-  vtkSetClampMacro(Preconditioner, int, 0, 6);
+  vtkTautlineSetRangeMacro(Preconditioner, int, 0, 6);
   vtkGetMacro(Preconditioner, int);
   ///@}
 
   ///@{
   /// Of the residual, relative; 0 to 1. The default is 1e-10.
-  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(Tolerance, double, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
   ///@}
 
@@ -346,11 +347,11 @@ public:
    * default is 1. ITERATIVE_STIFFENING: by what factor (above 1, default 2) inverted elements get
    * stiffer, how often at most (default 50).
    */
-  vtkSetClampMacro(StiffeningPower, double, 0.0, 10.0);
+  vtkTautlineSetRangeMacro(StiffeningPower, double, 0.0, 10.0);
   vtkGetMacro(StiffeningPower, double);
-  vtkSetClampMacro(StiffeningFactor, double, 1.0, 1e6);
+  vtkTautlineSetRangeMacro(StiffeningFactor, double, 1.0, 1e6);
   vtkGetMacro(StiffeningFactor, double);
-  vtkSetClampMacro(MaximumStiffenings, int, 0, 10000);
+  vtkTautlineSetRangeMacro(MaximumStiffenings, int, 0, 10000);
   vtkGetMacro(MaximumStiffenings, int);
   ///@}
 
@@ -365,9 +366,9 @@ public:
    * RADIAL_BASIS: the radius of the functions (0, the default: chosen) and how well the boundary is
    * met, relative to the largest displacement (default 1e-3).
    */
-  vtkSetClampMacro(SupportRadius, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(SupportRadius, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(SupportRadius, double);
-  vtkSetClampMacro(FitTolerance, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(FitTolerance, double, 0.0, 1.0);
   vtkGetMacro(FitTolerance, double);
   ///@}
 
@@ -380,13 +381,13 @@ public:
   vtkSetMacro(UntangleFirst, bool);
   vtkGetMacro(UntangleFirst, bool);
   vtkBooleanMacro(UntangleFirst, bool);
-  vtkSetClampMacro(UntanglingBeta, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(UntanglingBeta, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(UntanglingBeta, double);
   ///@}
 
   ///@{
   /// HYBRID: maximum number of iterations of the optimization of shape. The default is 50.
-  vtkSetClampMacro(MaximumIterations, int, 0, 1000000);
+  vtkTautlineSetRangeMacro(MaximumIterations, int, 0, 1000000);
   vtkGetMacro(MaximumIterations, int);
   ///@}
 

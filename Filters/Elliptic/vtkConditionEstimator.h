@@ -28,6 +28,7 @@
 #define vtkConditionEstimator_h
 
 #include "vtkEllipticAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class TAUTLINEELLIPTIC_EXPORT vtkConditionEstimator : public vtkEllipticAlgorithm
 {
@@ -46,14 +47,14 @@ public:
   ///@{
   /// RITZ_VALUES of a Krylov method: cheap, without error bounds. ACCURATE: to Tolerance.
   /// AUTOMATIC, the default, is ACCURATE.
-  vtkSetClampMacro(Method, int, AUTOMATIC, ACCURATE);
+  vtkTautlineSetRangeMacro(Method, int, AUTOMATIC, ACCURATE);
   vtkGetMacro(Method, int);
   ///@}
 
   ///@{
   /// P, see vtkEllipticSolver::Preconditioners. The default is BoomerAMG (3); 6, none, leaves P^-1
   /// A out.
-  vtkSetClampMacro(Preconditioner, int, 0, 6);
+  vtkTautlineSetRangeMacro(Preconditioner, int, 0, 6);
   vtkGetMacro(Preconditioner, int);
   ///@}
 

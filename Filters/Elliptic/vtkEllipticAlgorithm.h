@@ -34,6 +34,7 @@
 #define vtkEllipticAlgorithm_h
 
 #include "TautlineEllipticModule.h" // for export macro
+#include "vtkTautlineSetRange.h"    // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
 
 #include <chrono>     // for Begin
@@ -67,7 +68,7 @@ public:
    * POISSON, -laplace u = f (the default); ELLIPTIC, -alpha u_xx - beta u_yy - gamma u_zz + a u =
    * f; ELASTICITY, -div(lambda (div u) I + 2 mu eps(u)) = f.
    */
-  vtkSetClampMacro(Equation, int, POISSON, ELASTICITY);
+  vtkTautlineSetRangeMacro(Equation, int, POISSON, ELASTICITY);
   vtkGetMacro(Equation, int);
   ///@}
 
@@ -121,7 +122,7 @@ public:
   ///@{
   /// PLANE_STRAIN, a slice of a long body (the default), or PLANE_STRESS, a thin sheet. Planar
   /// meshes only.
-  vtkSetClampMacro(PlaneState, int, PLANE_STRAIN, PLANE_STRESS);
+  vtkTautlineSetRangeMacro(PlaneState, int, PLANE_STRAIN, PLANE_STRESS);
   vtkGetMacro(PlaneState, int);
   ///@}
 
@@ -134,7 +135,7 @@ public:
   };
   ///@{
   /// f: CONSTANT (the default), ARRAY (array 1) or EXPRESSION.
-  vtkSetClampMacro(SourceType, int, CONSTANT, EXPRESSION);
+  vtkTautlineSetRangeMacro(SourceType, int, CONSTANT, EXPRESSION);
   vtkGetMacro(SourceType, int);
   ///@}
 
@@ -170,7 +171,7 @@ public:
    * those selected at input port 1. On the rest of the boundary the natural condition holds: no
    * flux, no traction.
    */
-  vtkSetClampMacro(FixedPart, int, WHOLE_BOUNDARY, ONLY_CHOSEN);
+  vtkTautlineSetRangeMacro(FixedPart, int, WHOLE_BOUNDARY, ONLY_CHOSEN);
   vtkGetMacro(FixedPart, int);
   ///@}
 
@@ -182,7 +183,7 @@ public:
 
   ///@{
   /// The solution at fixed points: CONSTANT (the default), ARRAY (array 2) or EXPRESSION.
-  vtkSetClampMacro(GivenType, int, CONSTANT, EXPRESSION);
+  vtkTautlineSetRangeMacro(GivenType, int, CONSTANT, EXPRESSION);
   vtkGetMacro(GivenType, int);
   ///@}
 

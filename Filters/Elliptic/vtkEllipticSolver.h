@@ -34,6 +34,7 @@
 #define vtkEllipticSolver_h
 
 #include "vtkKrylovAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class vtkDataSet;
 
@@ -60,7 +61,7 @@ public:
   };
   ///@{
   /// The method. The default is CG.
-  vtkSetClampMacro(Solver, int, CG, DIRECT);
+  vtkTautlineSetRangeMacro(Solver, int, CG, DIRECT);
   vtkGetMacro(Solver, int);
   ///@}
 
@@ -81,7 +82,7 @@ public:
    * aggregation, or none. With several processes SSOR, ILU and incomplete Cholesky work in the
    * block of each process.
    */
-  vtkSetClampMacro(Preconditioner, int, JACOBI, NONE);
+  vtkTautlineSetRangeMacro(Preconditioner, int, JACOBI, NONE);
   vtkGetMacro(Preconditioner, int);
   ///@}
 

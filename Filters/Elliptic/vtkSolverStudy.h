@@ -24,6 +24,7 @@
 #define vtkSolverStudy_h
 
 #include "vtkKrylovAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 #include <vector> // for combinations
 
@@ -58,14 +59,14 @@ public:
 
   ///@{
   /// How often each is run, 1 to 100; the best time counts. The default is 1.
-  vtkSetClampMacro(Repetitions, int, 1, 100);
+  vtkTautlineSetRangeMacro(Repetitions, int, 1, 100);
   vtkGetMacro(Repetitions, int);
   ///@}
 
   ///@{
   /// Seconds for each combination, with its set-up; 0 is no limit. The default is 60. TimeLimit is
   /// that of the whole study. The next combination waits for a set-up that was given up.
-  vtkSetClampMacro(CombinationTimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(CombinationTimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(CombinationTimeLimit, double);
   ///@}
 

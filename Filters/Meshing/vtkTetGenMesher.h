@@ -30,6 +30,7 @@
 
 #include "TautlineMeshingModule.h" // for export macro
 #include "vtkBoundaryMesher.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class TAUTLINEMESHING_EXPORT vtkTetGenMesher : public vtkBoundaryMesher
 {
@@ -43,7 +44,7 @@ public:
    * Largest ratio of circumradius and shortest edge of a tetrahedron; smaller is better, 1.1 and
    * less seldom ends, 0 is no bound. The default is 1.4.
    */
-  vtkSetClampMacro(RadiusEdgeRatio, double, 0.0, 100.0);
+  vtkTautlineSetRangeMacro(RadiusEdgeRatio, double, 0.0, 100.0);
   vtkGetMacro(RadiusEdgeRatio, double);
   ///@}
 
@@ -51,7 +52,7 @@ public:
   /**
    * Smallest dihedral angle aimed at, degrees. The default is 10.
    */
-  vtkSetClampMacro(MinimumDihedralAngle, double, 0.0, 60.0);
+  vtkTautlineSetRangeMacro(MinimumDihedralAngle, double, 0.0, 60.0);
   vtkGetMacro(MinimumDihedralAngle, double);
   ///@}
 
@@ -59,7 +60,7 @@ public:
   /**
    * Largest volume of a tetrahedron; 0 is no bound. The default is 0.
    */
-  vtkSetClampMacro(Volume, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(Volume, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Volume, double);
   ///@}
 
@@ -77,7 +78,7 @@ public:
    * Seconds TetGen may take; 0 is no limit. On some surfaces it does not terminate. The default is
    * 3600.
    */
-  vtkSetClampMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);
   ///@}
 

@@ -27,6 +27,7 @@
 
 #include "TautlineMeshingModule.h" // for export macro
 #include "vtkBoundaryMesher.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class TAUTLINEMESHING_EXPORT vtkTriangleMesher : public vtkBoundaryMesher
 {
@@ -40,7 +41,7 @@ public:
    * Smallest angle of a triangle, degrees. Up to 20.7 the refinement ends for certain. The default
    * is 20.7.
    */
-  vtkSetClampMacro(MinimumAngle, double, 0.0, 35.0);
+  vtkTautlineSetRangeMacro(MinimumAngle, double, 0.0, 35.0);
   vtkGetMacro(MinimumAngle, double);
   ///@}
 
@@ -48,7 +49,7 @@ public:
   /**
    * Longest edge allowed; 0 is no bound. The default is 0.
    */
-  vtkSetClampMacro(Size, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(Size, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Size, double);
   ///@}
 
@@ -57,7 +58,7 @@ public:
    * With UseSizeArray, away from the input points the allowed edge grows by this times the
    * distance. The default is 0.3.
    */
-  vtkSetClampMacro(Gradation, double, 0.0, 10.0);
+  vtkTautlineSetRangeMacro(Gradation, double, 0.0, 10.0);
   vtkGetMacro(Gradation, double);
   ///@}
 

@@ -69,7 +69,8 @@
 
 #include "TautlineOptimizationModule.h" // for export macro
 #include "vtkMeshMotionAlgorithm.h"
-#include "vtkTimeStamp.h" // for RunTime
+#include "vtkTautlineSetRange.h" // for the setters
+#include "vtkTimeStamp.h"        // for RunTime
 
 #include <memory> // for Runs
 #include <string> // for Reason
@@ -108,7 +109,7 @@ public:
    * stopping criteria (but for the time limit), see tautline::applyPreset(); those below are for
    * CUSTOM. The default is BEST_SHAPE.
    */
-  vtkSetClampMacro(Preset, int, CUSTOM, WORST_ELEMENT);
+  vtkTautlineSetRangeMacro(Preset, int, CUSTOM, WORST_ELEMENT);
   vtkGetMacro(Preset, int);
   ///@}
 
@@ -190,7 +191,7 @@ public:
   ///@{
   /// How target metrics combine the corners of a cell, as in vtkElementQuality. The default is
   /// MEAN.
-  vtkSetClampMacro(Combination, int, MEAN, POWER_MEAN);
+  vtkTautlineSetRangeMacro(Combination, int, MEAN, POWER_MEAN);
   vtkGetMacro(Combination, int);
   ///@}
 
@@ -215,7 +216,7 @@ public:
   ///@{
   /// How several objectives become one, see tautline/Objectives/Scalarization.h. The default is
   /// EXPONENTIAL_SUM.
-  vtkSetClampMacro(Scalarization, int, EXPONENTIAL_SUM, RAO);
+  vtkTautlineSetRangeMacro(Scalarization, int, EXPONENTIAL_SUM, RAO);
   vtkGetMacro(Scalarization, int);
   ///@}
 
@@ -266,27 +267,27 @@ public:
    * NEWTON_CONJUGATE_GRADIENT starts from the input; should a sweep fail to reduce several
    * objectives, LIMITED_MEMORY_BFGS continues.
    */
-  vtkSetClampMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);
+  vtkTautlineSetRangeMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);
   vtkGetMacro(Optimizer, int);
   ///@}
 
   ///@{
   /// Sweeps of the local algorithms, iterations of the others. The default is 300.
-  vtkSetClampMacro(MaximumIterations, int, 0, 1000000);
+  vtkTautlineSetRangeMacro(MaximumIterations, int, 0, 1000000);
   vtkGetMacro(MaximumIterations, int);
   ///@}
 
   ///@{
   /// Stop when the gradient's norm has fallen by this factor; 0: never. The default is 1e-6. Not
   /// used by NEWTON_CONJUGATE_GRADIENT.
-  vtkSetClampMacro(GradientNorm, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(GradientNorm, double, 0.0, 1.0);
   vtkGetMacro(GradientNorm, double);
   ///@}
 
   ///@{
   /// Stop when an iteration reduces the objective by less than this fraction; 0: never. The
   /// default is 1e-5.
-  vtkSetClampMacro(RelativeChange, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(RelativeChange, double, 0.0, 1.0);
   vtkGetMacro(RelativeChange, double);
   ///@}
 
@@ -302,7 +303,7 @@ public:
    * Section 2.4: stop when this fraction of the possible reduction of the objective is reached, 0
    * to 1; 1, the default: never. The possible reduction is that to BestKnown, or an estimate.
    */
-  vtkSetClampMacro(Reduction, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(Reduction, double, 0.0, 1.0);
   vtkGetMacro(Reduction, double);
   ///@}
 
@@ -344,7 +345,7 @@ public:
    * stay where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the
    * selection at port 2 holds them or a cell of theirs. The default is FIXED.
    */
-  vtkSetClampMacro(Boundary, int, FIXED, ON_SURFACE);
+  vtkTautlineSetRangeMacro(Boundary, int, FIXED, ON_SURFACE);
   vtkGetMacro(Boundary, int);
   ///@}
 
@@ -354,7 +355,7 @@ public:
    * to slide in. On curved surfaces keep it small: points slide in the mean plane. The default
    * is 1.
    */
-  vtkSetClampMacro(FlatAngle, double, 0.0, 90.0);
+  vtkTautlineSetRangeMacro(FlatAngle, double, 0.0, 90.0);
   vtkGetMacro(FlatAngle, double);
   ///@}
 
@@ -363,7 +364,7 @@ public:
    * For ON_SURFACE: edges of the boundary at which it bends by more than so many degrees are sharp.
    * The default is 30.
    */
-  vtkSetClampMacro(FeatureAngle, double, 0.0, 180.0);
+  vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
   ///@}
 
@@ -373,7 +374,7 @@ public:
    * Where the point array at index 3 is chosen, it gives a limit for each point instead (negative:
    * any distance). The default is 0.
    */
-  vtkSetClampMacro(MaximumDisplacement, double, 0.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(MaximumDisplacement, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaximumDisplacement, double);
   ///@}
 
@@ -413,19 +414,19 @@ public:
    * Local algorithms leave out points that moved less than this fraction of their shortest edge; 0:
    * none. The default is 1e-3.
    */
-  vtkSetClampMacro(Culling, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(Culling, double, 0.0, 1.0);
   vtkGetMacro(Culling, double);
   ///@}
 
   ///@{
   /// Steps in each patch of the local algorithms. The default is 1.
-  vtkSetClampMacro(PatchIterations, int, 1, 1000);
+  vtkTautlineSetRangeMacro(PatchIterations, int, 1, 1000);
   vtkGetMacro(PatchIterations, int);
   ///@}
 
   ///@{
   /// A step of LOCAL_NEWTON is this times Newton's; from 1, below 2. The default is 1.4.
-  vtkSetClampMacro(Relaxation, double, 1.0, 1.99);
+  vtkTautlineSetRangeMacro(Relaxation, double, 1.0, 1.99);
   vtkGetMacro(Relaxation, double);
   ///@}
 
@@ -434,7 +435,7 @@ public:
    * After the objective has converged, improve the worst value of the first metric as long as
    * its mean does not get worse by more than this fraction; 0, the default: off.
    */
-  vtkSetClampMacro(ImproveWorst, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(ImproveWorst, double, 0.0, 1.0);
   vtkGetMacro(ImproveWorst, double);
   ///@}
 
@@ -454,7 +455,7 @@ public:
    * Megabytes for the points of the iterations; beyond that every second one is dropped,
    * repeatedly. The default is 1000.
    */
-  vtkSetClampMacro(AnimationMemory, double, 1.0, VTK_DOUBLE_MAX);
+  vtkTautlineSetRangeMacro(AnimationMemory, double, 1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(AnimationMemory, double);
   ///@}
 

@@ -42,6 +42,7 @@
 #define vtkInteractionLayer_h
 
 #include "TautlinePeridynamicsModule.h" // for export macro
+#include "vtkTautlineSetRange.h"        // for the setters
 #include "vtkUnstructuredGridAlgorithm.h"
 
 class TAUTLINEPERIDYNAMICS_EXPORT vtkInteractionLayer : public vtkUnstructuredGridAlgorithm
@@ -82,7 +83,7 @@ public:
   /**
    * Number of threads; 0, the default, is all cores. The result does not depend on it.
    */
-  vtkSetClampMacro(Threads, int, 0, 1024);
+  vtkTautlineSetRangeMacro(Threads, int, 0, 1024);
   vtkGetMacro(Threads, int);
   ///@}
 

@@ -70,6 +70,7 @@
 #define vtkPeridynamicStiffness_h
 
 #include "TautlinePeridynamicsModule.h" // for export macro
+#include "vtkTautlineSetRange.h"        // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
 
 #include <vector> // for KernelValues
@@ -128,7 +129,7 @@ public:
   /**
    * The kernel's shape. The default is POWER (0).
    */
-  vtkSetClampMacro(Kernel, int, POWER, TABLE);
+  vtkTautlineSetRangeMacro(Kernel, int, POWER, TABLE);
   vtkGetMacro(Kernel, int);
   ///@}
 
@@ -169,7 +170,7 @@ public:
   /**
    * The basis functions. The default is PIECEWISE_LINEAR (1).
    */
-  vtkSetClampMacro(Basis, int, PIECEWISE_CONSTANT, DISCONTINUOUS_LINEAR);
+  vtkTautlineSetRangeMacro(Basis, int, PIECEWISE_CONSTANT, DISCONTINUOUS_LINEAR);
   vtkGetMacro(Basis, int);
   ///@}
 
@@ -177,7 +178,7 @@ public:
   /**
    * 0, the default: diffusion, (4.6). 1: linearized elasticity with the tensor kernel of (4.4).
    */
-  vtkSetClampMacro(Elastic, bool, false, true);
+  vtkSetMacro(Elastic, bool);
   vtkGetMacro(Elastic, bool);
   vtkBooleanMacro(Elastic, bool);
   ///@}
@@ -192,7 +193,7 @@ public:
   /**
    * The discretization of the integrals. The default is EXACT (1).
    */
-  vtkSetClampMacro(Discretization, int, DISSERTATION, EXACT);
+  vtkTautlineSetRangeMacro(Discretization, int, DISSERTATION, EXACT);
   vtkGetMacro(Discretization, int);
   ///@}
 
@@ -212,7 +213,7 @@ public:
   /**
    * The rules, in the dissertation's discretization. The default is TABLES (0).
    */
-  vtkSetClampMacro(Rules, int, TABLES, THREE_ONE);
+  vtkTautlineSetRangeMacro(Rules, int, TABLES, THREE_ONE);
   vtkGetMacro(Rules, int);
   ///@}
 
@@ -267,7 +268,7 @@ public:
   /**
    * Relative error accepted of the eigenvalues, 1e-14 to 0.1. The default is 1e-8.
    */
-  vtkSetClampMacro(SpectrumTolerance, double, 1e-14, 0.1);
+  vtkTautlineSetRangeMacro(SpectrumTolerance, double, 1e-14, 0.1);
   vtkGetMacro(SpectrumTolerance, double);
   ///@}
 
@@ -294,7 +295,7 @@ public:
    * Largest number of rows of the picture of the sparsity pattern, 0 for none, up to 4096. The
    * default is 0.
    */
-  vtkSetClampMacro(SparsityPixels, int, 0, 4096);
+  vtkTautlineSetRangeMacro(SparsityPixels, int, 0, 4096);
   vtkGetMacro(SparsityPixels, int);
   ///@}
 
@@ -302,7 +303,7 @@ public:
   /**
    * Memory the matrix may take, in MiB; 0, the default, is what the machine has free.
    */
-  vtkSetClampMacro(MemoryLimit, double, 0.0, 1e12);
+  vtkTautlineSetRangeMacro(MemoryLimit, double, 0.0, 1e12);
   vtkGetMacro(MemoryLimit, double);
   ///@}
 

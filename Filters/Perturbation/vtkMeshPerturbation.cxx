@@ -72,13 +72,6 @@ vtkDataSet* vtkMeshPerturbation::GetOutput()
 }
 
 //------------------------------------------------------------------------------
-int vtkMeshPerturbation::FillOutputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 int vtkMeshPerturbation::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

@@ -67,6 +67,7 @@
 
 #include "TautlinePerturbationModule.h" // for export macro
 #include "vtkTautlineAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class vtkDataSet;
 
@@ -87,7 +88,7 @@ public:
   /**
    * Percentage of the movable vertices to move, between 0 and 100. The default is 50.
    */
-  vtkSetClampMacro(Percentage, double, 0.0, 100.0);
+  vtkTautlineSetRangeMacro(Percentage, double, 0.0, 100.0);
   vtkGetMacro(Percentage, double);
   ///@}
 
@@ -96,7 +97,7 @@ public:
    * The maximum fraction of its distance to inversion by which a vertex moves, between 0 and 1; the
    * fraction is uniformly distributed from 0 to this. The default is 0.5.
    */
-  vtkSetClampMacro(Fraction, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(Fraction, double, 0.0, 1.0);
   vtkGetMacro(Fraction, double);
   ///@}
 
@@ -105,7 +106,7 @@ public:
    * Fraction of the elements to be inverted in the output, between 0 and 1; inverted elements of
    * the input count. The default is 0: none is inverted.
    */
-  vtkSetClampMacro(TangledFraction, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(TangledFraction, double, 0.0, 1.0);
   vtkGetMacro(TangledFraction, double);
   ///@}
 
@@ -149,7 +150,6 @@ protected:
   vtkMeshPerturbation();
   ~vtkMeshPerturbation() override;
 
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:

@@ -69,6 +69,7 @@
 
 #include "TautlineQualityModule.h" // for export macro
 #include "vtkMetricAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 #include <string> // for Notice
 #include <vector> // for size and tensor targets
@@ -105,13 +106,13 @@ public:
    * the mean of the power Power (negated where larger is better). If some corners are inverted,
    * only these are combined, but for metrics that untangle. The default is MEAN.
    */
-  vtkSetClampMacro(Combination, int, MEAN, POWER_MEAN);
+  vtkTautlineSetRangeMacro(Combination, int, MEAN, POWER_MEAN);
   vtkGetMacro(Combination, int);
   ///@}
 
   ///@{
   /// Exponent of POWER_MEAN, at least 1. The default is 2.
-  vtkSetClampMacro(Power, double, 1.0, 100.0);
+  vtkTautlineSetRangeMacro(Power, double, 1.0, 100.0);
   vtkGetMacro(Power, double);
   ///@}
 
@@ -131,7 +132,7 @@ public:
    * points or cells), in which the target edges have length 1. Values of point arrays are averaged
    * over each cell. The default is IDEAL.
    */
-  vtkSetClampMacro(TargetType, int, IDEAL, TENSOR);
+  vtkTautlineSetRangeMacro(TargetType, int, IDEAL, TENSOR);
   vtkGetMacro(TargetType, int);
   ///@}
 
@@ -164,13 +165,13 @@ public:
    * grids and poly data of linear cells). It is reported in each case. The default is
    * MEASURE_FLIPPED.
    */
-  vtkSetClampMacro(ReversedMesh, int, MEASURE_AS_GIVEN, FLIP_OUTPUT);
+  vtkTautlineSetRangeMacro(ReversedMesh, int, MEASURE_AS_GIVEN, FLIP_OUTPUT);
   vtkGetMacro(ReversedMesh, int);
   ///@}
 
   ///@{
   /// Rows of the Distribution table. The default is 32.
-  vtkSetClampMacro(HistogramBins, int, 1, 100000);
+  vtkTautlineSetRangeMacro(HistogramBins, int, 1, 100000);
   vtkGetMacro(HistogramBins, int);
   ///@}
 

@@ -57,6 +57,7 @@
 
 #include "TautlineQualityModule.h" // for export macro
 #include "vtkMetricAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class vtkDataSet;
 
@@ -72,7 +73,7 @@ public:
    * Relative difference up to which two values are equal, between 0 and 1. The default is 1e-6,
    * about the rounding of coordinates in single precision.
    */
-  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkTautlineSetRangeMacro(Tolerance, double, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);
   ///@}
 

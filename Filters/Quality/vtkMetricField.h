@@ -40,6 +40,7 @@
 
 #include "TautlineQualityModule.h" // for export macro
 #include "vtkMetricAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class vtkImageData;
 
@@ -63,7 +64,7 @@ public:
   /**
    * The cell: TRIANGLE (0) or TETRAHEDRON (1). The default is TRIANGLE.
    */
-  vtkSetClampMacro(Cell, int, TRIANGLE, TETRAHEDRON);
+  vtkTautlineSetRangeMacro(Cell, int, TRIANGLE, TETRAHEDRON);
   vtkGetMacro(Cell, int);
   void SetCellToTriangle() { this->SetCell(TRIANGLE); }
   void SetCellToTetrahedron() { this->SetCell(TETRAHEDRON); }

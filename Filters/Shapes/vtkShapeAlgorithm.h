@@ -17,6 +17,7 @@
 #define vtkShapeAlgorithm_h
 
 #include "TautlineShapesModule.h" // for export macro
+#include "vtkTautlineSetRange.h"  // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
 
 namespace tautline
@@ -139,7 +140,7 @@ public:
    * FORBIDDEN (0, the default): triangles that turn over count as flat. WHOLE (1): the shape or its
    * mirror image, whichever fits better. FREE (2): triangles may turn over at no cost.
    */
-  vtkSetClampMacro(Reflection, int, FORBIDDEN, FREE);
+  vtkTautlineSetRangeMacro(Reflection, int, FORBIDDEN, FREE);
   vtkGetMacro(Reflection, int);
   ///@}
 
@@ -147,7 +148,7 @@ public:
   /**
    * GRID (0, the default), NEAR_GRID (1) or CONTOUR (2).
    */
-  vtkSetClampMacro(Locations, int, GRID, CONTOUR);
+  vtkTautlineSetRangeMacro(Locations, int, GRID, CONTOUR);
   vtkGetMacro(Locations, int);
   ///@}
 
@@ -216,7 +217,7 @@ public:
    * Which side of the automatic threshold is the shape: 0 automatic (the default), 1 bright, 2
    * dark.
    */
-  vtkSetClampMacro(Foreground, int, 0, 2);
+  vtkTautlineSetRangeMacro(Foreground, int, 0, 2);
   vtkGetMacro(Foreground, int);
   ///@}
 

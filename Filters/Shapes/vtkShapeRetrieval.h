@@ -29,6 +29,7 @@
 
 #include "TautlineShapesModule.h" // for export macro
 #include "vtkShapeAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 class TAUTLINESHAPES_EXPORT vtkShapeRetrieval : public vtkShapeAlgorithm
 {
@@ -56,7 +57,7 @@ public:
    * descriptors, a weight of turning, both directions. All but CUSTOM override the properties of
    * the energy, the locations, the spacing, the rule and Symmetric.
    */
-  vtkSetClampMacro(Setting, int, CUSTOM, HIGHEST);
+  vtkTautlineSetRangeMacro(Setting, int, CUSTOM, HIGHEST);
   vtkGetMacro(Setting, int);
   ///@}
 

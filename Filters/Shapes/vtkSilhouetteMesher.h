@@ -40,6 +40,7 @@
 #define vtkSilhouetteMesher_h
 
 #include "TautlineShapesModule.h" // for export macro
+#include "vtkTautlineSetRange.h"  // for the setters
 #include "vtkUnstructuredGridAlgorithm.h"
 
 #include <string> // for Summary
@@ -92,7 +93,7 @@ public:
    * Which side of the threshold is the shape: AUTOMATIC (0, the default: the side that fewer pixels
    * of the border of the image are on), BRIGHT (1) or DARK (2).
    */
-  vtkSetClampMacro(Foreground, int, AUTOMATIC, DARK);
+  vtkTautlineSetRangeMacro(Foreground, int, AUTOMATIC, DARK);
   vtkGetMacro(Foreground, int);
   ///@}
 

@@ -41,6 +41,7 @@
 
 #include "TautlineUntanglingModule.h" // for export macro
 #include "vtkMeshMotionAlgorithm.h"
+#include "vtkTautlineSetRange.h" // for the setters
 
 #include <string> // for Reason
 
@@ -68,7 +69,7 @@ public:
    * The effort: LOCAL moves only what is around inverted elements, NORMAL then all points,
    * THOROUGH for thousands of iterations and from several starts. The default is NORMAL.
    */
-  vtkSetClampMacro(Effort, int, LOCAL, THOROUGH);
+  vtkTautlineSetRangeMacro(Effort, int, LOCAL, THOROUGH);
   vtkGetMacro(Effort, int);
   ///@}
 

@@ -28,7 +28,7 @@ def pick(option: str, value: str, allowed: tuple[str, ...]) -> int:
 
 
 def within(option: str, value: float, low: float, high: float) -> float:
-    """The value. Raises Error if it is not a number from low to high; VTK would clamp it without a message."""
+    """The value. Raises Error if it is not a number from low to high; the filter would keep the older one."""
     try:
         if low <= value <= high:
             return value

@@ -150,7 +150,7 @@ def peridynamics(
     filter_.SetSpectrumTolerance(within("spectrum_tolerance", spectrum_tolerance, 1e-14, 0.1))
     filter_.SetSolve(bool(solve))
     filter_.SetSparsityPixels(int(within("sparsity", sparsity, 0, _MAX_PIXELS)))
-    filter_.SetMemoryLimit(within("memory_limit", memory_limit, 0, np.inf))
+    filter_.SetMemoryLimit(within("memory_limit", memory_limit, 0, 1e12))
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
