@@ -12,9 +12,10 @@
  * The input with cell arrays: one per metric (double, named by the metric: "imr", "mean_ratio",
  * ...) and `Validity` (signed char): 1 valid, 0 degenerate, -1 inverted, -2 not measured (cell
  * type), -3 not finite (coordinates NaN, infinite, or beyond 1e100 where most cells are not).
- * Values are always finite. A metric that is singular at a degenerate element is 0 there; one that is not defined on a cell is
- * 0. Inverted elements have negative values of signed metrics (see MetricInfo::inverted). The first
- * metric is the active cell scalar array; point arrays pass, none of them active.
+ * Values are always finite. A metric that is singular at a degenerate element is 0 there; one that
+ * is not defined on a cell is 0. Inverted elements have negative values of signed metrics (see
+ * MetricInfo::inverted). The first metric is the active cell scalar array; point arrays pass, none
+ * of them active.
  *
  * @par Output port 1 `Statistics`:
  * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (number of elements), `Minimum`,

@@ -137,14 +137,14 @@ def test_keywords():
 
 
 def test_time_limit():
-    """A factorization of tens of seconds ends at the limit; then other systems are solved."""
+    """A factorization of some seconds is given up at the limit; then other systems are solved."""
     n = 40
     corners = np.stack(np.meshgrid(*[np.arange(n + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     first = np.arange((n + 1) ** 3).reshape([n + 1] * 3)[:-1, :-1, :-1].ravel()[:, None]
     steps = [0, (n + 1) ** 2, (n + 1) ** 2 + n + 1, n + 1]
     cube = tl.from_arrays(corners / n, {"hexahedron": first + np.array([*steps, *[s + 1 for s in steps]])})
     begin = time.monotonic()
-    result = tl.solve(cube, "elasticity", solver="direct", time_limit=2)
+    result = tl.solve(cube, solver="direct", time_limit=0.2)
     assert time.monotonic() - begin < 10
     assert not result.converged and "time limit" in result.reason and "factorization" in result.summary
     assert abs(tl.solve(square(12)).solution.max() - 0.0737) < 1e-3

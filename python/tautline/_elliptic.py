@@ -335,7 +335,7 @@ _FILTER_ARGUMENTS = 3
 def _execute(
     function: Callable[..., Any], filter_: Any, mesh: Mesh, pde: str, problem: dict[str, Any]
 ) -> vtkDataObject:
-    """Set the problem and run the filter of a function; returns its first output without the arrays given as numbers."""
+    """Set the problem, run the filter of a function; returns its first output without the arrays given as numbers."""
     messages = watch(filter_)
     inputs = InputArrays(filter_, as_mesh(mesh))
     own = [p.name for p in signature(function).parameters.values() if p.kind is not p.VAR_KEYWORD]

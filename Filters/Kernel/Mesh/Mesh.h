@@ -54,7 +54,7 @@ enum Validity : signed char
   Degenerate = 0,   ///< some corner Jacobian vanishes (relative to its edges), none is negative
   Inverted = -1,    ///< some corner Jacobian is negative
   NotMeasured = -2, ///< a cell type Tautline does not compute with
-  NonFinite = -3 ///< a coordinate is NaN or infinite, or beyond 1e100 in a mesh of ordinary size
+  NonFinite = -3    ///< a coordinate is NaN or infinite, or beyond 1e100 in a mesh of ordinary size
 };
 
 /// Cells of one type, in increasing order of id.

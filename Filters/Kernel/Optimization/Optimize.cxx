@@ -2,7 +2,6 @@
 
 #include "GlobalFunction.h"
 #include "tautline/Mesh/CoordinateFrame.h"
-#include "tautline/Objectives/ElementHessian.h"
 #include "ImproveWorst.h"
 #include "Minimize.h"
 #include "OptimizationProblem.h"

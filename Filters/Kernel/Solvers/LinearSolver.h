@@ -11,9 +11,9 @@
  * function, and the calling thread waits for it; the observer is called from there. A set-up that
  * is given up goes on in the background until it ends by itself, and then frees its memory. The
  * next solver waits for that, under its own limits. If the process ends meanwhile, it ends without
- * waiting. On several ranks, where MPI was started with less than MPI_THREAD_MULTIPLE (pvserver,
- * pvbatch, MPI_Init()) and where the program has started PETSc itself, the calling thread does the
- * work, and limits are checked after the set-up and between iterations.
+ * waiting. On several ranks, where the program has started MPI with less than MPI_THREAD_MULTIPLE
+ * (pvserver, pvbatch, MPI_Init()) or has started PETSc itself, the calling thread does the work,
+ * and limits are checked after the set-up and between iterations.
  */
 #ifndef tautline_LinearSolver_h
 #define tautline_LinearSolver_h

@@ -410,6 +410,10 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
   {
     solution.reason = SolveReason::OtherFailure;
     solution.message = this->OptionSet.explain(error, this->subject());
+    // PETSc leaves a solver that failed in the middle in a state that cannot be destroyed.
+    this->Failure = solution.reason;
+    this->FailureText = solution.message;
+    this->Solver.leak();
   }
 }
 
@@ -468,7 +472,10 @@ LinearSolution LinearSolverState::solve(const double* b, double* x)
       !this->Options.ritzValues && solution.iterations < most && solution.trueResidual > 0.0 &&
       this->tighten(solution, most);
   }
-  petsc(KSPSetTolerances(this->Solver, this->Relative, this->Absolute, PETSC_DEFAULT, most));
+  if (this->Failure == SolveReason::Exact)
+  {
+    petsc(KSPSetTolerances(this->Solver, this->Relative, this->Absolute, PETSC_DEFAULT, most));
+  }
   solution.solveSeconds = time.seconds();
   return solution;
 }
@@ -587,7 +594,7 @@ void LinearSolverState::verify(const double* b, const double* x, LinearSolution&
   }
   const double allowed = this->allowedResidual();
   if (after <= std::max(allowed * before, ResidualFactor * this->Absolute) ||
-    after <= this->roundingLevel(b, x))
+    (after <= DirectTolerance * before && after <= this->roundingLevel(b, x)))
   {
     return;
   }

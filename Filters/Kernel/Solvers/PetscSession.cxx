@@ -34,8 +34,8 @@ bool watched = false;
 /// Scopes of this thread.
 thread_local int depth = 0;
 
-/// Whether Tautline, not the host, has started PETSc.
-std::atomic<bool> ownPetsc{ false };
+/// Whether Tautline, not the host, has started MPI and PETSc.
+std::atomic<bool> ownMpi{ false }, ownPetsc{ false };
 
 /// What is to be destroyed when PETSc is free; guarded by a mutex of its own.
 struct PutOff
@@ -106,10 +106,11 @@ void ensureMpi()
     requireMemory(mpiAndPetsc, "the start of MPI and PETSc",
       "raise the limit on the memory of the process, or end other programs");
     int provided = 0;
-    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided) != MPI_SUCCESS)
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     {
       throw Error("MPI cannot be started: linear systems cannot be solved in this process.");
     }
+    ownMpi = true;
     std::atexit(finalizeMpi);
   }
 }
@@ -266,7 +267,8 @@ bool petscWatchable(const WatchLimits& limits)
     const PetscScope scope; // starts MPI in this thread, which has to end it
   }
   int level = MPI_THREAD_SINGLE;
-  return ownPetsc && MPI_Query_thread(&level) == MPI_SUCCESS && level == MPI_THREAD_MULTIPLE;
+  const int needed = ownMpi ? MPI_THREAD_SERIALIZED : MPI_THREAD_MULTIPLE;
+  return ownPetsc && MPI_Query_thread(&level) == MPI_SUCCESS && level >= needed;
 }
 
 WatchResult watchPetsc(const WatchLimits& limits, const std::function<void(WatchedWork*)>& work)

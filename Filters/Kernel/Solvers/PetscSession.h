@@ -97,10 +97,11 @@ constexpr const char* BusyMessage =
 /**
  * @brief Whether watchPetsc() uses the watchdog's thread.
  *
- * It does if there are limits, if MPI has been started with MPI_THREAD_MULTIPLE (as Tautline does;
- * abandoned work calls MPI beside the host) and if Tautline has started PETSc (else the host may
- * use it beside abandoned work). It does not within a PetscScope. pvserver, pvbatch and programs
- * that call MPI_Init() have a lower level: there a limit is checked after each set-up.
+ * It does if there are limits and if Tautline has started PETSc (else the host may use it beside
+ * abandoned work), with MPI started by Tautline as MPI_THREAD_SERIALIZED or by the host as
+ * MPI_THREAD_MULTIPLE (the host may call it beside abandoned work). It does not within a
+ * PetscScope. pvserver, pvbatch and programs that call MPI_Init() have a lower level: there a limit
+ * is checked after each set-up.
  */
 bool petscWatchable(const WatchLimits& limits);
 
@@ -156,6 +157,8 @@ public:
     this->Generation = petscGeneration();
     return &this->Held;
   }
+  /// Gives up the object without destroying it.
+  void leak() { this->Held = nullptr; }
   void reset()
   {
     if (this->Held && petscUsable() && this->Generation == petscGeneration())

@@ -214,9 +214,9 @@ void testGivenUp(const SolverOptions& options, SolveReason reason, double longes
 
 void testSetUps()
 {
-  // Above ten seconds each without a limit.
-  constexpr int size = 44;
-  constexpr double limit = 1.0, longest = 4.0;
+  // Some seconds each without a limit.
+  constexpr int size = 34;
+  constexpr double limit = 0.2, longest = 4.0;
   SolverOptions direct;
   direct.method = KrylovMethod::Direct;
   direct.maximumSeconds = limit;
@@ -244,9 +244,9 @@ void testSetUps()
 
   SolverOptions incomplete;
   incomplete.preconditioner = Preconditioner::ILU;
-  incomplete.petscOptions = "-pc_factor_levels 12";
+  incomplete.petscOptions = "-pc_factor_levels 8";
   const Stopwatch sinceStart;
-  incomplete.cancelled = [&]() { return sinceStart.seconds() > 0.5; };
+  incomplete.cancelled = [&]() { return sinceStart.seconds() > 0.2; };
   testGivenUp(incomplete, SolveReason::Aborted, longest, "", size);
   checkSolves();
 }
@@ -295,7 +295,7 @@ void testSame()
     x->resize(b.size());
     LinearSolver solver(systemOf(a), options);
     const LinearSolution solution = solver.solve(b.data(), x->data());
-    TAUTLINE_CHECK_EQUAL(calls, solution.iterations + 1);
+    TAUTLINE_CHECK_EQUAL(calls, solution.iterations); // not in the one that converges
     // Now and then only.
     calls = 0;
     solver.options().observer = [&](int, double) { return ++calls > 0; };
@@ -328,7 +328,7 @@ void leaveRunning()
   SolverOptions direct;
   direct.method = KrylovMethod::Direct;
   direct.maximumSeconds = 0.1;
-  testGivenUp(direct, SolveReason::TimeLimit, 4.0, "The factorization", 44);
+  testGivenUp(direct, SolveReason::TimeLimit, 4.0, "The factorization", 34);
 }
 }
 
