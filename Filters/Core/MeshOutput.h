@@ -8,6 +8,7 @@
 #include "tautline/Core/Types.h"
 
 #include "vtkCellArray.h"
+#include "vtkDataArray.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
@@ -45,6 +46,14 @@ inline vtkSmartPointer<vtkCellArray> makeCells(const std::vector<Index>& nodes, 
   std::copy(nodes.begin(), nodes.end(), connectivity->GetPointer(0));
   cells->SetData(size, connectivity);
   return cells;
+}
+
+/// The marker of a cell, of an array of any type; 0 where it is no number of the range of int.
+inline int markerAt(vtkDataArray* markers, vtkIdType cell)
+{
+  const double value = markers->GetComponent(cell, 0);
+  constexpr double Limit = 2147483647.0;
+  return value >= -Limit && value <= Limit ? static_cast<int>(value) : 0;
 }
 
 /// A 64-bit array, as the readers make them.

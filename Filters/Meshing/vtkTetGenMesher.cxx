@@ -15,6 +15,7 @@
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <cmath>
 #include <map>
 
 vtkStandardNewMacro(vtkTetGenMesher);
@@ -71,9 +72,9 @@ tautline::SolidBoundary takeSurface(vtkPointSet* input)
     }
     const std::size_t next = boundary.facets.size();
     const std::size_t facet =
-      groups ? facetOfGroup.insert({ groups->GetTuple1(cell), next }).first->second : next;
+      groups ? facetOfGroup.insert({ groups->GetComponent(cell, 0), next }).first->second : next;
     boundary.facets.resize(std::max(next, facet + 1));
-    boundary.facets[facet].marker = markers ? static_cast<int>(markers->GetTuple1(cell)) : 1;
+    boundary.facets[facet].marker = markers ? tautline::markerAt(markers, cell) : 1;
     input->GetCellPoints(cell, ids);
     boundary.facets[facet].polygons.emplace_back(ids->begin(), ids->end());
   }
@@ -100,17 +101,18 @@ tautline::SolidBoundary takeSurface(vtkPointSet* input)
 
 std::vector<double> takeSizes(vtkPointSet* input, vtkDataArray* sizes)
 {
-  if (!sizes || sizes->GetNumberOfComponents() != 1)
+  if (!sizes || sizes->GetNumberOfComponents() != 1 ||
+    sizes->GetNumberOfTuples() != input->GetNumberOfPoints())
   {
     throw Error("choose a point array with one component for the sizes");
   }
   std::vector<double> values;
   for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
   {
-    values.push_back(sizes->GetTuple1(i));
-    if (!(values.back() > 0.0))
+    values.push_back(sizes->GetComponent(i, 0));
+    if (!(values.back() > 0.0 && std::isfinite(values.back())))
     {
-      throw Error("sizes must be positive; that of point " + std::to_string(i) + " is " +
+      throw Error("sizes must be positive and finite; that of point " + std::to_string(i) + " is " +
         std::to_string(values.back()));
     }
   }

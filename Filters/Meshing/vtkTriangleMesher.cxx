@@ -13,10 +13,12 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStaticPointLocator.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <cmath>
 
 vtkStandardNewMacro(vtkTriangleMesher);
@@ -61,7 +63,7 @@ tautline::PlanarBoundary takeBoundary(vtkPointSet* input)
     {
       boundary.segments.insert(
         boundary.segments.end(), { ids->GetId(i), ids->GetId((i + 1) % size) });
-      boundary.markers.push_back(markers ? static_cast<int>(markers->GetTuple1(cell)) : 1);
+      boundary.markers.push_back(markers ? tautline::markerAt(markers, cell) : 1);
     }
   }
   return boundary;
@@ -71,28 +73,44 @@ tautline::PlanarBoundary takeBoundary(vtkPointSet* input)
 std::function<double(double, double)> makeSizeField(
   vtkPointSet* input, vtkDataArray* sizes, double gradation)
 {
-  if (!sizes || sizes->GetNumberOfComponents() != 1)
+  if (!sizes || sizes->GetNumberOfComponents() != 1 ||
+    sizes->GetNumberOfTuples() != input->GetNumberOfPoints())
   {
     throw Error("choose a point array with one component for the sizes");
   }
-  double range[2];
-  sizes->GetRange(range);
-  if (!(range[0] > 0.0) || !std::isfinite(range[1]))
+  for (vtkIdType i = 0; i < sizes->GetNumberOfTuples(); ++i)
   {
-    throw Error("sizes must be positive and finite; they are from " + std::to_string(range[0]) +
-      " to " + std::to_string(range[1]));
+    const double size = sizes->GetComponent(i, 0);
+    if (!(size > 0.0) || !std::isfinite(size))
+    {
+      throw Error("sizes must be positive and finite; that of point " + std::to_string(i) + " is " +
+        std::to_string(size));
+    }
   }
+  // The locator computes squares: it searches at a scale where they neither overflow nor vanish.
+  double bounds[6];
+  input->GetBounds(bounds);
+  int exponent = 0;
+  std::frexp(std::max({ -bounds[0], bounds[1], -bounds[2], bounds[3] }), &exponent);
+  auto scaled = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(VTK_DOUBLE);
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    const double* p = input->GetPoint(i);
+    points->InsertNextPoint(std::ldexp(p[0], -exponent), std::ldexp(p[1], -exponent), 0.0);
+  }
+  scaled->SetPoints(points);
   auto locator = vtkSmartPointer<vtkStaticPointLocator>::New();
-  locator->SetDataSet(input);
+  locator->SetDataSet(scaled);
   locator->BuildLocator();
-  const double z = input->GetBounds()[4];
   return [=](double x, double y)
   {
-    const double place[] = { x, y, z };
-    const vtkIdType nearest = locator->FindClosestPoint(place);
+    const double place[] = { std::ldexp(x, -exponent), std::ldexp(y, -exponent), 0.0 };
+    const vtkIdType nearest = std::max<vtkIdType>(0, locator->FindClosestPoint(place));
     double p[3];
     input->GetPoint(nearest, p);
-    return sizes->GetTuple1(nearest) + gradation * std::hypot(p[0] - x, p[1] - y);
+    return sizes->GetComponent(nearest, 0) + gradation * std::hypot(p[0] - x, p[1] - y);
   };
 }
 }
@@ -108,8 +126,12 @@ void vtkTriangleMesher::Generate(
   if (vtkDataArray* holes = input->GetFieldData()->GetArray("Holes"))
   {
     options.holesGiven = true;
-    for (vtkIdType i = 0; i < holes->GetNumberOfTuples() && holes->GetNumberOfComponents() == 3;
-         ++i)
+    if (holes->GetNumberOfComponents() != 3)
+    {
+      throw Error("the field array Holes has " + std::to_string(holes->GetNumberOfComponents()) +
+        " components, 3 are expected");
+    }
+    for (vtkIdType i = 0; i < holes->GetNumberOfTuples(); ++i)
     {
       outline.holes.insert(
         outline.holes.end(), { holes->GetComponent(i, 0), holes->GetComponent(i, 1) });

@@ -10,8 +10,11 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
+#include <sstream>
 #include <unordered_map>
 
 namespace tautline
@@ -112,6 +115,83 @@ private:
   double Smallest;
 };
 
+/// The exponent of the largest coordinate. Throws Error on one that is not finite.
+int exponentOf(const PlanarBoundary& boundary)
+{
+  double largest = 0.0;
+  for (std::size_t i = 0; i < boundary.points.size(); ++i)
+  {
+    if (!std::isfinite(boundary.points[i]))
+    {
+      throw Error(
+        "point " + std::to_string(i / 2) + " has a coordinate that is not a finite number");
+    }
+    largest = std::max(largest, std::abs(boundary.points[i]));
+  }
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  return exponent;
+}
+
+/// Times 2^exponent, which is exact: but for over- and underflow, all that follows is the same.
+void scale(std::vector<double>& values, int exponent)
+{
+  for (double& value : values)
+  {
+    value = std::ldexp(value, exponent);
+  }
+}
+
+PlanarOptions scaled(const PlanarOptions& options, int exponent)
+{
+  PlanarOptions result = options;
+  // Of the largest coordinate; shorter edges can hardly be told from points.
+  constexpr double Resolution = 1e-13;
+  const auto size = [exponent](double value)
+  {
+    const double relative = std::ldexp(value, exponent);
+    if (value > 0.0 && relative < Resolution)
+    {
+      std::ostringstream text;
+      text << "a size is " << value << ", less than coordinates of up to "
+           << std::ldexp(1.0, -exponent)
+           << " resolve; choose larger sizes, or move the outlines to the origin";
+      throw Error(text.str());
+    }
+    return relative;
+  };
+  result.size = size(options.size);
+  if (options.sizeField)
+  {
+    result.sizeField = [=](double x, double y)
+    { return size(options.sizeField(std::ldexp(x, -exponent), std::ldexp(y, -exponent))); };
+  }
+  return result;
+}
+
+/// Throws Error if the segments alone need more points than allowed: refining would take long to
+/// find that out.
+void checkSize(const PlanarBoundary& boundary, const PlanarOptions& options)
+{
+  double pieces = 0.0;
+  for (std::size_t s = 0; options.size > 0.0 && s + 1 < boundary.segments.size(); s += 2)
+  {
+    const auto a = static_cast<std::size_t>(2 * boundary.segments[s]);
+    const auto b = static_cast<std::size_t>(2 * boundary.segments[s + 1]);
+    if (std::max(a, b) + 1 < boundary.points.size())
+    {
+      pieces += std::hypot(boundary.points[a] - boundary.points[b],
+                  boundary.points[a + 1] - boundary.points[b + 1]) /
+        options.size;
+    }
+  }
+  if (pieces > static_cast<double>(options.pointLimit))
+  {
+    throw Error("edges of the given size would divide the outlines into more than " +
+      std::to_string(options.pointLimit) + " parts; choose a larger size");
+  }
+}
+
 /// The square of an edge that is tiny compared to the whole.
 double tinyEdge(const PlanarBoundary& boundary)
 {
@@ -133,10 +213,6 @@ std::vector<Vertex> insertPoints(Triangulation& triangulation, const PlanarBound
   for (std::size_t i = 0; i < boundary.points.size() / 2; ++i)
   {
     const double x = boundary.points[2 * i], y = boundary.points[2 * i + 1];
-    if (!std::isfinite(x) || !std::isfinite(y))
-    {
-      throw Error("point " + std::to_string(i) + " has a coordinate that is not a finite number");
-    }
     vertices.push_back(triangulation.insert({ x, y }, hint));
     hint = vertices.back()->face();
     if (vertices.back()->info().id < 0)
@@ -321,12 +397,19 @@ void collectEdges(const Triangulation& triangulation, const PlanarBoundary& boun
 }
 
 //------------------------------------------------------------------------------
-PlanarMesh meshPlane(const PlanarBoundary& boundary, const PlanarOptions& options)
+PlanarMesh meshPlane(const PlanarBoundary& given, const PlanarOptions& required)
 {
+  // Squares and cubes of coordinates are computed: they must neither overflow nor vanish.
+  const int exponent = exponentOf(given);
+  PlanarBoundary boundary = given;
+  scale(boundary.points, -exponent);
+  scale(boundary.holes, -exponent);
+  const PlanarOptions options = scaled(required, -exponent);
   if (!(options.minimumAngle >= 0.0 && options.minimumAngle <= 35.0) || !(options.size >= 0.0))
   {
     throw Error("the smallest angle must be from 0 to 35 degrees and the size not negative");
   }
+  checkSize(boundary, options);
   Triangulation triangulation;
   const std::vector<Vertex> vertices = insertPoints(triangulation, boundary);
   insertSegments(triangulation, boundary, vertices);
@@ -360,6 +443,8 @@ PlanarMesh meshPlane(const PlanarBoundary& boundary, const PlanarOptions& option
   {
     throw Error("the segments do not surround anything: is an outline closed?");
   }
+  scale(mesh.points, exponent);
+  std::copy(given.points.begin(), given.points.end(), mesh.points.begin());
   collectEdges(triangulation, boundary, vertices, mesh);
   mesh.pointMarkers.assign(mesh.points.size() / 2, 0);
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)

@@ -5,7 +5,8 @@
  *
  * The constrained Delaunay triangulation of the segments is refined until no triangle has an angle
  * below a bound or an edge above a size (J. Shewchuk's and J. Ruppert's algorithms as CGAL has
- * them). The result depends on nothing but the input.
+ * them). The result depends on nothing but the input. Coordinates may be of any magnitude; a point
+ * that the refinement adds is rounded to double precision.
  */
 #ifndef tautline_PlanarMesher_h
 #define tautline_PlanarMesher_h

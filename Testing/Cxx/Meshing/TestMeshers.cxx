@@ -172,8 +172,73 @@ void testTriangles()
   TAUTLINE_CHECK(std::abs(measure(graded).size - 1.0) < 1e-12);
 }
 
+/// Coordinates of any magnitude: the mesh is the same, times a power of two even bit by bit.
+void testTriangleScales()
+{
+  const auto meshed = [](double scale, bool sizes)
+  {
+    const auto square =
+      outline({ { 0, 0 }, { 3 * scale, 0 }, { 3 * scale, 2 * scale }, { 0, 2 * scale } });
+    vtkNew<vtkPoints> points;
+    points->SetDataType(VTK_DOUBLE);
+    for (const auto& [x, y] : { std::array<double, 2>{ 0, 0 }, { 3 * scale, 0 },
+           { 3 * scale, 2 * scale }, { 0, 2 * scale } })
+    {
+      points->InsertNextPoint(x, y, 0);
+    }
+    square->SetPoints(points);
+    vtkNew<vtkDoubleArray> array;
+    array->SetName("size");
+    for (const double size : { 0.1, 1.0, 1.0, 1.0 })
+    {
+      array->InsertNextValue(size * scale);
+    }
+    square->GetPointData()->AddArray(array);
+    vtkNew<vtkTriangleMesher> mesher;
+    mesher->SetInputData(square);
+    mesher->SetSize(sizes ? 0.0 : 0.3 * scale);
+    mesher->SetUseSizeArray(sizes);
+    mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "size");
+    mesher->Update();
+    vtkSmartPointer<vtkUnstructuredGrid> mesh = mesher->GetOutput();
+    return mesh;
+  };
+  for (const bool sizes : { false, true })
+  {
+    const auto unit = meshed(1.0, sizes);
+    TAUTLINE_CHECK(unit->GetNumberOfCells() > 100);
+    for (const int exponent : { -1000, -660, -3, 530, 1000 })
+    {
+      const auto other = meshed(std::ldexp(1.0, exponent), sizes);
+      TAUTLINE_CHECK_EQUAL(other->GetNumberOfCells(), unit->GetNumberOfCells());
+      bool same = other->GetNumberOfPoints() == unit->GetNumberOfPoints();
+      for (vtkIdType i = 0; same && i < unit->GetNumberOfPoints(); ++i)
+      {
+        for (int c = 0; c < 2; ++c)
+        {
+          same = same && other->GetPoint(i)[c] == std::ldexp(unit->GetPoint(i)[c], exponent);
+        }
+      }
+      TAUTLINE_CHECK(same);
+    }
+    for (const double scale : { 1e160, 1e-200 })
+    {
+      TAUTLINE_CHECK(meshed(scale, sizes)->GetNumberOfCells() > 100);
+    }
+  }
+}
+
 void testTriangleFailures()
 {
+  const double half = 1e20;
+  vtkNew<vtkTriangleMesher> fine;
+  fine->SetSize(1.0);
+  TAUTLINE_CHECK(contains(
+    failure(fine, outline({ { -half, -half }, { half, -half }, { half, half }, { -half, half } })),
+    "a size is 1, less than coordinates of up to 1.47574e+20 resolve"));
+  fine->SetSize(1e-8);
+  TAUTLINE_CHECK(contains(failure(fine, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })),
+    "would divide the outlines into more than 20000000 parts"));
   vtkNew<vtkTriangleMesher> crossing;
   const std::string said = failure(crossing, outline({ { 0, 0 }, { 1, 1 }, { 1, 0 }, { 0, 1 } }));
   TAUTLINE_CHECK(contains(said, "segment 2 (points 2 and 3) crosses another one"));
@@ -385,6 +450,7 @@ int TestMeshers(int, char* argv[])
 {
   data = argv[1];
   testTriangles();
+  testTriangleScales();
   testTriangleFailures();
   testTetrahedra();
   testRegionsAndHoles();
