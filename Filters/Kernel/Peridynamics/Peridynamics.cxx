@@ -62,6 +62,24 @@ void checkOptions(const PeridynamicOptions& o)
   }
 }
 
+/// A horizon far larger than the mesh is one in another unit, for which the quadrature has no end.
+void checkHorizon(const HorizonMesh& mesh, double horizon)
+{
+  constexpr double MostExtents = 1e6;
+  double low[] = { INFINITY, INFINITY }, high[] = { -INFINITY, -INFINITY };
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+  {
+    low[i % 2] = std::min(low[i % 2], mesh.points[i]);
+    high[i % 2] = std::max(high[i % 2], mesh.points[i]);
+  }
+  const double extent = std::max(high[0] - low[0], high[1] - low[1]);
+  if (horizon > MostExtents * extent)
+  {
+    throw Error("the horizon is " + number(horizon) + " but the mesh extends over " +
+      number(extent) + " only: give the horizon in the unit of the mesh");
+  }
+}
+
 /// Colours triangles so that those of one colour share no function; each colour in increasing
 /// order.
 std::vector<std::vector<std::int32_t>> colourTriangles(
@@ -362,6 +380,7 @@ PeridynamicSystem assemblePeridynamics(
   checkOptions(options);
   // All checks come before the expensive part.
   const PlanarTriangles triangles(mesh);
+  checkHorizon(mesh, options.horizon);
   PeridynamicSystem system;
   system.components = options.model == PeridynamicModel::Elastic ? 2 : 1;
   system.layerDeficit =

@@ -464,6 +464,9 @@ void testInteractionLayer()
   layer.elementSize = 0.0;
   layer.progress = [](double) { return false; };
   TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), "stopped");
+  PeridynamicOptions far;
+  far.horizon = 1e7;
+  TAUTLINE_CHECK_THROWS(assemblePeridynamics(bare, far), "the mesh extends over 1 only");
 }
 
 //------------------------------------------------------------------------------
