@@ -6,6 +6,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkExtractSelection.h"
 #include "vtkInformation.h"
 #include "vtkNew.h"
@@ -54,7 +55,6 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
     const auto at = [&walk](vtkCompositeDataSet* set)
     { return set ? vtkDataSet::SafeDownCast(set->GetDataSet(walk)) : nullptr; };
     auto result = vtkSmartPointer<vtkDataSet>::Take(block->NewInstance());
-    results->SetDataSet(walk, result);
     try
     {
       visit({ block, at(references), at(selections), result, number++, name, index });
@@ -63,6 +63,8 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
     {
       throw Error("In " + name + ": " + error.what());
     }
+    // Not before: an adaptive grid takes no empty data sets.
+    results->SetDataSet(walk, result);
   }
 }
 
@@ -133,8 +135,14 @@ vtkDataArray* chosenArray(
     return nullptr;
   }
   const bool ofCells = chosenOfCells(algorithm, index);
-  vtkDataArray* array =
-    ofCells ? input->GetCellData()->GetArray(name) : input->GetPointData()->GetArray(name);
+  vtkDataSetAttributes* data =
+    ofCells ? static_cast<vtkDataSetAttributes*>(input->GetCellData()) : input->GetPointData();
+  vtkDataArray* array = data->GetArray(name);
+  if (!array && data->GetAbstractArray(name))
+  {
+    throw Error(std::string("The ") + (ofCells ? "cell" : "point") + " array '" + name + "' " +
+      purpose + " holds text, not numbers: choose another one, or None.");
+  }
   if (!array)
   {
     throw Error(std::string("There is no ") + (ofCells ? "cell" : "point") + " array '" + name +

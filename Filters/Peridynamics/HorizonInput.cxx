@@ -9,6 +9,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -168,6 +169,15 @@ vtkDataArray* chosenArray(
     onPoints = array != nullptr;
   }
   array = array ? array : input->GetCellData()->GetArray(name);
+  vtkDataSetAttributes* data[] = { input->GetPointData(), input->GetCellData() };
+  for (vtkDataSetAttributes* attributes : data)
+  {
+    if (!array && attributes->GetAbstractArray(name) && !attributes->GetArray(name))
+    {
+      throw Error(std::string("the array '") + name + "' to take the " + purpose +
+        " from holds text, not numbers: choose another one, or None");
+    }
+  }
   if (!array)
   {
     throw Error(std::string("there is no array '") + name + "' to take the " + purpose +

@@ -161,8 +161,8 @@ void vtkMeshComparison::CompareBlocks(
       break;
     }
     auto result = vtkSmartPointer<vtkDataSet>::Take(second->NewInstance());
-    results->SetDataSet(walkOther, result);
     this->Compare(first, second, result, totals);
+    results->SetDataSet(walkOther, result);
   }
   if (!walk->IsDoneWithTraversal() || !walkOther->IsDoneWithTraversal())
   {
