@@ -1,11 +1,14 @@
 #include "vtkMeshFileWriter.h"
 
 #include "MeshFileAdapter.h"
+#include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkDataSet.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
+
+#include <new>
 
 //------------------------------------------------------------------------------
 vtkMeshFileWriter::~vtkMeshFileWriter()
@@ -17,6 +20,8 @@ vtkMeshFileWriter::~vtkMeshFileWriter()
 int vtkMeshFileWriter::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  // Also other types, so that the message can name the remedy.
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   return 1;
 }
 
@@ -41,7 +46,15 @@ void vtkMeshFileWriter::WriteData()
     auto* input = vtkDataSet::SafeDownCast(this->GetInput());
     if (!input)
     {
-      throw tautline::Error(std::string(this->FileName) + ": the input is no data set");
+      throw tautline::Error(std::string(this->FileName) + ": the input is a " +
+        (this->GetInput() ? this->GetInput()->GetClassName() : "null") +
+        ", and a file holds one mesh: extract a block (Extract Block), or merge the blocks first "
+        "(Merge Blocks)");
+    }
+    const std::string problem = tautline::inputProblem(input, { true });
+    if (!problem.empty())
+    {
+      throw tautline::Error(std::string(this->FileName) + ": " + problem);
     }
     this->FilesWritten = this->WriteMesh(tautline::fromDataSet(input), this->FileName);
   }
@@ -49,6 +62,9 @@ void vtkMeshFileWriter::WriteData()
   {
     this->ErrorText =
       tautline::errorText(error, std::string(this->FileName) + " cannot be written");
+  }
+  if (!this->ErrorText.empty())
+  {
     this->SetErrorCode(vtkErrorCode::CannotOpenFileError);
     vtkErrorMacro(<< this->ErrorText);
   }

@@ -154,6 +154,28 @@ int minimumOverProcesses(int own)
 }
 
 //------------------------------------------------------------------------------
+std::string firstProblem(const std::string& own)
+{
+  vtkMultiProcessController* controller = manyProcesses();
+  if (!controller)
+  {
+    return own;
+  }
+  const int rank = controller->GetLocalProcessId(), count = controller->GetNumberOfProcesses();
+  const int first = minimumOverProcesses(own.empty() ? count : rank);
+  if (first == count)
+  {
+    return "";
+  }
+  std::string message = own;
+  auto length = static_cast<vtkIdType>(message.size());
+  controller->Broadcast(&length, 1, first);
+  message.resize(static_cast<std::size_t>(length));
+  controller->Broadcast(&message[0], length, first);
+  return "In process " + std::to_string(first) + ": " + message;
+}
+
+//------------------------------------------------------------------------------
 void requireOneProcess(vtkDataObject* input)
 {
   vtkMultiProcessController* controller = manyProcesses();

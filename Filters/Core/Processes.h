@@ -11,6 +11,7 @@
 #include "tautline/Core/Types.h"
 
 #include <functional>
+#include <string>
 #include <vector>
 
 class vtkDataObject;
@@ -58,6 +59,10 @@ private:
 
 /// The minimum over all processes. Collective; MPI is not needed.
 TAUTLINECORE_EXPORT int minimumOverProcesses(int own);
+
+/// The message of the first process that has one ("In process 2: ..."), on all processes; "" if
+/// none has. Collective; MPI is not needed.
+TAUTLINECORE_EXPORT std::string firstProblem(const std::string& own);
 
 /// Throws Error, on all processes, if a data set has cells on several of them. Collective; MPI is
 /// not needed.

@@ -1,15 +1,22 @@
 #include "vtkTautlineAlgorithm.h"
 
+#include "Processes.h"
+#include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkSelection.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <new>
+#include <stdexcept>
 
 namespace
 {
@@ -42,6 +49,8 @@ int vtkTautlineAlgorithm::FillInputPortInformation(int port, vtkInformation* inf
   if (!selection)
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+    // Also what is not a mesh, so that the message can name the remedy.
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   }
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), port != MeshPort);
   return 1;
@@ -70,17 +79,113 @@ int vtkTautlineAlgorithm::RequestDataObject(
     {
       return 0;
     }
-    const std::string name = likeInput ? input->GetClassName() : announced;
+    // A block that is not a data set is left out, but has an output.
+    const bool other = announced == "vtkDataSet" && !vtkDataSet::SafeDownCast(input);
+    const std::string name = other ? "vtkUnstructuredGrid"
+      : likeInput                  ? input->GetClassName()
+                                   : announced;
     vtkInformation* info = outputVector->GetInformationObject(port);
     vtkDataObject* output = vtkDataObject::GetData(info);
     if (!output || name != output->GetClassName())
     {
       info->Set(vtkDataObject::DATA_OBJECT(),
-        vtkSmartPointer<vtkDataObject>::Take(
-          likeInput ? input->NewInstance() : vtkDataObjectTypes::NewDataObject(name.c_str())));
+        vtkSmartPointer<vtkDataObject>::Take(likeInput && !other
+            ? input->NewInstance()
+            : vtkDataObjectTypes::NewDataObject(name.c_str())));
     }
   }
   return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkTautlineAlgorithm::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || this->GetNumberOfInputPorts() == 0)
+  {
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
+  }
+  vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
+  if (!this->TakesComposite(MeshPort) && !vtkDataSet::SafeDownCast(input))
+  {
+    vtkWarningMacro(<< tautline::leftOut(input, "mesh"));
+    for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+    {
+      vtkDataObject::GetData(outputs, port)->Initialize();
+    }
+    return 1;
+  }
+  std::string problem;
+  const std::string failure = vtkTautlineAlgorithm::FailureOf(
+    "divide the mesh", [&] { problem = this->FindInputProblem(inputs); });
+  problem = failure.empty() ? problem : failure;
+  if (this->ExecutesOnAllProcesses())
+  {
+    problem = tautline::firstProblem(problem);
+  }
+  if (!problem.empty())
+  {
+    // A filter that executes itself once per time step ends with the first invalid one.
+    request->Remove(vtkStreamingDemandDrivenPipeline::CONTINUE_EXECUTING());
+    this->ClearResult();
+    return this->Fail(outputs, problem);
+  }
+  const std::string notice = tautline::skippedLeaves(input);
+  if (!notice.empty())
+  {
+    vtkWarningMacro(<< notice);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+bool vtkTautlineAlgorithm::TakesComposite(int port)
+{
+  const char* first =
+    this->GetInputPortInformation(port)->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
+  const std::string type = first ? first : "";
+  return type == "vtkCompositeDataSet" || type == "vtkMultiBlockDataSet";
+}
+
+//------------------------------------------------------------------------------
+std::string vtkTautlineAlgorithm::FindInputProblem(vtkInformationVector** inputs)
+{
+  vtkDataObject* mesh = vtkDataObject::GetData(inputs[MeshPort]);
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    const tautline::InputRules rules = { this->NeedsFinitePoints(port), this->Threads };
+    for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      vtkDataObject* data = vtkDataObject::GetData(inputs[port], i);
+      vtkSelection* selection = vtkSelection::SafeDownCast(data);
+      const std::string problem = selection ? tautline::selectionProblem(selection, mesh)
+                                            : tautline::inputProblem(data, rules);
+      if (!problem.empty())
+      {
+        return (port == MeshPort || selection ? "" : "Input " + std::to_string(port + 1) + ": ") +
+          problem;
+      }
+    }
+  }
+  return "";
+}
+
+//------------------------------------------------------------------------------
+bool vtkTautlineAlgorithm::NeedsFinitePoints(int) const
+{
+  return false;
+}
+
+//------------------------------------------------------------------------------
+bool vtkTautlineAlgorithm::ExecutesOnAllProcesses()
+{
+  return this->TakesComposite(MeshPort);
+}
+
+//------------------------------------------------------------------------------
+void vtkTautlineAlgorithm::ClearResult()
+{
+  this->Summary.clear();
 }
 
 //------------------------------------------------------------------------------

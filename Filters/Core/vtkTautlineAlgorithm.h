@@ -14,6 +14,12 @@
  * DeclarePorts() in its constructor and overrides FillInputPortInformation() or
  * FillOutputPortInformation() where it differs: RequestDataObject() makes what these announce.
  *
+ * @par Validation:
+ * Before RequestData() all inputs are checked: sizes of arrays, ids, offsets and types of cells,
+ * selections. A defect is an error that names it; the filter is not executed. Leaves of composite
+ * data that are null are passed over; those that are not data sets (tables, ...) are left out, with
+ * a warning.
+ *
  * @par Errors:
  * RequestData() does its work in Attempt(). An exception (tautline::Error, or any other) becomes an
  * error event with its message, and all outputs are empty, so that no half result is taken for a
@@ -62,6 +68,10 @@ public:
    */
   const char* GetSummary() const { return this->Summary.c_str(); }
 
+  /// Checks the inputs before RequestData() is called.
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
 protected:
   vtkTautlineAlgorithm();
   ~vtkTautlineAlgorithm() override;
@@ -78,6 +88,21 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+
+  /// Whether points with a NaN or infinite coordinate are refused on an input port. Default: no, as
+  /// the filters that measure or move points mark the cells of such points.
+  virtual bool NeedsFinitePoints(int port) const;
+
+  /**
+   * Whether the processes of a parallel server execute the filter together, so that an invalid
+   * input of one of them is an error on all; otherwise the others would wait for it in
+   * RequestData(). Default: yes, if port 0 takes composite data. (VTK executes other filters once
+   * per block, and the processes may have different numbers of these.)
+   */
+  virtual bool ExecutesOnAllProcesses();
+
+  /// Forgets the results of the last execution; called if the inputs are invalid.
+  virtual void ClearResult();
 
   /// The table on an output port.
   vtkTable* GetOutputTable(int port);
@@ -113,6 +138,9 @@ protected:
 private:
   vtkTautlineAlgorithm(const vtkTautlineAlgorithm&) = delete;
   void operator=(const vtkTautlineAlgorithm&) = delete;
+
+  bool TakesComposite(int port);
+  std::string FindInputProblem(vtkInformationVector** inputs);
 
   std::vector<int> SelectionPorts;
 };

@@ -274,7 +274,7 @@ int vtkMeshWarp::RequestData(
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   tautline::TableRows history, statistics;
   tautline::WarpTotals totals;
-  this->ClearResult();
+  this->ClearNumbers();
   std::string failure = FailureOf("choose conjugate gradients with BoomerAMG (Automatic Solver "
                                   "off), or warp the mesh in parts",
     [&]
@@ -331,6 +331,13 @@ int vtkMeshWarp::RequestData(
 
 //------------------------------------------------------------------------------
 void vtkMeshWarp::ClearResult()
+{
+  this->ClearNumbers();
+  this->Session->clear();
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshWarp::ClearNumbers()
 {
   this->Summary.clear();
   this->InvertedAfterWarp = this->Inverted = this->Impossible = 0;

@@ -418,13 +418,14 @@ protected:
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  void ClearResult() override;
 
 private:
   vtkMeshWarp(const vtkMeshWarp&) = delete;
   void operator=(const vtkMeshWarp&) = delete;
 
   tautline::WarpSettings GetSettings();
-  void ClearResult();
+  void ClearNumbers();
 
   int Motion = TRANSFORM;
   double Amount = 1.0;

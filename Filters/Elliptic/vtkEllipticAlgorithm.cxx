@@ -74,13 +74,12 @@ int vtkEllipticAlgorithm::RequestData(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
-  this->Summary.clear();
+  this->ClearResult();
   this->Failed = false;
   this->Fraction = 0.0;
   this->Begin = std::chrono::steady_clock::now();
   this->Unknowns = 0;
   this->AssemblySeconds = 0.0;
-  this->Reset();
   const int succeeded = this->Attempt(outputVector, "solve on a coarser mesh, or on more processes",
     [&]
     {
@@ -112,6 +111,16 @@ int vtkEllipticAlgorithm::RequestData(
     vtkWarningMacro(<< this->Summary);
   }
   return succeeded;
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticAlgorithm::ClearResult()
+{
+  this->Superclass::ClearResult();
+  this->Failed = false;
+  this->Unknowns = 0;
+  this->AssemblySeconds = 0.0;
+  this->Reset();
 }
 
 //------------------------------------------------------------------------------

@@ -233,8 +233,9 @@ protected:
 
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  void ClearResult() override;
 
-  /// Clears the results of the last execution.
+  /// Clears the results of the last execution that a derived class has.
   virtual void Reset();
   /// Computes the result on a mesh. Collective. Throws tautline::Error.
   virtual void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,

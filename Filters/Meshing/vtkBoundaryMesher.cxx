@@ -1,6 +1,8 @@
 #include "vtkBoundaryMesher.h"
 
+#include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
+#include "tautline/Core/Types.h"
 
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
@@ -39,12 +41,18 @@ int vtkBoundaryMesher::RequestData(
   vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector, 0);
   vtkPolyData* boundary = vtkPolyData::GetData(outputVector, 1);
-  if (!input || input->GetNumberOfPoints() == 0)
+  if (!input)
   {
+    vtkWarningMacro(<< tautline::leftOut(vtkDataObject::GetData(inputVector[0]), "point set"));
     return 1;
   }
   try
   {
+    tautline::validateInput(input, { true });
+    if (input->GetNumberOfPoints() == 0)
+    {
+      return 1;
+    }
     this->Generate(input, output, boundary);
   }
   catch (const std::exception& error)

@@ -449,6 +449,13 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
 }
 
 //------------------------------------------------------------------------------
+void vtkMeshOptimizer::ClearResult()
+{
+  this->Runs.clear();
+  this->Report();
+}
+
+//------------------------------------------------------------------------------
 void vtkMeshOptimizer::Report()
 {
   this->Reason.clear();

@@ -488,6 +488,7 @@ protected:
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  void ClearResult() override;
 
 private:
   vtkMeshOptimizer(const vtkMeshOptimizer&) = delete;

@@ -2,6 +2,7 @@
 
 #include "HorizonInput.h"
 #include "Processes.h"
+#include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 
@@ -188,6 +189,7 @@ int vtkHorizonNeighbors::RequestData(
   try
   {
     tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[0]), "Horizon Neighbors");
+    tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true });
     const vtkSmartPointer<vtkDataSet> input =
       tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
     if (input->GetNumberOfCells() == 0)

@@ -2,6 +2,7 @@
 
 #include "HorizonInput.h"
 #include "Processes.h"
+#include "ValidateInput.h"
 
 #include "tautline/Core/Memory.h"
 #include "tautline/Peridynamics/InteractionLayer.h"
@@ -70,6 +71,7 @@ int vtkInteractionLayer::RequestData(
   try
   {
     tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[0]), "Interaction Layer");
+    tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true, this->Threads });
     const vtkSmartPointer<vtkDataSet> input =
       tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
     if (input->GetNumberOfCells() == 0)

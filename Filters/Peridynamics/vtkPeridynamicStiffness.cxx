@@ -150,8 +150,7 @@ int vtkPeridynamicStiffness::RequestData(
   vtkDataSet* output = vtkDataSet::GetData(outputVector, MeshPort);
   vtkTable* table = vtkTable::GetData(outputVector, SpectrumPort);
   vtkImageData* picture = vtkImageData::GetData(outputVector, SparsityPort);
-  this->Condition = this->SmallestEigenvalue = this->LargestEigenvalue = 0.0;
-  this->Summary.clear();
+  this->ClearResult();
   table->Initialize();
   picture->Initialize();
   return this->Attempt(outputVector, "choose a smaller horizon or a coarser mesh",
@@ -165,6 +164,19 @@ int vtkPeridynamicStiffness::RequestData(
         this->Compute(input, output, table, picture);
       }
     });
+}
+
+//------------------------------------------------------------------------------
+bool vtkPeridynamicStiffness::NeedsFinitePoints(int) const
+{
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::ClearResult()
+{
+  this->Superclass::ClearResult();
+  this->Condition = this->SmallestEigenvalue = this->LargestEigenvalue = 0.0;
 }
 
 //------------------------------------------------------------------------------

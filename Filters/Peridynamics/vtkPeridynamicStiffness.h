@@ -327,6 +327,8 @@ protected:
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  bool NeedsFinitePoints(int port) const override;
+  void ClearResult() override;
 
 private:
   vtkPeridynamicStiffness(const vtkPeridynamicStiffness&) = delete;

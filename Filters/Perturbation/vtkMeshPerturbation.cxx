@@ -76,7 +76,7 @@ int vtkMeshPerturbation::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  this->Report({});
+  this->ClearResult();
   return this->Attempt(outputVector, "perturb the mesh in parts",
     [&]
     {
@@ -167,6 +167,12 @@ void vtkMeshPerturbation::Perturb(
     notices += (notices.empty() || notice.empty() ? "" : "\n") +
       (notice.empty() || block.name.empty() ? "" : "In " + block.name + ": ") + notice;
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshPerturbation::ClearResult()
+{
+  this->Report({});
 }
 
 //------------------------------------------------------------------------------

@@ -151,6 +151,7 @@ protected:
   ~vtkMeshPerturbation() override;
 
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void ClearResult() override;
 
 private:
   vtkMeshPerturbation(const vtkMeshPerturbation&) = delete;

@@ -125,9 +125,7 @@ int vtkElementQuality::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
-  this->Notice.clear();
-  this->Summary.clear();
-  this->WorkingBytes = 0;
+  this->ClearResult();
   tautline::QualityTotals totals(this->GetSelection().metrics());
   const std::string failure = FailureOf("choose fewer metrics or measure the mesh in parts",
     [&]
@@ -156,6 +154,20 @@ int vtkElementQuality::RequestData(
     vtkWarningMacro(<< this->Notice);
   }
   return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkElementQuality::ExecutesOnAllProcesses()
+{
+  return this->Controller != nullptr;
+}
+
+//------------------------------------------------------------------------------
+void vtkElementQuality::ClearResult()
+{
+  this->Superclass::ClearResult();
+  this->Notice.clear();
+  this->WorkingBytes = 0;
 }
 
 //------------------------------------------------------------------------------

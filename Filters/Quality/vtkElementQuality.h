@@ -215,6 +215,8 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  bool ExecutesOnAllProcesses() override;
+  void ClearResult() override;
 
 private:
   vtkElementQuality(const vtkElementQuality&) = delete;

@@ -186,10 +186,12 @@ SourceMesh takeSourceMesh(vtkDataSet* mesh)
   result.source = makeShapeSource(polygon);
   vtkDataArray* centre = mesh->GetFieldData()->GetArray("CentreOfMass");
   vtkDataArray* farthest = mesh->GetFieldData()->GetArray("MaximumDistance");
-  if (centre && farthest && farthest->GetTuple1(0) > 0.0)
+  if (centre && farthest && centre->GetNumberOfTuples() > 0 &&
+    centre->GetNumberOfComponents() > 1 && farthest->GetNumberOfTuples() > 0 &&
+    farthest->GetComponent(0, 0) > 0.0)
   {
     result.source.centre = { centre->GetComponent(0, 0), centre->GetComponent(0, 1) };
-    result.source.maxDistance = farthest->GetTuple1(0);
+    result.source.maxDistance = farthest->GetComponent(0, 0);
   }
   return result;
 }

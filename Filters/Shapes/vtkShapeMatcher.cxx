@@ -211,10 +211,7 @@ int vtkShapeMatcher::RequestData(
 {
   vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
   vtkImageData* targetInput = vtkImageData::GetData(inputVector[1]);
-  this->Summary.clear();
-  this->Energy = this->CentreDistance = 0.0;
-  this->Rank = 0;
-  this->Exact = false;
+  this->ClearResult();
   if (!input || !targetInput || input->GetNumberOfPoints() == 0 ||
     targetInput->GetNumberOfPoints() == 0)
   {
@@ -247,6 +244,21 @@ int vtkShapeMatcher::RequestData(
       this->Exact = match.exact;
       this->Summary = summaryOf(match, tolerance);
     });
+}
+
+//------------------------------------------------------------------------------
+bool vtkShapeMatcher::NeedsFinitePoints(int) const
+{
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkShapeMatcher::ClearResult()
+{
+  this->Superclass::ClearResult();
+  this->Energy = this->CentreDistance = 0.0;
+  this->Rank = 0;
+  this->Exact = false;
 }
 
 //------------------------------------------------------------------------------

@@ -100,6 +100,8 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  bool NeedsFinitePoints(int port) const override;
+  void ClearResult() override;
 
 private:
   vtkShapeMatcher(const vtkShapeMatcher&) = delete;

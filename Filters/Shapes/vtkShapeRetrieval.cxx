@@ -179,6 +179,8 @@ vtkShapeRetrieval::vtkShapeRetrieval()
 int vtkShapeRetrieval::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");
+  // Also other types, so that the message can name the remedy.
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   return 1;
 }
 
@@ -194,9 +196,14 @@ int vtkShapeRetrieval::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkMultiBlockDataSet* input = vtkMultiBlockDataSet::GetData(inputVector[0]);
-  this->Summary.clear();
-  this->RecognitionRate = 0.0;
-  if (!input || input->GetNumberOfBlocks() == 0)
+  this->ClearResult();
+  if (!input)
+  {
+    return this->Fail(outputVector,
+      "Shapes are compared with each other: a multiblock data set of images is needed. Read a "
+      "folder of images, or run Group Datasets.");
+  }
+  if (input->GetNumberOfBlocks() == 0)
   {
     return 1;
   }
@@ -234,6 +241,13 @@ int vtkShapeRetrieval::RequestData(
       }
       this->Summary = text.str();
     });
+}
+
+//------------------------------------------------------------------------------
+void vtkShapeRetrieval::ClearResult()
+{
+  this->Superclass::ClearResult();
+  this->RecognitionRate = 0.0;
 }
 
 //------------------------------------------------------------------------------

@@ -100,6 +100,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void ClearResult() override;
 
 private:
   vtkShapeRetrieval(const vtkShapeRetrieval&) = delete;

@@ -1,6 +1,7 @@
 #include "vtkSilhouetteMesher.h"
 
 #include "ShapeAdapter.h"
+#include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkCellArray.h"
@@ -117,12 +118,18 @@ int vtkSilhouetteMesher::RequestData(
   vtkPolyData* outline = vtkPolyData::GetData(outputVector, 1);
   this->Summary.clear();
   this->NumberOfComponents = this->NumberOfHoles = 0;
-  if (!input || input->GetNumberOfPoints() == 0)
+  if (!input)
   {
+    vtkWarningMacro(<< tautline::leftOut(vtkDataObject::GetData(inputVector[0]), "image"));
     return 1;
   }
   try
   {
+    tautline::validateInput(input);
+    if (input->GetNumberOfPoints() == 0)
+    {
+      return 1;
+    }
     const tautline::GreyImage image(input, this->GetInputArrayToProcess(0, input));
     tautline::SilhouetteOptions options;
     options.foreground = static_cast<tautline::Foreground>(this->Foreground);

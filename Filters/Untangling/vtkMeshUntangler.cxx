@@ -109,9 +109,7 @@ vtkMeshUntangler::~vtkMeshUntangler() = default;
 int vtkMeshUntangler::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  this->Reason.clear();
-  this->Summary.clear();
-  this->InvertedBefore = this->InvertedAfter = this->Impossible = this->NotValid = 0;
+  this->ClearResult();
   return this->Attempt(outputVector, "untangle the mesh in parts",
     [&]
     {
@@ -126,6 +124,14 @@ int vtkMeshUntangler::RequestData(
         vtkWarningMacro(<< this->Summary);
       }
     });
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshUntangler::ClearResult()
+{
+  this->Superclass::ClearResult();
+  this->Reason.clear();
+  this->InvertedBefore = this->InvertedAfter = this->Impossible = this->NotValid = 0;
 }
 
 //------------------------------------------------------------------------------

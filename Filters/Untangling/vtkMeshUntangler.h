@@ -101,6 +101,7 @@ protected:
 
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  void ClearResult() override;
 
 private:
   vtkMeshUntangler(const vtkMeshUntangler&) = delete;
