@@ -1,0 +1,298 @@
+#include "HostileParts.h"
+
+#include "Check.h"
+#include "Meshes.h"
+#include "VtkMeshes.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkExplicitStructuredGrid.h"
+#include "vtkHyperTreeGrid.h"
+#include "vtkImageData.h"
+#include "vtkMolecule.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkMutableUndirectedGraph.h"
+#include "vtkOverlappingAMR.h"
+#include "vtkAMRBox.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredGrid.h"
+#include "vtkTable.h"
+#include "vtkUniformGrid.h"
+
+#include <functional>
+#include <limits>
+#include <sstream>
+
+namespace tautline
+{
+
+namespace
+{
+using Data = vtkSmartPointer<vtkDataObject>;
+
+Data grid(const MeshData& mesh)
+{
+  return toGrid(mesh);
+}
+
+/** A mesh of cells of one type, each with its points in a row. */
+Data cells(int type, const std::vector<Vec3>& points, const std::vector<std::vector<Index>>& nodes)
+{
+  MeshData mesh;
+  for (const Vec3& p : points)
+  {
+    mesh.addPoint(p);
+  }
+  for (const auto& cell : nodes)
+  {
+    mesh.addCell(type, cell);
+  }
+  return grid(mesh);
+}
+
+Data cubePolyhedron()
+{
+  const MeshData cube = blockMesh(CellType::Hexahedron, 1, 1, 1);
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->SetPoints(toPoints(cube));
+  const vtkIdType ids[] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  const vtkIdType faces[] = { 4, 0, 2, 3, 1, 4, 4, 5, 7, 6, 4, 0, 1, 5, 4, 4, 2, 6, 7, 3, 4, 0, 4,
+    6, 2, 4, 1, 3, 7, 5 };
+  mesh->InsertNextCell(VTK_POLYHEDRON, 8, ids, 6, faces);
+  return mesh;
+}
+
+Data image(int x, int y, int z)
+{
+  auto result = vtkSmartPointer<vtkImageData>::New();
+  result->SetDimensions(x, y, z);
+  result->GetPointData()->SetScalars(makeArray<vtkDoubleArray>("T", Index(x) * y * z));
+  return result;
+}
+
+Data rectilinear()
+{
+  auto result = vtkSmartPointer<vtkRectilinearGrid>::New();
+  result->SetDimensions(4, 3, 2);
+  const auto axis = [](int n)
+  {
+    auto array = makeArray<vtkDoubleArray>("", n);
+    for (int i = 0; i < n; ++i)
+    {
+      array->SetValue(i, i * (i + 1.0));
+    }
+    return array;
+  };
+  result->SetXCoordinates(axis(4));
+  result->SetYCoordinates(axis(3));
+  result->SetZCoordinates(axis(2));
+  return result;
+}
+
+vtkSmartPointer<vtkStructuredGrid> structured(int points)
+{
+  auto result = vtkSmartPointer<vtkStructuredGrid>::New();
+  result->SetDimensions(4, 3, 1);
+  vtkNew<vtkPoints> place;
+  place->SetDataType(VTK_DOUBLE);
+  for (int i = 0; i < points; ++i)
+  {
+    place->InsertNextPoint(i % 4 + 0.1 * (i / 4), i / 4, 0);
+  }
+  result->SetPoints(place);
+  return result;
+}
+
+Data hyperTreeGrid()
+{
+  auto result = vtkSmartPointer<vtkHyperTreeGrid>::New();
+  result->SetDimensions(3, 3, 1);
+  return result;
+}
+
+Data amr()
+{
+  auto result = vtkSmartPointer<vtkOverlappingAMR>::New();
+  const int blocks[] = { 1 };
+  const double origin[] = { 0, 0, 0 }, spacing[] = { 1, 1, 1 };
+  result->Initialize(1, blocks);
+  result->SetOrigin(origin);
+  result->SetGridDescription(VTK_XYZ_GRID);
+  result->SetSpacing(0, spacing);
+  vtkNew<vtkUniformGrid> leaf;
+  leaf->SetDimensions(4, 4, 4);
+  result->SetAMRBox(0, 0, vtkAMRBox(origin, leaf->GetDimensions(), spacing, origin));
+  result->SetDataSet(0, 0, leaf);
+  return result;
+}
+
+Data explicitStructured(Index wrong)
+{
+  const MeshData mesh = blockMesh(CellType::Hexahedron, 2, 1, 1);
+  auto result = vtkSmartPointer<vtkExplicitStructuredGrid>::New();
+  result->SetPoints(toPoints(mesh));
+  result->SetDimensions(3, 2, 2);
+  vtkNew<vtkCellArray> list;
+  for (Index cell = 0; cell < 2; ++cell)
+  {
+    std::vector<vtkIdType> ids(
+      mesh.connectivity.begin() + 8 * cell, mesh.connectivity.begin() + 8 * (cell + 1));
+    ids[0] += wrong;
+    list->InsertNextCell(8, ids.data());
+  }
+  result->SetCells(list);
+  return result;
+}
+
+Data graph()
+{
+  auto result = vtkSmartPointer<vtkMutableUndirectedGraph>::New();
+  const vtkIdType a = result->AddVertex(), b = result->AddVertex();
+  result->AddEdge(a, b);
+  return result;
+}
+
+Data molecule()
+{
+  auto result = vtkSmartPointer<vtkMolecule>::New();
+  result->AppendAtom(1, 0, 0, 0);
+  result->AppendAtom(8, 0, 0, 1);
+  return result;
+}
+
+//------------------------------------------------------------------------------
+Data fixedData(const Data& data)
+{
+  return data;
+}
+
+/** One that does not depend on what suits the filter. */
+HostileData fixed(const char* name, const std::function<Data()>& make,
+  Expected expected = Expected::Anything, bool nonFinite = false)
+{
+  return { name, [make](vtkDataObject*) { return fixedData(make()); }, expected, false, nonFinite };
+}
+}
+
+//------------------------------------------------------------------------------
+Data makeTable()
+{
+  auto result = vtkSmartPointer<vtkTable>::New();
+  result->AddColumn(makeArray<vtkDoubleArray>("T", 5));
+  return result;
+}
+
+//------------------------------------------------------------------------------
+Data makeBlocks(const std::vector<Data>& leaves)
+{
+  auto result = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  for (const Data& leaf : leaves)
+  {
+    result->SetBlock(result->GetNumberOfBlocks(), leaf);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+void addHostileMeshes(std::vector<HostileData>& list)
+{
+  const auto add = [&list](const char* name, const std::function<Data()>& make,
+                     Expected expected = Expected::Anything)
+  { list.push_back(fixed(name, make, expected)); };
+  add("empty grid", [] { return Data(vtkSmartPointer<vtkUnstructuredGrid>::New()); });
+  add("empty surface", [] { return Data(vtkSmartPointer<vtkPolyData>::New()); });
+  add("points only",
+    [] {
+      return cells(VTK_VERTEX, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, {});
+    });
+  add("one triangle",
+    [] {
+      return cells(VTK_TRIANGLE, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } });
+    });
+  add("one tetrahedron",
+    []
+    {
+      return cells(
+        VTK_TETRA, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { { 0, 1, 2, 3 } });
+    });
+  add("a triangle in a point",
+    [] {
+      return cells(VTK_TRIANGLE, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 1, 1, 1 } });
+    });
+  add("vertices", [] { return cells(VTK_VERTEX, { { 0, 0, 0 }, { 1, 0, 0 } }, { { 0 }, { 1 } }); });
+  add("lines", [] { return cells(VTK_LINE, { { 0, 0, 0 }, { 1, 0, 0 } }, { { 0, 1 } }); });
+  add("tetrahedra", [] { return grid(blockMesh(CellType::Tetrahedron, 2, 2, 2)); });
+  add("hexahedra", [] { return grid(blockMesh(CellType::Hexahedron, 2, 2, 2)); });
+  add("wedges", [] { return grid(blockMesh(CellType::Wedge, 2, 2, 2)); });
+  add("pyramids", [] { return grid(blockMesh(CellType::Pyramid, 1, 1, 1)); });
+  add("quadrilaterals", [] { return grid(blockMesh(CellType::Quadrilateral, 3, 3, 0)); });
+  add("mixed dimensions",
+    []
+    {
+      MeshData mesh = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+      mesh.addCell(VTK_TRIANGLE, { 0, 1, 4 });
+      mesh.addCell(VTK_LINE, { 0, 1 });
+      mesh.addCell(VTK_VERTEX, { 0 });
+      return grid(mesh);
+    });
+  add("non-manifold edge",
+    []
+    {
+      return cells(VTK_TRIANGLE,
+        { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 } },
+        { { 0, 1, 2 }, { 1, 0, 3 }, { 0, 1, 4 } });
+    });
+  add("surface in space",
+    []
+    {
+      MeshData mesh = blockMesh(CellType::Triangle, 4, 4, 0);
+      mesh.transform([](Vec3 p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[1] }; });
+      return grid(mesh);
+    });
+  add("triangle strip",
+    []
+    {
+      return cells(VTK_TRIANGLE_STRIP, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 } },
+        { { 0, 1, 2, 3 } });
+    });
+  add("pentagon",
+    []
+    {
+      return cells(VTK_POLYGON,
+        { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0.5, 1.5, 0 }, { 0, 1, 0 } },
+        { { 0, 1, 2, 3, 4 } });
+    });
+  const std::vector<Vec3> six = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.5, 0, 0 },
+    { 0.5, 0.5, 0 }, { 0, 0.5, 0 } };
+  add("quadratic triangle",
+    [six] {
+      return cells(VTK_QUADRATIC_TRIANGLE, six, { { 0, 1, 2, 3, 4, 5 } });
+    });
+  add("Lagrange triangle",
+    [six] {
+      return cells(VTK_LAGRANGE_TRIANGLE, six, { { 0, 1, 2, 3, 4, 5 } });
+    });
+  add("polyhedron", cubePolyhedron);
+  add("image", [] { return image(5, 4, 1); });
+  add("image of a volume", [] { return image(4, 3, 3); });
+  add("image of one pixel", [] { return image(1, 1, 1); });
+  add("rectilinear grid", rectilinear);
+  add("structured grid", [] { return Data(structured(12)); });
+  add("explicit structured grid", [] { return explicitStructured(0); });
+  add("adaptive grid", amr);
+  add("hyper tree grid", hyperTreeGrid, Expected::Error);
+  add("table", makeTable, Expected::Error);
+  add("graph", graph, Expected::Error);
+  add("molecule", molecule, Expected::Error);
+  add("blocks without meshes", [] { return makeBlocks({ makeTable(), nullptr }); });
+  add("blocks of nothing", [] { return makeBlocks({ nullptr, nullptr }); });
+  add("no blocks", [] { return makeBlocks({}); });
+  // Corrupt ones.
+  add(
+    "structured grid with too few points", [] { return Data(structured(11)); }, Expected::Error);
+  add(
+    "explicit structured grid, wrong id", [] { return explicitStructured(1000000); },
+    Expected::Error);
+}
+
+} // namespace tautline
