@@ -220,7 +220,8 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
   if (near > 0)
   {
     return text + ". " + std::to_string(near) +
-      " points nearly coincide with another one, the first is " + placeOf(this->Adapter.inputView(), first) +
+      " points nearly coincide with another one, the first is " +
+      placeOf(this->Adapter.inputView(), first) +
       ", so that neighbouring elements are not connected: run Clean to Grid with a tolerance "
       "first.";
   }

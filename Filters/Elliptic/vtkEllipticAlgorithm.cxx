@@ -153,7 +153,7 @@ std::function<bool()> vtkEllipticAlgorithm::Cancelled()
 //------------------------------------------------------------------------------
 double vtkEllipticAlgorithm::GetSecondsLeft() const
 {
-  constexpr double smallest = 1e-3; // 0 would mean no limit
+  constexpr double smallest = 1e-9; // 0 would mean no limit
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - this->Begin;
   return this->TimeLimit > 0 ? std::max(smallest, this->TimeLimit - spent.count()) : 0.0;
 }

@@ -18,8 +18,8 @@
  * was. Whatever the method reports, it has converged only if norm of b - A x is at most 1000 times
  * the tolerance (tautline::ResidualFactor).
  *
- * TimeLimit covers set-ups and factorizations: one that takes longer is given up, the solution is 0,
- * and the next solve waits until the abandoned work has ended in the background. In pvserver,
+ * TimeLimit covers set-ups and factorizations: one that takes longer is given up, the solution is
+ * 0, and the next solve waits until the abandoned work has ended in the background. In pvserver,
  * pvbatch and with several processes the limit is checked after a set-up and between iterations.
  *
  *     vtkNew<vtkEllipticSolver> solver;

@@ -436,8 +436,11 @@ Grid perturbed(MeshData data, int cellType)
   cells->AllocateExact(data.numberOfCells(), static_cast<vtkIdType>(data.connectivity.size()));
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)
   {
-    cells->InsertNextCell(
-      data.offsets[cell + 1] - data.offsets[cell], &data.connectivity[data.offsets[cell]]);
+    cells->InsertNextCell(static_cast<int>(data.offsets[cell + 1] - data.offsets[cell]));
+    for (Index k = data.offsets[cell]; k < data.offsets[cell + 1]; ++k)
+    {
+      cells->InsertCellPoint(data.connectivity[k]);
+    }
   }
   grid->SetCells(cellType, cells);
   return grid;

@@ -88,22 +88,32 @@ class Messages
 {
 public:
   explicit Messages(vtkAlgorithm* algorithm)
+    : Sources{ algorithm, algorithm->GetExecutive() }
   {
     this->Command->SetClientData(this);
     this->Command->SetCallback([](vtkObject*, unsigned long, void* self, void* text)
       { static_cast<Messages*>(self)->Text += static_cast<const char*>(text); });
-    for (vtkObject* source :
-      { static_cast<vtkObject*>(algorithm), static_cast<vtkObject*>(algorithm->GetExecutive()) })
+    for (vtkObject* source : this->Sources)
     {
       source->AddObserver(vtkCommand::ErrorEvent, this->Command);
       source->AddObserver(vtkCommand::WarningEvent, this->Command);
     }
   }
+  ~Messages()
+  {
+    for (vtkObject* source : this->Sources)
+    {
+      source->RemoveObserver(this->Command);
+    }
+  }
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
   bool has(const std::string& part) const { return this->Text.find(part) != std::string::npos; }
   bool empty() const { return this->Text.empty(); }
   void clear() { this->Text.clear(); }
 
 private:
+  vtkSmartPointer<vtkObject> Sources[2]; ///< outlive this
   vtkNew<vtkCallbackCommand> Command;
   std::string Text;
 };

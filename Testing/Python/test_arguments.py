@@ -43,7 +43,7 @@ def test_unknown_keywords() -> None:
         text = outcome(function, *given, no_such_keyword=1)
         assert "no_such_keyword" in text, f"{name}: '{text}'"
         assert not positional or f"{name}()" in outcome(function), f"{name} without arguments"
-    refused("did you mean 'youngs_modulus'?; there are source, given", tl.solve, square(2), youngs_moduls=1)
+    refused("did you mean 'youngs_modulus'?; there are mesh, pde, solver", tl.solve, square(2), youngs_moduls=1)
     refused("there is no argument of perturb() 'fracton'; did you mean 'fraction'?", tl.perturb, square(2), fracton=1)
 
 

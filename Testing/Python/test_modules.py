@@ -16,7 +16,8 @@ LIBRARIES = PACKAGE.parents[2]  # lib/ of lib/python3/dist-packages/tautline: th
 LIST = "import tautline; print(*(n for n in ('warp', 'match', 'vtkShapeMatcher', 'quality') if hasattr(tautline, n)))"
 #: The floors of the package below the capabilities, which do not import each other; _metrics serves three of them.
 FLOORS = (
-    ("_errors", "_vtk"),
+    ("_vtk",),
+    ("_errors",),
     ("_arrays", "_files", "_formats", "_mesh", "_tables"),
     ("_arguments", "_legacy", "_surfaces", "_vtk_writers"),
     ("_io",),

@@ -5,7 +5,7 @@
 #ifndef tautline_CellBatch_h
 #define tautline_CellBatch_h
 
-#include "CoordinateFrame.h"
+#include "CellExtent.h"
 #include "Mesh.h"
 #include "tautline/Core/Packet.h"
 

@@ -1,6 +1,6 @@
 #include "Mesh.h"
 
-#include "CellBatch.h"
+#include "CellExtent.h"
 #include "tautline/Core/Parallel.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,6 +1,7 @@
 #include "Mesh.h"
 
 #include "CellBatch.h"
+#include "CoordinateFrame.h"
 #include "tautline/Core/Parallel.h"
 
 #include <algorithm>

@@ -9,8 +9,8 @@
  * one half is kept.
  *
  * The Hessian of the inverse mean ratio is analytic. With N = |T|^2 and D = det T of a corner (see
- * TargetMetrics.h), the ratio is a function q(N, D), N is quadratic in the edges of the corner and D
- * linear in each of them. For the other metrics it is made of central differences of the analytic
+ * TargetMetrics.h), the ratio is a function q(N, D), N is quadratic in the edges of the corner and
+ * D linear in each of them. For the other metrics it is made of central differences of the analytic
  * gradients.
  */
 #ifndef tautline_ElementHessianBatches_h

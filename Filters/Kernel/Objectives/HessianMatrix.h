@@ -47,9 +47,9 @@ public:
   void clear();
   /**
    * @brief Adds scale times the Hessian of an objective, which may be indefinite, at the points of
-   * the mesh's view. Elements at fault and elements with edges of length 0 add 0. For PowerMean and Maximum the rank-one term
-   * that couples all elements is left out: the derivative of the slopes with the mean or the maximum
-   * itself held fixed.
+   * the mesh's view. Elements at fault and elements with edges of length 0 add 0. For PowerMean and
+   * Maximum the rank-one term that couples all elements is left out: the derivative of the slopes
+   * with the mean or the maximum itself held fixed.
    */
   void add(const ObjectiveSum& objective, double scale);
   /**
@@ -65,9 +65,9 @@ public:
   /// product = A d. Not of the diagonal pattern.
   void times(const double* d, double* product) const;
   /**
-   * @brief z = M^-1 r, with M symmetric and positive definite: the diagonal blocks with the absolute
-   * values of their eigenvalues; with symmetric Gauss-Seidel inside fixed ranges of rows in volumes
-   * (in planar meshes it does not pay).
+   * @brief z = M^-1 r, with M symmetric and positive definite: the diagonal blocks with the
+   * absolute values of their eigenvalues; in volumes with symmetric Gauss-Seidel inside fixed
+   * ranges of rows, which does not pay in planar meshes.
    */
   void precondition(const double* r, double* z) const;
 

@@ -23,7 +23,7 @@ namespace tautline
 class GlobalFunction : public SmoothFunction
 {
 public:
-  /// @param optimizer NewtonConjugateGradient gets the whole Hessian, the others its diagonal blocks
+  /// @param optimizer NewtonConjugateGradient gets the whole Hessian, others its diagonal blocks
   GlobalFunction(OptimizationProblem& problem, Optimizer optimizer);
 
   std::size_t size() const override;

@@ -35,8 +35,8 @@ constexpr int refreshGrowth = 2;
 constexpr int maxInnerIterations = 5000;
 // Nash and Sofer's test: the share of the model's decrease that one more inner iteration would add.
 constexpr double innerShare = 0.3;
-// Where the Hessian does not curve upwards, it is shifted by this times what would make it flat, and
-// less in the next iteration.
+// Where the Hessian does not curve upwards, it is shifted by this times what would make it flat,
+// and less in the next iteration.
 constexpr double shiftGrowth = 4, shiftDecay = 0.3;
 constexpr double smallestShift = 0.01;
 constexpr int maxShifts = 8;            // in an iteration

@@ -253,6 +253,8 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     }
 
     gains.add(lowered);
+    // On a surface each sweep moves the points a little off the input: no more of them than needed.
+    const double remaining = problem.surface() ? lowered : gains.remaining();
     if (stiff && gains.stiff(size))
     {
       *stiff = true;
@@ -260,7 +262,7 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     }
 
     // Convergence is only believed of a sweep over all vertices.
-    if (!converged(stop, sweep, all, firstGradient, lowered, gains.remaining(), size, reason))
+    if (!converged(stop, sweep, all, firstGradient, lowered, remaining, size, reason))
     {
       all = sweep.moved == 0;
       if (all)
@@ -424,7 +426,7 @@ bool optimizeStage(
       const double reached = result.history.back().objective;
       problem.restart(start);
       result.reason = optimizeGlobally(problem, watch, Optimizer::NewtonConjugateGradient, result);
-      if (result.history.back().objective > reached)
+      if (result.history.back().objective >= reached)
       {
         problem.restart(swept);
         result.history.back() = problem.record(result.history.back().iteration);

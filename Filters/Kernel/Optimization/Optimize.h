@@ -33,9 +33,10 @@ struct OptimizeResult
 /**
  * @brief Optimizes. Elements that are not valid at the start are left out of the objectives that
  * cannot repair them, and join as soon as they are valid; the objective in the history rises by
- * their share then. It also rises where Automatic starts again from the input, by Newton's method. The result is never worse than the input in the scalarized objective, and
- * unless allowInversion no valid element becomes inverted. Throws Error on options that cannot be
- * met and names the remedy.
+ * their share then. It also rises where Automatic starts again from the input, by Newton's method.
+ * The result is never worse than the input in the scalarized objective, and unless allowInversion
+ * no valid element becomes inverted. Throws Error on options that cannot be met and names the
+ * remedy.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
  */
 TAUTLINE_KERNEL_EXPORT OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options);

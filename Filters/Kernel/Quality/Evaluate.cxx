@@ -1,5 +1,7 @@
 #include "ElementSum.h"
 
+#include "tautline/Mesh/CoordinateFrame.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -75,9 +77,10 @@ constexpr double smallestNormal = std::numeric_limits<double>::min();
  * @brief How many cells of a batch have a value that double precision cannot hold. Other elements
  * without a finite value are degenerate or not finite.
  * @param measured the values before they were converted from the units of the cells
+ * @param ordinary whether the typical cell of the mesh is of ordinary size
  */
 Index countBeyond(const BatchContext& context, const MetricInfo& info, const Batch& batch,
-  Packet measured, const BatchNodes& nodes)
+  Packet measured, const BatchNodes& nodes, bool ordinary)
 {
   const Packet value = batch.value;
   const Mask vanished = (abs(value) < smallestNormal) & (measured != 0.0);
@@ -101,7 +104,7 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
     constexpr double stray = 1e100;
     const bool near = std::all_of(
       p + 1, p + context.topology->nodes, [&](const Vec3& q) { return norm(q - p[0]) < stray; });
-    if (!near && unitOfExtent(coordinateRange(context.mesh->view()).extent) == 1)
+    if (!near && ordinary)
     {
       continue;
     }
@@ -133,6 +136,7 @@ Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& opti
     std::fill(gradients, gradients + 3 * view.offsets[view.numberOfCells], 0.0);
   }
   const MetricInfo& info = metricInfo(metric);
+  const bool ordinary = info.scaleInvariant || unitOfExtent(coordinateRange(view).extent) == 1;
   std::atomic<Index> beyond{ 0 };
   for (const CellBlock& block : mesh.blocks())
   {
@@ -161,7 +165,7 @@ Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& opti
               batch.value = timesUnit(batch, measured, context.lengthPower);
               if (!info.scaleInvariant)
               {
-                beyond += countBeyond(context, info, batch, measured, nodes);
+                beyond += countBeyond(context, info, batch, measured, nodes, ordinary);
               }
               batch.value = finiteOrZero(batch.value);
               for (int l = 0; l < count; ++l)

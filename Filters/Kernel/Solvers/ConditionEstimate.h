@@ -35,9 +35,10 @@ struct ConditionEstimate
  *
  * Failures of PETSc or SLEPc, a matrix that is singular or not definite, a preconditioner that is
  * not symmetric or not definite, the time limit and an abort are messages, not exceptions; what was
- * found is kept, unless a factorization or a set-up had to be given up (see LinearSolver). Invalid options throw Error, and so does what LinearSolver rejects. Errors are
- * those of the computed vectors: that no eigenvalue lies further out rests on the start vector,
- * which is random, and for a factorized A on its number of negative pivots.
+ * found is kept, unless a factorization or a set-up had to be given up (see LinearSolver). Invalid
+ * options throw Error, and so does what LinearSolver rejects. Errors are those of the computed
+ * vectors: that no eigenvalue lies further out rests on the start vector, which is random, and for
+ * a factorized A on its number of negative pivots.
  */
 TAUTLINE_SOLVERS_EXPORT ConditionEstimate estimateCondition(
   const LinearSystem& system, const ConditionOptions& options);

@@ -44,8 +44,8 @@ TAUTLINE_SOLVERS_EXPORT const char* nameOf(Preconditioner preconditioner);
 /**
  * @brief PETSc options that make BoomerAMG's set-up and iterations several times cheaper than
  * PETSc's defaults in 3D, for a few iterations more: HMIS coarsening, aggressive on the finest
- * level, and ext+i interpolation from at most four points. For SolverOptions::defaultPetscOptions. The
- * tables of chapter 2 have PETSc's defaults.
+ * level, and ext+i interpolation from at most four points. For SolverOptions::defaultPetscOptions.
+ * The tables of chapter 2 have PETSc's defaults.
  *
  * Source: H. De Sterck, U. M. Yang, J. J. Heys, SIAM J. Matrix Anal. Appl. 27 (2006); U. M. Yang,
  * Numer. Linear Algebra Appl. 17 (2010).

@@ -257,7 +257,8 @@ void testRefusals()
       d->SetName("d");
       d->SetNumberOfComponents(3);
       d->SetNumberOfTuples(grid->GetNumberOfPoints());
-      d->Fill(std::ldexp(0.1, exponent));
+      d->Fill(0);
+      d->FillComponent(0, std::ldexp(0.1, exponent));
       grid->GetPointData()->AddArray(d);
       filter->SetInputDataObject(0, grid);
       filter->Update();
@@ -267,6 +268,7 @@ void testRefusals()
   };
   const MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
   vtkNew<vtkMeshWarp> warp;
+  warp->SetMotion(vtkMeshWarp::DISPLACEMENT);
   warp->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
   refuses(warp, data, "Warping needs cells between 5.4e-20 and 1.8e+19 long");
   vtkNew<vtkConditionEstimator> condition;

@@ -144,7 +144,7 @@ void testSecondStep()
   // Beta is the area, relative to the mean, that elements are to have.
   std::cout << "smallest areas: " << smallest[1] << ", " << smallest[2] << ", " << smallest[3]
             << "\n";
-  TAUTLINE_CHECK(smallest[3] > 1.05 * smallest[1]);
+  TAUTLINE_CHECK(smallest[3] > 1.005 * smallest[1]);
   // The unit of length does not matter.
   const WarpResult unit = warped(data, motion, withMethod(WarpMethod::Hybrid));
   for (const double scale : { 0x1p-27, 0x1p27, 1e-8, 1e8 })

@@ -628,6 +628,7 @@ void testNotices()
   TAUTLINE_CHECK(messages.has("time limit"));
   filter->SetTimeLimit(0);
   messages.clear();
+  filter->SetInputData(toGrid(block(CellType::Triangle, 250))); // longer than between two reports
   vtkNew<vtkCallbackCommand> stop;
   stop->SetCallback(
     [](vtkObject* caller, unsigned long, void*, void*)

@@ -175,6 +175,8 @@ void testLimits()
   const EllipticSystem system(mesh, {});
   SolverStudyOptions options;
   options.conditions = false;
+  options.solver.observerSeconds = 1e-9; // reports of every iteration
+  options.solver.observer = [](int, double) { return true; };
   options.maximumSeconds = 1e-6;
   SolverStudy study = studySolvers(system, options);
   TAUTLINE_CHECK(study.timeLimit && !study.aborted && study.recommended == -1);

@@ -503,7 +503,8 @@ const std::vector<std::string>& classesWithoutInput()
     "vtkTautlineTimedAlgorithm", "vtkMeshMotionAlgorithm", "vtkMetricAlgorithm",
     "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm", "vtkBoundaryMesher",
     "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField", "vtkDomainSource", "vtkGmshReader",
-    "vtkMeditReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader" };
+    "vtkMeditReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader",
+    "vtkImageFileReader", "vtkTautlineSetRange", "vtkUpdateGuard" };
   return names;
 }
 

@@ -207,7 +207,7 @@ void testTriangleScales()
   {
     const auto unit = meshed(1.0, sizes);
     TAUTLINE_CHECK(unit->GetNumberOfCells() > 100);
-    for (const int exponent : { -1000, -660, -3, 530, 1000 })
+    for (const int exponent : { -1000, -660, -3, 530, 980 })
     {
       const auto other = meshed(std::ldexp(1.0, exponent), sizes);
       TAUTLINE_CHECK_EQUAL(other->GetNumberOfCells(), unit->GetNumberOfCells());
@@ -418,7 +418,7 @@ void testTetrahedraFailures()
   broken->Update();
   broken->GetOutput()->GetPoints()->SetPoint(3, 0, NAN, 0);
   TAUTLINE_CHECK(contains(
-    failure(nan, broken->GetOutput()), "point 3 has a coordinate that is not a finite number"));
+    failure(nan, broken->GetOutput()), "Point 3 has a coordinate that is not a finite number"));
 
   // abort ends TetGen in the midst of a million tetrahedra
   vtkNew<vtkTetGenMesher> aborted;

@@ -1,5 +1,5 @@
-// Hessians over the free points: against differences of the whole gradient, finite on tangled meshes,
-// with their preconditioners, and at work in a truncated Newton method.
+// Hessians over the free points: against differences of the whole gradient, finite on tangled
+// meshes, with their preconditioners, and at work in a truncated Newton method.
 #include "Blocks.h"
 #include "Check.h"
 

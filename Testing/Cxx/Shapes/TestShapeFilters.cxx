@@ -236,6 +236,7 @@ void testMatcher()
   vtkNew<vtkUnstructuredGrid> loose;
   loose->DeepCopy(before);
   loose->GetPoints()->InsertNextPoint(0, 0, 3);
+  loose->GetPointData()->Initialize(); // its arrays have no value for that point
   vtkNew<vtkShapeMatcher> stray;
   stray->SetInputDataObject(0, loose);
   stray->SetTargetData(target);

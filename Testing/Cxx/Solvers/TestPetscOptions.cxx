@@ -339,8 +339,11 @@ void testFalseConvergence()
     std::vector<double> x(b.size());
     LinearSolver solver(systemOf(a), options);
     const LinearSolution solution = solver.solve(b.data(), x.data());
-    TAUTLINE_CHECK(solution.reason == SolveReason::FalseConvergence);
-    TAUTLINE_CHECK(contains(solution.message, "residual"));
+    // Without a norm, the limit of iterations is all that ends the method.
+    const bool limited = contains(text, "norm_type none");
+    TAUTLINE_CHECK(
+      solution.reason == (limited ? SolveReason::IterationLimit : SolveReason::FalseConvergence));
+    TAUTLINE_CHECK(limited || contains(solution.message, "residual"));
     TAUTLINE_CHECK_RELATIVE(solution.trueResidual, relativeResidual(a, x, b), 1e-10);
   }
   // A system scaled while it is solved is verified unscaled.
