@@ -170,8 +170,8 @@ Array* addColumn(vtkTable* table, const std::string& name, vtkIdType rows, int c
 }
 
 //------------------------------------------------------------------------------
-void QualityTotals::tabulate(
-  vtkTable* statistics, int bins, vtkTable* distribution, vtkTable* angles, vtkPolyData* worst)
+void QualityTotals::tabulate(vtkTable* statistics, int bins, vtkTable* distribution,
+  vtkTable* angles, vtkPolyData* worst, vtkTable* histogram)
 {
   const auto rows = static_cast<vtkIdType>(this->Metrics.size());
   auto* names = addColumn<vtkStringArray>(statistics, "Metric", rows);
@@ -184,6 +184,7 @@ void QualityTotals::tabulate(
     this->Results[m].statistics = summarize(info, this->Dimension, this->Results[m].measured);
   }
   this->fillDistribution(bins, distribution);
+  this->fillHistogram(bins, histogram);
   this->fillStatistics(statistics);
   this->fillWorstColumns(statistics);
   this->fillWorstPoints(worst);
@@ -204,6 +205,35 @@ void QualityTotals::fillDistribution(int bins, vtkTable* table)
       middle->SetValue(b, 0.5 * h.edges[b] + 0.5 * h.edges[b + 1]);
       count->SetValue(b, h.counts[b]);
     }
+  }
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::fillHistogram(int bins, vtkTable* table) const
+{
+  for (std::size_t m = 0; m < this->Metrics.size(); ++m)
+  {
+    const MetricInfo& info = metricInfo(this->Metrics[m]);
+    const std::string name = info.name;
+    const auto& result = this->Results[m];
+    const AcceptableHistogram h = acceptableHistogram(info, this->Dimension, result.measured, bins);
+    const vtkIdType last = bins + 1;
+    auto* from = addColumn<vtkDoubleArray>(table, name + " from", last + 1);
+    auto* to = addColumn<vtkDoubleArray>(table, name + " to", last + 1);
+    auto* count = addColumn<vtkIdTypeArray>(table, name + " count", last + 1);
+    const auto row = [&](vtkIdType r, double low, double high, Index n)
+    {
+      from->SetValue(r, low);
+      to->SetValue(r, high);
+      count->SetValue(r, n);
+    };
+    const double low = h.edges.front(), high = h.edges.back();
+    row(0, std::min(low, h.below ? result.statistics.minimum : low), low, h.below);
+    for (int b = 0; b < bins; ++b)
+    {
+      row(b + 1, h.edges[b], h.edges[b + 1], h.counts[b]);
+    }
+    row(last, high, std::max(high, h.above ? result.statistics.maximum : high), h.above);
   }
 }
 

@@ -38,8 +38,8 @@ public:
   void gather(vtkMultiProcessController* controller);
 
   /// Fills the tables; may reorder what was gathered.
-  void tabulate(
-    vtkTable* statistics, int bins, vtkTable* distribution, vtkTable* angles, vtkPolyData* worst);
+  void tabulate(vtkTable* statistics, int bins, vtkTable* distribution, vtkTable* angles,
+    vtkPolyData* worst, vtkTable* histogram);
 
   /// A few lines for the user.
   std::string summary() const;
@@ -61,6 +61,7 @@ private:
   };
   void mergeWorst(std::size_t m, std::vector<Worst> more);
   void fillDistribution(int bins, vtkTable* table);
+  void fillHistogram(int bins, vtkTable* table) const;
   void fillStatistics(vtkTable* statistics) const;
   void fillWorstColumns(vtkTable* statistics) const;
   void fillWorstPoints(vtkPolyData* output) const;

@@ -36,6 +36,7 @@ enum Ports
   DistributionPort,
   AnglesPort,
   WorstPort,
+  HistogramPort,
   NumberOfPorts
 };
 }
@@ -75,6 +76,12 @@ vtkTable* vtkElementQuality::GetDistribution()
 vtkTable* vtkElementQuality::GetAngles()
 {
   return this->GetOutputTable(AnglesPort);
+}
+
+//------------------------------------------------------------------------------
+vtkTable* vtkElementQuality::GetHistogram()
+{
+  return this->GetOutputTable(HistogramPort);
 }
 
 //------------------------------------------------------------------------------
@@ -146,7 +153,8 @@ int vtkElementQuality::RequestData(
   {
     totals.tabulate(vtkTable::GetData(outputVector, StatisticsPort), this->HistogramBins,
       vtkTable::GetData(outputVector, DistributionPort),
-      vtkTable::GetData(outputVector, AnglesPort), vtkPolyData::GetData(outputVector, WorstPort));
+      vtkTable::GetData(outputVector, AnglesPort), vtkPolyData::GetData(outputVector, WorstPort),
+      vtkTable::GetData(outputVector, HistogramPort));
     this->Summary = totals.summary();
   }
   if (!this->Notice.empty())

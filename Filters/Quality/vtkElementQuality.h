@@ -41,6 +41,12 @@
  * A vtkPolyData with a vertex at the centre of each of the ten worst elements of each metric; point
  * arrays `Metric` (number), `Rank` (1 is the worst), `CellId`, `Value`, `Validity`. Zoom to it.
  *
+ * @par Output port 5 `Histogram`:
+ * A vtkTable with HistogramBins + 2 rows; for each metric the columns `<metric> from`, `<metric>
+ * to` and `<metric> count`. The first row has the values below the acceptable range, the last one
+ * those above it, the others are bins over it. Distribution, from the smallest to the largest
+ * value, shows how far the extremes are; this one, how the others are distributed.
+ *
  * For composite data sets and on several MPI ranks the tables are those of the whole; on ranks
  * above 0 they are empty. Cell ids are then the global ids of the cells if the data have any, else
  * they count through blocks and ranks in order.
@@ -171,7 +177,7 @@ public:
   ///@}
 
   ///@{
-  /// Rows of the Distribution table. The default is 32.
+  /// Rows of the table Distribution, and bins of the table Histogram. The default is 32.
   vtkTautlineSetRangeMacro(HistogramBins, int, 1, 100000);
   vtkGetMacro(HistogramBins, int);
   ///@}
@@ -187,6 +193,7 @@ public:
   vtkTable* GetStatistics();
   vtkTable* GetDistribution();
   vtkTable* GetAngles();
+  vtkTable* GetHistogram();
   vtkPolyData* GetWorst();
   ///@}
 

@@ -48,6 +48,20 @@ def test_quality():
     assert all((one.values[name] == result.values[name]).all() for name in one.values)
 
 
+def test_histogram():
+    result = tl.quality(TANGLED, ["imr", "mean_ratio"], histogram_bins=8)
+    values = result.values["imr"][result.validity == 1]
+    bins = result.histogram["imr"]
+    assert bins["from"][1] == 1 and bins["to"][8] == 3, "the acceptable range"
+    assert bins["count"].sum() == len(values) and bins["count"][-1] == np.count_nonzero(values > 3 + 3e-12) > 0
+    for row in range(1, 8):
+        inside = (values >= bins["from"][row]) & (values < bins["to"][row])
+        assert bins["count"][row] == np.count_nonzero(inside), row
+    assert result.histogram["mean_ratio"]["count"][0] == result.statistics["mean_ratio"]["outside_acceptable"]
+
+
+
+
 def test_targets():
     assert abs(tl.quality(ONE, "mu_size", size=2**0.5 / 12).values["mu_size"][0]) < 1e-12, "its own volume"
     twice = tl.quality(ONE, "mu_size", size=[2**0.5 / 6])

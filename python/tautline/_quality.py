@@ -43,6 +43,9 @@ class QualityResult:
     statistics: dict[str, dict[str, Any]]
     #: Per metric the histogram of the measured elements: value (centers of the bins) and count.
     distribution: dict[str, dict[str, np.ndarray]]
+    #: Per metric the histogram over its acceptable range: from, to and count; the first row has the elements below the
+    #: range, the last row those above it.
+    histogram: dict[str, dict[str, np.ndarray]]
     #: Angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
     angles: dict[str, np.ndarray]
     #: A point at the center of each of the worst elements, with the arrays Metric, Rank, CellId, Value, Validity.
@@ -142,6 +145,7 @@ def _result(filter_: Any) -> QualityResult:
     worst = filter_.GetWorst()
     statistics = _statistics(columns(filter_.GetStatistics()), worst)
     bins = columns(filter_.GetDistribution())
+    ranges = columns(filter_.GetHistogram())
     totals = next(iter(statistics.values()))
     return QualityResult(
         mesh=mesh,
@@ -149,6 +153,7 @@ def _result(filter_: Any) -> QualityResult:
         validity=cell_array(mesh, "Validity"),
         statistics=statistics,
         distribution={n: {"value": bins[f"{n} value"], "count": bins[f"{n} count"]} for n in statistics},
+        histogram={n: {key: ranges[f"{n} {key}"] for key in ("from", "to", "count")} for n in statistics},
         angles={name.lower(): column for name, column in columns(filter_.GetAngles()).items()},
         worst=worst,
         inverted=totals["inverted"],

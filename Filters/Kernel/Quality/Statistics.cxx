@@ -13,6 +13,13 @@ namespace
 /// inside.
 constexpr double roundingTolerance = 1e-12;
 
+/// The range with what rounding may add to it.
+Range widened(const Range& range)
+{
+  return { range.low - roundingTolerance * std::max(1.0, std::abs(range.low)),
+    range.high + roundingTolerance * std::max(1.0, std::abs(range.high)) };
+}
+
 /// For each of the 256 cell types whether the metric is defined on it.
 std::array<bool, 256> definedTypes(const MetricInfo& info)
 {
@@ -209,10 +216,7 @@ MetricStatistics summarize(
   }
   const double n = static_cast<double>(measured.size());
   const Range acceptable = info.acceptable(dimension);
-  const double lowest =
-    acceptable.low - roundingTolerance * std::max(1.0, std::abs(acceptable.low));
-  const double highest =
-    acceptable.high + roundingTolerance * std::max(1.0, std::abs(acceptable.high));
+  const auto [lowest, highest] = widened(acceptable);
   // Reductions in lanes: their order is fixed by the vector width, not by the threads.
   double minimum = measured.front(), maximum = measured.front();
   Index outside = 0;
@@ -275,19 +279,25 @@ MetricStatistics summarize(
   return result;
 }
 
-//------------------------------------------------------------------------------
-Histogram histogram(const std::vector<double>& measured, int bins)
+namespace
+{
+/// The ends of the values; 0 and 1 without any.
+Range extent(const std::vector<double>& measured)
+{
+  if (measured.empty())
+  {
+    return { 0, 1 };
+  }
+  const auto ends = std::minmax_element(measured.begin(), measured.end());
+  return { *ends.first, *ends.second };
+}
+
+/// Empty bins of equal width over a range.
+Histogram emptyBins(const Range& range, int bins)
 {
   if (bins < 1)
   {
     throw Error("A histogram needs at least one bin.");
-  }
-  double low = 0, high = 1;
-  if (!measured.empty())
-  {
-    const auto ends = std::minmax_element(measured.begin(), measured.end());
-    low = *ends.first;
-    high = *ends.second;
   }
   Histogram result;
   result.counts.assign(bins, 0);
@@ -295,13 +305,62 @@ Histogram histogram(const std::vector<double>& measured, int bins)
   for (int i = 0; i <= bins; ++i)
   {
     const double fraction = static_cast<double>(i) / bins;
-    result.edges[i] = (1 - fraction) * low + fraction * high;
+    result.edges[i] = (1 - fraction) * range.low + fraction * range.high;
   }
+  return result;
+}
+
+/// Counts a value in its bin; one beyond an end in the bin at that end.
+void count(Histogram& result, double value)
+{
+  const auto bins = static_cast<double>(result.counts.size());
+  const double low = result.edges.front(), high = result.edges.back();
   const double width = high / bins - low / bins;
+  const double position = width > 0 ? (value - low) / width : 0.0;
+  ++result.counts[static_cast<Index>(std::clamp(position, 0.0, bins - 1))];
+}
+}
+
+//------------------------------------------------------------------------------
+Histogram histogram(const std::vector<double>& measured, int bins)
+{
+  Histogram result = emptyBins(extent(measured), bins);
   for (double q : measured)
   {
-    const double position = width > 0 ? (q - low) / width : 0.0;
-    ++result.counts[static_cast<Index>(std::min<double>(bins - 1, position))];
+    count(result, q);
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+AcceptableHistogram acceptableHistogram(
+  const MetricInfo& info, int dimension, const std::vector<double>& measured, int bins)
+{
+  Range range = info.acceptable(dimension);
+  const Range values = extent(measured);
+  if (!(range.low < range.high))
+  {
+    range = values;
+  }
+  range.low = std::isfinite(range.low) ? range.low : std::min(values.low, range.high);
+  range.high = std::isfinite(range.high) ? range.high : std::max(values.high, range.low);
+  AcceptableHistogram result;
+  static_cast<Histogram&>(result) = emptyBins(range, bins);
+  const auto [lowest, highest] = widened(range);
+  for (double q : measured)
+  {
+    if (q < lowest)
+    {
+      ++result.below;
+    }
+    else if (q > highest)
+    {
+      ++result.above;
+    }
+    else
+    {
+      count(result, q);
+    }
   }
   return result;
 }

@@ -104,6 +104,22 @@ struct Histogram
 };
 TAUTLINE_KERNEL_EXPORT Histogram histogram(const std::vector<double>& measured, int bins);
 
+/**
+ * @brief Histogram over the acceptable range of a metric, so that a few extreme values do not hide
+ * how the others are distributed. Bins as those of Histogram.
+ *
+ * Where the range is unbounded or has no width, the smallest or largest value takes the place of
+ * its end. A value that exceeds an end by rounding only is in the bin at that end, as in
+ * MetricStatistics::outsideAcceptable.
+ */
+struct AcceptableHistogram : Histogram
+{
+  Index below = 0; ///< values below the first edge
+  Index above = 0; ///< values above the last edge
+};
+TAUTLINE_KERNEL_EXPORT AcceptableHistogram acceptableHistogram(
+  const MetricInfo& info, int dimension, const std::vector<double>& measured, int bins);
+
 /// Ends of the angle bins of dissertation Table 2.7, degrees.
 constexpr std::array<double, 6> angleBins = { 0, 20, 40, 80, 100, 180 };
 

@@ -107,6 +107,17 @@ void testTables()
   TAUTLINE_CHECK_EQUAL(filter->GetDistribution()->GetValueByName(3, "imr count").ToInt(), 1);
   TAUTLINE_CHECK(
     std::string(filter->GetSummary()).find("4 valid elements, 1 inverted, 1 degenerate") == 0);
+  // Bins over the acceptable range 1 to 3 between a row of what is below and one of what is above.
+  vtkTable* histogram = filter->GetHistogram();
+  TAUTLINE_CHECK_EQUAL(histogram->GetNumberOfRows(), 6);
+  TAUTLINE_CHECK_EQUAL(histogram->GetValueByName(1, "imr from").ToDouble(), 1);
+  TAUTLINE_CHECK_EQUAL(histogram->GetValueByName(4, "imr to").ToDouble(), 3);
+  const int counts[] = { 0, 2, 0, 1, 0, 1 };
+  for (int row = 0; row < 6; ++row)
+  {
+    TAUTLINE_CHECK_EQUAL(histogram->GetValueByName(row, "imr count").ToInt(), counts[row]);
+  }
+  TAUTLINE_CHECK_NEAR(histogram->GetValueByName(5, "imr to").ToDouble(), imrOf(0.1), 1e-14);
 }
 
 /// One meaning for all statistics: of larger-is-better metrics the minimum is the worst, also where

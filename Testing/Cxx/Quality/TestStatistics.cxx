@@ -242,6 +242,33 @@ void testHistogram()
 }
 
 //------------------------------------------------------------------------------
+void testAcceptableHistogram()
+{
+  // The acceptable inverse mean ratios are 1 to 3: one extreme value does not widen the bins.
+  const AcceptableHistogram h =
+    acceptableHistogram(imr, 3, { 1, 1.2, 1.6, 2.9, 3, 3 + 1e-13, 3.1, 99.9 }, 4);
+  TAUTLINE_CHECK((h.edges == std::vector<double>{ 1, 1.5, 2, 2.5, 3 }));
+  TAUTLINE_CHECK((h.counts == std::vector<Index>{ 2, 1, 0, 3 }));
+  TAUTLINE_CHECK_EQUAL(h.below, 0);
+  TAUTLINE_CHECK_EQUAL(h.above, 2);
+  // Where larger is better, the unacceptable values are below: 1/3 to 1.
+  const AcceptableHistogram larger = acceptableHistogram(meanRatio, 2, { 0.1, 0.2, 0.4, 1 }, 2);
+  TAUTLINE_CHECK_EQUAL(larger.below, 2);
+  TAUTLINE_CHECK((larger.counts == std::vector<Index>{ 1, 1 }));
+  TAUTLINE_CHECK_EQUAL(larger.above, 0);
+  // The values take the place of an end that is not bounded, or of a range without width.
+  const AcceptableHistogram unbounded = acceptableHistogram(size, 3, { 1, 4 }, 3);
+  TAUTLINE_CHECK((unbounded.counts == std::vector<Index>{ 1, 0, 1 }));
+  TAUTLINE_CHECK_EQUAL(unbounded.edges.back(), 4);
+  const AcceptableHistogram flat = acceptableHistogram(untangle, 3, { -2, 0, 2 }, 2);
+  TAUTLINE_CHECK((flat.counts == std::vector<Index>{ 1, 2 }));
+  TAUTLINE_CHECK_EQUAL(flat.below + flat.above, 0);
+  const AcceptableHistogram none = acceptableHistogram(imr, 3, {}, 2);
+  TAUTLINE_CHECK((none.edges == std::vector<double>{ 1, 2, 3 }));
+  TAUTLINE_CHECK_THROWS(acceptableHistogram(imr, 3, { 1 }, 0), "at least one bin");
+}
+
+//------------------------------------------------------------------------------
 void testWorst()
 {
   Cells cells;
@@ -379,6 +406,7 @@ int TestStatistics(int, char*[])
   testRandom();
   testMagnitudes();
   testHistogram();
+  testAcceptableHistogram();
   testWorst();
   testAngles();
   return exitCode();
