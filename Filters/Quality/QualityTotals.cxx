@@ -20,6 +20,12 @@
 
 namespace tautline
 {
+namespace
+{
+/// How many of the worst elements of each metric the summary names.
+constexpr std::size_t ListedInSummary = 3;
+}
+
 //------------------------------------------------------------------------------
 QualityTotals::QualityTotals(const std::vector<Metric>& metrics)
   : Metrics(metrics)
@@ -388,6 +394,13 @@ std::string QualityTotals::summary() const
       text << "\n"
            << info.label << ": " << s.minimum << " to " << s.maximum << ", mean " << s.mean << "; "
            << s.outsideAcceptable << " of " << s.measured << " outside the acceptable range.";
+    }
+    const auto& worst = this->Results[m].worst;
+    const std::size_t listed = std::min(worst.size(), ListedInSummary);
+    for (std::size_t i = 0; i < listed; ++i)
+    {
+      text << (i == 0 ? "\nWorst: " : ", ") << "element " << worst[i].element.cell << " ("
+           << worst[i].element.value << ")" << (i + 1 == listed ? "." : "");
     }
   }
   return text.str();

@@ -107,6 +107,9 @@ void testTables()
   TAUTLINE_CHECK_EQUAL(filter->GetDistribution()->GetValueByName(3, "imr count").ToInt(), 1);
   TAUTLINE_CHECK(
     std::string(filter->GetSummary()).find("4 valid elements, 1 inverted, 1 degenerate") == 0);
+  TAUTLINE_CHECK(
+    std::string(filter->GetSummary()).find("\nWorst: element 2 (") != std::string::npos);
+
   // Bins over the acceptable range 1 to 3 between a row of what is below and one of what is above.
   vtkTable* histogram = filter->GetHistogram();
   TAUTLINE_CHECK_EQUAL(histogram->GetNumberOfRows(), 6);

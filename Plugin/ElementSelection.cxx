@@ -1,0 +1,257 @@
+#include "ElementSelection.h"
+
+#include "pqActiveObjects.h"
+#include "pqOutputPort.h"
+#include "pqPVApplicationCore.h"
+#include "pqRenderView.h"
+#include "pqSelectionManager.h"
+#include "pqServer.h"
+#include "pqTimeKeeper.h"
+
+#include "vtkDataSetAttributes.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVDataSetAttributesInformation.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMRenderViewProxy.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSelectionNode.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+namespace
+{
+
+using Proxy = vtkSmartPointer<vtkSMSourceProxy>;
+
+Proxy newProxy(pqOutputPort* port, const char* group, const char* name)
+{
+  Proxy proxy;
+  proxy.TakeReference(vtkSMSourceProxy::SafeDownCast(
+    port->getSourceProxy()->GetSessionProxyManager()->NewProxy(group, name)));
+  return proxy;
+}
+
+/// A source of a selection of cells; its properties are to be set.
+Proxy newSource(pqOutputPort* port, const char* name)
+{
+  Proxy source = newProxy(port, "sources", name);
+  vtkSMPropertyHelper(source, "FieldType").Set(vtkSelectionNode::CELL);
+  return source;
+}
+
+/// Makes an expression of sources, named s0, s1, ..., the selection of the output.
+void select(pqOutputPort* port, const std::vector<Proxy>& sources, const std::string& expression)
+{
+  Proxy combined = newProxy(port, "filters", "AppendSelections");
+  for (std::size_t i = 0; i < sources.size(); ++i)
+  {
+    sources[i]->UpdateVTKObjects();
+    vtkSMPropertyHelper(combined, "Input").Add(sources[i]);
+    vtkSMPropertyHelper(combined, "SelectionNames")
+      .Set(static_cast<unsigned int>(i), ("s" + std::to_string(i)).c_str());
+  }
+  vtkSMPropertyHelper(combined, "Expression").Set(expression.c_str());
+  combined->UpdateVTKObjects();
+  port->setSelectionInput(combined, 0);
+  pqPVApplicationCore::instance()->selectionManager()->select(port);
+  port->renderAllViews();
+}
+
+bool hasGlobalIds(vtkPVDataInformation* info)
+{
+  return info->GetCellDataInformation()->GetAttributeInformation(vtkDataSetAttributes::GLOBALIDS) !=
+    nullptr;
+}
+
+/// The data sets of composite data in the order of their numbers: flat index and number of cells.
+struct Leaf
+{
+  unsigned int flatIndex;
+  vtkTypeInt64 cells;
+};
+std::vector<Leaf> leavesOf(pqOutputPort* port, vtkTypeInt64 cells)
+{
+  constexpr unsigned int mostNodes = 100000;
+  std::vector<Leaf> leaves;
+  const unsigned int number = static_cast<unsigned int>(port->getPortNumber());
+  vtkTypeInt64 found = 0;
+  for (unsigned int flat = 1; found < cells && flat < mostNodes; ++flat)
+  {
+    vtkPVDataInformation* info = port->getSourceProxy()->GetSubsetDataInformation(number, flat);
+    if (info && !info->IsNull() && !info->IsCompositeDataSet())
+    {
+      leaves.push_back({ flat, info->GetNumberOfCells() });
+      found += leaves.back().cells;
+    }
+  }
+  return leaves;
+}
+
+/// Appends the three numbers by which ParaView identifies a cell of composite data.
+bool appendComposite(
+  const std::vector<Leaf>& leaves, const ElementName& name, std::vector<vtkIdType>& ids)
+{
+  vtkTypeInt64 cell = name.cell;
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+  {
+    const bool here = name.block < 0 || name.block == static_cast<int>(i);
+    if (here && cell < leaves[i].cells)
+    {
+      ids.insert(ids.end(),
+        { static_cast<vtkIdType>(leaves[i].flatIndex), -1, static_cast<vtkIdType>(cell) });
+      return true;
+    }
+    cell -= name.block < 0 ? leaves[i].cells : 0;
+  }
+  return false;
+}
+
+/// Appends the two numbers by which ParaView identifies a cell of a data set.
+bool append(pqOutputPort* port, const ElementName& name, std::vector<vtkIdType>& ids)
+{
+  const int processes = port->getServer()->getNumberOfPartitions();
+  if (processes == 1 || name.process >= 0)
+  {
+    ids.insert(ids.end(), { processes == 1 ? -1 : name.process, name.cell });
+    return processes > 1 || name.cell < port->getDataInformation()->GetNumberOfCells();
+  }
+  vtkTypeInt64 cell = name.cell;
+  for (int process = 0; process < processes; ++process)
+  {
+    const vtkTypeInt64 cells = port->getRankDataInformation(process)->GetNumberOfCells();
+    if (cell < cells)
+    {
+      ids.insert(ids.end(), { process, static_cast<vtkIdType>(cell) });
+      return true;
+    }
+    cell -= cells;
+  }
+  return false;
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& names)
+{
+  vtkPVDataInformation* info = port->getDataInformation();
+  const bool composite = info->IsCompositeDataSet();
+  const bool global = hasGlobalIds(info) &&
+    std::all_of(names.begin(), names.end(),
+      [](const ElementName& name) { return name.block < 0 && name.process < 0; });
+  if (composite && !global && port->getServer()->getNumberOfPartitions() > 1)
+  {
+    return "A cell of blocks on several processes has no unique number: apply Generate Global Ids "
+           "first.";
+  }
+  const std::vector<Leaf> leaves =
+    composite && !global ? leavesOf(port, info->GetNumberOfCells()) : std::vector<Leaf>();
+  std::vector<vtkIdType> ids;
+  for (const ElementName& name : names)
+  {
+    if (global)
+    {
+      ids.push_back(name.cell);
+    }
+    else if (composite ? !appendComposite(leaves, name, ids) : !append(port, name, ids))
+    {
+      return "The output has no cell " + std::to_string(name.cell) +
+        ": apply the filter again, the result shown is of another mesh.";
+    }
+  }
+  Proxy source = newSource(port,
+    global        ? "GlobalIDSelectionSource"
+      : composite ? "CompositeDataIDSelectionSource"
+                  : "IDSelectionSource");
+  vtkSMPropertyHelper(source, "IDs").Set(ids.data(), static_cast<unsigned int>(ids.size()));
+  select(port, { source }, "s0");
+  return {};
+}
+
+//------------------------------------------------------------------------------
+vtkTypeInt64 selectWhere(pqOutputPort* port, const std::vector<CellCondition>& conditions, bool all)
+{
+  if (conditions.empty())
+  {
+    pqPVApplicationCore::instance()->selectionManager()->clearSelection();
+    return 0;
+  }
+  std::vector<Proxy> sources;
+  std::string expression;
+  for (const CellCondition& condition : conditions)
+  {
+    std::string alternatives;
+    for (const std::vector<CellInterval>& intervals : condition)
+    {
+      std::string term;
+      for (const CellInterval& interval : intervals)
+      {
+        Proxy source = newSource(port, "ThresholdSelectionSource");
+        const double ends[2] = { interval.low, interval.high };
+        vtkSMPropertyHelper(source, "Thresholds").Set(ends, 2);
+        vtkSMPropertyHelper(source, "ArrayName").Set(interval.array.c_str());
+        term += (term.empty() ? "s" : "&s") + std::to_string(sources.size());
+        sources.push_back(source);
+      }
+      alternatives += (alternatives.empty() ? "(" : "|(") + term + ")";
+    }
+    expression += (expression.empty() ? "(" : all ? "&(" : "|(") + alternatives + ")";
+  }
+  select(port, sources, expression);
+  return countSelected(port);
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned int> leafIndices(pqOutputPort* port)
+{
+  std::vector<unsigned int> indices;
+  for (const Leaf& leaf : leavesOf(port, port->getDataInformation()->GetNumberOfCells()))
+  {
+    indices.push_back(leaf.flatIndex);
+  }
+  return indices;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeInt64 countSelected(pqOutputPort* port)
+{
+  vtkSMSourceProxy* extract = port->getSourceProxy()->GetSelectionOutput(port->getPortNumber());
+  if (!port->getSelectionInput() || !extract)
+  {
+    return 0;
+  }
+  extract->UpdatePipeline(port->getServer()->getTimeKeeper()->getTime());
+  return extract->GetDataInformation(0)->GetNumberOfCells();
+}
+
+//------------------------------------------------------------------------------
+void zoomToSelected(pqOutputPort* port)
+{
+  auto* view = qobject_cast<pqRenderView*>(pqActiveObjects::instance().activeView());
+  if (!view || countSelected(port) == 0)
+  {
+    return;
+  }
+  double bounds[6];
+  port->getSelectedDataInformation()->GetBounds(bounds);
+  // The elements around show where it is.
+  constexpr double margin = 1.0;
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    size = std::max(size, bounds[2 * axis + 1] - bounds[2 * axis]);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    bounds[2 * axis] -= margin * size;
+    bounds[2 * axis + 1] += margin * size;
+  }
+  view->getRenderViewProxy()->ResetCamera(bounds);
+  view->render();
+}
+
+} // namespace tautline

@@ -1,0 +1,69 @@
+/**
+ * @file ElementSelection.h
+ * @brief Selects cells of an output as a selection of ParaView, and moves the camera to them.
+ *
+ * The selections are evaluated where the data are, on the server: nothing but the request and the
+ * number of cells selected is sent. Extract Selection and Find Data work on them.
+ */
+
+#ifndef tautline_ElementSelection_h
+#define tautline_ElementSelection_h
+
+#include "vtkType.h"
+
+#include <string>
+#include <vector>
+
+class pqOutputPort;
+
+namespace tautline
+{
+
+/// A cell, as the summaries and tables of the filters name it.
+struct ElementName
+{
+  vtkIdType cell = 0;
+  int block = -1;   ///< of composite data, from 0: `cell` counts within it; -1: through all blocks
+  int process = -1; ///< `cell` counts within its part; -1: through all parts
+};
+
+/// A closed interval of the values of a cell array.
+struct CellInterval
+{
+  std::string array;
+  double low = 0;
+  double high = 0;
+};
+
+/// Alternatives, each a list of intervals: a cell fulfils the condition if it is in all intervals
+/// of one of them.
+using CellCondition = std::vector<std::vector<CellInterval>>;
+
+/**
+ * @brief Selects some cells, and nothing else.
+ *
+ * If the cells have global ids and a name gives neither block nor process, it is a global id.
+ * @return "" or what is wrong, with the remedy; then nothing changes.
+ */
+std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& names);
+
+/**
+ * @brief Selects the cells that fulfil all, or at least one, of some conditions. Without
+ * conditions, clears the selection.
+ * @return the number of cells selected
+ */
+vtkTypeInt64 selectWhere(
+  pqOutputPort* port, const std::vector<CellCondition>& conditions, bool all);
+
+/// The flat indices of the data sets of composite data, in the order of their numbers.
+std::vector<unsigned int> leafIndices(pqOutputPort* port);
+
+/// The number of cells selected on an output.
+vtkTypeInt64 countSelected(pqOutputPort* port);
+
+/// Moves the camera of the active render view to what is selected, with some of what is around.
+void zoomToSelected(pqOutputPort* port);
+
+} // namespace tautline
+
+#endif

@@ -1,0 +1,33 @@
+/**
+ * @class pqTautlineRefresher
+ * @brief Shows the results of the run just made: Summary, Notice and the numbers of a panel.
+ *
+ * ParaView updates the information properties of a filter when its panel is built or applied. Apply
+ * however comes before the filter runs, so that a panel shows the results of the run before. This
+ * object, started by the plugin in the GUI, updates the information properties of Tautline's
+ * proxies whenever their data were updated. Other proxies are left alone.
+ */
+
+#ifndef pqTautlineRefresher_h
+#define pqTautlineRefresher_h
+
+#include <QObject>
+
+class pqPipelineSource;
+
+class pqTautlineRefresher : public QObject
+{
+  Q_OBJECT
+
+public:
+  ///@{
+  /// Called by ParaView when the plugin is loaded in the GUI, and before it is unloaded.
+  void startup();
+  void shutdown();
+  ///@}
+
+private Q_SLOTS:
+  void refresh(pqPipelineSource* source);
+};
+
+#endif

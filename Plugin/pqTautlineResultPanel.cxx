@@ -1,0 +1,182 @@
+#include "pqTautlineResultPanel.h"
+
+#include "ElementSelection.h"
+
+#include "pqApplicationCore.h"
+#include "pqPipelineSource.h"
+#include "pqServerManagerModel.h"
+
+#include "vtkSMProperty.h"
+#include "vtkSMProxy.h"
+
+#include <QAbstractTextDocumentLayout>
+#include <QApplication>
+#include <QClipboard>
+#include <QEvent>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QRegularExpression>
+#include <QStringList>
+#include <QTextBrowser>
+#include <QToolButton>
+#include <QUrl>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace
+{
+constexpr int FewestLines = 2;
+constexpr int MostLines = 12;
+constexpr const char* LinkScheme = "element";
+}
+
+//------------------------------------------------------------------------------
+pqTautlineResultPanel::pqTautlineResultPanel(
+  vtkSMProxy* smproxy, vtkSMProperty* smproperty, QWidget* parentObject)
+  : Superclass(smproxy, parentObject)
+  , Browser(new QTextBrowser(this))
+  , Copy(new QToolButton(this))
+  , Note(new QLabel(this))
+{
+  this->setShowLabel(false);
+  this->Browser->setObjectName("Text");
+  this->Browser->setOpenLinks(false);
+  this->Browser->setLineWrapMode(QTextEdit::WidgetWidth);
+  this->Browser->setToolTip(pqPropertyWidget::getTooltip(smproperty));
+  this->Copy->setObjectName("Copy");
+  this->Copy->setText("Copy");
+  this->Copy->setToolTip("Copy the text to the clipboard.");
+  this->Note->setObjectName("Note");
+  this->Note->setWordWrap(true);
+  this->Note->hide();
+
+  auto* buttons = new QHBoxLayout;
+  buttons->addStretch();
+  buttons->addWidget(this->Copy);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(this->Browser);
+  layout->addWidget(this->Note);
+  layout->addLayout(buttons);
+
+  QObject::connect(
+    this->Browser, &QTextBrowser::anchorClicked, this, &pqTautlineResultPanel::follow);
+  QObject::connect(this->Copy, &QToolButton::clicked, this, &pqTautlineResultPanel::copy);
+  QObject::connect(this->Browser->document()->documentLayout(),
+    &QAbstractTextDocumentLayout::documentSizeChanged, this, &pqTautlineResultPanel::fitHeight);
+  this->setText(QString());
+  this->addPropertyLink(this, "text", SIGNAL(textChanged()), smproperty);
+}
+
+//------------------------------------------------------------------------------
+pqTautlineResultPanel::~pqTautlineResultPanel() = default;
+
+//------------------------------------------------------------------------------
+QString pqTautlineResultPanel::linked(const QString& text)
+{
+  static const QRegularExpression element(
+    "\\b([Ee]lement|[Cc]ell) (\\d+)( of process (\\d+))?(?!\\d)");
+  static const QRegularExpression block("^In block (\\d+): ");
+  QString html;
+  int number = -1;
+  const QStringList lines = text.split('\n');
+  for (const QString& line : lines)
+  {
+    const QRegularExpressionMatch inBlock = block.match(line);
+    number = inBlock.hasMatch() ? inBlock.captured(1).toInt() : number;
+    int end = 0;
+    auto matches = element.globalMatch(line);
+    while (matches.hasNext())
+    {
+      const QRegularExpressionMatch match = matches.next();
+      const QString process = match.captured(4).isEmpty() ? "-1" : match.captured(4);
+      html += line.mid(end, match.capturedStart() - end).toHtmlEscaped();
+      html += QString("<a href=\"%1:%2:%3:%4\">%5</a>")
+                .arg(LinkScheme, match.captured(2), QString::number(number), process,
+                  match.captured(0).toHtmlEscaped());
+      end = match.capturedEnd();
+    }
+    html += line.mid(end).toHtmlEscaped() + "<br>";
+  }
+  html.chop(static_cast<int>(sizeof("<br>")) - 1);
+  return html;
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::setText(const QString& text)
+{
+  const bool changed = this->Text != text;
+  this->Text = text;
+  this->Note->hide();
+  this->Browser->setHtml(
+    text.isEmpty() ? "<i>No result: apply the filter.</i>" : pqTautlineResultPanel::linked(text));
+  this->Copy->setEnabled(!text.isEmpty());
+  this->fitHeight();
+  if (changed)
+  {
+    Q_EMIT this->textChanged();
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::fitHeight()
+{
+  const int line = this->Browser->fontMetrics().lineSpacing();
+  const int frame = 2 * this->Browser->frameWidth();
+  const int height = static_cast<int>(this->Browser->document()->size().height()) + frame;
+  this->Browser->setFixedHeight(
+    std::clamp(height, FewestLines * line + frame, MostLines * line + frame));
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::changeEvent(QEvent* event)
+{
+  this->Superclass::changeEvent(event);
+  // ParaView disables the widgets of information properties; links and buttons are to work.
+  if (event->type() == QEvent::EnabledChange && !this->isEnabled())
+  {
+    this->setEnabled(true);
+  }
+}
+
+//------------------------------------------------------------------------------
+pqPipelineSource* pqTautlineResultPanel::source() const
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  return model->findItem<pqPipelineSource*>(this->proxy());
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::showNote(const QString& note)
+{
+  this->Note->setText(note);
+  this->Note->setVisible(!note.isEmpty());
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::follow(const QUrl& link)
+{
+  pqPipelineSource* source = this->source();
+  const QStringList numbers = link.toString().split(':');
+  if (!source || link.scheme() != LinkScheme || numbers.size() != 4)
+  {
+    return;
+  }
+  pqOutputPort* mesh = source->getOutputPort(0);
+  const std::string problem = tautline::selectElements(
+    mesh, { { numbers[1].toLongLong(), numbers[2].toInt(), numbers[3].toInt() } });
+  if (problem.empty())
+  {
+    tautline::zoomToSelected(mesh);
+  }
+  this->showNote(problem.empty()
+      ? QString("Element %1: %2 cell selected.").arg(numbers[1]).arg(tautline::countSelected(mesh))
+      : QString::fromStdString(problem));
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::copy()
+{
+  QApplication::clipboard()->setText(this->Text);
+}
