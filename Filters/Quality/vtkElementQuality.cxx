@@ -2,6 +2,7 @@
 
 #include "Blocks.h"
 #include "ColorMaps.h"
+#include "CriteriaGrader.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
 #include "PointMerge.h"
@@ -37,6 +38,7 @@ enum Ports
   AnglesPort,
   WorstPort,
   HistogramPort,
+  CriteriaPort,
   NumberOfPorts
 };
 }
@@ -82,6 +84,44 @@ vtkTable* vtkElementQuality::GetAngles()
 vtkTable* vtkElementQuality::GetHistogram()
 {
   return this->GetOutputTable(HistogramPort);
+}
+
+//------------------------------------------------------------------------------
+vtkTable* vtkElementQuality::GetCriteriaTable()
+{
+  return this->GetOutputTable(CriteriaPort);
+}
+
+//------------------------------------------------------------------------------
+void vtkElementQuality::SetCriteria(const char* criteria)
+{
+  const std::string text = criteria ? criteria : "";
+  if (text != this->Criteria)
+  {
+    this->Criteria = text;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkElementQuality::GetCriteriaPresets()
+{
+  std::string names;
+  for (const std::string& name : tautline::criteriaPresets())
+  {
+    names += (names.empty() ? "" : "\t") + name;
+  }
+  return names;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkElementQuality::GetCriteriaPreset(const char* name)
+{
+  const auto& known = tautline::criteriaPresets();
+  const std::string wanted = name ? name : "";
+  return std::find(known.begin(), known.end(), wanted) != known.end()
+    ? tautline::presetCriteria(wanted)
+    : std::string();
 }
 
 //------------------------------------------------------------------------------
@@ -133,18 +173,33 @@ int vtkElementQuality::RequestData(
 {
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   this->ClearResult();
-  tautline::QualityTotals totals(this->GetSelection().metrics());
+  // A file of criteria may be readable by some processes only.
+  tautline::CriteriaGrader grader;
+  const std::string wrong =
+    FailureOf("use fewer criteria", [&] { grader = tautline::CriteriaGrader(this->Criteria); });
+  int wrongHere = wrong.empty() ? 0 : 1, wrongAnywhere = wrongHere;
+  if (this->Controller)
+  {
+    this->Controller->AllReduce(&wrongHere, &wrongAnywhere, 1, vtkCommunicator::MAX_OP);
+  }
+  if (wrongAnywhere)
+  {
+    return this->Fail(
+      outputVector, wrong.empty() ? "The criteria cannot be read on another process." : wrong);
+  }
+  tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
   const std::string failure = FailureOf("choose fewer metrics or measure the mesh in parts",
     [&]
     {
       tautline::forEachBlock(vtkDataObject::GetData(inputVector[0]),
         vtkDataObject::GetData(inputVector[1]), nullptr, output,
         [&](const tautline::InputBlock& block)
-        { this->Measure(block.input, block.reference, block.output, totals); });
+        { this->Measure(block.input, block.reference, block.output, totals, grader); });
     });
 
   // Every process takes part in what follows, also if its own blocks failed.
   totals.gather(this->Controller);
+  grader.gather(this->Controller);
   if (!failure.empty())
   {
     return this->Fail(outputVector, failure);
@@ -155,7 +210,14 @@ int vtkElementQuality::RequestData(
       vtkTable::GetData(outputVector, DistributionPort),
       vtkTable::GetData(outputVector, AnglesPort), vtkPolyData::GetData(outputVector, WorstPort),
       vtkTable::GetData(outputVector, HistogramPort));
-    this->Summary = totals.summary();
+    grader.tabulate(vtkTable::GetData(outputVector, CriteriaPort));
+    this->Summary = grader.summary();
+    this->AddToSummary(totals.summary());
+  }
+  if (grader.active())
+  {
+    this->Verdict = tautline::gradeName(grader.totals().verdict());
+    this->QualityIndex = grader.totals().meanIndex();
   }
   if (!this->Notice.empty())
   {
@@ -175,12 +237,13 @@ void vtkElementQuality::ClearResult()
 {
   this->Superclass::ClearResult();
   this->Notice.clear();
-  this->WorkingBytes = 0;
+  this->Verdict.clear();
+  this->WorkingBytes = this->QualityIndex = 0;
 }
 
 //------------------------------------------------------------------------------
-void vtkElementQuality::Measure(
-  vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output, tautline::QualityTotals& totals)
+void vtkElementQuality::Measure(vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output,
+  tautline::QualityTotals& totals, tautline::CriteriaGrader& grader)
 {
   using namespace tautline;
   output->ShallowCopy(input);
@@ -221,6 +284,7 @@ void vtkElementQuality::Measure(
       input->GetCellData()->GetGlobalIds());
     this->UpdateProgress(static_cast<double>(m + 1) / static_cast<double>(metrics.size()));
   }
+  grader.grade(mesh, validity->GetPointer(0), skipped, output);
   output->GetCellData()->AddArray(validity);
   // Without active point scalars, views colour by the metric.
   output->GetPointData()->SetActiveScalars(nullptr);
@@ -305,6 +369,9 @@ void vtkElementQuality::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Epsilon: " << this->Epsilon << "\n";
   os << indent << "ReversedMesh: " << this->ReversedMesh << "\n";
   os << indent << "HistogramBins: " << this->HistogramBins << "\n";
+  os << indent << "Criteria: " << this->Criteria << "\n";
+  os << indent << "Verdict: " << this->Verdict << "\n";
+  os << indent << "QualityIndex: " << this->QualityIndex << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "Notice: " << this->Notice << "\n";
   os << indent << "WorkingBytes: " << this->WorkingBytes << "\n";

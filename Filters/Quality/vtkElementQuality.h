@@ -47,6 +47,12 @@
  * those above it, the others are bins over it. Distribution, from the smallest to the largest
  * value, shows how far the extremes are; this one, how the others are distributed.
  *
+ * @par Output port 6 `Criteria`:
+ * A vtkTable with a row for each of the criteria: `Metric`, `Label`, `Weight`, `Graded` (valid
+ * elements with limits), `Passed`, `Warning`, `Failed`, `MeanPenalty`. Empty without criteria. With
+ * criteria the mesh has the cell arrays `Grade` (0 passed, 1 warning, 2 failed, -1 none) and
+ * `QualityIndex` (0 ideal, 1 worst).
+ *
  * For composite data sets and on several MPI ranks the tables are those of the whole; on ranks
  * above 0 they are empty. Cell ids are then the global ids of the cells if the data have any, else
  * they count through blocks and ranks in order.
@@ -87,6 +93,7 @@ class vtkPolyData;
 
 namespace tautline
 {
+class CriteriaGrader;
 class Mesh;
 class MeshAdapter;
 class QualityTotals;
@@ -183,6 +190,29 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Quality criteria: the name of a preset (GetCriteriaPresets()), the name of a JSON file, or JSON
+   * text, see tautline/Quality/Criteria.h. Their metrics are measured too. Whether they are right
+   * is checked on execution. The default, "", is none.
+   */
+  void SetCriteria(const char* criteria);
+  const char* GetCriteria() const { return this->Criteria.c_str(); }
+  ///@}
+  /// The names of the presets, tab-separated; the JSON text of one ("" if there is no such preset).
+  static std::string GetCriteriaPresets();
+  static std::string GetCriteriaPreset(const char* name);
+
+  ///@{
+  /**
+   * The verdict of the last execution by the criteria: "passed", "warning", "failed", "none" if no
+   * element could be graded, or "" without criteria; and the quality index of the mesh, 0 (ideal)
+   * to 1. On several processes, of the whole.
+   */
+  const char* GetVerdict() const { return this->Verdict.c_str(); }
+  double GetQualityIndex() const { return this->QualityIndex; }
+  ///@}
+
+  ///@{
   /// The processes that share the mesh. The default is the global controller.
   virtual void SetController(vtkMultiProcessController* controller);
   vtkMultiProcessController* GetController();
@@ -194,6 +224,7 @@ public:
   vtkTable* GetDistribution();
   vtkTable* GetAngles();
   vtkTable* GetHistogram();
+  vtkTable* GetCriteriaTable();
   vtkPolyData* GetWorst();
   ///@}
 
@@ -229,8 +260,8 @@ private:
   vtkElementQuality(const vtkElementQuality&) = delete;
   void operator=(const vtkElementQuality&) = delete;
 
-  void Measure(
-    vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output, tautline::QualityTotals& totals);
+  void Measure(vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output,
+    tautline::QualityTotals& totals, tautline::CriteriaGrader& grader);
   void SettleOrientation(tautline::MeshAdapter& adapter, signed char* validity, vtkDataSet* output);
   /// Adds remarks on coincident points and duplicate cells.
   void CheckConnections(const tautline::Mesh& mesh, const unsigned char* skip);
@@ -246,6 +277,9 @@ private:
   int HistogramBins = 32;
   vtkMultiProcessController* Controller = nullptr;
   std::string Notice;
+  std::string Criteria;
+  std::string Verdict;
+  double QualityIndex = 0;
   double WorkingBytes = 0;
 };
 

@@ -38,6 +38,22 @@ assert "cannot be written" in run("quality", PLATE, "--csv", OUT / "absent" / "x
 run("quality", PLATE, "--metrics", "mu_size", "--size", "0.03")
 assert "no array 'h'" in run("quality", PLATE, "--size", "h", code=1)
 
+# criteria: the exit code is the verdict, and --json prints nothing but JSON
+rules = OUT / "cli-criteria.json"
+rules.write_text(run("criteria", "fem"))
+assert "Failed by the criteria" in run("quality", MESH, "--criteria", rules, code=3)
+facts = json.loads(run("quality", MESH, "--criteria", "fem", "--json", code=3))
+graded = tl.quality(MESH, criteria="fem")
+assert facts["verdict"] == "failed" and facts["index"] == graded.index and facts["inverted"] == 41
+assert facts["criteria"]["imr"]["failed"] == graded.criteria["imr"]["failed"] > 0
+assert facts["statistics"]["imr"]["worst_cells"] == graded.statistics["imr"]["worst_cells"].tolist()
+loose = json.loads(rules.read_text())
+loose["criteria"] = [{"metric": "equiangle_skew", "limits": {"all": dict(ideal=0, good=1, warn=1, fail=1, worst=2)}}]
+rules.write_text(json.dumps(loose))
+assert "Passed by the criteria" in run("quality", PLATE, "--criteria", rules)
+assert "neither a file" in run("quality", PLATE, "--criteria", "absent.json", code=1)
+assert "did you mean 'fem'" in run("criteria", "fen", code=1)
+
 # perturb, compare, field
 moved = OUT / "cli-perturbed.vtu"
 assert "0 before, 19 after" in run("perturb", PLATE, "-o", moved, "--tangle", 0.01, "--seed", 3)

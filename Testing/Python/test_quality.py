@@ -1,8 +1,10 @@
 """The functions quality and metrics, meshes given as arguments, errors."""
 
+import json
+
 import numpy as np
 import tautline as tl
-from checks import DATA, refused, run_tests
+from checks import DATA, OUT, refused, run_tests
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 BRACKET, TANGLED, PLATE = (DATA / f"{name}.vtu" for name in ("bracket", "bracket-tangled", "plate"))
@@ -60,6 +62,43 @@ def test_histogram():
     assert result.histogram["mean_ratio"]["count"][0] == result.statistics["mean_ratio"]["outside_acceptable"]
 
 
+def test_criteria():
+    limits = {"ideal": 1, "good": 1.5, "warn": 3, "fail": 10, "worst": 100}
+    mine = {"criteria": [{"metric": "imr", "limits": {"all": limits}}]}
+    result = tl.quality(TANGLED, "rr", criteria=mine)
+    values = result.values["imr"]
+    bad = (result.validity != 1) | (values > 10)
+    warned = ~bad & (values > 3)
+    assert (result.grades == np.where(bad, 2, np.where(warned, 1, 0))).all()
+    assert result.verdict == "failed" and warned.any()
+    places = np.interp(values, list(limits.values()), [0, 0.25, 0.5, 0.75, 1])
+    assert np.allclose(result.indices, np.where(result.validity == 1, places, 1), rtol=0, atol=1e-14)
+    assert abs(result.index - result.indices.mean()) < 1e-14
+    facts = result.criteria["imr"]
+    valid = result.validity == 1
+    assert facts["graded"] == valid.sum() and facts["failed"] == (bad & valid).sum()
+    assert facts["warning"] == warned.sum() and facts["passed"] == facts["graded"] - facts["failed"] - facts["warning"]
+    one = tl.quality(TANGLED, "rr", criteria=mine, threads=1)
+    assert (one.indices == result.indices).all() and one.index == result.index
+    # Without criteria nothing is graded.
+    plain = tl.quality(TANGLED)
+    assert plain.verdict is plain.index is plain.grades is plain.indices is None and plain.criteria == {}
+    assert not plain.mesh.GetCellData().HasArray("Grade")
+    # A preset as it is, changed, and from a file.
+    preset = tl.criteria("fem")
+    assert tl.quality(BRACKET, criteria="fem").index == tl.quality(BRACKET, criteria=preset).index
+    for criterion in preset["criteria"]:
+        criterion["limits"] = {"triangle": next(iter(criterion["limits"].values()))}
+    none = tl.quality(BRACKET, criteria=preset)
+    assert none.verdict == "none" and (none.grades == -1).all(), "limits for triangles only"
+    file = OUT / "criteria.json"
+    file.write_text(json.dumps(mine))
+    assert tl.quality(TANGLED, criteria=file).index == result.index
+    refused("did you mean 'fem'", tl.criteria, "fam")
+    refused("neither a file that can be read nor a preset", tl.quality, ONE, criteria="absent.json")
+    refused("not valid JSON", tl.quality, ONE, criteria="{")
+    refused("cannot be written as JSON", tl.quality, ONE, criteria={"name": float("nan")})
+    refused("no key \"limit\"", tl.quality, ONE, criteria={"limit": 1})
 
 
 def test_targets():

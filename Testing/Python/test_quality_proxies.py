@@ -38,3 +38,12 @@ assert abs(low - 0.25) < 1e-6 and abs(high - 0.25) < 1e-6, (low, high)
 # A fresh display is coloured by the first metric, although the input has active point scalars.
 display = simple.Show(quality, simple.CreateView("RenderView"))
 assert list(display.ColorArrayName) == ["CELLS", "mu_shape_size_orientation_nb"], display.ColorArrayName[:]
+
+# The property Criteria takes what the function and the shell take; the verdict is in the summary.
+CRITERIA_PORT = 6
+quality.Criteria = "skewness"
+quality.UpdatePipeline()
+quality.UpdatePropertyInformation()
+assert quality.Summary.startswith('Passed by the criteria "Equiangle skewness"'), quality.Summary
+assert quality.CellData["Grade"].GetRange() == (0, 0)
+assert servermanager.Fetch(quality, idx=CRITERIA_PORT).GetValueByName(0, "Graded").ToInt() == 27

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import json
+import sys
+from contextlib import redirect_stdout
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any, Sequence
 
 import numpy as np
@@ -12,12 +16,16 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 from . import _commands, _vtk
 from ._arguments import COMBINATIONS, TARGETS, pick, set_threads, within
 from ._arrays import InputArrays, cell_array, columns, point_array, snake
-from ._errors import Error, checked, run
+from ._errors import Error, checked, run, unknown
+from ._files import file_name
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose, metrics as known_metrics
-from ._tables import quality_rows, quality_text
+from ._tables import quality_json, quality_rows, quality_text
 
 REVERSED = ("measure as given", "measure flipped", "flip output")
+
+#: Exit code of the command for a mesh that fails its criteria.
+FAILED = 3
 
 _SIZE, _TENSOR = range(2)  # input arrays of vtkElementQuality
 _NOT_NUMBERS = ("Metric", "WorstCells", "WorstPositions")  # columns of the statistics
@@ -53,6 +61,15 @@ class QualityResult:
     #: Number of inverted elements, and of elements without area or volume.
     inverted: int
     degenerate: int
+    #: By the criteria, if any were given: "passed", "warning", "failed", or "none" if no element could be graded.
+    verdict: str | None
+    #: Quality index of the mesh, 0 (ideal) to 1 (worst), and of each cell, m; None without criteria.
+    index: float | None
+    indices: np.ndarray | None
+    #: Grade of each cell, m: 0 passed, 1 warning, 2 failed, -1 none; None without criteria.
+    grades: np.ndarray | None
+    #: Per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
+    criteria: dict[str, dict[str, Any]]
     #: A note on the mesh (reversed orientation, cells left out), or "".
     notice: str
     #: The result in a few lines.
@@ -74,6 +91,7 @@ def quality(
     epsilon: float = 1e-4,
     reversed_mesh: str = "measure flipped",
     histogram_bins: int = 32,
+    criteria: str | PathLike | dict[str, Any] | None = None,
     threads: int = 0,
 ) -> QualityResult:
     """Measure every element of a mesh by one or several metrics.
@@ -94,6 +112,8 @@ def quality(
     reversed_mesh: for a mesh whose cells all list their points in the opposite order: "measure as given" (all
         inverted), "measure flipped" or "flip output".
     histogram_bins: number of bins, 1 to 100000.
+    criteria: limits that the elements are graded by: the name of a preset, a JSON file, or a dict as criteria() returns
+        it. Their metrics are measured too.
     threads: number of threads; 0 is all cores. The result does not depend on it.
 
     Raises Error for wrong arguments and for meshes that the filter refuses.
@@ -110,12 +130,41 @@ def quality(
     filter_.SetEpsilon(within("epsilon", epsilon, np.nextafter(0, 1), np.inf))
     filter_.SetReversedMesh(pick("reversed_mesh", reversed_mesh, REVERSED))
     filter_.SetHistogramBins(int(within("histogram_bins", histogram_bins, 1, 100000)))
+    filter_.SetCriteria(_criteria_text(criteria))
     set_threads(filter_, threads)
     _set_target(filter_, inputs, target, {"reference": reference, "size": size, "tensor": tensor})
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_, messages)
     inputs.remove_from(filter_.GetOutputDataObject(0))
     return _result(filter_)
+
+
+@checked
+def criteria(name: str) -> dict[str, Any]:
+    """The preset quality criteria of a name, to be used by quality() as they are or after a change.
+
+    name: "fem", "skewness" or "optistruct".
+
+    A dict with name, source, and criteria, a list: metric, weight, and limits by cell type or "all", each a dict of
+    ideal, good, warn, fail and worst. An element beyond warn gets a warning, one beyond fail fails.
+
+    >>> mine = tautline.criteria("fem")
+    >>> mine["criteria"][0]["limits"]["all"]["fail"] = 5
+    >>> tautline.quality("part.vtu", criteria=mine).verdict
+    """
+    known = _vtk.vtkElementQuality.GetCriteriaPresets().split("\t")
+    if name not in known:
+        raise unknown("preset of quality criteria", name, known)
+    return json.loads(_vtk.vtkElementQuality.GetCriteriaPreset(name))
+
+
+def _criteria_text(chosen: str | PathLike | dict[str, Any] | None) -> str:
+    if isinstance(chosen, dict):
+        try:
+            return json.dumps(chosen, allow_nan=False)
+        except (TypeError, ValueError) as error:
+            raise Error(f"the criteria cannot be written as JSON: {error}") from None
+    return "" if chosen is None else file_name(chosen)
 
 
 def _set_target(filter_: Any, inputs: InputArrays, target: str, given: dict[str, Any]) -> None:
@@ -147,6 +196,7 @@ def _result(filter_: Any) -> QualityResult:
     bins = columns(filter_.GetDistribution())
     ranges = columns(filter_.GetHistogram())
     totals = next(iter(statistics.values()))
+    graded = bool(filter_.GetVerdict())
     return QualityResult(
         mesh=mesh,
         values={name: cell_array(mesh, name) for name in statistics},
@@ -158,6 +208,11 @@ def _result(filter_: Any) -> QualityResult:
         worst=worst,
         inverted=totals["inverted"],
         degenerate=totals["degenerate"],
+        verdict=filter_.GetVerdict() or None,
+        index=filter_.GetQualityIndex() if graded else None,
+        indices=cell_array(mesh, "QualityIndex") if graded else None,
+        grades=cell_array(mesh, "Grade") if graded else None,
+        criteria=_by_metric(columns(filter_.GetCriteriaTable())) if graded else {},
         notice=filter_.GetNotice(),
         summary=filter_.GetSummary(),
     )
@@ -177,6 +232,15 @@ def _statistics(table: dict[str, Any], worst: vtkPolyData) -> dict[str, dict[str
         facts["worst_positions"] = positions[: len(mine)].copy()
         result[name] = facts
     return result
+
+
+def _by_metric(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    counts = ("Graded", "Passed", "Warning", "Failed")
+    kinds = {key: int if key in counts else _plain for key in table if key != "Metric"}
+    return {
+        str(name): {snake(key): kind(table[key][row]) for key, kind in kinds.items()}
+        for row, name in enumerate(table["Metric"])
+    }
 
 
 def _plain(value: Any) -> Any:
@@ -205,15 +269,31 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--epsilon", type=float, default=1e-4, help="parameter of mu_211 and mu_311 (default: 1e-4)")
     parser.add_argument("--reversed-mesh", choices=REVERSED, default="measure flipped",
                         help="if all cells are of opposite orientation")  # fmt: skip
+    parser.add_argument("--criteria", metavar="NAME|FILE",
+                        help="grade the elements by a preset or JSON file; exits with 3 if the mesh fails")  # fmt: skip
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.add_argument("--histogram-bins", type=int, default=32, help=argparse.SUPPRESS)
 
 
-def _run(arguments: argparse.Namespace) -> None:
+    preset = _commands.add_command(commands, "criteria", _run_criteria, "print preset quality criteria as JSON",
+                                   threads=False)  # fmt: skip
+    preset.add_argument("name", metavar="NAME", help="fem, skewness or optistruct")
+
+
+def _run_criteria(arguments: argparse.Namespace) -> None:
+    print(json.dumps(criteria(arguments.name), indent=2))
+
+
+def _run(arguments: argparse.Namespace) -> int:
     names = ("combination", "power", "reference", "tensor", "beta", "epsilon", "reversed_mesh", "histogram_bins")
+    names += ("criteria",)
     options = _commands.given(arguments, (*names, "threads"))
     result = quality(arguments.mesh, arguments.metrics, size=_number_or_name(arguments.size), **options)
-    print(quality_text(result, arguments.worst))
-    _commands.save(result, arguments, quality_rows(result))
+    print(quality_json(result) if arguments.json else quality_text(result, arguments.worst))
+    # Nothing but the JSON on the standard output.
+    with redirect_stdout(sys.stderr if arguments.json else sys.stdout):
+        _commands.save(result, arguments, quality_rows(result))
+    return FAILED if result.verdict in ("failed", "none") else 0
 
 
 def _number_or_name(text: str | None) -> float | str | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
 from typing import TYPE_CHECKING, Any, Iterable, Sequence
 
@@ -37,7 +38,8 @@ def quality_text(result: QualityResult, worst: int = 0) -> str:
     for key, text in (("not_measured", "not measured"), ("non_finite", "not finite")):
         counts += f", {total[key]} {text}" if total[key] else ""
     rows = [[name, *(facts[key] for key in _STATISTICS)] for name, facts in result.statistics.items()]
-    parts = [counts, result.notice, align(rows, ["metric", *(_HEADINGS.get(key, key) for key in _STATISTICS)])]
+    table = align(rows, ["metric", *(_HEADINGS.get(key, key) for key in _STATISTICS)])
+    parts = [_verdict(result), counts, result.notice, table]
     angles = result.angles
     rows = [
         [f"{low:g} to {high:g}", count.item(), f"{percent:.1f} %"]
@@ -49,6 +51,28 @@ def quality_text(result: QualityResult, worst: int = 0) -> str:
         rows = [[cell.item(), value.item(), *xyz.tolist()] for cell, value, xyz in listed]
         parts.append(align(rows, ["worst cell", name, "x", "y", "z"]))
     return "\n\n".join(part for part in parts if part)
+
+
+def _verdict(result: QualityResult) -> str:
+    if result.verdict is None:
+        return ""
+    keys = ("weight", "graded", "passed", "warning", "failed", "mean_penalty")
+    rows = [[name, *(facts[key] for key in keys)] for name, facts in result.criteria.items()]
+    table = align(rows, ["criterion", *(key.replace("_", " ") for key in keys)])
+    return f"{result.summary.splitlines()[0]}\n\n{table}"
+
+
+def quality_json(result: QualityResult) -> str:
+    """Counts, statistics, histogram and, by the criteria, verdict, index and counts, as JSON."""
+    names = ("verdict", "index", "criteria", "inverted", "degenerate", "notice", "summary", "statistics", "histogram")
+    facts = {name: getattr(result, name) for name in names}
+    return json.dumps(finite(_lists(facts)), indent=2)
+
+
+def _lists(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _lists(inner) for key, inner in value.items()}
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
 def comparison_text(result: CompareResult) -> str:

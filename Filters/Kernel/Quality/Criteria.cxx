@@ -1,0 +1,385 @@
+#include "Criteria.h"
+
+#include "CriteriaPresets.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace tautline
+{
+namespace
+{
+using Json = nlohmann::ordered_json;
+
+/// The limits in their order, with the penalty at each.
+constexpr std::array<const char*, 5> limitNames = { "ideal", "good", "warn", "fail", "worst" };
+constexpr std::array<double, 5> penalties = { 0, 0.25, 0.5, 0.75, 1 };
+constexpr const char* AllTypes = "all";
+
+std::array<double, 5> ordered(const QualityLimits& limits)
+{
+  return { limits.ideal, limits.good, limits.warn, limits.fail, limits.worst };
+}
+
+/// 1 if larger values are worse, else -1.
+double signOf(const QualityLimits& limits)
+{
+  return limits.worst > limits.ideal ? 1 : -1;
+}
+
+[[noreturn]] void refuse(const std::string& place, const std::string& problem)
+{
+  throw Error("Quality criteria, " + place + ": " + problem + ".");
+}
+
+/// Refuses values of another kind, and keys that are not known, so that no misspelt one is ignored.
+void checkObject(
+  const Json& json, const std::string& place, std::initializer_list<const char*> known)
+{
+  if (!json.is_object())
+  {
+    refuse(place, "an object { ... } is expected");
+  }
+  for (const auto& item : json.items())
+  {
+    if (std::find(known.begin(), known.end(), item.key()) == known.end())
+    {
+      std::string names;
+      for (const char* name : known)
+      {
+        names += (names.empty() ? "" : ", ") + std::string(name);
+      }
+      refuse(place, "there is no key \"" + item.key() + "\"; there are " + names);
+    }
+  }
+}
+
+double number(const Json& json, const std::string& place)
+{
+  if (!json.is_number() || !std::isfinite(json.get<double>()))
+  {
+    refuse(place, "a finite number is expected");
+  }
+  return json.get<double>();
+}
+
+std::string text(const Json& json, const std::string& place)
+{
+  if (!json.is_string())
+  {
+    refuse(place, "a text is expected");
+  }
+  return json.get<std::string>();
+}
+
+/// A text, or a list of texts: its lines.
+std::string lines(const Json& json, const std::string& place)
+{
+  if (!json.is_array())
+  {
+    return text(json, place);
+  }
+  std::string joined;
+  for (const Json& line : json)
+  {
+    joined += (joined.empty() ? "" : " ") + text(line, place);
+  }
+  return joined;
+}
+
+QualityLimits parseLimits(const Json& json, const MetricInfo& info, const std::string& place)
+{
+  checkObject(json, place, { "ideal", "good", "warn", "fail", "worst" });
+  std::array<double, 5> values{};
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    if (!json.contains(limitNames[i]))
+    {
+      refuse(place, std::string("\"") + limitNames[i] + "\" is missing");
+    }
+    values[i] = number(json[limitNames[i]], place + ", " + limitNames[i]);
+  }
+  const bool rises = std::is_sorted(values.begin(), values.end());
+  const bool falls = std::is_sorted(values.rbegin(), values.rend());
+  if (rises == falls) // neither, or all equal
+  {
+    refuse(place, "ideal, good, warn, fail and worst must rise, or fall, throughout");
+  }
+  const Direction against = rises ? Direction::LargerIsBetter : Direction::SmallerIsBetter;
+  if (info.direction == against)
+  {
+    refuse(place,
+      std::string("of ") + info.name + (rises ? " larger" : " smaller") +
+        " values are better: its limits must " + (rises ? "fall" : "rise") +
+        " from ideal to worst");
+  }
+  return { values[0], values[1], values[2], values[3], values[4] };
+}
+
+const CellTopology* findType(const std::string& name)
+{
+  for (const CellTopology& topology : topologies())
+  {
+    if (name == topology.name)
+    {
+      return &topology;
+    }
+  }
+  return nullptr;
+}
+
+void parseTypes(
+  const Json& json, const MetricInfo& info, const std::string& place, QualityCriterion& criterion)
+{
+  if (!json.is_object() || json.empty())
+  {
+    refuse(place, "limits by cell type, or for \"all\", are expected");
+  }
+  std::optional<QualityLimits> all;
+  for (const auto& item : json.items())
+  {
+    const std::string at = place + ", " + item.key();
+    const QualityLimits limits = parseLimits(item.value(), info, at);
+    if (item.key() == AllTypes)
+    {
+      all = limits;
+      continue;
+    }
+    const CellTopology* topology = findType(item.key());
+    if (!topology)
+    {
+      refuse(at,
+        "there is no such cell type; there are all, triangle, quadrilateral, tetrahedron, "
+        "hexahedron, wedge and pyramid");
+    }
+    if (!info.definedOn(topology->type))
+    {
+      refuse(at, std::string(info.name) + " is not defined on " + topology->plural);
+    }
+    criterion.limits[topologyIndex(topology->type)] = limits;
+  }
+  for (const CellTopology& topology : topologies())
+  {
+    auto& limits = criterion.limits[topologyIndex(topology.type)];
+    if (!limits && info.definedOn(topology.type))
+    {
+      limits = all;
+    }
+  }
+}
+
+QualityCriterion parseCriterion(const Json& json, const std::string& place)
+{
+  checkObject(json, place, { "metric", "weight", "limits" });
+  if (!json.contains("metric") || !json.contains("limits"))
+  {
+    refuse(place, "\"metric\" and \"limits\" are needed");
+  }
+  const std::string name = text(json["metric"], place + ", metric");
+  const MetricInfo* info = findMetric(name);
+  if (!info)
+  {
+    refuse(place, "there is no metric \"" + name + "\"; see the list of metrics");
+  }
+  QualityCriterion criterion;
+  criterion.metric = info->metric;
+  if (json.contains("weight"))
+  {
+    criterion.weight = number(json["weight"], place + ", weight");
+    if (criterion.weight < 0)
+    {
+      refuse(place, "the weight must not be negative");
+    }
+  }
+  parseTypes(json["limits"], *info, place + " (" + info->name + ")", criterion);
+  return criterion;
+}
+
+QualityCriteria parse(const Json& json)
+{
+  checkObject(json, "at the top", { "name", "source", "criteria" });
+  QualityCriteria result;
+  result.name = json.contains("name") ? text(json["name"], "name") : "criteria";
+  result.source = json.contains("source") ? lines(json["source"], "source") : "";
+  if (!json.contains("criteria") || !json["criteria"].is_array() || json["criteria"].empty())
+  {
+    refuse("at the top", "\"criteria\" must be a list of at least one criterion");
+  }
+  double weights = 0;
+  for (const Json& item : json["criteria"])
+  {
+    const std::string place = "criterion " + std::to_string(result.criteria.size() + 1);
+    result.criteria.push_back(parseCriterion(item, place));
+    const Metric metric = result.criteria.back().metric;
+    if (std::count_if(result.criteria.begin(), result.criteria.end(),
+          [metric](const QualityCriterion& c) { return c.metric == metric; }) > 1)
+    {
+      refuse(place, std::string(metricInfo(metric).name) + " has a criterion already");
+    }
+    weights += result.criteria.back().weight;
+  }
+  if (!(weights > 0) || !std::isfinite(weights))
+  {
+    refuse("at the top", "at least one weight must be above 0, and their sum finite");
+  }
+  return result;
+}
+}
+
+//------------------------------------------------------------------------------
+const char* gradeName(Grade grade)
+{
+  switch (grade)
+  {
+    case Grade::Passed:
+      return "passed";
+    case Grade::Warning:
+      return "warning";
+    case Grade::Failed:
+      return "failed";
+    default:
+      return "none";
+  }
+}
+
+//------------------------------------------------------------------------------
+QualityCriteria parseCriteria(const std::string& json)
+{
+  try
+  {
+    return parse(Json::parse(json));
+  }
+  catch (const Json::exception& problem)
+  {
+    throw Error(std::string("The quality criteria are not valid JSON: ") + problem.what());
+  }
+}
+
+//------------------------------------------------------------------------------
+const std::vector<std::string>& criteriaPresets()
+{
+  static const std::vector<std::string> names = []
+  {
+    std::vector<std::string> list;
+    for (const CriteriaPreset& preset : CriteriaPresetTexts)
+    {
+      list.push_back(preset.name);
+    }
+    return list;
+  }();
+  return names;
+}
+
+//------------------------------------------------------------------------------
+std::string presetCriteria(const std::string& name)
+{
+  std::string names;
+  for (const CriteriaPreset& preset : CriteriaPresetTexts)
+  {
+    if (name == preset.name)
+    {
+      return preset.json;
+    }
+    names += (names.empty() ? "" : ", ") + std::string(preset.name);
+  }
+  throw Error("There are no preset quality criteria \"" + name + "\"; there are " + names + ".");
+}
+
+//------------------------------------------------------------------------------
+Grade gradeOf(const QualityLimits& limits, double value)
+{
+  const double sign = signOf(limits);
+  return sign * value > sign * limits.fail ? Grade::Failed
+    : sign * value > sign * limits.warn    ? Grade::Warning
+                                           : Grade::Passed;
+}
+
+//------------------------------------------------------------------------------
+double penaltyOf(const QualityLimits& limits, double value)
+{
+  const double sign = signOf(limits);
+  const std::array<double, 5> at = ordered(limits);
+  if (sign * value >= sign * at.back())
+  {
+    return penalties.back();
+  }
+  for (std::size_t i = at.size() - 1; i-- > 0;)
+  {
+    if (sign * value >= sign * at[i])
+    {
+      // The next limit is beyond the value, so that the width is not 0.
+      const double fraction = (value - at[i]) / (at[i + 1] - at[i]);
+      return penalties[i] + fraction * (penalties[i + 1] - penalties[i]);
+    }
+  }
+  return penalties.front();
+}
+
+//------------------------------------------------------------------------------
+Grade CriteriaTotals::verdict() const
+{
+  return this->graded == 0 ? Grade::None
+    : this->failed > 0     ? Grade::Failed
+    : this->warned > 0     ? Grade::Warning
+                           : Grade::Passed;
+}
+
+//------------------------------------------------------------------------------
+void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed char* validity,
+  const unsigned char* skip, const std::vector<const double*>& values, signed char* grades,
+  double* indices, CriteriaTotals& totals)
+{
+  const std::size_t count = criteria.criteria.size();
+  totals.criteria.resize(count);
+  const MeshView& view = mesh.view();
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    grades[cell] = static_cast<signed char>(Grade::None);
+    indices[cell] = 0;
+    const CellType type = cornerType(view.cellTypes[cell]);
+    if ((skip && skip[cell]) || type == CellType::Unsupported || validity[cell] == NotMeasured)
+    {
+      continue;
+    }
+    const bool valid = validity[cell] == Valid;
+    const int typeIndex = topologyIndex(type);
+    Grade grade = Grade::None;
+    double penalty = 0, weights = 0;
+    for (std::size_t c = 0; c < count; ++c)
+    {
+      const auto& limits = criteria.criteria[c].limits[typeIndex];
+      if (!limits)
+      {
+        continue;
+      }
+      if (!valid)
+      {
+        grade = Grade::Failed;
+        break;
+      }
+      const double value = values[c][cell];
+      const Grade mine = gradeOf(*limits, value);
+      const double penaltyHere = penaltyOf(*limits, value);
+      grade = std::max(grade, mine);
+      penalty += criteria.criteria[c].weight * penaltyHere;
+      weights += criteria.criteria[c].weight;
+      CriteriaTotals::PerCriterion& total = totals.criteria[c];
+      ++total.graded;
+      total.warned += mine == Grade::Warning;
+      total.failed += mine == Grade::Failed;
+      total.penalty += penaltyHere;
+    }
+    if (grade == Grade::None)
+    {
+      continue;
+    }
+    grades[cell] = static_cast<signed char>(grade);
+    indices[cell] = !valid ? 1.0 : weights > 0 ? penalty / weights : 0.0;
+    ++totals.graded;
+    totals.warned += grade == Grade::Warning;
+    totals.failed += grade == Grade::Failed;
+    totals.index += indices[cell];
+  }
+}
+}

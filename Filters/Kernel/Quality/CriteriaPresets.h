@@ -1,0 +1,77 @@
+/**
+ * @file CriteriaPresets.h
+ * @brief The texts of the preset criteria.
+ *
+ * The limits `warn` and `fail` are those of the source given; `ideal` is the value of the ideal
+ * element, and `good` and `worst`, which have an effect on the quality index only, are chosen here.
+ */
+#ifndef tautline_CriteriaPresets_h
+#define tautline_CriteriaPresets_h
+
+#include <array>
+
+namespace tautline
+{
+struct CriteriaPreset
+{
+  const char* name;
+  const char* json;
+};
+
+constexpr std::array<CriteriaPreset, 3> CriteriaPresetTexts = { {
+  { "fem", R"json({
+  "name": "FEM default",
+  "source": [
+    "warn: the acceptable ranges of the metrics, most of them of Knupp et al., The Verdict library",
+    "reference manual, Sandia (2006); fail: chosen for linear finite elements" ],
+  "criteria": [
+    { "metric": "imr", "weight": 2,
+      "limits": { "all": { "ideal": 1, "good": 1.5, "warn": 3, "fail": 10, "worst": 100 } } },
+    { "metric": "scaled_jacobian", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 0.6, "warn": 0.3, "fail": 0.1, "worst": 0 } } },
+    { "metric": "max_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 60, "good": 90, "warn": 120, "fail": 160, "worst": 180 },
+        "quadrilateral": { "ideal": 90, "good": 105, "warn": 120, "fail": 160, "worst": 180 },
+        "tetrahedron": { "ideal": 70.5288, "good": 110, "warn": 150, "fail": 170, "worst": 180 },
+        "hexahedron": { "ideal": 90, "good": 120, "warn": 150, "fail": 170, "worst": 180 } } }
+  ]
+}
+)json" },
+  { "skewness", R"json({
+  "name": "Equiangle skewness",
+  "source": [
+    "ANSYS ICEM CFD help 2024 R2, 35.11.3 Checking the Skewness, Table 35.1, of 1 - skewness:",
+    "excellent to 0.25, good to 0.5, fair to 0.75, poor to 0.98, bad (sliver) beyond; formula:",
+    "largest deviation of a face angle from that of the ideal face, over the largest possible" ],
+  "criteria": [
+    { "metric": "equiangle_skew", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 0.5, "warn": 0.75, "fail": 0.98, "worst": 1 } } }
+  ]
+}
+)json" },
+  { "optistruct", R"json({
+  "name": "OptiStruct shells",
+  "source": [
+    "Altair OptiStruct help, CTRIA6 (corner nodes) and CQUAD4 Element Checks and Default Bound",
+    "Values: limits of warnings and of errors; formulas: longest edge / shortest edge; smallest",
+    "and largest angle between adjacent edges (degrees)" ],
+  "criteria": [
+    { "metric": "edge_ratio", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 1, "good": 5, "warn": 50, "fail": 500, "worst": 100000 },
+        "quadrilateral": { "ideal": 1, "good": 5, "warn": 100, "fail": 1000, "worst": 100000 } } },
+    { "metric": "min_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 60, "good": 40, "warn": 15, "fail": 3, "worst": 0 },
+        "quadrilateral": { "ideal": 90, "good": 60, "warn": 15, "fail": 3, "worst": 0 } } },
+    { "metric": "max_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 60, "good": 90, "warn": 165, "fail": 177, "worst": 180 },
+        "quadrilateral": { "ideal": 90, "good": 120, "warn": 165, "fail": 177, "worst": 180 } } }
+  ]
+}
+)json" },
+} };
+}
+#endif

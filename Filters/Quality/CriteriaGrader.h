@@ -1,0 +1,55 @@
+/**
+ * @class tautline::CriteriaGrader
+ * @brief Grades what vtkElementQuality measures by quality criteria, on blocks and processes.
+ */
+#ifndef tautline_CriteriaGrader_h
+#define tautline_CriteriaGrader_h
+
+#include "tautline/Quality/Criteria.h"
+
+#include <string>
+
+class vtkDataSet;
+class vtkMultiProcessController;
+class vtkTable;
+
+namespace tautline
+{
+class CriteriaGrader
+{
+public:
+  /// Without criteria: does nothing.
+  CriteriaGrader() = default;
+  /**
+   * @param text JSON, the name of a preset, or the name of a file with JSON; "": no criteria.
+   * Throws Error for what is none of these, and for wrong criteria.
+   */
+  explicit CriteriaGrader(const std::string& text);
+
+  bool active() const { return !this->Criteria.criteria.empty(); }
+
+  /// These metrics, then those of the criteria that are not among them.
+  std::vector<Metric> withMetrics(std::vector<Metric> metrics) const;
+
+  /// Grades the cells of a block by its cell arrays of the metrics; adds the arrays `Grade` and
+  /// `QualityIndex`. `skip` as in CellValues.
+  void grade(
+    const Mesh& mesh, const signed char* validity, const unsigned char* skip, vtkDataSet* output);
+
+  /// Adds up the processes. Collective; without a controller, nothing.
+  void gather(vtkMultiProcessController* controller);
+
+  /// A row for each criterion.
+  void tabulate(vtkTable* table) const;
+
+  /// A sentence with the verdict, or "".
+  std::string summary() const;
+
+  const CriteriaTotals& totals() const { return this->Totals; }
+
+private:
+  QualityCriteria Criteria;
+  CriteriaTotals Totals;
+};
+}
+#endif

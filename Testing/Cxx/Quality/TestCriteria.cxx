@@ -1,0 +1,196 @@
+// Quality criteria: grades and penalties against their definition, the index and the verdict by
+// hand, and what the reader refuses.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "tautline/Quality/Criteria.h"
+
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkElementQuality.h"
+#include "vtkNew.h"
+#include "vtkTable.h"
+
+#include <fstream>
+
+using namespace tautline;
+
+namespace
+{
+/// Criteria of one metric, with these limits.
+std::string json(const std::string& metric, const std::string& limits)
+{
+  return R"({ "criteria": [ { "metric": ")" + metric + R"(", "limits": )" + limits + " } ] }";
+}
+
+const std::string rising = R"({ "ideal": 1, "good": 1.5, "warn": 3, "fail": 10, "worst": 100 })";
+const std::string falling = R"({ "ideal": 1, "good": 0.6, "warn": 0.3, "fail": 0.1, "worst": 0 })";
+
+void testGrades()
+{
+  const QualityLimits up = { 1, 1.5, 3, 10, 100 };
+  TAUTLINE_CHECK(gradeOf(up, 3) == Grade::Passed); // a limit belongs to the better side
+  TAUTLINE_CHECK(gradeOf(up, 3.0001) == Grade::Warning);
+  TAUTLINE_CHECK(gradeOf(up, 10) == Grade::Warning);
+  TAUTLINE_CHECK(gradeOf(up, 11) == Grade::Failed);
+  const double values[] = { 0.5, 1, 1.25, 1.5, 3, 6.5, 10, 55, 100, 1e9 };
+  const double penalty[] = { 0, 0, 0.125, 0.25, 0.5, 0.625, 0.75, 0.875, 1, 1 };
+  for (int i = 0; i < 10; ++i)
+  {
+    TAUTLINE_CHECK_NEAR(penaltyOf(up, values[i]), penalty[i], 1e-15);
+  }
+  const QualityLimits down = { 1, 0.6, 0.3, 0.1, 0 };
+  TAUTLINE_CHECK(gradeOf(down, 0.3) == Grade::Passed);
+  TAUTLINE_CHECK(gradeOf(down, 0.2) == Grade::Warning);
+  TAUTLINE_CHECK(gradeOf(down, -1) == Grade::Failed);
+  TAUTLINE_CHECK_NEAR(penaltyOf(down, 0.45), 0.375, 1e-15);
+  // Equal neighbours: the better penalty up to the limit, the worse one beyond it.
+  const QualityLimits step = { 0, 1, 1, 1, 2 };
+  TAUTLINE_CHECK_NEAR(penaltyOf(step, 1), 0.75, 1e-15);
+  TAUTLINE_CHECK_NEAR(penaltyOf(step, 0.5), 0.125, 1e-15);
+}
+
+void testParse()
+{
+  const QualityCriteria criteria = parseCriteria(
+    R"({ "name": "mine", "source": [ "a", "b" ], "criteria": [ { "metric": "IMR", "weight": 2,
+      "limits": { "all": )" +
+    rising +
+    R"(, "triangle": { "ideal": 1, "good": 1, "warn": 2, "fail": 2, "worst": 4 } } } ] })");
+  TAUTLINE_CHECK(criteria.name == "mine" && criteria.source == "a b");
+  TAUTLINE_CHECK_EQUAL(criteria.criteria.front().weight, 2);
+  const auto& limits = criteria.criteria.front().limits;
+  TAUTLINE_CHECK_EQUAL(limits[topologyIndex(CellType::Triangle)]->warn, 2);
+  TAUTLINE_CHECK_EQUAL(limits[topologyIndex(CellType::Pyramid)]->warn, 3);
+  // "all" are the types that the metric is defined on.
+  const auto jacobian = parseCriteria(json("scaled_jacobian", R"({ "all": )" + falling + " }"));
+  TAUTLINE_CHECK(!jacobian.criteria.front().limits[topologyIndex(CellType::Pyramid)]);
+
+  for (const std::string& name : criteriaPresets())
+  {
+    TAUTLINE_CHECK(!parseCriteria(presetCriteria(name)).source.empty());
+  }
+  TAUTLINE_CHECK_THROWS(presetCriteria("nastrin"), "there are fem, skewness, optistruct");
+}
+
+void testRefused()
+{
+  const auto all = [](const std::string& limits) { return R"({ "all": )" + limits + " }"; };
+  TAUTLINE_CHECK_THROWS(parseCriteria(""), "not valid JSON");
+  TAUTLINE_CHECK_THROWS(parseCriteria("{ \"criteria\": ["), "not valid JSON");
+  TAUTLINE_CHECK_THROWS(parseCriteria("[]"), "an object");
+  TAUTLINE_CHECK_THROWS(parseCriteria("{}"), "at least one criterion");
+  TAUTLINE_CHECK_THROWS(parseCriteria(R"({ "criteria": [], "limit": 1 })"), "no key \"limit\"");
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("imq", all(rising))), "no metric \"imq\"");
+  TAUTLINE_CHECK_THROWS(
+    parseCriteria(json("imr", R"({ "tetra": )" + rising + " }")), "no such cell type");
+  TAUTLINE_CHECK_THROWS(
+    parseCriteria(json("mu_301", R"({ "triangle": )" + rising + " }")), "not defined on triangles");
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("imr", all(falling))), "must rise");
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("mean_ratio", all(rising))), "must fall");
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("imr",
+                          all(R"({ "ideal": 1, "good": 2, "warn": 1.5, "fail": 3, "worst": 4 })"))),
+    "rise, or fall, throughout");
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("imr",
+                          all(R"({ "ideal": 1, "good": 1, "warn": 1, "fail": 1, "worst": 1 })"))),
+    "rise, or fall, throughout");
+  TAUTLINE_CHECK_THROWS(
+    parseCriteria(json("imr", all(R"({ "ideal": 1, "good": 2, "warn": 3, "fail": 4 })"))),
+    "\"worst\" is missing");
+  TAUTLINE_CHECK_THROWS(
+    parseCriteria(
+      json("imr", all(R"({ "ideal": 1, "good": 2, "warn": 3, "fail": 4, "worst": 1e999 })"))),
+    "");
+  const std::string one = R"({ "metric": "imr", "weight": WEIGHT, "limits": )" + all(rising) + " }";
+  const auto weighted = [&one](const std::string& weight)
+  { return std::string(one).replace(one.find("WEIGHT"), 6, weight); };
+  TAUTLINE_CHECK_THROWS(
+    parseCriteria(R"({ "criteria": [ )" + weighted("-1") + " ] }"), "must not be negative");
+  TAUTLINE_CHECK_THROWS(parseCriteria(R"({ "criteria": [ )" + weighted("0") + " ] }"), "above 0");
+  TAUTLINE_CHECK_THROWS(
+    parseCriteria(R"({ "criteria": [ )" + weighted("1") + ", " + weighted("1") + " ] }"),
+    "has a criterion already");
+}
+
+/// Separate triangles over a base of length 1, of these heights.
+MeshData triangles(const std::vector<double>& heights)
+{
+  MeshData data;
+  for (double h : heights)
+  {
+    data.addCell(CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, h, 0 } });
+  }
+  return data;
+}
+
+double cellValue(vtkElementQuality* filter, const char* array, vtkIdType cell)
+{
+  auto* cells = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetCellData();
+  return cells->GetArray(array)->GetComponent(cell, 0);
+}
+
+/// On triangles over a base of 1, of inverse mean ratio (1 + 2 (1/4 + h^2)) / (2 sqrt(3) h).
+void testFilter(const std::string& folder)
+{
+  const double height = std::sqrt(0.75);
+  const auto imrOf = [](double h) { return (1 + 2 * (0.25 + h * h)) / (2 * std::sqrt(3.0) * h); };
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(toGrid(triangles({ height, 0.1, 0.02, -0.3 })));
+  filter->AddMetricByName("si");
+  const std::string file = folder + "/criteria.json";
+  std::ofstream(file) << json("imr", R"({ "all": )" + rising + " }");
+  filter->SetCriteria(file.c_str());
+  filter->Update();
+  const double grades[] = { 0, 1, 2, 2 };
+  const double indices[] = { 0, 0.5 + 0.25 * (imrOf(0.1) - 3) / 7,
+    0.75 + 0.25 * (imrOf(0.02) - 10) / 90, 1 };
+  double sum = 0;
+  for (vtkIdType cell = 0; cell < 4; ++cell)
+  {
+    TAUTLINE_CHECK_EQUAL(cellValue(filter, "Grade", cell), grades[cell]);
+    TAUTLINE_CHECK_NEAR(cellValue(filter, "QualityIndex", cell), indices[cell], 1e-14);
+    sum += indices[cell];
+  }
+  TAUTLINE_CHECK_NEAR(cellValue(filter, "imr", 1), imrOf(0.1), 1e-14); // measured, too
+  TAUTLINE_CHECK_EQUAL(std::string(filter->GetVerdict()), "failed");
+  TAUTLINE_CHECK_NEAR(filter->GetQualityIndex(), sum / 4, 1e-14);
+  TAUTLINE_CHECK(
+    std::string(filter->GetSummary())
+      .find("Failed by the criteria \"criteria\": of 4 elements 2 fail and 1 have") == 0);
+  vtkTable* table = filter->GetCriteriaTable();
+  TAUTLINE_CHECK_EQUAL(table->GetNumberOfRows(), 1);
+  TAUTLINE_CHECK_EQUAL(table->GetValueByName(0, "Graded").ToInt(), 3); // the valid ones
+  TAUTLINE_CHECK_EQUAL(table->GetValueByName(0, "Passed").ToInt(), 1);
+  TAUTLINE_CHECK_EQUAL(table->GetValueByName(0, "Failed").ToInt(), 1);
+
+  const auto verdict = [&](const std::vector<double>& heights)
+  {
+    filter->SetInputData(toGrid(triangles(heights)));
+    filter->Update();
+    return std::string(filter->GetVerdict());
+  };
+  TAUTLINE_CHECK_EQUAL(verdict({ height, height }), "passed");
+  TAUTLINE_CHECK_EQUAL(verdict({ height, 0.1 }), "warning");
+  // Limits for tetrahedra only: no triangle is graded, and that is not passed.
+  filter->SetCriteria(json("imr", R"({ "tetrahedron": )" + rising + " }").c_str());
+  TAUTLINE_CHECK_EQUAL(verdict({ height }), "none");
+  TAUTLINE_CHECK_EQUAL(cellValue(filter, "Grade", 0), -1);
+  filter->SetCriteria("");
+  TAUTLINE_CHECK_EQUAL(verdict({ height }), "");
+  TAUTLINE_CHECK_EQUAL(filter->GetCriteriaTable()->GetNumberOfRows(), 0);
+  // A directory is no file to read from.
+  Messages messages(filter);
+  filter->SetCriteria(folder.c_str());
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("neither a file that can be read nor a preset"));
+}
+}
+
+int TestCriteria(int, char* argv[])
+{
+  testGrades();
+  testParse();
+  testRefused();
+  testFilter(argv[2]);
+  return exitCode();
+}
