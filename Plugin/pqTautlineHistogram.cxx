@@ -1,0 +1,268 @@
+#include "pqTautlineHistogram.h"
+
+#include "FetchOutput.h"
+#include "HistogramPlot.h"
+
+#include "pqApplicationCore.h"
+#include "pqOutputPort.h"
+#include "pqPVApplicationCore.h"
+#include "pqPipelineSource.h"
+#include "pqSelectionManager.h"
+#include "pqServerManagerModel.h"
+
+#include "vtkPVDataInformation.h"
+#include "vtkSMPropertyGroup.h"
+#include "vtkTable.h"
+
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <QTimer>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace
+{
+enum Combinations
+{
+  AllConditions,
+  AnyCondition
+};
+constexpr int MostBins = 100000; // of the property
+}
+
+//------------------------------------------------------------------------------
+pqTautlineHistogram::pqTautlineHistogram(
+  vtkSMProxy* smproxy, vtkSMPropertyGroup* smgroup, QWidget* parentObject)
+  : Superclass(smproxy, smgroup, parentObject)
+  , Metric(new QComboBox(this))
+  , Plot(new tautline::HistogramPlot(this))
+  , Combination(new QComboBox(this))
+  , Conditions(new QLabel(this))
+  , Count(new QLabel(this))
+  , Clear(new QToolButton(this))
+  , Bins(new QWidget(this))
+{
+  this->setShowLabel(false);
+  this->Metric->setObjectName("Metric");
+  this->Metric->setToolTip("The metric whose histogram is shown.");
+  this->Plot->setObjectName("Plot");
+  // As narrow as the panel.
+  for (QComboBox* box : { this->Metric, this->Combination })
+  {
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  }
+  this->Count->setWordWrap(true);
+  this->Combination->setObjectName("Combination");
+  this->Combination->addItems({ "all conditions (AND)", "any condition (OR)" });
+  this->Combination->setToolTip(
+    "Which cells are selected if ranges of several metrics are chosen.");
+  this->Conditions->setObjectName("Conditions");
+  this->Conditions->setWordWrap(true);
+  this->Count->setObjectName("Count");
+  this->Clear->setObjectName("Clear");
+  this->Clear->setText("Clear");
+  this->Clear->setToolTip("Select nothing.");
+
+  auto* bins = new QSpinBox(this->Bins);
+  bins->setObjectName("Number");
+  bins->setRange(1, MostBins);
+  bins->setToolTip(pqPropertyWidget::getTooltip(smgroup->GetProperty("HistogramBins")));
+  this->addPropertyLink(bins, "HistogramBins");
+  QObject::connect(
+    bins, QOverload<int>::of(&QSpinBox::valueChanged), this, &pqTautlineHistogram::changeAvailable);
+  this->Bins->setObjectName("Bins");
+  auto* binsRow = new QHBoxLayout(this->Bins);
+  binsRow->setContentsMargins(0, 0, 0, 0);
+  binsRow->addWidget(new QLabel("Histogram Bins", this->Bins));
+  binsRow->addWidget(bins, 1);
+
+  auto* bottom = new QHBoxLayout;
+  bottom->addWidget(this->Count, 1);
+  bottom->addWidget(this->Clear);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(this->Metric);
+  layout->addWidget(this->Plot);
+  layout->addWidget(this->Combination);
+  layout->addWidget(this->Conditions);
+  layout->addLayout(bottom);
+  layout->addWidget(this->Bins);
+
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  this->Source = model->findItem<pqPipelineSource*>(smproxy);
+  QObject::connect(
+    model, &pqServerManagerModel::dataUpdated, this, &pqTautlineHistogram::dataUpdated);
+  QObject::connect(pqPVApplicationCore::instance()->selectionManager(),
+    &pqSelectionManager::selectionChanged, this, &pqTautlineHistogram::selectionChanged);
+  const auto changed = QOverload<int>::of(&QComboBox::currentIndexChanged);
+  QObject::connect(this->Metric, changed, this, &pqTautlineHistogram::metricChanged);
+  QObject::connect(this->Combination, changed, this, &pqTautlineHistogram::select);
+  QObject::connect(
+    this->Plot, &tautline::HistogramPlot::chosen, this, &pqTautlineHistogram::choose);
+  QObject::connect(this->Clear, &QToolButton::clicked, this, &pqTautlineHistogram::clear);
+  this->refresh();
+}
+
+//------------------------------------------------------------------------------
+pqTautlineHistogram::~pqTautlineHistogram() = default;
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::updateWidget(bool showAdvanced)
+{
+  this->Bins->setVisible(showAdvanced);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::dataUpdated(pqPipelineSource* source)
+{
+  if (source->getProxy() == this->proxy())
+  {
+    this->Source = source;
+    // After the update: fetching updates a pipeline itself.
+    QTimer::singleShot(0, this, &pqTautlineHistogram::refresh);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::refresh()
+{
+  this->Histograms.clear();
+  this->Choices.clear();
+  if (this->Source)
+  {
+    const auto statistics = tautline::fetchOutput(this->Source, "Statistics");
+    const auto histogram = tautline::fetchOutput(this->Source, "Histogram");
+    this->Histograms =
+      tautline::histogramsOf(vtkTable::SafeDownCast(statistics), vtkTable::SafeDownCast(histogram));
+  }
+  {
+    const QSignalBlocker blocker(this->Metric);
+    const QString before = this->Metric->currentData().toString();
+    this->Metric->clear();
+    for (const tautline::MetricHistogram& histogram : this->Histograms)
+    {
+      this->Metric->addItem(
+        QString::fromStdString(histogram.label), QString::fromStdString(histogram.metric));
+    }
+    this->Metric->setCurrentIndex(std::max(0, this->Metric->findData(before)));
+  }
+  const bool several = this->Histograms.size() > 1;
+  this->Metric->setVisible(several);
+  this->Combination->setVisible(several);
+  this->metricChanged();
+  this->describe(0);
+}
+
+//------------------------------------------------------------------------------
+const tautline::MetricHistogram* pqTautlineHistogram::shown() const
+{
+  const int index = this->Metric->currentIndex();
+  return index >= 0 && index < static_cast<int>(this->Histograms.size()) ? &this->Histograms[index]
+                                                                         : nullptr;
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::metricChanged()
+{
+  const tautline::MetricHistogram* histogram = this->shown();
+  const auto choice = histogram ? this->Choices.find(histogram->metric) : this->Choices.end();
+  const bool chosen = choice != this->Choices.end();
+  this->Plot->show(histogram ? *histogram : tautline::MetricHistogram(),
+    chosen ? choice->second.first : -1, chosen ? choice->second.last : -1);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::choose(int first, int last)
+{
+  const tautline::MetricHistogram* histogram = this->shown();
+  if (!histogram)
+  {
+    return;
+  }
+  this->Choices.erase(histogram->metric);
+  if (first >= 0)
+  {
+    this->Choices[histogram->metric] = { first, last };
+  }
+  this->select();
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::clear()
+{
+  this->Choices.clear();
+  this->metricChanged();
+  this->select();
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::select()
+{
+  if (!this->Source)
+  {
+    return;
+  }
+  std::vector<tautline::CellCondition> conditions;
+  for (const tautline::MetricHistogram& histogram : this->Histograms)
+  {
+    const auto choice = this->Choices.find(histogram.metric);
+    if (choice != this->Choices.end())
+    {
+      conditions.push_back(
+        tautline::conditionOf(histogram, choice->second.first, choice->second.last));
+    }
+  }
+  this->Selecting = true;
+  const vtkTypeInt64 selected = tautline::selectWhere(
+    this->Source->getOutputPort(0), conditions, this->Combination->currentIndex() == AllConditions);
+  this->Selecting = false;
+  this->describe(selected);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::selectionChanged(pqOutputPort*)
+{
+  // Another selection, made in a view or by Find Data, takes the place of the histogram's.
+  if (!this->Selecting && !this->Choices.empty())
+  {
+    this->Choices.clear();
+    this->metricChanged();
+    this->describe(0);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::describe(vtkTypeInt64 selected)
+{
+  QStringList conditions;
+  for (const tautline::MetricHistogram& histogram : this->Histograms)
+  {
+    const auto choice = this->Choices.find(histogram.metric);
+    if (choice != this->Choices.end())
+    {
+      const std::string text =
+        tautline::describeBars(histogram, choice->second.first, choice->second.last);
+      conditions << QString::fromStdString(histogram.metric + " " + text);
+    }
+  }
+  const bool all = this->Combination->currentIndex() == AllConditions;
+  this->Conditions->setText(conditions.isEmpty()
+      ? this->Histograms.empty() ? "" : "Drag over the bars to select their elements."
+      : conditions.join(all ? " and " : " or "));
+  this->Clear->setEnabled(!conditions.isEmpty());
+  if (conditions.isEmpty())
+  {
+    this->Count->clear();
+    return;
+  }
+  const vtkTypeInt64 cells =
+    this->Source->getOutputPort(0)->getDataInformation()->GetNumberOfCells();
+  const double share = cells > 0 ? 100.0 * static_cast<double>(selected) / cells : 0.0;
+  this->Count->setText(
+    QString("%1 of %2 cells (%3 %)").arg(selected).arg(cells).arg(QString::number(share, 'g', 3)));
+}

@@ -1,0 +1,80 @@
+/**
+ * @class pqTautlineHistogram
+ * @brief The quality histogram of Element Quality, in which ranges are chosen to select elements.
+ *
+ * A combo box chooses the metric. Its histogram has bins over the acceptable range, a bar for the
+ * elements beyond it and one for the inverted ones. Dragging over bars selects the cells in the
+ * views, as a selection that Extract Selection and Find Data work on. Each metric can have one
+ * range; cells are selected that are in all of them, or in any. The number of cells selected and
+ * their share are shown; the server counts them.
+ *
+ * In the XML of a proxy: `panel_widget="tautline_histogram"` on the group of the property
+ * HistogramBins. The proxy has the outputs Statistics and Histogram, see vtkElementQuality.
+ */
+
+#ifndef pqTautlineHistogram_h
+#define pqTautlineHistogram_h
+
+#include "pqPropertyGroupWidget.h"
+
+#include "HistogramBars.h"
+
+#include <map>
+
+class QComboBox;
+class QLabel;
+class QToolButton;
+class pqOutputPort;
+class pqPipelineSource;
+
+namespace tautline
+{
+class HistogramPlot;
+}
+
+class pqTautlineHistogram : public pqPropertyGroupWidget
+{
+  Q_OBJECT
+  using Superclass = pqPropertyGroupWidget;
+
+public:
+  pqTautlineHistogram(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* parent = nullptr);
+  ~pqTautlineHistogram() override;
+
+  /// The number of bins is an advanced property.
+  void updateWidget(bool showAdvanced) override;
+
+private Q_SLOTS:
+  void dataUpdated(pqPipelineSource* source);
+  void refresh();
+  void metricChanged();
+  void choose(int first, int last);
+  void clear();
+  void selectionChanged(pqOutputPort* port);
+
+private:
+  /// The bars chosen of a metric.
+  struct Choice
+  {
+    int first;
+    int last;
+  };
+  const tautline::MetricHistogram* shown() const;
+  void select();
+  void describe(vtkTypeInt64 selected);
+
+  pqPipelineSource* Source = nullptr;
+  std::vector<tautline::MetricHistogram> Histograms;
+  std::map<std::string, Choice> Choices; ///< by metric
+  bool Selecting = false;
+
+  QComboBox* Metric;
+  tautline::HistogramPlot* Plot;
+  QComboBox* Combination;
+  QLabel* Conditions;
+  QLabel* Count;
+  QToolButton* Clear;
+  QWidget* Bins;
+};
+
+#endif
