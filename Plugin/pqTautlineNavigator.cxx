@@ -1,0 +1,264 @@
+#include "pqTautlineNavigator.h"
+
+#include "ProxyKind.h"
+
+#include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
+#include "pqDataRepresentation.h"
+#include "pqOutputPort.h"
+#include "pqPipelineSource.h"
+#include "pqServerManagerModel.h"
+#include "pqView.h"
+
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+
+#include <QAction>
+#include <QComboBox>
+#include <QLabel>
+#include <QMainWindow>
+#include <QSignalBlocker>
+#include <QTimer>
+
+#include <algorithm>
+
+namespace
+{
+/// What Isolate sets: the mesh is hardly visible, the element is filled.
+constexpr double FadedOpacity = 0.1;
+constexpr int FilledSelection = 2; // VTK_SURFACE
+constexpr const char* Opacity = "Opacity";
+constexpr const char* SelectionStyle = "SelectionRepresentation";
+constexpr const char* Labels = "SelectionCellLabelVisibility";
+constexpr const char* LabelArray = "SelectionCellFieldDataArrayName";
+}
+
+//------------------------------------------------------------------------------
+pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
+  : Superclass("Tautline Worst Elements", parentObject)
+  , Measure(new QComboBox(this))
+  , Element(new QLabel(this))
+{
+  this->setObjectName("TautlineNavigator");
+  this->Measure->setObjectName("Measure");
+  this->Measure->setToolTip("What the worst elements are the worst by.");
+  this->Measure->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  this->Element->setObjectName("Element");
+  const auto add = [this](const char* name, const char* icon, const char* tip)
+  {
+    QAction* action = this->addAction(QIcon(QString(":/Tautline/Icons/") + icon + ".svg"), name);
+    action->setObjectName(name);
+    action->setToolTip(tip);
+    return action;
+  };
+  this->addWidget(this->Measure);
+  this->Previous =
+    add("Previous", "previous", "Select the element before in the list of the worst.");
+  this->Next = add("Next", "next", "Select the next of the worst elements.");
+  this->Zoom = add("Zoom", "zoom", "Move the camera to the element selected.");
+  this->Isolate = add("Isolate", "isolate", "Fade the mesh, so that an element inside is visible.");
+  this->addWidget(this->Element);
+  this->Zoom->setCheckable(true);
+  this->Zoom->setChecked(true);
+  this->Isolate->setCheckable(true);
+
+  QObject::connect(this->Previous, &QAction::triggered, this, &pqTautlineNavigator::previous);
+  QObject::connect(this->Next, &QAction::triggered, this, &pqTautlineNavigator::next);
+  QObject::connect(this->Zoom, &QAction::toggled, this, &pqTautlineNavigator::zoom);
+  QObject::connect(this->Isolate, &QAction::toggled, this, &pqTautlineNavigator::isolate);
+  QObject::connect(this->Measure, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+    &pqTautlineNavigator::listChanged);
+  QObject::connect(&pqActiveObjects::instance(), &pqActiveObjects::sourceChanged, this,
+    &pqTautlineNavigator::sourceChanged);
+  QObject::connect(pqApplicationCore::instance()->getServerManagerModel(),
+    &pqServerManagerModel::dataUpdated, this, &pqTautlineNavigator::dataUpdated);
+  this->sourceChanged(pqActiveObjects::instance().activeSource());
+
+  // ParaView adds the tool bar at the end of a row that is full: it gets one of its own.
+  QTimer::singleShot(0, this,
+    [this]
+    {
+      if (auto* window = qobject_cast<QMainWindow*>(this->parentWidget()))
+      {
+        window->insertToolBarBreak(this);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+pqTautlineNavigator::~pqTautlineNavigator() = default;
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::sourceChanged(pqPipelineSource* source)
+{
+  if (source == this->Source && source)
+  {
+    return;
+  }
+  this->Isolate->setChecked(false);
+  this->Source = source;
+  this->refresh();
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::dataUpdated(pqPipelineSource* source)
+{
+  if (source == this->Source)
+  {
+    // After the update: fetching updates a pipeline itself.
+    QTimer::singleShot(0, this, &pqTautlineNavigator::refresh);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::refresh()
+{
+  this->Lists.clear();
+  if (this->Source && tautline::isTautline(this->Source->getProxy()))
+  {
+    this->Lists = tautline::worstElementsOf(this->Source);
+  }
+  {
+    const QSignalBlocker blocker(this->Measure);
+    const QString before = this->Measure->currentText();
+    this->Measure->clear();
+    for (const tautline::WorstElementList& list : this->Lists)
+    {
+      this->Measure->addItem(QString::fromStdString(list.label));
+    }
+    this->Measure->setCurrentIndex(std::max(0, this->Measure->findText(before)));
+  }
+  this->listChanged();
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::listChanged()
+{
+  this->Current = -1;
+  const bool some = this->list() && !this->list()->elements.empty();
+  for (QAction* action : { this->Previous, this->Next, this->Isolate })
+  {
+    action->setEnabled(some);
+  }
+  this->Measure->setEnabled(this->Lists.size() > 1);
+  this->describe();
+}
+
+//------------------------------------------------------------------------------
+const tautline::WorstElementList* pqTautlineNavigator::list() const
+{
+  const int index = this->Measure->currentIndex();
+  return index >= 0 && index < static_cast<int>(this->Lists.size()) ? &this->Lists[index] : nullptr;
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::go(int element)
+{
+  const tautline::WorstElementList* list = this->list();
+  if (!this->Source || !list || list->elements.empty())
+  {
+    return;
+  }
+  const int number = static_cast<int>(list->elements.size());
+  this->Current = (element + number) % number;
+  pqOutputPort* mesh = this->Source->getOutputPort(0);
+  const std::string problem =
+    tautline::selectElements(mesh, { list->elements[this->Current].name });
+  if (problem.empty() && this->Zoom->isChecked())
+  {
+    tautline::zoomToSelected(mesh);
+  }
+  this->describe(problem);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::describe(const std::string& problem)
+{
+  const tautline::WorstElementList* list = this->list();
+  QString text;
+  if (!problem.empty())
+  {
+    text = QString::fromStdString(problem);
+  }
+  else if (!list)
+  {
+    text = "No list of elements: apply Element Quality.";
+  }
+  else if (this->Current < 0)
+  {
+    text = list->elements.empty() ? QString("no element")
+                                  : QString("%1 elements").arg(list->elements.size());
+  }
+  else
+  {
+    const tautline::WorstElementEntry& entry = list->elements[this->Current];
+    text = QString("%1 of %2: cell %3")
+             .arg(this->Current + 1)
+             .arg(list->elements.size())
+             .arg(entry.name.cell);
+    text += entry.name.block < 0 ? QString() : QString(" of block %1").arg(entry.name.block);
+    text += ", " + QString::fromStdString(entry.text);
+  }
+  this->Element->setText(text);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::zoom(bool on)
+{
+  if (on && this->Source && this->Current >= 0)
+  {
+    tautline::zoomToSelected(this->Source->getOutputPort(0));
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::isolate(bool on)
+{
+  this->restore();
+  pqView* view = pqActiveObjects::instance().activeView();
+  if (!on || !this->Source || !view)
+  {
+    return;
+  }
+  QPointer<pqDataRepresentation> shown = this->Source->getOutputPort(0)->getRepresentation(view);
+  vtkSMProxy* proxy = shown ? shown->getProxy() : nullptr;
+  if (!proxy || !proxy->GetProperty(Opacity) || !proxy->GetProperty(SelectionStyle))
+  {
+    this->describe("Isolate needs a view in which the mesh is shown.");
+    return;
+  }
+  if (this->Current < 0)
+  {
+    this->go(0);
+  }
+  const double opacity = vtkSMPropertyHelper(proxy, Opacity).GetAsDouble();
+  const int style = vtkSMPropertyHelper(proxy, SelectionStyle).GetAsInt();
+  const int labels = vtkSMPropertyHelper(proxy, Labels).GetAsInt();
+  const auto set = [shown](double newOpacity, int newStyle, int newLabels)
+  {
+    if (shown)
+    {
+      vtkSMPropertyHelper(shown->getProxy(), Opacity).Set(newOpacity);
+      vtkSMPropertyHelper(shown->getProxy(), SelectionStyle).Set(newStyle);
+      vtkSMPropertyHelper(shown->getProxy(), Labels).Set(newLabels);
+      shown->getProxy()->UpdateVTKObjects();
+      shown->renderViewEventually();
+    }
+  };
+  this->Restore = [=] { set(opacity, style, labels); };
+  if (const tautline::WorstElementList* list = this->list())
+  {
+    vtkSMPropertyHelper(proxy, LabelArray).Set(list->array.c_str());
+  }
+  set(FadedOpacity, FilledSelection, 1);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::restore()
+{
+  if (this->Restore)
+  {
+    this->Restore();
+    this->Restore = nullptr;
+  }
+}

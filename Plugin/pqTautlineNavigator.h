@@ -1,0 +1,68 @@
+/**
+ * @class pqTautlineNavigator
+ * @brief The tool bar that goes from one bad element to the next.
+ *
+ * It shows the worst elements of the active filter of the pipeline: of Element Quality, by a metric
+ * to choose; of Untangle Mesh, those that are not valid; of Condition Estimator, those that
+ * contribute most. Previous and next select an element and, if Zoom is on, move the camera to it.
+ * Isolate fades the mesh and fills the element, so that it is visible inside a solid; its value
+ * stands beside it. "3 of 10: cell 433, imr -2.1, inverted" is the element selected.
+ */
+
+#ifndef pqTautlineNavigator_h
+#define pqTautlineNavigator_h
+
+#include "WorstElements.h"
+
+#include <QPointer>
+#include <QToolBar>
+
+#include <functional>
+
+class QAction;
+class QComboBox;
+class QLabel;
+class pqDataRepresentation;
+class pqPipelineSource;
+
+class pqTautlineNavigator : public QToolBar
+{
+  Q_OBJECT
+  using Superclass = QToolBar;
+
+public:
+  explicit pqTautlineNavigator(QWidget* parent = nullptr);
+  ~pqTautlineNavigator() override;
+
+private Q_SLOTS:
+  void sourceChanged(pqPipelineSource* source);
+  void dataUpdated(pqPipelineSource* source);
+  void refresh();
+  void listChanged();
+  void previous() { this->go(this->Current < 0 ? -1 : this->Current - 1); }
+  void next() { this->go(this->Current + 1); }
+  void zoom(bool on);
+  void isolate(bool on);
+
+private:
+  const tautline::WorstElementList* list() const;
+  /// Selects an element; numbers count around.
+  void go(int element);
+  void describe(const std::string& problem = {});
+  void restore();
+
+  QPointer<pqPipelineSource> Source;
+  std::vector<tautline::WorstElementList> Lists;
+  int Current = -1; ///< element of the list, -1: none
+  /// Undoes what Isolate changed.
+  std::function<void()> Restore;
+
+  QComboBox* Measure;
+  QAction* Previous;
+  QAction* Next;
+  QAction* Zoom;
+  QAction* Isolate;
+  QLabel* Element;
+};
+
+#endif
