@@ -1,8 +1,12 @@
 #include "pqTautlineResultPanel.h"
 
 #include "ElementSelection.h"
+#include "Report.h"
 
+#include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqFileDialog.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
 
@@ -37,6 +41,7 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   : Superclass(smproxy, parentObject)
   , Browser(new QTextBrowser(this))
   , Copy(new QToolButton(this))
+  , Save(new QToolButton(this))
   , Note(new QLabel(this))
 {
   this->setShowLabel(false);
@@ -47,6 +52,10 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   this->Copy->setObjectName("Copy");
   this->Copy->setText("Copy");
   this->Copy->setToolTip("Copy the text to the clipboard.");
+  this->Save->setObjectName("SaveReport");
+  this->Save->setText("Save Report...");
+  this->Save->setToolTip("Save mesh, settings, result, tables, histogram and the picture of the "
+                         "active view as one HTML file.");
   this->Note->setObjectName("Note");
   this->Note->setWordWrap(true);
   this->Note->hide();
@@ -54,6 +63,7 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   auto* buttons = new QHBoxLayout;
   buttons->addStretch();
   buttons->addWidget(this->Copy);
+  buttons->addWidget(this->Save);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(this->Browser);
@@ -63,6 +73,7 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   QObject::connect(
     this->Browser, &QTextBrowser::anchorClicked, this, &pqTautlineResultPanel::follow);
   QObject::connect(this->Copy, &QToolButton::clicked, this, &pqTautlineResultPanel::copy);
+  QObject::connect(this->Save, &QToolButton::clicked, this, &pqTautlineResultPanel::saveReport);
   QObject::connect(this->Browser->document()->documentLayout(),
     &QAbstractTextDocumentLayout::documentSizeChanged, this, &pqTautlineResultPanel::fitHeight);
   this->setText(QString());
@@ -112,6 +123,7 @@ void pqTautlineResultPanel::setText(const QString& text)
   this->Browser->setHtml(
     text.isEmpty() ? "<i>No result: apply the filter.</i>" : pqTautlineResultPanel::linked(text));
   this->Copy->setEnabled(!text.isEmpty());
+  this->Save->setEnabled(!text.isEmpty());
   this->fitHeight();
   if (changed)
   {
@@ -179,4 +191,22 @@ void pqTautlineResultPanel::follow(const QUrl& link)
 void pqTautlineResultPanel::copy()
 {
   QApplication::clipboard()->setText(this->Text);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::saveReport()
+{
+  pqServer* const thisComputer = nullptr;
+  pqFileDialog dialog(
+    thisComputer, pqCoreUtilities::mainWidget(), "Save Report", QString(), "HTML (*.html)", false);
+  dialog.setObjectName("SaveReportDialog");
+  dialog.setFileMode(pqFileDialog::AnyFile);
+  if (this->source() && dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
+  {
+    const QString html =
+      tautline::reportOf(this->source(), pqActiveObjects::instance().activeView());
+    const QString file = dialog.getSelectedFiles().first();
+    const QString problem = tautline::saveText(file, html);
+    this->showNote(problem.isEmpty() ? "Saved: " + file : problem);
+  }
 }

@@ -4,8 +4,9 @@
  *
  * The text is wrapped and cannot be edited. "element 433" or "cell 433" in it is a link: it selects
  * the element on the first output of the filter and moves the camera of the active view to it. In
- * paragraphs that begin with "In block 2: " the numbers are those within the block. A button
- * copies the whole text.
+ * paragraphs that begin with "In block 2: " the numbers are those within the block. One button
+ * copies the whole text, another one saves the result as an HTML file on the computer of the
+ * client.
  *
  * In the XML of a proxy: `panel_widget="tautline_result"` on a string property.
  */
@@ -49,6 +50,7 @@ public Q_SLOTS:
 
 private Q_SLOTS:
   void copy();
+  void saveReport();
 
 private:
   void changeEvent(QEvent* event) override;
@@ -60,6 +62,7 @@ private:
   QString Text;
   QTextBrowser* Browser;
   QToolButton* Copy;
+  QToolButton* Save;
   QLabel* Note; ///< what was selected or saved, or what is wrong
 };
 
