@@ -234,7 +234,11 @@ void QualityTotals::fillHistogram(int bins, vtkTable* table) const
       count->SetValue(r, n);
     };
     const double low = h.edges.front(), high = h.edges.back();
-    row(0, std::min(low, h.below ? result.statistics.minimum : low), low, h.below);
+    // The smallest value may be of an inverted element, which is in no row then.
+    const double smallest = info.inverted == InvertedValue::Negative
+      ? std::max(0.0, result.statistics.minimum)
+      : result.statistics.minimum;
+    row(0, std::min(low, h.below ? smallest : low), low, h.below);
     for (int b = 0; b < bins; ++b)
     {
       row(b + 1, h.edges[b], h.edges[b + 1], h.counts[b]);

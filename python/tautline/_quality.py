@@ -154,7 +154,7 @@ def criteria(name: str) -> dict[str, Any]:
     """
     known = _vtk.vtkElementQuality.GetCriteriaPresets().split("\t")
     if name not in known:
-        raise unknown("preset of quality criteria", name, known)
+        raise unknown("preset of quality criteria", str(name), known)
     return json.loads(_vtk.vtkElementQuality.GetCriteriaPreset(name))
 
 

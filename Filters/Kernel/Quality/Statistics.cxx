@@ -349,6 +349,10 @@ AcceptableHistogram acceptableHistogram(
   const auto [lowest, highest] = widened(range);
   for (double q : measured)
   {
+    if (info.inverted == InvertedValue::Negative && q < 0)
+    {
+      continue; // an inverted element
+    }
     if (q < lowest)
     {
       ++result.below;

@@ -110,7 +110,8 @@ TAUTLINE_KERNEL_EXPORT Histogram histogram(const std::vector<double>& measured, 
  *
  * Where the range is unbounded or has no width, the smallest or largest value takes the place of
  * its end. A value that exceeds an end by rounding only is in the bin at that end, as in
- * MetricStatistics::outsideAcceptable.
+ * MetricStatistics::outsideAcceptable. The negative values of inverted elements do not count where
+ * a metric has such (InvertedValue::Negative): their number is known.
  */
 struct AcceptableHistogram : Histogram
 {
