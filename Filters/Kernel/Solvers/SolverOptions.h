@@ -80,8 +80,8 @@ struct SolverOptions
   /// Called with iteration and residual norm, from the calling thread; the solve stops when it
   /// returns false. On several ranks all have one or none has.
   std::function<bool(int, double)> observer;
-  /// Least wall time between two calls of the observer; 0: every iteration. Each call takes about
-  /// 20 microseconds where a limit is set.
+  /// Least wall time between two calls of the observer; 0: every iteration. Each call takes
+  /// two switches between threads where a limit is set.
   double observerSeconds = 0.0;
   /// Whether to stop: asked about twenty times a second from the calling thread, in a set-up, too.
   /// On several ranks as the observer.

@@ -9,8 +9,7 @@
  * and destructors that exit() would still call are skipped, because the work may use what they
  * destroy.
  *
- * Cost: two switches between threads, about 20 microseconds, per call of runWatched() and of
- * WatchedWork::inCaller().
+ * Cost: two switches between threads per call of runWatched() and of WatchedWork::inCaller().
  */
 #ifndef tautline_Watchdog_h
 #define tautline_Watchdog_h
