@@ -11,10 +11,11 @@ parallel=2
 # Memory and time of one input: far above what any input of the corpus needs.
 memory=2048 longest=20
 
-work="$(mktemp -d "${TMPDIR:-/tmp}/tautline-fuzz-XXXXXX")"
+base="${TMPDIR:-/tmp}"
+[[ -w /dev/shm ]] && base=/dev/shm # files in memory
+work="$(mktemp -d "$base/tautline-fuzz-XXXXXX")"
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$build/findings"
-[[ -w /dev/shm ]] && { rm -rf "$work"; work="$(mktemp -d /dev/shm/tautline-fuzz-XXXXXX)"; } # files in memory
 
 fuzz() {
   local target="$1"
