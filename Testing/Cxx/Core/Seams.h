@@ -7,6 +7,7 @@
 #define tautline_Seams_h
 
 #include "Check.h"
+#include "Optimization/Optimizing.h"
 #include "Pieces.h"
 #include "VtkMeshes.h"
 
@@ -57,19 +58,7 @@ struct Case
 /// A block with its inner points moved; `n` cells each way, two or more to a piece.
 inline MeshData rough(CellType type, Index n, double amplitude = 0.25, unsigned seed = 3)
 {
-  const bool flat = topology(type).dimension == 2;
-  MeshData data = blockMesh(type, n, n, flat ? 0 : n);
-  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
-  Random random(seed);
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    const Vec3 d = random.vector(-amplitude, amplitude);
-    if (!boundary[i])
-    {
-      data.setPoint(i, data.point(i) + Vec3{ d[0], d[1], flat ? 0.0 : d[2] });
-    }
-  }
-  return data;
+  return perturbedBlock(type, n, amplitude, seed);
 }
 
 inline Case quarters(CellType type, Index n, double amplitude = 0.25)

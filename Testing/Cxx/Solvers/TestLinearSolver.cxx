@@ -561,7 +561,7 @@ void testRigidBodyModes()
   TAUTLINE_CHECK(2 * with.solution.iterations < without.solution.iterations);
 }
 
-/// The cheap multigrid options: as accurate, and cheaper on a cube.
+/// The cheap multigrid options: as accurate, in not many more iterations.
 void testFastMultigrid()
 {
   const int n = 28;
@@ -584,18 +584,11 @@ void testFastMultigrid()
   const std::vector<double> b = someVector(a.size);
   SolverOptions usual, fast;
   fast.petscOptions = fastMultigridOptions();
-  double usualSeconds = 1e300, fastSeconds = 1e300;
-  for (int turn = 0; turn < 3; ++turn)
-  {
-    const LinearSolution one = solved(systemOf(a), usual, b).solution;
-    const LinearSolution two = solved(systemOf(a), fast, b).solution;
-    TAUTLINE_CHECK(converged(one.reason) && converged(two.reason));
-    TAUTLINE_CHECK(two.trueResidual < 1e-4);
-    TAUTLINE_CHECK(two.iterations <= 3 * one.iterations);
-    usualSeconds = std::min(usualSeconds, one.setupSeconds + one.solveSeconds);
-    fastSeconds = std::min(fastSeconds, two.setupSeconds + two.solveSeconds);
-  }
-  std::cout << "fast multigrid: " << fastSeconds << " s instead of " << usualSeconds << " s\n";
+  const LinearSolution one = solved(systemOf(a), usual, b).solution;
+  const LinearSolution two = solved(systemOf(a), fast, b).solution;
+  TAUTLINE_CHECK(converged(one.reason) && converged(two.reason));
+  TAUTLINE_CHECK(two.trueResidual < 1e-4);
+  TAUTLINE_CHECK(two.iterations <= 3 * one.iterations);
 }
 
 void testRefused()
