@@ -216,7 +216,9 @@ MetricStatistics summarize(
   }
   const double n = static_cast<double>(measured.size());
   const Range acceptable = info.acceptable(dimension);
-  const auto [lowest, highest] = widened(acceptable);
+  const Range tolerated = widened(acceptable);
+  // Variables: clang refuses structured bindings in a region of OpenMP.
+  const double lowest = tolerated.low, highest = tolerated.high;
   // Reductions in lanes: their order is fixed by the vector width, not by the threads.
   double minimum = measured.front(), maximum = measured.front();
   Index outside = 0;
