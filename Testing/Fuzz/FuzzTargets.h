@@ -24,7 +24,7 @@ struct FuzzTarget
   void (*run)(std::string_view bytes);
 };
 
-/// All targets: readers of mesh files, images, kernel.
+/// All targets: readers of mesh files, images, kernel, solvers.
 const std::vector<FuzzTarget>& fuzzTargets();
 
 /// The target of that name, or null.
@@ -77,5 +77,7 @@ void fuzzSilhouette(std::string_view bytes);
 void fuzzQuality(std::string_view bytes);
 void fuzzMesh(std::string_view bytes);
 void fuzzMove(std::string_view bytes);
+// FuzzSolvers.cxx:
+void fuzzPetscOptions(std::string_view bytes);
 }
 #endif

@@ -17,11 +17,16 @@ work="$(mktemp -d "$base/tautline-fuzz-XXXXXX")"
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$build/findings"
 
+# libFuzzer prints its help to stderr; the seeded mutator has no such option. (No pipe to grep -q: it ends too early.)
+help="$(TAUTLINE_FUZZ_TARGET=off "$fuzzer" -help=1 2>&1 || true)"
+libfuzzer=0
+[[ $help != *max_total_time* ]] || libfuzzer=1
+
 fuzz() {
   local target="$1"
   export TAUTLINE_FUZZ_TARGET="$target" TAUTLINE_FUZZ_DIR="$work/$target"
   mkdir -p "$TAUTLINE_FUZZ_DIR" "$build/corpus/$target"
-  if "$fuzzer" -help=1 2>/dev/null | grep -q max_total_time; then
+  if ((libfuzzer)); then
     "$fuzzer" -max_total_time="$seconds" -timeout="$longest" -rss_limit_mb="$memory" -max_len=16384 -print_final_stats=1 \
       -artifact_prefix="$build/findings/$target-" "$build/corpus/$target" "$top/Corpus/$target"
   else

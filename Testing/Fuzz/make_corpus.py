@@ -118,6 +118,16 @@ $ElementData
 $EndElementData
 """
 
+OPTIONS = (
+    b"-ksp_type gmres -pc_type ilu -ksp_rtol 1e-8",
+    b"-pc_type gamg -mg_levels_ksp_type chebyshev -mg_levels_pc_type sor -mg_coarse_pc_type lu",
+    b"-pc_type hypre -pc_hypre_type boomeramg -pc_hypre_boomeramg_strong_threshold 0.5",
+    b"-pc_type asm -sub_pc_type icc -sub_pc_factor_levels 1",
+    b"-ksp_view ascii:written.txt",
+    b"-options_file /etc/passwd",
+    b"-pc_type fieldsplit -fieldsplit_0_pc_type jacobi",
+)
+
 
 def gmsh_binary() -> bytes:
     """Version 2.2, binary: a triangle."""
@@ -201,6 +211,7 @@ def main() -> None:
         "quality": [bytes([kind, kind * 7, kind % 3, 1, 1, 1]) + noise(90) for kind in range(6)],
         "mesh": [bytes([8]) + noise(24, 40) + bytes(list_of_cells) for list_of_cells in cells],
         "move": [bytes([kind, kind % 2, 1]) + noise(80 + 200 * (kind % 2 == 0), 32) for kind in range(4)],
+        "petscoptions": [b"\0" + text for text in OPTIONS] + [bytes([1]) + noise(30) for _ in range(6)],
     }
     for target, inputs in numbers.items():
         (CORPUS / target).mkdir(parents=True, exist_ok=True)
