@@ -525,8 +525,18 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
   }
 
   // Elements left out join the objective as soon as they are valid: another stage.
+  const Index invalid = result.invertedAfter;
   while (optimizeStage(mesh, options, clock, result))
   {
+  }
+  // Verified on the points themselves: the optimizers measure simplices, in units of the mean edge,
+  // where others may vanish.
+  if (result.invertedAfter > invalid && !options.allowInversion &&
+    mesh.dimension() != Dimension::Surface)
+  {
+    throw Error("Optimization would invert " + std::to_string(result.invertedAfter - invalid) +
+      " elements: the coordinates are of too different magnitudes. Remove points that are far from "
+      "all others.");
   }
   return result;
 }
