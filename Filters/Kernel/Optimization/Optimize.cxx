@@ -229,9 +229,10 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     now.moving = sweep.moved;
     const double lowered = before.objective - now.objective;
     const double size = std::abs(now.objective);
-    if (!simple && !(lowered >= -roundingOfSums * size))
+    if (!simple && !(std::isfinite(size) && lowered >= -roundingOfSums * size))
     {
-      // Blocks of one colour do not use each other's changes of a composite objective.
+      // Blocks of one colour do not use each other's changes of a composite objective, which may
+      // rise or leave its domain, as a product with a factor below 0.
       std::copy(best.begin(), best.end(), simplices.coordinates());
       problem.store();
       failed = true;

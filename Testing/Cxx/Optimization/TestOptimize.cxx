@@ -198,6 +198,46 @@ void testScalarizations()
   }
 }
 
+/// Blocks of one colour, each of which reduces several objectives by itself, together raise them, or
+/// leave the domain of a product: the sweep is taken back.
+void testSweepTakenBack()
+{
+  const MeshData data = perturbedBlock(CellType::Quadrilateral, 40, 0.25);
+  const auto objective = [](Metric metric)
+  {
+    Objective o;
+    o.metric = metric;
+    o.objectiveTemplate = ObjectiveTemplate::Maximum;
+    return o;
+  };
+  for (const bool product : { true, false })
+  {
+    const Context context(product ? "product" : "lexicographic");
+    OptimizeOptions options;
+    options.optimizer = Optimizer::LocalNewton;
+    options.objectives = { objective(Metric::InverseMeanRatio),
+      objective(product ? Metric::ScaledJacobian : Metric::Size) };
+    options.scalarization.method =
+      product ? Scalarization::ObjectiveProduct : Scalarization::Lexicographic;
+    const OptimizeResult result = run(data, options);
+    TAUTLINE_CHECK(result.reason == StopReason::NoProgress);
+    for (std::size_t i = 0; i < result.history.size(); ++i)
+    {
+      const double now = result.history[i].objective;
+      TAUTLINE_CHECK(std::isfinite(now));
+      TAUTLINE_CHECK(i == 0 || now <= result.history[i - 1].objective);
+    }
+    // The points are those of the last record.
+    MeshData moved = data;
+    moved.points = result.points;
+    options.stopping.maximumIterations = 0;
+    const std::vector<double> last = result.history.back().objectives;
+    const std::vector<double> found = run(moved, options).history.front().objectives;
+    TAUTLINE_CHECK_RELATIVE(found[0], last[0], 1e-12);
+    TAUTLINE_CHECK_RELATIVE(found[1], last[1], 1e-12);
+  }
+}
+
 /// Other metrics and templates, in patches and globally: each reduces its own objective and inverts
 /// nothing.
 void testMetrics()
@@ -616,6 +656,7 @@ int TestOptimize(int, char*[])
   testInvariance();
   testThreads();
   testScalarizations();
+  testSweepTakenBack();
   testMetrics();
   testTargetsAndWeights();
   testStopping();
