@@ -1,13 +1,14 @@
 """A mesh in pieces (.pvtu, appended parts) gives what the whole mesh gives, in the functions and on the shell."""
 
+from pathlib import Path
+
 import numpy as np
 import tautline as tl
 from checks import OUT, points, refused, run_tests, shell, square
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkMultiBlockDataSet
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkExtractCells
 from vtkmodules.vtkCommonCore import vtkIdList
-from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader
 
 N = 12
 TIGHT = 1e-12
@@ -45,20 +46,22 @@ def in_pieces(mesh):
     return append.GetOutput()
 
 
-def from_pvtu(mesh):
-    """Its quarters as VTK reads them from a .pvtu file."""
+def pvtu_file(pieces_of_mesh: list) -> Path:
+    """A .pvtu file of these pieces."""
     pieces = []
-    for number, part in enumerate(parts(mesh)):
+    for number, part in enumerate(pieces_of_mesh):
         tl.write(part, OUT / f"seams_{number}.vtu")
         pieces.append(f'<Piece Source="seams_{number}.vtu"/>')
     file = OUT / "seams.pvtu"
     file.write_text('<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian"><PUnstructuredGrid>'
                     '<PPoints><PDataArray type="Float64" Name="Points" NumberOfComponents="3"/></PPoints>'
                     + "".join(pieces) + "</PUnstructuredGrid></VTKFile>")  # fmt: skip
-    reader = vtkXMLPUnstructuredGridReader()
-    reader.SetFileName(str(file))
-    reader.Update()
-    return reader.GetOutput()
+    return file
+
+
+def from_pvtu(mesh):
+    """Its quarters, read from a .pvtu file."""
+    return tl.read(pvtu_file(parts(mesh)))
 
 
 def by_place(mesh, values) -> dict:
@@ -89,6 +92,43 @@ def test_solve() -> None:
     tl.write(in_pieces(mesh), file)
     assert "27 coincident points" in shell("solve", file)
     assert "coincident" not in shell("solve", file, "--no-merge-coincident-points")
+
+
+def test_pvtu() -> None:
+    mesh = rough()
+    quarters = parts(mesh)
+    # A piece with the cells of another one as its ghost cells.
+    append = vtkAppendFilter()
+    for part in quarters[:2]:
+        append.AddInputData(part)
+    append.Update()
+    overlapping = append.GetOutput()
+    flags = np.zeros(overlapping.GetNumberOfCells(), np.uint8)
+    flags[quarters[0].GetNumberOfCells() :] = vtkDataSetAttributes.DUPLICATECELL
+    ghosts = numpy_to_vtk(flags, deep=True)
+    ghosts.SetName("vtkGhostType")
+    overlapping.GetCellData().AddArray(ghosts)
+    for number in (1, 2, 3):
+        ghosts = numpy_to_vtk(np.zeros(quarters[number].GetNumberOfCells(), np.uint8), deep=True)
+        ghosts.SetName("vtkGhostType")
+        quarters[number].GetCellData().AddArray(ghosts)
+    file = pvtu_file([overlapping, *quarters[1:]])
+    text = file.read_text()
+    array = '<PCellData><PDataArray type="UInt8" Name="vtkGhostType"/></PCellData>'
+    file.write_text(text.replace("<PPoints>", f"{array}<PPoints>"))
+    read = tl.read(file)
+    assert read.GetNumberOfCells() == mesh.GetNumberOfCells()
+    whole = tl.solve(mesh, source=50, relative_tolerance=TIGHT)
+    result = tl.solve(file, source=50, relative_tolerance=TIGHT)
+    assert result.unknowns == whole.unknowns
+    assert abs(result.solution.max() / whole.solution.max() - 1) < 1e-12
+    assert "27 coincident points" in shell("solve", pvtu_file(parts(mesh)))
+    piece = OUT / "seams_2.vtu"
+    piece.write_bytes(piece.read_bytes()[:2000])
+    refused("seams", tl.read, file)
+    piece.unlink()
+    refused("seams_2.vtu", tl.read, file)
+    refused("no writer for '.pvtu'", tl.write, mesh, file)
 
 
 def test_blocks() -> None:

@@ -43,6 +43,11 @@ def _vtk_xml(data: str) -> Format:
     return Format(f"vtkXML{name}Reader", f"vtkXML{name}Writer", data, "vtkIOXML")
 
 
+def _vtk_pieces(data: str) -> Format:
+    """Of a file that names the files of its pieces; written by ParaView."""
+    return Format(f"vtkXMLP{data.removeprefix('vtk')}Reader", None, data, "vtkIOXML")
+
+
 _TETGEN = Format("vtkTetGenReader", "vtkTetGenWriter", "vtkDataSet")
 _OFF = "vtkOffReader"
 _OWN_FORMATS = {
@@ -62,6 +67,8 @@ FORMATS = {
     ".vti": _vtk_xml("vtkImageData"),
     ".vtr": _vtk_xml("vtkRectilinearGrid"),
     ".vts": _vtk_xml("vtkStructuredGrid"),
+    ".pvtu": _vtk_pieces("vtkUnstructuredGrid"),
+    ".pvtp": _vtk_pieces("vtkPolyData"),
     ".vtm": _vtk_xml("vtkMultiBlockDataSet"),
     ".ply": Format("vtkPLYReader", "vtkPLYWriter", "vtkPolyData", "vtkIOPLY"),
     ".stl": Format("vtkSTLReader", "vtkSTLWriter", "vtkPolyData", "vtkIOGeometry"),

@@ -28,6 +28,9 @@ _APPENDED = (
     "The file has appended data, which VTK before 9.3 cannot read with a recent libexpat: "
     "save it with the data mode Binary or Ascii."
 )
+# Files that name other files: of the pieces of one mesh, and of blocks.
+_IN_PIECES = (".pvtu", ".pvtp")
+_REFERRING = (".vtm", *_IN_PIECES)
 # Of one file; a damaged one may have thousands.
 _MOST_MESSAGES = 5
 
@@ -50,15 +53,17 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
 def read(file: str | PathLike, **options: Any) -> vtkDataObject:
     """Read a mesh. The ending of the file name decides on the format.
 
-    file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl .obj), or, where the module of readers was built, TetGen and
-        Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++ (.msh), OFF (.off .coff
-        .noff .cnoff).
+    file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was
+        built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++
+        (.msh), OFF (.off .coff .noff .cnoff).
     options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles. Not for
         formats of VTK.
 
-    Returns a vtkDataSet; of .vtm and some .vtk files a composite data set. Raises Error, with file and line where they
-    are known, if the file cannot be read, is truncated or damaged. Only a .vtk file that ends between two sections,
-    or inside the last number of one, cannot be told from a complete file.
+    Returns a vtkDataSet; of .vtm and some .vtk files a composite data set. The pieces of a .pvtu or .pvtp file come one
+    after the other, without their ghost cells and with the points of each: every function treats the points on their
+    seams as one (merge_coincident_points). Raises Error, with file and line where they are known, if the file cannot be
+    read, is truncated or damaged. Only a .vtk file that ends between two sections, or inside the last number of one,
+    cannot be told from a complete file.
 
     >>> mesh = tautline.read("part.msh", lower_cells=True)
     """
@@ -141,7 +146,7 @@ def _read_vtk(name: str, form: Format) -> vtkDataObject:
     """Read a file with a reader of VTK, of which every message is an error: it returns what it has all the same."""
     if os.path.getsize(name) == 0:
         raise Error(f"{name}: the file is empty")
-    if form.reader == "vtkXMLMultiBlockDataReader":
+    if Path(name).suffix.lower() in _REFERRING:
         for block in block_files(name):
             check_input(block)
     legacy = form.module == "vtkIOLegacy"
@@ -167,7 +172,20 @@ def _read_vtk(name: str, form: Format) -> vtkDataObject:
         check_counts(name, mesh, announced)
     for leaf in leaves(mesh):
         check_references(name, leaf)
+    if Path(name).suffix.lower() in _IN_PIECES:
+        _remove_ghosts(mesh)
     return mesh
+
+
+def _remove_ghosts(mesh: vtkDataSet) -> None:
+    """Remove the ghost cells of a vtkUnstructuredGrid or vtkPolyData, which are in another piece, too."""
+    if not mesh.HasAnyGhostCells():
+        return
+    mesh.RemoveGhostCells()
+    if mesh.IsA("vtkUnstructuredGrid"):  # VTK leaves an entry too many
+        cells = mesh.GetCells()
+        last = int(cells.GetOffsetsArray().GetTuple1(cells.GetNumberOfCells()))
+        cells.GetConnectivityArray().SetNumberOfTuples(last)
 
 
 def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[str]:

@@ -88,12 +88,14 @@ def _publish(root: ElementTree.Element, temporary: str, target: str, folder: str
 
 
 def block_files(name: str) -> list[str]:
-    """The names of the files that a .vtm file refers to; none if it is damaged."""
+    """The names of the files that a .vtm, .pvtu or .pvtp file refers to; none if it is damaged."""
     try:
-        entries = ElementTree.parse(name).getroot().iter("DataSet")
+        root = ElementTree.parse(name).getroot()
     except ElementTree.ParseError:
         return []
-    return [os.path.join(os.path.dirname(name), entry.get("file", "")) for entry in entries if entry.get("file")]
+    named = [entry.get("file") for entry in root.iter("DataSet")]
+    named += [entry.get("Source") for entry in root.iter("Piece")]
+    return [os.path.join(os.path.dirname(name), file) for file in named if file]
 
 
 def _content(data: vtkDataObject, name: str, form: Format) -> bytes:
