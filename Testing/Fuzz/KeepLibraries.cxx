@@ -1,5 +1,5 @@
-// Linked under the sanitizers: libraries that MPI loads stay loaded to the end, so that the report of
-// a leak and the list of suppressions can name them.
+// Linked under the sanitizers: libraries that MPI loads stay loaded to the end, so that the report
+// of a leak and the list of suppressions can name them.
 
 extern "C" __attribute__((visibility("default"))) int dlclose(void*)
 {

@@ -371,6 +371,18 @@ std::string intersectingFacets(const SolidBoundary& boundary, SolidOptions optio
     "facets? Merge doubled points first (Clean to Grid), or preserve the surface");
 }
 
+/// A positive number without an exponent, which TetGen does not read, in all its digits.
+std::string withoutExponent(double value)
+{
+  constexpr int digits = std::numeric_limits<double>::max_digits10;
+  const int decimals = std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(value))));
+  const int length = std::snprintf(nullptr, 0, "%.*f", decimals, value);
+  std::string text(static_cast<std::size_t>(length) + 1, '\0');
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  text.pop_back(); // the null
+  return text;
+}
+
 std::string switchesFor(const SolidOptions& options)
 {
   char text[128];
@@ -383,8 +395,7 @@ std::string switchesFor(const SolidOptions& options)
   }
   if (options.volume > 0.0)
   {
-    std::snprintf(text, sizeof(text), "a%.15f", options.volume); // TetGen reads no exponents
-    switches += text;
+    switches += "a" + withoutExponent(options.volume);
   }
   switches += options.regions.empty() ? "" : "Aa";
   switches += options.pointSizes.empty() ? "" : "m";

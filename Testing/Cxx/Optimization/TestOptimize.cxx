@@ -198,8 +198,8 @@ void testScalarizations()
   }
 }
 
-/// Blocks of one colour, each of which reduces several objectives by itself, together raise them, or
-/// leave the domain of a product: the sweep is taken back.
+/// Blocks of one colour, each of which reduces several objectives by itself, together raise them,
+/// or leave the domain of a product: the sweep is taken back.
 void testSweepTakenBack()
 {
   const MeshData data = perturbedBlock(CellType::Quadrilateral, 40, 0.25);
