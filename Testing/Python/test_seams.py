@@ -175,6 +175,14 @@ def test_peridynamics() -> None:
     assert result.rows == whole.rows and abs(result.condition / whole.condition - 1) < 1e-8
     layered = tl.interaction_layer(in_pieces(square(8)), 0.25)
     assert layered.GetNumberOfCells() == mesh.GetNumberOfCells()
+    blocks = vtkMultiBlockDataSet()
+    for number, part in enumerate(parts(square(8))):
+        blocks.SetBlock(number, part)
+    assert tl.interaction_layer(blocks, 0.25).GetNumberOfCells() == mesh.GetNumberOfCells()
+    for number, part in enumerate(parts(mesh)):
+        blocks.SetBlock(number, part)
+    result = tl.peridynamics(blocks, delta=0.25, tolerance=1e-9)
+    assert result.rows == whole.rows and abs(result.condition / whole.condition - 1) < 1e-8
 
 
 def test_element_quality() -> None:

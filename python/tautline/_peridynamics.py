@@ -14,7 +14,7 @@ from . import _commands, _vtk
 from ._arguments import pick, set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, columns, snake
 from ._errors import Error, checked, run
-from ._io import Mesh, as_data_set
+from ._io import Mesh, as_mesh
 
 BASES = ("constant", "linear", "discontinuous linear")
 KERNELS = ("power", "constant", "gaussian", "conical", "table")
@@ -93,7 +93,8 @@ def peridynamics(
     """Assemble the matrix of a nonlocal (bond-based peridynamic) model, compute its condition number, and solve.
 
     mesh: triangles in a plane with an interaction layer (collar) of width delta, where the solution is given, see
-        interaction_layer(): a vtkDataSet, a file name or (points, cells). It is not changed.
+        interaction_layer(): a vtkDataSet, a composite data set, a file name or (points, cells). It is not changed. The
+        data sets of a composite one are one mesh.
     delta: the horizon, above 0, in the mesh's unit.
     p: exponent of the kernel r^-p: 0 to below 4 (linear basis) or 3 (the others); of the elastic model below 6 or 5.
     basis: "constant", "linear" or "discontinuous linear".
@@ -131,7 +132,7 @@ def peridynamics(
     >>> tautline.peridynamics(mesh, delta=0.2, p=1).condition
     """
     filter_ = _vtk.vtkPeridynamicStiffness()
-    inputs = InputArrays(filter_, as_data_set(mesh))
+    inputs = InputArrays(filter_, as_mesh(mesh))
     filter_.SetHorizon(float(delta))
     filter_.SetExponent(float(p))
     filter_.SetBasis(pick("basis", basis, BASES))
@@ -217,8 +218,9 @@ def interaction_layer(
     A nonlocal model has its boundary condition not on the boundary but in this layer, see peridynamics() and
     dissertation section 4.2.
 
-    mesh: triangles in a plane: a vtkDataSet, a file name or (points, cells). It is not changed; its points and
-        triangles come first in the result, with the same numbers.
+    mesh: triangles in a plane: a vtkDataSet, a composite data set, a file name or (points, cells). It is not changed;
+        its points and triangles come first in the result, with the same numbers. The data sets of a composite one are
+        one mesh, in their order.
     width: least width of the layer, above 0, in the mesh's unit.
     element_size: edge length of the layer's triangles; 0 is the mean edge length of the boundary.
     threads: number of threads; 0 is all cores. The result does not depend on it.
@@ -235,7 +237,7 @@ def interaction_layer(
     filter_.SetElementSize(float(element_size))
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
-    filter_.SetInputDataObject(as_data_set(mesh))
+    filter_.SetInputDataObject(as_mesh(mesh))
     run(filter_)
     return filter_.GetOutput()
 
@@ -283,7 +285,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _run_peridynamics(arguments: argparse.Namespace) -> None:
-    mesh = as_data_set(arguments.mesh)
+    mesh = as_mesh(arguments.mesh)
     if arguments.add_layer:
         options = _commands.given(arguments, ("threads", "merge_coincident_points"))
         mesh = interaction_layer(mesh, arguments.delta, **options)
