@@ -17,6 +17,8 @@
 #include "vtkTestErrorObserver.h"
 #include "vtkTetGenMesher.h"
 #include "vtkTetGenReader.h"
+#include "vtkTransform.h"
+#include "vtkTransformFilter.h"
 #include "vtkTriangleMesher.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -308,6 +310,26 @@ void testTetrahedra()
   TAUTLINE_CHECK(std::abs(measure(mesher->GetOutput()).size - 1.0) < 1e-12);
 }
 
+/// A bound of the volume far below 1e-15: of a cube in metres whose edge is a few nanometres long.
+void testTetrahedraScales()
+{
+  constexpr double scale = 1e-8;
+  vtkNew<vtkTransform> shrink;
+  shrink->Scale(scale, scale, scale);
+  vtkNew<vtkTransformFilter> small;
+  small->SetTransform(shrink);
+  small->SetInputData(read("cube.smesh"));
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputConnection(small->GetOutputPort());
+  const double volume = 0.005 * scale * scale * scale;
+  mesher->SetVolume(volume);
+  mesher->Update();
+  const Facts facts = measure(mesher->GetOutput());
+  TAUTLINE_CHECK_RELATIVE(facts.size, scale * scale * scale, 1e-9);
+  TAUTLINE_CHECK(facts.largestCell <= volume * (1 + 1e-9));
+  TAUTLINE_CHECK(mesher->GetOutput()->GetNumberOfCells() > 200);
+}
+
 /// Two nested cubes: the inner one a region of its own, or a hole.
 void testRegionsAndHoles()
 {
@@ -453,6 +475,7 @@ int TestMeshers(int, char* argv[])
   testTriangleScales();
   testTriangleFailures();
   testTetrahedra();
+  testTetrahedraScales();
   testRegionsAndHoles();
   testTetrahedraFailures();
   return tautline::exitCode();
