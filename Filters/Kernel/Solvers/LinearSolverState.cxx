@@ -226,6 +226,13 @@ void LinearSolverState::configure()
   }
   this->applyTolerances();
   this->OptionSet.read([&]() { petsc(KSPSetFromOptions(this->Solver)); });
+  PetscBool split = PETSC_FALSE;
+  petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCFIELDSPLIT, &split));
+  if (split && this->System.blockSize < 2)
+  {
+    throw Error("PETSc option -pc_type fieldsplit: it splits the unknowns by their components, as "
+                "those of a displacement; this system has one unknown per point.");
+  }
   this->OptionSet.rejectUnused(false);
   // The function test(), called in each iteration, calls the one chosen by now.
   petsc(KSPGetAndClearConvergenceTest(

@@ -123,7 +123,8 @@ constexpr Rule rules[] = {
 
   // preconditioners
   word("pc_type",
-    "asm bjacobi cholesky eisenstat gamg gasm hypre icc ilu jacobi kaczmarz ksp lu none pbjacobi "
+    "asm bjacobi cholesky eisenstat fieldsplit gamg gasm hypre icc ilu jacobi kaczmarz ksp lu none "
+    "pbjacobi "
     "redundant sor svd telescope"),
   word("pc_jacobi_type", "diagonal rowmax rowsum"),
   flag("pc_jacobi_abs"),
@@ -167,6 +168,9 @@ constexpr Rule rules[] = {
   integer("pc_telescope_reduction_factor", 1, LargestInteger),
   real("pc_svd_zero_sing", 0, 1),
   integer("pc_svd_ess_rank", -1, LargestInteger),
+
+  // fields: the components of a displacement
+  word("pc_fieldsplit_type", "additive multiplicative symmetric_multiplicative"),
 
   // multigrid
   word("pc_mg_type", "additive multiplicative full kaskade"),
@@ -258,9 +262,9 @@ constexpr Rule rules[] = {
 };
 
 // Inner solvers, by the beginning of their options: smoothers and coarse solver of multigrid, those
-// of blocks, subdomains and redundant copies, and the one of a spectral transformation.
-constexpr const char* prefixes[] = { "mg_levels_", "mg_coarse_", "sub_", "redundant_", "telescope_",
-  "ksp_", "st_", "esteig_", "gamg_est_", "pc_gamg_esteig_" };
+// of blocks, fields, subdomains and redundant copies, and the one of a spectral transformation.
+constexpr const char* prefixes[] = { "mg_levels_", "mg_coarse_", "sub_", "fieldsplit_",
+  "redundant_", "telescope_", "ksp_", "st_", "esteig_", "gamg_est_", "pc_gamg_esteig_" };
 
 std::string lower(std::string text)
 {
@@ -398,7 +402,8 @@ std::string alternatives(const std::string& name)
   throw Error("The PETSc option " + option +
     " is not permitted. Permitted are options that choose and tune Krylov methods (-ksp_...), "
     "preconditioners (-pc_..., of multigrid -mg_levels_... and -mg_coarse_..., of blocks "
-    "-sub_...), MUMPS (-mat_mumps_...) and eigensolvers (-eps_..., -st_...), and neither read, "
+    "-sub_..., of the components of a displacement -fieldsplit_0_...), MUMPS (-mat_mumps_...) and "
+    "eigensolvers (-eps_..., -st_...), and neither read, "
     "write nor display anything." +
     alternatives(lower(option.substr(1))));
 }

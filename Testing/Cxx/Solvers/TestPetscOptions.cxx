@@ -323,6 +323,27 @@ void testWording()
   TAUTLINE_CHECK(!solution.message.empty());
 }
 
+/// Split by component where each point has several unknowns, else an error that says why not.
+void testFieldSplit()
+{
+  const SparseMatrix a = laplacian(12);
+  const std::string text = "-pc_type fieldsplit -pc_fieldsplit_type multiplicative "
+                           "-fieldsplit_0_pc_type ilu -fieldsplit_1_ksp_type preonly "
+                           "-fieldsplit_1_pc_type jacobi -ksp_type gmres";
+  LinearSystem system = systemOf(a);
+  system.blockSize = 2;
+  TAUTLINE_CHECK(attempt(system, text, {}, "-pc_type") == Outcome::Solved);
+  const std::string error = errorOf("-pc_type fieldsplit", a);
+  TAUTLINE_CHECK(contains(error, "one unknown per point"));
+  TAUTLINE_CHECK(contains(error, "-pc_type fieldsplit"));
+  for (const char* refused : { "-fieldsplit_0_pc_view ascii:x", "-fieldsplit_0_pc_type python",
+         "-pc_fieldsplit_block_size 3", "-pc_fieldsplit_type schur" })
+  {
+    const Context context(refused);
+    TAUTLINE_CHECK(attempt(system, refused, {}, "The PETSc option") != Outcome::Solved);
+  }
+}
+
 /// Methods that stop without a solution, though PETSc calls that convergence.
 void testFalseConvergence()
 {
@@ -365,6 +386,7 @@ int TestPetscOptions(int argc, char* argv[])
   testSurroundings(); // before PETSc is initialized
   testRefused();
   testEveryType();
+  testFieldSplit();
   testWording();
   testFalseConvergence();
   return exitCode();
