@@ -3,6 +3,8 @@
 #include "Blocks.h"
 #include "tautline/Core/Memory.h"
 
+#include "vtkAlgorithm.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkMultiProcessController.h"
 
@@ -209,6 +211,27 @@ void requireOneProcess(vtkDataObject* input)
   }
 }
 
+namespace
+{
+Index cellsOf(vtkDataObject* input)
+{
+  Index cells = 0;
+  if (input)
+  {
+    forEachLeaf(
+      input, [&cells](unsigned int, vtkDataSet* data) { cells += data->GetNumberOfCells(); });
+  }
+  return cells;
+}
+
+[[noreturn]] void refuseProcesses(const std::string& filter, const std::string& having)
+{
+  throw Error(filter + " does not support meshes on several processes, and " + having +
+    " have cells: gather the mesh on the first process, in ParaView by Aggregate Dataset with one "
+    "process, or run ParaView with one process.");
+}
+}
+
 //------------------------------------------------------------------------------
 void requireFirstProcess(vtkDataObject* input, const char* filter)
 {
@@ -217,21 +240,30 @@ void requireFirstProcess(vtkDataObject* input, const char* filter)
   {
     return;
   }
-  Index cells = 0;
-  forEachLeaf(
-    input, [&cells](unsigned int, vtkDataSet* data) { cells += data->GetNumberOfCells(); });
-  const int own = cells > 0;
+  const int own = cellsOf(input) > 0;
   const int elsewhere = own != 0 && controller->GetLocalProcessId() > 0;
   int having = own, notFirst = elsewhere;
   controller->AllReduce(&own, &having, 1, vtkCommunicator::SUM_OP);
   controller->AllReduce(&elsewhere, &notFirst, 1, vtkCommunicator::SUM_OP);
   if (notFirst > 0)
   {
-    throw Error(std::string(filter) + " does not support meshes on several processes, and " +
-      std::to_string(having) + " of " + std::to_string(controller->GetNumberOfProcesses()) +
-      " have cells: gather the mesh on the first process, in ParaView by Aggregate Dataset with "
-      "one "
-      "process, or run ParaView with one process.");
+    refuseProcesses(
+      filter, std::to_string(having) + " of " + std::to_string(controller->GetNumberOfProcesses()));
+  }
+}
+
+//------------------------------------------------------------------------------
+void requireFirstProcess(vtkAlgorithm* filter, int port, vtkDataObject* input, const char* name)
+{
+  if (!vtkCompositeDataSet::SafeDownCast(filter->GetInputDataObject(port, 0)))
+  {
+    requireFirstProcess(input, name);
+    return;
+  }
+  vtkMultiProcessController* controller = manyProcesses();
+  if (controller && controller->GetLocalProcessId() > 0 && cellsOf(input) > 0)
+  {
+    refuseProcesses(name, "others than the first");
   }
 }
 }

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+class vtkAlgorithm;
 class vtkDataObject;
 class vtkMultiProcessController;
 
@@ -74,5 +75,14 @@ TAUTLINECORE_EXPORT void requireOneProcess(vtkDataObject* input);
  * @param filter its name, for the message: "Optimize Mesh"
  */
 TAUTLINECORE_EXPORT void requireFirstProcess(vtkDataObject* input, const char* filter);
+
+/**
+ * @brief The same for a filter that the pipeline calls for each block of composite data. Processes
+ * may have different blocks: of these, only a process with cells that is not the first throws, and
+ * none communicates.
+ * @param port of the filter that `input` comes from
+ */
+TAUTLINECORE_EXPORT void requireFirstProcess(
+  vtkAlgorithm* filter, int port, vtkDataObject* input, const char* name);
 }
 #endif

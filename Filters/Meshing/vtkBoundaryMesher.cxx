@@ -1,5 +1,6 @@
 #include "vtkBoundaryMesher.h"
 
+#include "Processes.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Types.h"
@@ -48,6 +49,8 @@ int vtkBoundaryMesher::RequestData(
   }
   try
   {
+    tautline::requireFirstProcess(
+      this, 0, input, this->IsA("vtkTetGenMesher") ? "TetGen Mesher" : "Triangle Mesher");
     tautline::validateInput(input, { true });
     if (input->GetNumberOfPoints() == 0)
     {

@@ -1,5 +1,6 @@
 #include "vtkShapeMatcher.h"
 
+#include "Processes.h"
 #include "ShapeAdapter.h"
 #include "TableRows.h"
 
@@ -212,6 +213,16 @@ int vtkShapeMatcher::RequestData(
   vtkDataSet* input = vtkDataSet::GetData(inputVector[0]);
   vtkImageData* targetInput = vtkImageData::GetData(inputVector[1]);
   this->ClearResult();
+  const bool alone = this->Attempt(outputVector, "run ParaView with one process",
+    [&]
+    {
+      tautline::requireFirstProcess(this, 0, input, "Match Shape");
+      tautline::requireFirstProcess(this, 1, targetInput, "Match Shape");
+    });
+  if (!alone)
+  {
+    return 0;
+  }
   if (!input || !targetInput || input->GetNumberOfPoints() == 0 ||
     targetInput->GetNumberOfPoints() == 0)
   {

@@ -1,5 +1,6 @@
 #include "vtkShapeRetrieval.h"
 
+#include "Processes.h"
 #include "ShapeAdapter.h"
 #include "tautline/Shapes/ShapeRetrieval.h"
 
@@ -203,9 +204,11 @@ int vtkShapeRetrieval::RequestData(
       "Shapes are compared with each other: a multiblock data set of images is needed. Read a "
       "folder of images, or run Group Datasets.");
   }
-  if (input->GetNumberOfBlocks() == 0)
+  const bool alone = this->Attempt(outputVector, "run ParaView with one process",
+    [&] { tautline::requireFirstProcess(input, "Shape Retrieval"); });
+  if (!alone || input->GetNumberOfBlocks() == 0)
   {
-    return 1;
+    return alone ? 1 : 0;
   }
   return this->Attempt(outputVector, "choose fewer shapes, or a larger spacing",
     [&]

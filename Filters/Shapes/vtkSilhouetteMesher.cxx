@@ -1,5 +1,6 @@
 #include "vtkSilhouetteMesher.h"
 
+#include "Processes.h"
 #include "ShapeAdapter.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
@@ -125,6 +126,7 @@ int vtkSilhouetteMesher::RequestData(
   }
   try
   {
+    tautline::requireFirstProcess(this, 0, input, "Silhouette to Mesh");
     tautline::validateInput(input);
     if (input->GetNumberOfPoints() == 0)
     {
