@@ -17,7 +17,7 @@ from checks import DATA, OUT, run_tests
 MEBIBYTE = 2**20
 FOLDER = OUT / "memory"
 #: MiB beyond what the imports take.
-MARGINS = (8, 80, 300, 1100)
+MARGINS = (2, 8, 80, 300, 1100)
 TIME_LIMIT = 100  # seconds of one command
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 CELLS = 60000  # of the larger mesh

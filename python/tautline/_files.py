@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import resource
 import stat
 from contextlib import contextmanager, suppress
 from os import PathLike, fspath
@@ -21,6 +22,7 @@ from ._errors import Error
 _MAX_LINKS = 40
 # Names of open files, such as that of a pipe: `--csv /dev/stdout`.
 _STREAMS = ("/dev/std", "/dev/fd/", "/proc/")
+_MEBIBYTE = 2**20
 _NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
@@ -203,3 +205,20 @@ def _keep_mode(target: str, descriptor: int) -> None:
 
 def _unwritable(name: str, reason: str) -> Error:
     return Error(f"{name}: cannot be written: {reason}")
+
+
+def require_memory(size: float, work: str) -> None:
+    """Raise Error if the limit on the address space (ulimit -v) leaves less than `size` bytes for some work.
+
+    Without a limit nothing is checked. VTK's readers and writers end the process where an allocation fails.
+    """
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit == resource.RLIM_INFINITY:
+        return
+    with open("/proc/self/statm", encoding="ascii") as file:
+        used = int(file.read().split()[0]) * resource.getpagesize()
+    if size > limit - used:
+        raise Error(
+            f"{work} takes about {size / _MEBIBYTE:.3g} MiB of memory and {max(0, limit - used) / _MEBIBYTE:.3g} MiB are "
+            "available: raise the limit on the memory of the process"
+        )

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vt
 
 from ._arrays import leaves
 from ._errors import Error, checked, plain, run, watch
-from ._files import check_input, check_target, file_name
+from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
 from ._legacy import check_counts, check_references, scan_legacy
 from ._mesh import from_arrays
@@ -31,6 +31,8 @@ _APPENDED = (
 # Files that name other files: of the pieces of one mesh, and of blocks.
 _IN_PIECES = (".pvtu", ".pvtp")
 _REFERRING = (".vtm", *_IN_PIECES)
+# Of a compressed file: its text, its bytes, what they expand to, the mesh and the buffers of the reader.
+_MEMORY_PER_BYTE = 8
 # Of one file; a damaged one may have thousands.
 _MOST_MESSAGES = 5
 
@@ -146,6 +148,7 @@ def _read_vtk(name: str, form: Format) -> vtkDataObject:
     """Read a file with a reader of VTK, of which every message is an error: it returns what it has all the same."""
     if os.path.getsize(name) == 0:
         raise Error(f"{name}: the file is empty")
+    require_memory(_MEMORY_PER_BYTE * os.path.getsize(name), f"reading {name}")
     if Path(name).suffix.lower() in _REFERRING:
         for block in block_files(name):
             check_input(block)

@@ -23,7 +23,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from ._errors import Error, watch
-from ._files import check_target, locked, replace_bytes, sync_folder, temporary_name
+from ._files import check_target, locked, replace_bytes, require_memory, sync_folder, temporary_name
 from ._formats import FORMATS, Format
 from ._vtk import CLASSES
 
@@ -34,6 +34,8 @@ _OTHER_BLOCKS = {
 }
 # The ends of what a format's files hold; VTK writes some files only in part and reports success.
 _XML_END = b"</VTKFile>"
+# Bytes per KiB of the data: a copy of it, and the file.
+_MEMORY_OF_WRITERS = 2 * 1024
 _STL_HEADER, _STL_TRIANGLE = 84, 50  # bytes
 
 
@@ -105,6 +107,7 @@ def _content(data: vtkDataObject, name: str, form: Format) -> bytes:
         getattr(writer, binary, int)()
     writer.SetInputData(data)
     messages = watch(writer)
+    require_memory(_MEMORY_OF_WRITERS * data.GetActualMemorySize(), f"writing {name}")
     content, written = _through_memory(writer)
     if messages.errors or messages.warnings or not written or not _complete(content, data, form):
         reason = "; ".join(messages.errors + messages.warnings) or "VTK's writer failed"
