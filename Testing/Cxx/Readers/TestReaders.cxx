@@ -197,6 +197,21 @@ void testFreeFemAndOff()
   const MeshFile normals = readOff(output + "/normals.off", false);
   TAUTLINE_CHECK(value(normals.pointArrays, "Normals", 8) == 1.0);
   TAUTLINE_CHECK(value(normals.cellArrays, "Color", 0) == 0.5);
+
+  // Colours with and without an opacity, and none: opaque and grey.
+  writeText(output + "/colors.off",
+    "OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 10 20 30 40\n3 0 1 2 1 2 3\n3 0 1 2\n");
+  const MeshFile colors = readOff(output + "/colors.off", false);
+  const double expected[] = { 10, 20, 30, 40, 1, 2, 3, 255, 170, 170, 170, 255 };
+  for (std::size_t i = 0; i < std::size(expected); ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(value(colors.cellArrays, "Color", i), expected[i]);
+  }
+  writeText(
+    output + "/fractions.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0.25 0.5 1.0\n3 0 1 2\n");
+  const MeshFile fractions = readOff(output + "/fractions.off", false);
+  TAUTLINE_CHECK_NEAR(value(fractions.cellArrays, "Color", 0), 0.25, 1e-6);
+  TAUTLINE_CHECK_NEAR(value(fractions.cellArrays, "Color", 3), 170.0 / 255, 1e-6);
 }
 
 /// In VTK's own view, middle nodes are in the middle of edges: the node orders are right.

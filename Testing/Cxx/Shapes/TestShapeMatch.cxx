@@ -138,6 +138,29 @@ void testBruteForce()
   }
 }
 
+/// Descriptors count as much in the search as in the energy.
+void testDescriptorWeight()
+{
+  const Silhouette from = traceSilhouette(blob(64, 30, 33, 16).view());
+  const Silhouette to = traceSilhouette(blob(70, 33, 30, 18, 0.7).view());
+  const ShapeSource source = makeShapeSource(from, 40.0);
+  TAUTLINE_CHECK(source.mesh.points.size() <= 5); // few enough for all placements
+  for (const double weight : { 0.3, 1.0, 3.0, 10.0, 30.0 })
+  {
+    const Context context("weight " + std::to_string(weight));
+    MatchOptions options;
+    options.centreTolerance = 0.0;
+    options.energy.descriptor = weight;
+    LocationOptions contour;
+    contour.kind = Locations::Contour;
+    contour.contour = 8;
+    const ShapeTarget target(to, contour, options.energy);
+    const ShapeMatch match = matchShape(source, target, options);
+    TAUTLINE_CHECK(match.descriptor > 0.0);
+    TAUTLINE_CHECK_RELATIVE(match.energy, bruteForce(source, target, options.energy), 2e-6);
+  }
+}
+
 /// Bounds skip work and change nothing: on grids and contours, for all terms.
 void testPlainLoop()
 {
@@ -402,6 +425,7 @@ int TestShapeMatch(int, char*[])
   testTerms();
   testEdgeCost();
   testBruteForce();
+  testDescriptorWeight();
   testPlainLoop();
   testInvariance();
   testCentreRule();
