@@ -218,7 +218,8 @@ def require_memory(size: float, work: str) -> None:
     with open("/proc/self/statm", encoding="ascii") as file:
         used = int(file.read().split()[0]) * resource.getpagesize()
     if size > limit - used:
+        needed, free = size / _MEBIBYTE, max(0, limit - used) / _MEBIBYTE
         raise Error(
-            f"{work} takes about {size / _MEBIBYTE:.3g} MiB of memory and {max(0, limit - used) / _MEBIBYTE:.3g} MiB are "
-            "available: raise the limit on the memory of the process"
+            f"{work} takes about {needed:.3g} MiB of memory and {free:.3g} MiB are available: raise the limit on the "
+            "memory of the process"
         )

@@ -5,11 +5,11 @@
  * The text is read here, before PETSc sees it. Permitted are the options that choose and tune
  * Krylov methods, preconditioners and eigensolvers: those of a table, for the solver itself or,
  * with a prefix, for one inside it. Everything else is refused: what displays or monitors (it can
- * write files), what reads files (-options_file), loads code (-pc_type python, shell, hpddm), needs
- * data that only a program can give (-pc_type mg, composite), stops the process or attaches a
- * debugger, or is about PETSc as a whole. Values are checked against a type, a range or a list, so
- * that none can be the name of a file. -pc_type fieldsplit splits by component only (-fieldsplit_0_...
- * is the solver of the first): other splits need index sets.
+ * write files), what reads files (-options_file), loads code (-pc_type python, shell, hpddm),
+ * needs data that only a program can give (-pc_type mg, composite), stops the process or attaches
+ * a debugger, or is about PETSc as a whole. Values are checked against a type, a range or a list,
+ * so that none can be the name of a file. -pc_type fieldsplit splits by component only
+ * (-fieldsplit_0_... is the solver of the first): other splits need index sets.
  */
 #ifndef tautline_PetscOptionRules_h
 #define tautline_PetscOptionRules_h
