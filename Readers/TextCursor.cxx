@@ -1,5 +1,7 @@
 #include "TextCursor.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -214,6 +216,12 @@ int TextCursor::tokensInLine()
 //------------------------------------------------------------------------------
 void TextCursor::expectLineEnd()
 {
+  constexpr int linesPerPoll = 10000;
+  if (++this->Lines == linesPerPoll)
+  {
+    this->Lines = 0;
+    throwIfInterrupted();
+  }
   if (!this->lineIsOver())
   {
     this->fail("the line has more than it should: '" + excerpt(this->At, this->End) + "'");

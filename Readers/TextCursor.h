@@ -186,6 +186,7 @@ private:
   const char* End;
   char Comment;
   bool Swap = false;
+  int Lines = 0; ///< since the last poll
 };
 
 //------------------------------------------------------------------------------

@@ -1,5 +1,7 @@
 #include "TextOutput.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -81,6 +83,7 @@ std::uint64_t TextOutput::checkSum() const
 //------------------------------------------------------------------------------
 void TextOutput::flush()
 {
+  throwIfInterrupted();
   this->FlushedSum = this->checkSum();
   this->File.write(this->Buffer.data(), this->Buffer.size());
   this->Buffer.clear();

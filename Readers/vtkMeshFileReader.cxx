@@ -1,5 +1,6 @@
 #include "vtkMeshFileReader.h"
 
+#include "ExecutionScope.h"
 #include "MeshFileAdapter.h"
 #include "tautline/Core/Memory.h"
 
@@ -46,7 +47,8 @@ vtkTypeBool vtkMeshFileReader::ProcessRequest(
 {
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
-    return this->RequestData(outputs);
+    return tautline::processInScope(
+      this, {}, request, outputs, [&] { return this->RequestData(outputs); });
   }
   return this->Superclass::ProcessRequest(request, inputs, outputs);
 }

@@ -2,6 +2,7 @@
 
 #include "MeshFileAdapter.h"
 #include "ValidateInput.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkDataSet.h"
@@ -62,6 +63,10 @@ void vtkMeshFileWriter::WriteData()
   {
     this->ErrorText =
       tautline::errorText(error, std::string(this->FileName) + " cannot be written");
+  }
+  catch (const tautline::Interrupted&)
+  {
+    this->ErrorText = std::string(this->FileName) + ": writing was interrupted";
   }
   if (!this->ErrorText.empty())
   {

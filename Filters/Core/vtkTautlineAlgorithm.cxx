@@ -1,7 +1,9 @@
 #include "vtkTautlineAlgorithm.h"
 
+#include "ExecutionScope.h"
 #include "Processes.h"
 #include "ValidateInput.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkDataObject.h"
@@ -105,6 +107,28 @@ vtkTypeBool vtkTautlineAlgorithm::ProcessRequest(
   {
     return this->Superclass::ProcessRequest(request, inputs, outputs);
   }
+  this->Start = std::chrono::steady_clock::now();
+  bool complete = false;
+  const tautline::ExecutionLimits limits = { this->GetExecutionSeconds(),
+    [this] { return this->KeepsBest(); } };
+  const int result = tautline::processInScope(this, limits, request, outputs,
+    [&]
+    {
+      const int executed = this->ExecuteData(request, inputs, outputs);
+      complete = true;
+      return executed;
+    });
+  if (!complete)
+  {
+    this->ClearResult();
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+int vtkTautlineAlgorithm::ExecuteData(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
   if (!this->TakesComposite(MeshPort) && !vtkDataSet::SafeDownCast(input))
   {
@@ -183,6 +207,27 @@ bool vtkTautlineAlgorithm::ExecutesOnAllProcesses()
 }
 
 //------------------------------------------------------------------------------
+double vtkTautlineAlgorithm::GetExecutionSeconds() const
+{
+  return 0.0;
+}
+
+//------------------------------------------------------------------------------
+bool vtkTautlineAlgorithm::KeepsBest() const
+{
+  return false;
+}
+
+//------------------------------------------------------------------------------
+double vtkTautlineAlgorithm::GetRemainingSeconds() const
+{
+  constexpr double least = 1e-3; // 0 would be no limit
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - this->Start;
+  const double limit = this->GetExecutionSeconds();
+  return limit > 0.0 ? std::max(least, limit - spent.count()) : 0.0;
+}
+
+//------------------------------------------------------------------------------
 void vtkTautlineAlgorithm::ClearResult()
 {
   this->Summary.clear();
@@ -236,6 +281,7 @@ int vtkTautlineAlgorithm::Attempt(
 bool vtkTautlineAlgorithm::Proceed(double fraction)
 {
   this->UpdateProgress(fraction);
+  tautline::throwIfInterrupted();
   return this->GetAbortExecute() == 0;
 }
 

@@ -25,6 +25,11 @@
  * error event with its message, and all outputs are empty, so that no half result is taken for a
  * whole one. An incomplete but useful result is a warning with the summary.
  *
+ * @par Abort and time limit:
+ * AbortExecute and the time limit of an execution are checked about ten times a second in the loops
+ * of the kernel. A filter that can return its best result so far does so (KeepsBest()); others
+ * return empty outputs after an abort, and an error after the time limit.
+ *
  * @par Derived classes:
  * vtkTautlineTimedAlgorithm adds a time limit, vtkMeshMotionAlgorithm the fixed points and the
  * iteration history of filters that move points. Filters of Tautline that make or take one type of
@@ -40,6 +45,7 @@
 #include "vtkDataObjectAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
+#include <chrono>           // for Start
 #include <functional>       // for work
 #include <initializer_list> // for ports
 #include <string>           // for Summary
@@ -101,6 +107,19 @@ protected:
    */
   virtual bool ExecutesOnAllProcesses();
 
+  /// Seconds for an execution; 0, the default, is no limit.
+  virtual double GetExecutionSeconds() const;
+
+  /**
+   * Whether RequestData() itself returns the best result so far on abort and at the time limit.
+   * Default: no. Asked during the execution.
+   */
+  virtual bool KeepsBest() const;
+
+  /// What is left of the time of this execution, in seconds: above 0 even if it is over; 0 is no
+  /// limit. All blocks of composite data share it.
+  double GetRemainingSeconds() const;
+
   /// Forgets the results of the last execution; called if the inputs are invalid.
   virtual void ClearResult();
 
@@ -142,7 +161,11 @@ private:
   bool TakesComposite(int port);
   std::string FindInputProblem(vtkInformationVector** inputs);
 
+  int ExecuteData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
+
   std::vector<int> SelectionPorts;
+  std::chrono::steady_clock::time_point Start; ///< of the execution
 };
 
 #endif

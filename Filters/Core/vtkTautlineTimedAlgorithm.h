@@ -2,8 +2,9 @@
  * @class vtkTautlineTimedAlgorithm
  * @brief Base class of Tautline's filters whose work can be ended by a time limit.
  *
- * Abstract. After the time limit a filter returns the best result it has by then and reports this
- * in its summary, unless it is documented to end with an error. The time is wall time.
+ * Abstract. After the time limit a filter that improves a result step by step (KeepsBest()) returns
+ * the best one it has by then and reports this in its summary; the others end with an error. The
+ * time is wall time.
  *
  * @sa vtkTautlineAlgorithm
  */
@@ -23,8 +24,8 @@ public:
 
   ///@{
   /**
-   * Seconds for each data set and time step, at least 0; 0 is no limit. The default is 600, unless
-   * a filter documents another one.
+   * Seconds for each execution, that is for each time step and for all blocks of composite data
+   * together, at least 0; 0 is no limit. The default is 600.
    */
   vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);
@@ -33,6 +34,8 @@ public:
 protected:
   vtkTautlineTimedAlgorithm();
   ~vtkTautlineTimedAlgorithm() override;
+
+  double GetExecutionSeconds() const override { return this->TimeLimit; }
 
   double TimeLimit = 600.0;
 

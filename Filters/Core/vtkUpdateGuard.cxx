@@ -1,8 +1,11 @@
 #include "vtkUpdateGuard.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 
 #include <exception>
@@ -29,7 +32,30 @@ std::string messageOf(const std::function<void()>& work)
   {
     return tautline::errorText(error, Remedy);
   }
+  catch (const tautline::Interrupted&)
+  {
+    return "Interrupted.";
+  }
   return "";
+}
+
+/// Ends readers and writers of VTK where they report progress.
+void abortIfInterrupted(vtkObject* caller, unsigned long, void*, void*)
+{
+  if (tautline::InterruptScope::interrupted())
+  {
+    static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+  }
+}
+
+std::string update(vtkAlgorithm* algorithm, const std::function<void()>& work)
+{
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetCallback(abortIfInterrupted);
+  const unsigned long tag = algorithm->AddObserver(vtkCommand::ProgressEvent, observer);
+  std::string message = messageOf(work);
+  algorithm->RemoveObserver(tag);
+  return message;
 }
 
 /// Allocates nothing.
@@ -83,13 +109,13 @@ void endWithMessage()
 //------------------------------------------------------------------------------
 std::string vtkUpdateGuard::Update(vtkAlgorithm* algorithm)
 {
-  return messageOf([algorithm] { algorithm->Update(); });
+  return update(algorithm, [algorithm] { algorithm->Update(); });
 }
 
 //------------------------------------------------------------------------------
 std::string vtkUpdateGuard::UpdateWholeExtent(vtkAlgorithm* algorithm)
 {
-  return messageOf([algorithm] { algorithm->UpdateWholeExtent(); });
+  return update(algorithm, [algorithm] { algorithm->UpdateWholeExtent(); });
 }
 
 //------------------------------------------------------------------------------

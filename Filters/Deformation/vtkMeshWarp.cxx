@@ -192,7 +192,7 @@ tautline::WarpSettings vtkMeshWarp::GetSettings()
   options.untangleFirst = this->UntangleFirst;
   options.untanglingBeta = this->UntanglingBeta;
   options.optimization.stopping.maximumIterations = this->MaximumIterations;
-  options.maximumSeconds = this->TimeLimit;
+  options.maximumSeconds = this->GetRemainingSeconds();
   options.threads = this->Threads;
   settings.arrays = this;
   settings.progress = [this](int block, double fraction)

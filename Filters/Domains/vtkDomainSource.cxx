@@ -1,5 +1,6 @@
 #include "vtkDomainSource.h"
 
+#include "ExecutionScope.h"
 #include "MeshOutput.h"
 
 #include "tautline/Core/Memory.h"
@@ -226,6 +227,14 @@ int vtkDomainSource::FillOutputPortInformation(int port, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
+vtkTypeBool vtkDomainSource::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return tautline::processInScope(this, { this->TimeLimit, nullptr }, request, outputs,
+    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
+}
+
+//------------------------------------------------------------------------------
 int vtkDomainSource::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
@@ -289,4 +298,5 @@ void vtkDomainSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ElementSize: " << this->ElementSize << "\n";
   os << indent << "AspectRatio: " << this->AspectRatio << "\n";
   os << indent << "LayerWidth: " << this->LayerWidth << "\n";
+  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
 }

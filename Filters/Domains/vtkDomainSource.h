@@ -109,6 +109,19 @@ public:
   vtkGetMacro(LayerWidth, double);
   ///@}
 
+  ///@{
+  /**
+   * Seconds for an execution, at least 0; 0 is no limit. After it the execution ends with an error.
+   * The default is 600.
+   */
+  vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  /// Ends the execution on abort and at the time limit.
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
 protected:
   vtkDomainSource();
   ~vtkDomainSource() override = default;
@@ -121,6 +134,7 @@ protected:
   double ElementSize = 0.1;
   double AspectRatio = 1.0;
   double LayerWidth = 0.2;
+  double TimeLimit = 600.0;
 
 private:
   vtkDomainSource(const vtkDomainSource&) = delete;

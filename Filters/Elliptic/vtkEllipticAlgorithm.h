@@ -250,6 +250,8 @@ protected:
   /// For the kernel, while it has nothing to report: reports the last fraction again. The result
   /// of the function is true to stop.
   std::function<bool()> Cancelled();
+
+  bool KeepsBest() const override { return true; }
   /// What is left of the time limit for this data set, above 0; 0: no limit.
   double GetSecondsLeft() const;
 

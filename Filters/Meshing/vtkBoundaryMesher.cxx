@@ -1,5 +1,6 @@
 #include "vtkBoundaryMesher.h"
 
+#include "ExecutionScope.h"
 #include "Processes.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
@@ -33,6 +34,14 @@ int vtkBoundaryMesher::FillOutputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkUnstructuredGrid" : "vtkPolyData");
   return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkBoundaryMesher::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return tautline::processInScope(this, { this->TimeLimit, nullptr }, request, outputs,
+    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 
 //------------------------------------------------------------------------------
@@ -73,4 +82,5 @@ void vtkBoundaryMesher::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "UseSizeArray: " << this->UseSizeArray << "\n";
+  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
 }

@@ -14,6 +14,7 @@
 #define vtkBoundaryMesher_h
 
 #include "TautlineMeshingModule.h" // for export macro
+#include "vtkTautlineSetRange.h" // for the setters
 #include "vtkUnstructuredGridAlgorithm.h"
 
 class vtkPointSet;
@@ -35,6 +36,19 @@ public:
   vtkBooleanMacro(UseSizeArray, bool);
   ///@}
 
+  ///@{
+  /**
+   * Seconds for an execution, at least 0; 0 is no limit. After it the execution ends with an error.
+   * The default is 600.
+   */
+  vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  /// Ends the execution on abort and at the time limit.
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
 protected:
   vtkBoundaryMesher();
   ~vtkBoundaryMesher() override;
@@ -46,6 +60,7 @@ protected:
   virtual void Generate(vtkPointSet* input, vtkUnstructuredGrid* output, vtkPolyData* boundary) = 0;
 
   bool UseSizeArray = false;
+  double TimeLimit = 600.0;
 
 private:
   vtkBoundaryMesher(const vtkBoundaryMesher&) = delete;

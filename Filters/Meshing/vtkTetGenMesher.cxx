@@ -166,5 +166,4 @@ void vtkTetGenMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MinimumDihedralAngle: " << this->MinimumDihedralAngle << "\n";
   os << indent << "Volume: " << this->Volume << "\n";
   os << indent << "PreserveSurface: " << this->PreserveSurface << "\n";
-  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
 }

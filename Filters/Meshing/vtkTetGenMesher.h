@@ -73,15 +73,6 @@ public:
   vtkBooleanMacro(PreserveSurface, bool);
   ///@}
 
-  ///@{
-  /**
-   * Seconds TetGen may take; 0 is no limit. On some surfaces it does not terminate. The default is
-   * 3600.
-   */
-  vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(TimeLimit, double);
-  ///@}
-
 protected:
   vtkTetGenMesher() = default;
   ~vtkTetGenMesher() override = default;
@@ -91,7 +82,6 @@ protected:
   double MinimumDihedralAngle = 10.0;
   double Volume = 0.0;
   bool PreserveSurface = false;
-  double TimeLimit = 3600.0;
 
 private:
   vtkTetGenMesher(const vtkTetGenMesher&) = delete;

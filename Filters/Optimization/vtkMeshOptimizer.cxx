@@ -322,7 +322,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
     options.improveWorst = this->ImproveWorst;
   }
   tautline::applyPreset(settings.preset, options);
-  options.stopping.maximumSeconds = this->TimeLimit;
+  options.stopping.maximumSeconds = this->GetRemainingSeconds();
   options.surface.project = this->ProjectToSurface;
   options.allowInversion = this->AllowInversion;
   options.untangleFirst = this->UntangleFirst;

@@ -2,6 +2,7 @@
 
 #include "HorizonInput.h"
 #include "Processes.h"
+#include "ExecutionScope.h"
 #include "ValidateInput.h"
 
 #include "tautline/Core/Memory.h"
@@ -61,6 +62,14 @@ int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkInteractionLayer::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return tautline::processInScope(this, { this->TimeLimit, nullptr }, request, outputs,
+    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 
 //------------------------------------------------------------------------------
@@ -142,4 +151,5 @@ void vtkInteractionLayer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ElementSize: " << this->ElementSize << "\n";
   os << indent << "Threads: " << this->Threads << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
+  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
 }

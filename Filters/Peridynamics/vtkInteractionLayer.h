@@ -87,11 +87,25 @@ public:
   vtkGetMacro(Threads, int);
   ///@}
 
+  ///@{
+  /**
+   * Seconds for an execution, at least 0; 0 is no limit. After it the execution ends with an error.
+   * The default is 600.
+   */
+  vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  /// Ends the execution on abort and at the time limit.
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
 protected:
   vtkInteractionLayer() = default;
   ~vtkInteractionLayer() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  double TimeLimit = 600.0;
 
 private:
   vtkInteractionLayer(const vtkInteractionLayer&) = delete;

@@ -51,7 +51,6 @@ constexpr double MebiByte = 1048576.0;
 vtkPeridynamicStiffness::vtkPeridynamicStiffness()
 {
   this->SetNumberOfOutputPorts(NumberOfPorts);
-  this->TimeLimit = 0.0;
   this->SetInputArrayToProcess(
     RegionArray, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, DefaultRegion);
 }
@@ -151,6 +150,7 @@ int vtkPeridynamicStiffness::RequestData(
   vtkTable* table = vtkTable::GetData(outputVector, SpectrumPort);
   vtkImageData* picture = vtkImageData::GetData(outputVector, SparsityPort);
   this->ClearResult();
+  this->Assembled = false;
   table->Initialize();
   picture->Initialize();
   return this->Attempt(outputVector, "choose a smaller horizon or a coarser mesh",
@@ -199,7 +199,7 @@ tautline::Spectrum vtkPeridynamicStiffness::FindSpectrum(const tautline::Peridyn
 {
   tautline::LanczosOptions options;
   options.tolerance = this->SpectrumTolerance;
-  options.timeLimit = this->TimeLimit;
+  options.timeLimit = this->GetRemainingSeconds();
   options.threads = this->Threads;
   options.progress = [this](double fraction)
   { return this->ProceedWithin(AssemblyShare, SpectrumShare, fraction); };
@@ -236,6 +236,7 @@ void vtkPeridynamicStiffness::Compute(
 
   const tautline::PeridynamicSystem system =
     tautline::assemblePeridynamics(taken.mesh(), options, given.empty() ? nullptr : &given);
+  this->Assembled = true;
   const tautline::Spectrum found =
     this->ComputeSpectrum ? this->FindSpectrum(system) : tautline::Spectrum();
   const tautline::Spectrum* spectrum = this->ComputeSpectrum ? &found : nullptr;
@@ -296,7 +297,7 @@ void vtkPeridynamicStiffness::SolveSystem(const tautline::HorizonInput& input,
   }
   tautline::LanczosOptions options;
   options.maxIterations = std::max<tautline::Index>(1000, 4 * system.matrix.size);
-  options.timeLimit = this->TimeLimit;
+  options.timeLimit = this->GetRemainingSeconds();
   options.threads = this->Threads;
   options.progress = [this](double part) { return this->ProceedWithin(SpectrumShare, 1.0, part); };
   std::vector<double> solution;

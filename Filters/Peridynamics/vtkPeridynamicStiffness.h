@@ -342,6 +342,8 @@ private:
   void SolveSystem(const tautline::HorizonInput& input, const tautline::PeridynamicSystem& system,
     const std::vector<double>& given, vtkDataSet* data, vtkDataSet* output);
   bool ProceedWithin(double from, double to, double fraction);
+  /// The eigenvalues and the solution: those found so far.
+  bool KeepsBest() const override { return this->Assembled; }
 
   bool MergeCoincidentPoints = true;
   double Horizon = 0.2;
@@ -366,6 +368,7 @@ private:
   double Condition = 0.0;
   double SmallestEigenvalue = 0.0;
   double LargestEigenvalue = 0.0;
+  bool Assembled = false; ///< the matrix of this execution
 };
 
 #endif

@@ -66,7 +66,7 @@
 #define vtkMeshPerturbation_h
 
 #include "TautlinePerturbationModule.h" // for export macro
-#include "vtkTautlineAlgorithm.h"
+#include "vtkTautlineTimedAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
 class vtkDataSet;
@@ -77,11 +77,11 @@ struct InputBlock;
 struct Perturbation;
 }
 
-class TAUTLINEPERTURBATION_EXPORT vtkMeshPerturbation : public vtkTautlineAlgorithm
+class TAUTLINEPERTURBATION_EXPORT vtkMeshPerturbation : public vtkTautlineTimedAlgorithm
 {
 public:
   static vtkMeshPerturbation* New();
-  vtkTypeMacro(vtkMeshPerturbation, vtkTautlineAlgorithm);
+  vtkTypeMacro(vtkMeshPerturbation, vtkTautlineTimedAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{

@@ -7,14 +7,14 @@
  * added again stays once, in its first place. If none is added, the inverse mean ratio is
  * evaluated.
  *
- * @sa vtkElementQuality, vtkMeshComparison, vtkMetricField, vtkTautlineAlgorithm
+ * @sa vtkElementQuality, vtkMeshComparison, vtkMetricField, vtkTautlineTimedAlgorithm
  */
 
 #ifndef vtkMetricAlgorithm_h
 #define vtkMetricAlgorithm_h
 
 #include "TautlineQualityModule.h" // for export macro
-#include "vtkTautlineAlgorithm.h"
+#include "vtkTautlineTimedAlgorithm.h"
 
 #include <memory> // for Selection
 
@@ -23,10 +23,10 @@ namespace tautline
 class MetricSelection;
 }
 
-class TAUTLINEQUALITY_EXPORT vtkMetricAlgorithm : public vtkTautlineAlgorithm
+class TAUTLINEQUALITY_EXPORT vtkMetricAlgorithm : public vtkTautlineTimedAlgorithm
 {
 public:
-  vtkTypeMacro(vtkMetricAlgorithm, vtkTautlineAlgorithm);
+  vtkTypeMacro(vtkMetricAlgorithm, vtkTautlineTimedAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{

@@ -3,10 +3,7 @@
 #include "tautline/Shapes/ShapeMatch.h"
 
 //------------------------------------------------------------------------------
-vtkShapeAlgorithm::vtkShapeAlgorithm()
-{
-  this->TimeLimit = 0.0;
-}
+vtkShapeAlgorithm::vtkShapeAlgorithm() = default;
 
 //------------------------------------------------------------------------------
 void vtkShapeAlgorithm::GetOptions(
@@ -33,7 +30,7 @@ void vtkShapeAlgorithm::GetOptions(
   match.coarseToFine = this->CoarseToFine;
   match.rotations = this->Rotations;
   match.scales = this->Scales;
-  match.timeLimit = this->TimeLimit;
+  match.timeLimit = this->GetRemainingSeconds();
   match.threads = this->Threads;
   match.progress = [this](double fraction) { return this->Proceed(fraction); };
 }

@@ -225,6 +225,8 @@ protected:
   vtkShapeAlgorithm();
   ~vtkShapeAlgorithm() override = default;
 
+  bool KeepsBest() const override { return true; }
+
   void GetOptions(tautline::LocationOptions& locations, tautline::MatchOptions& match);
 
   double Lambda = 0.1;

@@ -226,7 +226,7 @@ int vtkShapeRetrieval::RequestData(
                                                 : tautline::RetrievalOptions::highest();
         options.match.progress = progress;
         options.match.threads = this->Threads;
-        options.match.timeLimit = this->TimeLimit;
+        options.match.timeLimit = this->GetRemainingSeconds();
       }
       options.best = this->BestMatches;
       const tautline::Retrieval result = tautline::retrieveShapes(set.shapes, set.numbers, options);

@@ -2,6 +2,7 @@
 
 #include "Processes.h"
 #include "ShapeAdapter.h"
+#include "ExecutionScope.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
 
@@ -111,6 +112,14 @@ int vtkSilhouetteMesher::FillOutputPortInformation(int port, vtkInformation* inf
 }
 
 //------------------------------------------------------------------------------
+vtkTypeBool vtkSilhouetteMesher::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return tautline::processInScope(this, { this->TimeLimit, nullptr }, request, outputs,
+    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
+}
+
+//------------------------------------------------------------------------------
 int vtkSilhouetteMesher::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -175,4 +184,5 @@ void vtkSilhouetteMesher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Threshold: " << this->Threshold << "\n";
   os << indent << "Foreground: " << this->Foreground << "\n";
   os << indent << "Summary: " << this->Summary << "\n";
+  os << indent << "TimeLimit: " << this->TimeLimit << "\n";
 }

@@ -106,6 +106,19 @@ public:
   vtkGetMacro(NumberOfHoles, int);
   ///@}
 
+  ///@{
+  /**
+   * Seconds for an execution, at least 0; 0 is no limit. After it the execution ends with an error.
+   * The default is 600.
+   */
+  vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  /// Ends the execution on abort and at the time limit.
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
 protected:
   vtkSilhouetteMesher();
   ~vtkSilhouetteMesher() override = default;
@@ -113,6 +126,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  double TimeLimit = 600.0;
 
 private:
   vtkSilhouetteMesher(const vtkSilhouetteMesher&) = delete;

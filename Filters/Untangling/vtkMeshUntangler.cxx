@@ -147,7 +147,7 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
 
   tautline::UntangleOptions options;
   options.effort = static_cast<tautline::Effort>(this->Effort);
-  options.maximumSeconds = this->TimeLimit;
+  options.maximumSeconds = this->GetRemainingSeconds();
   options.fixed = mesh.fixed().data();
   options.threads = this->Threads;
   options.observer = [&](const tautline::IterationState& state)

@@ -6,13 +6,14 @@
 
 The functions take a mesh as a vtkDataSet, a file name, (points, cells) numpy arrays or the result of another function,
 and never change it. They return a result; where it has a mesh, this is its attribute `mesh`. Errors raise
-tautline.Error. The compiled VTK classes (vtkElementQuality, ...) are attributes of the package, too.
+tautline.Error. Functions that can take long have the arguments time_limit and progress, and end soon after Ctrl-C.
+The compiled VTK classes (vtkElementQuality, ...) are attributes of the package, too.
 `python3 -m tautline --help` shows the same functions as commands of the shell.
 """
 
 from . import _vtk
 from ._comparison import CompareResult, compare
-from ._errors import Error
+from ._errors import Aborted, Error
 from ._io import Mesh, read, write
 from ._mesh import from_arrays
 from ._metric_field import MetricFieldResult, metric_field

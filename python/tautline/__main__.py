@@ -11,6 +11,10 @@ from ._commands import check_outputs
 from ._errors import Error
 
 
+#: Exit code after Ctrl-C, as of shells: 128 and the number of SIGINT.
+_INTERRUPTED = 130
+
+
 def _parser() -> argparse.ArgumentParser:
     """The commands of every capability that was built, and of the studies."""
     parser = argparse.ArgumentParser(
@@ -31,7 +35,10 @@ def _run_study(arguments: argparse.Namespace) -> int:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run a command. Returns 0, or 1 after an error, which is printed to stderr; wrong usage exits with 2."""
+    """Run a command. Returns 0, 1 after an error, which is printed to stderr, or 130 after Ctrl-C.
+
+    Wrong usage exits with 2.
+    """
     parsed = _parser().parse_args(arguments)
     _vtk.CLASSES["vtkUpdateGuard"].EndWithMessage()
     try:
@@ -40,6 +47,9 @@ def main(arguments: list[str] | None = None) -> int:
     except Error as error:
         print(f"tautline: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("tautline: interrupted", file=sys.stderr)
+        return _INTERRUPTED
     except BrokenPipeError:  # ... | head
         sys.stderr.close()
         return 1

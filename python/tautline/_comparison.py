@@ -10,9 +10,9 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
-from ._arguments import set_threads, within
+from ._arguments import set_threads, set_time_limit, within
 from ._arrays import cell_array, columns, point_array, snake
-from ._errors import checked, run
+from ._errors import interruptible, run
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose
 from ._tables import comparison_rows, comparison_text
@@ -38,13 +38,14 @@ class CompareResult:
     summary: str
 
 
-@checked
+@interruptible
 def compare(
     before: Mesh,
     after: Mesh,
     metrics: Metrics = ("imr",),
     *,
     tolerance: float = 1e-6,
+    time_limit: float = 0.0,
     threads: int = 0,
 ) -> CompareResult:
     """Compare the quality of two meshes with the same cells, element by element.
@@ -52,6 +53,7 @@ def compare(
     before, after: each a vtkDataSet, a composite data set, a file name or (points, cells). Neither is changed.
     metrics: see quality().
     tolerance: relative difference up to which two values count as equal, 0 to 1.
+    time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
 
     Raises Error for wrong arguments and for meshes of different connectivity; the message has the first difference.
@@ -62,6 +64,7 @@ def compare(
     filter_ = _vtk.vtkMeshComparison()
     messages = choose(filter_, metrics)
     filter_.SetTolerance(within("tolerance", tolerance, 0, 1))
+    set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetInputDataObject(0, as_mesh(before))
     filter_.SetInputDataObject(1, as_mesh(after))
@@ -92,12 +95,13 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", help="write the second mesh with the differences")
     parser.add_argument("--csv", metavar="FILE", help="write the comparison, a row per metric")
     _commands.add_metrics(parser)
+    _commands.add_time_limit(parser)
     parser.add_argument("--tolerance", type=float, default=1e-6,
                         help="relative difference up to which values are equal (default: 1e-6)")  # fmt: skip
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    options = _commands.given(arguments, ("tolerance", "threads"))
+    options = _commands.given(arguments, ("tolerance", "time_limit", "threads"))
     result = compare(arguments.before, arguments.after, arguments.metrics, **options)
     print(comparison_text(result))
     _commands.save(result, arguments, comparison_rows(result))

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonTransforms import vtkLinearTransform, vtkTransform
 from . import _commands, _vtk
 from ._arguments import flag_option, number_option, pick, set_options, set_threads, set_time_limit, within
 from ._arrays import ANY, POINTS, InputArrays, cell_array, columns, point_array, table_rows, with_array
-from ._errors import Error, checked, run
+from ._errors import Error, interruptible, run
 from ._io import Mesh, as_mesh
 
 METHODS = (
@@ -85,7 +85,7 @@ class WarpResult:
     summary: str
 
 
-@checked
+@interruptible
 def warp(
     mesh: Mesh,
     displacement: str | Sequence | None = None,

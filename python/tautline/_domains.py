@@ -8,8 +8,8 @@ from typing import Any
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from . import _commands, _vtk
-from ._arguments import within
-from ._errors import checked, run, watch
+from ._arguments import set_time_limit, within
+from ._errors import checked, interruptible, run, watch
 
 
 @checked
@@ -19,7 +19,7 @@ def domains() -> list[str]:
     return [source.GetDomainName(i) for i in range(source.GetNumberOfDomains())]
 
 
-@checked
+@interruptible
 def domain(
     name: str,
     cells: int = 0,
@@ -28,6 +28,7 @@ def domain(
     element_size: float = 0.1,
     aspect_ratio: float = 1.0,
     layer_width: float = 0.2,
+    time_limit: float = 0.0,
     deformed_boundary: bool = False,
 ) -> vtkDataSet:
     """Mesh a domain of the dissertation.
@@ -38,6 +39,7 @@ def domain(
     element_size: leg of the isotropic triangles of the square.
     aspect_ratio: ratio of the legs of the triangles of the square.
     layer_width: width of the interaction layer (collar) of the square.
+    time_limit: seconds; 0 is no limit.
     deformed_boundary: return the moved boundary instead of the mesh.
 
     The mesh has the point arrays `BoundaryMarker`, `Fixed` and, on moving domains, `Displacement` (times `amount`).
@@ -58,6 +60,7 @@ def domain(
     source.SetAspectRatio(within("the aspect ratio", aspect_ratio, low, high))
     low, high = source.GetLayerWidthMinValue(), source.GetLayerWidthMaxValue()
     source.SetLayerWidth(within("the layer width", layer_width, low, high))
+    set_time_limit(source, time_limit)
     run(source, messages)
     return source.GetOutputDataObject(1 if deformed_boundary else 0)
 
@@ -75,11 +78,12 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--aspect-ratio", type=float, default=1.0, help="square: ratio of the legs")
     parser.add_argument("--layer-width", type=float, default=0.2,
                         help="square: width of the interaction layer (collar)")  # fmt: skip
+    _commands.add_time_limit(parser)
     parser.add_argument("-o", "--output", required=True, help="file to write; its ending decides on the format")
 
 
 def _run_domain(arguments: argparse.Namespace) -> None:
-    names = ("cells", "amount", "element_size", "aspect_ratio", "layer_width")
+    names = ("cells", "amount", "element_size", "aspect_ratio", "layer_width", "time_limit")
     mesh = domain(arguments.name, **_commands.given(arguments, names))
     print(_commands.counts(mesh))
     _commands.save(mesh, arguments)

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import _commands, _vtk
 from ._arguments import check_options, pick, set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, cell_array, columns, has_array, point_array, table_rows
-from ._errors import Error, checked, run, watch
+from ._errors import Error, checked, interruptible, run, watch
 from ._io import Mesh, as_mesh
 from ._tables import align
 
@@ -114,7 +114,7 @@ class SolverStudyResult:
     summary: str
 
 
-@checked
+@interruptible
 def solve(
     mesh: Mesh,
     pde: str = "poisson",
@@ -163,7 +163,7 @@ def solve(
         omega: relaxation of SSOR (1).
         petsc_options: options of PETSc that choose and tune methods and preconditioners, such as
             "-pc_hypre_boomeramg_strong_threshold 0.5". Others, which read, write or display something, are refused.
-        time_limit: seconds (600); 0 is no limit.
+        time_limit: seconds; 0, the default, is no limit.
         threads: number of threads; 0, the default, is all cores. The result does not depend on it.
         merge_coincident_points: whether points at the same place on facets that match are treated as one (True), as on
             the seams of a mesh in pieces, and blocks with a seam between them as one mesh; the result keeps them all.
@@ -204,7 +204,7 @@ def solve(
     )
 
 
-@checked
+@interruptible
 def condition(
     mesh: Mesh,
     pde: str = "poisson",
@@ -263,7 +263,7 @@ def solver_combinations() -> dict[int, str]:
     return {number: study.GetCombinationName(number) for number in range(1, study.GetNumberOfCombinations() + 1)}
 
 
-@checked
+@interruptible
 def solver_study(
     mesh: Mesh,
     pde: str = "poisson",
@@ -365,7 +365,7 @@ def _set_problem(
     stiffness: str | Sequence | None = None,
     omega: float = 1.0,
     petsc_options: str = "",
-    time_limit: float = 600.0,
+    time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
 ) -> None:
@@ -490,7 +490,7 @@ def _add_problem(commands: Any, name: str, run_command: _commands.Run, text: str
     made.add_argument("--omega", type=float, default=1.0, help="relaxation of SSOR (default: 1)")
     made.add_argument("--petsc-options", default="", metavar="TEXT")
     _commands.add_merge_points(made)
-    _commands.add_time_limit(made, 600.0)
+    _commands.add_time_limit(made)
     return made
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from difflib import get_close_matches
 from functools import wraps
-from inspect import signature
+from inspect import Parameter, Signature, signature
 from typing import Any, Callable, Iterable, TypeVar
 
 from vtkmodules.vtkCommonCore import vtkCommand
 
+from ._interrupts import Cancelled, Progress, reporting, updating
 from ._vtk import CLASSES
 
 # VTK puts file, line, class and address before the text of a message.
@@ -26,6 +27,10 @@ class Error(RuntimeError):
     """Raised by every function of the package: wrong arguments, unreadable files, errors of a filter."""
 
 
+class Aborted(Error):
+    """Raised where a progress callback has returned False."""
+
+
 def unknown(what: str, name: str, known: Iterable[str]) -> Error:
     """The error for an unknown name: with the nearest one, and all of them."""
     names = list(known)
@@ -39,7 +44,44 @@ def checked(function: Function) -> Function:
 
     Nor does it raise MemoryError.
     """
-    parameters = signature(function).parameters
+    return _checked(function, signature(function))
+
+
+def interruptible(function: Function) -> Function:
+    """checked(), with the argument `progress` for functions that can take long."""
+    own = signature(function)
+    parameters = list(own.parameters.values())
+    place = len(parameters) - (parameters[-1].kind is Parameter.VAR_KEYWORD)
+    parameters.insert(place, Parameter("progress", Parameter.KEYWORD_ONLY, default=None, annotation="Progress | None"))
+    extended = own.replace(parameters=parameters)
+
+    @wraps(function)
+    def call(*arguments: Any, progress: Progress | None = None, **options: Any) -> Any:
+        if progress is not None and not callable(progress):
+            raise Error(f"progress is {progress!r}; a function is expected")
+        try:
+            with reporting(progress):
+                return function(*arguments, **options)
+        except Cancelled:
+            raise Aborted("cancelled") from None
+
+    call.__doc__ = _with_progress(function.__doc__ or "")
+    call.__signature__ = extended
+    return _checked(call, extended)
+
+
+def _with_progress(text: str) -> str:
+    """The documentation of a function with the argument progress, before what it raises."""
+    place = text.rfind("\n", 0, text.find("Raises Error"))
+    entry = """    progress: is called with the fraction done, 0 to 1, and a text, about ten times a second; False cancels, which
+        raises Aborted. Ctrl-C raises KeyboardInterrupt.
+
+"""
+    return text[: place + 1] + entry + text[place + 1 :]
+
+
+def _checked(function: Function, known: Signature) -> Function:
+    parameters = known.parameters
     keywords = [p.name for p in parameters.values() if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     others = any(p.kind is p.VAR_KEYWORD for p in parameters.values())
 
@@ -49,7 +91,7 @@ def checked(function: Function) -> Function:
             if name not in keywords and not others:
                 raise unknown(f"argument of {function.__name__}()", name, keywords)
         try:
-            signature(function).bind(*arguments, **options)
+            known.bind(*arguments, **options)
         except TypeError as error:
             raise Error(f"{function.__name__}(): {error}") from None
         try:
@@ -84,10 +126,18 @@ class Messages:
 
 
 def run(algorithm: Any, messages: Messages | None = None) -> Messages:
-    """Update a filter; returns its messages. Raises Error with them if it fails."""
+    """Update a filter; returns its messages. Raises Error with them if it fails.
+
+    Raises Aborted if a progress callback has cancelled it, and KeyboardInterrupt after Ctrl-C.
+    """
     messages = messages or watch(algorithm)
     messages.raise_errors()
-    if failure := CLASSES["vtkUpdateGuard"].Update(algorithm):
+    try:
+        with updating(algorithm):
+            failure = CLASSES["vtkUpdateGuard"].Update(algorithm)
+    except Cancelled:
+        raise Aborted("cancelled") from None
+    if failure:
         raise Error(failure)  # VTK's own message comes with it, and says less
     messages.raise_errors()
     return messages

@@ -11,9 +11,10 @@ from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutput
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
 
 from ._arrays import leaves
-from ._errors import Error, checked, plain, run, watch
+from ._errors import Error, interruptible, plain, run, watch
 from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
+from ._interrupts import updating
 from ._legacy import check_counts, check_references, scan_legacy
 from ._mesh import from_arrays
 from ._surfaces import check_surface
@@ -51,7 +52,7 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
     raise Error(f"a mesh is a vtkDataSet, a file name or (points, cells), not {type(mesh).__name__}")
 
 
-@checked
+@interruptible
 def read(file: str | PathLike, **options: Any) -> vtkDataObject:
     """Read a mesh. The ending of the file name decides on the format.
 
@@ -85,7 +86,7 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
     return _read_vtk(name, form)
 
 
-@checked
+@interruptible
 def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
     """Write a mesh. The ending of the file name decides on the format.
 
@@ -200,7 +201,8 @@ def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[
     writer.SetInputData(data)
     writer.SetFileName(name)
     messages = watch(writer)
-    written = writer.Write()
+    with updating(writer):
+        written = writer.Write()
     messages.raise_errors()
     if not written:
         raise Error(f"{name}: cannot be written")

@@ -10,9 +10,9 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from . import _commands, _vtk
-from ._arguments import pick, set_threads
+from ._arguments import pick, set_threads, set_time_limit
 from ._arrays import point_array
-from ._errors import Error, checked, run
+from ._errors import Error, interruptible, run
 from ._metrics import Metrics, choose
 
 CELLS = ("triangle", "tetrahedron")
@@ -30,13 +30,14 @@ class MetricFieldResult:
     validity: np.ndarray
 
 
-@checked
+@interruptible
 def metric_field(
     metrics: Metrics = ("imr",),
     cell: str = "triangle",
     vertices: Sequence | None = None,
     bounds: Sequence[float] = (-1, 2, 0, 2, 0, 2),
     dimensions: Sequence[int] = (301, 201, 101),
+    time_limit: float = 0.0,
     threads: int = 0,
 ) -> MetricFieldResult:
     """Evaluate metrics of one cell over the position of its last vertex, on a grid (Figures 2.1 and 3.1).
@@ -47,6 +48,7 @@ def metric_field(
         base of the regular cell with edges of length 1, from the origin along x.
     bounds: range of the free vertex: xmin, xmax, ymin, ymax, and of a tetrahedron zmin, zmax.
     dimensions: number of grid points along x, y, and of a tetrahedron z, each at least 1.
+    time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
 
     Raises Error for wrong arguments.
@@ -68,6 +70,7 @@ def metric_field(
         raise Error(f"dimensions are {tuple(dimensions)}; whole numbers from 1 are expected")
     source.SetBounds(*box, *[0.0] * (6 - len(box)))
     source.SetDimensions(*(int(n) for n in counts), *[1] * (3 - len(counts)))
+    set_time_limit(source, time_limit)
     set_threads(source, threads)
     run(source, messages)
     image = source.GetOutputDataObject(0)
@@ -101,6 +104,7 @@ def add_commands(commands: Any) -> None:
     parser = _commands.add_command(commands, "field", _run, "metrics of one cell over the position of its last vertex")
     parser.add_argument("-o", "--output", metavar="FILE.vti", required=True)
     _commands.add_metrics(parser)
+    _commands.add_time_limit(parser)
     parser.add_argument("--cell", choices=CELLS, default="triangle")
     parser.add_argument("--bounds", type=float, nargs=6, metavar="X",
                         help="range of the vertex: xmin xmax ymin ymax zmin zmax (default: -1 2 0 2 0 2)")  # fmt: skip
@@ -109,7 +113,8 @@ def add_commands(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     options = {name: value for name in ("bounds", "dimensions") if (value := getattr(arguments, name))}
-    result = metric_field(arguments.metrics, arguments.cell, threads=arguments.threads, **options)
+    options |= _commands.given(arguments, ("time_limit", "threads"))
+    result = metric_field(arguments.metrics, arguments.cell, **options)
     for name, values in result.values.items():
         valid = values[result.validity == 1]
         extremes = f"{valid.min():.6g} to {valid.max():.6g}" if valid.size else "no valid position"

@@ -23,7 +23,7 @@ from ._arguments import (
     within,
 )
 from ._arrays import ANY, CELLS, POINTS, InputArrays, cell_array, columns, history_of, point_array, snake, table_rows
-from ._errors import Error, checked, run, watch
+from ._errors import Error, interruptible, run, watch
 from ._io import Mesh, as_mesh
 
 PRESETS = (
@@ -104,7 +104,7 @@ class OptimizeResult:
     summary: str
 
 
-@checked
+@interruptible
 def optimize(
     mesh: Mesh,
     objectives: str | Iterable[Objective] | None = None,

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 from . import _commands, _vtk
 from ._arguments import pick, set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, columns, snake
-from ._errors import Error, checked, run
+from ._errors import Error, interruptible, run
 from ._io import Mesh, as_mesh
 
 BASES = ("constant", "linear", "discontinuous linear")
@@ -60,7 +60,7 @@ class PeridynamicsResult:
     summary: str
 
 
-@checked
+@interruptible
 def peridynamics(
     mesh: Mesh,
     delta: float = 0.2,
@@ -204,12 +204,13 @@ def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity:
     )
 
 
-@checked
+@interruptible
 def interaction_layer(
     mesh: Mesh,
     width: float = 0.2,
     *,
     element_size: float = 0.0,
+    time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
 ) -> vtkDataSet:
@@ -223,6 +224,7 @@ def interaction_layer(
         one mesh, in their order.
     width: least width of the layer, above 0, in the mesh's unit.
     element_size: edge length of the layer's triangles; 0 is the mean edge length of the boundary.
+    time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on edges that match are treated as one, as on the seams of
         a mesh in pieces. The points keep their numbers; cells have the one with the smallest.
@@ -235,6 +237,7 @@ def interaction_layer(
     filter_ = _vtk.vtkInteractionLayer()
     filter_.SetWidth(float(width))
     filter_.SetElementSize(float(element_size))
+    set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     filter_.SetInputDataObject(as_mesh(mesh))
@@ -282,12 +285,13 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--element-size", type=float, default=0.0,
                       help="edge length of its triangles (default: that of the boundary)")  # fmt: skip
     _commands.add_merge_points(made)
+    _commands.add_time_limit(made)
 
 
 def _run_peridynamics(arguments: argparse.Namespace) -> None:
     mesh = as_mesh(arguments.mesh)
     if arguments.add_layer:
-        options = _commands.given(arguments, ("threads", "merge_coincident_points"))
+        options = _commands.given(arguments, ("time_limit", "threads", "merge_coincident_points"))
         mesh = interaction_layer(mesh, arguments.delta, **options)
     names = ("delta", "p", "basis", "kernel", "width", "model", "discretization", "rules", "tolerance", "region",
              "allow_thin_layer", "solve", "memory_limit", "time_limit", "threads",
@@ -298,7 +302,7 @@ def _run_peridynamics(arguments: argparse.Namespace) -> None:
 
 
 def _run_layer(arguments: argparse.Namespace) -> None:
-    names = ("width", "element_size", "threads", "merge_coincident_points")
+    names = ("width", "element_size", "time_limit", "threads", "merge_coincident_points")
     made = interaction_layer(arguments.mesh, **_commands.given(arguments, names))
     print(_commands.counts(made))
     _commands.save(made, arguments)

@@ -10,9 +10,9 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
-from ._arguments import set_threads, within
+from ._arguments import set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, point_array
-from ._errors import Error, checked, run
+from ._errors import Error, interruptible, run
 from ._io import Mesh, as_mesh
 
 _FIXED = 0  # input array of vtkMeshPerturbation
@@ -40,7 +40,7 @@ class PerturbResult:
     summary: str
 
 
-@checked
+@interruptible
 def perturb(
     mesh: Mesh,
     fraction: float = 0.5,
@@ -50,6 +50,7 @@ def perturb(
     fixed: str | Sequence | None = None,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    time_limit: float = 0.0,
 ) -> PerturbResult:
     """Move interior points at random, without inverting an element or until a fraction of the elements is inverted.
 
@@ -63,6 +64,7 @@ def perturb(
     threads: number of threads; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
         of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
+    time_limit: seconds; 0 is no limit.
 
     Raises Error for wrong arguments and for meshes that the filter refuses (quadratic cells, image data).
 
@@ -75,6 +77,7 @@ def perturb(
     filter_.SetPercentage(within("percentage", percentage, 0, 100))
     filter_.SetTangledFraction(within("tangle", tangle, 0, 1))
     filter_.SetSeed(int(within("seed", seed, -_SEEDS, _SEEDS - 1)))
+    set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     if fixed is not None and not isinstance(fixed, str) and np.ndim(fixed) != 1:
@@ -111,10 +114,11 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--tangle", type=float, default=0.0, help="fraction of elements to invert, 0 to 1 (default: 0)")
     parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
     _commands.add_merge_points(parser)
+    _commands.add_time_limit(parser)
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    names = ("fraction", "percentage", "seed", "tangle", "fixed", "threads", "merge_coincident_points")
+    names = ("fraction", "percentage", "seed", "tangle", "fixed", "time_limit", "threads", "merge_coincident_points")
     result = perturb(arguments.mesh, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments)

@@ -14,9 +14,9 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
 from . import _commands, _vtk
-from ._arguments import COMBINATIONS, TARGETS, pick, set_threads, within
+from ._arguments import COMBINATIONS, TARGETS, pick, set_threads, set_time_limit, within
 from ._arrays import InputArrays, cell_array, columns, point_array, snake
-from ._errors import Error, checked, run, unknown
+from ._errors import Error, checked, interruptible, run, unknown
 from ._files import file_name
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose, metrics as known_metrics
@@ -76,7 +76,7 @@ class QualityResult:
     summary: str
 
 
-@checked
+@interruptible
 def quality(
     mesh: Mesh,
     metrics: Metrics = ("imr",),
@@ -92,6 +92,7 @@ def quality(
     reversed_mesh: str = "measure flipped",
     histogram_bins: int = 32,
     criteria: str | PathLike | dict[str, Any] | None = None,
+    time_limit: float = 0.0,
     threads: int = 0,
 ) -> QualityResult:
     """Measure every element of a mesh by one or several metrics.
@@ -114,6 +115,7 @@ def quality(
     histogram_bins: number of bins, 1 to 100000.
     criteria: limits that the elements are graded by: the name of a preset, a JSON file, or a dict as criteria() returns
         it. Their metrics are measured too.
+    time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
 
     Raises Error for wrong arguments and for meshes that the filter refuses.
@@ -131,6 +133,7 @@ def quality(
     filter_.SetReversedMesh(pick("reversed_mesh", reversed_mesh, REVERSED))
     filter_.SetHistogramBins(int(within("histogram_bins", histogram_bins, 1, 100000)))
     filter_.SetCriteria(_criteria_text(criteria))
+    set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     _set_target(filter_, inputs, target, {"reference": reference, "size": size, "tensor": tensor})
     filter_.SetInputDataObject(0, inputs.mesh)
@@ -256,6 +259,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("mesh", metavar="FILE")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the mesh with a cell array per metric")
     parser.add_argument("--csv", metavar="FILE", help="write the statistics, a row per metric")
+    _commands.add_time_limit(parser)
     _commands.add_metrics(parser)
     parser.add_argument("--worst", type=int, choices=range(_MAX_WORST + 1), default=0, metavar=f"0..{_MAX_WORST}",
                         help="list this many of the worst elements (default: 0)")  # fmt: skip
@@ -287,7 +291,7 @@ def _run_criteria(arguments: argparse.Namespace) -> None:
 def _run(arguments: argparse.Namespace) -> int:
     names = ("combination", "power", "reference", "tensor", "beta", "epsilon", "reversed_mesh", "histogram_bins")
     names += ("criteria",)
-    options = _commands.given(arguments, (*names, "threads"))
+    options = _commands.given(arguments, (*names, "time_limit", "threads"))
     result = quality(arguments.mesh, arguments.metrics, size=_number_or_name(arguments.size), **options)
     print(quality_json(result) if arguments.json else quality_text(result, arguments.worst))
     # Nothing but the JSON on the standard output.

@@ -22,9 +22,9 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from . import _commands, _vtk
-from ._arguments import check_options, number, pick
+from ._arguments import check_options, number, pick, set_time_limit
 from ._arrays import cell_array, columns, point_array, table_rows
-from ._errors import Error, checked, run, watch
+from ._errors import Error, interruptible, run, watch
 from ._files import check_input, file_name
 
 FOREGROUNDS = ("automatic", "bright", "dark")
@@ -88,9 +88,14 @@ class SilhouetteResult:
     summary: str
 
 
-@checked
+@interruptible
 def silhouette(
-    image: Any, spacing: float = 25.0, *, threshold: float | None = None, foreground: str = "automatic"
+    image: Any,
+    spacing: float = 25.0,
+    *,
+    threshold: float | None = None,
+    foreground: str = "automatic",
+    time_limit: float = 0.0,
 ) -> SilhouetteResult:
     """Trace the silhouette in an image and triangulate a polygon around it (dissertation sections 5.2.1 and 5.2.2).
 
@@ -98,6 +103,7 @@ def silhouette(
     spacing: ideal distance between vertices along the outline, pixels, above 0.
     threshold: grey value between the shape and the background; None: midway between the extremes.
     foreground: "bright", "dark", or "automatic": the side with fewer pixels on the border of the image.
+    time_limit: seconds; 0 is no limit.
 
     Raises Error for wrong arguments, and for images without a shape.
 
@@ -107,6 +113,7 @@ def silhouette(
     mesher = _vtk.vtkSilhouetteMesher()
     mesher.SetSpacing(number("spacing", spacing))
     mesher.SetForeground(pick("foreground", foreground, FOREGROUNDS))
+    set_time_limit(mesher, time_limit)
     if threshold is not None:
         mesher.SetUseThreshold(True)
         mesher.SetThreshold(number("threshold", threshold))
@@ -148,7 +155,7 @@ class MatchResult:
     summary: str
 
 
-@checked
+@interruptible
 def match(
     source: Any,
     target: Any,
@@ -240,7 +247,7 @@ class RetrievalResult:
     summary: str
 
 
-@checked
+@interruptible
 def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
     """Read a set of images with their classes.
 
@@ -263,7 +270,7 @@ def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
     return reader.GetOutputDataObject(0)
 
 
-@checked
+@interruptible
 def retrieval(
     shapes: Any,
     labels: Iterable[Any] | None = None,
@@ -364,7 +371,7 @@ def _configure(
         raise Error(f"grid is {grid!r}; columns and rows are expected") from None
     algorithm.SetGridSize(grid_columns, grid_rows)
     check_options(options, _OPTIONS)
-    for name, value in options.items():
+    for name, value in {"time_limit": 0, **options}.items():
         checked = number(name, value)
         whole = isinstance(getattr(algorithm, f"Get{_OPTIONS[name]}")(), int)
         getattr(algorithm, f"Set{_OPTIONS[name]}")(int(checked) if whole else checked)
@@ -392,6 +399,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--threshold", type=float, help="grey value between the shape and the background")
     parser.add_argument("--foreground", choices=FOREGROUNDS, default="automatic")
     parser.add_argument("-o", "--output", required=True, help="mesh to write")
+    _commands.add_time_limit(parser)
 
     parser = _commands.add_command(commands, "match", _run_match, "find a deformable shape in an image")
     parser.add_argument("source", help="an image")
@@ -404,6 +412,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--centre-tolerance", type=float, default=1 / 3,
                         help="theta / d_max; 0: no rule (default: 1/3)")  # fmt: skip
     parser.add_argument("-o", "--output", help="write the detected mesh")
+    _commands.add_time_limit(parser)
 
     parser = _commands.add_command(
         commands, "retrieval", _run_retrieval, "rank a set of silhouettes by similarity, compute the recognition rate"
@@ -412,6 +421,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--setting", choices=SETTINGS, default="highest")
     parser.add_argument("--best", type=int, default=10, help="number of matches per query that count (default: 10)")
     parser.add_argument("--csv", metavar="FILE", help="write the best matches of each shape")
+    _commands.add_time_limit(parser)
 
 
 def _add_spacing(parser: argparse.ArgumentParser) -> None:
@@ -419,21 +429,21 @@ def _add_spacing(parser: argparse.ArgumentParser) -> None:
 
 
 def _run_silhouette(arguments: argparse.Namespace) -> None:
-    options = _commands.given(arguments, ("spacing", "threshold", "foreground"))
+    options = _commands.given(arguments, ("spacing", "threshold", "foreground", "time_limit"))
     result = silhouette(arguments.image, **options)
     print(result.summary)
     _commands.save(result, arguments)
 
 
 def _run_match(arguments: argparse.Namespace) -> None:
-    names = ("spacing", "locations", "grid", "a", "b", "centre_tolerance", "threads")
+    names = ("spacing", "locations", "grid", "a", "b", "centre_tolerance", "time_limit", "threads")
     result = match(arguments.source, arguments.target, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments)
 
 
 def _run_retrieval(arguments: argparse.Namespace) -> None:
-    result = retrieval(arguments.shapes, **_commands.given(arguments, ("setting", "best", "threads")))
+    result = retrieval(arguments.shapes, **_commands.given(arguments, ("setting", "best", "time_limit", "threads")))
     print(result.summary)
     print("right at rank " + ", ".join(f"{k}: {n}" for k, n in enumerate(result.correct_at, 1)))
     _commands.save(result, arguments, table_rows(columns(result.tables["Ranking"])))

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import _commands, _vtk
 from ._arguments import pick, set_threads, set_time_limit
 from ._arrays import POINTS, InputArrays, cell_array, history_of, point_array, table_rows
-from ._errors import checked, run
+from ._errors import interruptible, run
 from ._io import Mesh, as_mesh
 
 EFFORTS = ("local", "normal", "thorough")
@@ -45,7 +45,7 @@ class UntangleResult:
     summary: str
 
 
-@checked
+@interruptible
 def untangle(
     mesh: Mesh,
     effort: str = "normal",

@@ -25,6 +25,7 @@ from vtkmodules.vtkCommonDataModel import (
 from ._errors import Error, watch
 from ._files import check_target, locked, replace_bytes, require_memory, sync_folder, temporary_name
 from ._formats import FORMATS, Format
+from ._interrupts import updating
 from ._vtk import CLASSES
 
 # What blocks can be beside the meshes in the table of formats.
@@ -124,7 +125,9 @@ def _through_memory(writer: Any) -> tuple[bytes, bool]:
             os.symlink(f"/proc/self/fd/{memory}", link)
             writer.SetFileName(link)
             writer.Modified()  # as Write() does
-            if failure := CLASSES["vtkUpdateGuard"].UpdateWholeExtent(writer):
+            with updating(writer):
+                failure = CLASSES["vtkUpdateGuard"].UpdateWholeExtent(writer)
+            if failure:
                 raise Error(failure)
             written = not writer.GetErrorCode()
         with open(f"/proc/self/fd/{memory}", "rb") as file:

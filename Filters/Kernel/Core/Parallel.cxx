@@ -1,5 +1,7 @@
 #include "Parallel.h"
 
+#include "Interruption.h"
+
 #include <pthread.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -159,7 +161,7 @@ public:
     }
     catch (...)
     {
-      this->fail(-1, std::current_exception()); // of `proceed`
+      this->fail(-1, std::current_exception()); // of `proceed`, or an interruption
     }
     this->close();
     return run;
@@ -179,6 +181,7 @@ public:
 private:
   bool mayProceed(const Proceed& proceed)
   {
+    throwIfInterrupted();
     this->Stopped =
       proceed && !proceed(static_cast<double>(this->Done) / static_cast<double>(this->Chunks));
     return !this->Stopped;

@@ -1,5 +1,7 @@
 #include "PlanarDelaunay.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <algorithm>
 #include <deque>
 #include <numeric>
@@ -393,10 +395,12 @@ std::vector<std::array<Index, 3>> constrainedDelaunay(
   Triangulation triangulation(points);
   for (const Index p : triangulation.order())
   {
+    throwIfInterrupted();
     triangulation.insert(p);
   }
   for (const auto& [a, b] : segments)
   {
+    throwIfInterrupted();
     triangulation.recover(a, b);
   }
   return triangulation.result();

@@ -2,6 +2,8 @@
 
 #include "Predicates.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -28,6 +30,7 @@ std::vector<Triangle> clipEars(const std::vector<Vec2>& points)
   std::size_t start = 0;
   while (left.size() > 3)
   {
+    throwIfInterrupted();
     const std::size_t n = left.size();
     bool found = false;
     for (std::size_t step = 0; step < n && !found; ++step)
@@ -222,6 +225,7 @@ bool isSimple(const std::vector<Vec2>& polygon)
   const std::size_t n = polygon.size();
   for (std::size_t i = 0; i < n; ++i)
   {
+    throwIfInterrupted();
     const Vec2 &a = polygon[i], &b = polygon[(i + 1) % n];
     if (a == b)
     {

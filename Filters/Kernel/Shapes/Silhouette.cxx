@@ -1,5 +1,7 @@
 #include "Silhouette.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -276,6 +278,7 @@ public:
       std::vector<double> sum(n + 1, std::numeric_limits<double>::infinity());
       std::vector<int> last(n + 1, 0);
       sum[0] = 0.0;
+      throwIfInterrupted();
       for (std::size_t end = this->Least; end <= n; ++end)
       {
         for (int step = this->Least; step <= std::min<int>(this->Most, static_cast<int>(end));

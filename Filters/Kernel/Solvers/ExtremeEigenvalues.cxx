@@ -1,5 +1,6 @@
 #include "ExtremeEigenvalues.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Random.h"
 
 namespace tautline
@@ -18,6 +19,10 @@ bool EigensolverStoppingTest::userStops(double fraction)
     if (this->Work && this->Work->abandoned())
     {
       return true;
+    }
+    if (!this->Work && this->System.ranks() == 1)
+    {
+      throwIfInterrupted();
     }
     // The waiting thread is asked now and then; switching to it takes longer than a short step.
     const bool due = this->SinceAsked.reached(WatchInterval);
@@ -51,7 +56,11 @@ bool EigensolverStoppingTest::userStops(double fraction)
 bool EigensolverStoppingTest::stop(double fraction)
 {
   const bool aborted = this->Aborted || this->userStops(fraction);
-  if (this->Options.progress || this->Options.cancelled || this->Work)
+  if (this->System.ranks() == 1)
+  {
+    this->Aborted = aborted;
+  }
+  else if (this->Options.progress || this->Options.cancelled)
   {
     this->Aborted = this->System.anywhere(aborted);
   }

@@ -79,7 +79,7 @@ WatchLimits hardLimits(
 {
   if (system.numbering && system.numbering->ranks() > 1)
   {
-    return {};
+    return { 0.0, nullptr, false };
   }
   constexpr double fraction = 0.1, least = 0.5, most = 5.0;
   const double grace = std::clamp(fraction * maximumSeconds, least, most);

@@ -1,6 +1,7 @@
 #include "LinearSolverState.h"
 
 #include "PetscOptionRules.h"
+#include "tautline/Core/Interruption.h"
 
 #include <algorithm>
 #include <limits>
@@ -283,6 +284,10 @@ bool LinearSolverState::userStops(int iteration, double norm)
     {
       return true;
     }
+    if (!this->Work && this->Objects.ranks() == 1)
+    {
+      throwIfInterrupted();
+    }
     if (!this->Work && this->Options.cancelled && this->SinceAsked.reached(WatchInterval))
     {
       this->SinceAsked = Stopwatch();
@@ -323,7 +328,11 @@ bool LinearSolverState::shouldStop(int iteration, double norm)
   const bool limited = this->Options.maximumSeconds > 0.0;
   bool late = this->Time.reached(this->Options.maximumSeconds);
   // The ranks stop together.
-  aborted = (this->Options.observer || this->Options.cancelled) && this->Objects.anywhere(aborted);
+  if (this->Objects.ranks() > 1)
+  {
+    const bool asked = this->Options.observer || this->Options.cancelled;
+    aborted = asked && this->Objects.anywhere(aborted);
+  }
   late = limited && this->Objects.anywhere(late);
   if (aborted || late)
   {

@@ -160,6 +160,8 @@ WatchResult Task::wait(std::unique_lock<std::mutex>& lock, const WatchLimits& li
   constexpr double longest = 3600.0; // any: the loop goes on
   const Stopwatch time;
   Stopwatch sinceAsked;
+  const bool polls = limits.polls && interruptible();
+  const bool asks = polls || limits.cancelled;
   while (!this->Done)
   {
     if (this->Call)
@@ -171,13 +173,17 @@ WatchResult Task::wait(std::unique_lock<std::mutex>& lock, const WatchLimits& li
     {
       return this->abandon(WatchResult::TimeLimit);
     }
-    if (limits.cancelled && sinceAsked.reached(WatchInterval))
+    if (asks && sinceAsked.reached(WatchInterval))
     {
       bool stop = false;
       lock.unlock();
       try
       {
-        stop = limits.cancelled();
+        if (polls)
+        {
+          throwIfInterrupted();
+        }
+        stop = limits.cancelled && limits.cancelled();
       }
       catch (...)
       {
@@ -194,7 +200,7 @@ WatchResult Task::wait(std::unique_lock<std::mutex>& lock, const WatchLimits& li
       continue;
     }
     const double left = limits.seconds > 0.0 ? limits.seconds - time.seconds() : longest;
-    const double next = limits.cancelled ? WatchInterval - sinceAsked.seconds() : longest;
+    const double next = asks ? WatchInterval - sinceAsked.seconds() : longest;
     this->Changed.wait_for(lock, Seconds(std::max(0.0, std::min({ left, next, longest }))));
   }
   if (this->Thrown)

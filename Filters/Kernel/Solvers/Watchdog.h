@@ -14,6 +14,8 @@
 #ifndef tautline_Watchdog_h
 #define tautline_Watchdog_h
 
+#include "tautline/Core/Interruption.h"
+
 #include "tautline/SolversExport.h"
 
 #include <functional>
@@ -28,8 +30,13 @@ struct WatchLimits
   /// Whether the user has cancelled. Asked every WatchInterval seconds, from the waiting thread;
   /// what it throws ends the waiting, too.
   std::function<bool()> cancelled;
+  /// Whether the waiting thread calls throwIfInterrupted(), which ends the waiting, too.
+  bool polls = true;
 
-  bool any() const { return this->seconds > 0.0 || this->cancelled; }
+  bool any() const
+  {
+    return this->seconds > 0.0 || this->cancelled || (this->polls && interruptible());
+  }
 };
 
 /// Seconds between two questions whether the user has cancelled.

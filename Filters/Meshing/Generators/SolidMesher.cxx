@@ -1,5 +1,6 @@
 #include "SolidMesher.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <limits>
 #include <set>
 
@@ -252,6 +254,7 @@ int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
   {
     pollfd poll = { pipe, POLLIN, 0 };
     const int ready = ::poll(&poll, 1, Milliseconds);
+    throwIfInterrupted();
     if (ready == 0 && options.progress && !options.progress())
     {
       return Stopped;
@@ -292,7 +295,17 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   }
   ::close(ends[1]);
   std::vector<char> bytes;
-  const int ended = child > 0 ? readAll(ends[0], options, bytes) : 0;
+  int ended = 0;
+  std::exception_ptr interruption;
+  try
+  {
+    ended = child > 0 ? readAll(ends[0], options, bytes) : 0;
+  }
+  catch (...) // an interruption, or of the observer
+  {
+    interruption = std::current_exception();
+    ended = Stopped;
+  }
   ::close(ends[0]);
   if (child < 0)
   {
@@ -305,6 +318,10 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
   {
+  }
+  if (interruption)
+  {
+    std::rethrow_exception(interruption);
   }
   if (ended != 0)
   {

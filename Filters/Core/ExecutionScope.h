@@ -1,0 +1,40 @@
+/**
+ * @file ExecutionScope.h
+ * @brief Ends the execution of a filter from outside: on abort, on interruption, at a time limit.
+ */
+#ifndef tautline_ExecutionScope_h
+#define tautline_ExecutionScope_h
+
+#include "TautlineCoreModule.h" // for export macro
+
+#include <functional>
+
+class vtkAlgorithm;
+class vtkInformation;
+class vtkInformationVector;
+
+namespace tautline
+{
+/// What ends an execution.
+struct ExecutionLimits
+{
+  double seconds = 0.0; ///< wall time; 0 is no limit
+  /// Whether the filter itself returns its best result so far at the limit and on abort; else, and
+  /// without the function, the execution ends there. Asked with each poll.
+  std::function<bool()> keepsBest;
+};
+
+/**
+ * @brief Calls work(), the ProcessRequest() of a superclass; if the request is for data, ends it
+ * where it polls (tautline/Core/Interruption.h), about ten times a second.
+ *
+ * After the time limit work() gets an Error, which it reports as any other. If AbortExecute is set,
+ * or the computation is interrupted, all outputs are emptied, AbortExecute is set and the result is
+ * 1, as of filters of VTK. vtkInterruption::PollEvent is invoked with each poll. On a parallel server neither
+ * holds: processes that end alone would leave the others waiting.
+ * @return what work() returns
+ */
+TAUTLINECORE_EXPORT int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits,
+  vtkInformation* request, vtkInformationVector* outputs, const std::function<int()>& work);
+}
+#endif

@@ -1,0 +1,289 @@
+// Interruption.h and the limits of an execution: scopes nest and restore the handler of SIGINT, a
+// loop, an iteration and a factorization of a linear solver end, filters end on abort and at the
+// time limit, which blocks share.
+#include "Blocks.h"
+#include "Check.h"
+#include "Systems.h"
+#include "VtkMeshes.h"
+
+#include "tautline/Core/Interruption.h"
+#include "tautline/Core/Parallel.h"
+#include "tautline/Core/Stopwatch.h"
+#include "tautline/Solvers/LinearSolver.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkElementQuality.h"
+#include "vtkInterruption.h"
+#include "vtkMeshOptimizer.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkTable.h"
+
+#include <atomic>
+#include <functional>
+#include <thread>
+
+#include <csignal>
+
+using namespace tautline;
+
+namespace
+{
+/// What an interruption may take on a machine under load; the work would take much longer.
+constexpr double Soon = 20.0;
+
+std::atomic<int> Signals{ 0 };
+
+void countSignal(int)
+{
+  ++Signals;
+}
+
+bool interrupts(const std::function<void()>& work)
+{
+  const Stopwatch time;
+  bool interrupted = false;
+  try
+  {
+    work();
+  }
+  catch (const Interrupted&)
+  {
+    interrupted = true;
+  }
+  std::cout << (interrupted ? "interrupted" : "ended") << " after " << time.seconds() << " s\n";
+  TAUTLINE_CHECK(time.seconds() < Soon);
+  return interrupted;
+}
+
+//------------------------------------------------------------------------------
+void testScopes()
+{
+  struct sigaction before = {}, own = {}, after = {};
+  own.sa_handler = countSignal;
+  sigaction(SIGINT, &own, &before);
+  throwIfInterrupted(); // no scope: no effect
+  InterruptScope::cancel();
+  throwIfInterrupted();
+  {
+    const InterruptScope outer;
+    TAUTLINE_CHECK(interruptible() && !InterruptScope::interrupted());
+    {
+      const InterruptScope inner;
+      raise(SIGINT);
+    }
+    TAUTLINE_CHECK(InterruptScope::signalled()); // until the outermost scope ends
+    TAUTLINE_CHECK(interrupts(throwIfInterrupted));
+    bool elsewhere = true;
+    std::thread([&] { elsewhere = InterruptScope::interrupted() || interruptible(); }).join();
+    TAUTLINE_CHECK(!elsewhere);
+  }
+  TAUTLINE_CHECK(!interruptible() && !InterruptScope::interrupted());
+  TAUTLINE_CHECK_EQUAL(Signals.load(), 0);
+  raise(SIGINT);
+  TAUTLINE_CHECK_EQUAL(Signals.load(), 1); // the handler is back
+  {
+    const InterruptScope next; // without the signal of the one before
+    throwIfInterrupted();
+    InterruptScope::cancel();
+    TAUTLINE_CHECK(!InterruptScope::signalled() && InterruptScope::interrupted());
+    TAUTLINE_CHECK(interrupts(throwIfInterrupted));
+  }
+  {
+    const InterruptScope withoutSignal(false);
+    raise(SIGINT);
+    throwIfInterrupted();
+  }
+  TAUTLINE_CHECK_EQUAL(Signals.load(), 2);
+  // What the process ignores stays ignored.
+  std::signal(SIGINT, SIG_IGN);
+  {
+    const InterruptScope scope;
+    raise(SIGINT);
+    throwIfInterrupted();
+  }
+  sigaction(SIGINT, nullptr, &after);
+  TAUTLINE_CHECK(after.sa_handler == SIG_IGN);
+  sigaction(SIGINT, &before, nullptr);
+}
+
+//------------------------------------------------------------------------------
+void testPolls()
+{
+  int outer = 0, inner = 0;
+  const auto compute = [] { parallelFor(1000, 1, 1, [](Index) { throwIfInterrupted(); }); };
+  {
+    const PollScope first([&] { ++outer; });
+    const PollScope second(
+      [&]
+      {
+        ++inner;
+        compute(); // is not polled again
+      });
+    const Stopwatch time;
+    while (outer < 3 && !time.reached(Soon))
+    {
+      compute();
+    }
+  }
+  TAUTLINE_CHECK(outer >= 3);
+  TAUTLINE_CHECK_EQUAL(inner, outer);
+  const PollScope failing([] { throw Error("the time is over"); });
+  const Stopwatch time;
+  TAUTLINE_CHECK_THROWS(
+    while (!time.reached(Soon)) { compute(); }, "the time is over");
+}
+
+//------------------------------------------------------------------------------
+void testLoop()
+{
+  for (int threads : { 1, 4 })
+  {
+    const InterruptScope scope;
+    constexpr Index chunks = 10000000;
+    std::atomic<Index> done{ 0 };
+    TAUTLINE_CHECK(interrupts(
+      [&]
+      {
+        parallelFor(chunks, 1, threads,
+          [&](Index i)
+          {
+            ++done;
+            if (i == 100)
+            {
+              raise(SIGINT);
+            }
+            std::this_thread::sleep_for(std::chrono::microseconds(10));
+          });
+      }));
+    TAUTLINE_CHECK(done < chunks);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// An iteration that would not end, and a factorization that takes much longer than the check.
+void testSolver()
+{
+  const int n = 300;
+  const SparseMatrix matrix = laplacian(n);
+  const std::vector<double> b = someVector(matrix.size);
+  std::vector<double> x(b.size());
+  for (const bool watched : { false, true })
+  {
+    const InterruptScope scope;
+    SolverOptions options;
+    options.preconditioner = Preconditioner::None;
+    options.relativeTolerance = 1e-300;
+    options.absoluteTolerance = 0.0;
+    options.maximumIterations = 100000000;
+    options.maximumSeconds = watched ? 1000.0 : 0.0;
+    options.observer = [](int iteration, double)
+    {
+      if (iteration == 20)
+      {
+        raise(SIGINT);
+      }
+      return true;
+    };
+    LinearSystem system;
+    system.matrix = &matrix;
+    system.symmetric = system.positiveDefinite = true;
+    TAUTLINE_CHECK(interrupts(
+      [&]
+      {
+        LinearSolver solver(system, options);
+        solver.solve(b.data(), x.data());
+      }));
+  }
+}
+
+//------------------------------------------------------------------------------
+void testAbort()
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, 30, 30, 30);
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(toGrid(data));
+  filter->AddMetricByName("imr");
+  filter->SetTimeLimit(1e-9);
+  {
+    const Messages messages(filter);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has("The time limit of 1e-09 s is reached"));
+    TAUTLINE_CHECK_EQUAL(
+      vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  }
+  filter->SetTimeLimit(0);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  const auto tag = filter->AddObserver(vtkInterruption::PollEvent, abort);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
+  TAUTLINE_CHECK_EQUAL(
+    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  filter->RemoveObserver(tag);
+  filter->SetAbortExecute(0);
+  filter->Modified();
+  filter->Update();
+  TAUTLINE_CHECK(
+    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells() > 0);
+
+  // Cancelled from a callback, as Python does; the next execution is not.
+  vtkNew<vtkCallbackCommand> cancel;
+  cancel->SetCallback(
+    [](vtkObject*, unsigned long, void*, void*) { vtkInterruption::Cancel(); });
+  const auto cancelling = filter->AddObserver(vtkInterruption::PollEvent, cancel);
+  vtkInterruption::Begin(true);
+  filter->Modified();
+  filter->Update();
+  TAUTLINE_CHECK(vtkInterruption::IsInterrupted() && filter->GetAbortExecute());
+  TAUTLINE_CHECK(!vtkInterruption::End());
+  TAUTLINE_CHECK(!vtkInterruption::IsInterrupted());
+  filter->RemoveObserver(cancelling);
+}
+
+//------------------------------------------------------------------------------
+/// After the first block the time is over: the others get one iteration at most.
+void testBlocksShareTheTime()
+{
+  const MeshData data = movedBlock(CellType::Tetrahedron, 24, 0.1);
+  constexpr unsigned blocks = 4;
+  vtkNew<vtkMultiBlockDataSet> input;
+  for (unsigned i = 0; i < blocks; ++i)
+  {
+    MeshData moved = data;
+    moved.transform([i](const Vec3& p) { return Vec3{ p[0] + 100.0 * i, p[1], p[2] }; });
+    input->SetBlock(i, toGrid(moved));
+  }
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputData(input);
+  filter->SetPreset(0);
+  filter->AddObjectiveByName("imr", -1, 1.0, 0);
+  filter->SetRelativeChange(0.0);
+  filter->SetGradientNorm(0.0);
+  filter->SetTimeLimit(0.2);
+  filter->Update();
+  vtkTable* history = filter->GetHistory();
+  const vtkIdType rows = history->GetNumberOfRows();
+  vtkIdType ofLast = 0; // the input, and an iteration
+  while (ofLast < rows &&
+    history->GetValueByName(rows - 1 - ofLast, "Block") ==
+      history->GetValueByName(rows - 1, "Block"))
+  {
+    ++ofLast;
+  }
+  std::cout << ofLast << " of " << rows << " rows of the history are of the last block\n";
+  TAUTLINE_CHECK(ofLast >= 1 && ofLast <= 2);
+}
+}
+
+int TestInterruption(int, char*[])
+{
+  testScopes();
+  testPolls();
+  testLoop();
+  testSolver();
+  testAbort();
+  testBlocksShareTheTime();
+  return exitCode();
+}

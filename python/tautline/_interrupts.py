@@ -1,0 +1,110 @@
+"""Ctrl-C and progress callbacks: how they end what the compiled filters compute.
+
+A filter runs inside updating(): there Ctrl-C, and a progress callback that returns False, end it within a moment. The
+lowest of the shared files: it uses the compiled classes only.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import time
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import Any, Callable, Iterator, Optional
+
+from ._vtk import CLASSES
+
+#: Is called with the fraction done, 0 to 1, and a text; False cancels the operation.
+Progress = Callable[[float, str], Optional[bool]]
+
+_SECONDS_BETWEEN_CALLS = 0.1
+_progress: ContextVar[Progress | None] = ContextVar("tautline_progress", default=None)
+
+
+class Cancelled(Exception):
+    """A progress callback has returned False. Becomes tautline.Aborted."""
+
+
+@contextmanager
+def reporting(progress: Progress | None) -> Iterator[None]:
+    """Report the progress of the filters that run in the block; None keeps the callback of the block around."""
+    if progress is None:
+        yield
+        return
+    token = _progress.set(progress)
+    try:
+        yield
+    finally:
+        _progress.reset(token)
+
+
+@contextmanager
+def updating(algorithm: Any) -> Iterator[None]:
+    """A block in which Ctrl-C and the progress callback end the execution of a VTK algorithm.
+
+    At its end it raises KeyboardInterrupt after Ctrl-C, Cancelled if the callback has returned False, and what the
+    callback has raised. Handlers of SIGINT that are not Python's own are called instead.
+    """
+    interruption = CLASSES["vtkInterruption"]
+    report = _Report(algorithm, _progress.get())
+    signalled = False
+    try:
+        interruption.Begin(threading.current_thread() is threading.main_thread())
+        report.begin()
+        yield
+    finally:
+        report.end()
+        signalled = interruption.End()
+        if signalled:
+            _raise_interrupt()
+    if report.raised:
+        raise report.raised
+    if report.cancelled:
+        raise Cancelled
+
+
+def _raise_interrupt() -> None:
+    """Do what Python does after SIGINT."""
+    handler = signal.getsignal(signal.SIGINT)
+    if callable(handler) and handler is not signal.default_int_handler:
+        handler(signal.SIGINT, sys._getframe())
+        raise Cancelled  # what the filter has is no result
+    raise KeyboardInterrupt
+
+
+class _Report:
+    """Calls a callback with the progress of an algorithm, and cancels where that returns False or raises."""
+
+    def __init__(self, algorithm: Any, progress: Progress | None) -> None:
+        self.algorithm = algorithm
+        self.progress = progress
+        self.raised: BaseException | None = None
+        self.cancelled = False
+        self.next = 0.0
+        self.tags: list[int] = []
+
+    def begin(self) -> None:
+        if self.progress:
+            for event in ("ProgressEvent", CLASSES["vtkInterruption"].PollEvent):
+                self.tags.append(self.algorithm.AddObserver(event, self.call))
+
+    def end(self) -> None:
+        for tag in self.tags:
+            self.algorithm.RemoveObserver(tag)
+        self.tags.clear()
+
+    def call(self, *_: Any) -> None:
+        if self.cancelled or time.monotonic() < self.next:
+            return
+        text = self.algorithm.GetProgressText() or self.algorithm.GetClassName()
+        try:
+            self.cancelled = self.progress(self.algorithm.GetProgress(), text) is False
+        except BaseException as error:  # VTK would print it, or end the process
+            self.raised = error
+            self.cancelled = True
+        self.next = time.monotonic() + _SECONDS_BETWEEN_CALLS
+        if self.cancelled:
+            CLASSES["vtkInterruption"].Cancel()
+            self.algorithm.SetAbortExecute(1)
