@@ -592,6 +592,7 @@ WarpResult WarpSession::warpFromPrevious(
 //------------------------------------------------------------------------------
 WarpResult WarpSession::run(Warper& warper, const WarpTask& task) const
 {
+  warper.setMaximumSeconds(this->settings.secondsLeft());
   if (!task.path)
   {
     return warper.warp(task.displacement.data());

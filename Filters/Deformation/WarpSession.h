@@ -58,6 +58,7 @@ struct WarpSettings
   WarpOptions options;                        ///< all that needs no data set
   vtkAlgorithm* arrays = nullptr;             ///< whose input arrays are chosen
   std::function<bool(int, double)> progress;  ///< block, fraction; false stops
+  std::function<double()> secondsLeft;        ///< of the execution; 0 is no limit
 
   /// Whether the method has coefficients.
   bool anisotropic() const { return isAnisotropic(this->options.method); }

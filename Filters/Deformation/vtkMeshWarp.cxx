@@ -192,9 +192,10 @@ tautline::WarpSettings vtkMeshWarp::GetSettings()
   options.untangleFirst = this->UntangleFirst;
   options.untanglingBeta = this->UntanglingBeta;
   options.optimization.stopping.maximumIterations = this->MaximumIterations;
-  options.maximumSeconds = this->GetRemainingSeconds();
+  options.maximumSeconds = this->TimeLimit;
   options.threads = this->Threads;
   settings.arrays = this;
+  settings.secondsLeft = [this] { return this->GetRemainingSeconds(); };
   settings.progress = [this](int block, double fraction)
   { return this->ProceedInBlock(block, fraction); };
   return settings;

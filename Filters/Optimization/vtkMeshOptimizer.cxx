@@ -322,7 +322,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
     options.improveWorst = this->ImproveWorst;
   }
   tautline::applyPreset(settings.preset, options);
-  options.stopping.maximumSeconds = this->GetRemainingSeconds();
+  options.stopping.maximumSeconds = this->TimeLimit;
   options.surface.project = this->ProjectToSurface;
   options.allowInversion = this->AllowInversion;
   options.untangleFirst = this->UntangleFirst;
@@ -416,6 +416,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
       return this->ProceedInBlock(block.number, state.progress);
     };
     run.iterations = -1;
+    options.stopping.maximumSeconds = this->GetRemainingSeconds();
     run.result = tautline::optimize(mesh.mesh(), options);
     run.result.surfaceError *= mesh.frame().unit();
     std::string note;

@@ -148,7 +148,7 @@ struct Warper::Implementation
   void explain(WarpControl& control);
 
   const Mesh& Input;
-  const WarpOptions Options;
+  WarpOptions Options;
   WarpParts Parts;
   WarpStep First;
   WarpBoundary MovedBoundary;
@@ -363,6 +363,11 @@ Warper::Warper(const Mesh& mesh, const WarpOptions& options)
 }
 
 Warper::~Warper() = default;
+
+void Warper::setMaximumSeconds(double seconds)
+{
+  this->Impl->Options.maximumSeconds = seconds;
+}
 
 WarpResult Warper::warp(const double* displacement)
 {

@@ -51,6 +51,9 @@ public:
    */
   WarpResult warp(const std::function<void(double amount, double* displacement)>& motion);
 
+  /// Replaces the time limit of the options, for the next calls; 0: none.
+  void setMaximumSeconds(double seconds);
+
 private:
   struct Implementation;
   std::unique_ptr<Implementation> Impl;
