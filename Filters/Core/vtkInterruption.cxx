@@ -11,7 +11,8 @@
 
 vtkStandardNewMacro(vtkInterruption);
 
-static_assert(static_cast<int>(vtkInterruption::PollEvent) > static_cast<int>(vtkCommand::UserEvent),
+static_assert(
+  static_cast<int>(vtkInterruption::PollEvent) > static_cast<int>(vtkCommand::UserEvent),
   "an event of VTK");
 
 namespace

@@ -103,7 +103,7 @@ int vtkTautlineAlgorithm::RequestDataObject(
 vtkTypeBool vtkTautlineAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || this->GetNumberOfInputPorts() == 0)
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
     return this->Superclass::ProcessRequest(request, inputs, outputs);
   }
@@ -114,7 +114,9 @@ vtkTypeBool vtkTautlineAlgorithm::ProcessRequest(
   const int result = tautline::processInScope(this, limits, request, outputs,
     [&]
     {
-      const int executed = this->ExecuteData(request, inputs, outputs);
+      const int executed = this->GetNumberOfInputPorts() > 0
+        ? this->ExecuteData(request, inputs, outputs)
+        : this->Superclass::ProcessRequest(request, inputs, outputs);
       complete = true;
       return executed;
     });

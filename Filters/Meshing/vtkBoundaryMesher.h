@@ -14,7 +14,7 @@
 #define vtkBoundaryMesher_h
 
 #include "TautlineMeshingModule.h" // for export macro
-#include "vtkTautlineSetRange.h" // for the setters
+#include "vtkTautlineSetRange.h"   // for the setters
 #include "vtkUnstructuredGridAlgorithm.h"
 
 class vtkPointSet;

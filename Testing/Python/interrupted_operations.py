@@ -1,25 +1,16 @@
-"""Operations that take much longer than test_interrupts.py waits, and the child process that runs one of them.
+"""Operations that take much longer than test_interrupts.py waits for their end."""
 
-python3 interrupted_operations.py MODE NAME, where MODE is "function" (reports its first progress and expects
-KeyboardInterrupt), "shell" (the same as a command of the shell), "cancel" (the progress callback returns False) or
-"limit" (with a time limit of a second).
-"""
-
-import sys
-import time
-from pathlib import Path
+from functools import lru_cache
 
 import numpy as np
 import tautline as tl
-from checks import OUT, square
-from tautline import _interrupts
-from tautline.__main__ import main
+from checks import OUT, points, square
 
-TIME_LIMIT = 1.0
 MANY = 1000000
-INPUT = OUT / "interrupts-input"
+OF_TETRAHEDRA = ["imr", "si", "rr", "mean_ratio", "scaled_jacobian", "condition_number", "edge_ratio", "tmp_shape"]
 
 
+@lru_cache(maxsize=None)
 def cube(n: int):
     """The unit cube of 6 n^3 tetrahedra."""
     axis = np.arange(n + 1) / n
@@ -35,15 +26,39 @@ def cube(n: int):
     return tl.from_arrays(np.column_stack([x, y, z]), {"tetrahedron": np.concatenate(cells)})
 
 
+@lru_cache(maxsize=None)
+def moved(n: int, amplitude: float):
+    """A cube whose interior points are moved at random, by up to so many edges."""
+    mesh = cube(n).NewInstance()
+    mesh.DeepCopy(cube(n))
+    xyz = points(mesh)
+    inside = np.all((xyz > 1e-9) & (xyz < 1 - 1e-9), axis=1)
+    xyz[inside] += np.random.default_rng(1).uniform(-amplitude, amplitude, (inside.sum(), 3)) / n
+    return mesh
+
+
+@lru_cache(maxsize=None)
+def layered():
+    """A square with an interaction layer."""
+    return tl.interaction_layer(square(60), 0.3)
+
+
+def bending(n: int) -> np.ndarray:
+    """Displacements of the points of a cube."""
+    x, y, z = points(cube(n)).T
+    return np.column_stack([0.2 * np.sin(3 * y), 0.2 * np.cos(2 * z), 0 * x])
+
+
 def spiral(n: int) -> np.ndarray:
-    """The image of a spiral arm, whose outline is long."""
+    """The image of a spiral, whose outline is long."""
     y, x = (np.mgrid[:n, :n] - n / 2) / n
-    radius, angle = np.hypot(x, y), np.arctan2(y, x)
-    arm = np.sin(angle - 120 * radius) > 0
+    radius = np.hypot(x, y)
+    arm = np.sin(np.arctan2(y, x) - 120 * radius) > 0
     return np.where(arm & (radius < 0.45) & (radius > 0.02), 255.0, 0.0)
 
 
-def disk(n: int, stretch: float) -> np.ndarray:
+@lru_cache(maxsize=None)
+def ellipse(n: int, stretch: float) -> np.ndarray:
     """The image of an ellipse."""
     y, x = (np.mgrid[:n, :n] - n / 2) / n
     return np.where((x * stretch) ** 2 + y**2 < 0.1, 255.0, 0.0)
@@ -53,51 +68,58 @@ def all_metrics() -> list[str]:
     return [metric["name"] for metric in tl.metrics()]
 
 
-def file_of(name: str, make) -> str:
-    """The name of an input file of a command, which is written at first use."""
-    file = INPUT / name
-    if not file.exists():
-        INPUT.mkdir(parents=True, exist_ok=True)
-        tl.write(make(), file)
-    return str(file)
+def optimize(optimizer: str, **options):
+    endless = {"maximum_iterations": MANY, "relative_change": 0.0, "gradient_norm": 0.0, "culling": 0.0}
+    return tl.optimize(moved(40, 0.1), ["imr"], optimizer=optimizer, **endless, **options)
 
 
-ENDLESS = {"maximum_iterations": MANY, "relative_change": 0.0, "gradient_norm": 0.0}
-
-
-def moving(n: int) -> dict:
-    """The arguments of warp() that turn a part of the boundary of a cube."""
-    mesh = cube(n)
-    return {"mesh": tl.perturb(mesh, fraction=0.3).mesh}
-
-
-#: By name: the function of further keyword arguments, and the arguments of the command of the shell, or None.
+#: By name: an operation with the arguments progress and time_limit, and what it does at the time limit: the text of
+#: an error, or "" where the result is the best so far.
+LIMIT = "time limit"
 OPERATIONS = {
-    "quality": (
-        lambda **k: tl.quality(cube(70), all_metrics(), threads=1, **k),
-        lambda: ["quality", file_of("cube70.vtu", lambda: cube(70)), "-o", "out.vtu", "--metrics",
-                 ",".join(all_metrics())],
+    "quality": (lambda **k: tl.quality(cube(70), all_metrics(), threads=1, **k), LIMIT),
+    "compare": (lambda **k: tl.compare(cube(70), moved(70, 0.1), all_metrics(), threads=1, **k), LIMIT),
+    "metric field": (
+        lambda **k: tl.metric_field(OF_TETRAHEDRA, "tetrahedron", dimensions=(250, 250, 250), threads=1, **k),
+        LIMIT,
     ),
-}  # fmt: skip
-#: Those with a time limit, and a part of the output.
-LIMITED = {}
+    "perturb": (lambda **k: tl.perturb(cube(90), tangle=0.9, **k), LIMIT),
+    "optimize local newton": (lambda **k: optimize("local newton", **k), ""),
+    "optimize l-bfgs": (lambda **k: optimize("l-bfgs", **k), ""),
+    "untangle": (lambda **k: tl.untangle(moved(90, 1.5), "thorough", **k), ""),
+    "warp hybrid": (lambda **k: tl.warp(cube(40), bending(40), **k), ""),
+    "warp factorization": (lambda **k: tl.warp(cube(40), bending(40), "biharmonic", solver="direct", **k), ""),
+    "warp radial basis": (lambda **k: tl.warp(cube(40), bending(40), "radial basis", fit_tolerance=1e-9, **k), ""),
+    "solve factorization": (lambda **k: tl.solve(cube(60), solver="direct", **k), ""),
+    "condition accurate": (lambda **k: tl.condition(cube(40), method="accurate", **k), ""),
+    "solver study": (lambda **k: tl.solver_study(cube(40), **k), ""),
+    "peridynamics": (lambda **k: tl.peridynamics(layered(), 0.3, **k), LIMIT),
+    "interaction layer": (lambda **k: tl.interaction_layer(square(100), 0.5, element_size=1e-3, **k), LIMIT),
+    "domain of triangles": (lambda **k: tl.domain("wrench", cells=4000000, **k), LIMIT),
+    "domain of tetrahedra": (lambda **k: tl.domain("cylinder", cells=4000000, **k), LIMIT),
+    "silhouette": (lambda **k: tl.silhouette(spiral(2000), 2, **k), LIMIT),
+    "match": (lambda **k: tl.match(ellipse(300, 1), ellipse(300, 1.3), spacing=8, grid=(60, 60), **k), ""),
+    "retrieval": (
+        lambda **k: tl.retrieval(
+            [ellipse(400, s) for s in np.linspace(1, 2, 30)], list("ab") * 15, setting="dissertation", **k
+        ),
+        "",
+    ),
+}
 
 
-def run_function(name: str) -> None:
-    began = []
-
-    def progress(fraction: float, text: str) -> None:
-        if not began:
-            began.append(text)
-            print("progress", fraction, text, flush=True)
-
-    try:
-        OPERATIONS[name][0](progress=progress)
-    except KeyboardInterrupt:
-        print("KeyboardInterrupt")
-        return
-    raise AssertionError(f"{name} has ended by itself")
+def write_input() -> str:
+    """The name of a mesh for the commands of the shell."""
+    name = str(OUT / "interrupts.mesh")
+    tl.write(cube(60), name)
+    return name
 
 
-if __name__ == "__main__":
-    {"function": run_function}[sys.argv[1]](sys.argv[2])
+def commands(mesh: str) -> dict[str, list[str]]:
+    """Commands of the shell by name, each with an output file; their arguments."""
+    return {
+        "quality": ["quality", mesh, "-o", "out.vtu", "--threads", "1", "--metrics", ",".join(all_metrics())],
+        "perturb": ["perturb", mesh, "-o", "out.mesh", "--tangle", "0.9"],
+        "solve": ["solve", mesh, "-o", "out.vtu", "--solver", "direct"],
+        "domain": ["domain", "cylinder", "-o", "out.mesh", "--cells", "4000000"],
+    }

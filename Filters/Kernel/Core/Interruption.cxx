@@ -47,7 +47,8 @@ void addHandler()
   }
   Signalled = 0;
   sigaction(SIGINT, nullptr, &shared.Before);
-  const bool ignored = !(shared.Before.sa_flags & SA_SIGINFO) && shared.Before.sa_handler == SIG_IGN;
+  const bool ignored =
+    !(shared.Before.sa_flags & SA_SIGINFO) && shared.Before.sa_handler == SIG_IGN;
   if (!ignored)
   {
     struct sigaction own = {};

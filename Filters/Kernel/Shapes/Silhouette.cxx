@@ -35,6 +35,7 @@ public:
   {
     for (Index j = 0; j < image.height; ++j)
     {
+      throwIfInterrupted();
       for (Index i = 0; i < image.width; ++i)
       {
         const double above = image(i, j) - threshold;
@@ -95,6 +96,7 @@ public:
     std::vector<Index> next(2 * this->Values.size(), -1);
     for (Index j = 0; j + 1 < this->Height; ++j)
     {
+      throwIfInterrupted();
       for (Index i = 0; i + 1 < this->Width; ++i)
       {
         const bool corner[4] = { in(i, j), in(i + 1, j), in(i + 1, j + 1), in(i, j + 1) };
@@ -229,6 +231,7 @@ std::vector<float> fill(const std::vector<Index>& labels, Index label, Index wid
   std::vector<float> mask(static_cast<std::size_t>(width * height));
   for (Index j = 0; j < height; ++j)
   {
+    throwIfInterrupted();
     for (Index i = 0; i < width; ++i)
     {
       mask[j * width + i] = outside[(j + 1) * framed + i + 1] ? 0.0f : 1.0f;
@@ -250,6 +253,7 @@ public:
     const std::size_t n = points.size();
     for (std::size_t i = 0; i < n; ++i)
     {
+      throwIfInterrupted();
       for (int step = this->Least; step <= this->Most; ++step)
       {
         const Vec2 &a = points[i], &b = points[(i + step) % n];

@@ -1,5 +1,6 @@
 #include "PlanarMesher.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -321,6 +322,7 @@ void refine(Triangulation& triangulation, const PlanarOptions& options, double s
   double checked = 1e5;
   while (!mesher.is_refinement_done())
   {
+    throwIfInterrupted();
     for (int step = 0; step < Steps && mesher.try_one_step_refine_mesh(); ++step)
     {
     }

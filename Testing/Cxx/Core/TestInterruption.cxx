@@ -225,13 +225,11 @@ void testAbort()
   filter->SetAbortExecute(0);
   filter->Modified();
   filter->Update();
-  TAUTLINE_CHECK(
-    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells() > 0);
+  TAUTLINE_CHECK(vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells() > 0);
 
   // Cancelled from a callback, as Python does; the next execution is not.
   vtkNew<vtkCallbackCommand> cancel;
-  cancel->SetCallback(
-    [](vtkObject*, unsigned long, void*, void*) { vtkInterruption::Cancel(); });
+  cancel->SetCallback([](vtkObject*, unsigned long, void*, void*) { vtkInterruption::Cancel(); });
   const auto cancelling = filter->AddObserver(vtkInterruption::PollEvent, cancel);
   vtkInterruption::Begin(true);
   filter->Modified();
