@@ -30,8 +30,8 @@ struct ExecutionLimits
  *
  * After the time limit work() gets an Error, which it reports as any other. If AbortExecute is set,
  * or the computation is interrupted, all outputs are emptied, AbortExecute is set and the result is
- * 1, as of filters of VTK. vtkInterruption::PollEvent is invoked with each poll. On a parallel server neither
- * holds: processes that end alone would leave the others waiting.
+ * 1, as of filters of VTK. vtkInterruption::PollEvent is invoked with each poll. With several
+ * processes neither holds: one that ends alone would leave the others waiting.
  * @return what work() returns
  */
 TAUTLINECORE_EXPORT int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits,

@@ -223,7 +223,7 @@ bool vtkTautlineAlgorithm::KeepsBest() const
 //------------------------------------------------------------------------------
 double vtkTautlineAlgorithm::GetRemainingSeconds() const
 {
-  constexpr double least = 1e-3; // 0 would be no limit
+  constexpr double least = 1e-9; // 0 would be no limit
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - this->Start;
   const double limit = this->GetExecutionSeconds();
   return limit > 0.0 ? std::max(least, limit - spent.count()) : 0.0;

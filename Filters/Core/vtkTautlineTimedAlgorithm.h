@@ -4,7 +4,7 @@
  *
  * Abstract. After the time limit a filter that improves a result step by step (KeepsBest()) returns
  * the best one it has by then and reports this in its summary; the others end with an error. The
- * time is wall time.
+ * time is wall time. With several processes only those that limit their own work end.
  *
  * @sa vtkTautlineAlgorithm
  */

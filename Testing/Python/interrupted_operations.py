@@ -98,7 +98,7 @@ OPERATIONS = {
     "domain of triangles": (lambda **k: tl.domain("wrench", cells=4000000, **k), LIMIT),
     "domain of tetrahedra": (lambda **k: tl.domain("cylinder", cells=4000000, **k), LIMIT),
     "silhouette": (lambda **k: tl.silhouette(spiral(2000), 2, **k), LIMIT),
-    "match": (lambda **k: tl.match(ellipse(300, 1), ellipse(300, 1.3), spacing=8, grid=(60, 60), **k), ""),
+    "match": (lambda **k: tl.match(ellipse(300, 1), ellipse(300, 1.3), spacing=15, rotations=1000, **k), ""),
     "retrieval": (
         lambda **k: tl.retrieval(
             [ellipse(400, s) for s in np.linspace(1, 2, 30)], list("ab") * 15, setting="dissertation", **k

@@ -504,7 +504,7 @@ const std::vector<std::string>& classesWithoutInput()
     "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm", "vtkBoundaryMesher",
     "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField", "vtkDomainSource", "vtkGmshReader",
     "vtkMeditReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader",
-    "vtkImageFileReader", "vtkTautlineSetRange", "vtkUpdateGuard" };
+    "vtkImageFileReader", "vtkInterruption", "vtkTautlineSetRange", "vtkUpdateGuard" };
   return names;
 }
 
