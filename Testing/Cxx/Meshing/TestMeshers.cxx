@@ -266,8 +266,9 @@ void testTriangleFailures()
   stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
     { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
   aborted->AddObserver(vtkCommand::ProgressEvent, stop);
-  TAUTLINE_CHECK(
-    contains(failure(aborted, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })), "stopped"));
+  TAUTLINE_CHECK_EQUAL(
+    failure(aborted, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })), std::string());
+  TAUTLINE_CHECK(aborted->GetAbortExecute() != 0);
 }
 
 void testTetrahedra()
@@ -449,7 +450,8 @@ void testTetrahedraFailures()
   stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
     { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
   aborted->AddObserver(vtkCommand::ProgressEvent, stop);
-  TAUTLINE_CHECK(contains(failure(aborted, read("cube.smesh")), "stopped"));
+  TAUTLINE_CHECK_EQUAL(failure(aborted, read("cube.smesh")), std::string());
+  TAUTLINE_CHECK(aborted->GetAbortExecute() != 0);
 
   vtkNew<vtkTetGenMesher> slow;
   slow->SetVolume(1e-7);
