@@ -1,6 +1,7 @@
 """Ctrl-C, progress callbacks and time limits end every long function, and leave no partial file.
 
-test_interrupts.py PART [NAME], where PART is signal, cancel, limit, shell or pvpython, and NAME an operation. Every operation would take much longer
+test_interrupts.py PART [NAME], where PART is signal, cancel, limit, shell or pvpython, and NAME an operation. Every
+operation would take much longer
 than the test waits. SIGINT is sent after the operation has reported its first progress, by another process, because
 Python executes nothing else meanwhile. The times to the end are printed; the bound that is checked is generous, because
 the machine may be busy.

@@ -17,6 +17,7 @@ LIST = "import tautline; print(*(n for n in ('warp', 'match', 'vtkShapeMatcher',
 #: The floors of the package below the capabilities, which do not import each other; _metrics serves three of them.
 FLOORS = (
     ("_vtk",),
+    ("_interrupts",),
     ("_errors",),
     ("_arrays", "_files", "_formats", "_mesh", "_tables"),
     ("_arguments", "_legacy", "_surfaces", "_vtk_writers"),

@@ -71,10 +71,10 @@ def interruptible(function: Function) -> Function:
 
 
 def _with_progress(text: str) -> str:
-    """The documentation of a function with the argument progress, in the paragraph before that of what it raises."""
+    """The documentation of a function with progress, in the paragraph before that of what it raises."""
     place = text.rfind("\n\n", 0, text.find("Raises Error"))
-    entry = """    progress: is called with the fraction done, 0 to 1, and a text, about ten times a second; False cancels, which
-        raises Aborted. Ctrl-C raises KeyboardInterrupt.
+    entry = """    progress: is called ten times a second with the fraction done, 0 to 1, and a text; False cancels,
+        which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 """
     return text[: place + 1] + entry + text[place + 1 :]
 
