@@ -1,5 +1,7 @@
 #include "MeshAdapter.h"
 
+#include "tautline/Mesh/CellOrder.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellTypes.h"
@@ -100,6 +102,17 @@ std::string MeshAdapter::coarseness() const
 void MeshAdapter::mergeCoincidentPoints(int threads)
 {
   this->Coincident = findCoincidentPoints(*this->TheMesh);
+  if (this->Coincident.overlapping > 0)
+  {
+    // Cells that list their points in the opposite order seem to be on the wrong side of a facet.
+    std::vector<signed char> validity(this->View.numberOfCells);
+    this->TheMesh->classifyCells(validity.data(), threads);
+    const CellOrder order = consistentOrder(*this->TheMesh, validity.data());
+    if (order.reversed > 0)
+    {
+      this->Coincident = findCoincidentPoints(*this->TheMesh, order.reverse.data());
+    }
+  }
   if (!this->Coincident.any())
   {
     return;
@@ -128,6 +141,77 @@ void MeshAdapter::setMirrored(bool mirrored)
   {
     this->Given->setMirrored(mirrored);
   }
+}
+
+//------------------------------------------------------------------------------
+void MeshAdapter::reverseCells(const std::vector<unsigned char>& flags)
+{
+  const Index* offsets = this->View.offsets;
+  const Index* given = this->View.connectivity;
+  std::vector<Index> turned(given, given + offsets[this->View.numberOfCells]);
+  const bool merged = this->Given != nullptr;
+  for (Index cell = 0; cell < this->View.numberOfCells; ++cell)
+  {
+    if (flags[cell])
+    {
+      const CellType type = cornerType(this->View.cellTypes[cell]);
+      reverseCell(type, turned.data() + offsets[cell]);
+      if (merged)
+      {
+        reverseCell(type, this->MergedConnectivity.data() + offsets[cell]);
+      }
+    }
+  }
+  this->OrientedConnectivity = std::move(turned);
+  this->View.connectivity = this->InputView.connectivity = this->OrientedConnectivity.data();
+  const bool mirrored = this->TheMesh->mirrored();
+  MeshView view = this->View;
+  if (merged)
+  {
+    *this->Given = Mesh(view, this->Threads);
+    view.connectivity = this->MergedConnectivity.data();
+  }
+  *this->TheMesh = Mesh(view, this->Threads); // in place: others refer to it
+  this->setMirrored(mirrored);
+}
+
+//------------------------------------------------------------------------------
+std::string MeshAdapter::orient(signed char* validity, bool required)
+{
+  std::vector<signed char> own(validity ? 0 : this->View.numberOfCells);
+  validity = validity ? validity : own.data();
+  this->TheMesh->classifyCells(validity, this->Threads);
+  Orientation orientation = this->TheMesh->orientation(validity);
+  std::string text = describe(orientation, *this->TheMesh);
+  if (orientation.state == Orientation::Mixed)
+  {
+    const CellOrder order = consistentOrder(*this->TheMesh, validity);
+    if (order.ambiguous > 0)
+    {
+      text += " The cells connected with cell " + std::to_string(order.firstAmbiguous) +
+        " have no consistent orientation, like those of a Moebius band.";
+      if (required)
+      {
+        throw Error(text + " Cut the mesh so that each part has one (Clip), or remove cells.");
+      }
+    }
+    if (order.reversed > 0)
+    {
+      text += " " + std::to_string(order.reversed) + " of the " + std::to_string(order.cells) +
+        (order.reversed == 1 ? " cells is" : " cells are") +
+        " treated as if listed in the opposite order.";
+      this->reverseCells(order.reverse);
+      this->Reversed = order.reverse;
+      this->TheMesh->classifyCells(validity, this->Threads);
+    }
+  }
+  else if (orientation.state == Orientation::Reversed)
+  {
+    text += " It is treated as if its cells were flipped.";
+    this->setMirrored(true);
+    this->TheMesh->classifyCells(validity, this->Threads);
+  }
+  return text;
 }
 
 //------------------------------------------------------------------------------
@@ -356,7 +440,8 @@ std::string MeshAdapter::notice() const
 std::size_t MeshAdapter::copiedBytes() const
 {
   return this->Points.size() * sizeof(double) + this->Types.size() +
-    (this->Offsets.size() + this->Connectivity.size()) * sizeof(Index);
+    (this->Offsets.size() + this->Connectivity.size() + this->OrientedConnectivity.size()) *
+    sizeof(Index);
 }
 
 //------------------------------------------------------------------------------
@@ -384,9 +469,7 @@ std::string describe(const Orientation& o, const Mesh& mesh)
       text += std::to_string(o.reversedParts) + " of " + std::to_string(o.parts) +
         " connected parts are reversed";
     }
-    return text +
-      ". Cells of the wrong orientation count as inverted; make the orientation consistent first "
-      "(for surfaces: Surface Normals with Consistency).";
+    return text + ".";
   }
   return "";
 }
@@ -430,7 +513,7 @@ std::vector<int> mirroredOrder(int vtkType, vtkIdType size)
 }
 
 //------------------------------------------------------------------------------
-void flipCells(vtkDataSet* data)
+void flipCells(vtkDataSet* data, const std::vector<unsigned char>& flags)
 {
   auto* grid = vtkUnstructuredGrid::SafeDownCast(data);
   auto* poly = vtkPolyData::SafeDownCast(data);
@@ -448,6 +531,11 @@ void flipCells(vtkDataSet* data)
   for (vtkIdType i = 0; i < old->GetNumberOfCells(); ++i)
   {
     old->GetCellAtId(i, size, ids);
+    if (!flags.empty() && !flags[i])
+    {
+      cells->InsertNextCell(size, ids);
+      continue;
+    }
     cells->InsertNextCell(static_cast<int>(size));
     for (int k : mirroredOrder(grid ? grid->GetCellType(i) : VTK_POLYGON, size))
     {

@@ -45,8 +45,22 @@ public:
   void mergeCoincidentPoints(int threads = 0);
   /// What was merged; empty before mergeCoincidentPoints().
   const CoincidentPoints& coincident() const { return this->Coincident; }
-  /// Of mesh() and given(), see Mesh::setMirrored().
-  void setMirrored(bool mirrored);
+  /**
+   * @brief Makes mesh() consistent: cells that list their points in the opposite order of the
+   * others are listed in theirs (see consistentOrder()); a mesh that is reversed throughout is
+   * viewed as its mirror image. The data set is not changed, ids do not change. To be called after
+   * mergeCoincidentPoints() and enterFrame(), where these are.
+   * @param validity null, or the place of one value per cell, which it gets: that of the result
+   * @param required whether to throw Error where a part has no consistent order; else its cells
+   * stay as they are
+   * @return what was found, in sentences for the user, or ""
+   */
+  std::string orient(signed char* validity = nullptr, bool required = true);
+  /// Lists the cells with nonzero flags (one per cell) in the opposite order in mesh().
+  void reverseCells(const std::vector<unsigned char>& flags);
+  /// The cells that orient() listed in the opposite order, one flag per cell; empty if there are
+  /// none.
+  const std::vector<unsigned char>& reversedCells() const { return this->Reversed; }
   /// The mesh with the points that its cells have in the data set.
   const Mesh& given() const { return this->Given ? *this->Given : *this->TheMesh; }
 
@@ -86,6 +100,7 @@ public:
   const unsigned char* ghostCells() const { return this->Ghosts; }
 
 private:
+  void setMirrored(bool mirrored);
   void takePoints(vtkDataSet* input);
   void takeCells(vtkDataSet* input);
   bool acrossY(Index first) const;
@@ -94,6 +109,8 @@ private:
   std::vector<unsigned char> Types;
   std::vector<Index> Offsets;
   std::vector<Index> Connectivity;
+  std::vector<Index> OrientedConnectivity;
+  std::vector<unsigned char> Reversed;
   const unsigned char* Ghosts = nullptr;
   int Threads;
   bool SinglePrecision = false;
@@ -106,18 +123,15 @@ private:
   std::unique_ptr<Mesh> TheMesh;
 };
 
-/**
- * @brief Throws Error unless the orientation allows what follows, or describes it.
- * @return a sentence for the user ("All 120 cells are reversed ..."), empty when all is well
- */
+/// Says how the cells are oriented, in a sentence for the user; empty when all is well.
 TAUTLINECORE_EXPORT std::string describe(const Orientation& orientation, const Mesh& mesh);
 
 /**
- * @brief Reverses the order of the points of every cell in a copy that only this output uses.
- * Throws Error for data sets other than unstructured grids and poly data, and for cells of higher
- * order.
+ * @brief Reverses the order of the points of cells in a copy that only this output uses. Throws
+ * Error for data sets other than unstructured grids and poly data, and for cells of higher order.
+ * @param flags one per cell, nonzero for those to reverse; empty: all
  */
-TAUTLINECORE_EXPORT void flipCells(vtkDataSet* data);
+TAUTLINECORE_EXPORT void flipCells(vtkDataSet* data, const std::vector<unsigned char>& flags = {});
 
 /// Cells to leave out of statistics: ghosts, and 2D cells beside 3D ones. Empty if there are none.
 TAUTLINECORE_EXPORT std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter);

@@ -61,33 +61,21 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
   {
     this->Adapter.enterFrame();
   }
-  Mesh& mesh = this->Adapter.mesh();
-  if (mesh.dimension() == Dimension::None)
+  if (this->mesh().dimension() == Dimension::None)
   {
     throw Error("There is no element whose points could move. " + this->Adapter.notice());
   }
-  if (mesh.higherOrderCells() > 0)
+  if (this->mesh().higherOrderCells() > 0)
   {
-    throw Error("The mesh has " + std::to_string(mesh.higherOrderCells()) +
+    throw Error("The mesh has " + std::to_string(this->mesh().higherOrderCells()) +
       " cells of quadratic or higher order, whose midpoints would stay behind: run Tessellate "
       "first.");
   }
-  this->Validity.resize(mesh.view().numberOfCells);
-  mesh.classifyCells(this->Validity.data(), threads);
-  const Orientation orientation = mesh.orientation(this->Validity.data());
-  if (orientation.state == Orientation::Mixed)
-  {
-    throw Error(describe(orientation, mesh));
-  }
-  if (orientation.state == Orientation::Reversed)
-  {
-    this->Notice += (this->Notice.empty() ? "" : " ") + describe(orientation, mesh) +
-      " It is treated as if its cells were flipped.";
-    this->Adapter.setMirrored(true);
-    mesh.classifyCells(this->Validity.data(), threads);
-  }
+  this->Validity.resize(this->mesh().view().numberOfCells);
+  const std::string oriented = this->Adapter.orient(this->Validity.data());
+  const Mesh& mesh = this->mesh();
   for (const std::string& more :
-    { describeDuplicates(findSkin(mesh).duplicates), this->Adapter.notice() })
+    { oriented, describeDuplicates(findSkin(mesh).duplicates), this->Adapter.notice() })
   {
     this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
   }

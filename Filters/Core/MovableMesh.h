@@ -23,15 +23,15 @@ struct BoundaryShape;
 
 /**
  * @class tautline::MovableMesh
- * @brief A data set whose points can move. Its orientation is settled: reversed throughout is
- * viewed as its mirror image, mixed is refused.
+ * @brief A data set whose points can move. Its orientation is made consistent, see
+ * MeshAdapter::orient().
  */
 class TAUTLINECORE_EXPORT MovableMesh
 {
 public:
   /**
    * @brief Throws Error that names the remedy for points that are implicit (image data), cells of
-   * higher order, no cell at all that is measured, and mixed orientation.
+   * higher order, no cell at all that is measured, and parts without a consistent orientation.
    * @param mergePoints whether coincident points on seams are one: they move together
    * @param framed whether mesh() is in a frame of its own where cells are of extreme size or far
    * from the origin; all points and lengths given and taken here are then in it

@@ -1,11 +1,14 @@
 #include "TargetChoice.h"
 
 #include "MeshAdapter.h"
+#include "tautline/Mesh/CellOrder.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -78,6 +81,39 @@ std::vector<double> asMatrices(const std::vector<double>& values, int components
   return matrices;
 }
 
+/// Lists the cells of the reference in the opposite order where `mesh` does, whose cells were
+/// oriented.
+void orientAlike(const Mesh& mesh, MeshAdapter& reference)
+{
+  const MeshView& view = mesh.view();
+  const MeshView& other = reference.mesh().view();
+  if (view.numberOfCells != other.numberOfCells)
+  {
+    return; // referenceTargets() reports it
+  }
+  std::vector<unsigned char> reverse(view.numberOfCells, 0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      const Index* wanted = view.connectivity + view.offsets[cell];
+      if (cornerType(other.cellTypes[cell]) == block.type)
+      {
+        std::array<Index, MaxNodes> turned = {};
+        std::copy_n(other.connectivity + other.offsets[cell], nodes, turned.begin());
+        reverseCell(block.type, turned.data());
+        reverse[cell] = std::equal(wanted, wanted + nodes, turned.begin());
+      }
+    }
+  }
+  if (std::any_of(reverse.begin(), reverse.end(), [](unsigned char flag) { return flag != 0; }))
+  {
+    reference.reverseCells(reverse);
+  }
+}
+
 /// Views the reference, as its mirror image if it is reversed.
 Targets fromReference(const Mesh& mesh, vtkDataSet* reference, int threads)
 {
@@ -87,6 +123,7 @@ Targets fromReference(const Mesh& mesh, vtkDataSet* reference, int threads)
                 "Reference to a mesh with the same cells.");
   }
   MeshAdapter other(reference, threads);
+  orientAlike(mesh, other);
   std::vector<signed char> validity(other.mesh().view().numberOfCells);
   other.mesh().classifyCells(validity.data(), threads);
   other.mesh().setMirrored(

@@ -12,7 +12,8 @@
  * Takes data sets with explicit points, or blocks of these (one after the other, each with its own
  * boundary): triangles, quadrilaterals, tetrahedra and hexahedra (pointwise methods: wedges and
  * pyramids, too). The elements must be valid to begin with. A mesh reversed throughout is treated
- * as its mirror image; surfaces in space, mixed orientation, image data (implicit points),
+ * as its mirror image, and so is a cell that lists its points in the opposite order of the
+ * others. Surfaces in space, parts without a consistent orientation, image data (implicit points),
  * polygons, polyhedra and cells of higher order are refused.
  *
  * @par Input ports:

@@ -87,7 +87,7 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
         this->readArrays(choice, algorithm);
       }
     });
-  this->settleOrientation(processes, threads);
+  this->settleOrientation(processes);
   this->settleDimension(choice, processes);
   this->Part.communicator = processes.communicator();
   this->Part.globalIds = processes.count() > 1 ? mesh.globalIds.data() : nullptr;
@@ -152,44 +152,22 @@ void EllipticInput::readArrays(const EllipticChoice& choice, vtkAlgorithm* algor
 }
 
 //------------------------------------------------------------------------------
-void EllipticInput::settleOrientation(const Processes& processes, int threads)
+void EllipticInput::settleOrientation(const Processes& processes)
 {
-  Mesh& mesh = this->Adapter->mesh();
-  Orientation orientation;
+  // Each part is given a positive size, so that processes need not agree on more.
+  std::string text;
   processes.together(
     [&]()
     {
+      const Mesh& mesh = this->Adapter->mesh();
       if (mesh.higherOrderCells() > 0)
       {
         throw Error("The mesh has " + std::to_string(mesh.higherOrderCells()) +
           " cells of quadratic or higher order: run Tessellate first.");
       }
-      std::vector<signed char> validity(mesh.view().numberOfCells);
-      mesh.classifyCells(validity.data(), threads);
-      orientation = mesh.orientation(validity.data());
-      if (orientation.state == Orientation::Mixed)
-      {
-        throw Error(describe(orientation, mesh));
-      }
+      text = this->Adapter->orient();
     });
-  const bool reversed = orientation.state == Orientation::Reversed;
-  const bool other = !reversed && orientation.positiveCells > 0;
-  if (processes.maximum(reversed) == 0)
-  {
-    return;
-  }
-  if (processes.maximum(other) > 0)
-  {
-    throw Error(
-      "The orientation of the mesh is mixed: on some processes its cells are reversed, on "
-      "others they are not. Make the orientation consistent first.");
-  }
-  mesh.setMirrored(true);
-  if (reversed)
-  {
-    this->Notice = describe(orientation, mesh) + " It is treated as if its cells were flipped." +
-      (this->Notice.empty() ? "" : " ") + this->Notice;
-  }
+  this->Notice = text + (text.empty() || this->Notice.empty() ? "" : " ") + this->Notice;
 }
 
 //------------------------------------------------------------------------------

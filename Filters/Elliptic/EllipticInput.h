@@ -49,8 +49,8 @@ class EllipticInput
 public:
   /**
    * @brief Collective. Throws Error, on all processes, for what EllipticSystem rejects, arrays and
-   * expressions that do not fit, cells of higher order, polygons and polyhedra, and mixed
-   * orientation.
+   * expressions that do not fit, cells of higher order, polygons and polyhedra, and parts
+   * without a consistent orientation.
    */
   EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkAlgorithm* algorithm,
     const Processes& processes, int threads);
@@ -61,7 +61,7 @@ public:
 
 private:
   void readArrays(const EllipticChoice& choice, vtkAlgorithm* algorithm);
-  void settleOrientation(const Processes& processes, int threads);
+  void settleOrientation(const Processes& processes);
   void settleDimension(const EllipticChoice& choice, const Processes& processes);
   void markFixed(const EllipticChoice& choice, vtkAlgorithm* algorithm, const Processes& processes);
 

@@ -30,6 +30,8 @@ HorizonInput::HorizonInput(
     this->Representative = adapter.coincident().representative;
     this->Notice = describeMerged(adapter.coincident(), adapter.given());
   }
+  const std::string oriented = adapter.orient();
+  this->Notice += (this->Notice.empty() || oriented.empty() ? "" : " ") + oriented;
   const class Mesh& mesh = adapter.mesh();
   const MeshView& view = mesh.view();
   const CellBlock* triangles = nullptr;

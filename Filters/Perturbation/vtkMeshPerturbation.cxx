@@ -49,14 +49,6 @@ std::vector<unsigned char> fixedPoints(
   }
   return fixed;
 }
-
-/// A mesh reversed throughout is treated as its mirror image.
-void settleOrientation(tautline::Mesh& mesh, int threads)
-{
-  std::vector<signed char> validity(mesh.view().numberOfCells);
-  mesh.classifyCells(validity.data(), threads);
-  mesh.setMirrored(mesh.orientation(validity.data()).state == tautline::Orientation::Reversed);
-}
 }
 
 //------------------------------------------------------------------------------
@@ -126,7 +118,8 @@ void vtkMeshPerturbation::Perturb(
   {
     throw tautline::Error("There is no element to perturb. " + adapter.notice());
   }
-  settleOrientation(mesh, this->Threads);
+  const std::string oriented = adapter.orient();
+  notices += (notices.empty() || oriented.empty() ? "" : " ") + oriented;
   const std::vector<tautline::Index>& one = adapter.coincident().representative;
   std::vector<unsigned char> fixed =
     fixedPoints(tautline::chosenArray(this, FixedArray, points, "of fixed points"), adapter,

@@ -298,24 +298,23 @@ void vtkElementQuality::Measure(vtkDataSet* input, vtkDataSet* reference, vtkDat
 void vtkElementQuality::SettleOrientation(
   tautline::MeshAdapter& adapter, signed char* validity, vtkDataSet* output)
 {
-  tautline::Mesh& mesh = adapter.mesh();
-  mesh.classifyCells(validity, this->Threads);
-  const tautline::Orientation orientation = mesh.orientation(validity);
-  std::string text = describe(orientation, mesh);
-  if (orientation.state == tautline::Orientation::Reversed)
+  std::string text;
+  if (this->ReversedMesh == MEASURE_AS_GIVEN)
   {
-    text += this->ReversedMesh == MEASURE_AS_GIVEN ? " Its elements count as inverted."
-      : this->ReversedMesh == MEASURE_FLIPPED      ? " It is measured as if its cells were flipped."
-                                                   : " Its cells are flipped in the output.";
-    if (this->ReversedMesh != MEASURE_AS_GIVEN)
-    {
-      mesh.setMirrored(true);
-      mesh.classifyCells(validity, this->Threads);
-    }
-    if (this->ReversedMesh == FLIP_OUTPUT)
-    {
-      tautline::flipCells(output);
-    }
+    const tautline::Mesh& mesh = adapter.mesh();
+    mesh.classifyCells(validity, this->Threads);
+    text = describe(mesh.orientation(validity), mesh);
+    text += text.empty() ? "" : " Cells of negative size count as inverted.";
+  }
+  else
+  {
+    text = adapter.orient(validity, false); // measuring needs no orientation
+  }
+  if (this->ReversedMesh == FLIP_OUTPUT &&
+    (adapter.mesh().mirrored() || !adapter.reversedCells().empty()))
+  {
+    tautline::flipCells(output, adapter.reversedCells());
+    text += " These cells are flipped in the output.";
   }
   for (const std::string& sentence : { text, adapter.notice() })
   {

@@ -4,6 +4,7 @@
 #include "MetricSelection.h"
 #include "Processes.h"
 #include "tautline/Core/Memory.h"
+#include "tautline/Mesh/CellOrder.h"
 #include "tautline/Quality/Compare.h"
 
 #include "vtkCellData.h"
@@ -80,14 +81,40 @@ double addDisplacement(
   return largest;
 }
 
-/// Mirrors both meshes if both are reversed throughout.
-void settleOrientation(tautline::Mesh& before, tautline::Mesh& after,
-  const signed char* validBefore, const signed char* validAfter)
+/// Lists the cells of both meshes in a consistent order, and mirrors both if both are reversed.
+void settleOrientation(tautline::MeshAdapter& before, tautline::MeshAdapter& after,
+  signed char* validBefore, signed char* validAfter, int threads)
 {
-  const bool reversed = before.orientation(validBefore).state == tautline::Orientation::Reversed &&
-    after.orientation(validAfter).state == tautline::Orientation::Reversed;
-  before.setMirrored(reversed);
-  after.setMirrored(reversed);
+  using namespace tautline;
+  before.mesh().classifyCells(validBefore, threads);
+  Orientation first = before.mesh().orientation(validBefore);
+  if (first.state == Orientation::Mixed)
+  {
+    // What is the wrong way round in one of them only is inverted there.
+    after.mesh().classifyCells(validAfter, threads);
+    std::vector<unsigned char> reverse = consistentOrder(before.mesh(), validBefore).reverse;
+    const std::vector<unsigned char> other = consistentOrder(after.mesh(), validAfter).reverse;
+    if (!reverse.empty() && !other.empty())
+    {
+      std::transform(reverse.begin(), reverse.end(), other.begin(), reverse.begin(),
+        [](unsigned char a, unsigned char b) { return a && b; });
+      before.reverseCells(reverse);
+      after.reverseCells(reverse);
+      before.mesh().classifyCells(validBefore, threads);
+      first = before.mesh().orientation(validBefore);
+    }
+  }
+  after.mesh().classifyCells(validAfter, threads);
+  if (first.state == Orientation::Reversed &&
+    after.mesh().orientation(validAfter).state == Orientation::Reversed)
+  {
+    for (MeshAdapter* adapter : { &before, &after })
+    {
+      adapter->mesh().setMirrored(true);
+    }
+    before.mesh().classifyCells(validBefore, threads);
+    after.mesh().classifyCells(validAfter, threads);
+  }
 }
 }
 
@@ -196,11 +223,7 @@ void vtkMeshComparison::Compare(
 
   signed char* validBefore = addFlags(output, "Validity_before");
   signed char* validAfter = addFlags(output, "Validity_after");
-  was.mesh().classifyCells(validBefore, this->Threads);
-  is.mesh().classifyCells(validAfter, this->Threads);
-  settleOrientation(was.mesh(), is.mesh(), validBefore, validAfter);
-  was.mesh().classifyCells(validBefore, this->Threads);
-  is.mesh().classifyCells(validAfter, this->Threads);
+  settleOrientation(was, is, validBefore, validAfter, this->Threads);
   const Index cells = output->GetNumberOfCells();
   totals.invertedBefore += countValidity(validBefore, is.ghostCells(), cells).inverted;
   totals.invertedAfter += countValidity(validAfter, is.ghostCells(), cells).inverted;

@@ -8,8 +8,9 @@
  * input. Its report is a guarantee: that every element is valid, or which are not, where they are,
  * and why.
  *
- * A mesh reversed throughout is treated as its mirror image; one of mixed orientation, image data
- * (implicit points) and cells of higher order are refused. For better elements run vtkMeshOptimizer
+ * A mesh reversed throughout is treated as its mirror image, and so is a cell that lists its points
+ * in the opposite order of the others. Parts without a consistent orientation, image data (implicit
+ * points) and cells of higher order are refused. For better elements run vtkMeshOptimizer
  * afterwards.
  *
  * @par Input ports:

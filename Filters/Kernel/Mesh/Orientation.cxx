@@ -1,7 +1,10 @@
 #include "Mesh.h"
 
-#include "tautline/Core/UnionFind.h"
+#include "CellOrder.h"
 #include "FacetTable.h"
+#include "tautline/Core/UnionFind.h"
+
+#include <utility>
 
 namespace tautline
 {
@@ -46,6 +49,41 @@ double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node, co
   return sum;
 }
 
+/// A finite point that sizes are measured from, so that they do not suffer from a distant origin.
+Vec3 finitePoint(const MeshView& view)
+{
+  Vec3 point = { 0, 0, 0 };
+  for (Index i = 0; i < view.numberOfPoints; ++i)
+  {
+    point = pointOf(view, i);
+    if (std::isfinite(dot(point, point)))
+    {
+      break;
+    }
+  }
+  return point;
+}
+
+/// What decides which way round a connected part is.
+struct PartSign
+{
+  double sum = 0, magnitude = 0;
+  Index majority = 0; // positive less inverted cells
+
+  void add(double size, int validity)
+  {
+    this->sum += size;
+    this->magnitude += std::abs(size);
+    this->majority += validity; // 1, 0 or -1
+  }
+  bool reversed(double sign) const
+  {
+    constexpr double rounding = 1e-9;
+    return std::abs(this->sum) > rounding * this->magnitude ? sign * this->sum < 0
+                                                            : this->majority < 0;
+  }
+};
+
 /// Counts the parts, which `sets` has by cell, and those that are reversed: the signed size of a
 /// part decides, tangled or not; where it is lost to rounding (a vertex far out), the majority.
 void countParts(const Mesh& mesh, const signed char* validity, UnionFind& sets, Orientation& result)
@@ -53,21 +91,8 @@ void countParts(const Mesh& mesh, const signed char* validity, UnionFind& sets, 
   const MeshView& view = mesh.view();
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
   const bool haveSigns = mesh.dimension() != Dimension::Surface;
-  struct Part
-  {
-    double sum = 0, magnitude = 0;
-    Index majority = 0; // positive less inverted cells
-  };
-  std::vector<Part> parts(view.numberOfCells);
-  Vec3 origin = { 0, 0, 0 };
-  for (Index i = 0; i < view.numberOfPoints; ++i)
-  {
-    origin = pointOf(view, i);
-    if (std::isfinite(dot(origin, origin)))
-    {
-      break;
-    }
-  }
+  std::vector<PartSign> parts(view.numberOfCells);
+  const Vec3 origin = finitePoint(view);
   for (const CellBlock& block : mesh.blocks())
   {
     if (topology(block.type).dimension == dimension)
@@ -79,10 +104,7 @@ void countParts(const Mesh& mesh, const signed char* validity, UnionFind& sets, 
         {
           const double size =
             signedSize(mesh, topology(block.type), view.connectivity + view.offsets[cell], origin);
-          Part& part = parts[sets.find(cell)];
-          part.sum += size;
-          part.magnitude += std::abs(size);
-          part.majority += validity[cell]; // 1, 0 or -1
+          parts[sets.find(cell)].add(size, validity[cell]);
         }
         result.parts += sets.find(cell) == cell;
       }
@@ -90,11 +112,9 @@ void countParts(const Mesh& mesh, const signed char* validity, UnionFind& sets, 
   }
   if (haveSigns)
   {
-    constexpr double rounding = 1e-9;
     const double sign = mesh.mirrored() ? -1 : 1;
-    result.reversedParts = std::count_if(parts.begin(), parts.end(),
-      [=](const Part& p)
-      { return std::abs(p.sum) > rounding * p.magnitude ? sign * p.sum < 0 : p.majority < 0; });
+    result.reversedParts = std::count_if(
+      parts.begin(), parts.end(), [=](const PartSign& p) { return p.reversed(sign); });
   }
 }
 }
@@ -154,5 +174,110 @@ Orientation Mesh::orientation(const signed char* validity) const
     result.state = Orientation::Reversed;
   }
   return result;
+}
+
+//------------------------------------------------------------------------------
+CellOrder consistentOrder(const Mesh& mesh, const signed char* validity)
+{
+  const MeshView& view = mesh.view();
+  const Index n = view.numberOfCells;
+  // Cell c in the order it has is c, in the opposite order c + n. Orders that agree are in one set;
+  // where a cell is in one set with its own opposite, its part has no consistent order.
+  UnionFind sets(2 * n);
+  FacetTable(mesh).forEachFacet(
+    [&](Index, const FacetUse* uses, Index count)
+    {
+      if (count == 2)
+      {
+        const Index a = uses[0].cell, b = uses[1].cell;
+        const Index other = uses[0].forward == uses[1].forward ? n : 0;
+        sets.join(a, b + other);
+        sets.join(a + n, b + n - other);
+      }
+    });
+
+  CellOrder order;
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  const bool haveSigns = mesh.dimension() != Dimension::Surface;
+  const double sign = mesh.mirrored() ? -1 : 1;
+  const Vec3 origin = finitePoint(view);
+  // By the first cell of each part: sizes, cells in the order of that one less those in the
+  // opposite order, and all cells.
+  std::vector<PartSign> signs(n);
+  std::vector<Index> alike(n, 0), size(n, 0);
+  std::vector<unsigned char> opposite(n, 0);
+  std::vector<std::pair<Index, CellType>> ofDimension;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    for (Index i = 0; i < block.count && topology(block.type).dimension == dimension; ++i)
+    {
+      ofDimension.emplace_back(block.cell(i), block.type);
+    }
+  }
+  order.cells = static_cast<Index>(ofDimension.size());
+  for (const auto& [cell, type] : ofDimension)
+  {
+    const Index as = sets.find(cell), against = sets.find(cell + n);
+    if (as == against)
+    {
+      order.ambiguous += as == cell;
+      order.firstAmbiguous = order.firstAmbiguous < 0 ? cell : order.firstAmbiguous;
+      continue;
+    }
+    const Index part = std::min(as, against);
+    opposite[cell] = as != part;
+    ++size[part];
+    alike[part] += opposite[cell] ? -1 : 1;
+    if (haveSigns && validity[cell] >= Inverted)
+    {
+      const double own =
+        signedSize(mesh, topology(type), view.connectivity + view.offsets[cell], origin);
+      signs[part].add(opposite[cell] ? -own : own,
+        opposite[cell] ? -static_cast<int>(validity[cell]) : validity[cell]);
+    }
+  }
+  for (const auto& item : ofDimension)
+  {
+    const Index cell = item.first;
+    const Index as = sets.find(cell), against = sets.find(cell + n);
+    if (as != against)
+    {
+      const Index part = std::min(as, against);
+      // A single cell has no neighbour to tell its order: if its size is negative, it is inverted.
+      const bool turn = !haveSigns ? alike[part] < 0 : size[part] > 1 && signs[part].reversed(sign);
+      opposite[cell] = opposite[cell] != turn;
+      order.reversed += opposite[cell];
+    }
+  }
+  if (order.reversed > 0)
+  {
+    order.reverse = std::move(opposite);
+  }
+  return order;
+}
+
+//------------------------------------------------------------------------------
+void reverseCell(CellType type, Index* nodes)
+{
+  switch (type)
+  {
+    case CellType::Triangle:
+    case CellType::Tetrahedron:
+      std::swap(nodes[1], nodes[2]);
+      return;
+    case CellType::Quadrilateral:
+    case CellType::Pyramid:
+      std::swap(nodes[1], nodes[3]);
+      return;
+    case CellType::Hexahedron:
+      std::swap_ranges(nodes, nodes + 4, nodes + 4);
+      return;
+    case CellType::Wedge:
+      std::swap_ranges(nodes, nodes + 3, nodes + 3);
+      return;
+    default:
+      throw Error("Only triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids can "
+                  "be listed in the opposite order.");
+  }
 }
 }

@@ -2,6 +2,7 @@
 // mixed.
 #include "Check.h"
 #include "Blocks.h"
+#include "tautline/Mesh/CellOrder.h"
 
 #include <algorithm>
 
@@ -89,6 +90,28 @@ void testOrientation(CellType type)
   TAUTLINE_CHECK_EQUAL(o.reversedParts, 1);
   TAUTLINE_CHECK_EQUAL(o.disagreeing, 0);
 
+  // The order found makes both consistent.
+  for (MeshData* of : { &mixed, &parts })
+  {
+    const Mesh given(of->view());
+    const CellOrder order = consistentOrder(given, validityOf(given).data());
+    TAUTLINE_CHECK_EQUAL(order.reversed, of == &mixed ? 1 : cells);
+    TAUTLINE_CHECK_EQUAL(order.ambiguous, 0);
+    TAUTLINE_CHECK_EQUAL(order.cells, of->numberOfCells());
+    for (Index i = 0; i < of->numberOfCells(); ++i)
+    {
+      TAUTLINE_CHECK_EQUAL(
+        static_cast<bool>(order.reverse[i]), of == &mixed ? i == odd : i >= cells);
+      if (order.reverse[i])
+      {
+        reverseCell(type, of->connectivity.data() + of->offsets[i]);
+      }
+    }
+    o = orientationOf(Mesh(of->view()));
+    TAUTLINE_CHECK_EQUAL(o.state, Orientation::Consistent);
+    TAUTLINE_CHECK_EQUAL(o.positiveCells, of->numberOfCells());
+  }
+
   // A vertex pulled through its neighbours tangles the mesh; its orientation stays what it was.
   for (const MeshData* start : std::initializer_list<const MeshData*>{ &data, &reversed })
   {
@@ -172,6 +195,54 @@ void testSurfaceOrientation()
   moebius.addCell(CellType::Quadrilateral, { 2 * count - 2, 2 * count - 1, 0, 1 });
   TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(moebius.view())).state, Orientation::Mixed);
   TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(moebius.view())).disagreeing, 1);
+  const Mesh band(moebius.view());
+  const CellOrder order = consistentOrder(band, validityOf(band).data());
+  TAUTLINE_CHECK_EQUAL(order.ambiguous, 1);
+  TAUTLINE_CHECK_EQUAL(order.firstAmbiguous, 0);
+  TAUTLINE_CHECK_EQUAL(order.reversed, 0);
+  // On a surface the majority keeps its order.
+  const Mesh surface(curved.view());
+  const CellOrder few = consistentOrder(surface, validityOf(surface).data());
+  TAUTLINE_CHECK_EQUAL(few.reversed, 1);
+  TAUTLINE_CHECK_EQUAL(few.reverse[11], 1);
+}
+
+/// Which cells are in which order does not matter for a tangled mesh either: neighbours tell.
+void testTangledAndMixed()
+{
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    MeshData data = blockMesh(type, 6, 6, topology(type).dimension == 2 ? 0 : 6);
+    const Boundary boundary = Mesh(data.view()).boundary();
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      if (!boundary.isBoundaryPoint[i] && i % 3 == 0)
+      {
+        data.setPoint(i, data.point(i) + Vec3{ 1.3, -0.7, 0 });
+      }
+    }
+    const std::vector<signed char> before = validityOf(Mesh(data.view()));
+    MeshData mixed = data;
+    Index flipped = 0;
+    for (Index i = 0; i < data.numberOfCells(); i += 1 + i % 4)
+    {
+      flip(mixed, i);
+      ++flipped;
+    }
+    const Mesh given(mixed.view());
+    const CellOrder order = consistentOrder(given, validityOf(given).data());
+    TAUTLINE_CHECK_EQUAL(order.reversed, flipped);
+    for (Index i = 0; i < data.numberOfCells() && !order.reverse.empty(); ++i)
+    {
+      if (order.reverse[i])
+      {
+        reverseCell(type, mixed.connectivity.data() + mixed.offsets[i]);
+      }
+    }
+    TAUTLINE_CHECK(std::count(before.begin(), before.end(), Inverted) > 0);
+    TAUTLINE_CHECK(validityOf(Mesh(mixed.view())) == before);
+  }
 }
 
 }
@@ -199,5 +270,6 @@ int TestOrientation(int, char*[])
   testMostlyInverted();
   testFarPoint();
   testSurfaceOrientation();
+  testTangledAndMixed();
   return exitCode();
 }

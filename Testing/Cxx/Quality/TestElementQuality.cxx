@@ -338,7 +338,50 @@ void testReversed()
   Messages messages(filter);
   filter->Update();
   TAUTLINE_CHECK(messages.has("orientation of the mesh is mixed"));
+  TAUTLINE_CHECK(messages.has("1 of the " + std::to_string(cells) + " cells is treated as if"));
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 0);
+  for (Index cell = 0; cell < cells; ++cell)
+  {
+    TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", cell), values[cell], 1e-13);
+  }
+  filter->SetReversedMesh(vtkElementQuality::MEASURE_AS_GIVEN);
+  filter->Update();
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 1);
+  filter->SetReversedMesh(vtkElementQuality::FLIP_OUTPUT);
+  filter->Update();
+  vtkNew<vtkElementQuality> again;
+  again->SetReversedMesh(vtkElementQuality::MEASURE_AS_GIVEN);
+  again->SetInputData(filter->GetOutputDataObject(0));
+  Messages second(again);
+  again->Update();
+  TAUTLINE_CHECK(second.empty());
+  TAUTLINE_CHECK_EQUAL(statistic(again, "Inverted"), 0);
+}
+
+/// A surface without a consistent orientation can be measured.
+void testMoebius()
+{
+  constexpr int count = 12;
+  MeshData band;
+  for (int i = 0; i < count; ++i)
+  {
+    const double a = 2 * M_PI * i / count, half = 0.3;
+    const Vec3 out = { std::cos(a), std::sin(a), 0 };
+    const Vec3 across = half * (std::cos(a / 2) * out + Vec3{ 0, 0, std::sin(a / 2) });
+    band.addPoint(out - across);
+    band.addPoint(out + across);
+  }
+  for (Index i = 0; i + 1 < count; ++i)
+  {
+    band.addCell(CellType::Quadrilateral, { 2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2 });
+  }
+  band.addCell(CellType::Quadrilateral, { 2 * count - 2, 2 * count - 1, 0, 1 });
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(toGrid(band));
+  Messages messages(filter);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("like those of a Moebius band"));
+  TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), count);
 }
 
 void testTargets()
@@ -489,6 +532,7 @@ int TestElementQuality(int, char*[])
   testBlocks();
   testSpecialCells();
   testReversed();
+  testMoebius();
   testTargets();
   testErrors();
   testThreads();
