@@ -184,7 +184,7 @@ void requireMemory(double bytes, const std::string& what, const std::string& rem
   const double allowed = limit > 0 ? limit : availableMemory();
   if (!(bytes <= allowed))
   {
-    throw Error(what + " takes about " + memoryText(bytes) + " of memory and " +
+    throw MemoryError(what + " takes about " + memoryText(bytes) + " of memory and " +
       memoryText(allowed) + (limit > 0 ? " are allowed: " : " are available: ") + remedy);
   }
 }

@@ -10,6 +10,8 @@
 #ifndef tautline_Memory_h
 #define tautline_Memory_h
 
+#include "Types.h"
+
 #include "tautline/KernelExport.h"
 
 #include <exception>
@@ -24,8 +26,15 @@ namespace tautline
  */
 TAUTLINE_KERNEL_EXPORT double availableMemory();
 
+/// What requireMemory() throws.
+class TAUTLINE_KERNEL_EXPORT MemoryError : public Error
+{
+public:
+  using Error::Error;
+};
+
 /**
- * @brief Throws Error if so many bytes are not available.
+ * @brief Throws MemoryError if so many bytes are not available.
  *
  * The message is "what takes about 3.2 GiB of memory and 1.5 GiB are available: remedy".
  * @param bytes an estimate; NaN and infinity are too much

@@ -1,5 +1,7 @@
 #include "HessianMatrix.h"
 
+#include "tautline/Core/Memory.h"
+
 #include "ElementHessianBatches.h"
 #include "tautline/Core/Parallel.h"
 
@@ -50,6 +52,9 @@ HessianMatrix::HessianMatrix(
 {
   this->findPattern();
   const std::size_t numbers = static_cast<std::size_t>(this->Size) * this->Size;
+  requireMemory(static_cast<double>(sizeof(double) * numbers) *
+      static_cast<double>(this->Columns.size() + static_cast<std::size_t>(this->Rows)),
+    "the matrix of Newton's method", "choose another optimizer, such as Local Newton");
   this->Blocks.assign(numbers * this->Columns.size(), 0.0);
   this->Inverse.assign(numbers * this->Rows, 0.0);
 }
