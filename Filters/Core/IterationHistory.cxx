@@ -50,6 +50,18 @@ std::string summarize(
        << (!result.untangled              ? "."
               : result.invertedAfter == 0 ? "; it was untangled first."
                                           : "; untangling came first and left some inverted.");
+  if (result.restored > 0)
+  {
+    text << "\n"
+         << result.restored << (result.restored == 1 ? " point" : " points")
+         << " went back to where they were: an element there would be worse than the worst one of "
+            "the input.";
+  }
+  if (result.unchanged)
+  {
+    text << "\nThe points are those of the input: without an element worse than its worst one, no "
+            "points with a smaller objective were found.";
+  }
   text << surfaceErrorSentence(result.surfaceError);
   return text.str();
 }

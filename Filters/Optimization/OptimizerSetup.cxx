@@ -128,6 +128,10 @@ const Targets* OptimizerSetup::target(
 void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const InputBlock& block)
 {
   std::vector<Objective>& objectives = this->Options.objectives;
+  if (settings.preset == Preset::UniformSize && settings.boundary == BoundaryMotion::Free)
+  {
+    this->keepTotalSize();
+  }
   this->Weights = scalarsOf(
     chosenArray(settings.arrays, WeightArray, block.input, "of element weights"), "weights");
   if (settings.preset != Preset::Custom)
@@ -165,6 +169,36 @@ void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const Inpu
     objective.evaluation.threads = this->Options.threads;
     objective.elementWeights = this->Weights.empty() ? nullptr : this->Weights.data();
   }
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::keepTotalSize()
+{
+  const Mesh& mesh = this->TheMesh.given();
+  std::vector<double> sizes(mesh.view().numberOfCells);
+  EvaluationOptions evaluation;
+  evaluation.threads = this->Options.threads;
+  evaluateMetric(mesh, Metric::Size, evaluation, sizes.data());
+  double total = 0;
+  Index valid = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+  {
+    total += this->TheMesh.validity()[i] == Valid ? sizes[i] : 0.0;
+    valid += this->TheMesh.validity()[i] == Valid;
+  }
+  if (valid == 0)
+  {
+    throw Error("No element is valid, so that there is no mean size to aim at: untangle the mesh "
+                "first, or fix its boundary.");
+  }
+  sizes.assign(sizes.size(), total / static_cast<double>(valid));
+  Targets& mean = this->MadeTargets[static_cast<std::size_t>(TargetType::Size)];
+  mean = sizeTargets(mesh, sizes.data());
+  Objective& size = this->Options.objectives[1];
+  size.metric = Metric::SizeBarrier;
+  size.objectiveTemplate = ObjectiveTemplate::Sum;
+  size.evaluation.targets = &mean;
+  this->Options.scalarization.method = Scalarization::WeightedSum;
 }
 
 //------------------------------------------------------------------------------

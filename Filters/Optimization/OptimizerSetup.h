@@ -87,6 +87,9 @@ private:
   void setLimits(const OptimizerSettings& settings, const InputBlock& block);
   void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
   void setUnit(Objective& objective) const;
+  /// Of the preset UniformSize with a free boundary: sizes are compared with their mean, as the sum
+  /// of their squares would shrink the mesh to a point.
+  void keepTotalSize();
   const Targets* target(
     const OptimizerSettings& settings, const InputBlock& block, TargetType type);
 

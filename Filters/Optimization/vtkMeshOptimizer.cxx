@@ -87,6 +87,35 @@ void vtkMeshOptimizer::AddObjectiveByName(
 }
 
 //------------------------------------------------------------------------------
+void vtkMeshOptimizer::SetWorstMetric(int metric)
+{
+  if (metric < -1 || metric >= static_cast<int>(tautline::metricRegistry().size()))
+  {
+    vtkErrorMacro(<< "There is no metric number " << metric
+                  << "; -1 is automatic. Element Quality and its help page list the metrics.");
+    return;
+  }
+  if (metric != this->WorstMetric)
+  {
+    this->WorstMetric = metric;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshOptimizer::SetWorstMetricByName(const char* name)
+{
+  const tautline::MetricInfo* info = tautline::findMetric(name ? name : "");
+  if (!info)
+  {
+    vtkErrorMacro(<< "There is no metric '" << (name ? name : "")
+                  << "'. Element Quality and its help page list them.");
+    return;
+  }
+  this->SetWorstMetric(static_cast<int>(info->metric));
+}
+
+//------------------------------------------------------------------------------
 void vtkMeshOptimizer::RemoveAllObjectives()
 {
   this->Rows.clear();
@@ -322,6 +351,10 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
     options.improveWorst = this->ImproveWorst;
   }
   tautline::applyPreset(settings.preset, options);
+  if (this->WorstMetric >= 0)
+  {
+    options.worstMetric = static_cast<tautline::Metric>(this->WorstMetric);
+  }
   options.stopping.maximumSeconds = this->TimeLimit;
   options.surface.project = this->ProjectToSurface;
   options.allowInversion = this->AllowInversion;
@@ -527,6 +560,7 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PatchIterations: " << this->PatchIterations << "\n";
   os << indent << "Relaxation: " << this->Relaxation << "\n";
   os << indent << "ImproveWorst: " << this->ImproveWorst << "\n";
+  os << indent << "WorstMetric: " << this->WorstMetric << "\n";
   os << indent << "Animation: " << this->Animation << "\n";
   os << indent << "AnimationMemory: " << this->AnimationMemory << "\n";
 }

@@ -12,8 +12,9 @@
  * element becomes inverted unless AllowInversion. An input with inverted elements is untangled
  * first (UntangleFirst) where the objectives cannot repair it. Points of a planar mesh stay in its
  * plane, those of a surface are projected back to the input surface. A mesh reversed throughout is
- * treated as its mirror image; one of mixed orientation is refused. Image data (implicit points)
- * and cells of higher order are refused too.
+ * treated as its mirror image, and so is a cell that lists its points in the opposite order of the
+ * others. Parts without a consistent orientation, image data (implicit points) and cells of higher
+ * order are refused.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) a reference mesh with the same cells, for targets of type REFERENCE and
@@ -107,7 +108,8 @@ public:
   /**
    * A ready-made choice. All but CUSTOM determine objectives, scalarization, optimizer and
    * stopping criteria (but for the time limit), see tautline::applyPreset(); those below are for
-   * CUSTOM. The default is BEST_SHAPE.
+   * CUSTOM. With a boundary that moves freely, UNIFORM_SIZE compares the sizes with their mean in
+   * the input (metric mu_size), so that the mesh does not shrink. The default is BEST_SHAPE.
    */
   vtkTautlineSetRangeMacro(Preset, int, CUSTOM, WORST_ELEMENT);
   vtkGetMacro(Preset, int);
@@ -432,11 +434,25 @@ public:
 
   ///@{
   /**
-   * After the objective has converged, improve the worst value of the first metric as long as
-   * its mean does not get worse by more than this fraction; 0, the default: off.
+   * After the objective has converged, improve the worst element as long as the mean of the first
+   * metric does not get worse by more than this fraction; 0, the default: off.
    */
   vtkTautlineSetRangeMacro(ImproveWorst, double, 0.0, 1.0);
   vtkGetMacro(ImproveWorst, double);
+  ///@}
+
+  ///@{
+  /**
+   * The metric that tells which element is the worst one, by its number (tautline::Metric), also
+   * for the presets: of the preset WORST_ELEMENT and ImproveWorst, and of the promise that the worst
+   * element does not get worse. -1, the default: where the worst element is improved, the scaled
+   * Jacobian for meshes with quadrilaterals, hexahedra or wedges; else the metric of the
+   * first objective.
+   */
+  void SetWorstMetric(int metric);
+  vtkGetMacro(WorstMetric, int);
+  /// By name, label or symbol; unknown names are an error.
+  void SetWorstMetricByName(const char* name);
   ///@}
 
   ///@{
@@ -538,6 +554,7 @@ private:
   int PatchIterations = 1;
   double Relaxation = 1.4;
   double ImproveWorst = 0.0;
+  int WorstMetric = -1;
   bool Animation = false;
   double AnimationMemory = 1000.0;
 

@@ -61,6 +61,43 @@ def test_objectives():
     assert kept.statistics["imr"]["mean_after"] < 1.001
 
 
+def _bent(n):
+    """The unit square of n x n quadrilaterals, inside pushed to and fro."""
+    x, y = np.meshgrid(np.linspace(0, 1, n + 1), np.linspace(0, 1, n + 1), indexing="ij")
+    push = 0.12 * np.sin(2 * np.pi * x) * np.sin(2 * np.pi * y)
+    corner = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
+    quads = [corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]]
+    xyz = np.stack([x + push, y + push, np.zeros_like(x)], axis=-1).reshape(-1, 3)
+    return xyz, np.stack(quads, axis=-1).reshape(-1, 4)
+
+
+def test_worst_metric():
+    """The worst element never gets worse, by the metric chosen; of quadrilaterals it is the scaled Jacobian."""
+    bent = _bent(24)
+    before = tl.quality(bent, "scaled_jacobian").statistics["scaled_jacobian"]["minimum"]
+    result = tl.optimize(bent, preset="worst element")
+    after = tl.quality(result.mesh, "scaled_jacobian").statistics["scaled_jacobian"]["minimum"]
+    shape = tl.optimize(bent, preset="best shape")
+    best = tl.quality(shape.mesh, "scaled_jacobian").statistics["scaled_jacobian"]["minimum"]
+    assert after >= before and after > best, (before, after, best)
+    by_imr = tl.optimize(bent, preset="worst element", worst_metric="imr").statistics["imr"]
+    assert by_imr["worst_after"] <= by_imr["worst_before"]
+    assert by_imr["worst_after"] < shape.statistics["imr"]["worst_after"]
+    refused("no metric 'beauty'", tl.optimize, PLATE, worst_metric="beauty")
+
+
+def test_free_boundary():
+    """Uniform size keeps the mean size although the boundary moves; what would shrink the mesh is refused."""
+    moved = tl.perturb(PLATE, percentage=100, fraction=0.6).mesh
+    sizes = tl.quality(moved, "size").values["size"]
+    result = tl.optimize(moved, preset="uniform size", boundary="free")
+    after = tl.quality(result.mesh, "size").values["size"]
+    assert result.inverted == 0
+    assert abs(after.mean() / sizes.mean() - 1) < 0.1 and after.std() < 0.5 * sizes.std(), (after.mean(), after.std())
+    refused("shrink", tl.optimize, moved, preset="low interpolation error", boundary="free")
+    refused("shrink", tl.optimize, moved, ["size"], boundary="free")
+
+
 def test_best_known():
     """None is an unknown optimum; 0, that of untangling, is a known one, which IMR cannot come close to."""
     estimated = tl.optimize(BRACKET, ["imr"], reduction=0.5)

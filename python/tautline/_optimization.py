@@ -124,12 +124,15 @@ def optimize(
     project_to_surface: bool = True,
     untangle_first: bool = True,
     allow_inversion: bool = False,
+    worst_metric: str | None = None,
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
     **options: Any,
 ) -> OptimizeResult:
-    """Move the points of a mesh so that its elements become better; the objective never becomes worse.
+    """Move the points of a mesh so that its elements become better.
+
+    Unless allow_inversion, neither the objective nor the number of invalid elements nor the worst element becomes worse.
 
     mesh: a vtkDataSet with explicit points, a composite data set, a file name or (points, cells). It is not changed.
     objectives: what to optimize: names of metrics, or pairs of a name and a dict with any of "template" (how the values
@@ -155,6 +158,9 @@ def optimize(
     project_to_surface: whether the points of a surface in space stay on it.
     untangle_first: whether a mesh with inverted elements is untangled first where the objectives cannot repair it.
     allow_inversion: whether steps may invert valid elements.
+    worst_metric: the metric that tells which element is the worst one, which never gets worse by it and which the
+        preset "worst element" and improve_worst improve. The default is the scaled Jacobian where the worst element is
+        improved in a mesh with quadrilaterals, hexahedra or wedges; else the metric of the first objective.
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
@@ -183,6 +189,9 @@ def optimize(
     filter_.SetProjectToSurface(bool(project_to_surface))
     filter_.SetUntangleFirst(bool(untangle_first))
     filter_.SetAllowInversion(bool(allow_inversion))
+    if worst_metric is not None:
+        filter_.SetWorstMetricByName(worst_metric)
+        messages.raise_errors()
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
@@ -328,6 +337,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--size", metavar="ARRAY", help="target: the size in this array")
     parser.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array")
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
+    parser.add_argument("--worst-metric", metavar="NAME", help="the metric that tells which element is the worst one")
 
 
 def _objective(text: str) -> Objective:
@@ -346,7 +356,7 @@ def _objective(text: str) -> Objective:
 
 def _run_optimize(arguments: argparse.Namespace) -> None:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
-             "boundary", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
+             "boundary", "worst_metric", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
     result = optimize(arguments.mesh, arguments.objective, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))

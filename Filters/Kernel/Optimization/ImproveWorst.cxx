@@ -7,7 +7,7 @@ namespace tautline
 {
 namespace
 {
-constexpr int maxRounds = 20;
+constexpr int maxRounds = 100;
 constexpr int sweepsPerRound = 4;
 /// A round that reduces the worst value by less than this fraction is the last.
 constexpr double worthwhile = 1e-3;
@@ -18,9 +18,9 @@ constexpr double power = 32;
 class WorstObjectives
 {
 public:
-  WorstObjectives(OptimizationProblem& problem, double worst)
+  WorstObjectives(OptimizationProblem& problem, const Objective& judged, double worst)
     : Terms(problem.localTerms())
-    , Fast(Terms[0].shapePower > 0)
+    , Fast(Terms[0].shapePower > 0 && judged.metric == Metric::InverseMeanRatio)
   {
     this->Terms.resize(1);
     if (this->Fast)
@@ -28,7 +28,7 @@ public:
       this->Terms[0].worst = worst;
       return;
     }
-    Objective mean = problem.sum(0).objective();
+    Objective mean = judged;
     mean.objectiveTemplate = ObjectiveTemplate::PowerMean;
     mean.power = power;
     this->Sum = &problem.sum(0);
@@ -69,28 +69,47 @@ private:
 };
 }
 
-//------------------------------------------------------------------------------
-void improveWorst(OptimizationProblem& problem, double allowance,
-  const std::function<bool(const IterationRecord&)>& report)
+namespace
 {
-  const Direction direction = metricInfo(problem.options().objectives[0].metric).direction;
-  const bool larger = direction == Direction::LargerIsBetter;
+/// The first objective, with the metric of the worst element.
+Objective judgedBy(OptimizationProblem& problem)
+{
+  Objective judged = problem.sum(0).objective();
+  const Metric metric = worstMetric(problem.moving(), problem.options());
+  if (metric != judged.metric)
+  {
+    judged.metric = metric;
+    judged.evaluation = EvaluationOptions();
+    judged.evaluation.threads = problem.options().threads;
+  }
+  return judged;
+}
+}
+
+//------------------------------------------------------------------------------
+void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
+  const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report)
+{
+  const Objective judged = judgedBy(problem);
+  const auto isLarger = [](Metric metric)
+  { return metricInfo(metric).direction == Direction::LargerIsBetter; };
+  const bool larger = isLarger(judged.metric);
   const IterationRecord start = problem.record(0);
-  double worst = problem.worstMovable(); // elements that cannot move do not count
-  if (!std::isfinite(worst))
+  double worst = problem.worstMovable(judged); // elements that cannot move do not count
+  if (!std::isfinite(worst) || metricInfo(judged.metric).direction == Direction::Neutral)
   {
     return;
   }
-  const double mean = start.mean[0];
   const auto better = [=](double a, double b) { return larger ? a > b : a < b; };
-  const double bound = larger ? mean * (1 - allowance) : mean * (1 + allowance);
+  const double sign = isLarger(problem.options().objectives[0].metric) ? -1 : 1;
+  const double bound = start.mean[0] + sign * limits.allowance * std::abs(start.mean[0]);
 
   SimplexMesh& simplices = problem.simplices();
   const std::size_t size = VertexStride * static_cast<std::size_t>(simplices.freeVertices());
   std::vector<double> best(simplices.coordinates(), simplices.coordinates() + size);
   for (int round = 0; round < maxRounds && !problem.outOfTime(); ++round)
   {
-    const WorstObjectives objectives(problem, worst);
+    const WorstObjectives objectives(problem, judged, worst);
     LocalOptions options = problem.localOptions();
     options.newton = true;
     options.relaxation = 1.0;
@@ -104,9 +123,9 @@ void improveWorst(OptimizationProblem& problem, double allowance,
     }
     problem.store();
     IterationRecord now = problem.record(0);
-    const double worstNow = problem.worstMovable();
-    const bool kept =
-      better(worstNow, worst) && !better(bound, now.mean[0]) && now.inverted <= start.inverted;
+    const double worstNow = problem.worstMovable(judged);
+    const bool affordable = sign * (now.mean[0] - bound) <= 0 || guard.worse(worst);
+    const bool kept = better(worstNow, worst) && affordable && now.inverted <= start.inverted;
     if (!kept)
     {
       std::copy(best.begin(), best.end(), simplices.coordinates());
@@ -116,7 +135,7 @@ void improveWorst(OptimizationProblem& problem, double allowance,
     const double gain = std::abs(worst - worstNow) / std::abs(worst);
     worst = worstNow;
     std::copy_n(simplices.coordinates(), size, best.begin());
-    if (!report(now) || gain < worthwhile)
+    if (!report(now) || gain < worthwhile || (limits.onlyAsInput && !guard.worse(worst)))
     {
       return;
     }

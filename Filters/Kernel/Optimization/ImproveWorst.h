@@ -1,23 +1,33 @@
 /**
  * @file ImproveWorst.h
- * @brief Reduces the largest inverse mean ratio at little cost to the mean. Internal: not
- * installed.
+ * @brief Improves the worst element at little cost to the mean. Internal: not installed.
  */
 #ifndef tautline_ImproveWorst_h
 #define tautline_ImproveWorst_h
 
-#include "OptimizationProblem.h"
+#include "QualityGuard.h"
 
 namespace tautline
 {
+/// How far to go.
+struct WorstLimits
+{
+  /// How much the mean of the first objective's metric may get worse, as a fraction of it.
+  double allowance = 0.0;
+  /// Stop as soon as no element is worse than the worst one of the input.
+  bool onlyAsInput = false;
+};
+
 /**
  * @brief Sweeps with sum q^2 + K sum (q / q_w)^p, p large and q_w the worst value so far: only
- * elements near the worst feel the second sum. Stops when the worst value no longer falls, or the
- * mean has risen by `allowance` of itself. The first objective's metric is q; meshes of cells with
- * several corners and other metrics take the p-mean in place of the second sum.
+ * elements near the worst feel the second sum. Stops when the worst value no longer improves, or
+ * the mean has got worse by the allowance, which does not count as long as the worst element is
+ * worse than that of the input. The metric of the worst element is worstMetric(); meshes of cells
+ * with several corners, and other metrics than the inverse mean ratio, take its p-mean in place of
+ * the second sum.
  * @param report called after each round that improved the mesh; returns false to stop
  */
-void improveWorst(OptimizationProblem& problem, double allowance,
-  const std::function<bool(const IterationRecord&)>& report);
+void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
+  const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report);
 }
 #endif

@@ -3,6 +3,7 @@
 #include "PatchFunction.h"
 
 #include "tautline/Core/Parallel.h"
+#include "tautline/Mesh/BoundaryPoints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,50 @@ void requireFinite(const double* values, Index count, const char* what)
     if (std::isnan(values[i]))
     {
       throw Error(std::string(what) + " of point " + std::to_string(i / 3) + " is NaN.");
+    }
+  }
+}
+
+/// Whether a point of the boundary may leave it.
+bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options)
+{
+  if (!options.fixed || options.slideSurface)
+  {
+    return false;
+  }
+  const std::vector<char> boundary = boundaryPoints(mesh);
+  const auto slides = [](const double* directions, Index p)
+  {
+    return directions &&
+      norm({ directions[3 * p], directions[3 * p + 1], directions[3 * p + 2] }) > 0;
+  };
+  for (Index p = 0; p < static_cast<Index>(boundary.size()); ++p)
+  {
+    if (boundary[p] && !options.fixed[p] && !slides(options.slidePlanes, p) &&
+      !slides(options.slideLines, p))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// With a free boundary, a mesh shrinks to a point where smaller elements are better.
+void checkSizes(const Mesh& mesh, const OptimizeOptions& options)
+{
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  for (const Objective& objective : options.objectives)
+  {
+    const MetricInfo& info = metricInfo(objective.metric);
+    const bool ofSize = info.lengthPower(dimension) != 0 ||
+      (info.family == MetricFamily::Simplex && !info.scaleInvariant);
+    if (ofSize && !canUntangle(objective) && boundaryMoves(mesh, options))
+    {
+      throw Error(std::string(info.label) +
+        " depends on the size of the elements, and the boundary may move: the mesh would shrink "
+        "to a point, or grow without bound. Fix the boundary or let it slide, or choose a metric "
+        "relative to a target size (" +
+        metricInfo(Metric::SizeBarrier).label + ").");
     }
   }
 }
@@ -63,6 +108,7 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
         ? "Limits on the way of points need a local optimizer: choose Automatic or Local Newton."
         : "A surface in space needs a local optimizer: choose Automatic or Local Newton.");
   }
+  checkSizes(mesh, options);
   requireFinite(options.limits, mesh.view().numberOfPoints, "The limit");
   requireFinite(options.slidePlanes, 3 * mesh.view().numberOfPoints, "The slide plane");
   requireFinite(options.slideLines, 3 * mesh.view().numberOfPoints, "The slide line");
@@ -617,21 +663,20 @@ IterationRecord OptimizationProblem::record(int iteration)
 }
 
 //------------------------------------------------------------------------------
-double OptimizationProblem::worstMovable() const
+double OptimizationProblem::worstMovable(const Objective& judged) const
 {
   const MeshView& view = this->Moving->view();
   std::vector<signed char> validity(view.numberOfCells);
   this->Moving->classifyCells(validity.data(), this->Options.threads);
   std::vector<double> q(view.numberOfCells);
-  const Objective& objective = this->Resolved[0];
-  evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
+  evaluateMetric(*this->Moving, judged.metric, judged.evaluation, q.data());
   // Elements without a free vertex cannot improve.
   std::vector<char> free(view.numberOfPoints, 0);
   for (std::int32_t v = 0; v < this->Simplices->freeVertices(); ++v)
   {
     free[this->Simplices->point(v)] = 1;
   }
-  const bool larger = metricInfo(objective.metric).direction == Direction::LargerIsBetter;
+  const bool larger = metricInfo(judged.metric).direction == Direction::LargerIsBetter;
   const double infinity = std::numeric_limits<double>::infinity();
   double worst = larger ? infinity : -infinity;
   for (const CellBlock& block : this->Moving->blocks())

@@ -50,8 +50,8 @@ public:
   bool someRepaired() const;
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);
-  /// The worst value of the first objective's metric among the valid elements with a free vertex.
-  double worstMovable() const;
+  /// The worst value of a metric among the valid elements with a free vertex.
+  double worstMovable(const Objective& judged) const;
   /// Prepares the scalarization with the objectives of the start.
   void start(const IterationRecord& first);
   /// Whether the time limit is reached.

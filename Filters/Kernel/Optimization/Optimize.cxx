@@ -1,14 +1,16 @@
 #include "Optimize.h"
 
 #include "GlobalFunction.h"
+#include "tautline/Core/Memory.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "ImproveWorst.h"
 #include "Minimize.h"
-#include "OptimizationProblem.h"
+#include "QualityGuard.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace tautline
 {
@@ -374,10 +376,90 @@ Index countInvalid(const Mesh& mesh, int threads)
 }
 
 //------------------------------------------------------------------------------
+/**
+ * @brief Newton's method from the start, where sweeps converge too slowly. If its matrix does not
+ * fit into memory the sweeps go on; if it does not get as far as they did, their points are kept.
+ */
+void useNewton(OptimizationProblem& problem, const StoppingTest& watch,
+  const std::vector<double>& start, OptimizeResult& result, bool& failed, bool& repaired)
+{
+  // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
+  problem.store();
+  const std::vector<double> swept = result.points;
+  const double reached = result.history.back().objective;
+  problem.restart(start);
+  try
+  {
+    result.reason = optimizeGlobally(problem, watch, Optimizer::NewtonConjugateGradient, result);
+  }
+  catch (const MemoryError&)
+  {
+    problem.restart(swept);
+    result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
+    return;
+  }
+  catch (const std::bad_alloc&)
+  {
+    problem.restart(swept);
+    result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
+    return;
+  }
+  if (result.history.back().objective >= reached)
+  {
+    problem.restart(swept);
+    result.history.back() = problem.record(result.history.back().iteration);
+  }
+}
+
+/// Improves the worst element as far as wanted, and at least to that of the input.
+void settleWorst(OptimizationProblem& problem, const StoppingTest& watch, const QualityGuard& guard,
+  OptimizeResult& result)
+{
+  const double allowance = problem.options().improveWorst;
+  const bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
+  if (going && (allowance > 0 || guard.violated(problem)))
+  {
+    problem.store();
+    const bool onlyAsInput = !(allowance > 0);
+    improveWorst(problem, guard, { allowance, onlyAsInput },
+      [&](IterationRecord record)
+      {
+        record.iteration = result.history.back().iteration + 1;
+        return report(problem, watch, result, record);
+      });
+  }
+  result.restored = guard.restore(problem);
+  if (result.restored > 0)
+  {
+    IterationRecord record = problem.record(result.history.back().iteration + 1);
+    report(problem, watch, result, record);
+  }
+}
+
+/// Goes back to the input if its objective, computed anew, is smaller.
+void verifyObjective(const Mesh& mesh, OptimizationProblem& problem, const IterationRecord& first,
+  const QualityGuard& guard, OptimizeResult& result)
+{
+  problem.store();
+  problem.restart(std::vector<double>(result.points));
+  const double now = problem.record(0).objective;
+  const double allowed = first.objective + roundingOfSums * std::abs(first.objective);
+  if (guard.active() && !(now <= allowed))
+  {
+    const double* start = mesh.view().points;
+    problem.restart(std::vector<double>(start, start + result.points.size()));
+    IterationRecord record = problem.record(result.history.back().iteration);
+    result.history.back() = record;
+    result.reason = StopReason::NoProgress;
+    result.unchanged = true;
+    result.restored = 0;
+  }
+}
+
 /// Optimizes from result.points on; returns whether there is more to do, with elements that have
 /// become valid.
-bool optimizeStage(
-  const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
+bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const QualityGuard& guard,
+  const Stopwatch& clock, OptimizeResult& result)
 {
   OptimizationProblem problem(mesh, options, result.points, clock);
   result.freeVertices = problem.simplices().freeVertices();
@@ -412,39 +494,23 @@ bool optimizeStage(
     const bool onlyLocal = isLocal(options.optimizer) || options.limits || options.slideSurface ||
       mesh.dimension() == Dimension::Surface;
     bool stiff = false;
-    const std::vector<double> start = result.points;
-    result.reason = optimizeLocally(problem, watch, result, failed, repaired,
-      onlyLocal || !mayUseNewton(options) ? nullptr : &stiff);
+    const bool mayGoOver = !onlyLocal && mayUseNewton(options);
+    const std::vector<double> start = mayGoOver ? result.points : std::vector<double>();
+    result.reason =
+      optimizeLocally(problem, watch, result, failed, repaired, mayGoOver ? &stiff : nullptr);
     if (failed && !onlyLocal)
     {
       result.reason = optimizeGlobally(problem, watch, Optimizer::LimitedMemoryBFGS, result);
     }
     else if (stiff)
     {
-      // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
-      problem.store();
-      const std::vector<double> swept = result.points;
-      const double reached = result.history.back().objective;
-      problem.restart(start);
-      result.reason = optimizeGlobally(problem, watch, Optimizer::NewtonConjugateGradient, result);
-      if (result.history.back().objective >= reached)
-      {
-        problem.restart(swept);
-        result.history.back() = problem.record(result.history.back().iteration);
-      }
+      useNewton(problem, watch, start, result, failed, repaired);
     }
   }
-  const bool going =
-    result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit && !repaired;
-  if (options.improveWorst > 0 && going)
+  if (!repaired)
   {
-    problem.store();
-    improveWorst(problem, options.improveWorst,
-      [&](IterationRecord record)
-      {
-        record.iteration = result.history.back().iteration + 1;
-        return report(problem, watch, result, record);
-      });
+    settleWorst(problem, watch, guard, result);
+    verifyObjective(mesh, problem, first, guard, result);
   }
   problem.store();
   result.iterations = result.history.back().iteration;
@@ -525,9 +591,10 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
     }
   }
 
+  const QualityGuard guard(mesh, options);
   // Elements left out join the objective as soon as they are valid: another stage.
   const Index invalid = result.invertedAfter;
-  while (optimizeStage(mesh, options, clock, result))
+  while (optimizeStage(mesh, options, guard, clock, result))
   {
   }
   // Verified on the points themselves: the optimizers measure simplices, in units of the mean edge,

@@ -28,14 +28,22 @@ struct OptimizeResult
   /// input's; else 0.
   double surfaceError = 0;
   bool untangled = false; ///< untangle() was run first
+  /// Points that went back to their place in the input, because an element there would otherwise be
+  /// worse than the worst one of the input.
+  Index restored = 0;
+  /// The points are those of the input, because what was found had a larger objective.
+  bool unchanged = false;
 };
 
 /**
  * @brief Optimizes. Elements that are not valid at the start are left out of the objectives that
  * cannot repair them, and join as soon as they are valid; the objective in the history rises by
- * their share then. It also rises where Automatic starts again from the input, by Newton's method.
- * The result is never worse than the input in the scalarized objective, and unless allowInversion
- * no valid element becomes inverted. Throws Error on options that cannot be met and names the
+ * their share then. It also rises where Automatic starts again from the input, by Newton's method,
+ * and where the worst element is brought back to the quality it had.
+ *
+ * Unless allowInversion, the result is never worse than the input in three numbers, which are
+ * computed anew from its points: the invalid elements, and, where the input has none, the value of
+ * the worst element (see OptimizeOptions::worstMetric) and the scalarized objective. Throws Error on options that cannot be met and names the
  * remedy.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
  */

@@ -10,6 +10,7 @@
 #include "tautline/Objectives/Scalarization.h"
 
 #include <limits>
+#include <optional>
 
 namespace tautline
 {
@@ -75,7 +76,8 @@ enum class Preset : int
   Custom = 0,      ///< the options as they are
   FastCleanUp = 1, ///< sum of squared IMR, a few sweeps: 95 % of the possible reduction
   BestShape = 2,   ///< sum of squared IMR to convergence
-  UniformSize = 3, ///< shape (IMR) and size at once, by the objective product
+  /// Shape (IMR) and size at once, by the objective product; not for a boundary that moves freely.
+  UniformSize = 3,
   LowInterpolationError =
     4, ///< shape (IMR) and SS of section 3.2.1 at once, by the objective product
   UntangleThenImprove = 5, ///< untangle(), then BestShape
@@ -132,10 +134,17 @@ struct OptimizeOptions
    */
   double relaxation = 1.4;
   /**
-   * @brief WorstElement: after the objective has converged, reduces the largest value of the first
-   * objective's metric as long as its mean does not rise by more than this fraction of it; 0: off.
+   * @brief WorstElement: after the objective has converged, improves the worst element as long as
+   * the mean of the first objective's metric does not get worse by more than this fraction of it;
+   * 0: off.
    */
   double improveWorst = 0.0;
+  /**
+   * @brief The metric that tells which element is the worst one, for improveWorst and for what may
+   * not get worse. Not set: where improveWorst is above 0 the scaled Jacobian for meshes with
+   * quadrilaterals, hexahedra or wedges; else the metric of the first objective.
+   */
+  std::optional<Metric> worstMetric;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
   /**
    * @brief Called after each iteration; return false to stop. Called from the calling thread. While

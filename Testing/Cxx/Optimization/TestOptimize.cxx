@@ -477,6 +477,7 @@ void testWorst()
         return Vec3{ p[0] * (1 + 0.1 * std::sin(1.3 * p[1])), p[1], p[2] * (1 + p[0] / 8) };
       });
     OptimizeOptions options;
+    options.worstMetric = Metric::InverseMeanRatio;
     applyPreset(Preset::BestShape, options);
     const OptimizeResult best = run(data, options);
     applyPreset(Preset::WorstElement, options);

@@ -1,0 +1,57 @@
+/**
+ * @file QualityGuard.h
+ * @brief Holds what an optimization must not make worse: the number of invalid elements, the worst
+ * element, and the objective. Internal: not installed.
+ */
+#ifndef tautline_QualityGuard_h
+#define tautline_QualityGuard_h
+
+#include "OptimizationProblem.h"
+
+namespace tautline
+{
+/**
+ * @brief The metric that judges the worst element of a mesh: options.worstMetric, or, where that is
+ * not set and the worst element is to be improved, the scaled Jacobian for meshes with other cells
+ * than simplices, if it is defined on all; else the metric of the first objective.
+ */
+Metric worstMetric(const Mesh& mesh, const OptimizeOptions& options);
+
+/**
+ * @class tautline::QualityGuard
+ * @brief The worst element of an input whose elements are all valid; and the way back for those
+ * that became worse.
+ */
+class QualityGuard
+{
+public:
+  /// @param input must outlive the guard
+  QualityGuard(const Mesh& input, const OptimizeOptions& options);
+
+  /// Whether there is something to hold: not where the input has invalid elements, which untangling
+  /// answers for, where inversion is allowed, nor for metrics where neither direction is better.
+  bool active() const { return this->Active; }
+  /// Whether a value of the metric is worse than that of the worst element of the input, beyond
+  /// rounding.
+  bool worse(double value) const;
+  /// Whether an element of the problem's points is invalid, or worse than all of the input.
+  bool violated(OptimizationProblem& problem) const;
+  /**
+   * @brief Puts points back to where they were in the input, about the elements that are invalid or
+   * worse than all of the input, until there is none.
+   * @return the number of points put back
+   */
+  Index restore(OptimizationProblem& problem) const;
+
+private:
+  /// One flag per cell: invalid, or worse than all of the input. Empty if there is none.
+  std::vector<char> offenders(const Mesh& mesh) const;
+
+  const Mesh& Input;
+  Objective Judged;
+  bool Active = false;
+  bool Larger = false;
+  double Worst = 0.0;
+};
+}
+#endif

@@ -1,0 +1,180 @@
+// Two thousand random meshes of all cell types, valid and tangled, with every preset and boundary:
+// neither the number of invalid elements, nor the worst element, nor the objective gets worse.
+#include "Optimizing.h"
+
+#include "tautline/Mesh/BoundaryShape.h"
+
+#include <cmath>
+#include <numeric>
+
+using namespace tautline;
+
+namespace
+{
+enum class Motion
+{
+  Fixed,
+  Sliding,
+  OnSurface,
+  Free
+};
+constexpr int motions = 4;
+constexpr int presets = 7;
+constexpr int meshes = 2000;
+
+/// A block with a wavy side, as a surface if wanted; inner points are moved by up to `amplitude`.
+MeshData randomMesh(CellType type, bool surface, double amplitude, unsigned seed)
+{
+  const Index n = topology(type).dimension == 2 ? 6 : 4;
+  MeshData data = perturbedBlock(type, n, amplitude, seed);
+  const double wave = 0.05 * (seed % 4);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      return Vec3{ p[0] * (1 + wave * std::sin(1.3 * p[1])), p[1],
+        surface ? 0.3 * std::sin(p[0]) * std::cos(p[1]) : p[2] };
+    });
+  return data;
+}
+
+/// What a preset minimizes, computed from element values alone.
+double objectiveOf(Preset preset, const Mesh& mesh, const Targets* targets)
+{
+  const Index cells = mesh.view().numberOfCells;
+  const auto sum = [&](Metric metric, const Targets* of, bool reciprocal)
+  {
+    EvaluationOptions evaluation;
+    evaluation.targets = of;
+    std::vector<double> q(cells);
+    evaluateMetric(mesh, metric, evaluation, q.data());
+    return std::accumulate(q.begin(), q.end(), 0.0,
+      [reciprocal](double total, double v) { return total + (reciprocal ? 1 / (v * v) : v * v); });
+  };
+  const double shape = sum(Metric::InverseMeanRatio, targets, false);
+  switch (preset)
+  {
+    case Preset::UniformSize:
+      return shape * sum(Metric::Size, nullptr, false);
+    case Preset::LowInterpolationError:
+      return shape * sum(Metric::InterpolationSizeShape, nullptr, true);
+    default:
+      return shape;
+  }
+}
+
+/// The value of the worst element, as smaller is better.
+double worstOf(const Mesh& mesh, const OptimizeOptions& options, CellType type)
+{
+  const bool jacobian =
+    options.improveWorst > 0 && topology(type).samples > 1 && type != CellType::Pyramid;
+  EvaluationOptions evaluation = options.objectives[0].evaluation;
+  std::vector<double> q(mesh.view().numberOfCells);
+  evaluateMetric(
+    mesh, jacobian ? Metric::ScaledJacobian : Metric::InverseMeanRatio, evaluation, q.data());
+  return jacobian ? -*std::min_element(q.begin(), q.end()) : *std::max_element(q.begin(), q.end());
+}
+
+struct Totals
+{
+  int valid = 0, tangled = 0, refused = 0, better = 0, restored = 0;
+};
+
+//------------------------------------------------------------------------------
+void testOne(int number, Totals& totals)
+{
+  const auto preset = static_cast<Preset>(1 + number / 6 % presets);
+  // The interpolation metric is one of simplices.
+  const CellType simplex = number % 2 == 0 ? CellType::Triangle : CellType::Tetrahedron;
+  const CellType type = preset == Preset::LowInterpolationError ? simplex : allTypes[number % 6];
+  const bool flat = topology(type).dimension == 2;
+  const auto motion = static_cast<Motion>(number / (6 * presets) % motions);
+  const bool surface = flat && number / (6 * presets * motions) % 3 == 2;
+  const double amplitude = 0.1 + 0.08 * (number % 11);
+  const std::string label = "mesh " + std::to_string(number) + ", preset " +
+    std::to_string(static_cast<int>(preset)) + ", boundary " +
+    std::to_string(static_cast<int>(motion)) + (surface ? ", surface, " : ", ") +
+    topology(type).plural;
+  const Context context(label);
+  const MeshData data = randomMesh(type, surface, amplitude, 1000U + static_cast<unsigned>(number));
+  const Mesh mesh(data.view());
+  const auto points = static_cast<std::size_t>(data.numberOfPoints());
+
+  OptimizeOptions options;
+  applyPreset(preset, options);
+  options.stopping.maximumIterations = 12;
+  Targets targets;
+  if (preset == Preset::PreserveShape)
+  {
+    const MeshData reference = randomMesh(type, surface, 0, static_cast<unsigned>(number));
+    targets = referenceTargets(mesh, Mesh(reference.view()));
+    options.objectives[0].evaluation.targets = &targets;
+  }
+  std::vector<unsigned char> fixed(points, 0);
+  BoundaryShape shape;
+  if (motion == Motion::Sliding || motion == Motion::OnSurface)
+  {
+    shape = boundaryShape(mesh, 1.0, motion == Motion::OnSurface ? 30.0 : 0.0);
+    fixed = shape.fixed;
+    options.slidePlanes = shape.planes.data();
+    options.slideLines = shape.lines.data();
+    options.slideSurface = shape.onSurface > 0 && !surface ? shape.surface.data() : nullptr;
+  }
+  options.fixed = motion == Motion::Fixed ? nullptr : fixed.data();
+
+  const Index before = invalid(data, data.points);
+  OptimizeResult result;
+  try
+  {
+    result = optimize(mesh, options);
+  }
+  catch (const Error& error)
+  {
+    std::printf("%s: %s\n", label.c_str(), error.what());
+    // Presets that depend on size would shrink a mesh whose boundary moves freely.
+    const bool sized = preset == Preset::UniformSize || preset == Preset::LowInterpolationError;
+    TAUTLINE_CHECK(sized && motion != Motion::Fixed);
+    TAUTLINE_CHECK(std::string(error.what()).find("shrink") != std::string::npos);
+    ++totals.refused;
+    return;
+  }
+  const Index after = invalid(data, result.points);
+  TAUTLINE_CHECK_EQUAL(result.invertedBefore, before);
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, after);
+  TAUTLINE_CHECK(after <= before);
+  totals.restored += result.restored > 0;
+  if (before > 0)
+  {
+    ++totals.tangled;
+    return;
+  }
+  ++totals.valid;
+  MeshData moved = data;
+  moved.points = result.points;
+  const Mesh now(moved.view());
+  constexpr double rounding = 1e-8;
+  const double worst = worstOf(mesh, options, type);
+  TAUTLINE_CHECK(worstOf(now, options, type) <= worst + rounding * std::abs(worst));
+  const Targets* of = preset == Preset::PreserveShape ? &targets : nullptr;
+  const double first = objectiveOf(preset, mesh, of), last = objectiveOf(preset, now, of);
+  // The worst element may cost a part of the mean, that of its own preset.
+  TAUTLINE_CHECK(last <= first * (1 + rounding));
+  totals.better += last < 0.999 * first;
+}
+}
+
+//------------------------------------------------------------------------------
+int TestNeverWorse(int, char*[])
+{
+  Totals totals;
+  for (int i = 0; i < meshes; ++i)
+  {
+    testOne(i, totals);
+  }
+  std::printf("%d valid meshes, %d of them better; %d tangled; %d refused; points restored in %d\n",
+    totals.valid, totals.better, totals.tangled, totals.refused, totals.restored);
+  TAUTLINE_CHECK(totals.valid > meshes / 4);
+  TAUTLINE_CHECK(totals.tangled > meshes / 4);
+  TAUTLINE_CHECK(totals.better > 3 * totals.valid / 4);
+  TAUTLINE_CHECK(totals.refused < meshes / 5);
+  return exitCode();
+}
