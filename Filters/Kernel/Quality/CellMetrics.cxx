@@ -7,6 +7,8 @@
  */
 #include "Batch.h"
 
+#include "tautline/Mesh/JacobianBounds.h"
+
 #include <algorithm>
 
 namespace tautline
@@ -497,6 +499,73 @@ double scaledJacobian(const Cell& cell, Gradient g)
 }
 
 //------------------------------------------------------------------------------
+/// The smallest corner Jacobian of a quadrilateral, on a surface in the plane of its mean normal:
+/// it is linear in between.
+double smallestOfCorners(const Cell& cell, Gradient g)
+{
+  const CellTopology& t = cell.topology;
+  const FaceNormal face(cell.points, allNodes, t.nodes);
+  const double length = norm(face.normal);
+  if (!cell.planar && length == 0)
+  {
+    return 0;
+  }
+  const Vec3 normal = cell.planar ? cell.normal : (1 / length) * face.normal;
+  double least = HUGE_VAL;
+  int worst = 0;
+  const auto edge = [&](int corner, int k)
+  { return cell.points[t.cornerNodes[corner][k]] - cell.points[t.cornerNodes[corner][0]]; };
+  for (int c = 0; c < t.corners; ++c)
+  {
+    const double det = dot(cross(edge(c, 1), edge(c, 2)), normal);
+    worst = det < least ? c : worst;
+    least = std::min(least, det);
+  }
+  if (g)
+  {
+    const auto& nodes = t.cornerNodes[worst];
+    const Vec3 a = edge(worst, 1), b = edge(worst, 2);
+    const Vec3 da = cross(b, normal), db = cross(normal, a);
+    g[nodes[1]] += da;
+    g[nodes[2]] += db;
+    g[nodes[0]] -= da + db;
+    if (!cell.planar)
+    {
+      face.addGradient((1 / length) * perpendicular(cross(a, b), normal), g);
+    }
+  }
+  return least;
+}
+
+/// The smallest Jacobian determinant anywhere in the cell.
+double smallestJacobian(const Cell& cell, Gradient g)
+{
+  const CellTopology& t = cell.topology;
+  if (t.samples == 1)
+  {
+    // Constant: n! times the size.
+    const double factor = t.dimension == 2 ? 2 : 6;
+    Vec3 dSize[4] = {};
+    const double value = factor * size(cell, g ? dSize : nullptr);
+    for (int k = 0; g && k < t.nodes; ++k)
+    {
+      g[k] += factor * dSize[k];
+    }
+    return value;
+  }
+  if (t.dimension == 2)
+  {
+    return smallestOfCorners(cell, g);
+  }
+  const JacobianMinimum minimum = minimumJacobian(t, cell.points);
+  if (g)
+  {
+    addJacobianGradient(t, cell.points, minimum.at, 1.0, g);
+  }
+  return minimum.value;
+}
+
+//------------------------------------------------------------------------------
 /// Runs a scalar metric on each cell of a batch.
 template <double (*Function)(const Cell&, Gradient), bool WithGradient>
 void evaluateCells(const BatchContext& context, Batch& batch)
@@ -551,6 +620,8 @@ MetricCode cellMetricCode(Metric metric)
       return codeOf<equiangleSkew>();
     case Metric::ScaledJacobian:
       return codeOf<scaledJacobian>();
+    case Metric::MinimumJacobian:
+      return codeOf<smallestJacobian>();
     default:
       return {};
   }

@@ -48,6 +48,8 @@ constexpr const char* tmop = "Dobrev et al., The target-matrix optimization para
 constexpr const char* shewchuk =
   "Shewchuk, What is a good linear element?, Int. Meshing Roundtable (2002)";
 constexpr const char* verdict = "Knupp et al., The Verdict library reference manual, Sandia (2006)";
+constexpr const char* johnen = "Johnen, Weill, Remacle, Robust and efficient validation of the "
+                               "linear hexahedral element, Procedia Eng. 203 (2017)";
 
 std::vector<MetricInfo> makeRegistry()
 {
@@ -209,6 +211,13 @@ std::vector<MetricInfo> makeRegistry()
       "Shape, size and orientation, barrier", "mu_98", "mu_98", "|T - I|^2 / det T", tmop, Target,
       true, true, all, any, any, any, any, 0, 0, Smaller, Negative, barrier, smooth, sized,
       oriented, "" },
+    { Metric::MinimumJacobian, "min_jacobian", "Minimum Jacobian", "min det J",
+      "minimum_jacobian,min_det",
+      "smallest det J in the element, also between its corners; J maps from the unit square or "
+      "cube, from a triangle, tetrahedron or wedge with legs of length 1, from the pyramid of "
+      "height 1 over the unit square: V of a parallelepiped, n! V of a simplex",
+      johnen, Cell, true, true, all, any, any, any, any, sizeDecides, sizeDecides, Larger, Negative,
+      noBarrier, kinked, sized, rotates, "length^n" },
   };
 }
 

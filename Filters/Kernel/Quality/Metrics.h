@@ -64,7 +64,8 @@ enum class Metric : int
   ShapeOrientation = 34,
   ShapeOrientationBarrier = 35,
   ShapeSizeOrientation = 36,
-  ShapeSizeOrientationBarrier = 37
+  ShapeSizeOrientationBarrier = 37,
+  MinimumJacobian = 38
 };
 
 /// Which way a metric points.

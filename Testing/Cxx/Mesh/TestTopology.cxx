@@ -122,6 +122,8 @@ double expectedIdeal(const MetricInfo& info, const CellTopology& t, const IdealF
       return std::sqrt(2.0) / 12 / (3.0 / 16);
     case Metric::InterpolationSizeShape: // A / s^3, and V 4 A / (6 A^2)
       return t.dimension == 2 ? std::sqrt(3.0) / 4 : std::sqrt(2.0) / 12 * 8 / (3 * std::sqrt(3.0));
+    case Metric::MinimumJacobian:
+      return facts.size / facts.sizePerDeterminant;
     case Metric::SizeUntangle: // tau = 1
       return -1 + std::sqrt(1 + Parameters().epsilon);
     case Metric::WidthRatio:

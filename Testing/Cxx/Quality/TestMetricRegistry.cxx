@@ -22,7 +22,7 @@ void testNames()
 {
   std::set<std::string> names;
   const auto& registry = metricRegistry();
-  TAUTLINE_CHECK_EQUAL(registry.size(), 38u);
+  TAUTLINE_CHECK_EQUAL(registry.size(), 39u);
   for (std::size_t i = 0; i < registry.size(); ++i)
   {
     const MetricInfo& info = registry[i];
@@ -48,7 +48,7 @@ void testNames()
   {
     TAUTLINE_CHECK(findMetric(none) == nullptr);
   }
-  TAUTLINE_CHECK_THROWS(metricInfo(static_cast<Metric>(38)), "no metric number 38");
+  TAUTLINE_CHECK_THROWS(metricInfo(static_cast<Metric>(39)), "no metric number 39");
   TAUTLINE_CHECK_THROWS(metricInfo(static_cast<Metric>(-1)), "no metric number -1");
   // The numbers of the literature, in both dimensions.
   const char* literature[][2] = { { "mu_2", "mu_303" }, { "mu_4", "mu_360" }, { "mu_7", "mu_321" },
@@ -117,7 +117,6 @@ void testRange(CellType type, bool surface)
   const Mesh mesh(data.view());
   const std::vector<signed char> validity = validityOf(mesh);
   TAUTLINE_CHECK(std::count(validity.begin(), validity.end(), Valid) > elementsPerType / 4);
-  const std::vector<double> sizes = valuesOf(mesh, Metric::Size);
   for (const MetricInfo& info : metricRegistry())
   {
     if (!info.definedOn(type) || (surface && !info.rotationInvariant))
@@ -127,22 +126,15 @@ void testRange(CellType type, bool surface)
     const Context context(info.name);
     const std::vector<double> values = valuesOf(mesh, info.metric);
     double low = HUGE_VAL, high = -HUGE_VAL;
-    int twisted = 0;
     for (int i = 0; i < elementsPerType; ++i)
     {
-      if (validity[i] == Valid && type == CellType::Wedge && sizes[i] <= 0)
-      {
-        ++twisted;
-      }
-      else if (validity[i] == Valid)
+      if (validity[i] == Valid)
       {
         low = std::min(low, values[i]);
         high = std::max(high, values[i]);
       }
     }
     const Range full = info.full(topology(type).dimension);
-    // Six positive corners do not make a wedge's volume positive: a twisted one may be inside out.
-    TAUTLINE_CHECK(twisted < elementsPerType / 1000);
     const double slack = 1e-12 * std::max(1.0, std::isinf(full.high) ? full.low : full.high);
     TAUTLINE_CHECK_NEAR(std::min(low, full.low), full.low, slack);
     TAUTLINE_CHECK_NEAR(std::max(high, full.high), full.high, slack);
@@ -212,7 +204,8 @@ void testKink(const MetricInfo& info, CellType type)
   {
     TAUTLINE_CHECK_NEAR(jump, 0, 1e-3);
   }
-  else if (info.metric != Metric::UntangleBeta) // its kink is where the size is beta
+  else if (info.metric != Metric::UntangleBeta && // its kink is where the size is beta
+    !(info.metric == Metric::MinimumJacobian && topology(type).samples == 1))
   {
     TAUTLINE_CHECK(jump > 0.05);
   }
