@@ -50,9 +50,9 @@ enum class Dimension
 /// Whether an element is valid; the values of the cell array `Validity`.
 enum Validity : signed char
 {
-  Valid = 1,        ///< every corner Jacobian is positive
-  Degenerate = 0,   ///< some corner Jacobian vanishes (relative to its edges), none is negative
-  Inverted = -1,    ///< some corner Jacobian is negative
+  Valid = 1,        ///< the Jacobian determinant is positive everywhere in the element
+  Degenerate = 0,   ///< it vanishes somewhere (relative to its edges) and is negative nowhere
+  Inverted = -1,    ///< it is negative somewhere
   NotMeasured = -2, ///< a cell type Tautline does not compute with
   NonFinite = -3    ///< a coordinate is NaN or infinite, or beyond 1e100 in a mesh of ordinary size
 };
@@ -139,8 +139,11 @@ public:
   bool mirrored() const { return this->Mirrored; }
 
   /**
-   * @brief Writes a Validity per cell. A corner Jacobian counts as vanishing when its determinant
-   * is at most degenerateTolerance() times the product of its edge lengths.
+   * @brief Writes a Validity per cell, by the Jacobian determinant in the whole element: of
+   * hexahedra and wedges by bounds that hold between the corners, too (Johnen, Weill, Remacle
+   * 2017); of the other types the smallest value is at a corner. A determinant counts as vanishing when it is at most degenerateTolerance() times the product of the lengths
+   * of the derivatives, at corners the lengths of the edges. An element whose smallest determinant
+   * cannot be told from this limit is Degenerate.
    */
   void classifyCells(signed char* validity, int threads = 0) const;
   /**
@@ -149,6 +152,10 @@ public:
    * own (and of a planar mesh, instead of normal()); may be null
    */
   Validity classifyCell(
+    const CellTopology& t, const Vec3* vertices, const Vec3* against = nullptr) const;
+  /// The same by the determinants at the corners alone, which is what a simplex mesh of the corners
+  /// has; never worse than classifyCell().
+  Validity classifyCorners(
     const CellTopology& t, const Vec3* vertices, const Vec3* against = nullptr) const;
   static constexpr double degenerateTolerance() { return 1e-13; }
 

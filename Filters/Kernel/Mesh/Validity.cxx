@@ -2,6 +2,7 @@
 
 #include "CellBatch.h"
 #include "CoordinateFrame.h"
+#include "JacobianBounds.h"
 #include "tautline/Core/Parallel.h"
 
 #include <algorithm>
@@ -31,6 +32,26 @@ double extentOf(const CellTopology& t, const Vec3* vertices)
 
 //------------------------------------------------------------------------------
 Validity Mesh::classifyCell(const CellTopology& t, const Vec3* vertices, const Vec3* against) const
+{
+  const Validity corners = this->classifyCorners(t, vertices, against);
+  if (!hasInside(t.type) || (corners != Valid && corners != Degenerate))
+  {
+    return corners;
+  }
+  // The mirror image, as loadNodes() does.
+  const double perUnit = 1 / unitOfExtent(extentOf(t, vertices));
+  Vec3 p[MaxNodes];
+  for (int k = 0; k < t.nodes; ++k)
+  {
+    p[k] = perUnit * vertices[k];
+    p[k][0] *= this->Mirrored ? -1.0 : 1.0;
+  }
+  return classifyInside(t, p, corners);
+}
+
+//------------------------------------------------------------------------------
+Validity Mesh::classifyCorners(
+  const CellTopology& t, const Vec3* vertices, const Vec3* against) const
 {
   // Cells of extreme size are scaled, as normalizeExtents() does.
   const double perUnit = 1 / unitOfExtent(extentOf(t, vertices));
@@ -86,12 +107,13 @@ Validity Mesh::classifyCell(const CellTopology& t, const Vec3* vertices, const V
 
 namespace
 {
-/// Whether all cells of a batch are valid beyond doubt; what is near a limit is left to
-/// classifyCell().
-bool clearlyValid(const Mesh& mesh, const CellTopology& t, const CellVertices& batch)
+// What is near a limit is left to classifyCell().
+constexpr double clearTolerance = 2 * Mesh::degenerateTolerance();
+constexpr double smallestProduct = 1e-200, largestProduct = 1e200;
+
+/// The cells of a batch whose corners are valid beyond doubt.
+Mask clearlyValidCorners(const Mesh& mesh, const CellTopology& t, const CellVertices& batch)
 {
-  constexpr double margin = 2, smallest = 1e-200, largest = 1e200;
-  constexpr double tolerance = margin * Mesh::degenerateTolerance();
   Packet normal[3];
   for (int c = 0; c < 3; ++c)
   {
@@ -112,10 +134,62 @@ bool clearlyValid(const Mesh& mesh, const CellTopology& t, const CellVertices& b
       det = dot(ab, d);
       lengths2 *= dot(d, d);
     }
-    valid &= (det > 0.0) & (det * det > tolerance * tolerance * lengths2) & (lengths2 > smallest) &
-      (lengths2 < largest);
+    valid &= (det > 0.0) & (det * det > clearTolerance * clearTolerance * lengths2) &
+      (lengths2 > smallestProduct) & (lengths2 < largestProduct);
   }
-  return !any(~valid);
+  return valid;
+}
+
+/// The squares of the lengths of four edges, and the largest of them.
+Packet squares(const Packet (&edges)[2][2][3], Packet (&of)[2][2])
+{
+  for (int n = 0; n < 4; ++n)
+  {
+    of[n >> 1][n & 1] = dot(edges[n >> 1][n & 1], edges[n >> 1][n & 1]);
+  }
+  return max(max(of[0][0], of[0][1]), max(of[1][0], of[1][1]));
+}
+
+/// The smallest coefficient, and the product of the squares of the longest edges in each direction.
+template <int Nodes>
+void boundDeterminant(const CellVertices& batch, Packet& least, Packet& lengths2)
+{
+  bounds::Edges<Packet> edges;
+  Packet c[MaxCoefficients];
+  const int count = bounds::coefficients<Nodes>(batch.points, edges, c);
+  least = c[0];
+  for (int n = 1; n < count; ++n)
+  {
+    least = min(least, c[n]);
+  }
+  // A wedge has two edges along u and v, and three along w; the others are repeated.
+  if constexpr (Nodes == 6)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      edges.u[1][0][k] = edges.u[1][1][k] = edges.u[0][0][k];
+      edges.v[1][0][k] = edges.v[1][1][k] = edges.v[0][0][k];
+      edges.w[1][1][k] = edges.w[0][0][k];
+    }
+  }
+  Packet of[2][2];
+  lengths2 = squares(edges.u, of);
+  lengths2 *= squares(edges.v, of);
+  lengths2 *= squares(edges.w, of);
+}
+
+/// The cells of a batch that are valid beyond doubt.
+template <int Nodes>
+Mask clearlyValid(const Mesh& mesh, const CellTopology& t, const CellVertices& batch)
+{
+  Mask valid = clearlyValidCorners(mesh, t, batch);
+  if constexpr (Nodes > 5)
+  {
+    Packet least, lengths2;
+    boundDeterminant<Nodes>(batch, least, lengths2);
+    valid &= (least > 0.0) & (least * least > clearTolerance * clearTolerance * lengths2);
+  }
+  return valid;
 }
 }
 
@@ -146,18 +220,21 @@ void Mesh::classifyCells(signed char* validity, int threads) const
             {
               const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
               gather<Nodes>(source, nullptr, i, count, batch, nodes);
-              const bool allValid = !surface && clearlyValid(*this, t, batch);
+              const Mask valid = surface ? Mask{} : clearlyValid<Nodes>(*this, t, batch);
               for (int l = 0; l < count; ++l)
               {
+                if (valid[l])
+                {
+                  validity[batch.cells[l]] = Valid;
+                  continue;
+                }
                 Vec3 p[MaxNodes];
-                for (int k = 0; !allValid && k < Nodes; ++k)
+                for (int k = 0; k < Nodes; ++k)
                 {
                   p[k] = pointOf(this->View, nodes[l][k]);
                 }
-                const bool stray = ordinary && !allValid && extentOf(t, p) > StrayExtent;
-                validity[batch.cells[l]] = allValid ? Valid
-                  : stray                           ? NonFinite
-                                                    : this->classifyCell(t, p);
+                const bool stray = ordinary && extentOf(t, p) > StrayExtent;
+                validity[batch.cells[l]] = stray ? NonFinite : this->classifyCell(t, p);
               }
             }
           });
