@@ -1,7 +1,9 @@
 #include "Untangle.h"
 
+#include "Unfold.h"
 #include "Untangler.h"
 #include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Mesh/JacobianBounds.h"
 
 namespace tautline
 {
@@ -132,6 +134,65 @@ void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
   }
 }
 
+//------------------------------------------------------------------------------
+/// The invalid cells whose corners are not valid, either: those the simplices have.
+Index countInvalidCorners(
+  const Mesh& mesh, const std::vector<double>& points, const std::vector<signed char>& validity)
+{
+  const MeshView& view = mesh.view();
+  Index count = 0;
+  for (std::size_t cell = 0; cell < validity.size(); ++cell)
+  {
+    if (validity[cell] == Inverted || validity[cell] == Degenerate)
+    {
+      const CellTopology& t = topology(cornerType(view.cellTypes[cell]));
+      Vec3 p[MaxNodes];
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        const double* at = &points[3 * view.connectivity[view.offsets[cell] + k]];
+        p[k] = { at[0], at[1], at[2] };
+      }
+      count += mesh.classifyCorners(t, p) != Valid;
+    }
+  }
+  return count;
+}
+
+/// Makes cells valid that are so at the corners only, and adds a record.
+void unfoldCells(const Mesh& mesh, const SimplexMesh& simplices, const UntangleOptions& options,
+  const Stopwatch& clock, std::vector<signed char>& validity, UntangleResult& result)
+{
+  const bool inside = std::any_of(mesh.blocks().begin(), mesh.blocks().end(),
+    [](const CellBlock& block) { return hasInside(block.type); });
+  if (!inside || result.reason == StopReason::Aborted || result.invertedAfter == 0)
+  {
+    return;
+  }
+  std::vector<char> free(mesh.view().numberOfPoints, 0);
+  for (std::int32_t v = 0; v < simplices.freeVertices(); ++v)
+  {
+    free[simplices.point(v)] = 1;
+  }
+  const auto inTime = [&] { return !clock.reached(options.maximumSeconds); };
+  unfold(mesh, free, result.points, validity, inTime);
+  result.invertedAfter = countInvalid(validity);
+  IterationRecord record = result.history.back();
+  record.iteration = static_cast<int>(result.history.size());
+  record.seconds = clock.seconds();
+  record.inverted = result.invertedAfter;
+  result.history.push_back(record);
+  const auto points = [&](double* to)
+  { std::copy(result.points.begin(), result.points.end(), to); };
+  if (options.observer && !options.observer({ record, 1.0, points }))
+  {
+    result.reason = StopReason::Aborted;
+  }
+  else if (!inTime())
+  {
+    result.reason = StopReason::TimeLimit;
+  }
+}
+
 template <int Dim>
 void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
   const std::vector<signed char>& before, const Stopwatch& clock, UntangleResult& result)
@@ -140,6 +201,7 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
     simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices());
   const std::vector<double> input = result.points;
   std::vector<signed char> validity = before;
+  Index fewest = countInvalidCorners(mesh, input, before);
   Untangler<Dim> untangler(mesh, simplices, options, clock, result);
   // Coordinates are rounded to points: where cells lose their validity, again with a wider margin.
   for (const double margin : { 1e-12, 1e-9, 1e-6 })
@@ -149,10 +211,10 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
     storeMoved(simplices, start, x, options.threads, points);
     std::vector<signed char> after = before;
     classifyMoved(mesh, points.data(), after);
-    const Index invalid = countInvalid(after);
-    if (invalid < result.invertedAfter)
+    const Index invalid = countInvalidCorners(mesh, points, after);
+    if (invalid < fewest)
     {
-      result.invertedAfter = invalid;
+      fewest = invalid;
       result.points = points;
       validity = after;
     }
@@ -160,6 +222,14 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
     {
       break;
     }
+  }
+  result.invertedAfter = countInvalid(validity);
+  unfoldCells(mesh, simplices, options, clock, validity, result);
+  if (result.invertedAfter > result.invertedBefore)
+  {
+    result.points = input;
+    validity = before;
+    result.invertedAfter = result.history.back().inverted = result.invertedBefore;
   }
   findObstacles(mesh, simplices, validity, untangler.infeasible(), result);
 }

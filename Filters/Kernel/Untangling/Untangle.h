@@ -7,7 +7,9 @@
  * for what is left, all vertices at once: from the harmonic map of the mesh, by a foldover-free map
  * energy (V. Garanzha et al., "Foldover-free maps in 50 lines of code", ACM TOG 40, 2021) whose
  * regularization is driven to zero; around holes that were turned by more than a quarter, by way of
- * meshes with the holes turned back. A cell counts as valid when its corner Jacobians are
+ * meshes with the holes turned back. These phases see the corners of the elements; hexahedra and
+ * wedges that are then folded between valid corners are repaired one by one, as far as their
+ * neighbours allow. A cell counts as valid when its Jacobian determinant is positive everywhere
  * (Mesh::classifyCells()). The connectivity never changes. Planar and volume meshes.
  */
 #ifndef tautline_Untangle_h
