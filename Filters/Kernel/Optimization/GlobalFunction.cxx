@@ -1,5 +1,7 @@
 #include "GlobalFunction.h"
 
+#include "ValidityGuard.h"
+#include "tautline/Mesh/JacobianBounds.h"
 #include "tautline/Objectives/ObjectiveSumState.h"
 
 #include <algorithm>
@@ -24,18 +26,19 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
   , Size(problem.moving().dimension() == Dimension::Planar ? 2 : 3)
   , Axes(coordinateAxes(problem.moving()))
   , Origin(problem.points())
-  , Validity(problem.moving().view().numberOfCells)
   , Gradient(3 * problem.moving().view().numberOfPoints)
   , Objectives(problem.objectives())
   , Slopes(problem.objectives(), 1.0)
 {
-  problem.moving().classifyCells(this->Validity.data(), problem.options().threads);
-  this->Start = this->Validity;
-  // An objective that is infinite on inverted elements needs no other check.
-  const bool someInvalid =
-    std::any_of(this->Start.begin(), this->Start.end(), [](signed char v) { return v != Valid; });
+  findValidityLevels(problem.moving(), problem.options().threads, this->Start);
+  // An objective that is infinite on inverted elements needs no other check, if these have no inside.
+  const bool someInvalid = std::any_of(
+    this->Start.begin(), this->Start.end(), [](signed char v) { return v != ValidThroughout; });
+  const std::vector<CellBlock>& blocks = problem.moving().blocks();
+  const bool inside = std::any_of(
+    blocks.begin(), blocks.end(), [](const CellBlock& block) { return hasInside(block.type); });
   this->Check = !problem.options().allowInversion;
-  for (std::size_t i = 0; i < problem.objectives() && !someInvalid; ++i)
+  for (std::size_t i = 0; i < problem.objectives() && !someInvalid && !inside; ++i)
   {
     const Fault fault = problem.sum(i).state().function.fault;
     const bool all = !problem.sum(i).objective().elementWeights;
@@ -87,22 +90,16 @@ void GlobalFunction::put(const double* x)
 }
 
 //------------------------------------------------------------------------------
-/// No element that was valid at the start has become invalid.
+/// No element is less valid than it was at the start.
 bool GlobalFunction::allowed()
 {
   if (!this->Check)
   {
     return true;
   }
-  this->Problem.moving().classifyCells(this->Validity.data(), this->Problem.options().threads);
-  for (std::size_t i = 0; i < this->Validity.size(); ++i)
-  {
-    if (this->Start[i] == Valid && this->Validity[i] != Valid)
-    {
-      return false;
-    }
-  }
-  return true;
+  findValidityLevels(this->Problem.moving(), this->Problem.options().threads, this->Levels);
+  return std::equal(this->Levels.begin(), this->Levels.end(), this->Start.begin(),
+    [](signed char now, signed char before) { return now >= before; });
 }
 
 //------------------------------------------------------------------------------

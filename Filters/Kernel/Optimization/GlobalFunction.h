@@ -50,7 +50,7 @@ private:
   std::array<Vec3, 3> Axes;
   std::vector<double> Origin; ///< 3 per point
   bool Check = true;          ///< whether elements may invert without an infinite objective
-  std::vector<signed char> Start, Validity;
+  std::vector<signed char> Start, Levels; ///< a ValidityLevel per cell: at the start, now
   std::vector<double> Gradient;
   std::vector<double> Objectives, Slopes;
   std::unique_ptr<HessianMatrix> Hessian;

@@ -1,5 +1,7 @@
 #include "ImproveWorst.h"
 
+#include "ValidityGuard.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -107,6 +109,7 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   SimplexMesh& simplices = problem.simplices();
   const std::size_t size = VertexStride * static_cast<std::size_t>(simplices.freeVertices());
   std::vector<double> best(simplices.coordinates(), simplices.coordinates() + size);
+  ValidityGuard inside(problem);
   for (int round = 0; round < maxRounds && !problem.outOfTime(); ++round)
   {
     const WorstObjectives objectives(problem, judged, worst);
@@ -122,6 +125,7 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
       sweeper.sweep(scalarizer, values);
     }
     problem.store();
+    inside.restore(best);
     IterationRecord now = problem.record(0);
     const double worstNow = problem.worstMovable(judged);
     const bool affordable = sign * (now.mean[0] - bound) <= 0 || guard.worse(worst);

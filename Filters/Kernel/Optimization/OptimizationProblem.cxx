@@ -385,9 +385,36 @@ LocalTerm OptimizationProblem::fastTerm(const Objective& objective) const
 }
 
 //------------------------------------------------------------------------------
-void OptimizationProblem::leaveOut(const std::vector<signed char>& validity)
+Validity cornerValidity(const Mesh& mesh, Index cell)
+{
+  const MeshView& view = mesh.view();
+  const CellType type = cornerType(view.cellTypes[cell]);
+  if (type == CellType::Unsupported)
+  {
+    return NotMeasured;
+  }
+  const CellTopology& t = topology(type);
+  Vec3 vertices[MaxNodes];
+  for (int k = 0; k < t.nodes; ++k)
+  {
+    vertices[k] = pointOf(view, view.connectivity[view.offsets[cell] + k]);
+  }
+  return mesh.classifyCorners(t, vertices);
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::leaveOut(std::vector<signed char> validity)
 {
   const Index cells = static_cast<Index>(validity.size());
+  // Objectives are functions of the corners: elements that are folded in between take part, and are
+  // often unfolded by it.
+  for (Index cell = 0; cell < cells; ++cell)
+  {
+    if (validity[cell] == Inverted || validity[cell] == Degenerate)
+    {
+      validity[cell] = cornerValidity(*this->Moving, cell);
+    }
+  }
   for (std::size_t i = 0; i < this->Resolved.size(); ++i)
   {
     Objective& objective = this->Resolved[i];
@@ -425,18 +452,8 @@ void OptimizationProblem::leaveOut(const std::vector<signed char>& validity)
 //------------------------------------------------------------------------------
 bool OptimizationProblem::someRepaired() const
 {
-  const MeshView& view = this->Moving->view();
   return std::any_of(this->LeftOut.begin(), this->LeftOut.end(),
-    [&](Index cell)
-    {
-      const CellTopology& t = topology(cornerType(view.cellTypes[cell]));
-      Vec3 vertices[MaxNodes];
-      for (int k = 0; k < t.nodes; ++k)
-      {
-        vertices[k] = pointOf(view, view.connectivity[view.offsets[cell] + k]);
-      }
-      return this->Moving->classifyCell(t, vertices) == Valid;
-    });
+    [&](Index cell) { return cornerValidity(*this->Moving, cell) == Valid; });
 }
 
 //------------------------------------------------------------------------------

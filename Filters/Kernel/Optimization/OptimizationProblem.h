@@ -13,6 +13,9 @@
 
 namespace tautline
 {
+/// Mesh::classifyCorners() of a cell where it is now; NotMeasured for an unsupported type.
+Validity cornerValidity(const Mesh& mesh, Index cell);
+
 class OptimizationProblem
 {
 public:
@@ -45,8 +48,8 @@ public:
     return this->AllFast && this->Resolved.size() == 1 && this->LeftOut.empty() &&
       this->Resolved[0].metric == Metric::InverseMeanRatio;
   }
-  /// Whether an element that an objective leaves out because it was inverted is valid at the stored
-  /// points.
+  /// Whether an element that an objective leaves out because a corner was inverted has valid corners
+  /// at the stored points.
   bool someRepaired() const;
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);
@@ -61,7 +64,7 @@ public:
 
 private:
   LocalTerm fastTerm(const Objective& objective) const;
-  void leaveOut(const std::vector<signed char>& validity);
+  void leaveOut(std::vector<signed char> validity);
   void rescaleUntangling();
   void summarizeSimplices(IterationRecord& record) const;
   void summarizeCells(IterationRecord& record);
@@ -76,7 +79,7 @@ private:
   std::vector<LocalTerm> Terms; ///< of each objective; with the metric's sum only once it was used
   bool AllFast = false;
   std::vector<std::unique_ptr<ObjectiveSum>> Sums;
-  std::vector<Index> LeftOut; ///< cells that were not valid when the optimization began
+  std::vector<Index> LeftOut;               ///< cells whose corners were not valid at first
   std::vector<std::vector<double>> Weights; ///< of each objective, if not all 1
   std::unique_ptr<Scalarizer> TheScalarizer;
   std::vector<double> Start; ///< coordinates of the simplex mesh at the start

@@ -6,6 +6,7 @@
 #include "ImproveWorst.h"
 #include "Minimize.h"
 #include "QualityGuard.h"
+#include "ValidityGuard.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include <algorithm>
@@ -213,6 +214,7 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
   double firstGradient = 0;
   bool all = true; // whether the next sweep visits every vertex
   SweepGains gains;
+  ValidityGuard guard(problem);
   for (int iteration = result.history.back().iteration + 1;; ++iteration)
   {
     if (watch.ends(result.history, reason))
@@ -225,6 +227,7 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     if (!simple)
     {
       problem.store();
+      guard.restore(best);
     }
     IterationRecord now = problem.record(iteration);
     now.gradientNorm = sweep.gradientNorm;
