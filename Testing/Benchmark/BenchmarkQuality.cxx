@@ -244,6 +244,9 @@ void filterPart(Index n, int repeats)
   std::vector<double> values(data.numberOfCells());
   std::vector<signed char> validity(data.numberOfCells());
   const MeshAdapter kept(grid, 1);
+  const MeshData hexahedra = makeMesh(CellType::Hexahedron, n);
+  const Mesh hexahedralMesh(hexahedra.view());
+  const double hexahedraCount = static_cast<double>(hexahedra.numberOfCells());
   EvaluationOptions options;
   options.threads = 1;
   Contest contest;
@@ -264,6 +267,10 @@ void filterPart(Index n, int repeats)
     "filter validity", count, threadTime, [&] { kept.mesh().classifyCells(validity.data(), 1); });
   contest.add("filter values", count, threadTime,
     [&] { evaluateMetric(kept.mesh(), Metric::InverseMeanRatio, options, values.data()); });
+  contest.add("filter validity of hexahedra", hexahedraCount, threadTime,
+    [&] { hexahedralMesh.classifyCells(validity.data(), 1); });
+  contest.add("filter min_jacobian of hexahedra", hexahedraCount, threadTime,
+    [&] { evaluateMetric(hexahedralMesh, Metric::MinimumJacobian, options, values.data()); });
   contest.run(repeats);
 
   auto* ours = vtkDataSet::SafeDownCast(tautline->GetOutputDataObject(0))->GetCellData();

@@ -55,6 +55,7 @@ def ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
         ("vtkMeshQuality / evaluation of IMR alone", t["filter verdict"] / t["filter values"], ""),
         ("share of the adapter in vtkElementQuality", t["filter adapter"] / t["filter tautline"], ""),
         ("share of the validity", t["filter validity"] / t["filter tautline"], ""),
+        ("validity of hexahedra, millions a second", 1e3 / t["filter validity of hexahedra"], ">= 6"),
         ("share of the statistics", rest / t["filter tautline"], ""),
         ("peak memory, vtkElementQuality, bytes per element", t["memory tautline peak"], ""),
         ("  of which neither input nor output", t["memory tautline working"], ""),
