@@ -44,7 +44,6 @@
  * position.
  *
  * @par Limitations:
- * Validity is that of the corners; a hexahedron with positive corners may still be folded inside.
  * Quadratic cells are refused, and so are meshes on several processes. Points shared by two blocks
  * are on the boundary of each and stay.
  *
