@@ -15,8 +15,8 @@
  * Values are always finite. A metric that is singular at a degenerate element is 0 there; one that
  * is not defined on a cell is 0. Inverted elements have negative values of signed metrics (see
  * MetricInfo::inverted); hexahedra and wedges that are folded between valid corners are
- * inverted, too, and have a negative "min_jacobian". The first metric is the active cell scalar array; point arrays pass, none
- * of them active.
+ * inverted, too, and have a negative "min_jacobian". The first metric is the active cell scalar
+ * array; point arrays pass, none of them active.
  *
  * @par Output port 1 `Statistics`:
  * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (number of elements), `Minimum`,

@@ -42,7 +42,8 @@ struct Cell
   }
 };
 
-/// The derivatives of the shape functions by u, v, w; of a pyramid those of B(u, v) and of apex - B.
+/// The derivatives of the shape functions by u, v, w; of a pyramid those of B(u, v) and of apex -
+/// B.
 void shapeDerivatives(const CellTopology& t, const Vec3& at, double (*d)[3])
 {
   const double u[2] = { 1 - at[0], at[0] }, v[2] = { 1 - at[1], at[1] };
@@ -265,7 +266,8 @@ public:
 private:
   static constexpr double tolerance = Mesh::degenerateTolerance();
 
-  /// Whether the polynomial is negative at a corner of a box; where it vanishes, the verdict changes.
+  /// Whether the polynomial is negative at a corner of a box; where it vanishes, the verdict
+  /// changes.
   bool negativeAtCorner(const Box& box)
   {
     for (int k = 0; k < Box::Corners; ++k)

@@ -3,19 +3,19 @@
  * @brief The Jacobian determinant inside hexahedra and wedges: its Bernstein coefficients, its sign
  * and its minimum. Internal: not installed.
  *
- * The reference elements are the unit cube, the prism over a triangle with two legs of length 1, and
- * the pyramid over the unit square. With x_u, x_v, x_w the derivatives of the linear map of the
+ * The reference elements are the unit cube, the prism over a triangle with two legs of length 1,
+ * and the pyramid over the unit square. With x_u, x_v, x_w the derivatives of the linear map of the
  * element, det = x_u . (x_v x x_w) is
  * - of a hexahedron quadratic in each of u, v, w: 27 Bernstein coefficients;
  * - of a wedge linear over the triangle and quadratic along w: 3 x 3 coefficients;
- * - of a pyramid, with x = (1 - w) B(u, v) + w apex, the factor (1 - w)^2 times (B_u x B_v) . (apex -
- *   B), of which all but the bilinear terms vanish: its minimum is at a corner of the base (P.
- *   Knabner, G. Summ, "The invertibility of the isoparametric mapping for pyramidal and prismatic
- *   finite elements", Numer. Math. 88 (2001)).
+ * - of a pyramid, with x = (1 - w) B(u, v) + w apex, the factor (1 - w)^2 times (B_u x B_v) .
+ *   (apex - B), of which all but the bilinear terms vanish: its minimum is at a corner of the base
+ *   (P. Knabner, G. Summ, "The invertibility of the isoparametric mapping for pyramidal and
+ *   prismatic finite elements", Numer. Math. 88 (2001)).
  *
  * A coefficient at a corner is the determinant there, and the smallest of all is a lower bound of
- * the determinant, which subdivision (de Casteljau) brings as near as wanted. Coefficients are means
- * of the triple products of three edges in the directions u, v and w.
+ * the determinant, which subdivision (de Casteljau) brings as near as wanted. Coefficients are
+ * means of the triple products of three edges in the directions u, v and w.
  *
  * A. Johnen, J.-C. Weill, J.-F. Remacle, "Robust and efficient validation of the linear hexahedral
  * element", Procedia Engineering 203 (2017).
@@ -45,10 +45,10 @@ struct JacobianMinimum
 /**
  * @brief Whether the determinant is positive inside a cell that hasInside().
  * @param corners the verdict on the corners, which are not looked at again; not Inverted
- * @return Valid if det > Mesh::degenerateTolerance() |x_u| |x_v| |x_w| everywhere, Inverted if det is
- * below the negative of that somewhere, else Degenerate; less than rounding, 1e-15 times the product
- * of the longest edges in each direction, counts as 0. Where the smallest value is so near to the
- * tolerance that 2000 subdivisions do not decide, Degenerate.
+ * @return Valid if det > Mesh::degenerateTolerance() |x_u| |x_v| |x_w| everywhere, Inverted if det
+ * is below the negative of that somewhere, else Degenerate; less than rounding, 1e-15 times the
+ * product of the longest edges in each direction, counts as 0. Where the smallest value is so near
+ * to the tolerance that 2000 subdivisions do not decide, Degenerate.
  */
 Validity classifyInside(const CellTopology& t, const Vec3* vertices, Validity corners);
 
@@ -128,8 +128,8 @@ void hexahedronEdges(const T (*p)[3], Edges<T>& e)
 }
 
 /**
- * @brief The 27 coefficients c[a + 3 b + 9 c]: the mean of u[j][k] . (v[i][k'] x w[i'][j']) over i +
- * i' = a, j + j' = b, k + k' = c.
+ * @brief The 27 coefficients c[a + 3 b + 9 c]: the mean of u[j][k] . (v[i][k'] x w[i'][j']) over i
+ * + i' = a, j + j' = b, k + k' = c.
  */
 template <class T>
 void hexahedronCoefficients(const Edges<T>& e, T* c)

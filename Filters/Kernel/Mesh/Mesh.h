@@ -141,9 +141,10 @@ public:
   /**
    * @brief Writes a Validity per cell, by the Jacobian determinant in the whole element: of
    * hexahedra and wedges by bounds that hold between the corners, too (Johnen, Weill, Remacle
-   * 2017); of the other types the smallest value is at a corner. A determinant counts as vanishing when it is at most degenerateTolerance() times the product of the lengths
-   * of the derivatives, at corners the lengths of the edges. An element whose smallest determinant
-   * cannot be told from this limit is Degenerate.
+   * 2017); of the other types the smallest value is at a corner. A determinant counts as vanishing
+   * when it is at most degenerateTolerance() times the product of the lengths of the derivatives,
+   * at corners the lengths of the edges. An element whose smallest determinant cannot be told from
+   * this limit is Degenerate.
    */
   void classifyCells(signed char* validity, int threads = 0) const;
   /**

@@ -31,7 +31,8 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
   , Slopes(problem.objectives(), 1.0)
 {
   findValidityLevels(problem.moving(), problem.options().threads, this->Start);
-  // An objective that is infinite on inverted elements needs no other check, if these have no inside.
+  // An objective that is infinite on inverted elements needs no other check, if these have no
+  // inside.
   const bool someInvalid = std::any_of(
     this->Start.begin(), this->Start.end(), [](signed char v) { return v != ValidThroughout; });
   const std::vector<CellBlock>& blocks = problem.moving().blocks();

@@ -48,8 +48,8 @@ public:
     return this->AllFast && this->Resolved.size() == 1 && this->LeftOut.empty() &&
       this->Resolved[0].metric == Metric::InverseMeanRatio;
   }
-  /// Whether an element that an objective leaves out because a corner was inverted has valid corners
-  /// at the stored points.
+  /// Whether an element that an objective leaves out because a corner was inverted has valid
+  /// corners at the stored points.
   bool someRepaired() const;
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);

@@ -147,7 +147,8 @@ std::vector<Index> Unfolder::cellsAt(const Index* nodes, int count) const
   return cells;
 }
 
-/// Cells that are valid at the corners only, and those next to them that are so poor that they are in the way.
+/// Cells that are valid at the corners only, and those next to them that are so poor that they are
+/// in the way.
 std::vector<Index> Unfolder::poorCells() const
 {
   std::vector<Index> poor;

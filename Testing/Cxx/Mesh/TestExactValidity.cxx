@@ -1,5 +1,5 @@
-// Validity between the corners of hexahedra and wedges, and of pyramids: against dense samples of the
-// determinant, in any frame and numbering, at the limits; the minimum.
+// Validity between the corners of hexahedra and wedges, and of pyramids: against dense samples of
+// the determinant, in any frame and numbering, at the limits; the minimum.
 #include "Blocks.h"
 #include "Check.h"
 

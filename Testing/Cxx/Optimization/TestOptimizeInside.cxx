@@ -1,5 +1,5 @@
-// Hexahedra and wedges stay valid between their corners when a mesh is optimized, and become so when
-// it is untangled.
+// Hexahedra and wedges stay valid between their corners when a mesh is optimized, and become so
+// when it is untangled.
 #include "Optimizing.h"
 
 #include "tautline/Untangling/Untangle.h"
