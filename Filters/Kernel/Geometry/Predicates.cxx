@@ -14,6 +14,7 @@ namespace
 // 1997).
 constexpr double Epsilon = 0.5 * std::numeric_limits<double>::epsilon();
 constexpr double OrientationBound = (3.0 + 16.0 * Epsilon) * Epsilon;
+constexpr double OrientationBound3D = (7.0 + 56.0 * Epsilon) * Epsilon;
 constexpr double CircleBound = (10.0 + 96.0 * Epsilon) * Epsilon;
 
 int sign(double x)
@@ -106,6 +107,34 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c)
   // Within the bound of rounding: the sign of the exact determinant.
   return sign(plus(times(difference(a[0], c[0]), difference(b[1], c[1])),
     times(difference(a[1], c[1]), difference(b[0], c[0])), -1.0));
+}
+
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  const Vec3* points[3] = { &b, &c, &d };
+  double det = 0.0, permanent = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vec3 &p = *points[i], &q = *points[(i + 1) % 3], &r = *points[(i + 2) % 3];
+    const double height = p[2] - a[2];
+    const double left = (q[0] - a[0]) * (r[1] - a[1]), right = (q[1] - a[1]) * (r[0] - a[0]);
+    det += height * (left - right);
+    permanent += std::abs(height) * (std::abs(left) + std::abs(right));
+  }
+  if (std::abs(det) > OrientationBound3D * permanent)
+  {
+    return sign(det);
+  }
+  // Within the bound of rounding: the same sum, exactly.
+  Expansion exact;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vec3 &p = *points[i], &q = *points[(i + 1) % 3], &r = *points[(i + 2) % 3];
+    const Expansion minor = plus(times(difference(q[0], a[0]), difference(r[1], a[1])),
+      times(difference(q[1], a[1]), difference(r[0], a[0])), -1.0);
+    exact = plus(std::move(exact), times(difference(p[2], a[2]), minor));
+  }
+  return sign(exact);
 }
 
 int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
