@@ -26,7 +26,7 @@ FLOORS = (
     ("Geometry", "Mesh"),
     ("Quality", "Shapes", "Domains", "Perturbation", "Ranks"),
     ("Objectives", "Patches", "Solvers"),
-    ("Untangling", "Elliptic", "Peridynamics"),
+    ("Untangling", "Reconnection", "Elliptic", "Peridynamics"),
     ("Optimization",),
     ("Deformation",),
 )

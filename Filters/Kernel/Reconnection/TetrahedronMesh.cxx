@@ -1,0 +1,522 @@
+#include "TetrahedronMesh.h"
+
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+/// Sorts three ids.
+void sortKey(TriangleVertices& k)
+{
+  if (k[0] > k[1])
+  {
+    std::swap(k[0], k[1]);
+  }
+  if (k[1] > k[2])
+  {
+    std::swap(k[1], k[2]);
+  }
+  if (k[0] > k[1])
+  {
+    std::swap(k[0], k[1]);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+TetrahedronMesh::TetrahedronMesh(std::vector<Vec3> points, const std::vector<TetVertices>& cells,
+  const std::vector<std::int32_t>& regions)
+  : Points(std::move(points))
+{
+  const std::size_t n = cells.size();
+  this->Tets.resize(n);
+  this->Quality.resize(n);
+  this->Origin.resize(n);
+  this->Mark.assign(n, 0);
+  this->Region = regions;
+  this->Region.resize(n, 0);
+  this->PointTet.assign(this->Points.size(), NoId);
+  for (std::size_t t = 0; t < n; ++t)
+  {
+    this->Tets[t].vertices = cells[t];
+    this->Tets[t].neighbors.fill(NoId);
+    this->Quality[t] = this->computeExactQuality(cells[t]);
+    this->Origin[t] = static_cast<TetId>(t);
+    for (PointId v : cells[t])
+    {
+      this->PointTet[v] = static_cast<TetId>(t);
+    }
+  }
+  this->Alive = static_cast<Index>(n);
+  this->InputPoints = this->pointSlots();
+  this->connect();
+}
+
+/// Finds the neighbours: faces are filed by their smallest vertex, then compared.
+void TetrahedronMesh::connect()
+{
+  struct Use
+  {
+    PointId middle, largest;
+    std::int32_t code;
+  };
+  std::vector<std::int64_t> starts(this->Points.size() + 1, 0);
+  const TetId n = this->slots();
+  const auto keyOf = [&](TetId t, int i)
+  {
+    TriangleVertices key = this->face(t, i);
+    sortKey(key);
+    return key;
+  };
+  for (TetId t = 0; t < n; ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const TriangleVertices f = this->face(t, i);
+      ++starts[std::min(f[0], std::min(f[1], f[2])) + 1];
+    }
+  }
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Use> uses(starts.back());
+  std::vector<std::int64_t> next(starts.begin(), starts.end() - 1);
+  for (TetId t = 0; t < n; ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const TriangleVertices key = keyOf(t, i);
+      uses[next[key[0]]++] = { key[1], key[2], 4 * t + i };
+    }
+  }
+  for (std::size_t v = 0; v < this->Points.size(); ++v)
+  {
+    const auto begin = uses.begin() + starts[v], end = uses.begin() + starts[v + 1];
+    std::sort(begin, end,
+      [](const Use& a, const Use& b)
+      {
+        return a.middle != b.middle
+          ? a.middle < b.middle
+          : (a.largest != b.largest ? a.largest < b.largest : a.code < b.code);
+      });
+    for (auto i = begin; i < end;)
+    {
+      auto j = i + 1;
+      while (j < end && j->middle == i->middle && j->largest == i->largest)
+      {
+        ++j;
+      }
+      if (j - i == 2)
+      {
+        this->Tets[i->code >> 2].neighbors[i->code & 3] = (i + 1)->code;
+        this->Tets[(i + 1)->code >> 2].neighbors[(i + 1)->code & 3] = i->code;
+      }
+      this->NonManifoldFaces += j - i > 2;
+      i = j;
+    }
+  }
+}
+
+std::uint32_t TetrahedronMesh::nextMark()
+{
+  if (++this->CurrentMark == 0)
+  {
+    std::fill(this->Mark.begin(), this->Mark.end(), 0);
+    this->CurrentMark = 1;
+  }
+  return this->CurrentMark;
+}
+
+//------------------------------------------------------------------------------
+void TetrahedronMesh::star(PointId v, std::vector<TetId>& tets)
+{
+  tets.clear();
+  const std::uint32_t mark = this->nextMark();
+  tets.push_back(this->PointTet[v]);
+  this->Mark[tets[0]] = mark;
+  for (std::size_t i = 0; i < tets.size(); ++i)
+  {
+    const Tetrahedron& t = this->Tets[tets[i]];
+    for (int k = 0; k < 4; ++k)
+    {
+      const std::int32_t n = t.neighbors[k];
+      if (t.vertices[k] != v && n != NoId && this->Mark[n >> 2] != mark)
+      {
+        this->Mark[n >> 2] = mark;
+        tets.push_back(n >> 2);
+      }
+    }
+  }
+}
+
+void TetrahedronMesh::ring(TetId t, int i, int j, EdgeRing& ring) const
+{
+  const Tetrahedron& first = this->Tets[t];
+  ring.a = first.vertices[i];
+  ring.b = first.vertices[j];
+  ring.closed = false;
+  ring.whole = true;
+  ring.size = 0;
+  int k = 0;
+  while (k == i || k == j)
+  {
+    ++k;
+  }
+  int l = 6 - i - j - k;
+  // (i, j, k, l) has to be a positive order: that of the face opposite i, turned so that j leads.
+  const int* f = OppositeFace[i];
+  const int at = f[0] == j ? 0 : (f[1] == j ? 1 : 2);
+  k = f[(at + 1) % 3];
+  l = f[(at + 2) % 3];
+  PointId back = first.vertices[k], front = first.vertices[l];
+  ring.ring[0] = back;
+  TetId current = t;
+  // Forward from t over the faces opposite the ring vertex left behind.
+  while (true)
+  {
+    if (ring.size == EdgeRing::MaxSize)
+    {
+      ring.whole = false;
+      return;
+    }
+    ring.tets[ring.size++] = current;
+    const int leave = this->Tets[current].indexOf(back);
+    if (this->isWall(current, leave))
+    {
+      ring.ring[ring.size] = front;
+      break;
+    }
+    const TetId across = this->Tets[current].neighbors[leave] >> 2;
+    if (across == t)
+    {
+      ring.closed = true;
+      ring.vertices = ring.size;
+      return;
+    }
+    ring.ring[ring.size] = front;
+    const TetVertices& v = this->Tets[across].vertices;
+    const PointId next = v[0] ^ v[1] ^ v[2] ^ v[3] ^ ring.a ^ ring.b ^ front;
+    current = across;
+    back = front;
+    front = next;
+  }
+  // The ring is open: from t backwards to its other wall, then into order.
+  current = t;
+  back = first.vertices[k];
+  front = first.vertices[l];
+  while (true)
+  {
+    const int leave = this->Tets[current].indexOf(front);
+    if (this->isWall(current, leave))
+    {
+      break;
+    }
+    if (ring.size == EdgeRing::MaxSize)
+    {
+      ring.whole = false;
+      return;
+    }
+    const TetId across = this->Tets[current].neighbors[leave] >> 2;
+    const TetVertices& v = this->Tets[across].vertices;
+    const PointId previous = v[0] ^ v[1] ^ v[2] ^ v[3] ^ ring.a ^ ring.b ^ back;
+    std::move_backward(
+      ring.tets.begin(), ring.tets.begin() + ring.size, ring.tets.begin() + ring.size + 1);
+    std::move_backward(
+      ring.ring.begin(), ring.ring.begin() + ring.size + 1, ring.ring.begin() + ring.size + 2);
+    ++ring.size;
+    ring.tets[0] = current = across;
+    ring.ring[0] = previous;
+    front = back;
+    back = previous;
+  }
+  ring.vertices = ring.size + 1;
+}
+
+//------------------------------------------------------------------------------
+PointId TetrahedronMesh::addPoint(const Vec3& x)
+{
+  if (!this->FreePoints.empty())
+  {
+    const PointId v = this->FreePoints.back();
+    this->FreePoints.pop_back();
+    this->Points[v] = x;
+    return v;
+  }
+  this->Points.push_back(x);
+  this->PointTet.push_back(NoId);
+  return this->pointSlots() - 1;
+}
+
+void TetrahedronMesh::releasePoint(PointId v)
+{
+  this->FreePoints.push_back(v);
+}
+
+void TetrahedronMesh::reclaimPoint(PointId v)
+{
+  const auto at = std::find(this->FreePoints.rbegin(), this->FreePoints.rend(), v);
+  if (at != this->FreePoints.rend())
+  {
+    this->FreePoints.erase(std::next(at).base());
+  }
+}
+
+void TetrahedronMesh::movePoint(
+  PointId v, const Vec3& x, const std::vector<TetId>& tets, const double* qualities)
+{
+  this->Points[v] = x;
+  for (std::size_t i = 0; i < tets.size(); ++i)
+  {
+    this->Quality[tets[i]] =
+      qualities ? qualities[i] : this->computeQuality(this->Tets[tets[i]].vertices);
+  }
+}
+
+//------------------------------------------------------------------------------
+void TetrahedronMesh::FaceTable::reset(std::size_t faces)
+{
+  std::size_t size = 64;
+  while (size < 2 * faces)
+  {
+    size *= 2;
+  }
+  if (size > this->Entries.size())
+  {
+    this->Entries.assign(size, { { NoId, NoId, NoId }, NoId, false });
+  }
+  else
+  {
+    for (std::int32_t i : this->Filled)
+    {
+      this->Entries[i].key[0] = NoId;
+    }
+  }
+  this->Filled.clear();
+}
+
+TetrahedronMesh::FaceEntry& TetrahedronMesh::FaceTable::find(TriangleVertices& key)
+{
+  sortKey(key);
+  constexpr std::uint32_t p0 = 73856093u, p1 = 19349663u, p2 = 83492791u; // large primes
+  const std::uint32_t hash = static_cast<std::uint32_t>(key[0]) * p0 ^
+    static_cast<std::uint32_t>(key[1]) * p1 ^ static_cast<std::uint32_t>(key[2]) * p2;
+  const std::size_t mask = this->Entries.size() - 1;
+  std::size_t i = (hash ^ (hash >> 15)) & mask;
+  while (this->Entries[i].key[0] != NoId && this->Entries[i].key != key)
+  {
+    i = (i + 1) & mask;
+  }
+  if (this->Entries[i].key[0] == NoId)
+  {
+    this->Filled.push_back(static_cast<std::int32_t>(i));
+  }
+  return this->Entries[i];
+}
+
+/// Finds the neighbour of each face of the new tetrahedra; those among themselves are coded as
+/// -2 - (4 * position + face).
+bool TetrahedronMesh::match(const Replacement& replacement)
+{
+  const std::uint32_t mark = this->nextMark();
+  for (TetId t : replacement.before)
+  {
+    this->Mark[t] = mark;
+  }
+  this->Faces.reset(4 * (replacement.before.size() + replacement.after.size()));
+  for (TetId t : replacement.before)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const std::int32_t n = this->Tets[t].neighbors[i];
+      if (n != NoId && this->Mark[n >> 2] == mark)
+      {
+        continue;
+      }
+      TriangleVertices key = this->face(t, i);
+      FaceEntry& entry = this->Faces.find(key);
+      if (entry.key[0] != NoId)
+      {
+        return false; // a face that is not manifold
+      }
+      entry = { key, n, false };
+    }
+  }
+  const std::size_t outer = this->Faces.filled().size();
+  this->Links.resize(replacement.after.size());
+  for (std::size_t k = 0; k < replacement.after.size(); ++k)
+  {
+    const TetVertices& v = replacement.after[k];
+    for (int i = 0; i < 4; ++i)
+    {
+      const int* f = OppositeFace[i];
+      TriangleVertices key = { v[f[0]], v[f[1]], v[f[2]] };
+      FaceEntry& entry = this->Faces.find(key);
+      const std::int32_t own = static_cast<std::int32_t>(4 * k) + i;
+      if (entry.key[0] == NoId)
+      {
+        entry = { key, -2 - own, false };
+        this->Links[k][i] = NoId;
+        continue;
+      }
+      if (entry.matched)
+      {
+        return false;
+      }
+      entry.matched = true;
+      this->Links[k][i] = entry.code;
+      if (entry.code <= -2)
+      {
+        const std::int32_t other = -2 - entry.code;
+        this->Links[other >> 2][other & 3] = -2 - own;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < this->Faces.filled().size(); ++i)
+  {
+    const FaceEntry& entry = this->Faces.at(this->Faces.filled()[i]);
+    const bool boundary = i < outer ? entry.code == NoId : true;
+    if (!entry.matched && !(replacement.opensBoundary && boundary))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+void TetrahedronMesh::detachPoints(const Replacement& replacement)
+{
+  for (TetId t : replacement.before)
+  {
+    for (PointId v : this->Tets[t].vertices)
+    {
+      this->PointTet[v] = NoId;
+    }
+  }
+}
+
+bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>& created)
+{
+  created.clear();
+  const std::size_t before = replacement.before.size(), after = replacement.after.size();
+  if (before == 0 || after == 0 || !this->match(replacement))
+  {
+    return false;
+  }
+  const TetId first = replacement.before[0];
+  const std::int32_t region = this->Region[first];
+  const TetId origin = this->Origin[first];
+  this->detachPoints(replacement);
+  // Ids that are free use again: those of the cavity first.
+  for (std::size_t k = 0; k < after; ++k)
+  {
+    if (k < before)
+    {
+      created.push_back(replacement.before[k]);
+    }
+    else if (!this->FreeTets.empty())
+    {
+      created.push_back(this->FreeTets.back());
+      this->FreeTets.pop_back();
+    }
+    else
+    {
+      created.push_back(this->slots());
+      this->Tets.emplace_back();
+      this->Quality.push_back(0.0);
+      this->Region.push_back(0);
+      this->Origin.push_back(NoId);
+      this->Mark.push_back(0);
+    }
+  }
+  // Points of the input that are lost are not used again: their ids stay theirs.
+  std::vector<PointId>& lost = this->FreePoints;
+  const std::ptrdiff_t known = static_cast<std::ptrdiff_t>(lost.size());
+  for (std::size_t k = 0; k < after; ++k)
+  {
+    for (PointId v : replacement.after[k])
+    {
+      this->PointTet[v] = created[k];
+    }
+  }
+  for (TetId t : replacement.before)
+  {
+    for (PointId v : this->Tets[t].vertices)
+    {
+      if (this->PointTet[v] == NoId && v >= this->InputPoints &&
+        std::find(lost.begin() + known, lost.end(), v) == lost.end())
+      {
+        lost.push_back(v);
+      }
+    }
+  }
+  for (std::size_t k = before; k > after; --k) // the next to be used is the first
+  {
+    this->Tets[replacement.before[k - 1]].vertices.fill(NoId);
+    this->FreeTets.push_back(replacement.before[k - 1]);
+  }
+  for (std::size_t k = 0; k < after; ++k)
+  {
+    const TetId id = created[k];
+    this->Quality[id] = replacement.qualities[k];
+    this->Region[id] = region;
+    this->Origin[id] = origin;
+    this->Tets[id].vertices = replacement.after[k];
+    for (int i = 0; i < 4; ++i)
+    {
+      const std::int32_t link = this->Links[k][i];
+      const std::int32_t inner = -2 - link;
+      this->Tets[id].neighbors[i] = link <= -2 ? 4 * created[inner >> 2] + (inner & 3) : link;
+      if (link >= 0)
+      {
+        this->Tets[link >> 2].neighbors[link & 3] = 4 * id + i;
+      }
+    }
+  }
+  this->Alive += static_cast<Index>(after) - static_cast<Index>(before);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+std::string TetrahedronMesh::findViolation() const
+{
+  const auto at = [](const char* what, TetId t) { return what + std::to_string(t); };
+  Index alive = 0;
+  for (TetId t = 0; t < this->slots(); ++t)
+  {
+    if (!this->alive(t))
+    {
+      continue;
+    }
+    ++alive;
+    const Tetrahedron& tet = this->Tets[t];
+    if (this->computeExactQuality(tet.vertices) <= 0.0)
+    {
+      return at("not positive: tetrahedron ", t);
+    }
+    if (std::abs(this->computeQuality(tet.vertices) - this->Quality[t]) > CertainQuality)
+    {
+      return at("wrong quality of tetrahedron ", t);
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      const PointId v = tet.vertices[i];
+      if (this->PointTet[v] < 0 || this->Tets[this->PointTet[v]].indexOf(v) == NoId)
+      {
+        return at("wrong tetrahedron of a point of tetrahedron ", t);
+      }
+      const std::int32_t n = tet.neighbors[i];
+      if (n == NoId)
+      {
+        continue;
+      }
+      TriangleVertices own = this->face(t, i), other = this->face(n >> 2, n & 3);
+      sortKey(own);
+      sortKey(other);
+      if (!this->alive(n >> 2) || own != other || this->Tets[n >> 2].neighbors[n & 3] != 4 * t + i)
+      {
+        return at("wrong neighbour of tetrahedron ", t);
+      }
+    }
+  }
+  return alive == this->Alive ? "" : "wrong number of tetrahedra";
+}
+}

@@ -1,0 +1,211 @@
+/**
+ * @file TetrahedronMesh.h
+ * @brief A tetrahedral mesh whose connectivity changes. Internal: not installed.
+ *
+ * Every change replaces the tetrahedra of a cavity by others with the same outer faces. It is
+ * checked before anything is touched: a replacement that does not fit leaves the mesh as it was.
+ * Ids of tetrahedra and points that are not involved stay; those that become free are used again,
+ * except the ids of the points of the input.
+ * Memory: 64 bytes per tetrahedron, 40 per point.
+ */
+#ifndef tautline_TetrahedronMesh_h
+#define tautline_TetrahedronMesh_h
+
+#include "TetrahedronQuality.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace tautline
+{
+using TetId = std::int32_t;
+using PointId = std::int32_t;
+
+constexpr std::int32_t NoId = -1;
+
+/// The vertices of the face opposite each vertex, so that (vertex, face) is a positive order.
+constexpr int OppositeFace[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 3, 0, 1 }, { 2, 1, 0 } };
+
+/// Vertices in VTK's order (positive volume).
+using TetVertices = std::array<PointId, 4>;
+using TriangleVertices = std::array<PointId, 3>;
+
+struct Tetrahedron
+{
+  TetVertices vertices; ///< the first is NoId if the slot is free
+  /// Face i of the tetrahedron meets face `n & 3` of the tetrahedron `n >> 2`, n = neighbors[i];
+  /// NoId: nothing, or a tetrahedron through a face that is not manifold.
+  std::array<std::int32_t, 4> neighbors;
+
+  int indexOf(PointId v) const
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      if (this->vertices[i] == v)
+      {
+        return i;
+      }
+    }
+    return NoId;
+  }
+};
+
+/// The tetrahedra round an edge. For an inner edge (closed) there are as many as ring vertices, and
+/// (a, b, ring[i], ring[i + 1]) are positive; at a wall the ring is open and has one vertex more.
+struct EdgeRing
+{
+  /// Longer rings are not removed: the number of triangulations grows too fast, the gain vanishes.
+  static constexpr int MaxSize = 12;
+  PointId a = NoId, b = NoId;
+  bool closed = false;
+  int size = 0;      ///< number of tetrahedra
+  int vertices = 0;  ///< number of ring vertices
+  bool whole = true; ///< false: the ring is longer than MaxSize
+  std::array<TetId, MaxSize> tets;
+  std::array<PointId, MaxSize + 1> ring;
+};
+
+/// A replacement of some tetrahedra by others.
+struct Replacement
+{
+  std::vector<TetId> before;
+  std::vector<TetVertices> after;
+  std::vector<double> qualities; ///< of `after`
+  /// Whether faces of the boundary may be replaced by others.
+  bool opensBoundary = false;
+
+  void clear()
+  {
+    this->before.clear();
+    this->after.clear();
+    this->qualities.clear();
+    this->opensBoundary = false;
+  }
+  void add(const TetVertices& vertices, double quality)
+  {
+    this->after.push_back(vertices);
+    this->qualities.push_back(quality);
+  }
+};
+
+class TAUTLINE_KERNEL_EXPORT TetrahedronMesh
+{
+public:
+  /// Positive tetrahedra. @param regions one per tetrahedron, or empty: one region
+  TetrahedronMesh(std::vector<Vec3> points, const std::vector<TetVertices>& cells,
+    const std::vector<std::int32_t>& regions = {});
+
+  ///@{ Slots, some of which may be free.
+  TetId slots() const { return static_cast<TetId>(this->Tets.size()); }
+  PointId pointSlots() const { return static_cast<PointId>(this->Points.size()); }
+  bool alive(TetId t) const { return this->Tets[t].vertices[0] != NoId; }
+  /// Whether a tetrahedron uses the point.
+  bool used(PointId v) const { return this->PointTet[v] != NoId; }
+  ///@}
+  Index size() const { return this->Alive; }
+
+  const Tetrahedron& tet(TetId t) const { return this->Tets[t]; }
+  double quality(TetId t) const { return this->Quality[t]; }
+  std::int32_t region(TetId t) const { return this->Region[t]; }
+  /// The input's tetrahedron a new one was made near; its own id for those of the input.
+  TetId origin(TetId t) const { return this->Origin[t]; }
+  const Vec3& point(PointId v) const { return this->Points[v]; }
+  TetId tetOf(PointId v) const { return this->PointTet[v]; }
+
+  /// Faces that are used by three or more tetrahedra; these are walls on all sides.
+  Index nonManifoldFaces() const { return this->NonManifoldFaces; }
+  /// Whether face i is on the boundary or between two regions.
+  bool isWall(TetId t, int i) const
+  {
+    const std::int32_t n = this->Tets[t].neighbors[i];
+    return n == NoId || this->Region[n >> 2] != this->Region[t];
+  }
+  TriangleVertices face(TetId t, int i) const
+  {
+    const TetVertices& v = this->Tets[t].vertices;
+    const int* f = OppositeFace[i];
+    return { v[f[0]], v[f[1]], v[f[2]] };
+  }
+  double computeQuality(const TetVertices& v) const
+  {
+    const std::vector<Vec3>& x = this->Points;
+    return roundedQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
+  }
+  double computeExactQuality(const TetVertices& v) const
+  {
+    const std::vector<Vec3>& x = this->Points;
+    return exactQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
+  }
+
+  /// The tetrahedra with vertex v that are connected with tetOf(v) through faces, walls included.
+  void star(PointId v, std::vector<TetId>& tets);
+  /// The tetrahedra round the edge of vertices i and j of a tetrahedron.
+  void ring(TetId t, int i, int j, EdgeRing& ring) const;
+
+  /// A point without tetrahedra. The next replacement may use it; else release it.
+  PointId addPoint(const Vec3& x);
+  void releasePoint(PointId v);
+  /// Takes a point back that a replacement has just freed, at its place as it was.
+  void reclaimPoint(PointId v);
+  /// Moves a vertex. @param tets its whole star
+  /// @param qualities theirs afterwards; null: to be computed
+  void movePoint(PointId v, const Vec3& x, const std::vector<TetId>& tets, const double* qualities);
+
+  /**
+   * @brief Replaces tetrahedra of one region by others with the same outer faces. Vertices that
+   * lose all tetrahedra become free. Replacing the created ones by the former ones, the last
+   * replacement first, restores all ids.
+   * @param created set to the ids of `after`, in order
+   * @return false if the faces do not match; nothing has changed then
+   */
+  bool replace(const Replacement& replacement, std::vector<TetId>& created);
+
+  /// Checks adjacency, orientation and links of points; the first violation as text, or "".
+  std::string findViolation() const;
+
+private:
+  struct FaceEntry
+  {
+    TriangleVertices key;
+    std::int32_t code = NoId;
+    bool matched = false;
+  };
+  /// A small hash table of the faces of a cavity.
+  class FaceTable
+  {
+  public:
+    void reset(std::size_t faces);
+    /// The entry of a face, or a new one with key[0] = NoId.
+    FaceEntry& find(TriangleVertices& key);
+    const std::vector<std::int32_t>& filled() const { return this->Filled; }
+    FaceEntry& at(std::int32_t i) { return this->Entries[i]; }
+
+  private:
+    std::vector<FaceEntry> Entries;
+    std::vector<std::int32_t> Filled;
+  };
+
+  void connect();
+  std::uint32_t nextMark();
+  bool match(const Replacement& replacement);
+  void detachPoints(const Replacement& replacement);
+
+  std::vector<Tetrahedron> Tets;
+  std::vector<double> Quality;
+  std::vector<std::int32_t> Region;
+  std::vector<TetId> Origin;
+  std::vector<std::uint32_t> Mark;
+  std::vector<TetId> FreeTets;
+  std::vector<Vec3> Points;
+  std::vector<TetId> PointTet;
+  std::vector<PointId> FreePoints;
+  std::uint32_t CurrentMark = 0;
+  Index Alive = 0;
+  PointId InputPoints = 0;
+  Index NonManifoldFaces = 0;
+  // Of replace(), kept to save allocations.
+  FaceTable Faces;
+  std::vector<std::array<std::int32_t, 4>> Links;
+};
+}
+#endif

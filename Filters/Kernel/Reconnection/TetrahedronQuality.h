@@ -1,0 +1,100 @@
+/**
+ * @file TetrahedronQuality.h
+ * @brief The quality that reconnection maximizes, of one tetrahedron. Internal: not installed.
+ *
+ * q = min(smallest sine of the six dihedral angles, (mean ratio)^(3/2)), 1 for the regular
+ * tetrahedron, at most 0 for one that is degenerate or inverted. With d = 6 V, an edge of length l
+ * between faces with normals m and n (twice their areas long), and S the sum of the six squared
+ * edges: sine = d l / (|m| |n|), (mean ratio)^(3/2) = 12 sqrt(3) d / S^(3/2). The sine alone
+ * accepts flat shapes, the mean ratio alone small angles.
+ */
+#ifndef tautline_TetrahedronQuality_h
+#define tautline_TetrahedronQuality_h
+
+#include "tautline/Core/Types.h"
+#include "tautline/Geometry/Predicates.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+/// 12 sqrt(3): makes (mean ratio)^(3/2) of the regular tetrahedron 1.
+constexpr double MeanRatioFactor = 20.784609690826528;
+
+/// Below this quality the sign of the volume is that of the exact predicate: rounding of
+/// differences and products changes q by some 1e-15.
+constexpr double CertainQuality = 1e-9;
+
+/// What the quality is the smaller of, and the sign of the volume.
+struct TetrahedronMeasures
+{
+  double determinant = 0; ///< 6 V, as rounded
+  double sine = 0;        ///< smallest sine of a dihedral angle; negative if inverted
+  double meanRatio = 0;   ///< (mean ratio)^(3/2)
+  double quality() const { return std::min(this->sine, this->meanRatio); }
+};
+
+inline TetrahedronMeasures measure(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const Vec3 u = a - p, v = b - p, w = c - p;
+  const Vec3 ab = b - a, bc = c - b, ca = a - c;
+  const Vec3 na = cross(v, w), nb = cross(w, u), nc = cross(u, v), n0 = cross(ab, c - a);
+  const double a2 = dot(na, na), b2 = dot(nb, nb), c2 = dot(nc, nc), o2 = dot(n0, n0);
+  const double u2 = dot(u, u), v2 = dot(v, v), w2 = dot(w, w);
+  const double ab2 = dot(ab, ab), bc2 = dot(bc, bc), ca2 = dot(ca, ca);
+  TetrahedronMeasures m;
+  m.determinant = dot(u, na);
+  const double sum = u2 + v2 + w2 + ab2 + bc2 + ca2;
+  // Squares of sine / d, as fractions with the common denominator a2 b2 c2 o2.
+  const double smallest =
+    std::min(std::min(std::min(u2 * a2 * o2, v2 * b2 * o2), std::min(w2 * c2 * o2, ab2 * a2 * b2)),
+      std::min(bc2 * b2 * c2, ca2 * c2 * a2));
+  const double denominator = a2 * b2 * c2 * o2;
+  if (!(denominator > 0.0))
+  {
+    return m;
+  }
+  m.sine = m.determinant * std::sqrt(smallest / denominator);
+  m.meanRatio = MeanRatioFactor * m.determinant / (sum * std::sqrt(sum));
+  return m;
+}
+
+/// The quality, as computed in doubles.
+inline double roundedQuality(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  return measure(p, a, b, c).quality();
+}
+
+/// The quality; positive exactly if the volume is, by the exact predicate.
+inline double exactQuality(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const double q = roundedQuality(p, a, b, c);
+  if (q > CertainQuality)
+  {
+    return q;
+  }
+  constexpr double tiny = 1e-300;
+  return orientation(p, a, b, c) > 0 ? std::max(q, tiny) : std::min(q, 0.0);
+}
+
+/// The six dihedral angles in degrees; those of an inverted tetrahedron are of its mirror image.
+inline std::array<double, 6> dihedralAngles(
+  const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  const Vec3 u = a - p, v = b - p, w = c - p;
+  // Outward normals of the faces opposite p, a, b, c.
+  const Vec3 n[4] = { cross(b - a, c - a), cross(w, v), cross(u, w), cross(v, u) };
+  std::array<double, 6> angles;
+  int k = 0;
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int j = i + 1; j < 4; ++j)
+    {
+      const double turn = std::atan2(norm(cross(n[i], n[j])), dot(n[i], n[j]));
+      angles[k++] = 180.0 - turn * (180.0 / Pi);
+    }
+  }
+  return angles;
+}
+}
+#endif
