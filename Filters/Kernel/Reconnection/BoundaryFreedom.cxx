@@ -1,0 +1,102 @@
+#include "BoundaryFreedom.h"
+
+namespace tautline
+{
+namespace
+{
+/// The planes of the walls at a point.
+struct WallPlanes
+{
+  int count = 0; ///< 3: more than two
+  Vec3 normals[2];
+
+  void add(const Vec3& n, double tolerance)
+  {
+    for (int i = 0; i < std::min(this->count, 2); ++i)
+    {
+      if (norm(cross(this->normals[i], n)) <= tolerance)
+      {
+        return;
+      }
+    }
+    if (this->count < 2)
+    {
+      this->normals[this->count] = n;
+    }
+    this->count = std::min(this->count + 1, 3);
+  }
+};
+
+/// A point whose walls are in one or two planes: whether its tetrahedra are one fan, so that moving
+/// it takes all of them along.
+void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
+{
+  std::vector<std::int32_t> uses(mesh.pointSlots(), 0);
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    for (PointId v : mesh.tet(t).vertices)
+    {
+      ++uses[v];
+    }
+  }
+  std::vector<TetId> star;
+  for (PointId v = 0; v < mesh.pointSlots(); ++v)
+  {
+    if (mesh.used(v) && freedoms[v].kind != PointFreedom::Fixed)
+    {
+      mesh.star(v, star);
+      if (static_cast<std::int32_t>(star.size()) != uses[v])
+      {
+        freedoms[v] = { PointFreedom::Fixed, { 0, 0, 0 } };
+      }
+    }
+  }
+}
+}
+
+std::vector<PointFreedom> findFreedoms(TetrahedronMesh& mesh, bool slide, double tolerance)
+{
+  std::vector<PointFreedom> freedoms(mesh.pointSlots());
+  std::vector<WallPlanes> planes(slide ? mesh.pointSlots() : 0);
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      if (!mesh.isWall(t, i))
+      {
+        continue;
+      }
+      const TriangleVertices f = mesh.face(t, i);
+      const Vec3& a = mesh.point(f[0]);
+      const Vec3 n = cross(mesh.point(f[1]) - a, mesh.point(f[2]) - a);
+      for (PointId v : f)
+      {
+        freedoms[v].kind = PointFreedom::Fixed;
+        if (slide)
+        {
+          planes[v].add((1.0 / norm(n)) * n, tolerance);
+        }
+      }
+    }
+  }
+  if (!slide)
+  {
+    return freedoms;
+  }
+  for (PointId v = 0; v < mesh.pointSlots(); ++v)
+  {
+    const WallPlanes& p = planes[v];
+    if (p.count == 1)
+    {
+      freedoms[v] = { PointFreedom::InPlane, p.normals[0] };
+    }
+    else if (p.count == 2)
+    {
+      const Vec3 d = cross(p.normals[0], p.normals[1]);
+      freedoms[v] = { PointFreedom::OnLine, (1.0 / norm(d)) * d };
+    }
+  }
+  fixNonManifold(mesh, freedoms);
+  return freedoms;
+}
+}

@@ -1,0 +1,85 @@
+/**
+ * @file StarSmoothing.h
+ * @brief The position of one point that maximizes the smallest quality of the tetrahedra around.
+ * Internal: not installed.
+ */
+#ifndef tautline_StarSmoothing_h
+#define tautline_StarSmoothing_h
+
+#include "TetrahedronMesh.h"
+
+namespace tautline
+{
+/// Where a point may go: anywhere, in a plane, along a line, or nowhere.
+struct PointFreedom
+{
+  enum Kind : std::uint8_t
+  {
+    Free = 0,
+    InPlane = 1, ///< `direction` is the unit normal
+    OnLine = 2,  ///< `direction` is the unit tangent
+    Fixed = 3
+  };
+  Kind kind = Free;
+  Vec3 direction = { 0, 0, 0 };
+  Vec3 project(const Vec3& d) const
+  {
+    const double along = dot(d, this->direction);
+    return this->kind == Free
+      ? d
+      : (this->kind == InPlane ? d - along * this->direction : along * this->direction);
+  }
+};
+
+/**
+ * @brief Maximizes the smallest quality of the tetrahedra that join a point to given triangles, by
+ * proximal bundle steps: the sines and mean ratios near the smallest value are linearized, and the
+ * step maximizes the smallest of the linear functions less a multiple of its square.
+ */
+class TAUTLINE_KERNEL_EXPORT StarSmoothing
+{
+public:
+  /// Of larger stars vertices stay where they are.
+  static constexpr int MaxFaces = 128;
+
+  /// A step is tried if it is predicted to gain this.
+  double leastGain = 5e-4;
+
+  void clear() { this->Size = 0; }
+  int size() const { return this->Size; }
+  /// @param a, b, c in the order that makes (point, a, b, c) positive. @return false: no room
+  bool addFace(const Vec3& a, const Vec3& b, const Vec3& c);
+
+  /// The qualities with the point at p, in the order of the faces; returns the smallest.
+  double evaluate(const Vec3& p);
+  const double* qualities() const { return this->Values; }
+
+  /**
+   * @brief Improves the position.
+   * @param p start, and result; unchanged if no step improves the smallest quality
+   * @param steps the largest number of accepted steps
+   * @return the smallest quality; qualities() are those at p
+   */
+  double maximize(Vec3& p, int steps, const PointFreedom& freedom = {});
+
+private:
+  static constexpr int MaxFunctions = 48;
+
+  void linearize(const Vec3& p, double below);
+  double solve(double weight, Vec3& step);
+
+  int Size = 0;
+  // Per face: corners, normal, its square, squares of the edges.
+  double Corners[9][MaxFaces];
+  double Normal[4][MaxFaces];
+  double Edges[4][MaxFaces]; ///< ab, bc, ca, and their sum
+  double Values[MaxFaces];
+  double Length2 = 0; ///< the smallest squared edge of the faces
+  // Linearized functions, and the weights of their convex combination.
+  int Functions = 0;
+  double F[MaxFunctions];
+  Vec3 G[MaxFunctions];
+  double Lambda[MaxFunctions];
+};
+}
+#endif
