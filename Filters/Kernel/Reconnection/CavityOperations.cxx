@@ -1,0 +1,253 @@
+#include "CavityOperations.h"
+
+namespace tautline
+{
+namespace
+{
+/// Two qualities that differ by less are the same: rounding must not decide.
+constexpr double SameQuality = 1e-9;
+}
+
+bool CavityOperations::aboveFloor(
+  const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, double q) const
+{
+  if (q >= this->floor.sufficient)
+  {
+    return true;
+  }
+  const std::array<double, 6> angles = dihedralAngles(p, a, b, c);
+  return *std::min_element(angles.begin(), angles.end()) >= this->floor.smallestAngle &&
+    measure(p, a, b, c).meanRatio >= this->floor.meanRatio;
+}
+
+/// Compares the qualities of the replacement in increasing order.
+bool CavityOperations::improves()
+{
+  this->Before.clear();
+  for (TetId t : this->Change.before)
+  {
+    this->Before.push_back(this->Mesh.quality(t));
+  }
+  this->After = this->Change.qualities;
+  std::sort(this->Before.begin(), this->Before.end());
+  std::sort(this->After.begin(), this->After.end());
+  for (std::size_t i = 0; i < std::min(this->Before.size(), this->After.size()); ++i)
+  {
+    if (std::abs(this->After[i] - this->Before[i]) > SameQuality * this->Before[i])
+    {
+      return this->After[i] > this->Before[i];
+    }
+  }
+  return this->After.size() < this->Before.size();
+}
+
+/// Whether the replacement keeps the bounds of the count, and its tetrahedra are positive and,
+/// unless that is judged later, above the floor.
+bool CavityOperations::isValidChange()
+{
+  const Index size = this->Mesh.size() + static_cast<Index>(this->Change.after.size()) -
+    static_cast<Index>(this->Change.before.size());
+  const bool grows = size > this->Mesh.size(), shrinks = size < this->Mesh.size();
+  if ((grows && size > this->largestSize) || (shrinks && size < this->smallestSize))
+  {
+    return false;
+  }
+  for (std::size_t i = 0; i < this->Change.after.size(); ++i)
+  {
+    const TetVertices& v = this->Change.after[i];
+    const double q = this->Change.qualities[i];
+    if (q <= CertainQuality && this->Mesh.computeExactQuality(v) <= 0.0)
+    {
+      return false;
+    }
+    const auto x = [&](int k) { return this->Mesh.point(v[k]); };
+    if (!this->Tentative && !this->aboveFloor(x(0), x(1), x(2), x(3), q))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool CavityOperations::applyChange()
+{
+  if (!this->Tentative)
+  {
+    return this->Mesh.replace(this->Change, this->Created);
+  }
+  Step step;
+  for (TetId t : this->Change.before)
+  {
+    step.before.push_back(this->Mesh.tet(t).vertices);
+  }
+  if (!this->Mesh.replace(this->Change, this->Created))
+  {
+    return false;
+  }
+  step.created = this->Created;
+  step.opensBoundary = this->Change.opensBoundary;
+  this->Steps.push_back(std::move(step));
+  return true;
+}
+
+/// Carries out the replacement if it is an improvement, within the bounds and valid.
+bool CavityOperations::commit()
+{
+  if (!this->Tentative && !this->improves())
+  {
+    return false;
+  }
+  if (!this->isValidChange() || !this->applyChange())
+  {
+    return false;
+  }
+  this->touch(this->Created);
+  return true;
+}
+
+void CavityOperations::touch(const std::vector<TetId>& tets)
+{
+  if (this->Tentative)
+  {
+    this->Affected.insert(this->Affected.end(), tets.begin(), tets.end());
+    return;
+  }
+  ++this->Clock;
+  for (TetId t : tets)
+  {
+    for (PointId v : this->Mesh.tet(t).vertices)
+    {
+      this->Stamps[v] = this->Clock;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool CavityOperations::loadStar(PointId v, StarSmoothing& star)
+{
+  this->Mesh.star(v, this->Star);
+  star.clear();
+  if (this->Star.size() > StarSmoothing::MaxFaces)
+  {
+    return false;
+  }
+  for (TetId t : this->Star)
+  {
+    const TriangleVertices f = this->Mesh.face(t, this->Mesh.tet(t).indexOf(v));
+    star.addFace(this->Mesh.point(f[0]), this->Mesh.point(f[1]), this->Mesh.point(f[2]));
+  }
+  return true;
+}
+
+bool CavityOperations::smooth(PointId v, int steps)
+{
+  if (this->freedoms[v].kind == PointFreedom::Fixed || !this->loadStar(v, this->Smoothing))
+  {
+    return false;
+  }
+  double before = 1.0;
+  for (TetId t : this->Star)
+  {
+    before = std::min(before, this->Mesh.quality(t));
+  }
+  Vec3 p = this->Mesh.point(v);
+  const double after = this->Smoothing.maximize(p, steps, this->freedoms[v]);
+  if (!(after > before * (1.0 + SameQuality)) || p == this->Mesh.point(v))
+  {
+    return false;
+  }
+  const double* q = this->Smoothing.qualities();
+  const bool check = after < this->floor.sufficient && !this->Tentative;
+  for (std::size_t i = 0; i < this->Star.size() && check; ++i)
+  {
+    const TriangleVertices f =
+      this->Mesh.face(this->Star[i], this->Mesh.tet(this->Star[i]).indexOf(v));
+    const Vec3 &a = this->Mesh.point(f[0]), &b = this->Mesh.point(f[1]),
+               &c = this->Mesh.point(f[2]);
+    if ((q[i] <= CertainQuality && orientation(p, a, b, c) <= 0) ||
+      !this->aboveFloor(p, a, b, c, q[i]))
+    {
+      return false;
+    }
+  }
+  if (this->Tentative)
+  {
+    Step step;
+    step.point = v;
+    step.position = this->Mesh.point(v);
+    this->Steps.push_back(std::move(step));
+  }
+  this->Mesh.movePoint(v, p, this->Star, q);
+  this->Created = this->Star;
+  this->touch(this->Created);
+  ++this->Counts.moves;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+/// Whether moving v into its neighbour w leaves walls and fixed points as they are.
+bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring) const
+{
+  const PointFreedom& freedom = this->freedoms[v];
+  if (freedom.kind == PointFreedom::Free)
+  {
+    return true;
+  }
+  if (freedom.kind == PointFreedom::Fixed || ring.closed || !ring.whole)
+  {
+    return false;
+  }
+  const Vec3 d = this->Mesh.point(w) - this->Mesh.point(v);
+  return norm(d - freedom.project(d)) <= this->flatTolerance * norm(d);
+}
+
+/// Sets up the replacement that moves vertex i into vertex j. Returns false where that is not
+/// allowed, or makes a tetrahedron not better than `above`.
+bool CavityOperations::prepareContraction(TetId t, int i, int j, double above)
+{
+  const PointId v = this->Mesh.tet(t).vertices[i], w = this->Mesh.tet(t).vertices[j];
+  const bool free = this->freedoms[v].kind == PointFreedom::Free;
+  if (!free)
+  {
+    this->Mesh.ring(t, i, j, this->Ring);
+  }
+  if (!this->canContract(v, w, this->Ring))
+  {
+    return false;
+  }
+  this->Mesh.star(v, this->Star);
+  this->Change.clear();
+  this->Change.before = this->Star;
+  this->Change.opensBoundary = !free;
+  for (TetId s : this->Star)
+  {
+    if (this->Mesh.region(s) != this->Mesh.region(t))
+    {
+      return false; // a point between regions
+    }
+    if (this->Mesh.tet(s).indexOf(w) != NoId)
+    {
+      continue;
+    }
+    TetVertices vertices = this->Mesh.tet(s).vertices;
+    vertices[this->Mesh.tet(s).indexOf(v)] = w;
+    const double q = this->Mesh.computeQuality(vertices);
+    if (!(q > above))
+    {
+      return false;
+    }
+    this->Change.add(vertices, q);
+  }
+  return true;
+}
+
+bool CavityOperations::contract(TetId t, int i, int j)
+{
+  if (!this->prepareContraction(t, i, j, this->Mesh.quality(t)) || !this->commit())
+  {
+    return false;
+  }
+  ++this->Counts.contractions;
+  return true;
+}
+}

@@ -1,0 +1,159 @@
+/**
+ * @file CavityOperations.h
+ * @brief The operations of reconnection on a mesh, each accepted only if it improves the
+ * tetrahedra it affects. Internal: not installed.
+ *
+ * Qualities of the affected tetrahedra are compared in increasing order, before and after: the
+ * first that differs decides. So the smallest quality of the mesh never becomes smaller. Neither do
+ * the smallest dihedral angle and the mean ratio of the worst tetrahedra (`QualityFloor`).
+ * Operations return whether the mesh changed; changed() then lists the tetrahedra to look at again.
+ */
+#ifndef tautline_CavityOperations_h
+#define tautline_CavityOperations_h
+
+#include "StarSmoothing.h"
+
+namespace tautline
+{
+/// Of the input: no operation makes a tetrahedron that is worse in either.
+struct QualityFloor
+{
+  double smallestAngle = 0; ///< degrees
+  double meanRatio = 0;     ///< (mean ratio)^(3/2)
+  /// Tetrahedra of this quality and more are above both.
+  double sufficient = 0;
+};
+
+/// How many operations were accepted, and moves of points.
+struct OperationCounts
+{
+  Index edgeRemovals = 0, faceRemovals = 0, boundarySwaps = 0;
+  Index contractions = 0, insertions = 0, moves = 0;
+};
+
+class TAUTLINE_KERNEL_EXPORT CavityOperations
+{
+public:
+  explicit CavityOperations(TetrahedronMesh& mesh)
+    : Mesh(mesh)
+  {
+  }
+
+  /// One per point slot of the mesh; those of new points are free.
+  std::vector<PointFreedom> freedoms;
+  QualityFloor floor;
+  Index smallestSize = 0, largestSize = 0; ///< bounds of the number of tetrahedra
+  /// Edges between coplanar facets may be removed, facets and edges of the boundary divided.
+  bool swapsBoundary = false;
+  /// Sine of the largest angle between coplanar facets, or directions that are the same.
+  double flatTolerance = 0;
+
+  /// Removes the edge of vertices i and j of a tetrahedron: Klincsek's dynamic programming finds
+  /// the triangulation of its ring with the best worst tetrahedron.
+  bool removeEdge(TetId t, int i, int j);
+  /// Removes face i, with faces beside it that the same two vertices see, and connects these two.
+  bool removeFaces(TetId t, int i);
+  /// Moves a vertex to where the smallest quality of its star is largest.
+  bool smooth(PointId v, int steps);
+  void setLeastGain(double gain) { this->Smoothing.leastGain = gain; }
+  /// Moves vertex i of a tetrahedron into vertex j, which removes the tetrahedra of their edge.
+  bool contract(TetId t, int i, int j);
+  /// Puts a point into the tetrahedron, one of its faces or edges, and connects it with the faces
+  /// of a cavity; point and cavity are the best found before the mesh is changed.
+  bool insert(TetId t);
+
+  /// A change that may make qualities worse at first, and becomes an improvement by moving the
+  /// vertices around. Where it does not, everything is as before.
+  enum class Compound
+  {
+    Insertion,
+    Contraction,
+    Swap
+  };
+  bool tryCompound(TetId t, Compound kind);
+
+  const std::vector<TetId>& changed() const { return this->Created; }
+  const OperationCounts& counts() const { return this->Counts; }
+  /// Increases with each change near a point: its own moves and those of its neighbours.
+  std::uint32_t stamp(PointId v) const { return this->Stamps[v]; }
+  std::uint32_t clock() const { return this->Clock; }
+  void prepareStamps() { this->Stamps.resize(this->Mesh.pointSlots(), 0); }
+
+private:
+  struct CavityFace
+  {
+    TetId tet;
+    int face;
+    double quality;
+  };
+  /// A cavity and the point to be connected with its faces.
+  struct Insertion
+  {
+    std::vector<TetId> tets;
+    Vec3 point = { 0, 0, 0 };
+    PointFreedom freedom; ///< of the point: not Free on the boundary
+    double quality = -1;
+  };
+
+  /// A step that was carried out tentatively.
+  struct Step
+  {
+    std::vector<TetVertices> before; ///< empty: a point was moved
+    std::vector<TetId> created;
+    bool opensBoundary = false;
+    PointId point = NoId;
+    Vec3 position = { 0, 0, 0 };
+  };
+
+  bool commit();
+  bool applyChange();
+  bool isValidChange();
+  bool smoothAround(double above);
+  bool finishCompound(double above);
+  void undo();
+  bool findInsertion(TetId t, Insertion& best, std::vector<Insertion>* all = nullptr);
+  bool applyInsertion(const Insertion& best);
+  bool prepareEdgeRemoval(TetId t, int i, int j, double above);
+  bool prepareFaceRemoval(TetId t, int i, double above);
+  bool tryInsertions(TetId t, double above);
+  template <class Operation>
+  bool attempt(double above, const Operation& operation);
+  bool prepareContraction(TetId t, int i, int j, double above);
+  bool improves();
+  bool aboveFloor(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, double q) const;
+  bool loadStar(PointId v, StarSmoothing& star);
+  void touch(const std::vector<TetId>& tets);
+  bool isFlat(const EdgeRing& ring) const;
+  bool canSwapBoundary(const EdgeRing& ring) const;
+  double triangulate(const EdgeRing& ring, double above);
+  void addTriangles(const EdgeRing& ring, int i, int j);
+  double extendFaces(PointId a, PointId b, TetId above, PointId u, PointId w, int depth);
+  void grow(Insertion& insertion);
+  void addToCavity(TetId t);
+  bool startInsertion(const std::vector<TetId>& start, const Vec3& point,
+    const PointFreedom& freedom, Insertion& best);
+  bool isOpened(const CavityFace& face, const Insertion& insertion) const;
+  PointFreedom freedomOnEdge(const EdgeRing& ring) const;
+  bool isOuter(const EdgeRing& ring) const;
+  bool canContract(PointId v, PointId w, const EdgeRing& ring) const;
+
+  TetrahedronMesh& Mesh;
+  OperationCounts Counts;
+  std::vector<std::uint32_t> Stamps;
+  std::uint32_t Clock = 0;
+  Replacement Change;
+  std::vector<TetId> Created, Star;
+  std::vector<double> Before, After;
+  StarSmoothing Smoothing;
+  EdgeRing Ring;
+  std::array<std::array<double, EdgeRing::MaxSize + 1>, EdgeRing::MaxSize + 1> Best;
+  std::array<std::array<int, EdgeRing::MaxSize + 1>, EdgeRing::MaxSize + 1> Middle;
+  std::vector<CavityFace> CavityFaces;
+  std::vector<TetId> Cavity;
+  // Of a compound operation.
+  bool Tentative = false;
+  std::vector<Step> Steps;
+  std::vector<TetId> Affected;
+};
+}
+#endif
