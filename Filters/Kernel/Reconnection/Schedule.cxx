@@ -1,0 +1,200 @@
+#include "Schedule.h"
+
+namespace tautline
+{
+namespace
+{
+/// Operations are tried so many times between two calls of `proceed`.
+constexpr Index ProceedInterval = 64;
+/// A tetrahedron this close to its bound is at it.
+constexpr double AtBound = 1e-3;
+}
+
+double Schedule::facetBound(TetId t, int i) const
+{
+  const TriangleVertices f = this->Mesh.face(t, i);
+  const Vec3 &a = this->Mesh.point(f[0]), &b = this->Mesh.point(f[1]), &c = this->Mesh.point(f[2]);
+  const double sum = dot(b - a, b - a) + dot(c - b, c - b) + dot(a - c, a - c);
+  return 2.0 * std::sqrt(3.0) * norm(cross(b - a, c - a)) / sum;
+}
+
+double Schedule::bound(TetId t) const
+{
+  double result = 1.0;
+  Vec3 normals[4];
+  int walls = 0;
+  for (int i = 0; i < 4; ++i)
+  {
+    if (!this->Mesh.isWall(t, i))
+    {
+      continue;
+    }
+    result = std::min(result, this->facetBound(t, i));
+    const TriangleVertices f = this->Mesh.face(t, i);
+    const Vec3& a = this->Mesh.point(f[0]);
+    const Vec3 n = cross(this->Mesh.point(f[1]) - a, this->Mesh.point(f[2]) - a);
+    normals[walls++] = (1.0 / norm(n)) * n;
+  }
+  // Two walls at one edge: the angle between them stays, or is divided.
+  for (int i = 0; i < walls; ++i)
+  {
+    for (int j = i + 1; j < walls; ++j)
+    {
+      if (dot(normals[i], normals[j]) < 0.0)
+      {
+        result = std::min(result, norm(cross(normals[i], normals[j])));
+      }
+    }
+  }
+  return result;
+}
+
+bool Schedule::isAtBound(TetId t) const
+{
+  return this->bound(t) <= this->Mesh.quality(t) * (1.0 + AtBound);
+}
+
+void Schedule::push(TetId t, double target)
+{
+  const double q = this->Mesh.quality(t);
+  if (!(q < target))
+  {
+    return;
+  }
+  this->Heap.push_back({ q, t });
+  std::push_heap(this->Heap.begin(), this->Heap.end());
+}
+
+bool Schedule::swap(TetId t)
+{
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int j = i + 1; j < 4; ++j)
+    {
+      if (this->Operations.removeEdge(t, i, j))
+      {
+        return true;
+      }
+    }
+  }
+  for (int i = 0; i < 4; ++i)
+  {
+    if (this->Operations.removeFaces(t, i))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool Schedule::contract(TetId t)
+{
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int j = 0; j < 4; ++j)
+    {
+      if (i != j && this->Operations.contract(t, i, j))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool Schedule::improve(TetId t, const PassOptions& options)
+{
+  const auto pushChanged = [&]()
+  {
+    for (TetId s : this->Operations.changed())
+    {
+      this->push(s, options.target);
+    }
+  };
+  if (options.swap && this->swap(t))
+  {
+    pushChanged();
+    return true;
+  }
+  bool moved = false;
+  if (options.smooth)
+  {
+    const TetVertices v = this->Mesh.tet(t).vertices;
+    for (int i = 0; i < 4; ++i)
+    {
+      if (this->Operations.smooth(v[i], options.smoothingSteps))
+      {
+        moved = true;
+        pushChanged();
+      }
+    }
+  }
+  if (moved)
+  {
+    return true;
+  }
+  using Compound = CavityOperations::Compound;
+  const auto tryCompound = [&](Compound kind)
+  { return options.compound && this->Operations.tryCompound(t, kind); };
+  if ((options.contract && this->contract(t)) || (options.insert && this->Operations.insert(t)) ||
+    (options.swap && tryCompound(Compound::Swap)) ||
+    (options.insert && tryCompound(Compound::Insertion)) ||
+    (options.contract && tryCompound(Compound::Contraction)))
+  {
+    pushChanged();
+    return true;
+  }
+  return false;
+}
+
+Index Schedule::run(const PassOptions& options)
+{
+  this->Heap.clear();
+  this->Tried.assign(this->Mesh.slots(), 0);
+  this->Operations.prepareStamps();
+  this->Operations.setLeastGain(options.leastGain);
+  for (TetId t = 0; t < this->Mesh.slots(); ++t)
+  {
+    if (this->Mesh.alive(t) && this->Mesh.quality(t) < options.target)
+    {
+      this->Heap.push_back({ this->Mesh.quality(t), t });
+    }
+  }
+  std::make_heap(this->Heap.begin(), this->Heap.end());
+  Index accepted = 0, tries = 0;
+  while (!this->Heap.empty())
+  {
+    std::pop_heap(this->Heap.begin(), this->Heap.end());
+    const Entry entry = this->Heap.back();
+    this->Heap.pop_back();
+    const TetId t = entry.tet;
+    if (!this->Mesh.alive(t) || this->Mesh.quality(t) != entry.quality)
+    {
+      continue; // changed since
+    }
+    this->Tried.resize(this->Mesh.slots(), 0);
+    std::uint32_t newest = 0;
+    for (PointId v : this->Mesh.tet(t).vertices)
+    {
+      newest = std::max(newest, this->Operations.stamp(v));
+    }
+    if (this->Tried[t] > newest || (options.skipsBound && this->isAtBound(t)))
+    {
+      continue;
+    }
+    if (++tries % ProceedInterval == 0 && this->proceed && !this->proceed())
+    {
+      return -1;
+    }
+    if (this->improve(t, options))
+    {
+      ++accepted;
+    }
+    else
+    {
+      this->Tried[t] = this->Operations.clock() + 1;
+    }
+  }
+  return accepted;
+}
+}

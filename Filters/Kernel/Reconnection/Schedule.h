@@ -1,0 +1,74 @@
+/**
+ * @file Schedule.h
+ * @brief The order in which reconnection works on tetrahedra: the worst first. Internal: not
+ * installed.
+ */
+#ifndef tautline_Schedule_h
+#define tautline_Schedule_h
+
+#include "CavityOperations.h"
+
+#include <functional>
+
+namespace tautline
+{
+/// One pass: which tetrahedra are improved, and how.
+struct PassOptions
+{
+  double target = 1;      ///< tetrahedra below this quality are worked on
+  bool swap = true;       ///< removal of edges and faces
+  bool smooth = true;     ///< motion of vertices
+  bool skipsBound = true; ///< tetrahedra that their walls allow no better are left out
+  bool contract = false;
+  bool insert = false;
+  bool compound = false;   ///< also insertions (and contractions) that pay only after smoothing
+  int smoothingSteps = 2;  ///< of a vertex, each time
+  double leastGain = 2e-3; ///< a vertex is moved if its star's smallest quality gains so much
+};
+
+/// Works on tetrahedra below a target, worst first, until none of them can be improved.
+class Schedule
+{
+public:
+  Schedule(TetrahedronMesh& mesh, CavityOperations& operations)
+    : Mesh(mesh)
+    , Operations(operations)
+  {
+  }
+
+  /// Called now and then with the number of operations so far; returns false to stop.
+  std::function<bool()> proceed;
+
+  /// Runs a pass. @return the number of operations that were accepted, or -1 if stopped
+  Index run(const PassOptions& options);
+
+  /// The largest (mean ratio)^(3/2) of a tetrahedron on a face: its apex is over the centre.
+  double facetBound(TetId t, int i) const;
+  /// The largest quality a tetrahedron can have for the walls it has: its facets stay.
+  double bound(TetId t) const;
+  bool isAtBound(TetId t) const;
+
+private:
+  struct Entry
+  {
+    double quality;
+    TetId tet;
+    /// The worst tetrahedron, of equal ones that with the smallest id, is at the top of a heap.
+    bool operator<(const Entry& other) const
+    {
+      return this->quality != other.quality ? this->quality > other.quality : this->tet > other.tet;
+    }
+  };
+
+  void push(TetId t, double target);
+  bool improve(TetId t, const PassOptions& options);
+  bool swap(TetId t);
+  bool contract(TetId t);
+
+  TetrahedronMesh& Mesh;
+  CavityOperations& Operations;
+  std::vector<Entry> Heap;
+  std::vector<std::uint32_t> Tried; ///< clock at the last attempt in vain, per slot
+};
+}
+#endif
