@@ -1,0 +1,361 @@
+#include "Reconnection.h"
+
+#include "BoundaryFreedom.h"
+#include "ReconnectionOutput.h"
+#include "Schedule.h"
+#include "tautline/Core/Stopwatch.h"
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// Qualities of the first passes: the worst tetrahedra first, also of the whole mesh.
+constexpr double FirstTargets[] = { 0.3, 0.45, 0.55 };
+/// What a motion of a point has to gain in the passes for the target, and after these. Smaller
+/// gains cost time and, at 50,000 tetrahedra, no longer improve the worst.
+constexpr double TargetGain = 1e-3, FineGain = 5e-4;
+/// Instead of both up to the last pass, for targets above this quality: half of all tetrahedra are
+/// worked on then.
+constexpr double HighTarget = 0.57, HighTargetGain = 4e-3;
+/// Steps of a point, each time, in the last pass; the others have two.
+constexpr int CompoundSteps = 4;
+/// The last pass is repeated, at most so often, as long as the worst quality gains so much by it.
+constexpr int Repetitions = 3;
+constexpr double RepetitionGain = 2e-3;
+/// Angle of the preset RemoveSlivers; that of the others is the default of the options.
+constexpr double SliverAngle = 15.0;
+/// Wall time between two calls of the observer during a pass.
+constexpr double ObserverSeconds = 0.25;
+
+double radians(double degrees)
+{
+  return degrees * (Pi / 180.0);
+}
+
+/// Sets the worst values of the record; only tetrahedra that may be worse than those before are
+/// measured.
+void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord& record)
+{
+  double quality = 1.0, smallest = 180.0, largest = 0.0, meanRatio = 1.0;
+  record.belowTarget = 0;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    if (!mesh.alive(t))
+    {
+      continue;
+    }
+    const double q = mesh.quality(t);
+    quality = std::min(quality, q);
+    record.belowTarget += q < target;
+    // All angles are between asin(q) and 180 degrees minus it, the mean ratio's power is above q.
+    const double bound = std::asin(std::min(q, 1.0)) * (180.0 / Pi);
+    if (bound >= smallest && 180.0 - bound <= largest && q >= meanRatio)
+    {
+      continue;
+    }
+    const TetVertices& v = mesh.tet(t).vertices;
+    const auto x = [&](int k) { return mesh.point(v[k]); };
+    for (double angle : dihedralAngles(x(0), x(1), x(2), x(3)))
+    {
+      smallest = std::min(smallest, angle);
+      largest = std::max(largest, angle);
+    }
+    meanRatio = std::min(meanRatio, measure(x(0), x(1), x(2), x(3)).meanRatio);
+  }
+  record.tetrahedra = mesh.size();
+  record.worstQuality = quality;
+  record.smallestAngle = smallest;
+  record.largestAngle = largest;
+  record.worstInverseMeanRatio = std::pow(meanRatio, -2.0 / 3.0);
+}
+
+void copyCounts(const OperationCounts& counts, ReconnectionRecord& record)
+{
+  record.edgeRemovals = counts.edgeRemovals;
+  record.faceRemovals = counts.faceRemovals;
+  record.boundarySwaps = counts.boundarySwaps;
+  record.contractions = counts.contractions;
+  record.insertions = counts.insertions;
+  record.moves = counts.moves;
+}
+
+/// First swaps and smoothing, for ever better tetrahedra; then insertion, then what is costly.
+std::vector<PassOptions> planPasses(const ReconnectionOptions& options)
+{
+  const double target = std::sin(radians(options.targetAngle));
+  PassOptions pass;
+  pass.swap = options.swap;
+  pass.smooth = options.smooth;
+  pass.skipsBound = options.boundary == ReconnectionBoundary::Fixed;
+  std::vector<PassOptions> passes;
+  for (double first : FirstTargets)
+  {
+    if (first < target)
+    {
+      pass.target = first;
+      passes.push_back(pass);
+    }
+  }
+  pass.target = target;
+  const bool high = target > HighTarget;
+  pass.leastGain = high ? HighTargetGain : TargetGain;
+  passes.push_back(pass);
+  const bool keepsCount = options.smallestCount == 1.0 && options.largestCount == 1.0;
+  if (options.insert && !keepsCount)
+  {
+    pass.insert = true;
+    pass.leastGain = high ? HighTargetGain : FineGain;
+    passes.push_back(pass);
+  }
+  if (options.contract && !keepsCount)
+  {
+    pass.contract = true;
+    passes.push_back(pass);
+  }
+  if (options.compound && options.smooth)
+  {
+    pass.compound = true;
+    pass.leastGain = FineGain;
+    pass.smoothingSteps = CompoundSteps;
+    passes.push_back(pass);
+  }
+  return passes;
+}
+
+//------------------------------------------------------------------------------
+/// The run of the passes with its clock, observer and records.
+class Run
+{
+public:
+  Run(TetrahedronMesh& mesh, const ReconnectionOptions& options, ReconnectionResult& result)
+    : Mesh(mesh)
+    , Options(options)
+    , Result(result)
+    , Operations(mesh)
+    , Passes(mesh, this->Operations)
+  {
+  }
+
+  void run(const std::vector<PointFreedom>& freedoms);
+  void findObstacles(const std::vector<char>& fixedPoints) const;
+
+private:
+  bool record(int pass, double progress);
+  bool proceed();
+  void setFloor();
+  void setBounds();
+
+  TetrahedronMesh& Mesh;
+  const ReconnectionOptions& Options;
+  ReconnectionResult& Result;
+  CavityOperations Operations;
+  Schedule Passes;
+  Stopwatch Clock;
+  double LastCall = 0, Progress = 0;
+};
+
+/// Adds a line to the history; false if the observer stops the run.
+bool Run::record(int pass, double progress)
+{
+  ReconnectionRecord record;
+  record.pass = pass;
+  record.seconds = this->Clock.seconds();
+  measureWorst(this->Mesh, std::sin(radians(this->Options.targetAngle)), record);
+  copyCounts(this->Operations.counts(), record);
+  this->Result.history.push_back(record);
+  this->Progress = progress;
+  this->LastCall = record.seconds;
+  return !this->Options.observer || this->Options.observer(record, progress);
+}
+
+bool Run::proceed()
+{
+  if (this->Clock.reached(this->Options.maximumSeconds))
+  {
+    this->Result.reason = StopReason::TimeLimit;
+    return false;
+  }
+  const double now = this->Clock.seconds();
+  if (this->Options.observer && now - this->LastCall > ObserverSeconds)
+  {
+    this->LastCall = now;
+    if (!this->Options.observer(this->Result.history.back(), this->Progress))
+    {
+      this->Result.reason = StopReason::Aborted;
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Nothing becomes worse than the worst of the input.
+void Run::setFloor()
+{
+  const ReconnectionRecord& input = this->Result.history.front();
+  QualityFloor& floor = this->Operations.floor;
+  floor.smallestAngle = input.smallestAngle;
+  floor.meanRatio = std::pow(input.worstInverseMeanRatio, -1.5);
+  const double sine = input.smallestAngle < 90.0 ? std::sin(radians(input.smallestAngle)) : 1.0;
+  floor.sufficient = std::max(sine, floor.meanRatio);
+}
+
+void Run::setBounds()
+{
+  const double size = static_cast<double>(this->Mesh.size());
+  const bool keepsCount = this->Options.smallestCount == 1.0 && this->Options.largestCount == 1.0;
+  this->Operations.smallestSize =
+    keepsCount ? 0 : static_cast<Index>(std::ceil(this->Options.smallestCount * size));
+  this->Operations.largestSize = keepsCount
+    ? std::numeric_limits<std::int32_t>::max() / 4
+    : static_cast<Index>(std::min(this->Options.largestCount * size,
+        static_cast<double>(std::numeric_limits<std::int32_t>::max() / 4)));
+}
+
+void Run::run(const std::vector<PointFreedom>& freedoms)
+{
+  this->Operations.freedoms = freedoms;
+  this->Operations.swapsBoundary =
+    this->Options.swap && this->Options.boundary == ReconnectionBoundary::Flat;
+  this->Operations.flatTolerance = std::max(
+    std::sin(radians(this->Options.flatTolerance)), 4.0 * std::numeric_limits<double>::epsilon());
+  this->setBounds();
+  this->Result.reason = StopReason::NoProgress;
+  const bool started = this->record(0, 0.0);
+  this->setFloor();
+  this->Passes.proceed = [this]() { return this->proceed(); };
+  std::vector<PassOptions> passes = planPasses(this->Options);
+  const std::size_t planned = passes.size();
+  bool stopped = !started;
+  this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
+  for (std::size_t i = 0; i < passes.size() && !stopped; ++i)
+  {
+    const ReconnectionRecord before = this->Result.history.back();
+    if (before.belowTarget == 0)
+    {
+      break;
+    }
+    stopped = this->Passes.run(passes[i]) < 0;
+    const double progress = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
+    if (!this->record(static_cast<int>(i) + 1, progress) && !stopped)
+    {
+      stopped = true;
+      this->Result.reason = StopReason::Aborted;
+    }
+    const double gain = this->Result.history.back().worstQuality - before.worstQuality;
+    if (i + 1 == passes.size() && passes[i].compound && gain > RepetitionGain &&
+      passes.size() < planned + Repetitions)
+    {
+      passes.push_back(passes[i]);
+    }
+  }
+  if (!stopped && this->Result.history.back().belowTarget == 0)
+  {
+    this->Result.reason = StopReason::Reduction;
+  }
+}
+
+/// Gives the reason for each tetrahedron below the target, and the bounds of the walls.
+void Run::findObstacles(const std::vector<char>& fixedPoints) const
+{
+  const double target = std::sin(radians(this->Options.targetAngle));
+  std::vector<char> atSurface(this->Mesh.pointSlots(), 0), atInterface(atSurface);
+  double forcedMeanRatio = 1.0;
+  for (TetId t = 0; t < this->Mesh.slots(); ++t)
+  {
+    if (!this->Mesh.alive(t))
+    {
+      continue;
+    }
+    for (int i = 0; i < 4; ++i)
+    {
+      if (this->Mesh.isWall(t, i))
+      {
+        const bool outer = this->Mesh.tet(t).neighbors[i] == NoId;
+        for (PointId v : this->Mesh.face(t, i))
+        {
+          (outer ? atSurface : atInterface)[v] = 1;
+        }
+        forcedMeanRatio = std::min(forcedMeanRatio, this->Passes.facetBound(t, i));
+      }
+    }
+    this->Result.forcedQuality = std::min(this->Result.forcedQuality, this->Passes.bound(t));
+  }
+  this->Result.forcedInverseMeanRatio = std::pow(forcedMeanRatio, -2.0 / 3.0);
+  for (TetId t = 0; t < this->Mesh.slots(); ++t)
+  {
+    if (!this->Mesh.alive(t))
+    {
+      continue;
+    }
+    const TetVertices& v = this->Mesh.tet(t).vertices;
+    const auto any = [&](const std::vector<char>& flags)
+    {
+      return std::any_of(v.begin(), v.end(),
+        [&](PointId p) { return p < static_cast<PointId>(flags.size()) && flags[p]; });
+    };
+    using Obstacle = ReconnectionObstacle;
+    Obstacle obstacle = Obstacle::None;
+    if (this->Mesh.quality(t) < target)
+    {
+      obstacle = this->Passes.isAtBound(t) ? Obstacle::Facets
+        : any(fixedPoints)                 ? Obstacle::FixedPoints
+        : any(atInterface)                 ? Obstacle::Interface
+        : any(atSurface)                   ? Obstacle::Surface
+                                           : Obstacle::Limit;
+    }
+    this->Result.obstacles.push_back(static_cast<signed char>(obstacle));
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void applyPreset(ReconnectionPreset preset, ReconnectionOptions& options)
+{
+  if (preset == ReconnectionPreset::Custom)
+  {
+    return;
+  }
+  const bool all =
+    preset == ReconnectionPreset::RemoveSlivers || preset == ReconnectionPreset::Aggressive;
+  options.swap = true;
+  options.smooth = preset != ReconnectionPreset::SwapOnly;
+  options.contract = options.insert = options.compound = all;
+  options.targetAngle =
+    preset == ReconnectionPreset::RemoveSlivers ? SliverAngle : ReconnectionOptions().targetAngle;
+}
+
+ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptions& options)
+{
+  checkReconnectionOptions(options);
+  ReconnectionInput input = convertInput(mesh, options);
+  ReconnectionResult result;
+  TetrahedronMesh changing(input.points, input.cells, input.regions);
+  checkFaces(changing);
+  const InputLocator locator(changing, input);
+  std::vector<PointFreedom> freedoms =
+    findFreedoms(changing, options.boundary == ReconnectionBoundary::Flat,
+      std::max(
+        std::sin(radians(options.flatTolerance)), 4.0 * std::numeric_limits<double>::epsilon()));
+  std::vector<char> fixedPoints(freedoms.size(), 0);
+  for (std::size_t v = 0; v < freedoms.size(); ++v)
+  {
+    if (options.fixed && options.fixed[v])
+    {
+      freedoms[v] = { PointFreedom::Fixed, { 0, 0, 0 } };
+      fixedPoints[v] = 1;
+    }
+    result.pointsInPlanes += freedoms[v].kind == PointFreedom::InPlane;
+    result.pointsOnLines += freedoms[v].kind == PointFreedom::OnLine;
+  }
+  Run run(changing, options, result);
+  if (changing.size() > 0)
+  {
+    run.run(freedoms);
+    run.findObstacles(fixedPoints);
+  }
+  convertOutput(mesh, input, changing, locator, result);
+  return result;
+}
+}

@@ -1,0 +1,161 @@
+#include "ReconnectionInput.h"
+
+#include "tautline/Core/Memory.h"
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// Of mesh, workspace and result.
+constexpr double BytesPerTetrahedron = 250.0;
+constexpr double LargestTargetAngle = 60.0, LargestFlatTolerance = 1.0;
+
+void checkCells(const Mesh& mesh)
+{
+  const MeshView& view = mesh.view();
+  Index others = view.numberOfCells;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    others -= block.type == CellType::Tetrahedron ? block.count : 0;
+  }
+  if (mesh.higherOrderCells() > 0)
+  {
+    throw Error(std::to_string(mesh.higherOrderCells()) +
+      " cells of higher order: reconnection takes linear tetrahedra; convert them first");
+  }
+  if (others > 0)
+  {
+    throw Error(std::to_string(others) +
+      " cells are not tetrahedra: reconnection takes tetrahedra only; extract these, or run "
+      "Tetrahedralize first");
+  }
+  if (mesh.nonFinitePoints() > 0)
+  {
+    throw Error(std::to_string(mesh.nonFinitePoints()) +
+      " points have a NaN or infinite coordinate: repair or remove them first");
+  }
+  // Faces are coded in 31 bits.
+  if (view.numberOfCells > std::numeric_limits<std::int32_t>::max() / 8 ||
+    view.numberOfPoints > std::numeric_limits<std::int32_t>::max() / 2)
+  {
+    throw Error("reconnection takes at most 268 million tetrahedra: cut the mesh into parts");
+  }
+}
+
+/// The regions' numbers, from 0 in the order in which they occur.
+std::vector<std::int32_t> renumber(const Index* regions, Index count)
+{
+  std::vector<std::int32_t> result(regions ? count : 0);
+  if (!regions)
+  {
+    return result;
+  }
+  std::vector<Index> known(regions, regions + count);
+  std::sort(known.begin(), known.end());
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  for (Index i = 0; i < count; ++i)
+  {
+    result[i] = static_cast<std::int32_t>(
+      std::lower_bound(known.begin(), known.end(), regions[i]) - known.begin());
+  }
+  return result;
+}
+}
+
+void checkReconnectionOptions(const ReconnectionOptions& options)
+{
+  const auto check = [](bool holds, const char* message)
+  {
+    if (!holds)
+    {
+      throw Error(message);
+    }
+  };
+  check(options.targetAngle > 0.0 && options.targetAngle <= LargestTargetAngle,
+    "the target angle must be above 0 and at most 60 degrees");
+  check(options.flatTolerance >= 0.0 && options.flatTolerance <= LargestFlatTolerance,
+    "the flat tolerance must be from 0 to 1 degree");
+  check(options.smallestCount >= 0.0 && options.smallestCount <= 1.0,
+    "the smallest count must be from 0 to 1 times that of the input");
+  check(options.largestCount >= 1.0 && std::isfinite(options.largestCount),
+    "the largest count must be finite and at least that of the input");
+  check(!(options.maximumSeconds < 0.0), "the time limit must not be negative");
+}
+
+ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& options)
+{
+  checkCells(mesh);
+  const MeshView& view = mesh.view();
+  requireMemory(BytesPerTetrahedron * static_cast<double>(view.numberOfCells),
+    "reconnection of this mesh", "take a smaller mesh");
+  std::vector<signed char> validity(view.numberOfCells);
+  mesh.classifyCells(validity.data());
+  const Index inverted =
+    std::count_if(validity.begin(), validity.end(), [](signed char v) { return v != Valid; });
+  if (inverted > 0)
+  {
+    throw Error(std::to_string(inverted) +
+      " inverted or degenerate tetrahedra: run Untangle Mesh first (or reorient the cells, if all "
+      "are reversed)");
+  }
+  ReconnectionInput input;
+  double largest = 0.0;
+  for (Index i = 0; i < 3 * view.numberOfPoints; ++i)
+  {
+    largest = std::max(largest, std::abs(view.points[i]));
+  }
+  std::frexp(largest, &input.exponent);
+  input.points.resize(view.numberOfPoints);
+  for (Index i = 0; i < 3 * view.numberOfPoints; ++i)
+  {
+    input.points[i / 3][i % 3] = std::ldexp(view.points[i], -input.exponent);
+  }
+  input.cells.resize(view.numberOfCells);
+  for (Index c = 0; c < view.numberOfCells; ++c)
+  {
+    const Index* v = view.connectivity + view.offsets[c];
+    for (int k = 0; k < 4; ++k)
+    {
+      input.cells[c][k] = static_cast<PointId>(v[k]);
+    }
+    if (mesh.mirrored())
+    {
+      std::swap(input.cells[c][2], input.cells[c][3]);
+    }
+  }
+  input.regions = renumber(options.regions, view.numberOfCells);
+  return input;
+}
+
+void checkFaces(const TetrahedronMesh& mesh)
+{
+  if (mesh.nonManifoldFaces() > 0)
+  {
+    throw Error(std::to_string(mesh.nonManifoldFaces()) +
+      " faces are used by three or more tetrahedra: remove duplicate or overlapping cells first");
+  }
+  Index sameSide = 0;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const std::int32_t n = mesh.tet(t).neighbors[i];
+      if (n == NoId || n >> 2 < t)
+      {
+        continue;
+      }
+      // From the two sides a face has opposite senses.
+      const TriangleVertices own = mesh.face(t, i), other = mesh.face(n >> 2, n & 3);
+      const int at = other[0] == own[0] ? 0 : (other[1] == own[0] ? 1 : 2);
+      sameSide += other[(at + 1) % 3] == own[1];
+    }
+  }
+  if (sameSide > 0)
+  {
+    throw Error(std::to_string(sameSide) +
+      " faces have both tetrahedra on the same side: remove duplicate or overlapping cells first");
+  }
+}
+}

@@ -1,0 +1,33 @@
+/**
+ * @file ReconnectionInput.h
+ * @brief Checks the input of reconnection, and converts it. Internal: not installed.
+ */
+#ifndef tautline_ReconnectionInput_h
+#define tautline_ReconnectionInput_h
+
+#include "ReconnectionOptions.h"
+#include "TetrahedronMesh.h"
+#include "tautline/Mesh/Mesh.h"
+
+namespace tautline
+{
+/// The arrays of a TetrahedronMesh, in its units: coordinates times a power of two, so that the
+/// largest is about 1 and products of lengths neither overflow nor underflow.
+struct ReconnectionInput
+{
+  std::vector<Vec3> points;
+  std::vector<TetVertices> cells;    ///< positive, also those of a mirrored mesh
+  std::vector<std::int32_t> regions; ///< renumbered from 0; empty: one region
+  int exponent = 0;                  ///< point = input's times 2^-exponent
+};
+
+/// Throws Error for options out of range.
+void checkReconnectionOptions(const ReconnectionOptions& options);
+
+/// Converts. Throws Error for cells and points that reconnection cannot take.
+ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& options);
+
+/// Throws Error for faces of three tetrahedra, or of two on the same side.
+void checkFaces(const TetrahedronMesh& mesh);
+}
+#endif

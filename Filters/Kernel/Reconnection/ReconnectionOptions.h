@@ -1,0 +1,95 @@
+/**
+ * @file ReconnectionOptions.h
+ * @brief The options of improveConnectivity(): presets, what is kept, targets and limits.
+ */
+#ifndef tautline_ReconnectionOptions_h
+#define tautline_ReconnectionOptions_h
+
+#include "tautline/Core/Iteration.h"
+
+namespace tautline
+{
+/// Ready-made options. The numbers are stable: ParaView state files hold them.
+enum class ReconnectionPreset : int
+{
+  Custom = 0, ///< the options as they are
+  /// Only neighbourhoods of tetrahedra with a dihedral angle below 15 or above 165 degrees, or an
+  /// inverse mean ratio above 2.46; every operation, and compound operations where these fail.
+  RemoveSlivers = 1,
+  SwapOnly = 2,      ///< edges and faces are removed, no point moves
+  SwapAndSmooth = 3, ///< the same, and points move; none are inserted or removed
+  Aggressive = 4     ///< every operation, also those that pay only after the points around moved
+};
+
+/// What may happen to the boundary and to the interfaces between regions. The numbers are stable.
+enum class ReconnectionBoundary : int
+{
+  Fixed = 0, ///< same points, same facets: coordinates and facets are bitwise the same
+  /**
+   * @brief Points of the boundary move within flat parts and along straight edges, and are
+   * contracted there; edges between coplanar facets of the boundary are removed. The shape, the
+   * volume and the volume of each region stay, within the flat tolerance. Facets between regions
+   * are not swapped or contracted.
+   */
+  Flat = 1
+};
+
+/// One line of the history; pass 0 is the input.
+struct ReconnectionRecord
+{
+  int pass = 0;
+  double seconds = 0;               ///< wall time since the start
+  Index tetrahedra = 0;             ///< their number
+  double smallestAngle = 0;         ///< smallest dihedral angle in degrees
+  double largestAngle = 0;          ///< largest dihedral angle in degrees
+  double worstInverseMeanRatio = 0; ///< the largest inverse mean ratio
+  double worstQuality = 0;          ///< the smallest quality, see improveConnectivity()
+  Index belowTarget = 0;            ///< tetrahedra whose quality is below that of the target
+  /// Accepted operations since the start.
+  Index edgeRemovals = 0, faceRemovals = 0, boundarySwaps = 0, contractions = 0, insertions = 0;
+  Index moves = 0; ///< of points
+};
+
+struct ReconnectionOptions
+{
+  bool swap = true;     ///< removal of edges and of faces
+  bool smooth = true;   ///< motion of points
+  bool contract = true; ///< contraction of edges
+  bool insert = true;   ///< insertion of points
+  /**
+   * @brief Where nothing else helps: changes that make the qualities worse at first, and are kept
+   * if smoothing the points around makes them an improvement. Thorough, and the slowest part.
+   */
+  bool compound = true;
+  /**
+   * @brief Degrees, above 0 and at most 60. Tetrahedra are worked on while their quality is below
+   * the sine of this angle; when none is, all dihedral angles are between it and 180 degrees minus
+   * it, and the run ends. The default is about what fixed boundaries of good facets allow; with
+   * Flat, 38 to 39 is in reach, at some ten times the cost.
+   */
+  double targetAngle = 33.4;
+  ReconnectionBoundary boundary = ReconnectionBoundary::Fixed;
+  /// With Flat: facets whose normals differ by at most so many degrees are coplanar; 0 to 1.
+  double flatTolerance = 1e-8;
+  /// One flag per point, nonzero = it stays where it is and is not removed; null: none besides
+  /// those of the boundary.
+  const unsigned char* fixed = nullptr;
+  /// One region per cell; facets between regions are kept as the boundary is. Null: one region.
+  const Index* regions = nullptr;
+  /**
+   * @brief The number of tetrahedra stays within these multiples of the input's, at most 1 and at
+   * least 1. Both 1: no point is inserted or removed, and the number is what the removal of edges
+   * and faces makes it.
+   */
+  double smallestCount = 0.9, largestCount = 1.1;
+  /// Seconds of wall time; 0: no limit. Honoured within a fraction of a second.
+  double maximumSeconds = 0.0;
+  /// Called after each pass with a new record, and a few times a second with the last one; return
+  /// false to stop. @param progress 0 to 1
+  std::function<bool(const ReconnectionRecord& record, double progress)> observer;
+};
+
+/// Sets the operations and the target of a preset; the rest stays.
+TAUTLINE_KERNEL_EXPORT void applyPreset(ReconnectionPreset preset, ReconnectionOptions& options);
+}
+#endif

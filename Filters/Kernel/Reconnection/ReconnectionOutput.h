@@ -1,0 +1,39 @@
+/**
+ * @file ReconnectionOutput.h
+ * @brief The result of reconnection as arrays, and how it follows from the input. Internal: not
+ * installed.
+ */
+#ifndef tautline_ReconnectionOutput_h
+#define tautline_ReconnectionOutput_h
+
+#include "ReconnectionInput.h"
+#include "ReconnectionResult.h"
+
+namespace tautline
+{
+/// Finds the tetrahedron of the input that contains a point, by walking from a nearby one.
+class InputLocator
+{
+public:
+  /// @param mesh the input, before any change
+  InputLocator(const TetrahedronMesh& mesh, const ReconnectionInput& input);
+
+  /// The cell of the same region as `start` that contains x; where none does (by rounding, outside
+  /// the mesh), the nearest of those that were visited.
+  TetId locate(const Vec3& x, TetId start) const;
+  /// Barycentric coordinates of x.
+  std::array<double, 4> weights(const Vec3& x, TetId cell) const;
+
+private:
+  TetId search(const Vec3& x, TetId start) const;
+  bool isWall(std::int32_t neighbor, TetId t) const;
+
+  const ReconnectionInput& Input;
+  std::vector<std::array<std::int32_t, 4>> Neighbors;
+};
+
+/// Writes points, tetrahedra and their origins.
+void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const TetrahedronMesh& changed,
+  const InputLocator& locator, ReconnectionResult& result);
+}
+#endif

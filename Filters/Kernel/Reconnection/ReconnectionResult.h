@@ -1,0 +1,62 @@
+/**
+ * @file ReconnectionResult.h
+ * @brief What improveConnectivity() returns: the mesh, how it follows from the input, a history,
+ * and what remains below the target and why.
+ */
+#ifndef tautline_ReconnectionResult_h
+#define tautline_ReconnectionResult_h
+
+#include "ReconnectionOptions.h"
+
+#include <vector>
+
+namespace tautline
+{
+/// Why a tetrahedron is still below the target.
+enum class ReconnectionObstacle : signed char
+{
+  None = 0,        ///< it is not below the target
+  Limit = 1,       ///< a limit or an abort ended the run, or no operation improves it
+  Facets = 2,      ///< the facets it has on the boundary or an interface allow no better one
+  FixedPoints = 3, ///< it has a fixed point (and is not one of the former)
+  Interface = 4,   ///< it has a point on an interface between regions
+  Surface = 5      ///< it has a point on the boundary
+};
+
+/// How a point that was inserted follows from the input: its place in a tetrahedron.
+struct PointInterpolation
+{
+  Index point = -1; ///< of the output
+  Index cell = -1;  ///< of the input
+  /// One per point of the cell, in its order; their sum is 1. Negative by rounding only, or where
+  /// the input overlaps itself.
+  std::array<double, 4> weights = { 0, 0, 0, 0 };
+};
+
+struct ReconnectionResult
+{
+  std::vector<double> points;    ///< x y z per point
+  std::vector<Index> tetrahedra; ///< four points per cell, in the order of VTK
+  /// Per point of the output: the point of the input it is, or -1 for a point that was inserted.
+  /// Points of the input keep their order; those that no cell uses are kept.
+  std::vector<Index> originalPoints;
+  /// Of the inserted points, in order.
+  std::vector<PointInterpolation> interpolations;
+  /**
+   * @brief Per cell of the output the cell of the input that contains its centroid: itself if it is
+   * unchanged. Always of the same region, so that regions follow from it. Cells of the input that
+   * are not changed keep their order.
+   */
+  std::vector<Index> originalCells;
+  std::vector<signed char> obstacles; ///< a ReconnectionObstacle per cell of the output
+  std::vector<ReconnectionRecord> history;
+  StopReason reason = StopReason::NoProgress;  ///< or Reduction (target), TimeLimit, Aborted
+  Index pointsInPlanes = 0, pointsOnLines = 0; ///< points of the boundary that may slide
+  /**
+   * @brief The largest inverse mean ratio and the smallest quality that the facets of the boundary
+   * and of interfaces force: every mesh with these facets has a tetrahedron as bad. Of the output.
+   */
+  double forcedInverseMeanRatio = 1, forcedQuality = 1;
+};
+}
+#endif
