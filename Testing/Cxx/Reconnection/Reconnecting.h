@@ -1,0 +1,145 @@
+/**
+ * @file Reconnecting.h
+ * @brief Meshes of tetrahedra to be reconnected, and what the checks of results compare.
+ */
+#ifndef tautline_Reconnecting_h
+#define tautline_Reconnecting_h
+
+#include "Blocks.h"
+#include "Check.h"
+
+#include "tautline/Reconnection/Reconnection.h"
+
+#include <map>
+#include <set>
+
+namespace tautline
+{
+inline double volumeOf(const MeshData& data, Index cell)
+{
+  const Index* v = &data.connectivity[data.offsets[cell]];
+  const Vec3 p = data.point(v[0]);
+  return dot(cross(data.point(v[1]) - p, data.point(v[2]) - p), data.point(v[3]) - p) / 6.0;
+}
+
+inline double volumeOf(const MeshData& data)
+{
+  long double sum = 0.0;
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    sum += volumeOf(data, c);
+  }
+  return static_cast<double>(sum);
+}
+
+/// A block of n x n x n cubes of tetrahedra; inner points moved at random as far as all cells stay
+/// valid: slivers included.
+inline MeshData sliverBlock(Index n, unsigned seed = 3, double amplitude = 0.6)
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, n, n, n);
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  const VertexCells cells = Mesh(data.view()).vertexCells();
+  Random random(seed);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    Vec3 d = random.vector(-amplitude, amplitude);
+    const Vec3 start = data.point(i);
+    bool valid = boundary[i] != 0;
+    while (!valid)
+    {
+      data.setPoint(i, start + d);
+      valid = true;
+      for (Index k = cells.offsets[i]; k < cells.offsets[i + 1]; ++k)
+      {
+        valid = valid && volumeOf(data, cells.cells[k]) > 1e-3;
+      }
+      d = 0.7 * d;
+    }
+  }
+  return data;
+}
+
+inline MeshData outputOf(const ReconnectionResult& result)
+{
+  MeshData data;
+  data.points = result.points;
+  for (std::size_t i = 0; i < result.tetrahedra.size(); i += 4)
+  {
+    const Index* v = &result.tetrahedra[i];
+    data.addCell(CellType::Tetrahedron, { v[0], v[1], v[2], v[3] });
+  }
+  return data;
+}
+
+/// The facets used by one cell of a region (0: of all), as sorted triples of corner coordinates.
+inline std::set<std::array<Vec3, 3>> outerFacets(
+  const MeshData& data, const std::vector<Index>& regions = {}, Index region = 0)
+{
+  constexpr int faces[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 } };
+  std::map<std::array<Vec3, 3>, int> uses;
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    if (!regions.empty() && regions[c] != region)
+    {
+      continue;
+    }
+    for (const auto& f : faces)
+    {
+      std::array<Vec3, 3> key;
+      for (int k = 0; k < 3; ++k)
+      {
+        key[k] = data.point(data.connectivity[4 * c + f[k]]);
+      }
+      std::sort(key.begin(), key.end());
+      ++uses[key];
+    }
+  }
+  std::set<std::array<Vec3, 3>> facets;
+  for (const auto& use : uses)
+  {
+    if (use.second == 1)
+    {
+      facets.insert(use.first);
+    }
+  }
+  return facets;
+}
+
+/// Valid cells, consistent arrays, worst values not worse and as the history states.
+inline void checkResult(const MeshData& input, const ReconnectionResult& result)
+{
+  const MeshData output = outputOf(result);
+  TAUTLINE_CHECK_EQUAL(result.originalPoints.size(), output.points.size() / 3);
+  TAUTLINE_CHECK_EQUAL(static_cast<Index>(result.originalCells.size()), output.numberOfCells());
+  TAUTLINE_CHECK_EQUAL(static_cast<Index>(result.obstacles.size()), output.numberOfCells());
+  for (signed char v : validityOf(output))
+  {
+    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid));
+  }
+  const auto worst = [](const MeshData& data, Metric metric, bool largest)
+  {
+    const std::vector<double> q = valuesOf(data, metric);
+    return largest ? *std::max_element(q.begin(), q.end()) : *std::min_element(q.begin(), q.end());
+  };
+  const double imr = worst(output, Metric::InverseMeanRatio, true);
+  TAUTLINE_CHECK(imr <= worst(input, Metric::InverseMeanRatio, true) * (1.0 + 1e-12));
+  TAUTLINE_CHECK_RELATIVE(imr, result.history.back().worstInverseMeanRatio, 1e-9);
+  TAUTLINE_CHECK(result.history.back().smallestAngle >= result.history.front().smallestAngle);
+  TAUTLINE_CHECK(result.history.back().worstQuality >= result.history.front().worstQuality);
+  TAUTLINE_CHECK_EQUAL(result.history.back().tetrahedra, output.numberOfCells());
+  TAUTLINE_CHECK_RELATIVE(volumeOf(output), volumeOf(input), 1e-14);
+}
+
+inline ReconnectionResult reconnect(const MeshData& data, const ReconnectionOptions& options)
+{
+  return improveConnectivity(Mesh(data.view()), options);
+}
+
+inline ReconnectionOptions optionsOf(ReconnectionPreset preset)
+{
+  ReconnectionOptions options;
+  applyPreset(preset, options);
+  return options;
+}
+}
+#endif

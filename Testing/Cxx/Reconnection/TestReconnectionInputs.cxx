@@ -1,0 +1,201 @@
+// improveConnectivity() with input it refuses, and with input at the limits of what it takes.
+
+#include "Reconnecting.h"
+
+#include <limits>
+
+using namespace tautline;
+
+namespace
+{
+void testRefusals()
+{
+  const ReconnectionOptions defaults;
+  MeshData mixed = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+  mixed.addCell(CellType::Hexahedron, idealCell(CellType::Hexahedron));
+  TAUTLINE_CHECK_THROWS(reconnect(mixed, defaults), "1 cells are not tetrahedra");
+  TAUTLINE_CHECK_THROWS(
+    reconnect(blockMesh(CellType::Triangle, 2, 2, 0), defaults), "8 cells are not tetrahedra");
+  MeshData line = blockMesh(CellType::Tetrahedron, 1, 1, 1);
+  constexpr int vtkLine = 3;
+  line.addCell(vtkLine, { 0, 1 });
+  TAUTLINE_CHECK_THROWS(reconnect(line, defaults), "1 cells are not tetrahedra");
+
+  MeshData inverted = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+  std::swap(inverted.connectivity[4], inverted.connectivity[5]);
+  TAUTLINE_CHECK_THROWS(reconnect(inverted, defaults), "1 inverted or degenerate tetrahedra");
+  TAUTLINE_CHECK_THROWS(reconnect(inverted, defaults), "Untangle Mesh");
+  MeshData flat = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+  flat.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 2, 2 });
+  TAUTLINE_CHECK_THROWS(reconnect(flat, defaults), "degenerate");
+
+  for (double value :
+    { std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
+  {
+    MeshData data = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+    data.points[7] = value;
+    TAUTLINE_CHECK_THROWS(reconnect(data, defaults), "NaN or infinite");
+  }
+
+  MeshData twice = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+  twice.addCell(CellType::Tetrahedron,
+    std::vector<Index>(twice.connectivity.begin(), twice.connectivity.begin() + 4));
+  TAUTLINE_CHECK_THROWS(reconnect(twice, defaults), "duplicate");
+  MeshData alone = singleCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
+  alone.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 2, 3 });
+  TAUTLINE_CHECK_THROWS(reconnect(alone, defaults), "same side");
+  MeshData overlapping = singleCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
+  overlapping.addPoint({ 0.4, 0.3, 0.7 });
+  overlapping.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 2, 4 });
+  TAUTLINE_CHECK_THROWS(reconnect(overlapping, defaults), "same side");
+}
+
+void testOptions()
+{
+  const MeshData data = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+  const auto refused = [&](const auto& change, const char* text)
+  {
+    ReconnectionOptions options;
+    change(options);
+    TAUTLINE_CHECK_THROWS(reconnect(data, options), text);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (double angle : { 0.0, -1.0, 61.0, nan })
+  {
+    refused([&](ReconnectionOptions& o) { o.targetAngle = angle; }, "target angle");
+  }
+  for (double count : { -0.1, 1.1, nan })
+  {
+    refused([&](ReconnectionOptions& o) { o.smallestCount = count; }, "smallest count");
+  }
+  for (double count : { 0.9, nan, std::numeric_limits<double>::infinity() })
+  {
+    refused([&](ReconnectionOptions& o) { o.largestCount = count; }, "largest count");
+  }
+  for (double angle : { -0.1, 1.1, nan })
+  {
+    refused([&](ReconnectionOptions& o) { o.flatTolerance = angle; }, "flat tolerance");
+  }
+  refused([](ReconnectionOptions& o) { o.maximumSeconds = -1; }, "time limit");
+}
+
+void testSmall()
+{
+  ReconnectionOptions options;
+  options.smallestCount = 0.0;
+  options.largestCount = 100.0;
+  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    options.boundary = boundary;
+    const ReconnectionResult empty = reconnect(MeshData(), options);
+    TAUTLINE_CHECK(empty.points.empty() && empty.tetrahedra.empty() && empty.history.empty());
+    MeshData unused;
+    unused.addPoint({ 1, 2, 3 });
+    TAUTLINE_CHECK(reconnect(unused, options).points == unused.points);
+
+    MeshData one = singleCell(
+      CellType::Tetrahedron, { { 0, 0, 0 }, { 1, 0, 0 }, { 0.3, 1, 0 }, { 0.4, 0.4, 0.05 } });
+    one.addPoint({ 9, 9, 9 }); // of no cell
+    const ReconnectionResult result = reconnect(one, options);
+    checkResult(one, result);
+    TAUTLINE_CHECK(outerFacets(outputOf(result)) == outerFacets(one));
+    TAUTLINE_CHECK(std::count(result.originalPoints.begin(), result.originalPoints.end(), 4) == 1);
+
+    // Everything is fixed, and no operation may change anything.
+    const MeshData block = sliverBlock(3, 3, 1.0);
+    const std::vector<unsigned char> fixed(block.numberOfPoints(), 1);
+    ReconnectionOptions nothing = options;
+    nothing.fixed = fixed.data();
+    nothing.swap = nothing.insert = nothing.contract = false;
+    const ReconnectionResult kept = reconnect(block, nothing);
+    TAUTLINE_CHECK(kept.points == block.points && kept.tetrahedra == block.connectivity);
+    nothing.swap = nothing.insert = nothing.contract = true;
+    const ReconnectionResult swapped = reconnect(block, nothing);
+    checkResult(block, swapped);
+    TAUTLINE_CHECK(std::equal(block.points.begin(), block.points.end(), swapped.points.begin()));
+  }
+}
+
+/// Two blocks that share one vertex or one edge, or lie beside each other with points of their own:
+/// the boundary is not manifold at the shared points.
+void testNonManifold()
+{
+  for (const Vec3& shift : { Vec3{ 3, 3, 3 }, Vec3{ 3, 3, 0 }, Vec3{ 3, 0, 0 } })
+  {
+    MeshData data = sliverBlock(3, 3, 1.0);
+    const MeshData other = sliverBlock(3, 4, 1.0);
+    const bool glue = shift[1] != 0.0;
+    std::vector<Index> ids;
+    for (Index i = 0; i < other.numberOfPoints(); ++i)
+    {
+      const Vec3 p = other.point(i) + shift;
+      Index same = -1;
+      for (Index k = 0; glue && k < 64; ++k)
+      {
+        same = data.point(k) == p ? k : same;
+      }
+      ids.push_back(same >= 0 ? same : data.addPoint(p));
+    }
+    for (Index c = 0; c < other.numberOfCells(); ++c)
+    {
+      const Index* v = &other.connectivity[4 * c];
+      data.addCell(
+        CellType::Tetrahedron, std::vector<Index>{ ids[v[0]], ids[v[1]], ids[v[2]], ids[v[3]] });
+    }
+    for (ReconnectionBoundary boundary :
+      { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+    {
+      ReconnectionOptions options;
+      options.boundary = boundary;
+      const ReconnectionResult result = reconnect(data, options);
+      checkResult(data, result);
+      TAUTLINE_CHECK(result.history.back().smallestAngle > result.history.front().smallestAngle);
+      if (boundary == ReconnectionBoundary::Fixed)
+      {
+        TAUTLINE_CHECK(outerFacets(outputOf(result)) == outerFacets(data));
+      }
+      // Points shared by the blocks stay at their place.
+      const MeshData output = outputOf(result);
+      for (std::size_t i = 0; glue && i < result.originalPoints.size(); ++i)
+      {
+        const Index original = result.originalPoints[i];
+        if (std::count(ids.begin(), ids.end(), original) == 1 && original < 64 && original >= 0)
+        {
+          TAUTLINE_CHECK(output.point(static_cast<Index>(i)) == data.point(original));
+        }
+      }
+    }
+  }
+}
+
+/// All cells listed in the opposite order: the result is, too.
+void testMirrored()
+{
+  const MeshData data = sliverBlock(4, 5, 1.0);
+  MeshData reversed = data;
+  for (std::size_t i = 0; i < reversed.connectivity.size(); i += 4)
+  {
+    std::swap(reversed.connectivity[i + 2], reversed.connectivity[i + 3]);
+  }
+  TAUTLINE_CHECK_THROWS(reconnect(reversed, {}), "reversed");
+  Mesh mesh(reversed.view());
+  mesh.setMirrored(true);
+  const ReconnectionResult result = improveConnectivity(mesh, {});
+  ReconnectionResult expected = reconnect(data, {});
+  for (std::size_t i = 0; i < expected.tetrahedra.size(); i += 4)
+  {
+    std::swap(expected.tetrahedra[i + 2], expected.tetrahedra[i + 3]);
+  }
+  TAUTLINE_CHECK(result.tetrahedra == expected.tetrahedra && result.points == expected.points);
+}
+}
+
+int TestReconnectionInputs(int, char*[])
+{
+  testRefusals();
+  testOptions();
+  testSmall();
+  testNonManifold();
+  testMirrored();
+  return exitCode();
+}
