@@ -1,0 +1,135 @@
+// Reconnection of a mesh of tetrahedra, one thread: CPU time per tetrahedron, the worst values, and
+// the number of operations, by preset and boundary.
+//
+// usage: BenchmarkReconnection FILE.vtk     the mesh, legacy VTK
+//        BenchmarkReconnection SIZE         a cube of 6 SIZE^3 tetrahedra with moved points
+
+#include "Clocks.h"
+#include "KuhnMesh.h"
+
+#include "tautline/Reconnection/Reconnection.h"
+
+#include "vtkCell.h"
+#include "vtkNew.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkUnstructuredGridReader.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+
+using namespace tautline;
+
+namespace
+{
+struct Case
+{
+  const char* name;
+  ReconnectionPreset preset;
+  ReconnectionBoundary boundary;
+  double targetAngle; ///< 0: that of the preset
+};
+
+/// Points on the flat parts of the boundary move farther: their target is higher.
+constexpr double FlatTarget = 38.8;
+
+constexpr Case cases[] = {
+  { "slivers", ReconnectionPreset::RemoveSlivers, ReconnectionBoundary::Fixed, 0.0 },
+  { "swap", ReconnectionPreset::SwapOnly, ReconnectionBoundary::Fixed, 0.0 },
+  { "swap and smooth", ReconnectionPreset::SwapAndSmooth, ReconnectionBoundary::Fixed, 0.0 },
+  { "aggressive", ReconnectionPreset::Aggressive, ReconnectionBoundary::Fixed, 0.0 },
+  { "flat", ReconnectionPreset::Aggressive, ReconnectionBoundary::Flat, 0.0 },
+  { "flat, high target", ReconnectionPreset::Aggressive, ReconnectionBoundary::Flat, FlatTarget },
+};
+
+MeshData readMesh(const char* name)
+{
+  vtkNew<vtkUnstructuredGridReader> reader;
+  reader->SetFileName(name);
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  MeshData data;
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    grid->GetPoint(i, x);
+    data.addPoint({ x[0], x[1], x[2] });
+  }
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    grid->GetCellPoints(c, size, ids);
+    data.addCell(grid->GetCellType(c), { ids, ids + size });
+  }
+  return data;
+}
+
+/// The points inside a cube moved at random by up to a quarter of the spacing.
+MeshData makeMesh(Index n)
+{
+  MeshData data = cutIntoTetrahedra(blockMesh(CellType::Hexahedron, n, n, n), n);
+  const double side = static_cast<double>(n);
+  Random random(1);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      const bool inside =
+        std::all_of(p.begin(), p.end(), [&](double x) { return x > 0.0 && x < side; });
+      const Vec3 d = random.vector(-0.25, 0.25);
+      return inside ? p + d : p;
+    });
+  return data;
+}
+
+void measure(const MeshData& data, const Case& work)
+{
+  const Mesh mesh(data.view());
+  ReconnectionOptions options;
+  applyPreset(work.preset, options);
+  options.boundary = work.boundary;
+  options.targetAngle = work.targetAngle > 0.0 ? work.targetAngle : options.targetAngle;
+  const double start = processTime();
+  const ReconnectionResult result = improveConnectivity(mesh, options);
+  const double seconds = processTime() - start;
+  const ReconnectionRecord& last = result.history.back();
+  const auto print = [&](const char* what, double value)
+  { std::printf("%s: %s\t%.10g\n", work.name, what, value); };
+  print("cpu seconds", seconds);
+  print("microseconds per tetrahedron", 1e6 * seconds / static_cast<double>(data.numberOfCells()));
+  print("smallest angle", last.smallestAngle);
+  print("worst inverse mean ratio", last.worstInverseMeanRatio);
+  print("tetrahedra", static_cast<double>(last.tetrahedra));
+  print("below target", static_cast<double>(last.belowTarget));
+  print("edge removals", static_cast<double>(last.edgeRemovals));
+  print("face removals", static_cast<double>(last.faceRemovals));
+  print("boundary swaps", static_cast<double>(last.boundarySwaps));
+  print("contractions", static_cast<double>(last.contractions));
+  print("insertions", static_cast<double>(last.insertions));
+  print("moves", static_cast<double>(last.moves));
+}
+}
+
+int main(int argc, char* argv[])
+{
+  if (argc != 2)
+  {
+    std::cerr << "usage: BenchmarkReconnection FILE.vtk|SIZE\n";
+    return EXIT_FAILURE;
+  }
+  try
+  {
+    const Index size = std::atoll(argv[1]);
+    const MeshData data = size > 0 ? makeMesh(size) : readMesh(argv[1]);
+    for (const Case& work : cases)
+    {
+      measure(data, work);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << error.what() << '\n';
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}
