@@ -141,7 +141,9 @@ bool CavityOperations::loadStar(PointId v, StarSmoothing& star)
 
 bool CavityOperations::smooth(PointId v, int steps)
 {
-  if (this->freedoms[v].kind == PointFreedom::Fixed || !this->loadStar(v, this->Smoothing))
+  // In vain since the last change of the star; tentative changes leave no stamps.
+  const bool known = !this->Tentative && this->SmoothedAt[v] > this->Stamps[v];
+  if (this->freedoms[v].kind == PointFreedom::Fixed || known || !this->loadStar(v, this->Smoothing))
   {
     return false;
   }
@@ -154,6 +156,7 @@ bool CavityOperations::smooth(PointId v, int steps)
   const double after = this->Smoothing.maximize(p, steps, this->freedoms[v]);
   if (!(after > before * (1.0 + SameQuality)) || p == this->Mesh.point(v))
   {
+    this->SmoothedAt[v] = this->Tentative ? this->SmoothedAt[v] : this->Clock + 1;
     return false;
   }
   const double* q = this->Smoothing.qualities();

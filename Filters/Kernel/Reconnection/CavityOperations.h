@@ -55,7 +55,12 @@ public:
   bool removeFaces(TetId t, int i);
   /// Moves a vertex to where the smallest quality of its star is largest.
   bool smooth(PointId v, int steps);
-  void setLeastGain(double gain) { this->Smoothing.leastGain = gain; }
+  /// Sets what a motion has to gain; points that could not be moved are tried again.
+  void setLeastGain(double gain)
+  {
+    this->Smoothing.leastGain = gain;
+    this->SmoothedAt.assign(this->Mesh.pointSlots(), 0);
+  }
   /// Moves vertex i of a tetrahedron into vertex j, which removes the tetrahedra of their edge.
   bool contract(TetId t, int i, int j);
   /// Puts a point into the tetrahedron, one of its faces or edges, and connects it with the faces
@@ -77,7 +82,11 @@ public:
   /// Increases with each change near a point: its own moves and those of its neighbours.
   std::uint32_t stamp(PointId v) const { return this->Stamps[v]; }
   std::uint32_t clock() const { return this->Clock; }
-  void prepareStamps() { this->Stamps.resize(this->Mesh.pointSlots(), 0); }
+  void prepareStamps()
+  {
+    this->Stamps.resize(this->Mesh.pointSlots(), 0);
+    this->SmoothedAt.resize(this->Mesh.pointSlots(), 0);
+  }
 
 private:
   struct CavityFace
@@ -140,6 +149,7 @@ private:
   TetrahedronMesh& Mesh;
   OperationCounts Counts;
   std::vector<std::uint32_t> Stamps;
+  std::vector<std::uint32_t> SmoothedAt; ///< clock at the last motion in vain, per point
   std::uint32_t Clock = 0;
   Replacement Change;
   std::vector<TetId> Created, Star;

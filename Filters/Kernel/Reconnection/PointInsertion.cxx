@@ -225,7 +225,7 @@ bool CavityOperations::applyInsertion(const Insertion& best)
   const PointId p = this->Mesh.addPoint(best.point);
   this->freedoms.resize(this->Mesh.pointSlots());
   this->freedoms[p] = best.freedom;
-  this->Stamps.resize(this->Mesh.pointSlots(), 0);
+  this->prepareStamps();
   this->Change.clear();
   this->Change.before = best.tets;
   this->Change.opensBoundary = best.freedom.kind != PointFreedom::Free;
