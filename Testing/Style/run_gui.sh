@@ -1,0 +1,23 @@
+#!/bin/bash
+# The command line of ./run gui: ParaView must not take a file for the name of a plugin, which is what
+# it does with a file after --plugins. ParaView, CMake and the packages are replaced by stand-ins.
+# usage: run_gui.sh TOP
+set -eu
+top="$1"
+scratch="$(mktemp -d)"
+trap 'rm -rf "$scratch"' EXIT
+printf '#!/bin/sh\nfor a in "$@"; do printf "[%%s]" "$a"; done; printf " %%s\\n" "${TAUTLINE_SAMPLE:-}"\n' >"$scratch/paraview"
+printf '#!/bin/sh\nexit 0\n' >"$scratch/cmake"
+printf '#!/bin/sh\necho "install ok installed"\n' >"$scratch/dpkg-query"
+chmod +x "$scratch"/*
+export PATH="$scratch:$PATH" DISPLAY=:none TAUTLINE_BUILD="$scratch/build"
+expect() { # EXPECTED ARGUMENT...
+  local expected="$1" found
+  shift
+  found="$("$top/run" gui "$@" 2>/dev/null)"
+  [[ $found == "$expected" ]] || { echo "run gui $*: '$found', expected '$expected'" >&2; exit 1; }
+}
+expect "[part.vtu][--plugins=Tautline] " part.vtu
+expect "[a b.vtu][--dr][--plugins=Tautline] " "a b.vtu" --dr
+expect "[--script=$top/Plugin/open_sample.py][--plugins=Tautline] $top/Data/bracket-tangled.vtu"
+[[ -f $top/Plugin/open_sample.py && -f $top/Data/bracket-tangled.vtu ]]
