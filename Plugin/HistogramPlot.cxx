@@ -1,5 +1,7 @@
 #include "HistogramPlot.h"
 
+#include "ColorMaps.h"
+
 #include <QHelpEvent>
 #include <QKeyEvent>
 #include <QMouseEvent>
@@ -23,20 +25,20 @@ bool isBin(const HistogramBar& bar)
   return bar.kind == HistogramBar::Bin || bar.kind == HistogramBar::LastBin;
 }
 
-/// The colours of the colour maps: unacceptable dark red, inverted magenta.
+/// The colours of the colour maps: unacceptable dark red, inverted blue.
 QColor colorOf(const HistogramBar& bar)
 {
   switch (bar.kind)
   {
     case HistogramBar::Inverted:
-      return QColor(255, 0, 255);
+      return QColor::fromRgbF(InvertedColor[0], InvertedColor[1], InvertedColor[2]);
     case HistogramBar::Degenerate:
       return QColor(120, 60, 120);
     case HistogramBar::Below:
     case HistogramBar::Above:
       return QColor(140, 20, 20);
     default:
-      return QColor(70, 120, 180);
+      return QColor(150, 160, 170);
   }
 }
 

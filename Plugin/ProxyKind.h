@@ -1,6 +1,6 @@
 /**
  * @file ProxyKind.h
- * @brief Whether a proxy is one of Tautline's.
+ * @brief Whether a proxy is one of Tautline's, and the names of outputs.
  */
 
 #ifndef tautline_ProxyKind_h
@@ -13,6 +13,9 @@ namespace tautline
 
 /// Whether the proxy is a filter or source of the menu Tautline. False for null.
 bool isTautline(vtkSMProxy* proxy);
+
+/// The output of Element Quality with the elements that are drawn inside the mesh.
+constexpr const char* BadElementsPort = "Bad";
 
 } // namespace tautline
 

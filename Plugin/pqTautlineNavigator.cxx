@@ -21,6 +21,7 @@
 #include <QTimer>
 
 #include <algorithm>
+#include <vector>
 
 namespace
 {
@@ -245,7 +246,31 @@ void pqTautlineNavigator::isolate(bool on)
       shown->renderViewEventually();
     }
   };
-  this->Restore = [=] { set(opacity, style, labels); };
+  // The elements that Element Quality draws besides would hide the one isolated.
+  std::vector<QPointer<pqDataRepresentation>> others;
+  if (pqOutputPort* bad = this->Source->getOutputPort(tautline::BadElementsPort))
+  {
+    for (pqDataRepresentation* other : bad->getRepresentations(view))
+    {
+      if (other->isVisible())
+      {
+        other->setVisible(false);
+        others.emplace_back(other);
+      }
+    }
+  }
+  this->Restore = [=]
+  {
+    set(opacity, style, labels);
+    for (const QPointer<pqDataRepresentation>& other : others)
+    {
+      if (other)
+      {
+        other->setVisible(true);
+        other->renderViewEventually();
+      }
+    }
+  };
   if (const tautline::WorstElementList* list = this->list())
   {
     vtkSMPropertyHelper(proxy, LabelArray).Set(list->array.c_str());

@@ -1,6 +1,7 @@
 #include "pqTautlineResultPanel.h"
 
 #include "ElementSelection.h"
+#include "PanelWidth.h"
 #include "Report.h"
 
 #include "pqActiveObjects.h"
@@ -20,6 +21,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QRegularExpression>
+#include <QScrollBar>
 #include <QStringList>
 #include <QTextBrowser>
 #include <QToolButton>
@@ -150,6 +152,24 @@ void pqTautlineResultPanel::changeEvent(QEvent* event)
   {
     this->setEnabled(true);
   }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::showEvent(QShowEvent* event)
+{
+  this->Superclass::showEvent(event);
+  // When the layout of the panel is done, and when a section is added.
+  if (const QScrollBar* bar = tautline::horizontalScrollBar(this))
+  {
+    QObject::connect(bar, &QScrollBar::rangeChanged, this, &pqTautlineResultPanel::fitWidth,
+      static_cast<Qt::ConnectionType>(Qt::QueuedConnection | Qt::UniqueConnection));
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::fitWidth()
+{
+  tautline::fitDock(this);
 }
 
 //------------------------------------------------------------------------------

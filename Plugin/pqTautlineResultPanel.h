@@ -51,9 +51,11 @@ public Q_SLOTS:
 private Q_SLOTS:
   void copy();
   void saveReport();
+  void fitWidth();
 
 private:
   void changeEvent(QEvent* event) override;
+  void showEvent(QShowEvent* event) override;
   pqPipelineSource* source() const;
   void showNote(const QString& note);
   /// As high as the text, up to a limit.

@@ -1,5 +1,6 @@
 #include "ColorMaps.h"
 
+#include "tautline/Quality/Criteria.h"
 #include "tautline/Quality/Metrics.h"
 
 #include <algorithm>
@@ -24,8 +25,17 @@ struct Stop
 constexpr Stop Ramp[] = { { 0.0, "0.84, 0.90, 0.93" }, { 0.3, "0.99, 0.90, 0.55" },
   { 0.65, "0.96, 0.55, 0.20" }, { 1.0, "0.72, 0.06, 0.11" } };
 constexpr const char* WorseColor = "0.30, 0.00, 0.05";
-constexpr const char* InvertedColor = "1.0, 0.0, 1.0";
 constexpr const char* NanColor = "0.2, 0.2, 0.2";
+constexpr const char* EqualColor = "0.90, 0.90, 0.90";
+constexpr const char* BetterColor = "0.10, 0.52, 0.30";
+constexpr const char* WarningColor = "0.96, 0.55, 0.20";
+
+std::string invertedColor()
+{
+  std::ostringstream text;
+  text << InvertedColor[0] << ", " << InvertedColor[1] << ", " << InvertedColor[2];
+  return text.str();
+}
 
 // ParaView drops every other character of an array name before it looks for a default.
 std::string settingsKey(std::string name)
@@ -66,43 +76,111 @@ std::string rgbPoints(const ColorMapSpec& spec)
   return text.str();
 }
 
+/// An entry of the settings; that of a title is looked up by the unchanged name of the array.
+std::string entry(const std::string& array, const std::string& title, const std::string& table)
+{
+  const std::string key = settingsKey(array);
+  const std::string legend = title.empty() ? "" : "\"Title\": \"" + title + "\"";
+  const bool same = key == array;
+  return "\"" + key + "\": { " + (same && !legend.empty() ? legend + ",\n  " : "") +
+    "\"PVLookupTable\": {\n" + table + " } }" +
+    (same || legend.empty() ? "" : ",\n\"" + array + "\": { " + legend + " }");
+}
+
 std::string metricTable(const ColorMapSpec& spec)
 {
   const bool largerIsBetter = spec.bad < spec.good;
   std::ostringstream json;
-  json << "\"" << settingsKey(spec.array) << "\": { \"PVLookupTable\": {\n"
-       << "  \"RGBPoints\": [" << rgbPoints(spec) << "],\n"
+  json << "  \"RGBPoints\": [" << rgbPoints(spec) << "],\n"
        << "  \"ColorSpace\": \"Lab\",\n"
        << "  \"AutomaticRescaleRangeMode\": \"Never\", \"ScalarRangeInitialized\": 1,\n"
        << "  \"UseBelowRangeColor\": " << (spec.negativeInverts || largerIsBetter)
-       << ", \"BelowRangeColor\": [" << (spec.negativeInverts ? InvertedColor : WorseColor)
+       << ", \"BelowRangeColor\": [" << (spec.negativeInverts ? invertedColor() : WorseColor)
        << "],\n"
        << "  \"UseAboveRangeColor\": " << !largerIsBetter << ", \"AboveRangeColor\": ["
        << WorseColor << "],\n"
-       << "  \"NanColor\": [" << NanColor << "] } }";
-  return json.str();
+       << "  \"NanColor\": [" << NanColor << "]";
+  return entry(spec.array, spec.title, json.str());
 }
 
-std::string validityTable()
+/// Green where the metric became better by half its acceptable range or more, red where worse.
+std::string differenceTable(const ColorMapSpec& spec)
 {
-  const std::pair<Validity, std::pair<const char*, const char*>> categories[] = {
-    { Valid, { "valid", Ramp[0].rgb } }, { Degenerate, { "degenerate", WorseColor } },
-    { Inverted, { "inverted", InvertedColor } }, { NotMeasured, { "not measured", NanColor } },
-    { NonFinite, { "not finite", "1.0, 1.0, 0.0" } }
-  };
-  std::string annotations;
-  std::string colors;
-  for (const auto& category : categories)
+  const double end = 0.5 * std::abs(spec.bad - spec.good);
+  const bool largerIsBetter = spec.bad < spec.good;
+  const char* worse = Ramp[std::size(Ramp) - 1].rgb;
+  std::ostringstream json;
+  json << "  \"RGBPoints\": [" << -end << ", " << (largerIsBetter ? worse : BetterColor) << ", 0, "
+       << EqualColor << ", " << end << ", " << (largerIsBetter ? BetterColor : worse) << "],\n"
+       << "  \"ColorSpace\": \"Lab\",\n"
+       << "  \"AutomaticRescaleRangeMode\": \"Never\", \"ScalarRangeInitialized\": 1,\n"
+       << "  \"NanColor\": [" << NanColor << "]";
+  const std::string title = spec.title.empty() ? spec.array : spec.title;
+  return entry(spec.array + "_difference", title + ", after - before", json.str());
+}
+
+/// The colours of the metrics, from the smallest to the largest value of the array.
+std::string sequenceTable(const char* array, const char* title)
+{
+  const ColorMapSpec unit = { array, 0.0, 1.0, 1.0, false };
+  return entry(array, title,
+    "  \"RGBPoints\": [" + rgbPoints(unit) + "],\n  \"ColorSpace\": \"Lab\",\n" +
+      "  \"NanColor\": [" + NanColor + "]");
+}
+
+struct Category
+{
+  int value;
+  const char* text;
+  std::string rgb;
+};
+
+std::string categoryTable(
+  const char* array, const char* title, const std::vector<Category>& categories)
+{
+  std::string annotations, colors;
+  for (const Category& category : categories)
   {
     const char* separator = annotations.empty() ? "" : ", ";
     annotations +=
-      separator + ("\"" + std::to_string(category.first) + "\", \"") + category.second.first + "\"";
-    colors += separator + std::string(category.second.second);
+      separator + ("\"" + std::to_string(category.value) + "\", \"") + category.text + "\"";
+    colors += separator + category.rgb;
   }
-  return "\"Validity\": { \"PVLookupTable\": {\n"
-         "  \"IndexedLookup\": 1, \"AutomaticRescaleRangeMode\": \"Never\",\n"
-         "  \"Annotations\": [" +
-    annotations + "],\n  \"IndexedColors\": [" + colors + "] } }";
+  return entry(array, title,
+    "  \"IndexedLookup\": 1, \"AutomaticRescaleRangeMode\": \"Never\",\n  \"Annotations\": [" +
+      annotations + "],\n  \"IndexedColors\": [" + colors + "]");
+}
+
+/// The arrays that are no values of a metric.
+std::vector<std::string> otherTables()
+{
+  const char* good = Ramp[0].rgb;
+  const char* bad = Ramp[std::size(Ramp) - 1].rgb;
+  const std::vector<Category> validity = { { Valid, "valid", good },
+    { Degenerate, "degenerate", WorseColor }, { Inverted, "inverted", invertedColor() },
+    { NotMeasured, "not measured", NanColor }, { NonFinite, "not finite", "1.0, 1.0, 0.0" } };
+  // Log10 of a ratio: 0 the mean, 2 a hundred times as much.
+  const ColorMapSpec excess = { "Excess", 0.0, 2.0, 2.0, false,
+    "Largest eigenvalue, log10 over mean" };
+  // Of a triangle that keeps its shape 0, stretched to twice its length 2.
+  ColorMapSpec shape = { "TMP shape", 0.0, 2.0, 2.0, false, "Shape similarity (TMP)" };
+  const std::string warped = metricTable(shape);
+  shape.array = "tmp_shape";
+  return { categoryTable("Validity", "Validity", validity),
+    categoryTable("Validity_before", "Validity before", validity),
+    categoryTable("Validity_after", "Validity after", validity),
+    categoryTable("Change", "Change",
+      { { -1, "worse", bad }, { 0, "equal", EqualColor }, { 1, "better", BetterColor } }),
+    categoryTable("Grade", "Grade",
+      { { static_cast<int>(Grade::None), "none", NanColor },
+        { static_cast<int>(Grade::Passed), "passed", good },
+        { static_cast<int>(Grade::Warning), "warning", WarningColor },
+        { static_cast<int>(Grade::Failed), "failed", bad } }),
+    warped, metricTable(shape), metricTable(excess), sequenceTable("QualityIndex", "Quality index"),
+    sequenceTable("Energy", "Energy of the match"), sequenceTable("EdgeCost", "Edge cost"),
+    sequenceTable("Deformation", "Deformation"), sequenceTable("Distortion", "Distortion"),
+    sequenceTable("Share", "Share of the eigenvalue"),
+    sequenceTable("LargestEigenvalue", "Largest eigenvalue") };
 }
 
 } // anonymous namespace
@@ -126,12 +204,17 @@ std::vector<ColorMapSpec> metricColorMaps()
     }
     const Range& full = info.full(info.in3D ? 3 : 2);
     const bool smaller = info.direction == Direction::SmallerIsBetter;
-    const ColorMapSpec spec = { info.name, smaller ? acceptable.low : acceptable.high,
+    ColorMapSpec spec = { info.name, smaller ? acceptable.low : acceptable.high,
       smaller ? acceptable.high : acceptable.low, smaller ? full.high : full.low,
-      info.inverted == InvertedValue::Negative };
+      info.inverted == InvertedValue::Negative, info.label };
     if (std::isfinite(spec.good) && std::isfinite(spec.bad) && spec.good != spec.bad)
     {
-      specs.push_back(spec);
+      for (const char* ending : { "", "_before", "_after" })
+      {
+        spec.array = std::string(info.name) + ending;
+        spec.title = info.label + std::string(*ending ? ", " : "") + (*ending ? ending + 1 : "");
+        specs.push_back(spec);
+      }
     }
   }
   return specs;
@@ -145,7 +228,22 @@ std::string colorMapSettings(const std::vector<ColorMapSpec>& specs)
   {
     json += metricTable(spec) + ",\n";
   }
-  return json + validityTable() + "\n} }\n";
+  // One for each metric, not for the values before and after.
+  for (const ColorMapSpec& spec : specs)
+  {
+    const auto isMetric = [&spec](const MetricInfo& info) { return spec.array == info.name; };
+    const std::vector<MetricInfo>& known = metricRegistry();
+    if (std::any_of(known.begin(), known.end(), isMetric))
+    {
+      json += differenceTable(spec) + ",\n";
+    }
+  }
+  const std::vector<std::string> others = otherTables();
+  for (const std::string& other : others)
+  {
+    json += other + (&other == &others.back() ? "\n" : ",\n");
+  }
+  return json + "} }\n";
 }
 
 } // namespace tautline

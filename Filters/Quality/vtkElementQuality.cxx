@@ -1,5 +1,6 @@
 #include "vtkElementQuality.h"
 
+#include "BadElements.h"
 #include "Blocks.h"
 #include "ColorMaps.h"
 #include "CriteriaGrader.h"
@@ -22,6 +23,7 @@
 #include "vtkPolyData.h"
 #include "vtkSignedCharArray.h"
 #include "vtkTable.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 
@@ -39,6 +41,7 @@ enum Ports
   WorstPort,
   HistogramPort,
   CriteriaPort,
+  BadPort,
   NumberOfPorts
 };
 }
@@ -131,6 +134,12 @@ vtkPolyData* vtkElementQuality::GetWorst()
 }
 
 //------------------------------------------------------------------------------
+vtkUnstructuredGrid* vtkElementQuality::GetBad()
+{
+  return vtkUnstructuredGrid::SafeDownCast(this->GetOutputDataObject(BadPort));
+}
+
+//------------------------------------------------------------------------------
 int vtkElementQuality::GetNumberOfKnownMetrics()
 {
   return static_cast<int>(tautline::metricRegistry().size());
@@ -164,6 +173,10 @@ int vtkElementQuality::FillOutputPortInformation(int port, vtkInformation* info)
   {
     info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
   }
+  if (port == BadPort)
+  {
+    info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkUnstructuredGrid");
+  }
   return 1;
 }
 
@@ -188,13 +201,14 @@ int vtkElementQuality::RequestData(
       outputVector, wrong.empty() ? "The criteria cannot be read on another process." : wrong);
   }
   tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
+  tautline::BadElements bad;
   const std::string failure = FailureOf("choose fewer metrics or measure the mesh in parts",
     [&]
     {
       tautline::forEachBlock(vtkDataObject::GetData(inputVector[0]),
         vtkDataObject::GetData(inputVector[1]), nullptr, output,
         [&](const tautline::InputBlock& block)
-        { this->Measure(block.input, block.reference, block.output, totals, grader); });
+        { this->Measure(block.input, block.reference, block.output, totals, grader, bad); });
     });
 
   // Every process takes part in what follows, also if its own blocks failed.
@@ -204,6 +218,8 @@ int vtkElementQuality::RequestData(
   {
     return this->Fail(outputVector, failure);
   }
+  // Unlike the tables, each process has its own.
+  bad.copyTo(vtkUnstructuredGrid::GetData(outputVector, BadPort));
   if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
   {
     totals.tabulate(vtkTable::GetData(outputVector, StatisticsPort), this->HistogramBins,
@@ -243,7 +259,7 @@ void vtkElementQuality::ClearResult()
 
 //------------------------------------------------------------------------------
 void vtkElementQuality::Measure(vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output,
-  tautline::QualityTotals& totals, tautline::CriteriaGrader& grader)
+  tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad)
 {
   using namespace tautline;
   output->ShallowCopy(input);
@@ -289,6 +305,10 @@ void vtkElementQuality::Measure(vtkDataSet* input, vtkDataSet* reference, vtkDat
   // Without active point scalars, views colour by the metric.
   output->GetPointData()->SetActiveScalars(nullptr);
   output->GetCellData()->SetActiveScalars(metricInfo(metrics.front()).name);
+  if (this->ExtractBad && mesh.dimension() == Dimension::Volume && !this->GetAbortExecute())
+  {
+    bad.add(output, validity->GetPointer(0), skipped, metrics);
+  }
   this->WorkingBytes = std::max(this->WorkingBytes,
     static_cast<double>(adapter.copiedBytes() + skip.size() + totals.bytes() +
       targets.inverse.size() * sizeof(double) + targets.offsets.size() * sizeof(Index)));
@@ -367,6 +387,7 @@ void vtkElementQuality::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Beta: " << this->Beta << "\n";
   os << indent << "Epsilon: " << this->Epsilon << "\n";
   os << indent << "ReversedMesh: " << this->ReversedMesh << "\n";
+  os << indent << "ExtractBad: " << this->ExtractBad << "\n";
   os << indent << "HistogramBins: " << this->HistogramBins << "\n";
   os << indent << "Criteria: " << this->Criteria << "\n";
   os << indent << "Verdict: " << this->Verdict << "\n";

@@ -58,6 +58,12 @@
  * above 0 they are empty. Cell ids are then the global ids of the cells if the data have any, else
  * they count through blocks and ranks in order.
  *
+ * @par Output port 7 `Bad`:
+ * A vtkUnstructuredGrid, filled if ExtractBad is on: the elements of volume meshes that are
+ * inverted or degenerate, failed by the criteria or, without criteria, outside the acceptable range of a
+ * metric, with their arrays. Of several processes, each has its own. Elements of other meshes are
+ * visible without it.
+ *
  * @par Targets:
  * Metrics that are functions of T = A W^-1 take the target element W from TargetType: the ideal
  * one, the same element of a reference mesh (input port 1), the ideal shape in a size given per
@@ -91,9 +97,11 @@
 class vtkDataSet;
 class vtkMultiProcessController;
 class vtkPolyData;
+class vtkUnstructuredGrid;
 
 namespace tautline
 {
+class BadElements;
 class CriteriaGrader;
 class Mesh;
 class MeshAdapter;
@@ -191,6 +199,13 @@ public:
   ///@}
 
   ///@{
+  /// Whether the output Bad is filled. The default is off.
+  vtkSetMacro(ExtractBad, bool);
+  vtkGetMacro(ExtractBad, bool);
+  vtkBooleanMacro(ExtractBad, bool);
+  ///@}
+
+  ///@{
   /**
    * Quality criteria: the name of a preset (GetCriteriaPresets()), the name of a JSON file, or JSON
    * text, see tautline/Quality/Criteria.h. Their metrics are measured too. Whether they are right
@@ -227,6 +242,7 @@ public:
   vtkTable* GetHistogram();
   vtkTable* GetCriteriaTable();
   vtkPolyData* GetWorst();
+  vtkUnstructuredGrid* GetBad();
   ///@}
 
   ///@{
@@ -262,7 +278,7 @@ private:
   void operator=(const vtkElementQuality&) = delete;
 
   void Measure(vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output,
-    tautline::QualityTotals& totals, tautline::CriteriaGrader& grader);
+    tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad);
   void SettleOrientation(tautline::MeshAdapter& adapter, signed char* validity, vtkDataSet* output);
   /// Adds remarks on coincident points and duplicate cells.
   void CheckConnections(const tautline::Mesh& mesh, const unsigned char* skip);
@@ -276,6 +292,7 @@ private:
   double Epsilon = 1e-4;
   int ReversedMesh = MEASURE_FLIPPED;
   int HistogramBins = 32;
+  bool ExtractBad = false;
   vtkMultiProcessController* Controller = nullptr;
   std::string Notice;
   std::string Criteria;

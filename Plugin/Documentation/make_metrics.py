@@ -21,7 +21,7 @@ MOST_BYTES = 6000  # of a picture
 # The window of the pictures, and their colours: those of the plugin's colour maps.
 X, Y, PIXELS = (-1.0, 2.0), (-0.5, 1.75), 60  # pixels per unit length
 RAMP = [(0.84, 0.90, 0.93), (0.99, 0.90, 0.55), (0.96, 0.55, 0.20), (0.72, 0.06, 0.11)]
-INVERTED, BASE, IDEAL = (1.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.1, 0.3, 0.7)
+INVERTED, BASE, IDEAL = (0.05, 0.35, 1.0), (0.0, 0.0, 0.0), (0.0, 0.45, 0.2)
 BANDS = 10
 
 
@@ -125,7 +125,7 @@ def field(metric: dict):
 
 
 def picture(metric: dict):
-    """RGB of one metric: bands of equal area, pale is good; magenta is inverted, where the metric's sign shows it."""
+    """RGB of one metric: bands of equal area, pale is good; blue is inverted, where the metric's sign shows it."""
     import numpy as np
 
     values, validity = field(metric)

@@ -21,7 +21,7 @@ simple.Render(view)
 table = simple.GetColorTransferFunction("imr")
 assert (table.RGBPoints[0], table.RGBPoints[-4]) == (LOW, HIGH), table.RGBPoints[:]
 assert table.AutomaticRescaleRangeMode == "Never"
-assert table.UseBelowRangeColor and list(table.BelowRangeColor) == [1, 0, 1]
+assert table.UseBelowRangeColor and list(table.BelowRangeColor) == [0.05, 0.35, 1]
 
 # An array of another filter keeps ParaView's own map.
 assert simple.GetColorTransferFunction("pressure").AutomaticRescaleRangeMode != "Never"

@@ -107,7 +107,7 @@ def picture(mesh: Path, file: Path) -> None:
     bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.1f", "%.1f"
     bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.82, 0.27], 0.5
     bar.Visibility = 1
-    note = simple.Show(simple.Text(Text="magenta: inverted"), view)
+    note = simple.Show(simple.Text(Text="blue: inverted"), view)
     note.Color, note.FontSize = BLACK, 18
     note.WindowLocation, note.Position = "Any Location", [0.755, 0.2]
 

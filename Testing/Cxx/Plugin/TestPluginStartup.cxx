@@ -35,8 +35,12 @@ void testColorMapSettings()
   TAUTLINE_CHECK(has("0.2, 0.72, 0.06, 0.11, ")); // red at the low end
   TAUTLINE_CHECK(has("\"imr\""));
   TAUTLINE_CHECK(has("[1, 0.84, 0.90, 0.93, 1.9, ")); // pale at the low end
-  TAUTLINE_CHECK(has("\"UseBelowRangeColor\": 1, \"BelowRangeColor\": [1.0, 0.0, 1.0]"));
+  TAUTLINE_CHECK(has("\"UseBelowRangeColor\": 1, \"BelowRangeColor\": [0.05, 0.35, 1]"));
   TAUTLINE_CHECK(has("\"Validity\""));
+  // imr is a metric: an increase by half the range, 1.5, is as red as it gets, a decrease green.
+  TAUTLINE_CHECK(has("\"imr_difference\""));
+  TAUTLINE_CHECK(has("[-1.5, 0.10, 0.52, 0.30, 0, 0.90, 0.90, 0.90, 1.5, 0.72, 0.06, 0.11]"));
+  TAUTLINE_CHECK(has("\"TMPshape\"") && has("\"TMP shape\": { \"Title\": "));
   TAUTLINE_CHECK(!has("inf") && !has("nan"));
 }
 
@@ -44,6 +48,23 @@ void testMetricColorMaps()
 {
   const auto specs = tautline::metricColorMaps();
   TAUTLINE_CHECK(!specs.empty());
+  // Before and after have the range of the metric.
+  const auto find = [&specs](const std::string& array)
+  {
+    for (const auto& spec : specs)
+    {
+      if (spec.array == array)
+      {
+        return spec;
+      }
+    }
+    return tautline::ColorMapSpec();
+  };
+  const auto metric = find("imr"), before = find("imr_before"), after = find("imr_after");
+  TAUTLINE_CHECK(metric.good == 1 && metric.bad == 3);
+  TAUTLINE_CHECK(before.good == metric.good && before.bad == metric.bad);
+  TAUTLINE_CHECK(after.good == metric.good && after.bad == metric.bad);
+  TAUTLINE_CHECK(metric.title == "Inverse mean ratio" && before.title != metric.title);
   for (const auto& spec : specs)
   {
     TAUTLINE_CHECK(std::isfinite(spec.good) && std::isfinite(spec.bad) && spec.good != spec.bad);

@@ -12,6 +12,7 @@
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
 #include "vtkTable.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <cstring>
 #include <limits>
@@ -499,6 +500,52 @@ void testThreads()
   }
 }
 
+/// The bad elements of a volume: one flat, one inverted of three; with criteria, those that fail. A
+/// planar mesh has none inside.
+void testBad()
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkUnstructuredGrid> grid;
+  const double regular = std::sqrt(2.0 / 3.0), flat = 0.05, inverted = -0.3;
+  for (const double apex : { regular, flat, inverted })
+  {
+    const vtkIdType first = points->InsertNextPoint(0, 0, 0);
+    points->InsertNextPoint(1, 0, 0);
+    points->InsertNextPoint(0.5, height, 0);
+    points->InsertNextPoint(0.5, height / 3, apex);
+    const vtkIdType ids[] = { first, first + 1, first + 2, first + 3 };
+    grid->InsertNextCell(VTK_TETRA, 4, ids);
+  }
+  grid->SetPoints(points);
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(grid);
+  filter->AddMetricByName("imr");
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetBad()->GetNumberOfCells(), 0);
+  filter->ExtractBadOn();
+  filter->Update();
+  vtkUnstructuredGrid* bad = filter->GetBad();
+  TAUTLINE_CHECK_EQUAL(bad->GetNumberOfCells(), 2);
+  TAUTLINE_CHECK_EQUAL(bad->GetNumberOfPoints(), 8);
+  TAUTLINE_CHECK_NEAR(bad->GetPoint(3)[2], flat, 1e-15);
+  TAUTLINE_CHECK_NEAR(bad->GetPoint(7)[2], inverted, 1e-15);
+  for (vtkIdType i = 0; i < 2; ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(bad->GetCellData()->GetArray("imr")->GetComponent(i, 0),
+      component(cellsOf(filter), "imr", i + 1));
+  }
+  // A limit that the flat element keeps: only the inverted one fails.
+  filter->SetCriteria(R"({ "criteria": [ { "metric": "imr",
+    "limits": { "all": { "ideal": 1, "good": 2, "warn": 3, "fail": 1e6, "worst": 1e7 } } } ] })");
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetBad()->GetNumberOfCells(), 1);
+  filter->SetCriteria("");
+  filter->SetInputData(toGrid(triangles({ height, 0.01, -0.3 })));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetBad()->GetNumberOfCells(), 0);
+}
+
 /// An abort between metrics leaves the mesh with the metrics measured so far.
 void testAbort()
 {
@@ -536,6 +583,7 @@ int TestElementQuality(int, char*[])
   testTargets();
   testErrors();
   testThreads();
+  testBad();
   testAbort();
   return exitCode();
 }

@@ -1,0 +1,47 @@
+/**
+ * @file BadElements.h
+ * @brief Collects the bad elements of volume meshes, which lie inside and are hidden by others.
+ */
+
+#ifndef tautline_BadElements_h
+#define tautline_BadElements_h
+
+#include "tautline/Quality/Metrics.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <vector>
+
+class vtkDataSet;
+
+namespace tautline
+{
+
+/**
+ * @brief The elements that are inverted or degenerate, failed by the criteria (array `Grade`) or,
+ * without criteria, outside the acceptable range of a metric.
+ */
+class BadElements
+{
+public:
+  /**
+   * @brief Adds those of a volume mesh.
+   * @param output the mesh with the cell arrays of the metrics and, with criteria, `Grade`
+   * @param validity a value per cell
+   * @param skip null, or a value per cell: those with 1 are left out
+   * @param metrics whose ranges count
+   */
+  void add(vtkDataSet* output, const signed char* validity, const unsigned char* skip,
+    const std::vector<Metric>& metrics);
+
+  /// The elements of all blocks, with the arrays that all of them have.
+  void copyTo(vtkUnstructuredGrid* grid) const;
+
+private:
+  std::vector<vtkSmartPointer<vtkUnstructuredGrid>> Blocks;
+};
+
+} // namespace tautline
+
+#endif

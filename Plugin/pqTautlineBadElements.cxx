@@ -1,0 +1,150 @@
+#include "pqTautlineBadElements.h"
+
+#include "ProxyKind.h"
+
+#include "pqApplicationCore.h"
+#include "pqDataRepresentation.h"
+#include "pqOutputPort.h"
+#include "pqPipelineSource.h"
+#include "pqServerManagerModel.h"
+#include "pqView.h"
+
+#include "vtkNew.h"
+#include "vtkPVDataInformation.h"
+#include "vtkSMParaViewPipelineControllerWithRendering.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSMViewProxy.h"
+
+#include <QPointer>
+#include <QTimer>
+#include <QVariant>
+
+namespace
+{
+constexpr double FadedOpacity = 0.2;
+constexpr const char* Opacity = "Opacity";
+/// Property of a representation made translucent: its opacity before.
+constexpr const char* Before = "TautlineOpacityBefore";
+constexpr double EdgeColor[3] = { 0.1, 0.1, 0.1 };
+constexpr const char* Style = "Representation";
+
+pqServerManagerModel* model()
+{
+  pqApplicationCore* core = pqApplicationCore::instance();
+  return core ? core->getServerManagerModel() : nullptr;
+}
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineBadElements::startup()
+{
+  QObject::connect(
+    model(), &pqServerManagerModel::dataUpdated, this, &pqTautlineBadElements::dataUpdated);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineBadElements::shutdown()
+{
+  if (model())
+  {
+    QObject::disconnect(model(), nullptr, this, nullptr);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineBadElements::dataUpdated(pqPipelineSource* source)
+{
+  if (tautline::isTautline(source->getProxy()) && source->getOutputPort(tautline::BadElementsPort))
+  {
+    // The mesh is shown after the first execution, and may be hidden and shown again.
+    QObject::connect(source, &pqPipelineSource::visibilityChanged, this,
+      &pqTautlineBadElements::arrangeLater, Qt::UniqueConnection);
+    this->arrangeLater(source);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineBadElements::arrangeLater(pqPipelineSource* source)
+{
+  // After Apply, which makes the representations.
+  const QPointer<pqPipelineSource> updated = source;
+  QTimer::singleShot(0, this,
+    [this, updated]
+    {
+      if (updated)
+      {
+        this->arrange(updated);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineBadElements::arrange(pqPipelineSource* source)
+{
+  constexpr int meshPort = 0;
+  pqOutputPort* bad = source->getOutputPort(tautline::BadElementsPort);
+  const bool some = bad->getDataInformation()->GetNumberOfCells() > 0;
+  for (pqView* view : source->getViews())
+  {
+    pqDataRepresentation* mesh = source->getOutputPort(meshPort)->getRepresentation(view);
+    pqDataRepresentation* elements = bad->getRepresentation(view);
+    if (!mesh || !mesh->getProxy()->GetProperty(Opacity))
+    {
+      continue;
+    }
+    if (some && mesh->isVisible() && !elements)
+    {
+      vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+      controller->Show(source->getSourceProxy(), bad->getPortNumber(), view->getViewProxy());
+      elements = bad->getRepresentation(view);
+    }
+    if (some && elements && elements->isVisible())
+    {
+      this->fade(mesh, elements);
+    }
+    else if (!some)
+    {
+      this->restore(mesh);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineBadElements::fade(pqDataRepresentation* mesh, pqDataRepresentation* bad)
+{
+  vtkSMPropertyHelper opacity(mesh->getProxy(), Opacity);
+  if (mesh->property(Before).isValid() || opacity.GetAsDouble() < 1.0)
+  {
+    return;
+  }
+  mesh->setProperty(Before, opacity.GetAsDouble());
+  opacity.Set(FadedOpacity);
+  mesh->getProxy()->UpdateVTKObjects();
+  if (bad->getProxy()->GetProperty(Style))
+  {
+    vtkSMPropertyHelper(bad->getProxy(), Style).Set("Surface With Edges");
+    vtkSMPropertyHelper(bad->getProxy(), "EdgeColor").Set(EdgeColor, 3);
+    bad->getProxy()->UpdateVTKObjects();
+  }
+  mesh->renderViewEventually();
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineBadElements::restore(pqDataRepresentation* mesh)
+{
+  const QVariant before = mesh->property(Before);
+  if (!before.isValid())
+  {
+    return;
+  }
+  vtkSMPropertyHelper opacity(mesh->getProxy(), Opacity);
+  if (opacity.GetAsDouble() == FadedOpacity)
+  {
+    opacity.Set(before.toDouble());
+    mesh->getProxy()->UpdateVTKObjects();
+    mesh->renderViewEventually();
+  }
+  mesh->setProperty(Before, QVariant());
+}

@@ -1,0 +1,40 @@
+/**
+ * @class pqTautlineBadElements
+ * @brief Shows the bad elements inside a mesh: the mesh around them becomes translucent.
+ *
+ * Element Quality has an output with the bad elements of a volume mesh. This object, started by the
+ * plugin in the GUI, draws it with the mesh and makes the mesh translucent when there are such
+ * elements, and opaque again when there are none or the output is switched off. An opacity that the
+ * user set is kept.
+ */
+
+#ifndef pqTautlineBadElements_h
+#define pqTautlineBadElements_h
+
+#include <QObject>
+
+class pqDataRepresentation;
+class pqPipelineSource;
+
+class pqTautlineBadElements : public QObject
+{
+  Q_OBJECT
+
+public:
+  ///@{
+  /// Called by ParaView when the plugin is loaded in the GUI, and before it is unloaded.
+  void startup();
+  void shutdown();
+  ///@}
+
+private Q_SLOTS:
+  void dataUpdated(pqPipelineSource* source);
+  void arrangeLater(pqPipelineSource* source);
+
+private:
+  void arrange(pqPipelineSource* source);
+  void fade(pqDataRepresentation* mesh, pqDataRepresentation* bad);
+  void restore(pqDataRepresentation* mesh);
+};
+
+#endif
