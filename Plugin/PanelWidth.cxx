@@ -46,7 +46,9 @@ void fitDock(QWidget* widget)
     return;
   }
   const int needed = area->widget()->minimumSizeHint().width();
-  const int missing = needed - area->viewport()->width();
+  // The vertical scroll bar may appear later.
+  const int frame = 2 * area->frameWidth() + area->verticalScrollBar()->sizeHint().width();
+  const int missing = needed - (area->width() - frame);
   const int widest = window->width() / 2;
   if (needed <= dock->property(Fitted).toInt())
   {
