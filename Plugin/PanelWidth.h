@@ -15,8 +15,8 @@ namespace tautline
 /**
  * @brief Widens the dock that contains a widget if the panel needs a horizontal scroll bar.
  *
- * The default width is less than ParaView's own section Display needs. Not more than half the window;
- * a dock that floats or is wide enough is left alone, and so is one that the user made
+ * The default width is less than ParaView's own section Display needs. Not more than half the
+ * window; a dock that floats or is wide enough is left alone, and so is one that the user made
  * narrower after it was widened for this content.
  */
 void fitDock(QWidget* widget);

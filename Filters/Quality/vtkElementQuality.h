@@ -60,9 +60,9 @@
  *
  * @par Output port 7 `Bad`:
  * A vtkUnstructuredGrid, filled if ExtractBad is on: the elements of volume meshes that are
- * inverted or degenerate, failed by the criteria or, without criteria, outside the acceptable range of a
- * metric, with their arrays. Of several processes, each has its own. Elements of other meshes are
- * visible without it.
+ * inverted or degenerate, failed by the criteria or, without criteria, outside the acceptable range
+ * of a metric, with their arrays. Of several processes, each has its own. Elements of other meshes
+ * are visible without it.
  *
  * @par Targets:
  * Metrics that are functions of T = A W^-1 take the target element W from TargetType: the ideal

@@ -1,0 +1,37 @@
+/**
+ * @class pqTautlineCharts
+ * @brief Sets up the charts of Tautline's outputs when they are shown for the first time.
+ *
+ * History: the objective on a left axis, logarithmic if possible, the other series on the right axis,
+ * since their magnitudes differ. Distribution: the counts over the values of the metric instead of
+ * the numbers of the rows. After Apply, the view of the mesh is active again, not the chart that was
+ * added: the mesh of the next filter then appears there. The plugin starts the object in the GUI.
+ */
+
+#ifndef pqTautlineCharts_h
+#define pqTautlineCharts_h
+
+#include <QObject>
+
+class pqDataRepresentation;
+class pqRepresentation;
+
+class pqTautlineCharts : public QObject
+{
+  Q_OBJECT
+
+public:
+  ///@{
+  /// Called by ParaView when the plugin is loaded in the GUI, and before it is unloaded.
+  void startup();
+  void shutdown();
+  ///@}
+
+private Q_SLOTS:
+  void added(pqRepresentation* shown);
+
+private:
+  void arrange(pqDataRepresentation* chart);
+};
+
+#endif
