@@ -2,10 +2,11 @@
  * @class pqTautlineCharts
  * @brief Sets up the charts of Tautline's outputs when they are shown for the first time.
  *
- * History: the objective on a left axis, logarithmic if possible, the other series on the right axis,
- * since their magnitudes differ. Distribution: the counts over the values of the metric instead of
- * the numbers of the rows. After Apply, the view of the mesh is active again, not the chart that was
- * added: the mesh of the next filter then appears there. The plugin starts the object in the GUI.
+ * History: the objective on a left axis, logarithmic if possible, the other series on the right
+ * axis, since their magnitudes differ. Distribution: the counts over the values of the metric
+ * instead of the numbers of the rows. After Apply, the view of the mesh is active again, not the
+ * chart that was added: the mesh of the next filter then appears there. The plugin starts the
+ * object in the GUI.
  */
 
 #ifndef pqTautlineCharts_h
