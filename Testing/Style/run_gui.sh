@@ -8,7 +8,9 @@ scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
 printf '#!/bin/sh\nfor a in "$@"; do printf "[%%s]" "$a"; done; printf " %%s\\n" "${TAUTLINE_SAMPLE:-}"\n' >"$scratch/paraview"
 printf '#!/bin/sh\nexit 0\n' >"$scratch/cmake"
-printf '#!/bin/sh\necho "install ok installed"\n' >"$scratch/dpkg-query"
+# All packages are installed: nothing must be installed by a test.
+printf '#!/bin/sh\nfor a in "$@"; do printf "installed=%%s " "$a"; done\n' >"$scratch/dpkg-query"
+printf '#!/bin/sh\nexit 1\n' >"$scratch/apt-get"
 chmod +x "$scratch"/*
 export PATH="$scratch:$PATH" DISPLAY=:none TAUTLINE_BUILD="$scratch/build"
 expect() { # EXPECTED ARGUMENT...
