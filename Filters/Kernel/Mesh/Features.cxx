@@ -1,0 +1,477 @@
+#include "Features.h"
+
+#include "FacetTable.h"
+#include "tautline/Core/UnionFind.h"
+
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace tautline
+{
+namespace
+{
+/// Facets whose area is below this fraction of their longest edge squared have no usable normal.
+constexpr double flattest = 1e-4;
+/// Rounding of the cosine of an angle that is exactly the limit.
+constexpr double roundingOfCosine = 1e-9;
+
+/// Facets of the same class can be one patch: a boundary of a region, or an interface of two.
+struct FacetClass
+{
+  double first, second;
+  int uses; ///< cells at the facet
+  bool operator!=(const FacetClass& o) const
+  {
+    return this->first != o.first || this->second != o.second || this->uses != o.uses;
+  }
+};
+
+/// An edge of the facets.
+struct Side
+{
+  Index a, b; ///< the smaller and the larger point
+  Index facet;
+  bool forward; ///< the facet goes from a to b
+};
+
+/// An edge that is, or can be made, a feature.
+struct Candidate
+{
+  Index a, b;
+  double cosine; ///< between the two facets; -2 on a border or junction
+  bool sharp;
+  FacetClass of;
+};
+
+constexpr double borderCosine = -2;
+
+class FeatureFinder
+{
+public:
+  FeatureFinder(const Mesh& mesh, const FeatureOptions& options)
+    : TheMesh(mesh)
+    , View(mesh.view())
+    , Options(options)
+    , Limit(std::cos(options.angle * Pi / 180) - roundingOfCosine)
+    , Planar(mesh.dimension() == Dimension::Planar && !options.asSurface)
+    , OfCells(mesh.dimension() == Dimension::Surface ||
+        (mesh.dimension() == Dimension::Planar && options.asSurface))
+  {
+  }
+
+  Features find()
+  {
+    if (this->OfCells)
+    {
+      this->takeCells();
+    }
+    else if (this->TheMesh.dimension() != Dimension::None)
+    {
+      this->takeFaces();
+    }
+    if (!this->Planar)
+    {
+      this->judgeSides();
+    }
+    this->obeyKinds();
+    this->classifyPoints();
+    this->findCurves();
+    this->findPatches();
+    return std::move(this->Result);
+  }
+
+private:
+  double regionOf(Index cell) const
+  {
+    return this->Options.regions ? this->Options.regions[cell] : 0;
+  }
+
+  void takeCells();
+  void takeFaces();
+  Vec3 normalOf(const Features::Facet& facet) const;
+  std::vector<Side> sortedSides() const;
+  void judgeSides();
+  void judge(const Side* sides, Index count);
+  void obeyKinds();
+  void classifyPoints();
+  bool bends(Index point, const Candidate& e, const Candidate& f) const;
+  void findCurves();
+  void findPatches();
+
+  const Mesh& TheMesh;
+  const MeshView& View;
+  const FeatureOptions& Options;
+  double Limit;
+  bool Planar;
+  bool OfCells; ///< the facets are the cells
+  Features Result;
+  std::vector<FacetClass> Classes; ///< per facet
+  std::vector<Vec3> Normals;       ///< per facet, zero if it has none
+  std::vector<Index> CellOf;       ///< per facet of a surface mesh
+  std::vector<Candidate> Candidates;
+};
+
+//------------------------------------------------------------------------------
+void FeatureFinder::takeCells()
+{
+  for (const CellBlock& block : this->TheMesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; t.dimension == 2 && i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      Features::Facet facet = { {}, t.nodes, -1, false };
+      std::copy_n(this->View.connectivity + this->View.offsets[cell], t.nodes, facet.nodes.begin());
+      this->Result.facets.push_back(facet);
+      this->Classes.push_back({ this->regionOf(cell), 0, 1 });
+      this->CellOf.push_back(cell);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The facets of the boundary and of interfaces; of planar meshes these are the curves.
+void FeatureFinder::takeFaces()
+{
+  FacetTable table(this->TheMesh);
+  table.forEachFacet(
+    [&](Index smallest, const FacetUse* uses, Index count)
+    {
+      const double first = this->regionOf(uses[0].cell),
+                   second = count > 1 ? this->regionOf(uses[1].cell) : first;
+      if (count == 2 && first == second)
+      {
+        return;
+      }
+      const FacetClass facetClass = { std::min(first, second), std::max(first, second),
+        static_cast<int>(std::min<Index>(count, 3)) };
+      if (this->Planar)
+      {
+        this->Candidates.push_back({ smallest, uses->others[0], borderCosine, true, facetClass });
+        return;
+      }
+      Features::Facet facet = { {}, 0, -1, count > 1 };
+      facet.size = uses->others[2] < 0 ? 3 : 4;
+      facet.nodes[0] = smallest;
+      facet.nodes[1] = uses->others[uses->forward ? 0 : 1];
+      facet.nodes[facet.size - 1] = uses->others[uses->forward ? 1 : 0];
+      if (facet.size == 4)
+      {
+        facet.nodes[2] = uses->others[2];
+      }
+      this->Result.facets.push_back(facet);
+      this->Classes.push_back(facetClass);
+    });
+}
+
+//------------------------------------------------------------------------------
+/// Unit, or zero if the facet is too flat to have one.
+Vec3 FeatureFinder::normalOf(const Features::Facet& facet) const
+{
+  Vec3 p[MaxFaceNodes];
+  double longest2 = 0;
+  for (int k = 0; k < facet.size; ++k)
+  {
+    p[k] = pointOf(this->View, facet.nodes[k]);
+    const Vec3 edge = k > 0 ? p[k] - p[k - 1] : Vec3{ 0, 0, 0 };
+    longest2 = std::max(longest2, dot(edge, edge));
+  }
+  const Vec3 closing = p[0] - p[facet.size - 1];
+  longest2 = std::max(longest2, dot(closing, closing));
+  const Vec3 area =
+    facet.size == 3 ? cross(p[1] - p[0], p[2] - p[0]) : cross(p[2] - p[0], p[3] - p[1]);
+  const double length = norm(area);
+  return length > flattest * longest2 && std::isfinite(length) ? (1 / length) * area
+                                                               : Vec3{ 0, 0, 0 };
+}
+
+//------------------------------------------------------------------------------
+/// The edges of all facets, those of the same points one after the other.
+std::vector<Side> FeatureFinder::sortedSides() const
+{
+  std::vector<Index> starts(this->View.numberOfPoints + 1, 0);
+  const auto forEach = [&](const auto& visit)
+  {
+    for (std::size_t f = 0; f < this->Result.facets.size(); ++f)
+    {
+      const Features::Facet& facet = this->Result.facets[f];
+      for (int k = 0; k < facet.size; ++k)
+      {
+        const Index a = facet.nodes[k], b = facet.nodes[(k + 1) % facet.size];
+        visit(Side{ std::min(a, b), std::max(a, b), static_cast<Index>(f), a < b });
+      }
+    }
+  };
+  forEach([&](const Side& side) { ++starts[side.a + 1]; });
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Side> sides(starts.back());
+  std::vector<Index> next(starts.begin(), starts.end() - 1);
+  forEach([&](const Side& side) { sides[next[side.a]++] = side; });
+  for (Index p = 0; p < this->View.numberOfPoints; ++p)
+  {
+    std::sort(sides.begin() + starts[p], sides.begin() + starts[p + 1],
+      [](const Side& s, const Side& t) { return s.b != t.b ? s.b < t.b : s.facet < t.facet; });
+  }
+  return sides;
+}
+
+//------------------------------------------------------------------------------
+void FeatureFinder::judgeSides()
+{
+  for (const Features::Facet& facet : this->Result.facets)
+  {
+    this->Normals.push_back(this->normalOf(facet));
+  }
+  const std::vector<Side> sides = this->sortedSides();
+  for (std::size_t i = 0; i < sides.size();)
+  {
+    std::size_t j = i + 1;
+    while (j < sides.size() && sides[j].a == sides[i].a && sides[j].b == sides[i].b)
+    {
+      ++j;
+    }
+    if (sides[i].a != sides[i].b)
+    {
+      this->judge(&sides[i], static_cast<Index>(j - i));
+    }
+    i = j;
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Decides whether the edge that these facets share is a feature.
+void FeatureFinder::judge(const Side* sides, Index count)
+{
+  const FacetClass& first = this->Classes[sides[0].facet];
+  Candidate candidate = { sides[0].a, sides[0].b, borderCosine, true,
+    { first.first, static_cast<double>(count), 0 } };
+  if (count == 2 && !(first != this->Classes[sides[1].facet]))
+  {
+    const Index other = sides[1].facet;
+    // Facets that go the same way along the edge are listed in opposite senses.
+    const double sign = sides[0].forward == sides[1].forward ? -1 : 1;
+    const Vec3 &m = this->Normals[sides[0].facet], &n = this->Normals[other];
+    const bool known = dot(m, m) > 0 && dot(n, n) > 0;
+    candidate.cosine = known ? sign * dot(m, n) : 1.0;
+    candidate.sharp = candidate.cosine < this->Limit;
+  }
+  if (candidate.sharp || this->Options.kinds)
+  {
+    this->Candidates.push_back(candidate);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Makes edges sharp or smooth by the given kinds of their points.
+void FeatureFinder::obeyKinds()
+{
+  const signed char* kinds = this->Options.kinds;
+  if (!kinds || this->Planar)
+  {
+    return;
+  }
+  std::vector<std::vector<Index>> at(this->View.numberOfPoints);
+  for (std::size_t i = 0; i < this->Candidates.size(); ++i)
+  {
+    Candidate& e = this->Candidates[i];
+    const bool smooth = kinds[e.a] == PatchPoint || kinds[e.b] == PatchPoint;
+    e.sharp = e.sharp && !(smooth && e.cosine != borderCosine);
+    for (Index p : { e.a, e.b })
+    {
+      if (kinds[p] == CurvePoint && !(smooth && e.cosine != borderCosine))
+      {
+        at[p].push_back(static_cast<Index>(i));
+      }
+    }
+  }
+  for (std::vector<Index>& edges : at)
+  {
+    const auto byCosine = [&](Index e, Index f)
+    {
+      const Candidate &c = this->Candidates[e], &d = this->Candidates[f];
+      return c.cosine != d.cosine ? c.cosine < d.cosine : e < f;
+    };
+    std::sort(edges.begin(), edges.end(), byCosine);
+    for (std::size_t k = 0; k < std::min<std::size_t>(2, edges.size()); ++k)
+    {
+      this->Candidates[edges[k]].sharp = true;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Whether two edges at a point differ by more than the angle, or belong to different curves.
+bool FeatureFinder::bends(Index point, const Candidate& e, const Candidate& f) const
+{
+  const Vec3 center = pointOf(this->View, point);
+  const Vec3 in = center - pointOf(this->View, e.a == point ? e.b : e.a);
+  const Vec3 out = pointOf(this->View, f.a == point ? f.b : f.a) - center;
+  return e.of != f.of || !(dot(in, out) >= this->Limit * norm(in) * norm(out));
+}
+
+//------------------------------------------------------------------------------
+void FeatureFinder::classifyPoints()
+{
+  this->Candidates.erase(std::remove_if(this->Candidates.begin(), this->Candidates.end(),
+                           [](const Candidate& e) { return !e.sharp; }),
+    this->Candidates.end());
+  const Index n = this->View.numberOfPoints;
+  std::vector<std::array<Index, 2>> edges(n, { -1, -1 });
+  std::vector<Index> count(n, 0);
+  for (std::size_t i = 0; i < this->Candidates.size(); ++i)
+  {
+    for (Index p : { this->Candidates[i].a, this->Candidates[i].b })
+    {
+      if (count[p] < 2)
+      {
+        edges[p][count[p]] = static_cast<Index>(i);
+      }
+      ++count[p];
+    }
+  }
+  this->Result.kind.assign(n, PatchPoint);
+  for (Index p = 0; p < n; ++p)
+  {
+    const int given = this->Options.kinds ? this->Options.kinds[p] : int(DetectKind);
+    PointKind kind = count[p] == 0 ? PatchPoint : CornerPoint;
+    if (count[p] == 2)
+    {
+      const bool corner = given != CurvePoint &&
+        this->bends(p, this->Candidates[edges[p][0]], this->Candidates[edges[p][1]]);
+      kind = corner ? CornerPoint : CurvePoint;
+    }
+    this->Result.kind[p] = static_cast<signed char>(given == CornerPoint ? CornerPoint : kind);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Joins the edges at curve points.
+void FeatureFinder::findCurves()
+{
+  Features& result = this->Result;
+  const auto edges = static_cast<Index>(this->Candidates.size());
+  UnionFind joined(edges);
+  std::vector<Index> last(this->View.numberOfPoints, -1);
+  for (Index i = 0; i < edges; ++i)
+  {
+    for (Index p : { this->Candidates[i].a, this->Candidates[i].b })
+    {
+      if (result.kind[p] == CurvePoint && last[p] >= 0)
+      {
+        joined.join(last[p], i);
+      }
+      last[p] = i;
+    }
+  }
+  std::map<Index, int> number;
+  result.curveOf.assign(this->View.numberOfPoints, -1);
+  for (Index i = 0; i < edges; ++i)
+  {
+    const int curve = number.emplace(joined.find(i), static_cast<int>(number.size())).first->second;
+    const Candidate& e = this->Candidates[i];
+    result.edges.push_back({ e.a, e.b, curve, this->Planar && e.of.uses > 1 });
+    for (Index p : { e.a, e.b })
+    {
+      result.curveOf[p] = result.kind[p] == CurvePoint ? curve : -1;
+    }
+  }
+  result.curves = static_cast<int>(number.size());
+}
+
+//------------------------------------------------------------------------------
+/// Joins the facets across edges that are not features.
+void FeatureFinder::findPatches()
+{
+  Features& result = this->Result;
+  // Candidates that are no features were dropped: what is left is found by its points.
+  std::vector<std::array<Index, 2>> sharp;
+  for (const Features::Edge& e : result.edges)
+  {
+    sharp.push_back({ e.first, e.second });
+  }
+  UnionFind joined(static_cast<Index>(result.facets.size()));
+  std::size_t next = 0; // edges and sides are in the same order
+  std::sort(sharp.begin(), sharp.end());
+  std::vector<Side> sides;
+  if (!this->Planar)
+  {
+    sides = this->sortedSides();
+  }
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i)
+  {
+    const std::array<Index, 2> here = { sides[i].a, sides[i].b };
+    while (next < sharp.size() && sharp[next] < here)
+    {
+      ++next;
+    }
+    const bool feature = next < sharp.size() && sharp[next] == here;
+    if (!feature && sides[i + 1].a == here[0] && sides[i + 1].b == here[1])
+    {
+      joined.join(sides[i].facet, sides[i + 1].facet);
+    }
+  }
+  std::map<Index, int> number;
+  result.patchOf.assign(this->View.numberOfPoints, -1);
+  if (this->OfCells)
+  {
+    result.patchOfCell.assign(this->View.numberOfCells, -1);
+  }
+  for (std::size_t f = 0; f < result.facets.size(); ++f)
+  {
+    Features::Facet& facet = result.facets[f];
+    facet.patch =
+      number.emplace(joined.find(static_cast<Index>(f)), static_cast<int>(number.size()))
+        .first->second;
+    if (!this->CellOf.empty())
+    {
+      result.patchOfCell[this->CellOf[f]] = facet.patch;
+    }
+    for (int k = 0; k < facet.size; ++k)
+    {
+      const Index p = facet.nodes[k];
+      // Two patches that touch in a point hold it.
+      if (result.kind[p] == PatchPoint && result.patchOf[p] >= 0 &&
+        result.patchOf[p] != facet.patch)
+      {
+        result.kind[p] = CornerPoint;
+      }
+      result.patchOf[p] = result.kind[p] == PatchPoint ? facet.patch : -1;
+    }
+  }
+  result.patches = static_cast<int>(number.size());
+  for (signed char kind : result.kind)
+  {
+    result.corners += kind == CornerPoint;
+    result.curvePoints += kind == CurvePoint;
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+Features findFeatures(const Mesh& mesh, const FeatureOptions& options)
+{
+  if (!(options.angle >= 0 && options.angle <= 180))
+  {
+    throw Error("The angle from which on an edge is sharp is " + std::to_string(options.angle) +
+      " degrees; it must be between 0 and 180.");
+  }
+  for (Index i = 0; options.kinds && i < mesh.view().numberOfPoints; ++i)
+  {
+    if (options.kinds[i] < DetectKind || options.kinds[i] > CornerPoint)
+    {
+      throw Error("The feature kind of point " + std::to_string(i) + " is " +
+        std::to_string(options.kinds[i]) +
+        "; it must be 0 (patch), 1 (curve), 2 (corner) or -1 (as detected).");
+    }
+  }
+  for (Index i = 0; options.regions && i < mesh.view().numberOfCells; ++i)
+  {
+    if (std::isnan(options.regions[i]))
+    {
+      throw Error("The region of cell " + std::to_string(i) + " is NaN.");
+    }
+  }
+  return FeatureFinder(mesh, options).find();
+}
+}

@@ -1,0 +1,81 @@
+/**
+ * @file Features.h
+ * @brief The features of a geometry as a mesh shows it: corners, curves (sharp edges, borders,
+ * junctions) and patches.
+ *
+ * The facets are the cells of a surface mesh, or the boundary faces of a volume mesh; where cells
+ * have regions, also the faces between two regions. Of a planar mesh they are the boundary edges
+ * (and those between regions), which are curves; it has no patches.
+ */
+#ifndef tautline_Features_h
+#define tautline_Features_h
+
+#include "Mesh.h"
+
+namespace tautline
+{
+/// What a point is; the values of the point array `FeatureKind`.
+enum PointKind : signed char
+{
+  DetectKind = -1, ///< of given kinds: as it is found
+  PatchPoint = 0,  ///< within a patch, or within the mesh
+  CurvePoint = 1,  ///< on a curve, which passes through it smoothly
+  CornerPoint = 2  ///< where curves end, meet or bend
+};
+
+struct FeatureOptions
+{
+  /// Facets (edges of a curve) whose normals (directions) differ by more than so many degrees meet
+  /// at a feature; 0 to 180.
+  double angle = 40.0;
+  /// One per cell, or null: facets between cells of different regions are interfaces; the borders
+  /// of regions on a surface are curves.
+  const double* regions = nullptr;
+  /**
+   * @brief One PointKind per point, or null. No edge inside a surface is sharp at a point given as
+   * PatchPoint; the two sharpest edges at one given as CurvePoint are features if fewer than two
+   * were found. Borders remain curves.
+   */
+  const signed char* kinds = nullptr;
+  /// Takes a planar mesh as a surface in space: its cells are facets.
+  bool asSurface = false;
+};
+
+struct Features
+{
+  /// A facet with its nodes in the order of its cell; of an interface, in that of the first cell.
+  struct Facet
+  {
+    std::array<Index, MaxFaceNodes> nodes;
+    int size;
+    int patch;
+    bool interface; ///< between two cells of a volume mesh
+  };
+  /// An edge of a curve.
+  struct Edge
+  {
+    Index first, second;
+    int curve;
+    bool interface; ///< between two cells of a planar mesh
+  };
+
+  std::vector<signed char> kind; ///< a PointKind per point
+  /// Per point: the curve of a curve point, the patch of a point within a patch; else -1.
+  std::vector<int> curveOf, patchOf;
+  std::vector<Facet> facets;    ///< of surface meshes in the order of the cells of the blocks
+  std::vector<int> patchOfCell; ///< per cell of a surface mesh, -1 for others; else empty
+  std::vector<Edge> edges;
+  int patches = 0, curves = 0;
+  Index corners = 0, curvePoints = 0;
+};
+
+/**
+ * @brief Finds the features. Facets of (nearly) no area do not make an edge sharp.
+ *
+ * A point on two feature edges is a curve point if these are the same kind of curve and differ by
+ * at most the angle in direction; a point on any other number of them is a corner.
+ * Throws Error for angles, regions or kinds out of range.
+ */
+TAUTLINE_KERNEL_EXPORT Features findFeatures(const Mesh& mesh, const FeatureOptions& options);
+}
+#endif
