@@ -248,6 +248,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   optimization.fixed = fixed.data();
   optimization.slidePlanes = optimization.slideLines = optimization.limits = nullptr;
   optimization.slideSurface = nullptr;
+  optimization.model = nullptr;
   optimization.untangleFirst = false;
   optimization.threads = options.threads;
   optimization.scalarization.method = Scalarization::ExponentialSum;

@@ -37,9 +37,8 @@ struct LocalOptions
   /// Per vertex: the start and how far from it the vertex may go, in the simplex mesh's
   /// coordinates; or empty.
   std::vector<double> limits, start;
-  /// What a surface mesh is projected to, or what the vertices of onSurface slide on.
-  const SurfaceProjection* surface = nullptr;
-  std::vector<unsigned char> onSurface; ///< per vertex, or empty
+  /// Per vertex, or empty: what it slides on, or null.
+  std::vector<const SurfaceProjection*> surfaces;
   /// Per simplex, or empty; of the fast terms. Needs SimplexMesh::indexPatches().
   std::vector<double> weights;
 };

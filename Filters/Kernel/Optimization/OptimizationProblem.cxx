@@ -97,7 +97,11 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
                 "worst element must not be negative.");
   }
   const bool global = isGlobal(options.optimizer);
-  if (global && options.slideSurface)
+  if (options.model && !options.parts)
+  {
+    throw Error("A model needs the part of it that each point slides on.");
+  }
+  if (global && (options.slideSurface || options.model))
   {
     throw Error(
       "Sliding on the boundary needs a local optimizer: choose Automatic or Local Newton.");
@@ -286,7 +290,16 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   }
   this->Simplices =
     std::make_unique<SimplexMesh>(*this->Moving, options.fixed, targets, options.threads);
-  if (mesh.dimension() == Dimension::Surface && options.surface.project)
+  if (options.model)
+  {
+    for (const SurfacePart& part : options.model->parts)
+    {
+      this->Parts.emplace_back(part, this->Simplices.get());
+    }
+    this->Surface = std::make_unique<SurfaceProjection>(
+      SurfaceProjection::ofFacets(*options.model, this->Simplices.get()));
+  }
+  else if (mesh.dimension() == Dimension::Surface && options.surface.project)
   {
     this->Surface = std::make_unique<SurfaceProjection>(mesh, *this->Simplices);
   }
@@ -543,7 +556,6 @@ LocalOptions OptimizationProblem::localOptions() const
   local.culling = this->Options.culling;
   local.allowInversion = this->Options.allowInversion;
   local.threads = this->Options.threads;
-  local.surface = this->Surface.get();
   const auto directions = [&](const double* given, std::vector<Vec3>& ofVertex)
   {
     for (std::int32_t v = 0; given && v < s.freeVertices(); ++v)
@@ -555,9 +567,13 @@ LocalOptions OptimizationProblem::localOptions() const
   // From points to vertices, in the order and the scale of the simplices.
   directions(this->Options.slidePlanes, local.planes);
   directions(this->Options.slideLines, local.lines);
-  for (std::int32_t v = 0; this->Options.slideSurface && v < s.freeVertices(); ++v)
+  for (std::int32_t v = 0; this->Surface && v < s.freeVertices(); ++v)
   {
-    local.onSurface.push_back(this->Options.slideSurface[s.point(v)]);
+    const std::int32_t part = this->Options.model ? this->Options.parts[s.point(v)] : -1;
+    const bool slides = !this->Options.slideSurface || this->Options.slideSurface[s.point(v)];
+    local.surfaces.push_back(this->Options.model ? (part < 0 ? nullptr : &this->Parts[part])
+        : slides                                 ? this->Surface.get()
+                                                 : nullptr);
   }
   if (this->Options.limits)
   {

@@ -29,6 +29,7 @@ public:
 
   const Mesh& moving() const { return *this->Moving; }
   SimplexMesh& simplices() { return *this->Simplices; }
+  /// The facets of the surface that points are kept on, or null.
   const SurfaceProjection* surface() const { return this->Surface.get(); }
   std::size_t objectives() const { return this->Resolved.size(); }
   const Scalarizer& scalarizer() const { return *this->TheScalarizer; }
@@ -75,6 +76,7 @@ private:
   std::unique_ptr<Mesh> Moving;
   std::unique_ptr<SimplexMesh> Simplices;
   std::unique_ptr<SurfaceProjection> Surface;
+  std::vector<SurfaceProjection> Parts; ///< of the model
   std::vector<Objective> Resolved;
   std::vector<LocalTerm> Terms; ///< of each objective; with the metric's sum only once it was used
   bool AllFast = false;

@@ -495,7 +495,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   else
   {
     const bool onlyLocal = isLocal(options.optimizer) || options.limits || options.slideSurface ||
-      mesh.dimension() == Dimension::Surface;
+      options.model || mesh.dimension() == Dimension::Surface;
     bool stiff = false;
     const bool mayGoOver = !onlyLocal && mayUseNewton(options);
     const std::vector<double> start = mayGoOver ? result.points : std::vector<double>();
@@ -538,7 +538,13 @@ bool untangleFirst(
   const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
 {
   UntangleOptions untangling;
-  untangling.fixed = options.fixed;
+  // Points on a model stay on it.
+  std::vector<unsigned char> held;
+  for (Index p = 0; options.model && p < mesh.view().numberOfPoints; ++p)
+  {
+    held.push_back((options.fixed && options.fixed[p]) || options.parts[p] >= 0);
+  }
+  untangling.fixed = options.model ? held.data() : options.fixed;
   untangling.threads = options.threads;
   if (options.stopping.maximumSeconds > 0)
   {

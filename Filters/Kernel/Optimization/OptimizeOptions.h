@@ -5,6 +5,7 @@
 #ifndef tautline_OptimizeOptions_h
 #define tautline_OptimizeOptions_h
 
+#include "SurfaceModel.h"
 #include "tautline/Core/Iteration.h"
 #include "tautline/Objectives/Objective.h"
 #include "tautline/Objectives/Scalarization.h"
@@ -110,6 +111,14 @@ struct OptimizeOptions
    * caller's to fix. Needs a local optimizer.
    */
   const unsigned char* slideSurface = nullptr;
+  /**
+   * @brief Patches and curves that points slide on, in the coordinates of the mesh, which replace
+   * the surface of the input; or null. See makeSurfaceModel(). Needs a local optimizer.
+   */
+  const SurfaceModel* model = nullptr;
+  /// With a model, per point: the part it slides on, or -1; see partsOfPoints(). Corners are the
+  /// caller's to fix, and all points to be on their parts at the start.
+  const std::int32_t* parts = nullptr;
   SurfaceConstraint surface;
   /// Lets steps invert elements that are valid. Off: they are shortened.
   bool allowInversion = false;

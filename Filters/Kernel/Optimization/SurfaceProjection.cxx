@@ -54,7 +54,7 @@ SurfaceProjection::SurfaceProjection(const Mesh& mesh, const SimplexMesh& simpli
       }
       for (int k = 2; finite && k < t.nodes; ++k)
       {
-        this->Triangles.push_back({ p[0], p[k - 1], p[k] });
+        this->Pieces.push_back({ { p[0], p[k - 1], p[k] }, -1 });
       }
     }
   }
@@ -104,6 +104,7 @@ SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexM
   std::sort(facets.begin(), facets.end(),
     [](const Facet& a, const Facet& b) { return a.sorted < b.sorted; });
   SurfaceProjection result;
+  result.Curve = dimension == 2;
   for (std::size_t i = 0; i < facets.size();)
   {
     std::size_t same = i + 1;
@@ -122,11 +123,11 @@ SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexM
     // An edge is a triangle with two equal corners.
     if (finite && facet.size == 2)
     {
-      result.Triangles.push_back({ p[0], p[1], p[1] });
+      result.Pieces.push_back({ { p[0], p[1], p[1] }, -1 });
     }
     for (int k = 2; finite && k < facet.size; ++k)
     {
-      result.Triangles.push_back({ p[0], p[k - 1], p[k] });
+      result.Pieces.push_back({ { p[0], p[k - 1], p[k] }, -1 });
     }
     i = same;
   }
@@ -135,13 +136,61 @@ SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexM
 }
 
 //------------------------------------------------------------------------------
+SurfaceProjection::SurfaceProjection(const SurfacePart& part, const SimplexMesh* simplices)
+  : Curve(part.curve)
+{
+  this->add(part, simplices);
+  this->build();
+}
+
+//------------------------------------------------------------------------------
+SurfaceProjection SurfaceProjection::ofFacets(
+  const SurfaceModel& model, const SimplexMesh* simplices)
+{
+  SurfaceProjection result;
+  const int parts = static_cast<int>(model.parts.size());
+  result.Curve = model.patches == 0;
+  for (int i = 0; i < (model.patches > 0 ? model.patches : parts); ++i)
+  {
+    result.add(model.parts[i], simplices);
+  }
+  for (Piece& piece : result.Pieces)
+  {
+    piece.controls = -1;
+  }
+  result.Controls.clear();
+  result.build();
+  return result;
+}
+
+//------------------------------------------------------------------------------
+void SurfaceProjection::add(const SurfacePart& part, const SimplexMesh* simplices)
+{
+  const auto placed = [simplices](const Vec3& x)
+  { return simplices ? simplices->transform(x) : x; };
+  const auto first = static_cast<std::int32_t>(this->Controls.size());
+  for (std::size_t i = 0; i < part.pieces.size(); ++i)
+  {
+    const auto& [a, b, c] = part.pieces[i];
+    const std::int32_t controls = part.controlsOf.empty() ? -1 : part.controlsOf[i];
+    this->Pieces.push_back(
+      { { placed(a), placed(b), placed(c) }, controls < 0 ? -1 : first + controls });
+  }
+  for (CubicControls controls : part.controls)
+  {
+    std::transform(controls.begin(), controls.end(), controls.begin(), placed);
+    this->Controls.push_back(controls);
+  }
+}
+
+//------------------------------------------------------------------------------
 void SurfaceProjection::build()
 {
-  if (!this->Triangles.empty())
+  if (!this->Pieces.empty())
   {
-    this->Nodes.reserve(this->Triangles.size());
+    this->Nodes.reserve(this->Pieces.size());
     this->Nodes.emplace_back();
-    this->build(0, 0, static_cast<std::int32_t>(this->Triangles.size()));
+    this->build(0, 0, static_cast<std::int32_t>(this->Pieces.size()));
   }
 }
 
@@ -153,7 +202,7 @@ void SurfaceProjection::build(std::int32_t node, std::int32_t first, std::int32_
   box.high.fill(-std::numeric_limits<double>::infinity());
   for (std::int32_t i = first; i < first + count; ++i)
   {
-    for (const Vec3& p : this->Triangles[i])
+    for (const Vec3& p : this->Pieces[i].corner)
     {
       for (int c = 0; c < 3; ++c)
       {
@@ -173,10 +222,13 @@ void SurfaceProjection::build(std::int32_t node, std::int32_t first, std::int32_
       axis = box.high[c] - box.low[c] > box.high[axis] - box.low[axis] ? c : axis;
     }
     const std::int32_t half = count / 2;
-    std::nth_element(this->Triangles.begin() + first, this->Triangles.begin() + first + half,
-      this->Triangles.begin() + first + count,
-      [=](const auto& a, const auto& b)
-      { return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis]; });
+    std::nth_element(this->Pieces.begin() + first, this->Pieces.begin() + first + half,
+      this->Pieces.begin() + first + count,
+      [=](const Piece& a, const Piece& b)
+      {
+        const auto &p = a.corner, &q = b.corner;
+        return p[0][axis] + p[1][axis] + p[2][axis] < q[0][axis] + q[1][axis] + q[2][axis];
+      });
     box.first = static_cast<std::int32_t>(this->Nodes.size());
     box.count = 0;
     this->Nodes.resize(this->Nodes.size() + 2);
@@ -187,13 +239,15 @@ void SurfaceProjection::build(std::int32_t node, std::int32_t first, std::int32_
 }
 
 //------------------------------------------------------------------------------
-Vec3 SurfaceProjection::closestOf(std::int32_t triangle, const Vec3& x) const
+Vec3 SurfaceProjection::closestOf(std::int32_t piece, const Vec3& x) const
 {
-  const auto& [a, b, c] = this->Triangles[triangle];
+  const auto& [a, b, c] = this->Pieces[piece].corner;
   // Inside, the foot of the perpendicular; else the closest point of an edge.
+  // That of edges, and of needles, is noise of rounding.
+  constexpr double needle2 = 1e-20; // sine of an angle, squared
   const Vec3 n = cross(b - a, c - a);
   const double n2 = dot(n, n);
-  if (n2 > 0)
+  if (b != c && n2 > needle2 * dot(b - a, b - a) * dot(c - a, c - a))
   {
     const Vec3 foot = x - (dot(x - a, n) / n2) * n;
     if (dot(cross(b - a, foot - a), n) >= 0 && dot(cross(c - b, foot - b), n) >= 0 &&
@@ -211,31 +265,120 @@ Vec3 SurfaceProjection::closestOf(std::int32_t triangle, const Vec3& x) const
 }
 
 //------------------------------------------------------------------------------
+/// The point of the curved piece over a point of the flat one.
+SurfaceProjection::Place SurfaceProjection::lift(std::int32_t piece, const Vec3& foot) const
+{
+  const auto& [a, b, c] = this->Pieces[piece].corner;
+  const std::int32_t controls = this->Pieces[piece].controls;
+  const bool edge = b == c;
+  const Vec3 n = edge ? b - a : cross(b - a, c - a);
+  if (controls < 0)
+  {
+    return { foot, n };
+  }
+  const CubicControls& q = this->Controls[controls];
+  const double n2 = dot(n, n);
+  if (edge)
+  {
+    const double t = n2 > 0 ? std::clamp(dot(foot - a, n) / n2, 0.0, 1.0) : 0.0, s = 1 - t;
+    const Vec3 point = s * s * s * a + 3 * s * s * t * q[0] + 3 * s * t * t * q[1] + t * t * t * b;
+    return { point, s * s * (q[0] - a) + 2 * s * t * (q[1] - q[0]) + t * t * (b - q[1]) };
+  }
+  double u = 1, v = 0, w = 0;
+  if (n2 > 0)
+  {
+    v = std::clamp(dot(cross(foot - a, c - a), n) / n2, 0.0, 1.0);
+    w = std::clamp(dot(cross(b - a, foot - a), n) / n2, 0.0, 1.0 - v);
+    u = 1 - v - w;
+  }
+  // The three quadratic parts of de Casteljau's last step: the point, and the plane tangent there.
+  const auto quadratic = [&](const Vec3& uu, const Vec3& uv, const Vec3& vv, const Vec3& vw,
+                           const Vec3& ww, const Vec3& wu)
+  { return u * u * uu + v * v * vv + w * w * ww + 2 * (u * v * uv + v * w * vw + w * u * wu); };
+  const Vec3 atA = quadratic(a, q[0], q[1], q[6], q[4], q[5]),
+             atB = quadratic(q[0], q[1], b, q[2], q[3], q[6]),
+             atC = quadratic(q[5], q[6], q[2], q[3], c, q[4]);
+  return { u * atA + v * atB + w * atC, cross(atB - atA, atC - atA) };
+}
+
+//------------------------------------------------------------------------------
+/// Whether the closest point of a flat piece is below x, and not on its border; it is the foot.
+bool SurfaceProjection::isOver(std::int32_t piece, const Vec3& x, Vec3& foot) const
+{
+  constexpr double tolerance2 = 1e-24; // of the piece's size, squared
+  const auto& [a, b, c] = this->Pieces[piece].corner;
+  foot = this->closestOf(piece, x);
+  const Vec3 off = x - foot;
+  if (b == c)
+  {
+    const double along = dot(off, b - a), length2 = dot(b - a, b - a);
+    return along * along <= tolerance2 * length2 * length2;
+  }
+  const Vec3 n = cross(b - a, c - a), inPlane = cross(n, off);
+  const double n2 = dot(n, n);
+  return dot(inPlane, inPlane) <= tolerance2 * n2 * std::sqrt(n2);
+}
+
+//------------------------------------------------------------------------------
+SurfaceProjection::Place SurfaceProjection::find(const Vec3& x) const
+{
+  Vec3 foot = x;
+  std::int32_t piece = this->nearest(x, foot);
+  if (piece < 0)
+  {
+    return { x, { 0, 0, 0 } };
+  }
+  Place place = this->lift(piece, foot);
+  constexpr int maxSteps = 8;
+  constexpr double tolerance = 1e-9; // of the piece's edge
+  const auto& corner = this->Pieces[piece].corner;
+  const double size = norm(corner[1] - corner[0]);
+  Vec3 y = x;
+  for (int step = 0; !this->Controls.empty() && step < maxSteps; ++step)
+  {
+    const double length2 = dot(place.direction, place.direction);
+    if (!(length2 > 0))
+    {
+      break;
+    }
+    const Vec3 off = x - place.point;
+    const Vec3 along = (dot(off, place.direction) / length2) * place.direction;
+    const Vec3 inSurface = this->Curve ? along : off - along;
+    y = foot + inSurface;
+    const std::int32_t before = piece;
+    const Vec3 last = foot;
+    piece = this->isOver(piece, y, foot) ? piece : this->nearest(y, foot);
+    place = this->lift(piece, foot);
+    if (piece == before && norm(foot - last) <= tolerance * size)
+    {
+      break;
+    }
+  }
+  return place;
+}
+
+//------------------------------------------------------------------------------
 Vec3 SurfaceProjection::closest(const Vec3& x) const
 {
-  Vec3 point = x;
-  this->nearest(x, point);
-  return point;
-}
-
-//------------------------------------------------------------------------------
-Vec3 SurfaceProjection::normal(const Vec3& x) const
-{
-  Vec3 point;
-  const std::int32_t triangle = this->nearest(x, point);
-  if (triangle < 0)
+  if (this->Controls.empty())
   {
-    return { 0, 0, 0 };
+    Vec3 point = x;
+    this->nearest(x, point);
+    return point;
   }
-  const auto& [a, b, c] = this->Triangles[triangle];
-  const Vec3 edge = b - a;
-  const Vec3 n = b == c ? Vec3{ edge[1], -edge[0], 0 } : cross(edge, c - a);
-  const double length = norm(n);
-  return length > 0 ? (1.0 / length) * n : Vec3{ 0, 0, 0 };
+  return this->find(x).point;
 }
 
 //------------------------------------------------------------------------------
-/// The triangle closest to x, or -1 if there is none, and its closest point.
+Vec3 SurfaceProjection::direction(const Vec3& x) const
+{
+  const Vec3 d = this->find(x).direction;
+  const double length = norm(d);
+  return length > 0 ? (1.0 / length) * d : Vec3{ 0, 0, 0 };
+}
+
+//------------------------------------------------------------------------------
+/// The flat piece closest to x, or -1 if there is none, and its closest point.
 std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
 {
   std::int32_t found = -1;
@@ -284,8 +427,9 @@ double SurfaceProjection::distanceTo(const SurfaceProjection& other) const
 {
   // At the corners, the middles of the edges and the centre of each triangle.
   double largest2 = 0;
-  for (const auto& [a, b, c] : this->Triangles)
+  for (const Piece& piece : this->Pieces)
   {
+    const auto& [a, b, c] = piece.corner;
     for (const Vec3& p :
       { a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (1.0 / 3.0) * (a + b + c) })
     {

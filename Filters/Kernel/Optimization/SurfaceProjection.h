@@ -5,11 +5,19 @@
 #ifndef tautline_SurfaceProjection_h
 #define tautline_SurfaceProjection_h
 
+#include "SurfaceModel.h"
 #include "tautline/Patches/SimplexMesh.h"
 
 namespace tautline
 {
-/// Triangles in a bounding volume hierarchy. Quadrilaterals are two triangles, edges are flat ones.
+/**
+ * @brief Triangles in a bounding volume hierarchy. Quadrilaterals are two triangles, edges are flat
+ * ones.
+ *
+ * On a smooth part (see SurfaceModel) the closest point is found from the flat pieces: S maps the
+ * closest point of a flat piece to the curved one, and y, with S(y) closest to x, is found by a
+ * fixed-point iteration, in which the tangential part of x - S(y) is added to y.
+ */
 class TAUTLINE_KERNEL_EXPORT SurfaceProjection
 {
 public:
@@ -19,10 +27,21 @@ public:
   /// The boundary of a volume mesh (its faces) or of a planar one (its edges).
   static SurfaceProjection ofBoundary(const Mesh& mesh, const SimplexMesh& simplices);
 
+  /// A patch or curve in the coordinates of `simplices`; null: in those of the model.
+  SurfaceProjection(const SurfacePart& part, const SimplexMesh* simplices);
+
+  /// All pieces of a model as facets, for distances: of its patches, or of its curves if it has no
+  /// patch.
+  static SurfaceProjection ofFacets(const SurfaceModel& model, const SimplexMesh* simplices);
+
+  /// Whether it consists of edges.
+  bool isCurve() const { return this->Curve; }
+  bool empty() const { return this->Pieces.empty(); }
+
   /// The point of the surface closest to x.
   Vec3 closest(const Vec3& x) const;
-  /// The unit normal there; of an edge of a planar mesh, in the plane. Zero if there is none.
-  Vec3 normal(const Vec3& x) const;
+  /// The unit normal there, of a curve the unit tangent; zero if there is none.
+  Vec3 direction(const Vec3& x) const;
 
   /// The largest distance of the corners, edge midpoints and centres of the cells of `mesh` at
   /// these coordinates.
@@ -34,19 +53,37 @@ public:
   double distanceTo(const SurfaceProjection& other) const;
 
 private:
-  SurfaceProjection() = default;
-  void build();
-  std::int32_t nearest(const Vec3& x, Vec3& point) const;
+  /// A triangle, or an edge with the last corner twice.
+  struct Piece
+  {
+    std::array<Vec3, 3> corner;
+    std::int32_t controls; ///< index in Controls; -1: flat
+  };
   struct Node
   {
     Vec3 low, high;
     std::int32_t first, count; ///< count 0: children are first and first + 1
   };
-  void build(std::int32_t node, std::int32_t first, std::int32_t count);
-  Vec3 closestOf(std::int32_t triangle, const Vec3& x) const;
+  /// A point of the curved surface with the normal, or tangent, there.
+  struct Place
+  {
+    Vec3 point, direction;
+  };
 
-  std::vector<std::array<Vec3, 3>> Triangles;
+  SurfaceProjection() = default;
+  void add(const SurfacePart& part, const SimplexMesh* simplices);
+  void build();
+  void build(std::int32_t node, std::int32_t first, std::int32_t count);
+  std::int32_t nearest(const Vec3& x, Vec3& point) const;
+  Vec3 closestOf(std::int32_t piece, const Vec3& x) const;
+  bool isOver(std::int32_t piece, const Vec3& x, Vec3& foot) const;
+  Place lift(std::int32_t piece, const Vec3& foot) const;
+  Place find(const Vec3& x) const;
+
+  std::vector<Piece> Pieces;
+  std::vector<CubicControls> Controls;
   std::vector<Node> Nodes;
+  bool Curve = false;
 };
 }
 #endif

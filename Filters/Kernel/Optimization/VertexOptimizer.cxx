@@ -13,21 +13,6 @@ constexpr int maximumHalvings = 12;
 constexpr double safety = 0.9;
 /// Changes above this fraction of an objective use the scalarization itself, not its slope.
 constexpr double visibleChange = 1e-6;
-
-/// A unit vector at a right angle to n, and the third.
-void tangentsOf(const Vec3& n, Vec3* tangents)
-{
-  int smallest = 0;
-  for (int c = 1; c < 3; ++c)
-  {
-    smallest = std::abs(n[c]) < std::abs(n[smallest]) ? c : smallest;
-  }
-  Vec3 axis = { 0, 0, 0 };
-  axis[smallest] = 1.0;
-  const Vec3 t = cross(n, axis);
-  tangents[0] = (1.0 / norm(t)) * t;
-  tangents[1] = cross(n, tangents[0]);
-}
 }
 
 //------------------------------------------------------------------------------
@@ -106,28 +91,6 @@ std::unique_ptr<PatchFunction<Dim>> VertexOptimizer<Dim>::makeFunction(const Loc
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void VertexOptimizer<Dim>::findTangents(std::int32_t v, Vec3* tangents) const
-{
-  // The normal is the sum of the vector areas around the vertex.
-  const double* x = this->Simplices.coordinates();
-  const auto at = [=](std::int32_t i)
-  {
-    const double* p = x + VertexStride * static_cast<std::size_t>(i);
-    return Vec3{ p[0], p[1], p[2] };
-  };
-  const Vec3 center = at(v);
-  Vec3 normal = { 0, 0, 0 };
-  for (std::int32_t i = this->Simplices.patchStart(v); i < this->Simplices.patchStart(v + 1); ++i)
-  {
-    const std::int32_t* others = this->Simplices.patchVertices() + 2 * static_cast<std::size_t>(i);
-    normal += cross(at(others[0]) - center, at(others[1]) - center);
-  }
-  const double length = norm(normal);
-  tangentsOf(length > 0 ? (1.0 / length) * normal : Vec3{ 0, 0, 1 }, tangents);
-}
-
-//------------------------------------------------------------------------------
-template <int Dim>
 void VertexOptimizer<Dim>::gather(std::int32_t v, VertexPatch<Dim>& patch) const
 {
   patch.vertex = v;
@@ -136,8 +99,8 @@ void VertexOptimizer<Dim>::gather(std::int32_t v, VertexPatch<Dim>& patch) const
   {
     Vec3 tangents[2];
     this->findTangents(v, tangents);
-    gatherPatch<Dim>(
-      this->Simplices, this->Simplices.coordinates(), v, weights, patch.simplices, tangents);
+    gatherPatch<Dim>(this->Simplices, this->Simplices.coordinates(), v, weights, patch.simplices,
+      tangents, this->isOnCurve(v));
     for (int c = 0; c < Dim; ++c)
     {
       patch.axes[c] = this->Simplices.scale() * tangents[c];
@@ -302,69 +265,6 @@ double VertexOptimizer<Dim>::changeAt(
   const double change = scalarizer.value(after) - before;
   w.now = kept;
   return change;
-}
-
-//------------------------------------------------------------------------------
-/// An orthonormal basis of the directions a vertex may go in, as columns; returns how many.
-template <int Dim>
-int VertexOptimizer<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
-{
-  const auto given = [&](const std::vector<Vec3>& directions, double* u)
-  {
-    if (directions.empty())
-    {
-      return false;
-    }
-    double length2 = 0;
-    for (int c = 0; c < Dim; ++c)
-    {
-      u[c] = dot(directions[v], this->Simplices.axis(c)) / this->Simplices.scale();
-      length2 += u[c] * u[c];
-    }
-    for (int c = 0; length2 > 0 && c < Dim; ++c)
-    {
-      u[c] /= std::sqrt(length2);
-    }
-    return length2 > 0;
-  };
-  double u[Dim];
-  const auto across = [&]()
-  {
-    if constexpr (Dim == 3)
-    {
-      Vec3 t[2];
-      tangentsOf({ u[0], u[1], u[2] }, t);
-      for (int r = 0; r < 3; ++r)
-      {
-        basis[r][0] = t[0][r];
-        basis[r][1] = t[1][r];
-      }
-      return 2;
-    }
-    basis[0][0] = -u[1];
-    basis[1][0] = u[0];
-    return 1;
-  };
-  if (given(this->Options.lines, u))
-  {
-    for (int r = 0; r < Dim; ++r)
-    {
-      basis[r][0] = u[r];
-    }
-    return 1;
-  }
-  if (given(this->Options.planes, u))
-  {
-    return across();
-  }
-  if (!this->Options.onSurface.empty() && this->Options.onSurface[v])
-  {
-    const double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
-    const Vec3 normal = this->Options.surface->normal({ at[0], at[1], at[2] });
-    std::copy_n(normal.begin(), Dim, u);
-    return dot(normal, normal) > 0 ? across() : Dim;
-  }
-  return Dim;
 }
 
 //------------------------------------------------------------------------------
@@ -627,52 +527,6 @@ void VertexOptimizer<Dim>::place(std::int32_t v, const Vec3& x)
     this->Simplices.storeVertex(
       at, this->Points + 3 * static_cast<std::size_t>(this->Simplices.point(v)));
   }
-}
-
-//------------------------------------------------------------------------------
-/// Goes along the tangents and back to the surface, and stays there if that is better than before.
-template <int Dim>
-bool VertexOptimizer<Dim>::placeOnSurface(
-  std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
-{
-  const std::size_t n = this->Functions.size();
-  const double zero[Dim] = {};
-  const double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
-  const Vec3 before = { at[0], at[1], at[2] };
-  std::vector<double> old(n);
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    old[i] = this->Functions[i]->value(w.patch, zero);
-  }
-  Vec3 x = before;
-  for (int c = 0; c < Dim; ++c)
-  {
-    x += (d[c] / this->Simplices.scale()) * w.patch.axes[c];
-  }
-  this->place(v, this->Options.surface ? this->Options.surface->closest(x) : x);
-  this->gather(v, w.patch);
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    w.sums[i].f = old[i];
-  }
-  const double infinity = std::numeric_limits<double>::infinity();
-  double smallest = infinity;
-  for (int i = 0; i < w.patch.simplices.count; ++i)
-  {
-    const PatchPacket<Dim>& p = w.patch.simplices.packets[i];
-    smallest = std::min(smallest, minOf(p.D0));
-  }
-  const bool upright = this->Options.allowInversion || smallest > 0;
-  if (!upright || !(this->changeAt(scalarizer, w, zero) < 0))
-  {
-    this->place(v, before);
-    return false;
-  }
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    w.change[i] += w.trial[i];
-  }
-  return true;
 }
 
 template class VertexOptimizer<2>;

@@ -60,11 +60,21 @@ private:
     double* direction, double* lastGradient) const;
   int allowed(std::int32_t v, double basis[Dim][Dim]) const;
   double limited(std::int32_t v, const double* d, const double* s, double t) const;
+  /// What v slides on, or null.
+  const SurfaceProjection* surfaceOf(std::int32_t v) const
+  {
+    return this->Options.surfaces.empty() ? nullptr : this->Options.surfaces[v];
+  }
+  bool isOnCurve(std::int32_t v) const
+  {
+    const SurfaceProjection* surface = this->surfaceOf(v);
+    return surface && surface->isCurve();
+  }
   bool isOnSurface(std::int32_t v) const
   {
-    return (Dim == 2 && this->Simplices.surface()) ||
-      (!this->Options.onSurface.empty() && this->Options.onSurface[v]);
+    return (Dim == 2 && this->Simplices.surface()) || this->surfaceOf(v);
   }
+  std::vector<Vec3> normalsAt(std::int32_t v) const;
   bool search(const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d,
     const double* direction, double t, double slope, double* to);
   bool placeMoved(

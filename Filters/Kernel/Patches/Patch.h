@@ -197,15 +197,15 @@ void loadTargets(
 }
 
 /// The edges from v to the other vertices of a packet's simplices; in the plane of the tangents, if
-/// there are any.
+/// there are any. @param inSpace whether those of triangles have three coordinates
 template <int Dim>
 void loadEdges(const double* x, const double* center, const std::int32_t* ids, const Vec3* tangents,
-  Packet (&e)[Dim][3])
+  Packet (&e)[Dim][3], bool inSpace = false)
 {
   for (int k = 0; k < Dim; ++k)
   {
     loadVertices(x, ids + k, Dim, e[k]);
-    for (int c = 0; c < (tangents ? 3 : Dim); ++c)
+    for (int c = 0; c < (tangents || inSpace ? 3 : Dim); ++c)
     {
       e[k][c] -= center[c];
     }
@@ -217,6 +217,39 @@ void loadEdges(const double* x, const double* center, const std::int32_t* ids, c
       e[k][0] = inPlane[0];
       e[k][1] = inPlane[1];
     }
+  }
+}
+
+/// Edges of triangles, each turned about a line through v into one plane, as on a curve where
+/// patches meet at an angle; the line is the first axis. @param tangent of unit length
+inline void unfoldEdges(const Vec3& tangent, Packet (&e)[2][3])
+{
+  const auto along = [](const Packet* a, const Packet* b)
+  { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  Packet n[3], t[3], y[3], x[3];
+  const auto cross3 = [](const Packet* a, const Packet* b, Packet* r)
+  {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+  };
+  for (int c = 0; c < 3; ++c)
+  {
+    t[c] = broadcast(tangent[c]);
+  }
+  cross3(e[0], e[1], n);
+  cross3(n, t, y);
+  cross3(y, n, x);
+  const Packet xx = along(x, x), yy = along(y, y);
+  // A triangle without area, or at a right angle to the line, has no sides of the line.
+  const Mask there = (xx > 0.0) & (yy > 0.0);
+  const Packet ofX = select(there, 1.0 / sqrt(select(there, xx, broadcast(1.0))), Packet{}),
+               ofY = select(there, 1.0 / sqrt(select(there, yy, broadcast(1.0))), Packet{});
+  for (int k = 0; k < 2; ++k)
+  {
+    const Packet inPlane[2] = { ofX * along(e[k], x), ofY * along(e[k], y) };
+    e[k][0] = inPlane[0];
+    e[k][1] = inPlane[1];
   }
 }
 
@@ -287,10 +320,12 @@ void clearWeightless(PatchPacket<Dim>& p)
  * @brief Builds the patch of v from the coordinates x.
  * @param simplexWeights per simplex, or null; simplices of weight 0 are as if they were not there
  * @param tangents of a surface at v: the patch is projected to their plane; else null
+ * @param unfold the triangles are not projected but unfolded along the first tangent
  */
 template <int Dim>
 void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
-  const double* simplexWeights, Patch<Dim>& patch, const Vec3* tangents = nullptr)
+  const double* simplexWeights, Patch<Dim>& patch, const Vec3* tangents = nullptr,
+  bool unfold = false)
 {
   const std::int32_t begin = mesh.patchStart(v), end = mesh.patchStart(v + 1);
   patch.count = (end - begin + PacketWidth - 1) / PacketWidth;
@@ -322,7 +357,18 @@ void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
       ids = filled;
     }
     Packet e[Dim][3] = {};
-    loadEdges<Dim>(x, center, ids, tangents, e);
+    if constexpr (Dim == 2)
+    {
+      loadEdges<Dim>(x, center, ids, unfold ? nullptr : tangents, e, unfold);
+      if (unfold)
+      {
+        unfoldEdges(tangents[0], e);
+      }
+    }
+    else
+    {
+      loadEdges<Dim>(x, center, ids, nullptr, e);
+    }
     // Coefficients of the edges at v, of the others, and of the determinant.
     Packet at[Dim] = {}, across[3] = {}, det = {};
     if (uniform)

@@ -1,0 +1,419 @@
+#include "SurfaceModel.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// Control points nearer to those of the flat piece than this fraction of its edges are on it.
+constexpr double flatness = 1e-10;
+/// Cosine of the angle between an edge and the tangent at its end, from which on it is curved.
+constexpr double minCosine = 0.5;
+
+Vec3 unitOf(const Vec3& v)
+{
+  const double length = norm(v);
+  return length > 0 && std::isfinite(length) ? (1 / length) * v : Vec3{ 0, 0, 0 };
+}
+
+/// The control point near `from` of a cubic from there to `to` that leaves in a given direction;
+/// that of a circle's arc if both ends are symmetric.
+Vec3 controlAt(const Vec3& from, const Vec3& to, const Vec3& direction)
+{
+  const Vec3 chord = to - from;
+  const double length = norm(chord);
+  const double cosine = length > 0 ? dot(chord, direction) / length : 0.0;
+  if (!(cosine > minCosine))
+  {
+    return from + (1.0 / 3.0) * chord;
+  }
+  // |handle| = chord / (3 cos^2(angle / 2)), and cos^2(angle / 2) = (1 + cosine) / 2.
+  return from + (2.0 * length / (3.0 * (1.0 + cosine))) * direction;
+}
+
+/// An edge of a curve with the directions, from the first to the second point, at its ends.
+struct CurveEdge
+{
+  Index a, b; ///< the smaller and the larger point
+  int curve;
+  Vec3 atA = { 0, 0, 0 }, atB = { 0, 0, 0 };
+};
+
+class ModelMaker
+{
+public:
+  ModelMaker(const Mesh& mesh, const Features& features, bool smooth)
+    : View(mesh.view())
+    , TheFeatures(features)
+    , Smooth(smooth)
+  {
+  }
+
+  SurfaceModel make()
+  {
+    this->Model.patches = this->TheFeatures.patches;
+    this->Model.parts.resize(this->TheFeatures.patches + this->TheFeatures.curves);
+    if (this->Smooth)
+    {
+      this->findDirections();
+      this->findFacetsOfPoints();
+      this->Normal.assign(this->View.numberOfPoints, Vec3{ 0, 0, 0 });
+    }
+    this->addCurves();
+    this->addPatches();
+    return std::move(this->Model);
+  }
+
+private:
+  Vec3 at(Index p) const { return pointOf(this->View, p); }
+  void findDirections();
+  void findFacetsOfPoints();
+  void findNormals(const std::vector<Index>& facets);
+  Vec3 fitNormal(Index point, int patch, const Vec3& first) const;
+  std::vector<Index> ringOf(Index point, int patch) const;
+  const CurveEdge* edgeOf(Index a, Index b) const;
+  Vec3 controlOf(Index from, Index to) const;
+  void addCurves();
+  void addPatches();
+  void addTriangle(Index a, Index b, Index c, SurfacePart& part) const;
+
+  const MeshView& View;
+  const Features& TheFeatures;
+  bool Smooth;
+  SurfaceModel Model;
+  std::vector<CurveEdge> Edges;        ///< sorted by points
+  std::vector<Index> Starts, FacetsAt; ///< facets of each point
+  std::vector<Vec3> Normal;            ///< of the points of the patch that is being made
+};
+
+//------------------------------------------------------------------------------
+/// The tangents of curves: of the circle through a point and its two neighbours.
+void ModelMaker::findDirections()
+{
+  std::vector<std::array<Index, 2>> around(this->View.numberOfPoints, { -1, -1 });
+  for (const Features::Edge& e : this->TheFeatures.edges)
+  {
+    this->Edges.push_back({ std::min(e.first, e.second), std::max(e.first, e.second), e.curve });
+    for (const auto& [p, q] : { std::pair(e.first, e.second), std::pair(e.second, e.first) })
+    {
+      around[p][around[p][0] < 0 ? 0 : 1] = q;
+    }
+  }
+  const auto tangent = [&](Index p, Index from, Index to)
+  {
+    // From `from` over p to `to`: the weights are those of a circle.
+    const Vec3 in = this->at(p) - this->at(from), out = this->at(to) - this->at(p);
+    return unitOf((1 / dot(in, in)) * in + (1 / dot(out, out)) * out);
+  };
+  for (CurveEdge& e : this->Edges)
+  {
+    const Vec3 chord = unitOf(this->at(e.b) - this->at(e.a));
+    const auto other = [&](Index p, Index q)
+    { return around[p][0] == q ? around[p][1] : around[p][0]; };
+    const bool smoothA = this->TheFeatures.kind[e.a] == CurvePoint && other(e.a, e.b) >= 0,
+               smoothB = this->TheFeatures.kind[e.b] == CurvePoint && other(e.b, e.a) >= 0;
+    e.atA = smoothA ? tangent(e.a, other(e.a, e.b), e.b) : chord;
+    e.atB = smoothB ? tangent(e.b, e.a, other(e.b, e.a)) : chord;
+    // At the end of a curve, that of the circle which has the other tangent.
+    const auto reflected = [&](const Vec3& t) { return 2 * dot(t, chord) * chord - t; };
+    e.atA = !smoothA && smoothB ? reflected(e.atB) : e.atA;
+    e.atB = !smoothB && smoothA ? reflected(e.atA) : e.atB;
+  }
+  std::sort(this->Edges.begin(), this->Edges.end(),
+    [](const CurveEdge& e, const CurveEdge& f)
+    { return std::pair(e.a, e.b) < std::pair(f.a, f.b); });
+}
+
+//------------------------------------------------------------------------------
+void ModelMaker::findFacetsOfPoints()
+{
+  const auto& facets = this->TheFeatures.facets;
+  this->Starts.assign(this->View.numberOfPoints + 1, 0);
+  for (const Features::Facet& facet : facets)
+  {
+    for (int k = 0; k < facet.size; ++k)
+    {
+      ++this->Starts[facet.nodes[k] + 1];
+    }
+  }
+  for (std::size_t p = 0; p + 1 < this->Starts.size(); ++p)
+  {
+    this->Starts[p + 1] += this->Starts[p];
+  }
+  this->FacetsAt.resize(this->Starts.back());
+  std::vector<Index> next(this->Starts.begin(), this->Starts.end() - 1);
+  for (std::size_t f = 0; f < facets.size(); ++f)
+  {
+    for (int k = 0; k < facets[f].size; ++k)
+    {
+      this->FacetsAt[next[facets[f].nodes[k]]++] = static_cast<Index>(f);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The neighbours of a point within a patch, and theirs.
+std::vector<Index> ModelMaker::ringOf(Index point, int patch) const
+{
+  std::vector<Index> ring = { point };
+  for (int round = 0; round < 2; ++round)
+  {
+    const std::vector<Index> inner = ring;
+    for (Index p : inner)
+    {
+      for (Index i = this->Starts[p]; i < this->Starts[p + 1]; ++i)
+      {
+        const Features::Facet& facet = this->TheFeatures.facets[this->FacetsAt[i]];
+        if (facet.patch == patch)
+        {
+          ring.insert(ring.end(), facet.nodes.begin(), facet.nodes.begin() + facet.size);
+        }
+      }
+    }
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  }
+  ring.erase(std::find(ring.begin(), ring.end(), point));
+  return ring;
+}
+
+//------------------------------------------------------------------------------
+/// The normal of the quadric through a point that fits the two rings of neighbours best.
+Vec3 ModelMaker::fitNormal(Index point, int patch, const Vec3& first) const
+{
+  constexpr int unknowns = 5;
+  const std::vector<Index> ring = this->ringOf(point, patch);
+  if (ring.size() < unknowns)
+  {
+    return first;
+  }
+  const Vec3 axis = std::abs(first[0]) < 0.5 ? Vec3{ 1, 0, 0 } : Vec3{ 0, 1, 0 };
+  const Vec3 u = unitOf(cross(first, axis)), v = cross(first, u), center = this->at(point);
+  double size = 0;
+  for (Index p : ring)
+  {
+    size += norm(this->at(p) - center) / static_cast<double>(ring.size());
+  }
+  Eigen::MatrixXd rows(ring.size(), unknowns);
+  Eigen::VectorXd heights(ring.size());
+  for (std::size_t i = 0; i < ring.size(); ++i)
+  {
+    const Vec3 d = (1 / size) * (this->at(ring[i]) - center);
+    const double x = dot(d, u), y = dot(d, v), weight = 1 / std::max(norm(d), 1e-3);
+    rows.row(static_cast<Eigen::Index>(i)) << x, y, x * x, x * y, y * y;
+    rows.row(static_cast<Eigen::Index>(i)) *= weight;
+    heights[static_cast<Eigen::Index>(i)] = weight * dot(d, first);
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(rows);
+  solver.setThreshold(1e-3);
+  if (solver.rank() < unknowns)
+  {
+    return first;
+  }
+  const Eigen::VectorXd c = solver.solve(heights);
+  const Vec3 fitted = unitOf(first - c[0] * u - c[1] * v);
+  return dot(fitted, first) > minCosine ? fitted : first;
+}
+
+//------------------------------------------------------------------------------
+void ModelMaker::findNormals(const std::vector<Index>& facets)
+{
+  std::vector<Index> border;
+  for (Index f : facets)
+  {
+    const Features::Facet& facet = this->TheFeatures.facets[f];
+    for (int k = 0; k < facet.size; ++k)
+    {
+      this->Normal[facet.nodes[k]] = { 0, 0, 0 };
+    }
+  }
+  for (Index f : facets)
+  {
+    const Features::Facet& facet = this->TheFeatures.facets[f];
+    for (int k = 0; k < facet.size; ++k)
+    {
+      const Index p = facet.nodes[k];
+      const Vec3 out = this->at(facet.nodes[(k + 1) % facet.size]) - this->at(p);
+      const Vec3 back = this->at(facet.nodes[(k + facet.size - 1) % facet.size]) - this->at(p);
+      const double weight = dot(out, out) * dot(back, back);
+      if (weight > 0 && std::isfinite(weight))
+      {
+        this->Normal[p] += (1 / weight) * cross(out, back);
+      }
+      if (this->TheFeatures.kind[p] != PatchPoint)
+      {
+        border.push_back(p);
+      }
+    }
+  }
+  for (Index f : facets)
+  {
+    const Features::Facet& facet = this->TheFeatures.facets[f];
+    for (int k = 0; k < facet.size; ++k)
+    {
+      this->Normal[facet.nodes[k]] = unitOf(this->Normal[facet.nodes[k]]);
+    }
+  }
+  // With neighbours on one side only, the facets' normals are biased.
+  std::sort(border.begin(), border.end());
+  border.erase(std::unique(border.begin(), border.end()), border.end());
+  const int patch = facets.empty() ? -1 : this->TheFeatures.facets[facets[0]].patch;
+  std::vector<Vec3> fitted;
+  for (Index p : border)
+  {
+    fitted.push_back(this->fitNormal(p, patch, this->Normal[p]));
+  }
+  for (std::size_t i = 0; i < border.size(); ++i)
+  {
+    this->Normal[border[i]] = fitted[i];
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The edge of a curve between two points, or null.
+const CurveEdge* ModelMaker::edgeOf(Index a, Index b) const
+{
+  if (this->TheFeatures.kind[a] == PatchPoint || this->TheFeatures.kind[b] == PatchPoint)
+  {
+    return nullptr;
+  }
+  const std::pair<Index, Index> key = { std::min(a, b), std::max(a, b) };
+  const auto found = std::lower_bound(this->Edges.begin(), this->Edges.end(), key,
+    [](const CurveEdge& e, const std::pair<Index, Index>& k) { return std::pair(e.a, e.b) < k; });
+  return found != this->Edges.end() && std::pair(found->a, found->b) == key ? &*found : nullptr;
+}
+
+//------------------------------------------------------------------------------
+/// The control point near `from` on the edge of a piece.
+Vec3 ModelMaker::controlOf(Index from, Index to) const
+{
+  const Vec3 a = this->at(from), b = this->at(to);
+  if (const CurveEdge* e = this->edgeOf(from, to))
+  {
+    return controlAt(a, b, from == e->a ? e->atA : -1.0 * e->atB);
+  }
+  const Vec3 &n = this->Normal[from], chord = b - a;
+  return controlAt(a, b, unitOf(chord - dot(chord, n) * n));
+}
+
+//------------------------------------------------------------------------------
+void ModelMaker::addCurves()
+{
+  for (std::size_t i = 0; i < this->TheFeatures.edges.size(); ++i)
+  {
+    const Features::Edge& e = this->TheFeatures.edges[i];
+    SurfacePart& part = this->Model.parts[this->Model.patches + e.curve];
+    part.curve = true;
+    const Vec3 a = this->at(e.first), b = this->at(e.second);
+    if (!std::isfinite(dot(a, a) + dot(b, b)))
+    {
+      continue;
+    }
+    part.pieces.push_back({ a, b, b });
+    if (!this->Smooth)
+    {
+      continue;
+    }
+    CubicControls controls = {};
+    controls[0] = this->controlOf(e.first, e.second);
+    controls[1] = this->controlOf(e.second, e.first);
+    const Vec3 off = controls[0] - a - (1.0 / 3.0) * (b - a),
+               offB = controls[1] - b + (1.0 / 3.0) * (b - a);
+    const bool straight = std::max(norm(off), norm(offB)) <= flatness * norm(b - a);
+    part.controlsOf.push_back(straight ? -1 : static_cast<std::int32_t>(part.controls.size()));
+    if (!straight)
+    {
+      part.controls.push_back(controls);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void ModelMaker::addPatches()
+{
+  std::vector<std::vector<Index>> ofPatch(this->Model.patches);
+  for (std::size_t f = 0; f < this->TheFeatures.facets.size(); ++f)
+  {
+    ofPatch[this->TheFeatures.facets[f].patch].push_back(static_cast<Index>(f));
+  }
+  for (int patch = 0; patch < this->Model.patches; ++patch)
+  {
+    if (this->Smooth)
+    {
+      this->findNormals(ofPatch[patch]);
+    }
+    for (Index f : ofPatch[patch])
+    {
+      const Features::Facet& facet = this->TheFeatures.facets[f];
+      for (int k = 2; k < facet.size; ++k)
+      {
+        this->addTriangle(
+          facet.nodes[0], facet.nodes[k - 1], facet.nodes[k], this->Model.parts[patch]);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void ModelMaker::addTriangle(Index a, Index b, Index c, SurfacePart& part) const
+{
+  const Index ids[4] = { a, b, c, a };
+  const std::array<Vec3, 3> corner = { this->at(a), this->at(b), this->at(c) };
+  if (!std::isfinite(
+        dot(corner[0], corner[0]) + dot(corner[1], corner[1]) + dot(corner[2], corner[2])))
+  {
+    return;
+  }
+  part.pieces.push_back(corner);
+  if (!this->Smooth)
+  {
+    return;
+  }
+  CubicControls controls;
+  Vec3 sum = { 0, 0, 0 }, corners = { 0, 0, 0 };
+  double off = 0, longest = 0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vec3 &p = corner[k], &q = corner[(k + 1) % 3], third = (1.0 / 3.0) * (q - p);
+    controls[2 * k] = this->controlOf(ids[k], ids[k + 1]);
+    controls[2 * k + 1] = this->controlOf(ids[k + 1], ids[k]);
+    off =
+      std::max({ off, norm(controls[2 * k] - p - third), norm(controls[2 * k + 1] - q + third) });
+    longest = std::max(longest, norm(q - p));
+    sum += controls[2 * k] + controls[2 * k + 1];
+    corners += p;
+  }
+  // Vlachos et al.: half as far again as the mean of the others is from that of the corners.
+  controls[6] = (1.0 / 4.0) * sum - (1.0 / 6.0) * corners;
+  const bool flat = off <= flatness * longest;
+  part.controlsOf.push_back(flat ? -1 : static_cast<std::int32_t>(part.controls.size()));
+  if (!flat)
+  {
+    part.controls.push_back(controls);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+SurfaceModel makeSurfaceModel(const Mesh& mesh, const Features& features, bool smooth)
+{
+  return ModelMaker(mesh, features, smooth).make();
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::int32_t> partsOfPoints(const Features& features)
+{
+  std::vector<std::int32_t> parts(features.kind.size(), -1);
+  for (std::size_t p = 0; p < parts.size(); ++p)
+  {
+    parts[p] = features.kind[p] == CurvePoint ? features.patches + features.curveOf[p]
+      : features.kind[p] == PatchPoint        ? features.patchOf[p]
+                                              : -1;
+  }
+  return parts;
+}
+}

@@ -1,0 +1,53 @@
+/**
+ * @file SurfaceModel.h
+ * @brief The patches and curves that the points of a mesh slide on.
+ *
+ * Either the facets and edges as they are, or smooth ones through the same points: triangles become
+ * cubic Bezier triangles with the normals of the points (PN triangles; Vlachos et al., "Curved PN
+ * triangles", I3D 2001), edges of curves cubic arcs with the tangents of the points. Arcs of
+ * circles are exact to the sixth order of the angle of an edge. Normals are those of N. Max,
+ * "Weights for computing vertex normals from facet normals", J. Graphics Tools 4(2), 1999, which
+ * are exact on spheres, and on the border of a patch those of a quadric through two rings of
+ * neighbours.
+ */
+#ifndef tautline_SurfaceModel_h
+#define tautline_SurfaceModel_h
+
+#include "tautline/Mesh/Features.h"
+
+namespace tautline
+{
+/// The inner control points of a cubic triangle abc: near a on ab, near b on ab, ... on bc, on ca,
+/// and the middle one; of an arc ab the first two.
+using CubicControls = std::array<Vec3, 7>;
+
+/// A patch or a curve.
+struct SurfacePart
+{
+  bool curve = false;
+  /// Of a patch, triangles (quadrilaterals are two); of a curve, edges with the last corner twice.
+  std::vector<std::array<Vec3, 3>> pieces;
+  /// Per piece: its index in controls, or -1 if it is flat (straight); empty if all are.
+  std::vector<std::int32_t> controlsOf;
+  std::vector<CubicControls> controls;
+};
+
+/// First the patches, then the curves, in the order of the features.
+struct SurfaceModel
+{
+  std::vector<SurfacePart> parts;
+  int patches = 0;
+};
+
+/**
+ * @brief The model of the features of a mesh, in its coordinates.
+ * @param smooth whether it is smooth within patches and along curves, or made of facets
+ */
+TAUTLINE_KERNEL_EXPORT SurfaceModel makeSurfaceModel(
+  const Mesh& mesh, const Features& features, bool smooth);
+
+/// Per point: the part of the model made of the same features that it is on; -1 for corners and
+/// points within the mesh.
+TAUTLINE_KERNEL_EXPORT std::vector<std::int32_t> partsOfPoints(const Features& features);
+}
+#endif

@@ -1,0 +1,223 @@
+// Where a vertex may go: on its surface or curve, or in its plane or line.
+#include "VertexOptimizer.h"
+
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// A unit vector at a right angle to n, and the third.
+void tangentsOf(const Vec3& n, Vec3* tangents)
+{
+  int smallest = 0;
+  for (int c = 1; c < 3; ++c)
+  {
+    smallest = std::abs(n[c]) < std::abs(n[smallest]) ? c : smallest;
+  }
+  Vec3 axis = { 0, 0, 0 };
+  axis[smallest] = 1.0;
+  const Vec3 t = cross(n, axis);
+  tangents[0] = (1.0 / norm(t)) * t;
+  tangents[1] = cross(n, tangents[0]);
+}
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void VertexOptimizer<Dim>::findTangents(std::int32_t v, Vec3* tangents) const
+{
+  // The normal is the sum of the vector areas around the vertex.
+  const double* x = this->Simplices.coordinates();
+  const auto at = [=](std::int32_t i)
+  {
+    const double* p = x + VertexStride * static_cast<std::size_t>(i);
+    return Vec3{ p[0], p[1], p[2] };
+  };
+  const Vec3 center = at(v);
+  Vec3 normal = { 0, 0, 0 };
+  for (std::int32_t i = this->Simplices.patchStart(v); i < this->Simplices.patchStart(v + 1); ++i)
+  {
+    const std::int32_t* others = this->Simplices.patchVertices() + 2 * static_cast<std::size_t>(i);
+    normal += cross(at(others[0]) - center, at(others[1]) - center);
+  }
+  const double length = norm(normal);
+  normal = length > 0 ? (1.0 / length) * normal : Vec3{ 0, 0, 1 };
+  tangentsOf(normal, tangents);
+  // On a curve the first is its tangent.
+  const Vec3 along = this->isOnCurve(v) ? this->surfaceOf(v)->direction(center) : Vec3{ 0, 0, 0 };
+  const Vec3 across = cross(normal, along);
+  const double width = norm(across);
+  if (dot(along, along) > 0)
+  {
+    tangents[0] = along;
+    tangents[1] = width > 0 ? (1.0 / width) * across : tangents[1];
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The vector areas of the triangles at v.
+template <int Dim>
+std::vector<Vec3> VertexOptimizer<Dim>::normalsAt(std::int32_t v) const
+{
+  std::vector<Vec3> normals;
+  const auto at = [this](std::int32_t i)
+  {
+    const double* p = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(i);
+    return Vec3{ p[0], p[1], p[2] };
+  };
+  const Vec3 center = at(v);
+  for (std::int32_t i = this->Simplices.patchStart(v); i < this->Simplices.patchStart(v + 1); ++i)
+  {
+    const std::int32_t* others =
+      this->Simplices.patchVertices() + Dim * static_cast<std::size_t>(i);
+    normals.push_back(cross(at(others[0]) - center, at(others[1]) - center));
+  }
+  return normals;
+}
+
+//------------------------------------------------------------------------------
+/// An orthonormal basis of the directions a vertex may go in, as columns; returns how many.
+template <int Dim>
+int VertexOptimizer<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
+{
+  const auto given = [&](const std::vector<Vec3>& directions, double* u)
+  {
+    if (directions.empty())
+    {
+      return false;
+    }
+    double length2 = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      u[c] = dot(directions[v], this->Simplices.axis(c)) / this->Simplices.scale();
+      length2 += u[c] * u[c];
+    }
+    for (int c = 0; length2 > 0 && c < Dim; ++c)
+    {
+      u[c] /= std::sqrt(length2);
+    }
+    return length2 > 0;
+  };
+  double u[Dim];
+  const auto across = [&]()
+  {
+    if constexpr (Dim == 3)
+    {
+      Vec3 t[2];
+      tangentsOf({ u[0], u[1], u[2] }, t);
+      for (int r = 0; r < 3; ++r)
+      {
+        basis[r][0] = t[0][r];
+        basis[r][1] = t[1][r];
+      }
+      return 2;
+    }
+    basis[0][0] = -u[1];
+    basis[1][0] = u[0];
+    return 1;
+  };
+  if (given(this->Options.lines, u))
+  {
+    for (int r = 0; r < Dim; ++r)
+    {
+      basis[r][0] = u[r];
+    }
+    return 1;
+  }
+  if (given(this->Options.planes, u))
+  {
+    return across();
+  }
+  if (this->isOnCurve(v) && Dim == 2 && this->Simplices.surface())
+  {
+    basis[0][0] = 1; // the first tangent, see findTangents()
+    basis[1][0] = 0;
+    return 1;
+  }
+  if (const SurfaceProjection* surface =
+        Dim == 2 && this->Simplices.surface() ? nullptr : this->surfaceOf(v))
+  {
+    const double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+    const Vec3 direction = surface->direction({ at[0], at[1], at[2] });
+    std::copy_n(direction.begin(), Dim, u);
+    if (!(dot(direction, direction) > 0))
+    {
+      return Dim;
+    }
+    for (int r = 0; r < Dim && surface->isCurve(); ++r)
+    {
+      basis[r][0] = u[r];
+    }
+    return surface->isCurve() ? 1 : across();
+  }
+  return Dim;
+}
+
+//------------------------------------------------------------------------------
+/// Goes along the tangents and back to the surface, and stays there if that is better than before.
+template <int Dim>
+bool VertexOptimizer<Dim>::placeOnSurface(
+  std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
+{
+  const std::size_t n = this->Functions.size();
+  const double zero[Dim] = {};
+  const double* at = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+  const Vec3 before = { at[0], at[1], at[2] };
+  std::vector<double> old(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    old[i] = this->Functions[i]->value(w.patch, zero);
+  }
+  Vec3 x = before;
+  for (int c = 0; c < Dim; ++c)
+  {
+    x += (d[c] / this->Simplices.scale()) * w.patch.axes[c];
+  }
+  const std::vector<Vec3> normals =
+    Dim == 2 && this->isOnCurve(v) ? this->normalsAt(v) : std::vector<Vec3>();
+  const SurfaceProjection* surface = this->surfaceOf(v);
+  this->place(v, surface ? surface->closest(x) : x);
+  this->gather(v, w.patch);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.sums[i].f = old[i];
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  double smallest = infinity;
+  for (int i = 0; i < w.patch.simplices.count; ++i)
+  {
+    const PatchPacket<Dim>& p = w.patch.simplices.packets[i];
+    smallest = std::min(smallest, minOf(p.D0));
+  }
+  // Unfolded triangles are always positive: they must not turn over.
+  const std::vector<Vec3> turned = normals.empty() ? normals : this->normalsAt(v);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+  {
+    const bool kept = dot(turned[i], normals[i]) > 0 || !(dot(normals[i], normals[i]) > 0);
+    smallest = kept ? smallest : -1.0;
+  }
+  const bool upright = this->Options.allowInversion || smallest > 0;
+  if (!upright || !(this->changeAt(scalarizer, w, zero) < 0))
+  {
+    this->place(v, before);
+    return false;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w.change[i] += w.trial[i];
+  }
+  return true;
+}
+
+template void VertexOptimizer<2>::findTangents(std::int32_t, Vec3*) const;
+template void VertexOptimizer<3>::findTangents(std::int32_t, Vec3*) const;
+template std::vector<Vec3> VertexOptimizer<2>::normalsAt(std::int32_t) const;
+template std::vector<Vec3> VertexOptimizer<3>::normalsAt(std::int32_t) const;
+template int VertexOptimizer<2>::allowed(std::int32_t, double (*)[2]) const;
+template int VertexOptimizer<3>::allowed(std::int32_t, double (*)[3]) const;
+template bool VertexOptimizer<2>::placeOnSurface(
+  std::int32_t, const double*, const Scalarizer&, PatchWorker<2>&);
+template bool VertexOptimizer<3>::placeOnSurface(
+  std::int32_t, const double*, const Scalarizer&, PatchWorker<3>&);
+}
