@@ -1,0 +1,268 @@
+// Optimization keeps the features of surfaces and the smooth shape between them.
+#include "Optimizing.h"
+#include "Surfaces.h"
+
+#include "tautline/Mesh/Features.h"
+#include "tautline/Optimization/GeometryMatch.h"
+
+#include <cstring>
+
+using namespace tautline;
+
+namespace
+{
+/// Optimizes on the model of the mesh's own features.
+OptimizeResult runOnFeatures(
+  const MeshData& data, bool smooth = true, const FeatureOptions& features = {})
+{
+  const Mesh mesh(data.view());
+  const Features found = findFeatures(mesh, features);
+  const SurfaceModel model = makeSurfaceModel(mesh, found, smooth);
+  const std::vector<std::int32_t> parts = partsOfPoints(found);
+  std::vector<unsigned char> fixed;
+  for (signed char kind : found.kind)
+  {
+    fixed.push_back(kind == CornerPoint);
+  }
+  OptimizeOptions options;
+  options.fixed = fixed.data();
+  options.model = &model;
+  options.parts = parts.data();
+  return optimize(mesh, options);
+}
+
+Vec3 at(const std::vector<double>& points, Index p)
+{
+  return { points[3 * p], points[3 * p + 1], points[3 * p + 2] };
+}
+
+/// How far points are from the edges, faces and corners of the cube, relative to its size.
+double offCube(const MeshData& data, const std::vector<double>& points, double size)
+{
+  double most = 0;
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const double before = data.point(p)[c];
+      most = std::max(
+        most, before == 0 || before == size ? std::abs(at(points, p)[c] - before) / size : 0);
+    }
+  }
+  return most;
+}
+
+void testCube()
+{
+  for (double size : { 1.0, std::ldexp(1.0, -26), std::ldexp(1.0, 27) })
+  {
+    MeshData cube = cubeSurface(CellType::Triangle, 10);
+    cube.transform([size](Vec3 p) { return size * p; });
+    for (bool smooth : { false, true })
+    {
+      const OptimizeResult result = runOnFeatures(cube, smooth);
+      TAUTLINE_CHECK(offCube(cube, result.points, size) < 1e-12);
+      TAUTLINE_CHECK_RELATIVE(volumeWithin(cube, result.points), size * size * size, 1e-12);
+      TAUTLINE_CHECK(result.history.back().objective < 0.9 * result.history.front().objective);
+      // Some points of edges slide: the edges are not just fixed.
+      double slid = 0;
+      for (Index p = 0; p < cube.numberOfPoints(); ++p)
+      {
+        int ends = 0;
+        for (double x : cube.point(p))
+        {
+          ends += x == 0 || x == size;
+        }
+        const double way = norm(at(result.points, p) - cube.point(p)) / size;
+        TAUTLINE_CHECK(ends < 3 || way == 0);
+        slid = ends == 2 ? std::max(slid, way) : slid;
+      }
+      TAUTLINE_CHECK(slid > 0.01);
+    }
+  }
+  // Turned: no rounding takes points off their edges.
+  const std::array<Vec3, 3> axes = { Vec3{ 0.36, 0.48, -0.8 }, Vec3{ -0.8, 0.6, 0 },
+    Vec3{ 0.48, 0.64, 0.6 } };
+  MeshData turned = cubeSurface(CellType::Triangle, 10);
+  turned.transform([&](Vec3 p) { return p[0] * axes[0] + p[1] * axes[1] + p[2] * axes[2]; });
+  std::vector<double> points = runOnFeatures(turned).points;
+  for (Index p = 0; p < turned.numberOfPoints(); ++p)
+  {
+    const Vec3 x = at(points, p);
+    for (int c = 0; c < 3; ++c)
+    {
+      points[3 * p + c] = dot(x, axes[c]);
+    }
+  }
+  TAUTLINE_CHECK(offCube(cubeSurface(CellType::Triangle, 10), points, 1) < 1e-12);
+  // As it was without features: the edges are cut.
+  const MeshData cube = cubeSurface(CellType::Triangle, 10);
+  const OptimizeResult cut = run(cube, OptimizeOptions());
+  TAUTLINE_CHECK(volumeWithin(cube, cut.points) < 0.997);
+}
+
+void testCylinder()
+{
+  const MeshData data = cylinderSurface(32, 8);
+  const double volume = volumeWithin(data, data.points);
+  TAUTLINE_CHECK(volumeWithin(data, run(data, OptimizeOptions()).points) < 0.991 * volume);
+  for (bool smooth : { false, true })
+  {
+    const Context context(smooth ? "smooth" : "facets");
+    const OptimizeResult result = runOnFeatures(data, smooth);
+    const double half = std::acos(-1.0) / 32;
+    double off = 0, side = 0;
+    for (Index p = 0; p < data.numberOfPoints(); ++p)
+    {
+      const Vec3 then = data.point(p), now = at(result.points, p);
+      const double radius = std::hypot(now[0], now[1]);
+      if (std::abs(std::hypot(then[0], then[1]) - 1) < 1e-9)
+      {
+        side = std::max(side, std::abs(radius - 1));
+        const bool rim = then[2] == 0 || then[2] == 2;
+        // The polygon's radius at the point's angle.
+        const double angle = std::atan2(now[1], now[0]) / (2 * half);
+        const double polygon =
+          std::cos(half) / std::cos(2 * half * (angle - std::floor(angle)) - half);
+        off = std::max(
+          off, rim ? std::abs(radius - (smooth ? 1 : polygon)) + std::abs(now[2] - then[2]) : 0);
+      }
+    }
+    TAUTLINE_CHECK(off < (smooth ? 1e-7 : 1e-12));
+    TAUTLINE_CHECK(side < (smooth ? 1e-6 : 1.01 * (1 - std::cos(half))));
+    TAUTLINE_CHECK(volumeWithin(data, result.points) > (smooth ? 0.999 : 0.99) * volume);
+  }
+}
+
+/// A sphere keeps its volume, and further runs stay on it.
+void testSphere()
+{
+  for (CellType type : { CellType::Quadrilateral, CellType::Triangle })
+  {
+    for (int n : { 4, 8 })
+    {
+      MeshData data = sphereSurface(type, n);
+      const double volume = volumeWithin(data, data.points);
+      double first = 0;
+      for (int repeat = 0; repeat < 5; ++repeat)
+      {
+        const OptimizeResult result = runOnFeatures(data);
+        data.points = result.points;
+        double off = 0;
+        for (Index p = 0; p < data.numberOfPoints(); ++p)
+        {
+          off = std::max(off, std::abs(norm(data.point(p)) - 1));
+        }
+        first = repeat == 0 ? off : first;
+        TAUTLINE_CHECK(off < (n == 4 ? 6e-4 : 1e-4));
+        TAUTLINE_CHECK(off < 1.05 * first);
+        TAUTLINE_CHECK(volumeWithin(data, data.points) > 0.9995 * volume);
+      }
+    }
+  }
+}
+
+/// The boundary of a volume mesh, and the interface of its regions.
+void testVolume()
+{
+  for (CellType type : { CellType::Tetrahedron, CellType::Hexahedron })
+  {
+    const Context context(topology(type).name);
+    MeshData data = blockMesh(type, 6, 6, 6);
+    Random random(5);
+    std::vector<double> regions;
+    for (Index c = 0; c < data.numberOfCells(); ++c)
+    {
+      double x = 0;
+      for (Index n = data.offsets[c]; n < data.offsets[c + 1]; ++n)
+      {
+        x = std::max(x, data.point(data.connectivity[n])[0]);
+      }
+      regions.push_back(x <= 3);
+    }
+    const std::vector<double> regular = data.points;
+    data.transform(
+      [&](Vec3 p)
+      {
+        for (double& x : p)
+        {
+          const bool moves = x > 0 && x < 6 && !(&x == &p[0] && x == 3);
+          x += moves ? random.uniform(-0.2, 0.2) : 0;
+        }
+        return p;
+      });
+    TAUTLINE_CHECK_EQUAL(invalid(data, data.points), Index(0));
+    FeatureOptions options;
+    options.regions = regions.data();
+    const OptimizeResult result = runOnFeatures(data, true, options);
+    TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
+    double off = 0, slid = 0;
+    for (Index p = 0; p < data.numberOfPoints(); ++p)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        const double kept = regular[3 * p + c];
+        const bool flush = kept == 0 || kept == 6 || (c == 0 && kept == 3);
+        off = std::max(off, flush ? std::abs(result.points[3 * p + c] - kept) : 0.0);
+      }
+      slid =
+        regular[3 * p] == 3 ? std::max(slid, norm(at(result.points, p) - data.point(p))) : slid;
+    }
+    TAUTLINE_CHECK(off < 1e-11);
+    TAUTLINE_CHECK(slid > 0.05);
+    TAUTLINE_CHECK(result.history.back().objective < 0.97 * result.history.front().objective);
+  }
+}
+
+/// The points of a coarse sphere and of a coarse cube go to fine ones.
+void testGeometry()
+{
+  const auto match = [](const MeshData& data, const MeshData& geometry)
+  {
+    const Mesh mesh(data.view()), target(geometry.view());
+    const std::vector<unsigned char> all(data.numberOfPoints(), 1);
+    return matchGeometry(mesh, findFeatures(mesh, {}), all, target, findFeatures(target, {}));
+  };
+  // A cube that is 3 % too small and not quite at the place.
+  MeshData cube = cubeSurface(CellType::Triangle, 6);
+  cube.transform([](Vec3 p) { return 0.97 * p + Vec3{ 0.01, 0.015, 0.02 }; });
+  const MeshData fine = cubeSurface(CellType::Triangle, 16);
+  const GeometryMatch found = match(cube, fine);
+  TAUTLINE_CHECK_EQUAL(found.corners, Index(8));
+  TAUTLINE_CHECK_EQUAL(found.curves, 12);
+  TAUTLINE_CHECK_NEAR(volumeWithin(cube, found.points), 1, 1e-12);
+  const MeshData sphere = sphereSurface(CellType::Quadrilateral, 6),
+                 finer = sphereSurface(CellType::Triangle, 40);
+  const GeometryMatch onSphere = match(sphere, finer);
+  MeshData placed = sphere;
+  placed.points = onSphere.points;
+  OptimizeOptions options;
+  options.model = &onSphere.model;
+  options.parts = onSphere.parts.data();
+  const OptimizeResult result = run(placed, options);
+  double off = 0;
+  for (Index p = 0; p < sphere.numberOfPoints(); ++p)
+  {
+    off = std::max(off, std::abs(norm(at(result.points, p)) - 1));
+  }
+  TAUTLINE_CHECK(off < 7e-4); // the sagitta of the finer sphere
+  TAUTLINE_CHECK(result.surfaceError > 0 && result.surfaceError < 0.05);
+  TAUTLINE_CHECK(
+    volumeWithin(sphere, result.points) > 0.9995 * volumeWithin(sphere, sphere.points));
+  MeshData lines;
+  lines.addPoint({ 0, 0, 0 });
+  TAUTLINE_CHECK_THROWS(match(sphere, lines), "no triangles or quadrilaterals");
+  options.parts = nullptr;
+  TAUTLINE_CHECK_THROWS(run(placed, options), "part of it");
+}
+}
+
+int TestOptimizeFeatures(int, char*[])
+{
+  testCube();
+  testCylinder();
+  testSphere();
+  testVolume();
+  testGeometry();
+  return exitCode();
+}
