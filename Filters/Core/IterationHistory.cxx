@@ -72,7 +72,7 @@ std::string surfaceErrorSentence(double surfaceError)
   std::ostringstream text;
   if (surfaceError > 0)
   {
-    text << "\nLargest distance of the elements from the input surface: " << surfaceError << ".";
+    text << "\nLargest distance of the elements from the surface: " << surfaceError << ".";
   }
   return text.str();
 }

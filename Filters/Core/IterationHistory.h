@@ -29,7 +29,7 @@ TAUTLINECORE_EXPORT void addHistory(TableRows& rows, const std::vector<Iteration
 TAUTLINECORE_EXPORT std::string summarize(
   const OptimizeResult& result, const MovableMesh& mesh, const std::string& block);
 
-/// "\nLargest distance of the elements from the input surface: 0.01."; "" if the error is 0.
+/// "\nLargest distance of the elements from the surface: 0.01."; "" if the error is 0.
 TAUTLINECORE_EXPORT std::string surfaceErrorSentence(double surfaceError);
 }
 #endif

@@ -10,9 +10,7 @@
 
 namespace tautline
 {
-namespace
-{
-/// The values of an array of one component, or none; throws if it has more components.
+//------------------------------------------------------------------------------
 std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
 {
   std::vector<double> values;
@@ -27,7 +25,6 @@ std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
   }
   return values;
 }
-}
 
 //------------------------------------------------------------------------------
 OptimizerSetup::OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block)
@@ -35,6 +32,7 @@ OptimizerSetup::OptimizerSetup(const OptimizerSettings& settings, const InputBlo
   , Options(settings.options)
 {
   this->setFixed(settings, block);
+  this->setFeatures(settings, block);
   this->setLimits(settings, block);
   this->setObjectives(settings, block);
 }
@@ -46,7 +44,8 @@ void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBloc
   const auto points = static_cast<std::size_t>(mesh.mesh().view().numberOfPoints);
   mesh.fix(chosenArray(settings.arrays, FixedArray, block.input, "of fixed points"), false);
   fixSelected(mesh, block.selected);
-  const bool onSurface = settings.boundary == BoundaryMotion::OnSurface;
+  const bool onSurface =
+    settings.boundary == BoundaryMotion::OnSurface && !this->slidesOnModel(settings);
   if (settings.boundary == BoundaryMotion::Fixed)
   {
     mesh.fixBoundary();

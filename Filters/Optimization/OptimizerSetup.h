@@ -10,12 +10,17 @@
 #include "MovableMesh.h"
 #include "TargetChoice.h"
 #include "tautline/Mesh/BoundaryShape.h"
+#include "tautline/Mesh/Features.h"
+#include "tautline/Optimization/GeometryMatch.h"
 #include "tautline/Optimization/Optimize.h"
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
+
+class vtkDataObject;
 
 namespace tautline
 {
@@ -46,10 +51,14 @@ struct OptimizerSettings
   double beta = 0.0;                    ///< of the untangling metric
   Combination combination = Combination::Mean;
   BoundaryMotion boundary = BoundaryMotion::Fixed;
-  double flatAngle = 1.0;           ///< degrees
-  double featureAngle = 30.0;       ///< degrees
-  double maximumDisplacement = 0.0; ///< 0: any distance
-  bool mergePoints = true;          ///< whether coincident points on seams are one
+  double flatAngle = 1.0;     ///< degrees
+  double featureAngle = 40.0; ///< degrees
+  bool keepFeatures = true;   ///< of surfaces, and where points slide on the boundary
+  bool smoothSurface = true;  ///< slide on a smooth surface through the points, not on facets
+  vtkDataObject* geometry = nullptr; ///< what points slide on instead of the input, or null
+  bool showFeatures = false;         ///< add the arrays of the features to the output
+  double maximumDisplacement = 0.0;  ///< 0: any distance
+  bool mergePoints = true;           ///< whether coincident points on seams are one
   /// All that needs no data set. Of CUSTOM, too, what a preset replaces.
   OptimizeOptions options;
   vtkAlgorithm* arrays = nullptr; ///< whose input arrays are chosen, see OptimizerArrays
@@ -64,7 +73,9 @@ enum OptimizerArrays
   TensorArray = 1,
   FixedArray = 2,
   LimitArray = 3,
-  WeightArray = 4
+  WeightArray = 4,
+  KindArray = 5,
+  RegionArray = 6
 };
 
 /**
@@ -80,10 +91,22 @@ public:
   OptimizerSetup& operator=(const OptimizerSetup&) = delete;
 
   const MovableMesh& mesh() const { return this->TheMesh; }
+  /// The mesh where the optimization starts: with a geometry, its points are placed on that.
+  const Mesh& start() const { return this->Placed ? *this->Placed : this->TheMesh.mesh(); }
   OptimizeOptions& options() { return this->Options; }
+  /// Adds the arrays `FeatureKind` and `PatchId` of points, of surfaces also `PatchId` of cells.
+  void addFeatures(vtkDataSet* output) const;
+  /// The features found, as a sentence; "" if they were not looked for.
+  std::string describeFeatures() const;
 
 private:
   void setFixed(const OptimizerSettings& settings, const InputBlock& block);
+  void setFeatures(const OptimizerSettings& settings, const InputBlock& block);
+  bool slidesOnModel(const OptimizerSettings& settings) const;
+  void findFeaturesOf(const OptimizerSettings& settings, const InputBlock& block);
+  void slideOnGeometry(const OptimizerSettings& settings, vtkDataSet* geometry);
+  void placePoints();
+  void holdPoints(const OptimizerSettings& settings);
   void setLimits(const OptimizerSettings& settings, const InputBlock& block);
   void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
   void setUnit(Objective& objective) const;
@@ -97,8 +120,19 @@ private:
   std::array<Targets, 4> MadeTargets; ///< by type
   std::vector<double> Weights, Limits;
   BoundaryShape Shape;
+  Features Found;
+  bool HasFeatures = false; ///< Found is set
+  SurfaceModel Model;
+  GeometryMatch Match;
+  std::unique_ptr<Mesh> Placed;
+  bool HasGeometry = false;
+  std::vector<std::int32_t> Parts;
+  std::vector<unsigned char> Held; ///< points that are fixed for other reasons than features
   OptimizeOptions Options;
 };
+
+/// The values of an array of one component, or none without one; throws Error if it has more.
+std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose);
 
 /// The result for one data set.
 struct OptimizerRun

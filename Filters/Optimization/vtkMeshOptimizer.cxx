@@ -24,7 +24,9 @@ enum Ports
 {
   ReferencePort = 1, // input
   SelectionPort = 2, // input
+  GeometryPort = 3,  // input
   StatisticsPort = 2,
+  NumberOfInputPorts = 4,
   NumberOfPorts = 3
 };
 
@@ -35,7 +37,7 @@ constexpr int MaximumTimeSteps = 1000;
 //------------------------------------------------------------------------------
 vtkMeshOptimizer::vtkMeshOptimizer()
 {
-  this->DeclarePorts(NumberOfPorts, NumberOfPorts, { SelectionPort });
+  this->DeclarePorts(NumberOfInputPorts, NumberOfPorts, { SelectionPort });
 }
 
 //------------------------------------------------------------------------------
@@ -284,7 +286,7 @@ int vtkMeshOptimizer::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   // The time requested is an iteration, which has no meaning upstream.
-  for (int port = 0; this->Animation && port < NumberOfPorts; ++port)
+  for (int port = 0; this->Animation && port < NumberOfInputPorts; ++port)
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
@@ -296,11 +298,10 @@ int vtkMeshOptimizer::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-bool vtkMeshOptimizer::HasRunFor(
-  vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selection)
+bool vtkMeshOptimizer::HasRunFor(const std::vector<vtkDataObject*>& inputs)
 {
   vtkMTimeType latest = this->GetMTime();
-  for (vtkDataObject* data : { input, reference, selection })
+  for (vtkDataObject* data : inputs)
   {
     latest = std::max(latest, data ? data->GetMTime() : 0);
   }
@@ -319,6 +320,9 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
   settings.boundary = static_cast<tautline::BoundaryMotion>(this->Boundary);
   settings.flatAngle = this->FlatAngle;
   settings.featureAngle = this->FeatureAngle;
+  settings.keepFeatures = this->KeepFeatures;
+  settings.smoothSurface = this->SmoothSurface;
+  settings.showFeatures = this->ShowFeatures;
   settings.maximumDisplacement = this->MaximumDisplacement;
   settings.mergePoints = this->MergeCoincidentPoints;
   settings.arrays = this;
@@ -373,8 +377,9 @@ int vtkMeshOptimizer::RequestData(
   const double time = this->Animation && info->Has(Pipeline::UPDATE_TIME_STEP())
     ? info->Get(Pipeline::UPDATE_TIME_STEP())
     : vtkMath::Nan();
-  const bool done = this->HasRunFor(vtkDataObject::GetData(inputVector[MeshPort]), reference,
-    vtkDataObject::GetData(inputVector[SelectionPort]));
+  vtkDataObject* geometry = vtkDataObject::GetData(inputVector[GeometryPort]);
+  const bool done = this->HasRunFor({ vtkDataObject::GetData(inputVector[MeshPort]), reference,
+    vtkDataObject::GetData(inputVector[SelectionPort]), geometry });
   if (!done)
   {
     this->Runs.clear();
@@ -384,7 +389,8 @@ int vtkMeshOptimizer::RequestData(
     "optimize the mesh in parts, or reduce Animation Memory",
     [&]
     {
-      const tautline::OptimizerSettings settings = this->GetSettings();
+      tautline::OptimizerSettings settings = this->GetSettings();
+      settings.geometry = geometry;
       tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), "Optimize Mesh");
       this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
         this->Boundary != FIXED,
@@ -450,7 +456,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     };
     run.iterations = -1;
     options.stopping.maximumSeconds = this->GetRemainingSeconds();
-    run.result = tautline::optimize(mesh.mesh(), options);
+    run.result = tautline::optimize(setup.start(), options);
     run.result.surfaceError *= mesh.frame().unit();
     std::string note;
     run.result.points = mesh.settle(run.result.points, note);
@@ -464,6 +470,10 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   const std::vector<double> points = run.at(time, view);
   const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), points);
   const auto metrics = tautline::measuredMetrics(options.objectives);
+  if (this->ShowFeatures)
+  {
+    setup.addFeatures(block.output);
+  }
   const std::string qualities = tautline::addBeforeAfter(
     mesh, points, metrics, this->Threads, block.name, block.output, statistics);
   tautline::addHistory(
@@ -474,7 +484,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     const std::string why = run.result.reason == tautline::StopReason::NoFreeVertices
       ? mesh.whyNoneIsFree("choose another Boundary")
       : std::string();
-    for (const std::string& sentence : { why, note, mesh.notice() })
+    for (const std::string& sentence : { why, setup.describeFeatures(), note, mesh.notice() })
     {
       run.summary += (sentence.empty() ? "" : "\n") + sentence;
     }
@@ -551,6 +561,9 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Boundary: " << this->Boundary << "\n";
   os << indent << "FlatAngle: " << this->FlatAngle << "\n";
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
+  os << indent << "KeepFeatures: " << this->KeepFeatures << "\n";
+  os << indent << "SmoothSurface: " << this->SmoothSurface << "\n";
+  os << indent << "ShowFeatures: " << this->ShowFeatures << "\n";
   os << indent << "MaximumDisplacement: " << this->MaximumDisplacement << "\n";
   os << indent << "ProjectToSurface: " << this->ProjectToSurface << "\n";
   os << indent << "AllowInversion: " << this->AllowInversion << "\n";

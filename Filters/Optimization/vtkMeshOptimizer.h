@@ -18,7 +18,11 @@
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) a reference mesh with the same cells, for targets of type REFERENCE and
- * the preset PRESERVE_SHAPE; 2 (optional) a vtkSelection of points or cells that stay.
+ * the preset PRESERVE_SHAPE; 2 (optional) a vtkSelection of points or cells that stay; 3
+ * (optional) the geometry: a surface of triangles or quadrilaterals (STL, a finer mesh) that points
+ * slide on instead of that of the input, with its corners, curves and patches matched to those of
+ * the mesh (KeepFeatures; for volume meshes ON_SURFACE). Points are placed on it first; no other
+ * measure of the output is then worse than that of the mesh so placed.
  *
  * Arrays of the mesh (SetInputArrayToProcess), by index: 0 target sizes, 1 metric tensors, 2 fixed
  * points (not 0), 3 limits of the points' displacements, 4 weights of the elements (cells, at least
@@ -363,11 +367,47 @@ public:
 
   ///@{
   /**
-   * For ON_SURFACE: edges of the boundary at which it bends by more than so many degrees are sharp.
-   * The default is 30.
+   * Edges at which a surface, or the boundary, bends by more than so many degrees are sharp. The
+   * default is 40.
    */
   vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
+  ///@}
+
+  ///@{
+  /**
+   * Keep the features of a surface in space (with ProjectToSurface), of the boundary (ON_SURFACE)
+   * and of interfaces (cell array at index 6): corners stay, points on curves (sharp edges,
+   * borders, junctions) slide along these and other points within their patches. On a surface,
+   * points of the border then slide along it unless FIXED. Point array at index 5: kinds of points
+   * instead of those found, see tautline/Mesh/Features.h. Off: points of a surface may go anywhere
+   * on it, and those on sharp edges of the boundary stay unless these are straight. The default is
+   * on.
+   */
+  vtkSetMacro(KeepFeatures, bool);
+  vtkGetMacro(KeepFeatures, bool);
+  vtkBooleanMacro(KeepFeatures, bool);
+  ///@}
+
+  ///@{
+  /**
+   * With KeepFeatures, points slide on smooth patches and curves through the points of the input,
+   * made of cubic triangles and arcs; off: on its facets and edges. The default is on.
+   */
+  vtkSetMacro(SmoothSurface, bool);
+  vtkGetMacro(SmoothSurface, bool);
+  vtkBooleanMacro(SmoothSurface, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Add the features to the output: the point array `FeatureKind` (0 within a patch or the mesh, 1
+   * on a curve, 2 corner) and `PatchId`, of the points within a patch and of the cells of a
+   * surface (-1: none). The default is off.
+   */
+  vtkSetMacro(ShowFeatures, bool);
+  vtkGetMacro(ShowFeatures, bool);
+  vtkBooleanMacro(ShowFeatures, bool);
   ///@}
 
   ///@{
@@ -490,7 +530,8 @@ public:
   vtkIdType GetFreePoints() const { return this->FreePoints; }
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
   vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
-  /// Largest distance of the output's surface from the input's, where points move on it.
+  /// Largest distance of the output's surface from the facets of the input or the geometry, where
+  /// points slide on them.
   double GetSurfaceError() const { return this->SurfaceError; }
   ///@}
 
@@ -515,7 +556,7 @@ private:
   void SetRowValue(Value& current, Value value);
   int EffectiveIterations();
   std::vector<double> TimeSteps();
-  bool HasRunFor(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selection);
+  bool HasRunFor(const std::vector<vtkDataObject*>& inputs);
   tautline::OptimizerSettings GetSettings();
   void Optimize(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
@@ -544,7 +585,10 @@ private:
   bool StopWhenValid = false;
   int Boundary = FIXED;
   double FlatAngle = 1.0;
-  double FeatureAngle = 30.0;
+  double FeatureAngle = 40.0;
+  bool KeepFeatures = true;
+  bool SmoothSurface = true;
+  bool ShowFeatures = false;
   double MaximumDisplacement = 0.0;
   bool ProjectToSurface = true;
   bool AllowInversion = false;

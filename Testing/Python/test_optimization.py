@@ -35,6 +35,70 @@ def test_optimize():
     assert mesh.GetPointData().GetArray("Displacement") is None
 
 
+def cube_surface(n):
+    """The surface of the unit cube of n x n squares a side, each as two triangles."""
+    ids, triangles = {}, []
+    for axis, side, i, j in np.ndindex(3, 2, n, n):
+        square = []
+        for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))[:: 1 if side else -1]:
+            place = np.roll((side * n, i + u, j + v), axis)
+            square.append(ids.setdefault(tuple(int(x) for x in place), len(ids)))
+        triangles += [square[:3], [square[0], *square[2:]]]
+    return np.array(list(ids)) / n, np.array(triangles)
+
+
+def test_features():
+    places, cells = cube_surface(6)
+    ends = ((places == 0) | (places == 1)).sum(axis=1)
+    mesh = tl.optimize((places, cells), maximum_iterations=0).mesh
+
+    def array(result, name):
+        data = result.mesh.GetPointData().GetArray(name)
+        return None if data is None else np.array([data.GetComponent(i, 0) for i in range(data.GetNumberOfTuples())])
+
+    kept = tl.optimize(mesh, show_features=True)
+    now = points(kept.mesh)
+    flush = (places == 0) | (places == 1)
+    assert np.abs(now - places)[flush].max() < 1e-12 and "8 corners, 12 curves, 6 patches" in kept.summary
+    assert (array(kept, "FeatureKind") == ends - 1).all() and kept.mesh.GetCellData().GetArray("PatchId") is not None
+    assert (np.abs(now - places).max(axis=1)[ends == 2] > 1e-3).any() and (now == places)[ends == 3].all()
+    assert array(tl.optimize(mesh), "FeatureKind") is None
+    cut = tl.optimize(mesh, keep_features=False)
+    assert np.abs(points(cut.mesh) - places)[flush].max() > 0.01
+    # given kinds: all points that are not within a side are corners
+    stay = tl.optimize(mesh, feature_kinds=np.where(ends > 1, 2, 0))
+    assert (points(stay.mesh) == points(mesh))[ends > 1].all() and stay.free == (ends == 1).sum()
+    # regions: the lower half of the cube
+    low = np.array([places[c].mean(axis=0)[2] < 0.5 for c in cells])
+    halves = tl.optimize(mesh, regions=low.astype(float))
+    middle = places[:, 2] == 0.5
+    assert np.abs(points(halves.mesh)[middle, 2] - 0.5).max() < 1e-12 and "20 curves, 10 patches" in halves.summary
+    # another surface
+    larger = (1.04 * cube_surface(9)[0] - 0.02, cube_surface(9)[1])
+    placed = tl.optimize(mesh, geometry=larger)
+    far = points(placed.mesh)[flush]
+    assert np.allclose(np.minimum(np.abs(far + 0.02), np.abs(far - 1.02)), 0, atol=1e-12)
+    assert "8 corners and 12 curves have a counterpart" in placed.summary and placed.surface_error < 1e-12
+    for wrong, message in (
+        ({"feature_kinds": [1.0]}, "shape"),
+        ({"feature_kinds": np.full(len(places), 4)}, "must be 0 (patch)"),
+        ({"regions": "none such"}, "none such"),
+        ({"geometry": BRACKET}, "Extract Surface"),
+        ({"geometry": larger, "keep_features": False}, "Keep Features"),
+        ({"feature_angle": 200}, "feature_angle"),
+    ):
+        refused(message, tl.optimize, mesh, **wrong)
+    refused("planar mesh", tl.optimize, PLATE, geometry=larger, boundary="on surface")
+    # the shell
+    path, out, other = OUT / "cube.vtu", OUT / "cube-features.vtu", OUT / "cube-larger.vtu"
+    tl.write(mesh, path)
+    tl.write(tl.optimize(larger, maximum_iterations=0).mesh, other)
+    run("optimize", path, "-o", out, "--show-features", "--feature-angle", "30", "--facets")
+    assert (array(tl.optimize(tl.read(out), maximum_iterations=0), "FeatureKind") == ends - 1).all()
+    run("optimize", out, "-o", OUT / "cube-again.vtu", "--feature-kinds", "FeatureKind", "--geometry", other)
+    run("optimize", out, "-o", OUT / "cube-cut.vtu", "--no-features")
+
+
 def test_objectives():
     result = tl.optimize(
         PLATE,

@@ -67,7 +67,7 @@ OPTIMIZERS = (
 BOUNDARIES = ("fixed", "sliding", "free", "on surface")
 
 _MAX_ITERATIONS = 1000000
-_SIZE, _TENSOR, _FIXED, _LIMITS, _WEIGHTS = range(5)  # input arrays of vtkMeshOptimizer
+_SIZE, _TENSOR, _FIXED, _LIMITS, _WEIGHTS, _KINDS, _REGIONS = range(7)  # input arrays of vtkMeshOptimizer
 
 #: An objective: the name of a metric, or (name, {"template": ..., "weight": ..., "target": ...}).
 Objective = Union[str, "tuple[str, dict[str, Any]]"]
@@ -98,7 +98,8 @@ class OptimizeResult:
     displacement: np.ndarray
     #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Largest distance of the elements of a surface in space from the input surface, in the mesh's unit.
+    #: Largest distance of the elements of a surface in space (of the boundary, where its points slide) from the
+    #: facets of the input or of the geometry, in the mesh's unit.
     surface_error: float
     #: The result in words.
     summary: str
@@ -118,7 +119,13 @@ def optimize(
     fixed: str | Sequence | None = None,
     boundary: str = "fixed",
     flat_angle: float = 1.0,
-    feature_angle: float = 30.0,
+    feature_angle: float = 40.0,
+    keep_features: bool = True,
+    smooth_surface: bool = True,
+    show_features: bool = False,
+    feature_kinds: str | Sequence | None = None,
+    regions: str | Sequence | None = None,
+    geometry: Mesh | None = None,
     limits: str | float | Sequence | None = None,
     element_weights: str | Sequence | None = None,
     project_to_surface: bool = True,
@@ -152,6 +159,16 @@ def optimize(
         "on surface" (also points on curved but smooth parts, see feature_angle); or "free".
     flat_angle: largest angle, in degrees, between facets of a flat part, 0 to 90.
     feature_angle: least angle, in degrees, between facets at a feature, 0 to 180.
+    keep_features: whether corners, sharp edges, borders and patches of a surface in space are kept, and with the
+        boundary "on surface" those of the boundary: corners stay, other points slide on their curve or patch.
+    smooth_surface: whether they slide on a smooth surface through the points of the input, or on its facets.
+    show_features: whether the result has the point array `FeatureKind` (0 within a patch, 1 on a curve, 2 corner) and
+        the point and cell array `PatchId`.
+    feature_kinds: kinds of the points instead of those found: 0, 1, 2, or -1 as found; one per point, or the name of a
+        point array.
+    regions: numbers of regions, whose interfaces are kept: one per cell, or the name of a cell array.
+    geometry: a surface of triangles or quadrilaterals that points slide on instead of the surface of the mesh, after
+        they are placed on it; its features are matched to those of the mesh.
     limits: largest displacement of points, in the mesh's unit: a number (0: no limit), one per point (negative: no
         limit), or the name of a point array.
     element_weights: weights of the elements, at least 0: one per cell, or the name of a cell array.
@@ -186,6 +203,9 @@ def optimize(
     filter_.SetBoundary(pick("boundary", boundary, BOUNDARIES))
     filter_.SetFlatAngle(within("flat_angle", flat_angle, 0, 90))
     filter_.SetFeatureAngle(within("feature_angle", feature_angle, 0, 180))
+    filter_.SetKeepFeatures(bool(keep_features))
+    filter_.SetSmoothSurface(bool(smooth_surface))
+    filter_.SetShowFeatures(bool(show_features))
     filter_.SetProjectToSurface(bool(project_to_surface))
     filter_.SetUntangleFirst(bool(untangle_first))
     filter_.SetAllowInversion(bool(allow_inversion))
@@ -205,7 +225,11 @@ def optimize(
     inputs.use(_FIXED, fixed, "fixed", POINTS)
     inputs.use(_LIMITS, limits, "limits", POINTS)
     inputs.use(_WEIGHTS, element_weights, "element weights", CELLS)
+    inputs.use(_KINDS, feature_kinds, "feature kinds", POINTS)
+    inputs.use(_REGIONS, regions, "regions", CELLS)
     filter_.SetInputDataObject(0, inputs.mesh)
+    if geometry is not None:
+        filter_.SetInputDataObject(3, as_mesh(geometry))
     if reference is not None:
         filter_.SetInputDataObject(1, as_mesh(reference))
     run(filter_, messages)
@@ -338,6 +362,16 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array")
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
     parser.add_argument("--worst-metric", metavar="NAME", help="the metric that tells which element is the worst one")
+    parser.add_argument("--feature-angle", type=float, metavar="DEGREES", default=40.0,
+                        help="edges that bend more are sharp (default: 40)")  # fmt: skip
+    parser.add_argument("--no-features", action="store_false", dest="keep_features",
+                        help="points of a surface may leave sharp edges")  # fmt: skip
+    parser.add_argument("--facets", action="store_false", dest="smooth_surface",
+                        help="points slide on the facets of the input, not on a smooth surface")  # fmt: skip
+    parser.add_argument("--show-features", action="store_true", help="add the arrays FeatureKind and PatchId")
+    parser.add_argument("--feature-kinds", metavar="ARRAY", help="point array: 0 patch, 1 curve, 2 corner, -1 as found")
+    parser.add_argument("--regions", metavar="ARRAY", help="cell array of regions, whose interfaces are kept")
+    parser.add_argument("--geometry", metavar="FILE", help="a surface that points slide on instead of their own")
 
 
 def _objective(text: str) -> Objective:
@@ -356,7 +390,8 @@ def _objective(text: str) -> Objective:
 
 def _run_optimize(arguments: argparse.Namespace) -> None:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
-             "boundary", "worst_metric", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
+             "boundary", "worst_metric", "feature_angle", "keep_features", "smooth_surface", "show_features",
+             "feature_kinds", "regions", "geometry", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
     result = optimize(arguments.mesh, arguments.objective, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))

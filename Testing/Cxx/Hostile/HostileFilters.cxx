@@ -218,6 +218,24 @@ vtkSmartPointer<vtkAlgorithm> optimizer()
   return filter;
 }
 
+/// Slides on the boundary, with all arrays and inputs of features.
+vtkSmartPointer<vtkAlgorithm> slidingOptimizer()
+{
+  auto filter = made<vtkMeshOptimizer>();
+  filter->SetTimeLimit(Seconds);
+  filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
+  filter->ShowFeaturesOn();
+  return filter;
+}
+
+/// The input is the geometry that a tetrahedral mesh slides on.
+vtkSmartPointer<vtkAlgorithm> geometryOptimizer()
+{
+  auto filter = slidingOptimizer();
+  filter->SetInputDataObject(0, tetrahedra());
+  return filter;
+}
+
 vtkSmartPointer<vtkAlgorithm> untangler()
 {
   auto filter = made<vtkMeshUntangler>();
@@ -330,6 +348,8 @@ void addFilters(std::vector<HostileFilter>& list)
     tetrahedra);
   add("Optimization", "vtkMeshOptimizer", "", optimizer, triangles, 0, true, 2);
   add("Optimization", "vtkMeshOptimizer", "solid", optimizer, tetrahedra);
+  add("Optimization", "vtkMeshOptimizer", "sliding", slidingOptimizer, tetrahedra);
+  add("Optimization", "vtkMeshOptimizer", "geometry", geometryOptimizer, triangles, 3, false);
   add("Untangling", "vtkMeshUntangler", "", untangler, triangles, 0, true, 1);
   add("Untangling", "vtkMeshUntangler", "solid", untangler, tetrahedra);
   add(

@@ -1,0 +1,281 @@
+// The features of a mesh and how points slide on them.
+#include "OptimizerSetup.h"
+
+#include "MeshAdapter.h"
+
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+template <class Array, class Value>
+void addArray(vtkDataSetAttributes* to, const char* name, const std::vector<Value>& values)
+{
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  to->AddArray(array);
+}
+
+/// The kinds in a point array, of points that are one the largest; empty without an array.
+std::vector<signed char> kindsOf(vtkDataArray* array, const std::vector<Index>& representative)
+{
+  std::vector<signed char> kinds;
+  for (double value : scalarsOf(array, "feature kinds"))
+  {
+    if (!(value == DetectKind || value == PatchPoint || value == CurvePoint ||
+          value == CornerPoint))
+    {
+      throw Error("The array of feature kinds has the value " + std::to_string(value) +
+        " at point " + std::to_string(kinds.size()) +
+        "; it must be 0 (patch), 1 (curve), 2 (corner) or -1 (as detected).");
+    }
+    kinds.push_back(static_cast<signed char>(value));
+  }
+  for (std::size_t p = 0; !kinds.empty() && p < representative.size(); ++p)
+  {
+    kinds[representative[p]] = std::max(kinds[representative[p]], kinds[p]);
+  }
+  return kinds;
+}
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::findFeaturesOf(const OptimizerSettings& settings, const InputBlock& block)
+{
+  const std::vector<signed char> kinds =
+    kindsOf(chosenArray(settings.arrays, KindArray, block.input, "of feature kinds"),
+      this->TheMesh.representative());
+  const std::vector<double> regions =
+    scalarsOf(chosenArray(settings.arrays, RegionArray, block.input, "of regions"), "regions");
+  FeatureOptions options;
+  options.angle = settings.featureAngle;
+  options.kinds = kinds.empty() ? nullptr : kinds.data();
+  options.regions = regions.empty() ? nullptr : regions.data();
+  this->Found = findFeatures(this->TheMesh.mesh(), options);
+  this->HasFeatures = true;
+}
+
+//------------------------------------------------------------------------------
+/// Whether all points of the surface or the boundary are kept on its features.
+bool OptimizerSetup::slidesOnModel(const OptimizerSettings& settings) const
+{
+  const bool surface = this->TheMesh.mesh().dimension() == Dimension::Surface;
+  return settings.keepFeatures &&
+    (surface ? settings.options.surface.project : settings.boundary == BoundaryMotion::OnSurface);
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::setFeatures(const OptimizerSettings& settings, const InputBlock& block)
+{
+  const bool regions =
+    chosenArray(settings.arrays, RegionArray, block.input, "of regions") != nullptr;
+  const bool keep = this->slidesOnModel(settings) || (settings.keepFeatures && regions);
+  vtkDataSet* geometry = settings.geometry ? counterpartOf(block, settings.geometry) : nullptr;
+  if (settings.geometry && !this->slidesOnModel(settings))
+  {
+    throw Error("With a Geometry, points must be able to slide on it: switch Keep Features and "
+                "Project To Surface on and, for volume meshes, let the boundary slide on smooth "
+                "parts.");
+  }
+  if (keep || settings.showFeatures)
+  {
+    this->findFeaturesOf(settings, block);
+  }
+  if (!keep)
+  {
+    return;
+  }
+  this->holdPoints(settings);
+  this->Options.slideSurface = nullptr;
+  this->Options.fixed = this->TheMesh.fixed().data();
+  if (settings.geometry)
+  {
+    this->slideOnGeometry(settings, geometry);
+    return;
+  }
+  this->Model = makeSurfaceModel(this->TheMesh.mesh(), this->Found, settings.smoothSurface);
+  this->Options.model = &this->Model;
+  this->Options.parts = this->Parts.data();
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::slideOnGeometry(const OptimizerSettings& settings, vtkDataSet* geometry)
+{
+  if (this->TheMesh.mesh().dimension() == Dimension::Planar)
+  {
+    throw Error("A planar mesh cannot slide on a Geometry, which is a surface in space: remove "
+                "the Geometry.");
+  }
+  if (!geometry || geometry->GetNumberOfCells() == 0)
+  {
+    throw Error("The Geometry is empty: give a surface of triangles or quadrilaterals.");
+  }
+  MeshAdapter adapter(geometry, settings.options.threads);
+  adapter.mergeCoincidentPoints(settings.options.threads);
+  MeshView view = adapter.mesh().view();
+  std::vector<double> points(view.points, view.points + 3 * view.numberOfPoints);
+  this->TheMesh.frame().enter(points);
+  view.points = points.data();
+  const Mesh mesh(view, settings.options.threads);
+  if (mesh.dimension() == Dimension::Volume || mesh.dimension() == Dimension::None)
+  {
+    throw Error(mesh.dimension() == Dimension::Volume
+        ? "The Geometry has volume cells: run Extract Surface on it first."
+        : "The Geometry has no triangles or quadrilaterals: give a surface, for example an STL "
+          "file, or run Triangulate on it first.");
+  }
+  FeatureOptions options;
+  options.angle = settings.featureAngle;
+  options.asSurface = true;
+  const auto n = this->Parts.size();
+  std::vector<unsigned char> slides(n);
+  for (std::size_t p = 0; p < n; ++p)
+  {
+    // Points that are fixed for another reason stay where they are.
+    slides[p] = !this->Held[p] && (this->Parts[p] >= 0 || this->Found.kind[p] == CornerPoint);
+  }
+  this->Match =
+    matchGeometry(this->TheMesh.mesh(), this->Found, slides, mesh, findFeatures(mesh, options));
+  this->HasGeometry = true;
+  this->Parts = this->Match.parts;
+  this->Options.model = &this->Match.model;
+  this->Options.parts = this->Parts.data();
+  this->placePoints();
+}
+
+//------------------------------------------------------------------------------
+/// Starts from the points on the geometry; those of elements that would become invalid stay, and
+/// slide as soon as a step takes them there.
+void OptimizerSetup::placePoints()
+{
+  constexpr int maxRounds = 20;
+  const Mesh& mesh = this->TheMesh.mesh();
+  const MeshView& view = mesh.view();
+  const std::vector<signed char>& before = this->TheMesh.validity();
+  std::vector<double>& points = this->Match.points;
+  bool valid = false;
+  for (int round = 0; round < maxRounds && !valid; ++round)
+  {
+    const std::vector<signed char> after = this->TheMesh.validityAt(points);
+    valid = true;
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    {
+      const bool lost = before[cell] == Valid && after[cell] != Valid;
+      valid = valid && !lost;
+      for (Index n = view.offsets[cell]; lost && n < view.offsets[cell + 1]; ++n)
+      {
+        std::copy_n(view.points + 3 * view.connectivity[n], 3, &points[3 * view.connectivity[n]]);
+      }
+    }
+  }
+  if (!valid)
+  {
+    points.assign(view.points, view.points + 3 * view.numberOfPoints);
+  }
+  MeshView placed = view;
+  placed.points = points.data();
+  this->Placed = std::make_unique<Mesh>(placed, this->Options.threads);
+  this->Placed->setMirrored(mesh.mirrored());
+}
+
+//------------------------------------------------------------------------------
+/// Which points slide on which part of the model, and which stay.
+void OptimizerSetup::holdPoints(const OptimizerSettings& settings)
+{
+  const Mesh& mesh = this->TheMesh.mesh();
+  const Features& found = this->Found;
+  const bool surface = mesh.dimension() == Dimension::Surface;
+  const bool onBoundary = surface || settings.boundary == BoundaryMotion::OnSurface;
+  this->Parts = partsOfPoints(found);
+  this->Held = this->TheMesh.fixed();
+  BoundaryShape held;
+  held.fixed.assign(found.kind.size(), 0);
+  // Points on interfaces slide, but for those on a boundary that moves otherwise.
+  std::vector<char> onInterface(found.kind.size(), 0), outside(found.kind.size(), 0);
+  for (const Features::Facet& facet : found.facets)
+  {
+    for (int k = 0; k < facet.size; ++k)
+    {
+      (facet.interface ? onInterface : outside)[facet.nodes[k]] = 1;
+    }
+  }
+  for (const Features::Edge& edge : found.edges)
+  {
+    for (Index p : { edge.first, edge.second })
+    {
+      (edge.interface ? onInterface : outside)[p] |= mesh.dimension() == Dimension::Planar;
+    }
+  }
+  for (std::size_t p = 0; p < found.kind.size(); ++p)
+  {
+    const bool slides = onBoundary || (onInterface[p] && !outside[p]);
+    held.fixed[p] = slides ? found.kind[p] == CornerPoint : onInterface[p] && outside[p];
+    this->Parts[p] = slides ? this->Parts[p] : -1;
+  }
+  // The border of a surface that slides where it is straight stays elsewhere, see setFixed().
+  for (std::size_t i = 0; surface && i < this->Shape.lines.size(); ++i)
+  {
+    this->Shape.lines[i] = this->Shape.planes[i] = 0;
+  }
+  for (std::size_t p = 0; !surface && p < this->Parts.size() && !this->Shape.lines.empty(); ++p)
+  {
+    for (int c = 0; c < 3 && this->Parts[p] >= 0; ++c)
+    {
+      this->Shape.lines[3 * p + c] = this->Shape.planes[3 * p + c] = 0;
+    }
+  }
+  this->TheMesh.fixCorners(held);
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::addFeatures(vtkDataSet* output) const
+{
+  if (!this->HasFeatures)
+  {
+    return;
+  }
+  std::vector<signed char> kind = this->Found.kind;
+  std::vector<int> patch = this->Found.patchOf;
+  const std::vector<Index>& one = this->TheMesh.representative();
+  for (std::size_t p = 0; p < one.size(); ++p)
+  {
+    kind[p] = kind[one[p]];
+    patch[p] = patch[one[p]];
+  }
+  addArray<vtkSignedCharArray>(output->GetPointData(), "FeatureKind", kind);
+  addArray<vtkIntArray>(output->GetPointData(), "PatchId", patch);
+  if (!this->Found.patchOfCell.empty())
+  {
+    addArray<vtkIntArray>(output->GetCellData(), "PatchId", this->Found.patchOfCell);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string OptimizerSetup::describeFeatures() const
+{
+  if (!this->HasFeatures)
+  {
+    return "";
+  }
+  const auto count = [](Index n, const char* one, const char* many)
+  { return std::to_string(n) + " " + (n == 1 ? one : many); };
+  const std::string geometry = !this->HasGeometry
+    ? ""
+    : " Of these, " + std::to_string(this->Match.corners) + " corners and " +
+      std::to_string(this->Match.curves) + " curves have a counterpart in the Geometry.";
+  return "Features: " + count(this->Found.corners, "corner", "corners") + ", " +
+    count(this->Found.curves, "curve", "curves") + ", " +
+    count(this->Found.patches, "patch", "patches") + "." + geometry;
+}
+}
