@@ -1,0 +1,113 @@
+#include "OptionChecks.h"
+
+#include "tautline/Mesh/BoundaryPoints.h"
+
+#include <cmath>
+#include <string>
+
+namespace tautline
+{
+namespace
+{
+void requireFinite(const double* values, Index count, const char* what)
+{
+  for (Index i = 0; values && i < count; ++i)
+  {
+    if (std::isnan(values[i]))
+    {
+      throw Error(std::string(what) + " of point " + std::to_string(i / 3) + " is NaN.");
+    }
+  }
+}
+
+/// Whether a point of the boundary may leave it.
+bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options)
+{
+  if (!options.fixed || options.slideSurface)
+  {
+    return false;
+  }
+  const std::vector<char> boundary = boundaryPoints(mesh);
+  const auto slides = [](const double* directions, Index p)
+  {
+    return directions &&
+      norm({ directions[3 * p], directions[3 * p + 1], directions[3 * p + 2] }) > 0;
+  };
+  for (Index p = 0; p < static_cast<Index>(boundary.size()); ++p)
+  {
+    if (boundary[p] && !options.fixed[p] && !slides(options.slidePlanes, p) &&
+      !slides(options.slideLines, p))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// With a free boundary, a mesh shrinks to a point where smaller elements are better.
+void checkSizes(const Mesh& mesh, const OptimizeOptions& options)
+{
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  for (const Objective& objective : options.objectives)
+  {
+    const MetricInfo& info = metricInfo(objective.metric);
+    const bool ofSize = info.lengthPower(dimension) != 0 ||
+      (info.family == MetricFamily::Simplex && !info.scaleInvariant);
+    if (ofSize && !canUntangle(objective) && boundaryMoves(mesh, options))
+    {
+      throw Error(std::string(info.label) +
+        " depends on the size of the elements, and the boundary may move: the mesh would shrink "
+        "to a point, or grow without bound. Fix the boundary or let it slide, or choose a metric "
+        "relative to a target size (" +
+        metricInfo(Metric::SizeBarrier).label + ").");
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
+{
+  const StoppingCriteria& stop = options.stopping;
+  if (options.objectives.empty())
+  {
+    throw Error("There is no objective: add one, for example the inverse mean ratio.");
+  }
+  if (stop.maximumIterations < 0 || !(stop.maximumSeconds >= 0) || !(stop.gradientNorm >= 0) ||
+    !(stop.relativeChange >= 0) || !(stop.reduction > 0 && stop.reduction <= 1))
+  {
+    throw Error(
+      "Stopping criteria must not be negative, and the fraction of the possible reduction "
+      "lies between 0 (exclusive) and 1.");
+  }
+  if (!(options.relaxation > 0 && options.relaxation < 2))
+  {
+    throw Error("The relaxation must lie between 0 and 2 (both exclusive); 1 is Newton's step.");
+  }
+  if (options.patchIterations < 1 || !(options.culling >= 0) || !(options.improveWorst >= 0))
+  {
+    throw Error("Patch iterations must be at least 1; culling and the mean's allowance for the "
+                "worst element must not be negative.");
+  }
+  const bool global = isGlobal(options.optimizer);
+  if (options.model && !options.parts)
+  {
+    throw Error("A model needs the part of it that each point slides on.");
+  }
+  if (global && (options.slideSurface || options.model))
+  {
+    throw Error(
+      "Sliding on the boundary needs a local optimizer: choose Automatic or Local Newton.");
+  }
+  if (global && (options.limits || mesh.dimension() == Dimension::Surface))
+  {
+    throw Error(options.limits
+        ? "Limits on the way of points need a local optimizer: choose Automatic or Local Newton."
+        : "A surface in space needs a local optimizer: choose Automatic or Local Newton.");
+  }
+  checkSizes(mesh, options);
+  requireFinite(options.limits, mesh.view().numberOfPoints, "The limit");
+  requireFinite(options.slidePlanes, 3 * mesh.view().numberOfPoints, "The slide plane");
+  requireFinite(options.slideLines, 3 * mesh.view().numberOfPoints, "The slide line");
+}
+}
