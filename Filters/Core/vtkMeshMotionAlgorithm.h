@@ -6,10 +6,10 @@
  * points, or blocks of these, which are treated one after the other, each with its own boundary: a
  * seam between two blocks stays in place with the boundary, and is a warning; if the boundary can
  * slide or move freely, it is an error, as the blocks would come apart (Merge Blocks is the
- * remedy). A mesh that is reversed throughout is treated as its mirror image. Cells that list their
- * points in the opposite order of the others are treated as if they did not, and keep their order in
- * the output; a message says how many. Parts without a consistent orientation (a Moebius band), image
- * data (implicit points) and cells of higher order are refused.
+ * remedy). A mesh that is reversed throughout is treated as its mirror image. Cells that list
+ * their points in the opposite order of the others are treated as if they did not, and keep their
+ * order in the output; a message says how many. Parts without a consistent orientation (a Moebius
+ * band), image data (implicit points) and cells of higher order are refused.
  *
  * @par Fixed points:
  * A point does not move where a point array (SetInputArrayToProcess(); the index is in the

@@ -18,8 +18,8 @@
  *
  * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted
  * and degenerate elements, duplicate cells, coincident facets that cannot be merged, polygons,
- * polyhedra, cells of higher order, cells without a consistent orientation, parts without a point where the solution is
- * given, values and coefficients that are not finite.
+ * polyhedra, cells of higher order, cells without a consistent orientation, parts without a point
+ * where the solution is given, values and coefficients that are not finite.
  *
  * Arrays (SetInputArrayToProcess), by index: 0 fixed points (of points or cells), 1 source, 2 given
  * values (of points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.

@@ -3,8 +3,8 @@
  * @brief Which cells of a mesh to list in the opposite order so that all agree.
  *
  * Many programs write cells whose points run in either sense. The cells then are as good as others;
- * only their order is not that of their neighbours. Neighbours tell by the facet they share, however
- * tangled the mesh is.
+ * only their order is not that of their neighbours. Neighbours tell by the facet they share,
+ * however tangled the mesh is.
  */
 #ifndef tautline_CellOrder_h
 #define tautline_CellOrder_h
