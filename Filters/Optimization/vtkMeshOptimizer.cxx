@@ -355,6 +355,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
     options.improveWorst = this->ImproveWorst;
   }
   tautline::applyPreset(settings.preset, options);
+  options.holdWorst = this->HoldWorst;
   if (this->WorstMetric >= 0)
   {
     options.worstMetric = static_cast<tautline::Metric>(this->WorstMetric);
@@ -574,6 +575,7 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Relaxation: " << this->Relaxation << "\n";
   os << indent << "ImproveWorst: " << this->ImproveWorst << "\n";
   os << indent << "WorstMetric: " << this->WorstMetric << "\n";
+  os << indent << "HoldWorst: " << this->HoldWorst << "\n";
   os << indent << "Animation: " << this->Animation << "\n";
   os << indent << "AnimationMemory: " << this->AnimationMemory << "\n";
 }

@@ -484,15 +484,25 @@ public:
   ///@{
   /**
    * The metric that tells which element is the worst one, by its number (tautline::Metric), also
-   * for the presets: of the preset WORST_ELEMENT and ImproveWorst, and of the promise that the worst
-   * element does not get worse. -1, the default: where the worst element is improved, the scaled
-   * Jacobian for meshes with quadrilaterals, hexahedra or wedges; else the metric of the
+   * for the presets: of the preset WORST_ELEMENT and ImproveWorst, and of the promise that the
+   * worst element does not get worse. -1, the default: where the worst element is improved, the
+   * scaled Jacobian for meshes with quadrilaterals, hexahedra or wedges; else the metric of the
    * first objective.
    */
   void SetWorstMetric(int metric);
   vtkGetMacro(WorstMetric, int);
   /// By name, label or symbol; unknown names are an error.
   void SetWorstMetricByName(const char* name);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the worst element of a valid input must not get worse. Off: a smaller objective may
+   * cost single elements. The default is on.
+   */
+  vtkSetMacro(HoldWorst, bool);
+  vtkGetMacro(HoldWorst, bool);
+  vtkBooleanMacro(HoldWorst, bool);
   ///@}
 
   ///@{
@@ -599,6 +609,7 @@ private:
   double Relaxation = 1.4;
   double ImproveWorst = 0.0;
   int WorstMetric = -1;
+  bool HoldWorst = true;
   bool Animation = false;
   double AnimationMemory = 1000.0;
 

@@ -132,6 +132,7 @@ def optimize(
     untangle_first: bool = True,
     allow_inversion: bool = False,
     worst_metric: str | None = None,
+    hold_worst: bool = True,
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
@@ -139,7 +140,8 @@ def optimize(
 ) -> OptimizeResult:
     """Move the points of a mesh so that its elements become better.
 
-    Unless allow_inversion, neither the objective nor the number of invalid elements nor the worst element becomes worse.
+    Unless allow_inversion, neither the objective nor the number of invalid elements nor the worst element becomes
+    worse.
 
     mesh: a vtkDataSet with explicit points, a composite data set, a file name or (points, cells). It is not changed.
     objectives: what to optimize: names of metrics, or pairs of a name and a dict with any of "template" (how the values
@@ -178,6 +180,8 @@ def optimize(
     worst_metric: the metric that tells which element is the worst one, which never gets worse by it and which the
         preset "worst element" and improve_worst improve. The default is the scaled Jacobian where the worst element is
         improved in a mesh with quadrilaterals, hexahedra or wedges; else the metric of the first objective.
+    hold_worst: whether the worst element of a valid mesh must not get worse; False: a smaller objective may cost single
+        elements.
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
@@ -209,6 +213,7 @@ def optimize(
     filter_.SetProjectToSurface(bool(project_to_surface))
     filter_.SetUntangleFirst(bool(untangle_first))
     filter_.SetAllowInversion(bool(allow_inversion))
+    filter_.SetHoldWorst(bool(hold_worst))
     if worst_metric is not None:
         filter_.SetWorstMetricByName(worst_metric)
         messages.raise_errors()
@@ -362,6 +367,8 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array")
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
     parser.add_argument("--worst-metric", metavar="NAME", help="the metric that tells which element is the worst one")
+    parser.add_argument("--no-hold-worst", action="store_false", dest="hold_worst",
+                        help="the worst element may get worse")  # fmt: skip
     parser.add_argument("--feature-angle", type=float, metavar="DEGREES", default=40.0,
                         help="edges that bend more are sharp (default: 40)")  # fmt: skip
     parser.add_argument("--no-features", action="store_false", dest="keep_features",
@@ -390,8 +397,9 @@ def _objective(text: str) -> Objective:
 
 def _run_optimize(arguments: argparse.Namespace) -> None:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
-             "boundary", "worst_metric", "feature_angle", "keep_features", "smooth_surface", "show_features",
-             "feature_kinds", "regions", "geometry", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
+             "boundary", "worst_metric", "hold_worst", "feature_angle", "keep_features", "smooth_surface",
+             "show_features", "feature_kinds", "regions", "geometry", "time_limit", "threads",
+             "merge_coincident_points")  # fmt: skip
     result = optimize(arguments.mesh, arguments.objective, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))

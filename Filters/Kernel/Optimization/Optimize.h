@@ -43,8 +43,8 @@ struct OptimizeResult
  *
  * Unless allowInversion, the result is never worse than the input in three numbers, which are
  * computed anew from its points: the invalid elements, and, where the input has none, the value of
- * the worst element (see OptimizeOptions::worstMetric) and the scalarized objective. Throws Error on options that cannot be met and names the
- * remedy.
+ * the worst element (see OptimizeOptions::worstMetric and holdWorst) and the scalarized objective.
+ * Throws Error on options that cannot be met and names the remedy.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
  */
 TAUTLINE_KERNEL_EXPORT OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options);

@@ -154,6 +154,9 @@ struct OptimizeOptions
    * quadrilaterals, hexahedra or wedges; else the metric of the first objective.
    */
   std::optional<Metric> worstMetric;
+  /// Whether the worst element of a valid input must not get worse. Off: a smaller objective may
+  /// cost single elements.
+  bool holdWorst = true;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
   /**
    * @brief Called after each iteration; return false to stop. Called from the calling thread. While

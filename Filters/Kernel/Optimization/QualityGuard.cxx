@@ -68,6 +68,7 @@ QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
   this->Judged.evaluation.threads = options.threads;
   const MetricInfo& info = metricInfo(metric);
   this->Larger = info.direction == Direction::LargerIsBetter;
+  this->HoldWorst = options.holdWorst;
   if (options.allowInversion || info.direction == Direction::Neutral)
   {
     return;
@@ -87,6 +88,10 @@ QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
 //------------------------------------------------------------------------------
 bool QualityGuard::worse(double value) const
 {
+  if (!this->HoldWorst)
+  {
+    return false;
+  }
   const double margin = rounding * std::abs(this->Worst);
   return this->Larger ? value < this->Worst - margin : !(value <= this->Worst + margin);
 }

@@ -32,7 +32,7 @@ public:
   /// answers for, where inversion is allowed, nor for metrics where neither direction is better.
   bool active() const { return this->Active; }
   /// Whether a value of the metric is worse than that of the worst element of the input, beyond
-  /// rounding.
+  /// rounding; never if OptimizeOptions::holdWorst is off.
   bool worse(double value) const;
   /// Whether an element of the problem's points is invalid, or worse than all of the input.
   bool violated(OptimizationProblem& problem) const;
@@ -51,6 +51,7 @@ private:
   Objective Judged;
   bool Active = false;
   bool Larger = false;
+  bool HoldWorst = true;
   double Worst = 0.0;
 };
 }

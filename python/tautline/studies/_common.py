@@ -198,6 +198,7 @@ def _configured(
     scalarization = "weighted sum" if weights else method.scalarization
     filter_.SetScalarization(pick("scalarization", scalarization, _optimization.SCALARIZATIONS))
     filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), _optimization.OPTIMIZERS))
+    filter_.SetHoldWorst(False)  # the methods of the dissertation promise nothing about single elements
     filter_.SetMaximumIterations(iterations)
     filter_.SetPatchIterations(patch_iterations)
     filter_.SetBeta(beta)
