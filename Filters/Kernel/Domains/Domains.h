@@ -82,7 +82,8 @@ TAUTLINE_KERNEL_EXPORT const DomainInfo& findDomain(const std::string& name);
  */
 TAUTLINE_KERNEL_EXPORT void checkDomainSize(double cells, DomainKind kind);
 
-/// The boundary of a planar domain, sampled with segments of about the given length.
+/// The boundary of a planar domain, sampled with segments of about the given length, 1e-5 to 1e3;
+/// of a solid one from 1e-4. Throws Error otherwise.
 TAUTLINE_KERNEL_EXPORT PlanarBoundary planarBoundary(const std::string& name, double spacing);
 /// The boundary of a solid domain.
 TAUTLINE_KERNEL_EXPORT SolidBoundary solidBoundary(const std::string& name, double spacing);

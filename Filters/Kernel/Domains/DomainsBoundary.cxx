@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <sstream>
 
 namespace tautline
 {
@@ -11,6 +12,22 @@ namespace
 constexpr int Outer = 1;
 constexpr int Inner = 2;
 constexpr int Third = 3;
+/// The domains are about 1 large; a finer spacing than the smallest is that of more cells than any
+/// memory holds.
+constexpr double SmallestPlanarSpacing = 1e-5;
+constexpr double SmallestSolidSpacing = 1e-4;
+constexpr double LargestSpacing = 1e3;
+
+void requireSpacing(double spacing, double smallest)
+{
+  if (!(spacing >= smallest && spacing <= LargestSpacing))
+  {
+    std::ostringstream text;
+    text << "the spacing of a boundary is " << spacing << "; from " << smallest << " to "
+         << LargestSpacing << " is allowed";
+    throw Error(text.str());
+  }
+}
 
 /// Draws closed outlines as segments of about one length.
 class Pen
@@ -19,10 +36,6 @@ public:
   explicit Pen(double spacing)
     : Spacing(spacing)
   {
-    if (!(spacing > 0.0))
-    {
-      throw Error("the spacing of a boundary must be positive");
-    }
   }
 
   void moveTo(double x, double y)
@@ -396,6 +409,7 @@ PlanarBoundary planarBoundary(const std::string& name, double spacing)
   {
     throw Error("the domain '" + name + "' is not bounded by segments in the plane");
   }
+  requireSpacing(spacing, SmallestPlanarSpacing);
   Pen pen(spacing);
   found->second(pen);
   return pen.Result;
@@ -404,6 +418,7 @@ PlanarBoundary planarBoundary(const std::string& name, double spacing)
 //------------------------------------------------------------------------------
 SolidBoundary solidBoundary(const std::string& name, double spacing)
 {
+  requireSpacing(spacing, SmallestSolidSpacing);
   if (name == "sphere")
   {
     return sphereInCube(spacing);

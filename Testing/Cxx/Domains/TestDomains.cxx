@@ -19,6 +19,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -294,11 +295,62 @@ void checkSizes()
   }
   tautline::checkDomainSize(1e5, tautline::DomainKind::Solid);
 }
+
+/// Numbers of extreme size are refused by name, by the source and by the kernel, and change nothing.
+void checkExtremes()
+{
+  vtkNew<vtkDomainSource> source;
+  source->SetDomainByName("square");
+  vtkNew<vtkTest::ErrorObserver> errors;
+  source->AddObserver(vtkCommand::ErrorEvent, errors);
+  const auto refuses = [&](const char* name, const std::function<void()>& set)
+  {
+    errors->Clear();
+    set();
+    TAUTLINE_CHECK(errors->GetErrorMessage().find(name) != std::string::npos);
+    TAUTLINE_CHECK(errors->GetErrorMessage().find("is kept") != std::string::npos);
+  };
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double extreme : { 1e-150, 1e150, 0.0, -1.0, std::nan(""), infinity })
+  {
+    const tautline::Context context(std::to_string(extreme));
+    refuses("ElementSize is ", [&] { source->SetElementSize(extreme); });
+    refuses("AspectRatio is ", [&] { source->SetAspectRatio(extreme); });
+    const bool tiny = extreme >= 0.0 && extreme < 1.0;
+    if (!tiny)
+    {
+      refuses("LayerWidth is ", [&] { source->SetLayerWidth(extreme); });
+    }
+    if (!tiny && extreme != -1.0)
+    {
+      refuses("Amount is ", [&] { source->SetAmount(extreme); });
+    }
+    TAUTLINE_CHECK_THROWS(tautline::structuredSquare(extreme, 1.0, 0.2), "whole elements");
+    TAUTLINE_CHECK_THROWS(tautline::structuredSquare(0.1, extreme, 0.2),
+      extreme >= 1.0 ? "whole elements" : "the aspect ratio must be");
+    TAUTLINE_CHECK_THROWS(
+      tautline::planarBoundary("disk2d", extreme), "the spacing of a boundary is");
+    TAUTLINE_CHECK_THROWS(
+      tautline::solidBoundary("sphere", extreme), "the spacing of a boundary is");
+  }
+  refuses("LayerWidth is ", [&] { source->SetLayerWidth(-1e-150); });
+  // What is inside: no layer, and one that is narrower than any element.
+  source->Update();
+  TAUTLINE_CHECK_EQUAL(source->GetOutput()->GetNumberOfCells(), vtkIdType(2 * 14 * 14));
+  for (const double width : { 0.0, 1e-150 })
+  {
+    source->SetLayerWidth(width);
+    source->Update();
+    TAUTLINE_CHECK_EQUAL(source->GetOutput()->GetNumberOfCells(), vtkIdType(200));
+    TAUTLINE_CHECK(std::abs(totalSize(source->GetOutput()) - 1.0) < 1e-12);
+  }
+}
 }
 
 int TestDomains(int, char* argv[])
 {
   checkSizes();
+  checkExtremes();
   checkMotion();
   checkSquare();
   checkNames();
