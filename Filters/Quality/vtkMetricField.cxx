@@ -16,6 +16,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <cmath>
 
 vtkStandardNewMacro(vtkMetricField);
 
@@ -99,10 +100,12 @@ int vtkMetricField::RequestData(
       for (int c = 0; c < (this->Cell == TRIANGLE ? 2 : 3); ++c)
       {
         const double length = this->Bounds[2 * c + 1] - this->Bounds[2 * c];
-        if (this->Dimensions[c] < 1 || !(length > 0 || (length == 0 && this->Dimensions[c] == 1)))
+        const bool increases = length > 0 || (length == 0 && this->Dimensions[c] == 1);
+        if (this->Dimensions[c] < 1 || !increases || !std::isfinite(length))
         {
           throw tautline::Error(std::string("Along ") + "xyz"[c] +
-            ", Bounds must increase and Dimensions be at least 1; equal bounds need dimension 1.");
+            ", Bounds must increase and be finite, and Dimensions be at least 1; equal bounds need "
+            "dimension 1.");
         }
       }
       const tautline::MetricField field(

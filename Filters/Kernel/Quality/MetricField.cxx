@@ -1,10 +1,40 @@
 #include "MetricField.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tautline
 {
+namespace
+{
+/// The length of the first edge, or the area of the first face less what rounding makes of a line,
+/// in a unit that neither overflows nor underflows. NaN or 0 if there is none.
+double sizeOfBase(const Vec3& a, const Vec3& b, bool flat)
+{
+  double extent = 0.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    extent = std::max({ extent, std::abs(a[c]), flat ? 0.0 : std::abs(b[c]) });
+  }
+  if (!(extent > 0) || !std::isfinite(extent))
+  {
+    return 0.0;
+  }
+  Vec3 u, v;
+  for (int c = 0; c < 3; ++c)
+  {
+    u[c] = std::ldexp(a[c], -std::ilogb(extent));
+    v[c] = std::ldexp(b[c], -std::ilogb(extent));
+  }
+  constexpr double rounding = 1e-12;
+  return flat ? norm(u) : norm(cross(u, v)) - rounding * norm(u) * norm(v);
+}
+}
+
 //------------------------------------------------------------------------------
 MetricField::MetricField(CellType type, const std::array<Vec3, 3>& fixed)
   : Type(type)
+  , Origin(fixed[0])
   , Fixed(fixed)
 {
   if (type != CellType::Triangle && type != CellType::Tetrahedron)
@@ -14,11 +44,11 @@ MetricField::MetricField(CellType type, const std::array<Vec3, 3>& fixed)
   const bool flat = type == CellType::Triangle;
   for (Vec3& p : this->Fixed)
   {
+    p = p - this->Origin;
     p[2] = flat ? 0.0 : p[2];
   }
-  const Vec3 a = this->Fixed[1] - this->Fixed[0], b = this->Fixed[2] - this->Fixed[0];
-  // The length of the edge or the area of the face: without it, no element is valid.
-  const double size = flat ? norm(a) : norm(cross(a, b)) - 1e-12 * norm(a) * norm(b);
+  // Without it, no element is valid.
+  const double size = sizeOfBase(this->Fixed[1], this->Fixed[2], flat);
   if (!(size > 0) || !std::isfinite(size))
   {
     throw Error(flat ? "The two fixed vertices coincide or are not finite: move one of them."
@@ -67,8 +97,8 @@ void MetricField::forEachSlice(const FieldGrid& grid, int threads, const Visit& 
       const std::array<Index, 3> at = { i % grid.size[0], i / grid.size[0], k };
       for (int c = 0; c < 3; ++c)
       {
-        points[3 * i + c] =
-          grid.origin[c] + static_cast<double>(grid.first[c] + at[c]) * grid.spacing[c];
+        points[3 * i + c] = (grid.origin[c] - this->Origin[c]) +
+          static_cast<double>(grid.first[c] + at[c]) * grid.spacing[c];
       }
       if (this->Type == CellType::Triangle)
       {
@@ -89,8 +119,11 @@ void MetricField::evaluate(
     throw Error(std::string(info.label) + " is not defined on " + topology(this->Type).plural +
       ": deselect it or choose the other cell.");
   }
+  Index beyond = 0;
   this->forEachSlice(grid, options.threads,
-    [&](const Mesh& mesh, Index first) { evaluateMetric(mesh, metric, options, values + first); });
+    [&](const Mesh& mesh, Index first)
+    { beyond += evaluateMetric(mesh, metric, options, values + first); });
+  requireInRange(info, beyond);
 }
 
 //------------------------------------------------------------------------------

@@ -43,7 +43,8 @@ public:
   /// Throws Error for other types, and if the fixed vertices (3; a triangle uses 2) are degenerate.
   MetricField(CellType type, const std::array<Vec3, 3>& fixed);
 
-  /// Writes grid.count() values. Throws Error if the metric is not defined on the cell.
+  /// Writes grid.count() values. Throws Error if the metric is not defined on the cell, and where a
+  /// value is beyond the range of double precision.
   void evaluate(
     const FieldGrid& grid, Metric metric, const EvaluationOptions& options, double* values) const;
   /// Writes grid.count() entries of Validity.
@@ -54,7 +55,8 @@ private:
   void forEachSlice(const FieldGrid& grid, int threads, const Visit& visit) const;
 
   CellType Type;
-  std::array<Vec3, 3> Fixed;
+  Vec3 Origin; ///< the first vertex: cells are computed relative to it, far from 0 as near to it
+  std::array<Vec3, 3> Fixed; ///< relative to the origin
 };
 }
 #endif

@@ -211,6 +211,105 @@ void testRefusals()
   TAUTLINE_CHECK_EQUAL(field->GetNumberOfMetrics(), 0);
 }
 
+/// A tetrahedron or triangle of this size and place, with the metrics of the names, on a grid of 4
+/// points along each axis.
+vtkPointData* fieldAt(
+  vtkMetricField* field, int cell, double size, double place, const std::vector<const char*>& names)
+{
+  const auto at = [=](double x) { return place + size * x; };
+  field->SetCell(cell);
+  field->SetVertex1(at(0.25), at(0), at(0));
+  field->SetVertex2(at(1.25), at(0.25), at(0));
+  field->SetVertex3(at(0.5), at(1), at(0));
+  field->SetBounds(at(-0.5), at(1), at(0.5), at(2), at(0.5), at(1.25));
+  field->SetDimensions(4, 4, 4);
+  field->ClearMetrics();
+  for (const char* name : names)
+  {
+    field->AddMetricByName(name);
+  }
+  field->Update();
+  return field->GetOutput()->GetPointData();
+}
+
+/// At extreme scales and far from the origin the values are those of an ordinary place, times a
+/// power of the scale, or refused by name.
+void testScales()
+{
+  for (int cell : { vtkMetricField::TRIANGLE, vtkMetricField::TETRAHEDRON })
+  {
+    const int dimension = cell == vtkMetricField::TRIANGLE ? 2 : 3;
+    const Context which("dimension " + std::to_string(dimension));
+    const std::vector<const char*> names = { "imr", "rr", "mu_shape", "scaled_jacobian" };
+    vtkNew<vtkMetricField> ordinary, field;
+    Messages messages(field);
+    vtkPointData* expected = fieldAt(ordinary, cell, 1, 0, names);
+    const vtkIdType count = dimension == 2 ? 16 : 64;
+    const auto same = [&](vtkPointData* data, const char* name, double factor, double tolerance)
+    {
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        TAUTLINE_CHECK_RELATIVE(
+          component(data, name, i), factor * component(expected, name, i), tolerance);
+      }
+    };
+    const struct
+    {
+      double size, place, tolerance;
+    } cases[] = { { 1e-12, 0, 1e-9 }, { 1e12, 0, 1e-9 }, { 1e-150, 0, 1e-9 }, { 1e150, 0, 1e-9 },
+      { 1e-200, 0, 1e-9 }, { 1e200, 0, 1e-9 }, { 1, 1e6, 1e-9 }, { 1, 1e12, 1e-9 },
+      { 1e3, 1e15, 1e-9 } };
+    for (const auto& at : cases)
+    {
+      const Context context(
+        std::to_string(std::log10(at.size)) + " at " + std::to_string(at.place));
+      vtkPointData* data = fieldAt(field, cell, at.size, at.place, names);
+      TAUTLINE_CHECK(messages.empty());
+      for (const char* name : names)
+      {
+        same(data, name, 1.0, at.tolerance);
+      }
+      TAUTLINE_CHECK_EQUAL(component(data, "Validity", 0), component(expected, "Validity", 0));
+    }
+    expected = fieldAt(ordinary, cell, 1, 0, { "size" });
+    for (double size : { 1e-12, 1e12 })
+    {
+      same(fieldAt(field, cell, size, 0, { "size" }), "size", std::pow(size, dimension), 1e-9);
+    }
+    TAUTLINE_CHECK(messages.empty());
+    // Values that double precision does not hold, vertices and bounds that are the same number.
+    const struct
+    {
+      double size, place;
+      const char* name;
+      const char* text;
+    } refused[] = { { 1e-150, 0, "mu_size_squared", "is beyond the range of double precision" },
+      { 1e150, 0, "mu_size_squared", "is beyond the range of double precision" },
+      { 1e-200, 0, "size", "is beyond the range of double precision" },
+      { 1e-12, 1e12, "imr", "Bounds must increase and be finite" },
+      { 1e308, 0, "imr", "Bounds must increase and be finite" },
+      { 0, 0, "imr", "Bounds must increase and be finite" },
+      { std::nan(""), 0, "imr", "Bounds must increase and be finite" } };
+    for (const auto& at : refused)
+    {
+      const Context context(std::to_string(std::log10(at.size)) + " " + at.name);
+      messages.clear();
+      fieldAt(field, cell, at.size, at.place, { at.name });
+      TAUTLINE_CHECK(messages.has(at.text));
+      TAUTLINE_CHECK_EQUAL(field->GetOutput()->GetNumberOfPoints(), 0);
+    }
+    messages.clear();
+    fieldAt(field, cell, 1, 0, { "imr" });
+    for (double wrong : { std::nan(""), HUGE_VAL })
+    {
+      field->SetVertex2(wrong, 0, 0);
+      messages.clear();
+      field->Update();
+      TAUTLINE_CHECK(messages.has("not finite: move one of them"));
+    }
+  }
+}
+
 } // anonymous namespace
 
 int TestMetricField(int, char*[])
@@ -221,5 +320,6 @@ int TestMetricField(int, char*[])
   testPieces();
   testContour();
   testRefusals();
+  testScales();
   return exitCode();
 }
