@@ -36,6 +36,13 @@ void vtkShapeAlgorithm::GetOptions(
 }
 
 //------------------------------------------------------------------------------
+void vtkShapeAlgorithm::ClearResult()
+{
+  this->Superclass::ClearResult();
+  this->Matching = false;
+}
+
+//------------------------------------------------------------------------------
 void vtkShapeAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -225,10 +225,13 @@ protected:
   vtkShapeAlgorithm();
   ~vtkShapeAlgorithm() override = default;
 
-  bool KeepsBest() const override { return true; }
+  /// Not before the images are prepared.
+  bool KeepsBest() const override { return this->Matching; }
+  void ClearResult() override;
 
   void GetOptions(tautline::LocationOptions& locations, tautline::MatchOptions& match);
 
+  bool Matching = false; ///< in this execution, as the search for places has begun
   double Lambda = 0.1;
   double DeformationWeight = 12.0;
   double DistortionWeight = 3.0;

@@ -242,6 +242,8 @@ int vtkShapeMatcher::RequestData(
       this->GetOptions(locations, options);
       const tautline::ShapeTarget target(tautline::traceSilhouette(view, tracing), locations,
         options.energy, this->GreyGradient ? &view : nullptr);
+      options.timeLimit = this->GetRemainingSeconds();
+      this->Matching = true;
       const tautline::ShapeMatch match = tautline::matchShape(source.shape, target, options);
 
       tautline::fillGrid(output, source.shape.mesh, match.points, image);

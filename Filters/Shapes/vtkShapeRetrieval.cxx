@@ -229,6 +229,7 @@ int vtkShapeRetrieval::RequestData(
         options.match.timeLimit = this->GetRemainingSeconds();
       }
       options.best = this->BestMatches;
+      this->Matching = true;
       const tautline::Retrieval result = tautline::retrieveShapes(set.shapes, set.numbers, options);
       fillTables(set, result, vtkTable::GetData(outputVector, 0),
         vtkTable::GetData(outputVector, 1), vtkTable::GetData(outputVector, 2),

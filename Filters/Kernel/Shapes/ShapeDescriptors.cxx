@@ -1,5 +1,7 @@
 #include "ShapeDescriptors.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,6 +29,7 @@ std::vector<Descriptor> describe(const Silhouette& shape, const std::vector<Vec2
   std::vector<Descriptor> result;
   for (const Vec2& p : points)
   {
+    throwIfInterrupted();
     Descriptor d = {};
     for (int k = 0; k < 4; ++k)
     {

@@ -1,5 +1,6 @@
 #include "ShapeDynamicProgram.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Parallel.h"
 #include "ShapeEnergy.h"
 
@@ -52,6 +53,7 @@ PairTable transpose(const PairTable& table)
   PairTable result(table.columns, table.rows, 0.0f);
   for (Index i = 0; i < table.rows; ++i)
   {
+    throwIfInterrupted();
     for (Index j = 0; j < table.columns; ++j)
     {
       result.row(j)[i] = table.row(i)[j];
@@ -66,6 +68,7 @@ PairTable rowMinima(const PairTable& table, const LocationSet& set)
   PairTable minima(table.rows, (set.rows + FloatWidth - 1) / FloatWidth * FloatWidth, Unreachable);
   for (Index p = 0; p < table.rows; ++p)
   {
+    throwIfInterrupted();
     const float* values = table.row(p);
     for (Index row = 0; row < set.rows; ++row)
     {
@@ -145,6 +148,7 @@ const PairTable& PlacementSolver::distances(const LocationSet* a, const Location
     table = PairTable(a->size(), b->size(), 0.0f);
     for (Index i = 0; i < a->size(); ++i)
     {
+      throwIfInterrupted();
       for (Index j = 0; j < b->size(); j += FloatWidth)
       {
         const FloatPacket dx = loadFloats(b->x.data() + j) - a->x[i];
@@ -184,6 +188,7 @@ bool PlacementSolver::run()
     const std::vector<float>& vertex = this->Problem.vertices[k];
     for (Index p = 0; p < step.fromI.rows && !vertex.empty(); ++p)
     {
+      throwIfInterrupted();
       for (Index r = 0; r < step.fromI.columns; ++r)
       {
         step.fromI.row(p)[r] += vertex[r];

@@ -2,6 +2,7 @@
 
 #include "ShapeDynamicProgram.h"
 #include "ShapeEnergy.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Stopwatch.h"
 
@@ -72,6 +73,7 @@ PairTable orderedEdges(
   PairTable table = edges;
   for (std::size_t i = 0; i < arc.size(); ++i)
   {
+    throwIfInterrupted();
     for (std::size_t j = 0; j < arc.size(); ++j)
     {
       table.row(static_cast<Index>(i))[j] +=
@@ -410,6 +412,7 @@ private:
         solutions.begin(), solutions.begin() + static_cast<std::ptrdiff_t>(count), solutions.end());
       for (std::size_t s = 1; s < count && !accepted; ++s)
       {
+        throwIfInterrupted();
         std::vector<Vec2> next = take(solutions[s]);
         const double nextD = distance(this->meanOf(next), this->Target.centre);
         accepted = nextD <= tolerance;
@@ -622,9 +625,10 @@ ShapeMatch matchShape(
   }
   ShapeMatch best;
   bool found = false;
-  for (Index mirror = 0; mirror < mirrors; ++mirror)
+  const auto over = [&] { return found && stop != MatchStop::Complete; };
+  for (Index mirror = 0; mirror < mirrors && !over(); ++mirror)
   {
-    for (Index rotation = 0; rotation < options.rotations; ++rotation)
+    for (Index rotation = 0; rotation < options.rotations && !over(); ++rotation)
     {
       const double angle =
         2.0 * Pi * static_cast<double>(rotation) / static_cast<double>(options.rotations);
@@ -635,12 +639,8 @@ ShapeMatch matchShape(
         other = transformSource(source, angle, mirror == 1);
         shape = &other;
       }
-      for (Index scale = 0; scale < options.scales; ++scale)
+      for (Index scale = 0; scale < options.scales && !over(); ++scale)
       {
-        if (found && stop != MatchStop::Complete)
-        {
-          break;
-        }
         const double factor = std::pow(2.0, 0.5 * static_cast<double>(scale - options.scales / 2));
         ShapeMatch match = Matcher(*shape, target, options, delta / factor, progress).run();
         match.mirrored = mirror == 1;

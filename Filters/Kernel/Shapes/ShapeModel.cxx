@@ -1,6 +1,7 @@
 #include "ShapeModel.h"
 
 #include "ShapeDescriptors.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 
 #include <algorithm>
@@ -79,6 +80,7 @@ ShapeSource makeShapeSource(const Silhouette& shape, double spacing)
   }
   for (const Vec2& p : source.mesh.points)
   {
+    throwIfInterrupted();
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < shape.outline.size(); ++i)
     {

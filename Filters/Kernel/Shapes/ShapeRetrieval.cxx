@@ -114,7 +114,13 @@ public:
   {
     this->Match.threads = 1;
     this->Match.timeLimit = 0;
+    // The limit also ends a comparison that is under way.
     this->Match.progress = nullptr;
+    if (options.match.timeLimit > 0.0)
+    {
+      this->Match.progress = [this](double)
+      { return !this->Time.reached(this->Options.match.timeLimit); };
+    }
   }
 
   /// Energies of all pairs, row by source; negative where the comparison was stopped before.
@@ -132,15 +138,14 @@ public:
         [&](Index pair)
         {
           const Index s = pair / this->Count, t = pair % this->Count;
-          this->named(s,
-            [&]
-            {
-              energies[pair] =
-                s == t ? 0.0 : matchShape(this->Sources[s], *this->Targets[t], this->Match).energy;
-            });
+          this->named(s, [&] { energies[pair] = s == t ? 0.0 : this->energy(s, t); });
         },
         [this](double fraction)
         { return this->proceed(this->Count, this->Count * this->Count, fraction); });
+      // Pairs that the limit stopped may have been the last ones.
+      const bool whole =
+        std::none_of(energies.begin(), energies.end(), [](double energy) { return energy < 0.0; });
+      this->Stop = whole || this->Stop != MatchStop::Complete ? this->Stop : MatchStop::TimeLimit;
     }
     return energies;
   }
@@ -163,6 +168,13 @@ private:
     this->Sources[s] = makeShapeSource(this->Shapes[s], this->Options.spacing);
     this->Targets[s] =
       std::make_unique<ShapeTarget>(this->Shapes[s], this->Options.locations, this->Match.energy);
+  }
+
+  /// Negative if the comparison was stopped.
+  double energy(Index s, Index t) const
+  {
+    const ShapeMatch match = matchShape(this->Sources[s], *this->Targets[t], this->Match);
+    return match.stop == MatchStop::Complete ? match.energy : -1.0;
   }
 
   /// Checks the limits and reports, when `before` and a fraction of `now` items are done.

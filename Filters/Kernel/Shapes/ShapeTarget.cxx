@@ -1,5 +1,6 @@
 #include "ShapeTarget.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/PacketFloat.h"
 #include "tautline/Core/Parallel.h"
@@ -34,6 +35,7 @@ std::vector<float> convolve(const std::vector<float>& image, Index width, Index 
   std::vector<float> result(image.size());
   for (Index j = 0; j < height; ++j)
   {
+    throwIfInterrupted();
     for (Index i = 0; i < width; ++i)
     {
       const Index at = alongY ? j : i, base = j * width + i - at * stride;
@@ -135,6 +137,7 @@ LocationSet gridLocations(const Silhouette& shape, const LocationOptions& option
   std::vector<Vec2> near;
   for (const Vec2& p : all.points)
   {
+    throwIfInterrupted();
     if (distanceToOutline(shape.outline, p) <= std::max(cell[0], cell[1]))
     {
       near.push_back(p);
@@ -316,6 +319,7 @@ void ShapeTarget::Data::chooseCoarse()
   this->coarseEdges = PairTable(this->coarse.size(), this->coarse.size(), Unreachable);
   for (std::size_t i = 0; i < points.size(); ++i)
   {
+    throwIfInterrupted();
     const float* from = this->edges.row(this->locations.slots[this->coarseOf[i]]);
     for (std::size_t j = 0; j < points.size(); ++j)
     {
