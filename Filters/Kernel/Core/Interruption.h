@@ -99,6 +99,16 @@ private:
  */
 TAUTLINE_KERNEL_EXPORT void throwIfInterrupted();
 
+/// The same for loops of short passes: only with every 4096th pass, by its number.
+inline void pollInterruption(Index pass)
+{
+  constexpr Index every = 4096;
+  if (pass % every == 0)
+  {
+    throwIfInterrupted();
+  }
+}
+
 /// Whether throwIfInterrupted() can have an effect on this thread: then work that cannot call it
 /// is worth a watchdog.
 TAUTLINE_KERNEL_EXPORT bool interruptible();

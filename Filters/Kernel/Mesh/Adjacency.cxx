@@ -1,5 +1,7 @@
 #include "Mesh.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -16,6 +18,7 @@ VertexCells Mesh::vertexCells() const
       const int nodes = topology(block.type).nodes;
       for (Index i = 0; i < block.count; ++i)
       {
+        pollInterruption(i);
         const Index cell = block.cell(i);
         const Index* node = this->View.connectivity + this->View.offsets[cell];
         for (int k = 0; k < nodes; ++k)

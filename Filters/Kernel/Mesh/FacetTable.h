@@ -6,6 +6,7 @@
 #define tautline_FacetTable_h
 
 #include "Mesh.h"
+#include "tautline/Core/Interruption.h"
 
 #include <algorithm>
 #include <numeric>
@@ -61,6 +62,7 @@ public:
   {
     for (Index node = 0; node + 1 < static_cast<Index>(this->Starts.size()); ++node)
     {
+      pollInterruption(node);
       const Index begin = this->Starts[node], end = this->Starts[node + 1];
       if (begin == end)
       {
@@ -121,6 +123,7 @@ private:
       const int facets = dimension == 3 ? t.faces : t.edges;
       for (Index i = 0; i < block.count; ++i)
       {
+        pollInterruption(i);
         const Index cell = block.cell(i);
         if (skip && skip[cell])
         {

@@ -1,5 +1,6 @@
 #include "SimplexMesh.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 
@@ -169,6 +170,7 @@ void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free)
     const CellTopology& t = topology(block.type);
     for (Index i = 0; t.dimension == this->Dim && i < block.count; ++i)
     {
+      pollInterruption(i);
       const Index* node = view.connectivity + view.offsets[block.cell(i)];
       for (int k = 0; k < t.nodes; ++k)
       {
@@ -279,6 +281,7 @@ void SimplexMesh::forEachPatchCorner(const Visit& visit)
   std::vector<std::int32_t> next(this->PatchStarts.begin(), this->PatchStarts.end() - 1);
   for (std::int32_t i = 0; i < this->Simplices; ++i)
   {
+    pollInterruption(i);
     const std::int32_t* corner = this->Corners.data() + static_cast<std::size_t>(corners) * i;
     for (int k = 0; k < corners; ++k)
     {
@@ -344,6 +347,7 @@ void SimplexMesh::findBlocks(const Mesh& mesh, const std::vector<std::int32_t>& 
   std::int32_t colours = 0;
   for (std::int32_t b = 0; b < blocks; ++b)
   {
+    throwIfInterrupted();
     taken.assign(colours + 1, 0);
     const auto take = [&](std::int32_t other)
     {

@@ -1,5 +1,7 @@
 #include "SimplexMesh.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -64,6 +66,7 @@ void visitSimplices(
     }
     for (Index i = 0; i < block.count; ++i)
     {
+      pollInterruption(i);
       const Index cell = block.cell(i);
       const Index* node = view.connectivity + view.offsets[cell];
       for (int s = 0; s < t.samples; ++s)

@@ -1,5 +1,6 @@
 #include "Perturb.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Random.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 
@@ -151,6 +152,7 @@ void Perturber::findMovable(const unsigned char* fixed)
   std::vector<char> stays = this->TheMesh.boundary().isBoundaryPoint;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
+    pollInterruption(cell);
     const CellType type = cornerType(view.cellTypes[cell]);
     const bool element = type != CellType::Unsupported && topology(type).dimension == dimension;
     const signed char state = this->States[cell];

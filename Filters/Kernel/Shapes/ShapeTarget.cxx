@@ -237,6 +237,7 @@ PairTable ShapeTarget::Data::edgeTable(const LocationSet& a, const LocationSet& 
   parallelFor(n, grain, n > few ? this->threads : 1,
     [&](Index i)
     {
+      throwIfInterrupted(); // a row may take long
       for (Index j = symmetric ? i : 0; j < static_cast<Index>(b.points.size()); ++j)
       {
         const float value = static_cast<float>(this->edgeCost(a.points[i], b.points[j]));

@@ -1,5 +1,6 @@
 #include "HarmonicMap.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/VectorAlgebra.h"
 
 namespace tautline
@@ -21,6 +22,7 @@ public:
     neighbours.reserve(static_cast<std::size_t>(free) * (Dim == 3 ? 15 : 7));
     for (std::int32_t v = 0; v < free; ++v)
     {
+      pollInterruption(v);
       // The patch has each neighbour several times.
       const auto begin = static_cast<std::ptrdiff_t>(neighbours.size());
       neighbours.insert(neighbours.end(),
