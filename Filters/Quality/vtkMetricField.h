@@ -21,7 +21,9 @@
  * Values are always finite: where the cell is degenerate, metrics that are singular there are 0. On
  * the base itself the inverse mean ratio therefore drops from large values to 0; contours and
  * colour ranges are cleaner with Bounds that start slightly above it, or after a Threshold of
- * Validity at 1. Metrics take the ideal cell with edges of length 1 as their target.
+ * Validity at 1. Metrics take the ideal cell with edges of length 1 as their target. A metric whose
+ * values are beyond the range of double precision is refused (`mu_size_squared` at lengths of
+ * 1e-150). Cells are computed relative to Vertex1, so that far from the origin nothing is lost.
  *
  * @par Example:
  * @code

@@ -8,7 +8,8 @@
  *
  * and its terms are in tautline/Shapes/ShapeMatch.h. The properties below are those of dissertation
  * chapter 5, and some that are not in it: they are off unless stated otherwise. After the time
- * limit (0, no limit, by default) the best placement so far is returned.
+ * limit the best placement so far is returned; before the search has begun there is none, and the
+ * execution ends with an error.
  *
  * @sa vtkShapeMatcher, vtkShapeRetrieval, tautline::matchShape (tautline/Shapes/ShapeMatch.h)
  */

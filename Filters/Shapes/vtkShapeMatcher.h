@@ -27,7 +27,7 @@
  *
  * @par Limitations:
  * The target's centre of mass and size are those of its largest component. Ends with the best so
- * far on abort and at the time limit.
+ * far at the time limit; before the search has begun, with an error.
  *
  * @par Example:
  * @code

@@ -185,7 +185,7 @@ def match(
         Gaussian filter, pixels, 1.5), directed_edges (False), weights rotation, descriptor and ordering (0 each),
         contour_points (60), centre_tolerance (theta / d_max, 1/3; 0: no rule), max_solutions (to try for this rule,
         1000), coarse_to_fine (fast, not exact; False), rotations and scales (to try, 1 each), time_limit (seconds; 0:
-        none), threads (0: all cores).
+        none; the best so far is returned then, or Error raised if the search has not begun), threads (0: all cores).
 
     Raises Error for wrong arguments, and for images without a shape.
 
