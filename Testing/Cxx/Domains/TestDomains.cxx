@@ -296,7 +296,7 @@ void checkSizes()
   tautline::checkDomainSize(1e5, tautline::DomainKind::Solid);
 }
 
-/// Numbers of extreme size are refused by name, by the source and by the kernel, and change nothing.
+/// Numbers of extreme size are refused by name, by the source and by the kernel; nothing changes.
 void checkExtremes()
 {
   vtkNew<vtkDomainSource> source;
