@@ -27,6 +27,8 @@ if _vtk.available("_optimization"):
     from ._optimization import OptimizeResult, optimize
 if _vtk.available("_untangling"):
     from ._untangling import UntangleResult, untangle
+if _vtk.available("_reconnection"):
+    from ._reconnection import ImproveResult, improve
 if _vtk.available("_perturbation"):
     from ._perturbation import PerturbResult, perturb
 if _vtk.available("_domains"):

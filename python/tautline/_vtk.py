@@ -28,6 +28,7 @@ CAPABILITIES = {
     "_metrics": "TautlineQuality",
     "_optimization": "TautlineOptimization",
     "_untangling": "TautlineUntangling",
+    "_reconnection": "TautlineReconnection",
     "_deformation": "TautlineDeformation",
     "_shapes": "TautlineShapes",
     "_elliptic": "TautlineElliptic",

@@ -6,6 +6,7 @@
 #include "vtkHorizonNeighbors.h"
 #include "vtkInteractionLayer.h"
 #include "vtkMeshComparison.h"
+#include "vtkMeshImprover.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
@@ -40,6 +41,11 @@ vtkSmartPointer<vtkUnstructuredGrid> square()
   return toGrid(data);
 }
 
+vtkSmartPointer<vtkUnstructuredGrid> cube()
+{
+  return toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));
+}
+
 vtkIdType cellsOf(vtkAlgorithm* filter)
 {
   vtkDataObject* output = filter->GetOutputDataObject(0);
@@ -47,8 +53,10 @@ vtkIdType cellsOf(vtkAlgorithm* filter)
 }
 
 /// @param input sets the input of the filter
+/// @param mesh makes it
 template <class Filter, class Input>
-void testFilter(const char* name, int rank, const Input& input)
+void testFilter(const char* name, int rank, const Input& input,
+  vtkSmartPointer<vtkUnstructuredGrid> (*mesh)() = square)
 {
   const Context context(name);
   vtkNew<Filter> filter;
@@ -58,7 +66,7 @@ void testFilter(const char* name, int rank, const Input& input)
   {
     messages.clear();
     // A new one each time, so that all processes execute.
-    input(filter.Get(), here ? square() : vtkSmartPointer<vtkUnstructuredGrid>::New());
+    input(filter.Get(), here ? mesh() : vtkSmartPointer<vtkUnstructuredGrid>::New());
     filter->Update();
   };
   run(true); // a part on each
@@ -75,7 +83,7 @@ void testFilter(const char* name, int rank, const Input& input)
   vtkNew<vtkMultiBlockDataSet> blocks;
   for (int i = 0; i <= rank; ++i)
   {
-    blocks->SetBlock(static_cast<unsigned int>(i), square());
+    blocks->SetBlock(static_cast<unsigned int>(i), mesh());
   }
   messages.clear();
   input(filter.Get(), blocks.Get());
@@ -185,6 +193,7 @@ int TestFilterRanks(int argc, char* argv[])
   const auto one = [](auto* filter, vtkDataObject* data) { filter->SetInputDataObject(0, data); };
   testFilter<vtkMeshOptimizer>("Optimize Mesh", rank, one);
   testFilter<vtkMeshUntangler>("Untangle Mesh", rank, one);
+  testFilter<vtkMeshImprover>("Improve Mesh", rank, one, cube);
   testFilter<vtkMeshPerturbation>("Perturb Mesh", rank, one);
   testFilter<vtkInteractionLayer>("Interaction Layer", rank, one);
   testFilter<vtkHorizonNeighbors>("Horizon Neighbors", rank, one);

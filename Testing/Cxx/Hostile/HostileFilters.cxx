@@ -12,6 +12,7 @@
 #include "vtkInteractionLayer.h"
 #include "vtkMeditWriter.h"
 #include "vtkMeshComparison.h"
+#include "vtkMeshImprover.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
@@ -236,6 +237,13 @@ vtkSmartPointer<vtkAlgorithm> geometryOptimizer()
   return filter;
 }
 
+vtkSmartPointer<vtkMeshImprover> improver()
+{
+  auto filter = made<vtkMeshImprover>();
+  filter->SetTimeLimit(Seconds);
+  return filter;
+}
+
 vtkSmartPointer<vtkAlgorithm> untangler()
 {
   auto filter = made<vtkMeshUntangler>();
@@ -352,6 +360,18 @@ void addFilters(std::vector<HostileFilter>& list)
   add("Optimization", "vtkMeshOptimizer", "geometry", geometryOptimizer, triangles, 3, false);
   add("Untangling", "vtkMeshUntangler", "", untangler, triangles, 0, true, 1);
   add("Untangling", "vtkMeshUntangler", "solid", untangler, tetrahedra);
+  add("Reconnection", "vtkMeshImprover", "", improver, tetrahedra, 0, false, 1);
+  add(
+    "Reconnection", "vtkMeshImprover", "flat",
+    []
+    {
+      auto filter = improver();
+      filter->SetPreset(vtkMeshImprover::AGGRESSIVE);
+      filter->SetBoundary(vtkMeshImprover::FLAT);
+      filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Material");
+      return filter;
+    },
+    tetrahedra, 0, false);
   add(
     "Deformation", "vtkMeshWarp", "", [] { return warp(); }, triangles, 0, true, 2);
   add(

@@ -1,0 +1,40 @@
+/**
+ * @file ImprovedMesh.h
+ * @brief The output of Improve Mesh: the result of the kernel as a data set with the data of the
+ * input.
+ */
+#ifndef tautline_ImprovedMesh_h
+#define tautline_ImprovedMesh_h
+
+#include "ReconnectableMesh.h"
+#include "tautline/Reconnection/Reconnection.h"
+
+#include <string>
+#include <vector>
+
+namespace tautline
+{
+constexpr const char* OriginalCellArray = "OriginalCellId";
+
+/// What writeImproved() measured and found.
+struct ImprovedMesh
+{
+  std::vector<double> smallestAngles;    ///< dihedral, in degrees, per cell
+  std::vector<double> inverseMeanRatios; ///< per cell
+  std::vector<Vec3> centers;             ///< per cell
+  std::string note;                      ///< a sentence if single precision did not do, else ""
+};
+
+/**
+ * @brief Gives the output the points and cells of the result, the data of the input, and the cell
+ * arrays `min_angle`, `imr` and `OriginalCellId`. Points that were merged into another one are not
+ * in the output.
+ *
+ * Points of the input keep their data; inserted ones interpolate. Cells have the data of the cell
+ * in OriginalCellId. Global ids are left out, as they would not be unique. Points in single
+ * precision stay so unless a tetrahedron would not be valid, or the worst one worse than before.
+ */
+ImprovedMesh writeImproved(const ReconnectableMesh& input, const ReconnectionResult& result,
+  int threads, vtkUnstructuredGrid* output);
+}
+#endif

@@ -1,0 +1,80 @@
+/**
+ * @file ReconnectableMesh.h
+ * @brief The input of Improve Mesh as the kernel takes it: its tetrahedra, fixed points and
+ * regions.
+ */
+#ifndef tautline_ReconnectableMesh_h
+#define tautline_ReconnectableMesh_h
+
+#include "MeshAdapter.h"
+
+#include "vtkSmartPointer.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataSet;
+class vtkUnstructuredGrid;
+
+namespace tautline
+{
+/**
+ * @class tautline::ReconnectableMesh
+ * @brief The tetrahedra of an unstructured grid, oriented consistently: see MeshAdapter::orient().
+ *
+ * The data set must outlive it and not change meanwhile.
+ */
+class ReconnectableMesh
+{
+public:
+  /**
+   * @brief Throws Error that names the remedy for other data sets, for cells of volume that are not
+   * linear tetrahedra, for ghost cells, and where there is no tetrahedron.
+   * Cells of lower dimension are left out, see leftOut().
+   * @param mergePoints whether coincident points on seams become one
+   */
+  ReconnectableMesh(vtkDataSet* input, bool mergePoints, int threads);
+
+  vtkUnstructuredGrid* input() const { return this->Input; }
+  const Mesh& mesh() const { return this->Adapter->mesh(); }
+  /// The cell of the input that a cell of mesh() is.
+  Index inputCell(Index cell) const { return this->Cells.empty() ? cell : this->Cells[cell]; }
+  /// Whether a point of the input became one with another, which represents it.
+  bool isMerged(Index point) const
+  {
+    const std::vector<Index>& representative = this->Adapter->coincident().representative;
+    return !representative.empty() && representative[point] != point;
+  }
+
+  /// Marks points with a value other than 0; the array may be null.
+  void fixPoints(vtkDataArray* ofPoints);
+  /// Marks the points of cells with a value other than 0; the array may be null.
+  void fixCells(vtkDataArray* ofCells);
+  /// One flag per point.
+  const std::vector<unsigned char>& fixed() const { return this->Fixed; }
+
+  /// The regions of the cells; null: one region. Throws Error for values that are no regions.
+  void setRegions(vtkDataArray* ofCells);
+  /// One per cell of mesh(); empty for one region.
+  const std::vector<Index>& regions() const { return this->Regions; }
+
+  /// Remarks for the user on how the mesh is interpreted, as sentences, or "".
+  const std::string& notice() const { return this->Notice; }
+  /// A sentence on cells that the output does not have, or "".
+  const std::string& leftOut() const { return this->LeftOut; }
+
+private:
+  void takeTetrahedra();
+
+  vtkUnstructuredGrid* Input;
+  vtkSmartPointer<vtkUnstructuredGrid> Tetrahedra; ///< the input, or a grid of its tetrahedra
+  std::vector<Index> Cells;                        ///< empty if all cells are tetrahedra
+  std::unique_ptr<MeshAdapter> Adapter;
+  std::vector<unsigned char> Fixed;
+  std::vector<Index> Regions;
+  std::string Notice, LeftOut;
+};
+}
+#endif

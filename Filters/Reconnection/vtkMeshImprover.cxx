@@ -1,0 +1,354 @@
+#include "vtkMeshImprover.h"
+
+#include "BlockSeams.h"
+#include "Blocks.h"
+#include "ImprovedMesh.h"
+#include "Processes.h"
+#include "ReconnectableMesh.h"
+#include "TableRows.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSelection.h"
+#include "vtkTable.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+vtkStandardNewMacro(vtkMeshImprover);
+
+namespace
+{
+constexpr int NumberOfInputPorts = 2, NumberOfOutputPorts = 3;
+constexpr int FixedArray = 0, RegionArray = 1;
+constexpr int ListedElements = 10;
+
+/// In the order of tautline::ReconnectionObstacle.
+constexpr std::array<const char*, 6> obstacles = { "it is not below the target",
+  "no operation improves it, or a limit ended the run",
+  "the facets that it has on the boundary or between regions allow no better one",
+  "it has a fixed point", "it has a point between regions", "it has a point on the boundary" };
+
+/// What would help, in the same order.
+constexpr std::array<const char*, 6> remedies = { "",
+  "try the preset Aggressive, a larger time limit or other counts",
+  "let the boundary slide in flat parts, or repair the surface mesh", "fix fewer points",
+  "choose fewer regions", "let the boundary slide in flat parts" };
+
+const char* reasonText(tautline::StopReason reason)
+{
+  switch (reason)
+  {
+    case tautline::StopReason::Reduction:
+      return "Every tetrahedron has reached the target.";
+    case tautline::StopReason::NoProgress:
+      return "No operation improves the worst tetrahedra any further.";
+    default:
+      return tautline::describe(reason);
+  }
+}
+
+/// The cells below the target, the worst first.
+std::vector<tautline::Index> remainingOf(
+  const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved)
+{
+  std::vector<tautline::Index> cells;
+  for (std::size_t i = 0; i < result.obstacles.size(); ++i)
+  {
+    if (result.obstacles[i] != static_cast<signed char>(tautline::ReconnectionObstacle::None))
+    {
+      cells.push_back(static_cast<tautline::Index>(i));
+    }
+  }
+  std::stable_sort(cells.begin(), cells.end(),
+    [&improved](tautline::Index a, tautline::Index b)
+    { return improved.smallestAngles[a] < improved.smallestAngles[b]; });
+  return cells;
+}
+
+void addHistory(tautline::TableRows& rows, const std::vector<tautline::ReconnectionRecord>& history,
+  const std::string& block)
+{
+  for (const tautline::ReconnectionRecord& record : history)
+  {
+    const auto add = [&rows](const char* column, auto value)
+    { rows.add(column, static_cast<double>(value)); };
+    rows.begin(block);
+    add("Smallest angle", record.smallestAngle);
+    add("Largest angle", record.largestAngle);
+    add("Worst imr", record.worstInverseMeanRatio);
+    add("N tetrahedra", record.tetrahedra);
+    add("N below target", record.belowTarget);
+    add("N edge removals", record.edgeRemovals);
+    add("N face removals", record.faceRemovals);
+    add("N boundary swaps", record.boundarySwaps);
+    add("N contractions", record.contractions);
+    add("N insertions", record.insertions);
+    add("N moves", record.moves);
+    add("Time (s)", record.seconds);
+  }
+}
+
+void addRemaining(tautline::TableRows& rows, const std::vector<tautline::Index>& cells,
+  const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved,
+  const std::string& block)
+{
+  for (const tautline::Index cell : cells)
+  {
+    rows.begin(block);
+    rows.add("Cell", static_cast<double>(cell));
+    rows.add("Smallest angle", improved.smallestAngles[cell]);
+    rows.add("imr", improved.inverseMeanRatios[cell]);
+    rows.add("X", improved.centers[cell][0]);
+    rows.add("Y", improved.centers[cell][1]);
+    rows.add("Z", improved.centers[cell][2]);
+    rows.addText("Reason", obstacles[result.obstacles[cell]]);
+  }
+}
+
+/// "12 edge removals, 3 motions of points"
+std::string describeOperations(const tautline::ReconnectionRecord& record)
+{
+  const std::array<std::pair<tautline::Index, const char*>, 6> operations = { {
+    { record.edgeRemovals, "edge removals" },
+    { record.faceRemovals, "face removals" },
+    { record.boundarySwaps, "boundary swaps" },
+    { record.contractions, "contractions" },
+    { record.insertions, "insertions" },
+    { record.moves, "motions of points" },
+  } };
+  std::string text;
+  for (const auto& [count, name] : operations)
+  {
+    if (count > 0)
+    {
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
+    }
+  }
+  return text.empty() ? "none" : text;
+}
+
+/// What remains below the target, why, and which are the worst.
+std::string describeRemaining(const std::vector<tautline::Index>& cells,
+  const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved,
+  double targetAngle)
+{
+  std::ostringstream text;
+  if (cells.empty())
+  {
+    text << "No tetrahedron remains below the target of " << targetAngle << " degrees.";
+    return text.str();
+  }
+  text << cells.size() << (cells.size() == 1 ? " tetrahedron remains" : " tetrahedra remain")
+       << " below the target of " << targetAngle << " degrees:";
+  std::array<tautline::Index, obstacles.size()> counts = {};
+  for (const tautline::Index cell : cells)
+  {
+    ++counts[result.obstacles[cell]];
+  }
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+  {
+    if (counts[k] > 0)
+    {
+      text << "\n- " << counts[k] << ": " << obstacles[k] << " (" << remedies[k] << ")";
+    }
+  }
+  const auto listed = std::min<std::size_t>(cells.size(), ListedElements);
+  for (std::size_t i = 0; i < listed; ++i)
+  {
+    const tautline::Vec3& at = improved.centers[cells[i]];
+    text << "\nElement " << cells[i] << " at (" << at[0] << ", " << at[1] << ", " << at[2]
+         << "): smallest dihedral angle " << improved.smallestAngles[cells[i]]
+         << ", inverse mean ratio " << improved.inverseMeanRatios[cells[i]] << "; "
+         << obstacles[result.obstacles[cells[i]]] << ".";
+  }
+  if (cells.size() > listed)
+  {
+    text << "\n... and " << cells.size() - listed << " more: see the output Remaining.";
+  }
+  return text.str();
+}
+
+/// Before and after, in words.
+std::string describeResult(const tautline::ReconnectionResult& result)
+{
+  const tautline::ReconnectionRecord &first = result.history.front(), &last = result.history.back();
+  std::ostringstream text;
+  text << reasonText(result.reason) << "\nTetrahedra: " << first.tetrahedra << " to "
+       << last.tetrahedra << ". Smallest dihedral angle: " << first.smallestAngle << " to "
+       << last.smallestAngle << " degrees; largest: " << first.largestAngle << " to "
+       << last.largestAngle << ". Worst inverse mean ratio: " << first.worstInverseMeanRatio
+       << " to " << last.worstInverseMeanRatio << ".\nOperations: " << describeOperations(last)
+       << ".";
+  return text.str();
+}
+}
+
+//------------------------------------------------------------------------------
+vtkMeshImprover::vtkMeshImprover()
+{
+  this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { SelectionPort });
+}
+
+//------------------------------------------------------------------------------
+vtkMeshImprover::~vtkMeshImprover() = default;
+
+//------------------------------------------------------------------------------
+int vtkMeshImprover::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  this->ClearResult();
+  return this->Attempt(outputVector, "improve the mesh in parts",
+    [&]
+    {
+      vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
+      tautline::requireFirstProcess(input, "Improve Mesh");
+      this->CheckSeams(input);
+      const auto fixed =
+        tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
+      const int blocks = tautline::countBlocks(input);
+      tautline::TableRows history, remaining;
+      tautline::forEachBlock(input, nullptr, fixed, vtkDataObject::GetData(outputVector, MeshPort),
+        [&](const tautline::InputBlock& block)
+        {
+          if (block.input->GetNumberOfPoints() == 0 || block.input->GetNumberOfCells() == 0)
+          {
+            block.output->ShallowCopy(block.input);
+            return;
+          }
+          this->Improve(block, blocks, history, remaining);
+        });
+      history.fill(vtkTable::GetData(outputVector, HistoryPort));
+      remaining.fill(vtkTable::GetData(outputVector, RemainingPort));
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::ClearResult()
+{
+  this->Superclass::ClearResult();
+  this->Reason.clear();
+  this->TetrahedraBefore = this->TetrahedraAfter = this->Remaining = 0;
+  this->SmallestAngleBefore = this->SmallestAngleAfter = 0.0;
+  this->WorstBefore = this->WorstAfter = 0.0;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::CheckSeams(vtkDataObject* input)
+{
+  const std::string seams =
+    this->MergeCoincidentPoints ? tautline::describeBlockSeams(input, this->Threads) : "";
+  if (!seams.empty() && this->Boundary != FIXED)
+  {
+    throw tautline::Error("The boundary is not fixed, and blocks would come apart: " + seams +
+      " Or switch Merge Coincident Points off.");
+  }
+  this->AddToSummary(seams);
+  this->Warn(seams);
+}
+
+//------------------------------------------------------------------------------
+tautline::ReconnectionOptions vtkMeshImprover::MakeOptions() const
+{
+  tautline::ReconnectionOptions options;
+  options.swap = this->Swap;
+  options.smooth = this->Smooth;
+  options.contract = this->Contract;
+  options.insert = this->Insert;
+  options.compound = this->Compound;
+  tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
+  if (this->TargetAngle > 0)
+  {
+    options.targetAngle = this->TargetAngle;
+  }
+  options.boundary = static_cast<tautline::ReconnectionBoundary>(this->Boundary);
+  options.flatTolerance = this->FlatTolerance;
+  options.smallestCount = this->SmallestCount;
+  options.largestCount = this->LargestCount;
+  options.maximumSeconds = this->GetRemainingSeconds();
+  return options;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
+  tautline::TableRows& history, tautline::TableRows& remaining)
+{
+  tautline::ReconnectableMesh mesh(block.input, this->MergeCoincidentPoints, this->Threads);
+  mesh.fixPoints(tautline::chosenArray(this, FixedArray, block.input, "of fixed points"));
+  if (block.selected)
+  {
+    mesh.fixPoints(block.selected->GetPointData()->GetArray(tautline::SelectedArray));
+    mesh.fixCells(block.selected->GetCellData()->GetArray(tautline::SelectedArray));
+  }
+  mesh.setRegions(tautline::chosenArray(this, RegionArray, block.input, "of regions"));
+
+  tautline::ReconnectionOptions options = this->MakeOptions();
+  options.fixed = mesh.fixed().data();
+  options.regions = mesh.regions().empty() ? nullptr : mesh.regions().data();
+  options.observer = [&](const tautline::ReconnectionRecord&, double progress)
+  { return this->Proceed((block.number + progress) / static_cast<double>(blocks)); };
+  const tautline::ReconnectionResult result = tautline::improveConnectivity(mesh.mesh(), options);
+  const tautline::ImprovedMesh improved = tautline::writeImproved(
+    mesh, result, this->Threads, vtkUnstructuredGrid::SafeDownCast(block.output));
+
+  const std::vector<tautline::Index> cells = remainingOf(result, improved);
+  addHistory(history, result.history, block.name);
+  addRemaining(remaining, cells, result, improved, block.name);
+  this->TakeResult(result);
+  this->Remaining += static_cast<vtkIdType>(cells.size());
+  this->AddToSummary(
+    (block.name.empty() ? "" : "In " + block.name + ": ") + describeResult(result));
+  this->AddToSummary(describeRemaining(cells, result, improved, options.targetAngle));
+  if (!cells.empty())
+  {
+    std::ostringstream bound;
+    bound << "With the facets of its boundary and between regions, no mesh has a worst inverse "
+             "mean ratio below "
+          << result.forcedInverseMeanRatio << ".";
+    this->AddToSummary(bound.str());
+  }
+  this->AddToSummary(improved.note);
+  this->AddToSummary(mesh.leftOut());
+  this->AddToSummary(mesh.notice());
+  this->Warn(mesh.leftOut());
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result)
+{
+  const tautline::ReconnectionRecord &first = result.history.front(), &last = result.history.back();
+  const bool none = this->TetrahedraBefore == 0;
+  const auto smaller = [none](double& number, double other)
+  { number = none ? other : std::min(number, other); };
+  smaller(this->SmallestAngleBefore, first.smallestAngle);
+  smaller(this->SmallestAngleAfter, last.smallestAngle);
+  this->WorstBefore = std::max(this->WorstBefore, first.worstInverseMeanRatio);
+  this->WorstAfter = std::max(this->WorstAfter, last.worstInverseMeanRatio);
+  this->TetrahedraBefore += first.tetrahedra;
+  this->TetrahedraAfter += last.tetrahedra;
+  this->Reason = reasonText(result.reason);
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Preset: " << this->Preset << "\n";
+  os << indent << "Swap: " << this->Swap << "\n";
+  os << indent << "Smooth: " << this->Smooth << "\n";
+  os << indent << "Contract: " << this->Contract << "\n";
+  os << indent << "Insert: " << this->Insert << "\n";
+  os << indent << "Compound: " << this->Compound << "\n";
+  os << indent << "TargetAngle: " << this->TargetAngle << "\n";
+  os << indent << "Boundary: " << this->Boundary << "\n";
+  os << indent << "FlatTolerance: " << this->FlatTolerance << "\n";
+  os << indent << "SmallestCount: " << this->SmallestCount << "\n";
+  os << indent << "LargestCount: " << this->LargestCount << "\n";
+  os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
+}

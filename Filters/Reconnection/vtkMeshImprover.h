@@ -1,0 +1,246 @@
+/**
+ * @class vtkMeshImprover
+ * @brief Improves the worst tetrahedra of a mesh by changing its connectivity and moving points.
+ *
+ * Takes unstructured grids of linear tetrahedra, or blocks of these. Edges and faces are swapped,
+ * edges contracted, points inserted and moved around the worst tetrahedra, until every dihedral
+ * angle is between TargetAngle and 180 degrees minus it or nothing helps. The worst dihedral angle
+ * and the worst inverse mean ratio of the output are never worse than those of the input. By
+ * default the surface stays: the same points and the same facets.
+ *
+ * Other cells of volume, ghost cells and inverted tetrahedra are refused (run vtkMeshUntangler
+ * first); cells of lower dimension are left out with a warning. A mesh reversed throughout is
+ * treated as its mirror image; in one of mixed orientation, the cells in the opposite order are
+ * listed in that of the others. vtkMeshOptimizer improves the average element and keeps the
+ * connectivity.
+ *
+ * @par Input ports:
+ * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay. The points also stay where
+ * the point array at index 0 (SetInputArrayToProcess) is not 0. The cell array at index 1 has the
+ * region of each cell: facets between regions are kept as the boundary is.
+ *
+ * @par Output port 0 `Mesh`:
+ * The new mesh. Points of the input keep their data; new ones interpolate theirs in the cell of the
+ * input that they are in. The cell array `OriginalCellId` is the cell of the input, of the same
+ * region, that contains the centroid, and cells have its data. The cell arrays `min_angle` (the
+ * smallest dihedral angle in degrees) and `imr` (the inverse mean ratio) are those of the output.
+ * Global ids of points and cells are left out, as they would not be unique.
+ *
+ * @par Output port 1 `History`:
+ * A vtkTable whose row i is pass i (0 is the input): `Smallest angle`, `Largest angle`, `Worst imr`,
+ * `N tetrahedra`, `N below target`; the numbers of accepted operations since the start, `N edge
+ * removals`, `N face removals`, `N boundary swaps`, `N contractions`, `N insertions`, `N moves`;
+ * `Time (s)`; of composite data sets also `Block`.
+ *
+ * @par Output port 2 `Remaining`:
+ * A vtkTable of the tetrahedra that are still below the target, the worst first: `Cell` (id in the
+ * output), `Smallest angle`, `imr`, `X`, `Y`, `Z` (the centroid), `Reason`; of composite data sets
+ * also `Block`.
+ *
+ * @par Several processes:
+ * The mesh is to be on the first process; else an error.
+ *
+ * B. M. Klingner and J. R. Shewchuk, "Aggressive tetrahedral mesh improvement" (2007), see
+ * tautline/Reconnection/Reconnection.h.
+ *
+ *     filter->SetInputData(mesh);
+ *     filter->SetPreset(vtkMeshImprover::AGGRESSIVE);
+ *     filter->Update();
+ *     std::cout << filter->GetSummary();
+ *
+ * @sa vtkMeshOptimizer, vtkMeshUntangler, vtkElementQuality
+ */
+
+#ifndef vtkMeshImprover_h
+#define vtkMeshImprover_h
+
+#include "TautlineReconnectionModule.h" // for export macro
+#include "vtkTautlineSetRange.h"        // for the setters
+#include "vtkTautlineTimedAlgorithm.h"
+
+#include <string> // for Reason
+
+namespace tautline
+{
+class ReconnectableMesh;
+class TableRows;
+struct ImprovedMesh;
+struct InputBlock;
+struct ReconnectionOptions;
+struct ReconnectionResult;
+}
+
+class TAUTLINERECONNECTION_EXPORT vtkMeshImprover : public vtkTautlineTimedAlgorithm
+{
+public:
+  static vtkMeshImprover* New();
+  vtkTypeMacro(vtkMeshImprover, vtkTautlineTimedAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Presets
+  {
+    CUSTOM = 0,
+    REMOVE_SLIVERS = 1,
+    SWAP_ONLY = 2,
+    SWAP_AND_SMOOTH = 3,
+    AGGRESSIVE = 4
+  };
+  ///@{
+  /**
+   * The operations and the target: REMOVE_SLIVERS works only around tetrahedra with dihedral angles
+   * below 15 or above 165 degrees, by every operation; SWAP_ONLY moves no point; SWAP_AND_SMOOTH
+   * moves points, but inserts and removes none; AGGRESSIVE uses every operation everywhere; CUSTOM
+   * those of the switches below. The default is REMOVE_SLIVERS.
+   */
+  vtkTautlineSetRangeMacro(Preset, int, CUSTOM, AGGRESSIVE);
+  vtkGetMacro(Preset, int);
+  ///@}
+
+  ///@{
+  /**
+   * The operations of CUSTOM. Compound: operations that pay only after the points around moved. All
+   * are on.
+   */
+  vtkSetMacro(Swap, bool);
+  vtkGetMacro(Swap, bool);
+  vtkBooleanMacro(Swap, bool);
+  vtkSetMacro(Smooth, bool);
+  vtkGetMacro(Smooth, bool);
+  vtkBooleanMacro(Smooth, bool);
+  vtkSetMacro(Contract, bool);
+  vtkGetMacro(Contract, bool);
+  vtkBooleanMacro(Contract, bool);
+  vtkSetMacro(Insert, bool);
+  vtkGetMacro(Insert, bool);
+  vtkBooleanMacro(Insert, bool);
+  vtkSetMacro(Compound, bool);
+  vtkGetMacro(Compound, bool);
+  vtkBooleanMacro(Compound, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Degrees, 0 to 60: tetrahedra are worked on while they have a dihedral angle below it or above
+   * 180 degrees minus it, or a mean ratio as bad. 0, the default, is that of the preset: 15 for
+   * REMOVE_SLIVERS, 33.4 for the others.
+   */
+  vtkTautlineSetRangeMacro(TargetAngle, double, 0.0, 60.0);
+  vtkGetMacro(TargetAngle, double);
+  ///@}
+
+  enum Boundaries
+  {
+    FIXED = 0,
+    FLAT = 1
+  };
+  ///@{
+  /**
+   * FIXED, the default: the points and facets of the boundary and between regions stay. FLAT:
+   * points slide within flat parts of the boundary and along straight edges, and are contracted
+   * there; edges between coplanar facets are swapped. The shape and the volumes stay.
+   */
+  vtkTautlineSetRangeMacro(Boundary, int, FIXED, FLAT);
+  vtkGetMacro(Boundary, int);
+  ///@}
+
+  ///@{
+  /// With FLAT: facets whose normals differ by at most so many degrees, 0 to 1, are coplanar. The
+  /// default is 1e-8.
+  vtkTautlineSetRangeMacro(FlatTolerance, double, 0.0, 1.0);
+  vtkGetMacro(FlatTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * The number of tetrahedra stays within these multiples of the input's: 0 to 1 and at least 1.
+   * Both 1: no point is inserted or removed. The defaults are 0.9 and 1.1.
+   */
+  vtkTautlineSetRangeMacro(SmallestCount, double, 0.0, 1.0);
+  vtkGetMacro(SmallestCount, double);
+  vtkTautlineSetRangeMacro(LargestCount, double, 1.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(LargestCount, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether points with the same coordinates on facets that match become one, as on the seams of a
+   * mesh in pieces; off: seams are treated as boundary. The default is on.
+   */
+  vtkSetMacro(MergeCoincidentPoints, bool);
+  vtkGetMacro(MergeCoincidentPoints, bool);
+  vtkBooleanMacro(MergeCoincidentPoints, bool);
+  ///@}
+
+  /// The table of output port 1.
+  vtkTable* GetHistory() { return this->GetOutputTable(HistoryPort); }
+
+  /// The table of output port 2.
+  vtkTable* GetRemainingTable() { return this->GetOutputTable(RemainingPort); }
+
+  ///@{
+  /**
+   * The result of the last execution, of all blocks together: why the (last) run ended, the numbers
+   * of tetrahedra, the smallest dihedral angles in degrees, the largest inverse mean ratios, and
+   * the number of tetrahedra that remain below the target.
+   */
+  const char* GetReason() const { return this->Reason.c_str(); }
+  vtkIdType GetTetrahedraBefore() const { return this->TetrahedraBefore; }
+  vtkIdType GetTetrahedraAfter() const { return this->TetrahedraAfter; }
+  double GetSmallestAngleBefore() const { return this->SmallestAngleBefore; }
+  double GetSmallestAngleAfter() const { return this->SmallestAngleAfter; }
+  double GetWorstBefore() const { return this->WorstBefore; }
+  double GetWorstAfter() const { return this->WorstAfter; }
+  vtkIdType GetRemaining() const { return this->Remaining; }
+  ///@}
+
+protected:
+  vtkMeshImprover();
+  ~vtkMeshImprover() override;
+
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  void ClearResult() override;
+  bool KeepsBest() const override { return true; }
+
+private:
+  vtkMeshImprover(const vtkMeshImprover&) = delete;
+  void operator=(const vtkMeshImprover&) = delete;
+
+  enum Ports
+  {
+    MeshPort = 0,
+    SelectionPort = 1, // input
+    HistoryPort = 1,   // output
+    RemainingPort = 2  // output
+  };
+
+  tautline::ReconnectionOptions MakeOptions() const;
+  void CheckSeams(vtkDataObject* input);
+  void Improve(const tautline::InputBlock& block, int blocks, tautline::TableRows& history,
+    tautline::TableRows& remaining);
+  void TakeResult(const tautline::ReconnectionResult& result);
+
+  int Preset = REMOVE_SLIVERS;
+  bool Swap = true;
+  bool Smooth = true;
+  bool Contract = true;
+  bool Insert = true;
+  bool Compound = true;
+  double TargetAngle = 0.0;
+  int Boundary = FIXED;
+  double FlatTolerance = 1e-8;
+  double SmallestCount = 0.9;
+  double LargestCount = 1.1;
+  bool MergeCoincidentPoints = true;
+
+  std::string Reason;
+  vtkIdType TetrahedraBefore = 0;
+  vtkIdType TetrahedraAfter = 0;
+  double SmallestAngleBefore = 0.0;
+  double SmallestAngleAfter = 0.0;
+  double WorstBefore = 0.0;
+  double WorstAfter = 0.0;
+  vtkIdType Remaining = 0;
+};
+
+#endif

@@ -1,0 +1,447 @@
+// Improve Mesh: the kernel's result as a data set, data of points and cells, tables, refusals.
+#include "Reconnecting.h"
+#include "VtkMeshes.h"
+
+#include "vtkMeshImprover.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <limits>
+
+using namespace tautline;
+
+namespace
+{
+constexpr Index Cubes = 5;
+
+vtkUnstructuredGrid* meshOf(vtkMeshImprover* filter)
+{
+  return vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+MeshData dataOf(vtkUnstructuredGrid* grid)
+{
+  MeshData data;
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    data.points.insert(data.points.end(), grid->GetPoint(i), grid->GetPoint(i) + 3);
+  }
+  for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i)
+  {
+    const vtkIdType* ids = nullptr;
+    vtkIdType size = 0;
+    grid->GetCells()->GetCellAtId(i, size, ids);
+    data.addCell(CellType::Tetrahedron, { ids[0], ids[1], ids[2], ids[3] });
+  }
+  return data;
+}
+
+double linear(const Vec3& p)
+{
+  return 3.0 + 2.0 * p[0] - p[1] + 0.5 * p[2];
+}
+
+/// Data of every kind; two regions with a plane between them.
+vtkSmartPointer<vtkUnstructuredGrid> withArrays(const MeshData& data, int type = VTK_DOUBLE)
+{
+  auto grid = toGrid(data, type);
+  vtkNew<vtkDoubleArray> field;
+  field->SetName("field");
+  vtkNew<vtkIdTypeArray> point;
+  point->SetName("point");
+  vtkNew<vtkIntArray> region;
+  region->SetName("region");
+  vtkNew<vtkStringArray> text;
+  text->SetName("text");
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    field->InsertNextValue(linear(data.point(i)));
+    point->InsertNextValue(i);
+  }
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    region->InsertNextValue(i < data.numberOfCells() / 2 ? 7 : -2);
+    text->InsertNextValue("c" + std::to_string(i));
+  }
+  grid->GetPointData()->AddArray(field);
+  grid->GetPointData()->SetGlobalIds(point);
+  grid->GetCellData()->AddArray(region);
+  grid->GetCellData()->AddArray(text);
+  return grid;
+}
+
+/// The output is what the kernel returns, with its tables.
+void testKernel()
+{
+  const MeshData data = sliverBlock(Cubes);
+  for (int preset = vtkMeshImprover::REMOVE_SLIVERS; preset <= vtkMeshImprover::AGGRESSIVE;
+       ++preset)
+  {
+    const Context context("preset " + std::to_string(preset));
+    const ReconnectionResult expected =
+      reconnect(data, optionsOf(static_cast<ReconnectionPreset>(preset)));
+    vtkNew<vtkMeshImprover> filter;
+    Messages messages(filter);
+    filter->SetInputData(toGrid(data));
+    filter->SetPreset(preset);
+    filter->Update();
+    TAUTLINE_CHECK(messages.empty());
+    const MeshData after = dataOf(meshOf(filter));
+    TAUTLINE_CHECK(after.points == expected.points);
+    TAUTLINE_CHECK(after.connectivity == expected.tetrahedra);
+    TAUTLINE_CHECK_EQUAL(filter->GetTetrahedraBefore(), data.numberOfCells());
+    TAUTLINE_CHECK_EQUAL(filter->GetTetrahedraAfter(), after.numberOfCells());
+    const ReconnectionRecord& last = expected.history.back();
+    TAUTLINE_CHECK_EQUAL(filter->GetSmallestAngleAfter(), last.smallestAngle);
+    TAUTLINE_CHECK_EQUAL(filter->GetWorstAfter(), last.worstInverseMeanRatio);
+    TAUTLINE_CHECK(filter->GetSmallestAngleAfter() > filter->GetSmallestAngleBefore());
+    TAUTLINE_CHECK(filter->GetWorstAfter() < filter->GetWorstBefore());
+    TAUTLINE_CHECK_EQUAL(
+      filter->GetHistory()->GetNumberOfRows(), static_cast<Index>(expected.history.size()));
+    double range[2];
+    meshOf(filter)->GetCellData()->GetArray("min_angle")->GetRange(range);
+    TAUTLINE_CHECK_NEAR(range[0], last.smallestAngle, 1e-8);
+    meshOf(filter)->GetCellData()->GetArray("imr")->GetRange(range);
+    TAUTLINE_CHECK_RELATIVE(range[1], last.worstInverseMeanRatio, 1e-9);
+    // What remains, the worst first.
+    TAUTLINE_CHECK_EQUAL(filter->GetRemaining(), last.belowTarget);
+    vtkTable* remaining = filter->GetRemainingTable();
+    TAUTLINE_CHECK_EQUAL(remaining->GetNumberOfRows(), last.belowTarget);
+    for (vtkIdType row = 0; row < remaining->GetNumberOfRows(); ++row)
+    {
+      const Index cell = remaining->GetValueByName(row, "Cell").ToTypeInt64();
+      TAUTLINE_CHECK(expected.obstacles[cell] != 0);
+      TAUTLINE_CHECK(!remaining->GetValueByName(row, "Reason").ToString().empty());
+      TAUTLINE_CHECK(row == 0 ||
+        remaining->GetValueByName(row, "Smallest angle").ToDouble() >=
+          remaining->GetValueByName(row - 1, "Smallest angle").ToDouble());
+    }
+    TAUTLINE_CHECK(contains(filter->GetSummary(), "Tetrahedra: "));
+    TAUTLINE_CHECK(contains(filter->GetSummary(),
+      last.belowTarget > 0 ? "below the target of" : "No tetrahedron remains below the target of"));
+  }
+}
+
+/// Points of the input keep their data, new ones interpolate a linear field exactly; cells have the
+/// data of the original one; regions keep their volumes.
+void testData()
+{
+  const MeshData data = sliverBlock(Cubes);
+  const auto input = withArrays(data);
+  vtkNew<vtkMeshImprover> filter;
+  Messages messages(filter);
+  filter->SetInputData(input);
+  filter->SetPreset(vtkMeshImprover::AGGRESSIVE);
+  filter->SetTargetAngle(40);
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region");
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  vtkUnstructuredGrid* output = meshOf(filter);
+  const MeshData after = dataOf(output);
+  const vtkIdType last = filter->GetHistory()->GetNumberOfRows() - 1;
+  TAUTLINE_CHECK(filter->GetHistory()->GetValueByName(last, "N insertions").ToDouble() > 0);
+
+  // The kernel's result states which point is which.
+  ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
+  options.targetAngle = 40;
+  std::vector<Index> regions(data.numberOfCells());
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    regions[i] = i < data.numberOfCells() / 2 ? 7 : -2;
+  }
+  options.regions = regions.data();
+  const ReconnectionResult expected = reconnect(data, options);
+  TAUTLINE_CHECK(after.points == expected.points);
+  Index inserted = 0;
+  for (Index i = 0; i < after.numberOfPoints(); ++i)
+  {
+    const Index original = expected.originalPoints[i];
+    inserted += original < 0;
+    TAUTLINE_CHECK_NEAR(component(output->GetPointData(), "field", i),
+      linear(original < 0 ? after.point(i) : data.point(original)), 1e-12);
+  }
+  TAUTLINE_CHECK(inserted > 0);
+  TAUTLINE_CHECK(!output->GetPointData()->GetGlobalIds());
+
+  std::map<double, double> before, volumes;
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    before[component(input->GetCellData(), "region", i)] += volumeOf(data, i);
+  }
+  auto* texts = vtkStringArray::SafeDownCast(output->GetCellData()->GetAbstractArray("text"));
+  for (Index i = 0; i < after.numberOfCells(); ++i)
+  {
+    volumes[component(output->GetCellData(), "region", i)] += volumeOf(after, i);
+    const Index original =
+      static_cast<Index>(component(output->GetCellData(), "OriginalCellId", i));
+    TAUTLINE_CHECK(original >= 0 && original < data.numberOfCells());
+    TAUTLINE_CHECK_EQUAL(texts->GetValue(i), "c" + std::to_string(original));
+  }
+  TAUTLINE_CHECK_EQUAL(volumes.size(), 2u);
+  for (const auto& [region, volume] : before)
+  {
+    TAUTLINE_CHECK_RELATIVE(volumes[region], volume, 1e-12);
+  }
+  TAUTLINE_CHECK(outerFacets(after) == outerFacets(data));
+}
+
+/// Points that an array or a selection fixes are where they were.
+void testFixed()
+{
+  const MeshData data = sliverBlock(Cubes);
+  const auto input = toGrid(data);
+  vtkNew<vtkDoubleArray> all;
+  all->SetName("all");
+  all->SetNumberOfValues(data.numberOfPoints());
+  all->Fill(1);
+  input->GetPointData()->AddArray(all);
+  vtkNew<vtkMeshImprover> filter;
+  filter->SetInputData(0, input);
+  filter->SetPreset(vtkMeshImprover::SWAP_AND_SMOOTH);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "all");
+  filter->Update();
+  TAUTLINE_CHECK(dataOf(meshOf(filter)).points == data.points);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "it has a fixed point (fix fewer points)"));
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "None");
+  filter->Update();
+  TAUTLINE_CHECK(dataOf(meshOf(filter)).points != data.points);
+
+  vtkNew<vtkIdTypeArray> ids;
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    ids->InsertNextValue(i);
+  }
+  vtkNew<vtkSelectionNode> node;
+  node->SetContentType(vtkSelectionNode::INDICES);
+  node->SetFieldType(vtkSelectionNode::CELL);
+  node->SetSelectionList(ids);
+  vtkNew<vtkSelection> selection;
+  selection->AddNode(node);
+  filter->SetInputData(1, selection);
+  filter->Update();
+  TAUTLINE_CHECK(dataOf(meshOf(filter)).points == data.points);
+}
+
+/// What is refused, by text; an error leaves all outputs empty.
+void testRefusals()
+{
+  vtkNew<vtkMeshImprover> filter;
+  Messages messages(filter);
+  const auto refused = [&](vtkDataObject* input, const char* text)
+  {
+    const Context context(text);
+    messages.clear();
+    filter->SetInputDataObject(0, input);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has(text));
+    TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 0);
+    TAUTLINE_CHECK(std::string(filter->GetSummary()).empty());
+  };
+  refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), "8 hexahedra: Improve Mesh takes");
+  refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), "run Tetrahedralize first");
+  refused(toGrid(blockMesh(CellType::Triangle, 2, 2, 0)), "8 triangles, but no tetrahedron");
+  refused(toPolyData(blockMesh(CellType::Triangle, 2, 2, 0)), "The mesh is a vtkPolyData");
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(3, 3, 3);
+  refused(image, "run Tetrahedralize first");
+
+  MeshData inverted = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+  inverted.setPoint(13, { 3, 3, 3 });
+  refused(toGrid(inverted), "run Untangle Mesh first");
+  MeshData broken = blockMesh(CellType::Tetrahedron, 2, 2, 2);
+  broken.points[0] = std::numeric_limits<double>::quiet_NaN();
+  refused(toGrid(broken), "NaN or infinite");
+
+  const auto ghosts = toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName(vtkDataSetAttributes::GhostArrayName());
+  flags->SetNumberOfValues(ghosts->GetNumberOfCells());
+  flags->Fill(0);
+  flags->SetValue(3, vtkDataSetAttributes::DUPLICATECELL);
+  ghosts->GetCellData()->AddArray(flags);
+  refused(ghosts, "1 ghost or hidden cells");
+
+  const auto regions = withArrays(blockMesh(CellType::Tetrahedron, 2, 2, 2));
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent");
+  refused(regions, "absent");
+  vtkNew<vtkDoubleArray> holes;
+  holes->SetName("holes");
+  holes->SetNumberOfValues(regions->GetNumberOfCells());
+  holes->Fill(std::numeric_limits<double>::quiet_NaN());
+  regions->GetCellData()->AddArray(holes);
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "holes");
+  refused(regions, "is NaN in cell 0");
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "None");
+
+  messages.clear();
+  filter->SetTargetAngle(61);
+  TAUTLINE_CHECK(messages.has("TargetAngle is 61"));
+}
+
+/// Triangles beside the tetrahedra are left out with a warning; ids are those of the input.
+void testSurfaceCells()
+{
+  const MeshData data = sliverBlock(3);
+  MeshData mixed;
+  mixed.points = data.points;
+  mixed.addCell(CellType::Triangle, { 0, 1, 4 });
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    const Index* v = &data.connectivity[data.offsets[i]];
+    mixed.addCell(CellType::Tetrahedron, { v[0], v[1], v[2], v[3] });
+  }
+  vtkNew<vtkMeshImprover> filter, plain;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(mixed));
+  filter->Update();
+  plain->SetInputData(toGrid(data));
+  plain->Update();
+  TAUTLINE_CHECK(messages.has("1 triangles beside the tetrahedra are left out"));
+  TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), meshOf(plain)->GetNumberOfCells());
+  for (Index i = 0; i < meshOf(filter)->GetNumberOfCells(); ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "OriginalCellId", i),
+      component(meshOf(plain)->GetCellData(), "OriginalCellId", i) + 1);
+  }
+}
+
+/// Each tetrahedron with points of its own: one mesh if merged, else all facets are boundary.
+void testSeams()
+{
+  const MeshData data = sliverBlock(3);
+  MeshData pieces;
+  for (Index i = 0; i < data.numberOfCells(); ++i)
+  {
+    std::vector<Index> ids;
+    for (int k = 0; k < 4; ++k)
+    {
+      ids.push_back(pieces.numberOfPoints());
+      const Vec3 p = data.point(data.connectivity[data.offsets[i] + k]);
+      pieces.points.insert(pieces.points.end(), p.begin(), p.end());
+    }
+    pieces.addCell(CellType::Tetrahedron, ids);
+  }
+  vtkNew<vtkMeshImprover> filter;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(pieces));
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK(filter->GetSmallestAngleAfter() > filter->GetSmallestAngleBefore());
+  TAUTLINE_CHECK(meshOf(filter)->GetNumberOfPoints() < 2 * data.numberOfPoints());
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "one point in place of each group"));
+  filter->MergeCoincidentPointsOff();
+  filter->Update();
+  TAUTLINE_CHECK(dataOf(meshOf(filter)).points == pieces.points);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "treated as boundary"));
+}
+
+/// Blocks one by one; empty data; single precision; a mirrored mesh.
+void testInputs()
+{
+  vtkNew<vtkMeshImprover> filter;
+  Messages messages(filter);
+  vtkNew<vtkUnstructuredGrid> empty;
+  filter->SetInputData(empty);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
+
+  MeshData data = sliverBlock(3), apart = sliverBlock(4, 5);
+  apart.transform([](const Vec3& p) { return p + Vec3{ 10, 0, 0 }; });
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, toGrid(data, VTK_FLOAT));
+  blocks->SetBlock(1, empty);
+  blocks->SetBlock(2, toGrid(apart));
+  filter->SetInputData(blocks);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* first = vtkUnstructuredGrid::SafeDownCast(output->GetBlock(0));
+  auto* third = vtkUnstructuredGrid::SafeDownCast(output->GetBlock(2));
+  TAUTLINE_CHECK_EQUAL(first->GetPoints()->GetDataType(), VTK_FLOAT);
+  TAUTLINE_CHECK_EQUAL(third->GetPoints()->GetDataType(), VTK_DOUBLE);
+  for (signed char v : validityOf(dataOf(first)))
+  {
+    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid));
+  }
+  TAUTLINE_CHECK_EQUAL(
+    filter->GetTetrahedraAfter(), first->GetNumberOfCells() + third->GetNumberOfCells());
+  TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 3: "));
+  blocks->SetBlock(1, toGrid(blockMesh(CellType::Hexahedron, 1, 1, 1)));
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("In block 2: 1 hexahedra"));
+
+  // The mirror image, cells not renumbered: reversed throughout.
+  data.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+  messages.clear();
+  filter->SetInputData(withArrays(data));
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "as if its cells were flipped"));
+  const MeshData mirrored = dataOf(meshOf(filter));
+  TAUTLINE_CHECK_RELATIVE(volumeOf(mirrored), volumeOf(data), 1e-12);
+  for (Index i = 0; i < mirrored.numberOfCells(); ++i)
+  {
+    TAUTLINE_CHECK(volumeOf(mirrored, i) < 0);
+  }
+}
+
+/// An abort and the time limit return the best mesh so far.
+void testStops()
+{
+  const MeshData data = sliverBlock(12);
+  vtkNew<vtkMeshImprover> filter;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(data));
+  filter->SetPreset(vtkMeshImprover::AGGRESSIVE);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  const auto observer = filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  const auto check = [&]()
+  {
+    const MeshData after = dataOf(meshOf(filter));
+    TAUTLINE_CHECK_RELATIVE(volumeOf(after), volumeOf(data), 1e-12);
+    TAUTLINE_CHECK(filter->GetSmallestAngleAfter() >= filter->GetSmallestAngleBefore());
+    TAUTLINE_CHECK(filter->GetWorstAfter() <= filter->GetWorstBefore());
+  };
+  filter->Update();
+  check();
+  TAUTLINE_CHECK(contains(filter->GetReason(), "Stopped on request"));
+  filter->RemoveObserver(observer);
+  filter->SetAbortExecute(0);
+  filter->SetTimeLimit(0.05);
+  filter->Update();
+  check();
+  TAUTLINE_CHECK(contains(filter->GetReason(), "time limit"));
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMeshImprover(int, char*[])
+{
+  testKernel();
+  testData();
+  testFixed();
+  testRefusals();
+  testSurfaceCells();
+  testSeams();
+  testInputs();
+  testStops();
+  return exitCode();
+}
