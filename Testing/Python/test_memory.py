@@ -51,6 +51,7 @@ def commands(large: str, small: str, layer: str) -> dict[str, list[str]]:
         "quality": ["quality", large, "--metrics", "imr,radius_ratio,scaled_jacobian,size", "-o", out],
         "optimize": ["optimize", large, "-o", out],
         "untangle": ["untangle", str(DATA / "bracket-tangled.vtu"), "-o", out],
+        "improve": ["improve", str(DATA / "bracket.vtu"), "--preset", "aggressive", "-o", out],
         "perturb": ["perturb", large, "-o", out],
         "solve": ["solve", large, "-o", out],
         "condition": ["condition", small, "-o", out],

@@ -377,6 +377,9 @@ OPERATIONS = {
     "untangle, 50,000 tetrahedra": lambda t: tl.untangle(tangled_barrier(), threads=t),
     "untangle, held points": lambda t: tl.untangle(
         TANGLED, "local", fixed=half(tl.read(TANGLED)), fix_boundary=False, threads=t),
+    **each("improve mesh, {}", ("remove slivers", "swap only", "swap and smooth", "aggressive"),
+           lambda preset, t: tl.improve(BRACKET, preset, threads=t)),
+    "improve mesh, flat": lambda t: tl.improve(BRACKET, boundary="flat", threads=t),
     # deformation
     **each("warp by {}, 50,000 triangles", (
         "hybrid", "femwarp", "anisotropic femwarp", "small-step femwarp", "femwarp and untangling",
