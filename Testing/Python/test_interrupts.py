@@ -1,6 +1,6 @@
 """Ctrl-C, progress callbacks and time limits end every long function, and leave no partial file.
 
-test_interrupts.py PART [NAME], where PART is signal, cancel, limit, shell or pvpython, and NAME an operation. Every
+test_interrupts.py PART [NAME], where PART is signal, cancel, limit, shell or some, and NAME an operation. Every
 operation would take much longer than the test waits. SIGINT is sent after the operation has reported its first
 progress, by another process, because Python executes nothing else meanwhile. The times to the end are printed; the
 bound that is checked is generous, because the machine may be busy.
@@ -23,8 +23,8 @@ DELAY = 0.5  # seconds from the first progress to SIGINT
 TIME_LIMIT = 1.0
 #: What goes on in the background after its end, and is in the way of what follows.
 IN_BACKGROUND = ("warp factorization", "solve factorization", "condition accurate", "solver study")
-#: In pvpython: one of each kind.
-IN_PVPYTHON = ("quality", "optimize local newton", "solve factorization")
+#: What the part `some` interrupts, in pvpython: one of each kind.
+SOME = ("quality", "optimize local newton", "solve factorization")
 
 #: What a child does: the command of the shell in argv[1:], with a report of the first progress.
 CHILD = """
@@ -150,8 +150,8 @@ if __name__ == "__main__":
     if part == "shell":
         check_callbacks()
         check_shell()
-    elif part == "pvpython":
-        for operation in IN_PVPYTHON:
+    elif part == "some":
+        for operation in SOME:
             check_signal(operation)
     else:
         for operation in chosen or OPERATIONS:
