@@ -1,7 +1,7 @@
 """pvpython make_improve.py PLUGIN: draws improve_mesh.png, the slivers of the sample bracket before and after.
 
-Left the tetrahedra of the bracket with a dihedral angle below 25 degrees, right those of the output of Improve Mesh with
-the preset Aggressive, both coloured by the angle.
+Left the tetrahedra of the bracket with a dihedral angle below 25 degrees, right those of the output of Improve Mesh
+with the preset Aggressive, both coloured by the angle.
 """
 
 import sys
