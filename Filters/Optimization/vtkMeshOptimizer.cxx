@@ -475,8 +475,17 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   {
     setup.addFeatures(block.output);
   }
-  const std::string qualities = tautline::addBeforeAfter(
+  std::string qualities;
+  if (!done && points != run.result.points)
+  {
+    // The summary is that of the result, also if an iteration before it is shown.
+    tautline::TableRows ofResult;
+    qualities = tautline::addBeforeAfter(
+      mesh, run.result.points, metrics, this->Threads, block.name, block.output, ofResult);
+  }
+  const std::string shown = tautline::addBeforeAfter(
     mesh, points, metrics, this->Threads, block.name, block.output, statistics);
+  qualities = qualities.empty() ? shown : qualities;
   tautline::addHistory(
     history, run.result.history, tautline::objectiveNames(options.objectives), block.name);
   if (!done)
