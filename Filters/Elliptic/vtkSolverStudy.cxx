@@ -45,6 +45,22 @@ const std::vector<tautline::SolverCombination>& allCombinations()
   return all;
 }
 
+/// The place of each row, from 1: by time, then those that did not converge.
+std::vector<int> ranksOf(const std::vector<tautline::SolverStudyRow>& rows)
+{
+  const auto fails = [&](int i) { return !rows[i].run || !converged(rows[i].linear.reason); };
+  std::vector<int> order(rows.size()), ranks(rows.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+    [&](int a, int b)
+    { return fails(a) != fails(b) ? fails(b) : !fails(a) && rows[a].seconds < rows[b].seconds; });
+  for (std::size_t place = 0; place < order.size(); ++place)
+  {
+    ranks[order[place]] = static_cast<int>(place) + 1;
+  }
+  return ranks;
+}
+
 std::string secondsText(double seconds)
 {
   std::ostringstream text;
@@ -142,6 +158,7 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
   options.progress = [&](double fraction) { return this->Report(mesh, fraction); };
   const tautline::SolverStudy study = tautline::studySolvers(input.system(), options);
 
+  const std::vector<int> ranks = ranksOf(study.rows);
   tautline::Index failed = 0, skipped = 0;
   for (std::size_t i = 0; i < study.rows.size(); ++i)
   {
@@ -152,6 +169,7 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
     table.begin(mesh.name);
     table.addText("Combination", GetCombinationName(numbers[i]));
     table.add("N combination", numbers[i]);
+    table.add("N rank", ranks[i]);
     table.add("Total time (s)", converged ? row.seconds : 0.0);
     table.addText("Result",
       converged   ? secondsText(row.seconds)
@@ -168,7 +186,7 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
           (row.linear.message.empty() ? "" : " ") + tautline::sentence(row.linear.message)
               : "There was no time left for it.");
   }
-  this->Recommended = study.recommended >= 0
+  this->Recommended = study.recommended >= 0 && study.ties == 0
     ? GetCombinationName(numbers[static_cast<std::size_t>(study.recommended)])
     : "";
   this->Why = study.why;
@@ -185,7 +203,7 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
   }
   text << ".";
   this->Describe(mesh, text.str());
-  if (this->Recommended.empty())
+  if (study.recommended < 0)
   {
     this->Warn();
   }

@@ -86,8 +86,10 @@ def test_condition():
 def test_study():
     study = tl.solver_study(square(12))
     assert [row["number"] for row in study.rows] == list(range(1, 17)) and study.rows[9]["name"] == "GMRES + ILU(0)"
-    best = min(study.rows, key=lambda row: row["seconds"])
-    assert study.recommended == best["name"] and study.why.startswith(best["name"])
+    best, second = sorted(study.rows, key=lambda row: row["seconds"])[:2]
+    clear = second["seconds"] > best["seconds"] + max(0.1 * best["seconds"], 1e-3)
+    assert study.recommended == (best["name"] if clear else "") and f"{best['name']}: " in study.why
+    assert study.why.startswith(best["name"] if clear else "No clear recommendation: ")
     assert all(row["converged"] and row["result"].endswith(" s") and row["condition"] >= 1 for row in study.rows)
     few = tl.solver_study(square(12), "elasticity", [17, "CG + GAMG", 1], maximum_iterations=1)
     assert [row["number"] for row in few.rows] == [17, 19, 1]
@@ -98,7 +100,7 @@ def test_study():
 def test_false_convergence():
     """An indefinite matrix: preconditioned residuals become small without a solution; that is no convergence."""
     study = tl.solver_study(DATA / "plate.vtu", "elliptic", range(1, 20), reaction=-100.0, maximum_iterations=500)
-    assert study.recommended == "direct solver"
+    assert study.recommended in ("direct solver", "") and "direct solver: " in study.why
     assert all(row["true_residual"] < 1e-2 for row in study.rows if row["converged"])
     failed = [row for row in study.rows if not row["converged"]]
     assert len(failed) > 3 and all(row["result"] == "*" and len(row["reason"]) > 10 for row in failed)
@@ -162,7 +164,7 @@ def test_commands():
     out = shell("condition", plate, "--preconditioner", "ilu", "-o", OUT / "c.vtu", "--csv", OUT / "c.csv")
     assert "P^-1 A (ILU(0))" in out and tl.read(OUT / "c.vtu").GetCellData().GetArray("Share")
     out = shell("solver-study", plate, "--combinations", "1,13,17", "--csv", OUT / "t.csv")
-    assert "CG + BoomerAMG" in out and "Recommended: " in out
+    assert "CG + BoomerAMG" in out and ("Recommended: " in out or "No clear recommendation: " in out)
     with open(OUT / "t.csv", encoding="utf-8") as rows:
         assert [row["number"] for row in csv.DictReader(rows)] == ["1", "13", "17"]
     assert "inverted" in shell("solve", DATA / "bracket-tangled.vtu", code=1)

@@ -60,7 +60,8 @@ assert servermanager.Fetch(estimate, idx=1).GetNumberOfRows() == 2
 
 study = update(SolverStudy(Input=plate))
 table = servermanager.Fetch(study, idx=1)
-assert table.GetNumberOfRows() == 16 and study.Recommended and study.Recommended in study.Summary
+assert table.GetNumberOfRows() == 16 and study.Recommended in study.Summary
+assert study.Summary.startswith("Recommended: " if study.Recommended else "No clear recommendation: "), study.Summary
 study.Combinations = ["13: CG + BoomerAMG", "17: Direct"]
 update(study)
 table = servermanager.Fetch(study, idx=1)

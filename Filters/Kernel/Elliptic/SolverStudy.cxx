@@ -11,6 +11,8 @@ namespace tautline
 {
 namespace
 {
+// Differences of times that another run would not show again.
+constexpr double noiseFraction = 0.1, noiseSeconds = 1e-3;
 constexpr int tableMethods = 4, tablePreconditioners = 4; // of Table 2.5
 
 bool isMultigrid(Preconditioner preconditioner)
@@ -412,7 +414,15 @@ void Study::recommend()
   {
     const SolverStudyRow& best = *order.front();
     this->Result.recommended = order.front() - rows.data();
-    why = this->nameIn(best.combination) + ": " + digits(best.seconds) + " s";
+    const double noise = std::max(noiseFraction * best.seconds, noiseSeconds);
+    this->Result.ties = std::count_if(order.begin() + 1, order.end(),
+      [&](const SolverStudyRow* row) { return row->seconds <= best.seconds + noise; });
+    if (this->Result.ties > 0)
+    {
+      why = "No clear recommendation: the times of " + std::to_string(this->Result.ties + 1) +
+        " combinations differ by less than " + digits(noise) + " s, the noise. The fastest was ";
+    }
+    why += this->nameIn(best.combination) + ": " + digits(best.seconds) + " s";
     if (best.combination.method != KrylovMethod::Direct)
     {
       why += ", " + std::to_string(best.linear.iterations) +

@@ -64,7 +64,10 @@ struct SolverStudy
 {
   std::vector<SolverStudyRow> rows; ///< one per combination
   Index recommended = -1;           ///< the fastest that converged; -1: none did
-  std::string why;                  ///< a few sentences for the user
+  /// How many others took the same time within the noise of the clock: a tenth or a millisecond
+  /// more. Above 0 the recommendation is not a clear one, and `why` begins with it.
+  Index ties = 0;
+  std::string why; ///< a few sentences for the user
   bool aborted = false, timeLimit = false;
 };
 
