@@ -1,5 +1,6 @@
 #include "pqTautlineCharts.h"
 
+#include "FetchOutput.h"
 #include "ProxyKind.h"
 
 #include "pqActiveObjects.h"
@@ -10,14 +11,18 @@
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkDataObject.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
 
 #include <QPointer>
+#include <QString>
 #include <QTimer>
 
 #include <string>
@@ -34,6 +39,11 @@ pqServerManagerModel* model()
   pqApplicationCore* core = pqApplicationCore::instance();
   return core ? core->getServerManagerModel() : nullptr;
 }
+
+constexpr const char* StudyPort = "Study";
+constexpr const char* Rank = "N rank"; // a column of Solver Study
+constexpr const char* XAxis = "XArrayName";
+constexpr const char* ByIndex = "UseIndexForXAxis";
 
 /// The columns of a table with their smallest values.
 struct Column
@@ -99,8 +109,8 @@ void arrangeDistribution(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<
     if (endsWith(column.name, value))
     {
       const std::string metric = column.name.substr(0, column.name.size() - value.size());
-      vtkSMPropertyHelper(chart, "UseIndexForXAxis").Set(0);
-      vtkSMPropertyHelper(chart, "XArrayName").Set(column.name.c_str());
+      vtkSMPropertyHelper(chart, ByIndex).Set(0);
+      vtkSMPropertyHelper(chart, XAxis).Set(column.name.c_str());
       for (const Column& other : columns)
       {
         setSeries(chart, Visibility, other.name, other.name == metric + count ? "1" : "0");
@@ -111,6 +121,44 @@ void arrangeDistribution(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<
     }
   }
 }
+
+/// The name of a combination on lines of its own: solver, preconditioner. Neighbours are shifted
+/// by two lines, since the bars are narrower than the names.
+QString barLabel(const std::string& name, int rank)
+{
+  constexpr int levels = 4, linesOfName = 2;
+  const QString shift(linesOfName * ((rank - 1) % levels), '\n');
+  return shift + QString::fromStdString(name).replace(" + ", "\n").replace(", ", "\n");
+}
+
+/// Bars in the order of the ranks, with the names of the combinations.
+void arrangeStudy(vtkSMProxy* chart, vtkSMProxy* view, pqOutputPort* port)
+{
+  const auto data = tautline::fetchOutput(port->getSource(), StudyPort);
+  vtkTable* table = vtkTable::SafeDownCast(data);
+  vtkAbstractArray* names = table ? table->GetColumnByName("Combination") : nullptr;
+  vtkAbstractArray* ranks = table ? table->GetColumnByName(Rank) : nullptr;
+  if (!names || !ranks)
+  {
+    return;
+  }
+  vtkSMPropertyHelper(chart, ByIndex).Set(0);
+  vtkSMPropertyHelper(chart, XAxis).Set(Rank);
+  vtkSMPropertyHelper labels(view, "BottomAxisLabels");
+  labels.SetNumberOfElements(0);
+  for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+  {
+    const int rank = ranks->GetVariantValue(row).ToInt();
+    const std::string name = names->GetVariantValue(row).ToString();
+    const auto place = static_cast<unsigned int>(2 * row);
+    labels.Set(place, std::to_string(rank).c_str());
+    labels.Set(place + 1, barLabel(name, rank).toUtf8().constData());
+  }
+  constexpr int fontSize = 8;
+  vtkSMPropertyHelper(view, "BottomAxisUseCustomLabels").Set(1);
+  vtkSMPropertyHelper(view, "BottomAxisLabelFontSize").Set(fontSize);
+  vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Total time (s)");
+}
 }
 
 //------------------------------------------------------------------------------
@@ -118,6 +166,7 @@ void pqTautlineCharts::startup()
 {
   QObject::connect(
     model(), &pqServerManagerModel::representationAdded, this, &pqTautlineCharts::added);
+  QObject::connect(model(), &pqServerManagerModel::dataUpdated, this, &pqTautlineCharts::updated);
 }
 
 //------------------------------------------------------------------------------
@@ -145,6 +194,38 @@ void pqTautlineCharts::added(pqRepresentation* shown)
 }
 
 //------------------------------------------------------------------------------
+void pqTautlineCharts::updated(pqPipelineSource* source)
+{
+  if (!tautline::isTautline(source->getProxy()) || !source->getOutputPort(StudyPort))
+  {
+    return;
+  }
+  // Another run has other ranks. Fetching updates a pipeline: after the update.
+  const QPointer<pqPipelineSource> study = source;
+  QTimer::singleShot(0, this,
+    [this, study]
+    {
+      for (pqView* view : study ? study->getViews() : QList<pqView*>())
+      {
+        if (pqDataRepresentation* chart = study->getOutputPort(StudyPort)->getRepresentation(view))
+        {
+          this->arrange(chart);
+        }
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineCharts::stateChanged(pqServerManagerModelItem* item)
+{
+  auto* source = qobject_cast<pqPipelineSource*>(item);
+  if (source && source->modifiedState() == pqProxy::UNMODIFIED)
+  {
+    this->updated(source);
+  }
+}
+
+//------------------------------------------------------------------------------
 void pqTautlineCharts::arrange(pqDataRepresentation* chart)
 {
   pqView* view = chart->getView();
@@ -161,6 +242,13 @@ void pqTautlineCharts::arrange(pqDataRepresentation* chart)
   else if (port->getPortName() == "Distribution")
   {
     arrangeDistribution(chart->getProxy(), view->getProxy(), columns);
+  }
+  else if (port->getPortName() == StudyPort)
+  {
+    // During Apply the data cannot be fetched yet.
+    QObject::connect(port->getSource(), &pqPipelineSource::modifiedStateChanged, this,
+      &pqTautlineCharts::stateChanged, Qt::UniqueConnection);
+    arrangeStudy(chart->getProxy(), view->getProxy(), port);
   }
   chart->getProxy()->UpdateVTKObjects();
   view->getProxy()->UpdateVTKObjects();

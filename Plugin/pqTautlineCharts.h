@@ -4,7 +4,8 @@
  *
  * History: the objective on a left axis, logarithmic if possible, the other series on the right
  * axis, since their magnitudes differ. Distribution: the counts over the values of the metric
- * instead of the numbers of the rows. After Apply, the view of the mesh is active again, not the
+ * instead of the numbers of the rows. Study: the times in the order of the ranks, with the names of the
+ * combinations. After Apply, the view of the mesh is active again, not the
  * chart that was added: the mesh of the next filter then appears there. The plugin starts the
  * object in the GUI.
  */
@@ -15,7 +16,9 @@
 #include <QObject>
 
 class pqDataRepresentation;
+class pqPipelineSource;
 class pqRepresentation;
+class pqServerManagerModelItem;
 
 class pqTautlineCharts : public QObject
 {
@@ -30,6 +33,8 @@ public:
 
 private Q_SLOTS:
   void added(pqRepresentation* shown);
+  void updated(pqPipelineSource* source);
+  void stateChanged(pqServerManagerModelItem* item);
 
 private:
   void arrange(pqDataRepresentation* chart);

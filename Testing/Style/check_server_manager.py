@@ -2,7 +2,8 @@
 
 At most MAX_REPEATED of the lines that are not blank may stand in repeated blocks: runs of BLOCK or more lines that
 stand twice or more, white space aside. Templates, snippets and generated files are well-formed XML, every snippet is
-included somewhere, and in the generated files each property of a group is one of its proxy.
+included somewhere, and in the generated files each property of a group is one of its proxy. A property whose
+documentation gives the value 0 a meaning of its own ("; 0 is no limit") has the hint that writes it beside the field.
 """
 
 import re
@@ -13,6 +14,8 @@ from pathlib import Path
 
 BLOCK = 8  # lines
 MAX_REPEATED = 0.01
+ZERO = re.compile(r"(?:^|[;,.]\s)0(?: is|:| =| means| switches)\s")  # a meaning of its own
+ZERO_HINT = "Hints/PropertyWidgetDecorator[@type='tautline_zero']"
 INCLUDE = re.compile(r"<\?include (\w+\.xml)")
 Line = tuple[Path, int]
 
@@ -60,12 +63,22 @@ def strangers(path: Path):
                 yield f"{path}: {proxy.get('name')} has no property {group.get('name')}"
 
 
+def silent_zeros(path: Path):
+    """Properties with a special 0 that their field does not show."""
+    for proxy in ElementTree.parse(path).iterfind("ProxyGroup/*"):
+        for child in proxy:
+            special = ZERO.search(child.findtext("Documentation", "").strip())
+            editable = child.tag.endswith("Property") and child.get("information_only") != "1"
+            if special and editable and child.find(ZERO_HINT) is None:
+                yield f"{path}: {proxy.get('name')}.{child.get('name')} has a special 0: include Zero.xml"
+
+
 def main(directory: Path, generated: list[Path]) -> int:
     files = sorted(path for path in directory.rglob("*") if path.name.endswith((".xml", ".xml.in")))
     blocks, share = repeated(files)
     wrong = [*malformed(files + generated), *unused(files)]
     if not wrong:
-        wrong += [complaint for path in generated for complaint in strangers(path)]
+        wrong += [complaint for path in generated for complaint in [*strangers(path), *silent_zeros(path)]]
     if share > MAX_REPEATED:
         wrong += [" = ".join(f"{path.relative_to(directory)}:{line}" for path, line in block) for block in blocks]
         allowed = f"{MAX_REPEATED:.0%} are allowed"

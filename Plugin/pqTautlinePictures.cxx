@@ -1,0 +1,123 @@
+#include "pqTautlinePictures.h"
+
+#include "ProxyKind.h"
+
+#include "pqApplicationCore.h"
+#include "pqDataRepresentation.h"
+#include "pqOutputPort.h"
+#include "pqPipelineFilter.h"
+#include "pqRenderView.h"
+#include "pqServerManagerModel.h"
+
+#include "vtkNew.h"
+#include "vtkPVDataInformation.h"
+#include "vtkSMParaViewPipelineControllerWithRendering.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSMViewProxy.h"
+
+#include <QList>
+#include <QPointer>
+#include <QString>
+#include <QTimer>
+
+#include <algorithm>
+#include <string>
+
+namespace
+{
+constexpr int MeshPort = 0;
+constexpr double MeshOpacity = 0.6;
+constexpr double Behind = 1e-3; // distance of the image from the mesh, of its size
+
+pqServerManagerModel* model()
+{
+  pqApplicationCore* core = pqApplicationCore::instance();
+  return core ? core->getServerManagerModel() : nullptr;
+}
+
+/// The port of the filter that has the image in which the mesh was found, or null.
+pqOutputPort* imageOf(pqPipelineFilter* filter)
+{
+  const std::string name = filter->getProxy()->GetXMLName();
+  const QString input = name == "MatchShape" ? "Target" : name == "SilhouetteToMesh" ? "Input" : "";
+  const QList<pqOutputPort*> ports =
+    input.isEmpty() ? QList<pqOutputPort*>() : filter->getInputs(input);
+  return ports.isEmpty() ? nullptr : ports.front();
+}
+
+void moveBehind(vtkSMProxy* image, const double bounds[6])
+{
+  if (image->GetProperty("Representation") && image->GetProperty("Position"))
+  {
+    const double size = std::max(bounds[1] - bounds[0], bounds[3] - bounds[2]);
+    const double position[3] = { 0.0, 0.0, -Behind * size };
+    vtkSMPropertyHelper(image, "Representation").Set("Surface");
+    vtkSMPropertyHelper(image, "Position").Set(position, 3);
+    vtkSMPropertyHelper(image, "MapScalars", true).Set(0); // bytes are colours or grey values
+    image->UpdateVTKObjects();
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void pqTautlinePictures::startup()
+{
+  QObject::connect(
+    model(), &pqServerManagerModel::representationAdded, this, &pqTautlinePictures::added);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlinePictures::shutdown()
+{
+  if (model())
+  {
+    QObject::disconnect(model(), nullptr, this, nullptr);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlinePictures::added(pqRepresentation* shown)
+{
+  // After Apply, which hides the inputs.
+  const QPointer<pqDataRepresentation> mesh = qobject_cast<pqDataRepresentation*>(shown);
+  QTimer::singleShot(0, this,
+    [this, mesh]
+    {
+      if (mesh && mesh->getInput() && tautline::isTautline(mesh->getInput()->getProxy()))
+      {
+        this->arrange(mesh);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void pqTautlinePictures::arrange(pqDataRepresentation* mesh)
+{
+  auto* view = qobject_cast<pqRenderView*>(mesh->getView());
+  auto* filter = qobject_cast<pqPipelineFilter*>(mesh->getInput());
+  pqOutputPort* port = mesh->getOutputPortFromInput();
+  if (!view || !filter || port->getPortNumber() != MeshPort)
+  {
+    return;
+  }
+  pqOutputPort* image = imageOf(filter);
+  if (!image || image->getDataInformation()->GetNumberOfPoints() == 0)
+  {
+    return;
+  }
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  vtkSMProxy* picture = controller->Show(
+    image->getSource()->getSourceProxy(), image->getPortNumber(), view->getViewProxy());
+  if (!picture)
+  {
+    return;
+  }
+  double bounds[6];
+  image->getDataInformation()->GetBounds(bounds);
+  moveBehind(picture, bounds);
+  vtkSMPropertyHelper(mesh->getProxy(), "Opacity").Set(MeshOpacity);
+  mesh->getProxy()->UpdateVTKObjects();
+  mesh->renderViewEventually();
+}

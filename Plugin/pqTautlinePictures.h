@@ -1,0 +1,37 @@
+/**
+ * @class pqTautlinePictures
+ * @brief Shows the image behind a mesh that was found in it.
+ *
+ * When the output of Match Shape or Silhouette to Mesh is shown for the first time, its image is
+ * shown, too, in the grey values or colours of its pixels and a little behind the mesh, which is
+ * translucent. Only the displays are changed, not the data. The plugin starts the object in the
+ * GUI.
+ */
+
+#ifndef pqTautlinePictures_h
+#define pqTautlinePictures_h
+
+#include <QObject>
+
+class pqDataRepresentation;
+class pqRepresentation;
+
+class pqTautlinePictures : public QObject
+{
+  Q_OBJECT
+
+public:
+  ///@{
+  /// Called by ParaView when the plugin is loaded in the GUI, and before it is unloaded.
+  void startup();
+  void shutdown();
+  ///@}
+
+private Q_SLOTS:
+  void added(pqRepresentation* shown);
+
+private:
+  void arrange(pqDataRepresentation* mesh);
+};
+
+#endif

@@ -1,0 +1,168 @@
+"""Checks of the data and charts of a session, called in ParaView's Python shell: a failed one ends ParaView with 1.
+
+The numbers are computed here, from the points and cells, or are those of numpy.
+"""
+
+import functools
+import os
+import re
+import sys
+import traceback
+
+import numpy
+from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+
+def check(function):
+    @functools.wraps(function)
+    def checked():
+        try:
+            function()
+        except BaseException:  # the shell would print it in its window, and the session go on
+            traceback.print_exc(file=sys.__stderr__)
+            os._exit(1)
+
+    return checked
+
+
+def find(name):
+    """The last source of this proxy."""
+    return [source for source in simple.GetSources().values() if source.GetXMLName() == name][-1]
+
+
+def chart_of(source, port, kind):
+    """A view with the port's chart; what the plugin sets is set when the event loop runs next."""
+    view = simple.CreateView(kind)
+    simple.AssignViewToLayout(view)
+    return simple.Show(simple.OutputPort(source, port), view)
+
+
+def chart_in(kind):
+    """View and representation of the chart of this kind."""
+    view = next(view for view in simple.GetViews() if view.GetXMLName() == kind)
+    return view, view.Representations[0]
+
+
+def triangles(mesh):
+    """Corners of the triangles."""
+    points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(float)
+    corners = [[mesh.GetCell(cell).GetPointId(i) for i in range(3)] for cell in range(mesh.GetNumberOfCells())]
+    return points[numpy.array(corners)]
+
+
+def areas(corners):
+    edges = corners[:, 1:, :2] - corners[:, :1, :2]
+    return (edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]) / 2
+
+
+@check
+def open_distribution():
+    chart_of(find("ElementQuality"), 2, "XYBarChartView")
+
+
+@check
+def distribution():
+    """Bars over the values of the metric, and as many elements as the mesh has."""
+    view, chart = chart_in("XYBarChartView")
+    assert (chart.XArrayName, chart.UseIndexForXAxis) == ("imr value", 0), chart.XArrayName
+    assert list(chart.SeriesVisibility) == ["imr count"] or "imr count" in chart.SeriesVisibility
+    assert (view.BottomAxisTitle, view.LeftAxisTitle) == ("imr", "Elements")
+    table = servermanager.Fetch(find("ElementQuality"), idx=2)
+    assert vtk_to_numpy(table.GetColumnByName("imr count")).sum() == 1913
+
+
+@check
+def animation():
+    """Time 0 is the input, and there is one time for each iteration of the run made."""
+    optimizer = find("MeshOptimizer")
+    history = servermanager.Fetch(optimizer, idx=1)
+    iterations = history.GetNumberOfRows() - 1
+    assert 0 < iterations < optimizer.MaximumIterations, iterations
+    expected = list(range(iterations + 1))
+    assert list(optimizer.TimestepValues) == expected, optimizer.TimestepValues
+    assert list(simple.GetTimeKeeper().TimestepValues) == expected
+    assert simple.GetAnimationScene().EndTime == iterations
+    before, after = re.search(r"worst ([\d.e+-]+) to ([\d.e+-]+)\.", optimizer.Summary + "\n").groups()
+    assert float(after) < float(before), optimizer.Summary
+
+
+@check
+def interaction_layer():
+    """The mesh stays; the layer is valid, and it is as wide as the horizon."""
+    layer = find("InteractionLayer")
+    mesh, domain = servermanager.Fetch(layer), servermanager.Fetch(layer.Input)
+    corners, kind = triangles(mesh), vtk_to_numpy(mesh.GetCellData().GetArray("Reference"))
+    assert (kind == 1).sum() == domain.GetNumberOfCells() > 0
+    assert numpy.array_equal(corners[kind == 1], triangles(domain))
+    assert set(kind) == {1, 2} and areas(corners).min() > 0
+    inside = corners[kind == 1].reshape(-1, 3)
+    outside = corners.reshape(-1, 3)
+    width = layer.Width
+    for axis in range(2):
+        assert outside[:, axis].max() >= inside[:, axis].max() + width * (1 - 1e-9)
+        assert outside[:, axis].min() <= inside[:, axis].min() - width * (1 - 1e-9)
+
+
+@check
+def solver_study():
+    """The bars are in the order of their times, and the axis has the names in this order."""
+    study = find("SolverStudy")
+    view, chart = chart_in("XYBarChartView")
+    table = servermanager.Fetch(study, idx=1)
+    seconds = vtk_to_numpy(table.GetColumnByName("Total time (s)"))
+    ranks = vtk_to_numpy(table.GetColumnByName("N rank"))
+    assert (seconds > 0).all() and numpy.array_equal(numpy.sort(ranks), numpy.arange(1, len(ranks) + 1))
+    assert (numpy.diff(seconds[numpy.argsort(ranks)]) >= 0).all()
+    assert (chart.XArrayName, chart.UseIndexForXAxis) == ("N rank", 0), chart.XArrayName
+    labels = list(view.BottomAxisLabels)
+    shown = {int(rank): name.split() for rank, name in zip(labels[::2], labels[1::2])}
+    names = table.GetColumnByName("Combination")
+    expected = {int(rank): names.GetValue(i).replace("+", "").split() for i, rank in enumerate(ranks)}
+    assert view.BottomAxisUseCustomLabels and shown == expected, shown
+
+
+@check
+def picture_behind():
+    """The target is visible behind the mesh, the other image is not; the data are where they were."""
+    view = simple.GetActiveView()
+    matcher = find("MatchShape")
+    assert simple.GetDisplayProperties(matcher.Target, view).Visibility
+    assert not simple.GetDisplayProperties(matcher.Input, view).Visibility
+    assert simple.GetDisplayProperties(matcher.Target, view).Position[2] < 0
+    assert servermanager.Fetch(matcher.Target).GetBounds()[4:] == (0, 0)
+    assert servermanager.Fetch(matcher).GetBounds()[4:] == (0, 0)
+
+
+@check
+def peridynamic_condition():
+    """The horizon is larger than the square, the kernel constant: the matrix by element areas, dense in numpy."""
+    condition = find("PeridynamicCondition")
+    mesh = servermanager.Fetch(condition)
+    area = areas(triangles(mesh))
+    inside = area[vtk_to_numpy(mesh.GetCellData().GetArray("Reference")) == 1]
+    eigenvalues = numpy.linalg.eigvalsh(numpy.diag(inside * area.sum()) - numpy.outer(inside, inside))
+    assert eigenvalues[0] > 0
+    assert abs(condition.Condition / (eigenvalues[-1] / eigenvalues[0]) - 1) < 1e-6, condition.Condition
+
+
+@check
+def constant_kernel():
+    condition = find("PeridynamicCondition")
+    condition.Horizon, condition.AllowThinLayer = 10, 1
+    condition.Kernel, condition.Basis = "Constant", "Piecewise Constant"
+
+
+@check
+def switch_animation_on():
+    find("MeshOptimizer").Animation = 1
+
+
+@check
+def open_clovers():
+    """Both pictures, the source active."""
+    data = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
+    for name in ("clover-turned", "clover"):
+        reader = simple.PNGSeriesReader(registrationName=name, FileNames=[os.path.join(data, name + ".png")])
+        simple.Show(reader)
+    simple.SetActiveSource(reader)
