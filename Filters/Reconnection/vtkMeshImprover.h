@@ -27,10 +27,10 @@
  * Global ids of points and cells are left out, as they would not be unique.
  *
  * @par Output port 1 `History`:
- * A vtkTable whose row i is pass i (0 is the input): `Smallest angle`, `Largest angle`, `Worst
- * imr`, `N tetrahedra`, `N below target`; the numbers of accepted operations since the start, `N
- * edge removals`, `N face removals`, `N boundary swaps`, `N contractions`, `N insertions`, `N moves`;
- * `Time (s)`; of composite data sets also `Block`.
+ * A vtkTable whose row i is pass i (0 is the input): `Smallest angle`, `Largest angle`,
+ * `Worst imr`, `N tetrahedra`, `N below target`; accepted operations since the start:
+ * `N edge removals`, `N face removals`, `N boundary swaps`, `N contractions`, `N insertions`,
+ * `N moves`; `Time (s)`; of composite data sets also `Block`.
  *
  * @par Output port 2 `Remaining`:
  * A vtkTable of the tetrahedra that are still below the target, the worst first: `Cell` (id in the
