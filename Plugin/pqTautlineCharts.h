@@ -4,10 +4,9 @@
  *
  * History: the objective on a left axis, logarithmic if possible, the other series on the right
  * axis, since their magnitudes differ. Distribution: the counts over the values of the metric
- * instead of the numbers of the rows. Study: the times in the order of the ranks, with the names of the
- * combinations. After Apply, the view of the mesh is active again, not the
- * chart that was added: the mesh of the next filter then appears there. The plugin starts the
- * object in the GUI.
+ * instead of the numbers of the rows. Study: the times in the order of the ranks, with the names
+ * of the combinations. After Apply, the view of the mesh is active again, not the chart that was
+ * added: the mesh of the next filter then appears there. The plugin starts the object in the GUI.
  */
 
 #ifndef pqTautlineCharts_h
