@@ -9,13 +9,17 @@
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
 
+#include "vtkDataSetAttributes.h"
 #include "vtkNew.h"
+#include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
+#include "vtkPVDataSetAttributesInformation.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMViewProxy.h"
+#include "vtkType.h"
 
 #include <QList>
 #include <QPointer>
@@ -47,7 +51,8 @@ pqOutputPort* imageOf(pqPipelineFilter* filter)
   return ports.isEmpty() ? nullptr : ports.front();
 }
 
-void moveBehind(vtkSMProxy* image, const double bounds[6])
+/// Bytes are drawn as they are, grey values or colours; other `pixels` by a colour map.
+void moveBehind(vtkSMProxy* image, const double bounds[6], int pixels)
 {
   if (image->GetProperty("Representation") && image->GetProperty("Position"))
   {
@@ -55,7 +60,7 @@ void moveBehind(vtkSMProxy* image, const double bounds[6])
     const double position[3] = { 0.0, 0.0, -Behind * size };
     vtkSMPropertyHelper(image, "Representation").Set("Surface");
     vtkSMPropertyHelper(image, "Position").Set(position, 3);
-    vtkSMPropertyHelper(image, "MapScalars", true).Set(0); // bytes are colours or grey values
+    vtkSMPropertyHelper(image, "MapScalars", true).Set(pixels == VTK_UNSIGNED_CHAR ? 0 : 1);
     image->UpdateVTKObjects();
   }
 }
@@ -116,7 +121,10 @@ void pqTautlinePictures::arrange(pqDataRepresentation* mesh)
   }
   double bounds[6];
   image->getDataInformation()->GetBounds(bounds);
-  moveBehind(picture, bounds);
+  vtkPVArrayInformation* pixels =
+    image->getDataInformation()->GetPointDataInformation()->GetAttributeInformation(
+      vtkDataSetAttributes::SCALARS);
+  moveBehind(picture, bounds, pixels ? pixels->GetDataType() : VTK_VOID);
   vtkSMPropertyHelper(mesh->getProxy(), "Opacity").Set(MeshOpacity);
   mesh->getProxy()->UpdateVTKObjects();
   mesh->renderViewEventually();
