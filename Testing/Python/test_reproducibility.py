@@ -284,8 +284,9 @@ def domains(cells):
 
 
 def without_times(study):
-    """A solver study without what depends on times: the recommendation and its reasons."""
-    return [{key: value for key, value in row.items() if key != "result"} for row in study.rows], study.unknowns
+    """A solver study without what depends on times: the recommendation, its reasons and the ranks."""
+    timed = ("result", "n rank")
+    return [{key: value for key, value in row.items() if key not in timed} for row in study.rows], study.unknowns
 
 
 def half(mesh):

@@ -28,9 +28,10 @@ struct CellOrder
 /**
  * @brief Finds an order in which all neighbours agree, and each connected part of a planar or
  * volume mesh has a positive area or volume; of a part that has none, most valid cells stay valid.
- * A part of one cell stays as it is.
- * In a part of a surface most cells keep their order. Cells that meet at an edge or face with more
- * than two cells are not neighbours there.
+ * A part whose cells agree is reversed only if all of them are inverted and they are many: a few
+ * may be inverted elements that were cut out of a mesh. In a part of a surface most cells keep
+ * their order. Cells that meet at an edge or face with more than two cells are not neighbours
+ * there.
  * @param validity as Mesh::classifyCells() gives it
  */
 TAUTLINE_KERNEL_EXPORT CellOrder consistentOrder(const Mesh& mesh, const signed char* validity);

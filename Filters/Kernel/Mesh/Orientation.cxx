@@ -200,6 +200,7 @@ CellOrder consistentOrder(const Mesh& mesh, const signed char* validity)
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
   const bool haveSigns = mesh.dimension() != Dimension::Surface;
   const double sign = mesh.mirrored() ? -1 : 1;
+  constexpr Index enough = 10; // cells of a part, so that it is not a piece of inverted ones
   const Vec3 origin = finitePoint(view);
   // By the first cell of each part: sizes, cells in the order of that one less those in the
   // opposite order, and all cells.
@@ -243,8 +244,12 @@ CellOrder consistentOrder(const Mesh& mesh, const signed char* validity)
     if (as != against)
     {
       const Index part = std::min(as, against);
-      // A single cell has no neighbour to tell its order: if its size is negative, it is inverted.
-      const bool turn = !haveSigns ? alike[part] < 0 : size[part] > 1 && signs[part].reversed(sign);
+      bool turn = !haveSigns ? alike[part] < 0 : signs[part].reversed(sign);
+      if (haveSigns && alike[part] == size[part])
+      {
+        // Nothing but the sign of the part tells its order. A few cells may be inverted ones.
+        turn = turn && size[part] >= enough && signs[part].majority == -size[part];
+      }
       opposite[cell] = opposite[cell] != turn;
       order.reversed += opposite[cell];
     }
