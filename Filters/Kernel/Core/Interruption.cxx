@@ -14,8 +14,9 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
-/// Set by the handler.
-volatile std::sig_atomic_t Signalled = 0;
+/// How many signals have arrived. The handler may run on any thread.
+std::atomic<unsigned> Signals{ 0 };
+static_assert(std::atomic<unsigned>::is_always_lock_free, "a handler of signals uses it");
 
 /// The handler of SIGINT and the scopes that need it.
 struct Handler
@@ -34,7 +35,7 @@ Handler& handler()
 
 void takeSignal(int)
 {
-  Signalled = 1;
+  Signals.fetch_add(1, std::memory_order_relaxed);
 }
 
 void addHandler()
@@ -45,7 +46,6 @@ void addHandler()
   {
     return;
   }
-  Signalled = 0;
   sigaction(SIGINT, nullptr, &shared.Before);
   const bool ignored =
     !(shared.Before.sa_flags & SA_SIGINFO) && shared.Before.sa_handler == SIG_IGN;
@@ -73,6 +73,7 @@ void removeHandler()
 struct State
 {
   int Scopes = 0, SignalScopes = 0;
+  unsigned Seen = 0; ///< signals before the outermost scope that handles them
   bool Cancelled = false, Polling = false;
   PollScope* Innermost = nullptr;
   Clock::time_point Next; ///< when the functions are called again
@@ -82,7 +83,7 @@ thread_local State state;
 
 bool signalArrived()
 {
-  return state.SignalScopes > 0 && Signalled != 0;
+  return state.SignalScopes > 0 && Signals.load(std::memory_order_relaxed) != state.Seen;
 }
 
 /// The functions of the scopes do not interrupt themselves.
@@ -104,8 +105,11 @@ InterruptScope::InterruptScope(bool handleSignal)
 {
   if (this->Handles)
   {
+    if (state.SignalScopes++ == 0)
+    {
+      state.Seen = Signals.load(std::memory_order_relaxed);
+    }
     addHandler();
-    ++state.SignalScopes;
   }
   ++state.Scopes;
 }

@@ -42,7 +42,8 @@ struct Interrupted
 /**
  * @class tautline::InterruptScope
  * @brief While it exists, this thread's computations can be interrupted. Scopes nest; an
- * interruption lasts until the outermost one of the thread ends.
+ * interruption lasts until the outermost one of the thread ends. Not for runs on several processes:
+ * one that ends alone leaves the others waiting.
  */
 class TAUTLINE_KERNEL_EXPORT InterruptScope
 {
