@@ -4,8 +4,8 @@
  *
  * Takes unstructured grids of linear tetrahedra, or blocks of these. Edges and faces are swapped,
  * edges contracted, points inserted and moved around the worst tetrahedra, until every dihedral
- * angle is between TargetAngle and 180 degrees minus it or nothing helps. The worst dihedral angle
- * and the worst inverse mean ratio of the output are never worse than those of the input. By
+ * angle is between TargetAngle and 180 degrees minus it or nothing helps. The smallest dihedral
+ * angle and the worst inverse mean ratio of the output are never worse than those of the input. By
  * default the surface stays: the same points and the same facets.
  *
  * Other cells of volume, ghost cells and inverted tetrahedra are refused (run vtkMeshUntangler
@@ -98,8 +98,8 @@ public:
 
   ///@{
   /**
-   * The operations of CUSTOM. Compound: operations that pay only after the points around moved. All
-   * are on.
+   * The operations of CUSTOM. Compound: operations that pay off only after the points around moved.
+   * All are on.
    */
   vtkSetMacro(Swap, bool);
   vtkGetMacro(Swap, bool);

@@ -79,6 +79,7 @@ bool CavityOperations::applyChange()
   for (TetId t : this->Change.before)
   {
     step.before.push_back(this->Mesh.tet(t).vertices);
+    step.qualities.push_back(this->Mesh.quality(t));
   }
   if (!this->Mesh.replace(this->Change, this->Created))
   {
@@ -178,6 +179,11 @@ bool CavityOperations::smooth(PointId v, int steps)
     Step step;
     step.point = v;
     step.position = this->Mesh.point(v);
+    step.created = this->Star;
+    for (TetId t : this->Star)
+    {
+      step.qualities.push_back(this->Mesh.quality(t));
+    }
     this->Steps.push_back(std::move(step));
   }
   this->Mesh.movePoint(v, p, this->Star, q);

@@ -109,6 +109,7 @@ private:
   {
     std::vector<TetVertices> before; ///< empty: a point was moved
     std::vector<TetId> created;
+    std::vector<double> qualities; ///< of `before`; where a point was moved, of `created`
     bool opensBoundary = false;
     PointId point = NoId;
     Vec3 position = { 0, 0, 0 };

@@ -69,14 +69,14 @@ void CavityOperations::undo()
     this->Change.clear();
     if (step->before.empty())
     {
-      this->Mesh.star(step->point, this->Star);
-      this->Mesh.movePoint(step->point, step->position, this->Star, nullptr);
+      this->Mesh.movePoint(step->point, step->position, step->created, step->qualities.data());
       continue;
     }
     this->Change.before = step->created;
     this->Change.opensBoundary = step->opensBoundary;
-    for (const TetVertices& v : step->before)
+    for (std::size_t i = 0; i < step->before.size(); ++i)
     {
+      const TetVertices& v = step->before[i];
       for (PointId u : v)
       {
         if (!this->Mesh.used(u))
@@ -84,7 +84,7 @@ void CavityOperations::undo()
           this->Mesh.reclaimPoint(u);
         }
       }
-      this->Change.add(v, this->Mesh.computeExactQuality(v));
+      this->Change.add(v, step->qualities[i]);
     }
     this->Mesh.replace(this->Change, this->Created);
   }

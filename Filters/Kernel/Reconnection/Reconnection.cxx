@@ -3,6 +3,7 @@
 #include "BoundaryFreedom.h"
 #include "ReconnectionOutput.h"
 #include "Schedule.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Stopwatch.h"
 
 #include <limits>
@@ -27,7 +28,7 @@ constexpr double RepetitionGain = 2e-3;
 /// Angle of the preset RemoveSlivers; that of the others is the default of the options.
 constexpr double SliverAngle = 15.0;
 /// Wall time between two calls of the observer during a pass.
-constexpr double ObserverSeconds = 0.25;
+constexpr double ObserverSeconds = 0.1;
 
 double radians(double degrees)
 {
@@ -177,6 +178,7 @@ bool Run::proceed()
     this->Result.reason = StopReason::TimeLimit;
     return false;
   }
+  throwIfInterrupted();
   const double now = this->Clock.seconds();
   if (this->Options.observer && now - this->LastCall > ObserverSeconds)
   {

@@ -102,9 +102,10 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
   }
   ReconnectionInput input;
   double largest = 0.0;
-  for (Index i = 0; i < 3 * view.numberOfPoints; ++i)
+  for (Index n = 0; n < view.offsets[view.numberOfCells]; ++n)
   {
-    largest = std::max(largest, std::abs(view.points[i]));
+    const double* x = view.points + 3 * view.connectivity[n];
+    largest = std::max({ largest, std::abs(x[0]), std::abs(x[1]), std::abs(x[2]) });
   }
   std::frexp(largest, &input.exponent);
   input.points.resize(view.numberOfPoints);

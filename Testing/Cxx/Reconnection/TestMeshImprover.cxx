@@ -425,7 +425,8 @@ void testStops()
   TAUTLINE_CHECK(contains(filter->GetReason(), "Stopped on request"));
   filter->RemoveObserver(observer);
   filter->SetAbortExecute(0);
-  filter->SetTimeLimit(0.05);
+  filter->SetTargetAngle(60); // not to be reached
+  filter->SetTimeLimit(0.001);
   filter->Update();
   check();
   TAUTLINE_CHECK(contains(filter->GetReason(), "time limit"));
