@@ -244,8 +244,15 @@ void FeatureFinder::judgeSides()
 void FeatureFinder::judge(const Side* sides, Index count)
 {
   const FacetClass& first = this->Classes[sides[0].facet];
+  // The regions on both sides, whatever the order of the facets.
+  double low = first.first, high = first.first;
+  for (Index k = 1; k < count; ++k)
+  {
+    low = std::min(low, this->Classes[sides[k].facet].first);
+    high = std::max(high, this->Classes[sides[k].facet].first);
+  }
   Candidate candidate = { sides[0].a, sides[0].b, borderCosine, true,
-    { first.first, static_cast<double>(count), 0 } };
+    { low, high, static_cast<int>(count) } };
   if (count == 2 && !(first != this->Classes[sides[1].facet]))
   {
     const Index other = sides[1].facet;
@@ -469,7 +476,8 @@ Features findFeatures(const Mesh& mesh, const FeatureOptions& options)
   {
     if (std::isnan(options.regions[i]))
     {
-      throw Error("The region of cell " + std::to_string(i) + " is NaN.");
+      throw Error("The region of cell " + std::to_string(i) +
+        " is NaN: give every cell the number of its region.");
     }
   }
   return FeatureFinder(mesh, options).find();
