@@ -11,7 +11,7 @@
  * The output is never worse than the input: the combined objective does not rise, and no valid
  * element becomes inverted unless AllowInversion. An input with inverted elements is untangled
  * first (UntangleFirst) where the objectives cannot repair it. Points of a planar mesh stay in its
- * plane, those of a surface are projected back to the input surface. A mesh reversed throughout is
+ * plane, those of a surface stay on it, or on the geometry. A mesh reversed throughout is
  * treated as its mirror image, and so is a cell that lists its points in the opposite order of the
  * others. Parts without a consistent orientation, image data (implicit points) and cells of higher
  * order are refused.
@@ -26,7 +26,7 @@
  *
  * Arrays of the mesh (SetInputArrayToProcess), by index: 0 target sizes, 1 metric tensors, 2 fixed
  * points (not 0), 3 limits of the points' displacements, 4 weights of the elements (cells, at least
- * 0).
+ * 0), 5 kinds of the points (0 patch, 1 curve, 2 corner, -1 as found), 6 regions (cells).
  *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (new minus old), and cell arrays: for
@@ -47,9 +47,7 @@
  * `Inverted`, `Degenerate`; over the elements of the statistics of vtkElementQuality.
  *
  * @par Several processes:
- * Each optimizes its own part. Points of ghost cells stay, so that the parts still fit together;
- * without ghost cells the boundary of each part stays. Tables and summary are those of each
- * process.
+ * The mesh has to be on the first process; otherwise an error.
  *
  * @par Example:
  * @code
@@ -486,8 +484,8 @@ public:
    * The metric that tells which element is the worst one, by its number (tautline::Metric), also
    * for the presets: of the preset WORST_ELEMENT and ImproveWorst, and of the promise that the
    * worst element does not get worse. -1, the default: where the worst element is improved, the
-   * scaled Jacobian for meshes with quadrilaterals, hexahedra or wedges; else the metric of the
-   * first objective.
+   * scaled Jacobian for meshes with quadrilaterals, hexahedra or wedges, but no pyramids; else the
+   * metric of the first objective.
    */
   void SetWorstMetric(int metric);
   vtkGetMacro(WorstMetric, int);

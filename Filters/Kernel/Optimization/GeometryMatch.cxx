@@ -27,6 +27,13 @@ public:
     , Geometry(geometry.view())
     , OfGeometry(geometryFeatures)
   {
+    for (Index q = 0; q < this->Geometry.numberOfPoints; ++q)
+    {
+      if (this->OfGeometry.kind[q] == CornerPoint)
+      {
+        this->Corners.push_back(pointOf(this->Geometry, q));
+      }
+    }
     this->Match.model = makeSurfaceModel(geometry, geometryFeatures, false);
     for (const SurfacePart& part : this->Match.model.parts)
     {
@@ -93,6 +100,7 @@ private:
   const std::vector<unsigned char>& Slides;
   const MeshView& Geometry;
   const Features& OfGeometry;
+  std::vector<Vec3> Corners; ///< of the geometry
   std::vector<SurfaceProjection> Parts;
   std::vector<double> ShortestEdge; ///< per point, of the edges of curves
   GeometryMatch Match;
@@ -160,11 +168,10 @@ Vec3 Matcher::cornerFor(Index p)
   const Vec3 x = pointOf(this->View, p);
   Vec3 best = x;
   double best2 = infinity;
-  for (Index q = 0; q < this->Geometry.numberOfPoints; ++q)
+  for (const Vec3& y : this->Corners)
   {
-    const Vec3 y = pointOf(this->Geometry, q);
     const double d2 = dot(y - x, y - x);
-    if (this->OfGeometry.kind[q] == CornerPoint && d2 < best2)
+    if (d2 < best2)
     {
       best = y;
       best2 = d2;

@@ -1,6 +1,5 @@
 #include "OptimizationProblem.h"
 
-#include "OptionChecks.h"
 #include "PatchFunction.h"
 
 #include "tautline/Core/Parallel.h"
@@ -166,7 +165,6 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   , Points(points)
   , Clock(clock)
 {
-  checkOptions(mesh, options);
   MeshView view = mesh.view();
   view.points = points.data();
   this->Moving = std::make_unique<Mesh>(view, options.threads);

@@ -5,6 +5,7 @@
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "ImproveWorst.h"
 #include "Minimize.h"
+#include "OptionChecks.h"
 #include "QualityGuard.h"
 #include "ValidityGuard.h"
 #include "tautline/Untangling/Untangle.h"
@@ -407,7 +408,7 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch,
     result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
     return;
   }
-  if (result.history.back().objective >= reached)
+  if (!(result.history.back().objective < reached))
   {
     problem.restart(swept);
     result.history.back() = problem.record(result.history.back().iteration);
@@ -447,13 +448,16 @@ void verifyObjective(const Mesh& mesh, OptimizationProblem& problem, const Itera
   problem.restart(std::vector<double>(result.points));
   const double now = problem.record(0).objective;
   const double allowed = first.objective + roundingOfSums * std::abs(first.objective);
-  if (guard.active() && !(now <= allowed))
+  if (guard.holdsObjective() && !(now <= allowed))
   {
     const double* start = mesh.view().points;
     problem.restart(std::vector<double>(start, start + result.points.size()));
     IterationRecord record = problem.record(result.history.back().iteration);
     result.history.back() = record;
-    result.reason = StopReason::NoProgress;
+    if (result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit)
+    {
+      result.reason = StopReason::NoProgress;
+    }
     result.unchanged = true;
     result.restored = 0;
   }
@@ -581,6 +585,7 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
     return result;
   }
   requireOrdinaryScale(view, "Optimization");
+  checkOptions(mesh, options);
   result.invertedBefore = result.invertedAfter = countInvalid(mesh, options.threads);
   const bool repairs =
     std::any_of(options.objectives.begin(), options.objectives.end(), canUntangle);

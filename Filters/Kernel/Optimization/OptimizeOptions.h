@@ -151,7 +151,7 @@ struct OptimizeOptions
   /**
    * @brief The metric that tells which element is the worst one, for improveWorst and for what may
    * not get worse. Not set: where improveWorst is above 0 the scaled Jacobian for meshes with
-   * quadrilaterals, hexahedra or wedges; else the metric of the first objective.
+   * quadrilaterals, hexahedra or wedges, but no pyramids; else the metric of the first objective.
    */
   std::optional<Metric> worstMetric;
   /// Whether the worst element of a valid input must not get worse. Off: a smaller objective may

@@ -69,7 +69,7 @@ QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
   const MetricInfo& info = metricInfo(metric);
   this->Larger = info.direction == Direction::LargerIsBetter;
   this->HoldWorst = options.holdWorst;
-  if (options.allowInversion || info.direction == Direction::Neutral)
+  if (options.allowInversion)
   {
     return;
   }
@@ -82,7 +82,8 @@ QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
       valid = valid && validity == Valid;
       this->Worst = this->Larger ? std::min(this->Worst, value) : std::max(this->Worst, value);
     });
-  this->Active = valid && std::isfinite(this->Worst);
+  this->ValidInput = valid;
+  this->Active = valid && info.direction != Direction::Neutral && std::isfinite(this->Worst);
 }
 
 //------------------------------------------------------------------------------
@@ -123,22 +124,25 @@ bool QualityGuard::violated(OptimizationProblem& problem) const
 Index QualityGuard::restore(OptimizationProblem& problem) const
 {
   const MeshView& view = this->Input.view();
-  std::vector<char> back(view.numberOfPoints, 0);
+  std::vector<char> restoredPoint(view.numberOfPoints, 0);
   Index restored = 0;
   problem.store();
   std::vector<double> points = problem.points();
-  for (bool more = this->Active; more;)
+  constexpr int maxRounds = 20; // then all points go back
+  int round = 0;
+  for (bool more = this->Active; more; ++round)
   {
     more = false;
     const std::vector<char> flags = this->offenders(problem.moving());
     for (Index cell = 0; cell < static_cast<Index>(flags.size()); ++cell)
     {
-      for (Index n = view.offsets[cell]; flags[cell] && n < view.offsets[cell + 1]; ++n)
+      const bool back = flags[cell] || round >= maxRounds;
+      for (Index n = view.offsets[cell]; back && n < view.offsets[cell + 1]; ++n)
       {
         const Index p = view.connectivity[n];
-        if (!back[p])
+        if (!restoredPoint[p])
         {
-          back[p] = 1;
+          restoredPoint[p] = 1;
           more = true;
           ++restored;
           std::copy_n(view.points + 3 * p, 3, points.data() + 3 * p);

@@ -31,6 +31,8 @@ public:
   /// Whether there is something to hold: not where the input has invalid elements, which untangling
   /// answers for, where inversion is allowed, nor for metrics where neither direction is better.
   bool active() const { return this->Active; }
+  /// Whether the input has no invalid element and inversion is not allowed.
+  bool holdsObjective() const { return this->ValidInput; }
   /// Whether a value of the metric is worse than that of the worst element of the input, beyond
   /// rounding; never if OptimizeOptions::holdWorst is off.
   bool worse(double value) const;
@@ -49,7 +51,7 @@ private:
 
   const Mesh& Input;
   Objective Judged;
-  bool Active = false;
+  bool Active = false, ValidInput = false;
   bool Larger = false;
   bool HoldWorst = true;
   double Worst = 0.0;
