@@ -52,10 +52,11 @@ std::string summarize(
                                           : "; untangling came first and left some inverted.");
   if (result.restored > 0)
   {
-    text << "\n"
-         << result.restored << (result.restored == 1 ? " point" : " points")
-         << " went back to where they were: an element there would be worse than the worst one of "
-            "the input.";
+    text
+      << "\n"
+      << result.restored << (result.restored == 1 ? " point" : " points")
+      << " were put back to where they were: an element there would be worse than the worst one of "
+         "the input.";
   }
   if (result.unchanged)
   {

@@ -581,7 +581,9 @@ std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter)
 vtkSmartPointer<vtkPoints> makePoints(const std::vector<double>& coordinates, vtkPoints* like)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataType(like ? like->GetDataType() : VTK_DOUBLE);
+  // Integers cannot hold points that moved.
+  const bool single = like && like->GetDataType() == VTK_FLOAT;
+  points->SetDataType(single ? VTK_FLOAT : VTK_DOUBLE);
   points->SetNumberOfPoints(static_cast<vtkIdType>(coordinates.size() / 3));
   auto range = vtk::DataArrayValueRange<3>(points->GetData());
   std::copy(coordinates.begin(), coordinates.end(), range.begin());

@@ -137,8 +137,7 @@ TAUTLINECORE_EXPORT void flipCells(vtkDataSet* data, const std::vector<unsigned 
 TAUTLINECORE_EXPORT std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter);
 
 /**
- * @brief New points for an output: in the precision of `like`, with the coordinates given in
- * double.
+ * @brief New points for an output: in single precision if `like` is, else in double precision.
  */
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkPoints> makePoints(
   const std::vector<double>& coordinates, vtkPoints* like);

@@ -1,5 +1,6 @@
 #include "vtkHorizonNeighbors.h"
 
+#include "ExecutionScope.h"
 #include "HorizonInput.h"
 #include "Processes.h"
 #include "ValidateInput.h"
@@ -177,6 +178,14 @@ int vtkHorizonNeighbors::FillInputPortInformation(int, vtkInformation* info)
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkHorizonNeighbors::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return tautline::processInScope(this, {}, request, outputs,
+    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 
 //------------------------------------------------------------------------------

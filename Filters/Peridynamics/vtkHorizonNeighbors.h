@@ -56,6 +56,9 @@ public:
   vtkGetMacro(Horizon, double);
   ///@}
 
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
 protected:
   vtkHorizonNeighbors();
   ~vtkHorizonNeighbors() override = default;
