@@ -123,6 +123,10 @@ def test_command():
     rows = list(csv.DictReader(open(table, encoding="utf-8")))
     assert len(rows) == len(expected.history["tetrahedra"])
     assert int(rows[-1]["tetrahedra"]) == expected.tetrahedra, rows[-1]
+    run("improve", source, "-o", mesh, "--preset", "custom", "--no-insert", "--no-contract", "--no-compound")
+    few = tl.improve(source, "custom", insert=False, contract=False, compound=False)
+    assert (points(tl.read(mesh)) == points(few.mesh)).all()
+    assert few.mesh.GetNumberOfPoints() == slivers().GetNumberOfPoints()
     assert "invalid choice: 'x'" in run("improve", source, "-o", mesh, "--preset", "x", code=2)
 
 

@@ -96,7 +96,7 @@ def add_moving_points(parser: argparse.ArgumentParser) -> None:
     """Add what the commands share that move points."""
     parser.add_argument("mesh", metavar="FILE")
     parser.add_argument("-o", "--output", metavar="FILE", required=True)
-    parser.add_argument("--csv", metavar="FILE", help="write the history, a row per iteration")
+    parser.add_argument("--csv", metavar="FILE", help="write the history, a row per iteration or pass")
     parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
     add_merge_points(parser)
     add_time_limit(parser)

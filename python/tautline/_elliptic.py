@@ -470,6 +470,8 @@ def add_commands(commands: Any) -> None:
                       + ", ".join(f"{k} {v}" for k, v in solver_combinations().items() if k > _TABLE_2_5))  # fmt: skip
     made.add_argument("--restart", type=int, default=30, help="m of GMRES(m) (default: 30)")
     made.add_argument("--repetitions", type=int, default=1, help="the fastest run counts (default: 1)")
+    made.add_argument("--combination-time-limit", type=float, default=60.0, metavar="SECONDS",
+                      help="of each combination; 0 is no limit (default: 60)")  # fmt: skip
 
 
 def _add_problem(commands: Any, name: str, run_command: _commands.Run, text: str) -> argparse.ArgumentParser:
@@ -529,7 +531,7 @@ def _run_condition(arguments: argparse.Namespace) -> None:
 
 
 def _run_study(arguments: argparse.Namespace) -> int:
-    result = _call(solver_study, arguments, "combinations", "restart", "repetitions")
+    result = _call(solver_study, arguments, "combinations", "restart", "repetitions", "combination_time_limit")
     shown = ("number", "name", "result", "iterations", "condition", "reason")
     print(align([[row[key] for key in shown] for row in result.rows], shown), end="\n\n")
     print(result.summary)

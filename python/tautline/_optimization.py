@@ -179,7 +179,8 @@ def optimize(
     allow_inversion: whether steps may invert valid elements.
     worst_metric: the metric that tells which element is the worst one, which never gets worse by it and which the
         preset "worst element" and improve_worst improve. The default is the scaled Jacobian where the worst element is
-        improved in a mesh with quadrilaterals, hexahedra or wedges; else the metric of the first objective.
+        improved in a mesh with quadrilaterals, hexahedra or wedges, but no pyramids; else the metric of the first
+        objective.
     hold_worst: whether the worst element of a valid mesh must not get worse; False: a smaller objective may cost single
         elements.
     time_limit: seconds; 0 is no limit.
@@ -366,6 +367,8 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--size", metavar="ARRAY", help="target: the size in this array")
     parser.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array")
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
+    parser.add_argument("--flat-angle", type=float, metavar="DEGREES", default=1.0,
+                        help="facets that differ by at most this are one plane (default: 1)")  # fmt: skip
     parser.add_argument("--worst-metric", metavar="NAME", help="the metric that tells which element is the worst one")
     parser.add_argument("--no-hold-worst", action="store_false", dest="hold_worst",
                         help="the worst element may get worse")  # fmt: skip
@@ -397,7 +400,7 @@ def _objective(text: str) -> Objective:
 
 def _run_optimize(arguments: argparse.Namespace) -> None:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
-             "boundary", "worst_metric", "hold_worst", "feature_angle", "keep_features", "smooth_surface",
+             "boundary", "flat_angle", "worst_metric", "hold_worst", "feature_angle", "keep_features", "smooth_surface",
              "show_features", "feature_kinds", "regions", "geometry", "time_limit", "threads",
              "merge_coincident_points")  # fmt: skip
     result = optimize(arguments.mesh, arguments.objective, **_commands.given(arguments, names))

@@ -95,7 +95,7 @@ def improve(
     threads: number of threads for measuring; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match become one, as on the seams of a
         mesh in pieces. False: seams are boundary.
-    operations: of the preset "custom": swap, smooth, contract, insert, compound (operations that pay only after the
+    operations: of the preset "custom": swap, smooth, contract, insert, compound (operations that pay off only after the
         points around moved); all True by default.
 
     Raises Error for wrong arguments and for meshes that the filter refuses: with other cells, or inverted ones (see
@@ -163,7 +163,11 @@ def add_commands(commands: Any) -> None:
     text = "change the connectivity of tetrahedra so that the worst become better"
     parser = _commands.add_command(commands, "improve", _run_improve, text)
     _commands.add_moving_points(parser)
-    parser.add_argument("--preset", choices=PRESETS[1:], default="remove slivers")
+    parser.add_argument("--preset", choices=PRESETS, default="remove slivers")
+    for name in _OPERATIONS:
+        parser.add_argument(f"--no-{name}", action="store_false", dest=name, help="with --preset custom")
+    parser.add_argument("--flat-tolerance", type=float, metavar="DEGREES", default=1e-8,
+                        help="up to which facets are coplanar, with --boundary flat (default: 1e-8)")  # fmt: skip
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
     parser.add_argument("--target-angle", type=float, metavar="DEGREES",
                         help="dihedral angle to be reached by all (default: that of the preset)")  # fmt: skip
@@ -176,7 +180,8 @@ def add_commands(commands: Any) -> None:
 
 def _run_improve(arguments: argparse.Namespace) -> None:
     names = ("preset", "boundary", "target_angle", "regions", "smallest_count", "largest_count")
-    names += ("fixed", "time_limit", "threads", "merge_coincident_points")
-    result = improve(arguments.mesh, **_commands.given(arguments, names))
+    names += ("flat_tolerance", "fixed", "time_limit", "threads", "merge_coincident_points")
+    left_out = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
+    result = improve(arguments.mesh, **_commands.given(arguments, names), **left_out)
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))
