@@ -74,7 +74,8 @@ public:
   vtkTable* GetStudy();
 
   ///@{
-  /// The combination recommended for the last block, "" if none converged; and why.
+  /// The combination recommended for the last block, "" if none converged or the times of the
+  /// fastest differ by less than their noise; and why.
   const char* GetRecommended() const { return this->Recommended.c_str(); }
   const char* GetWhy() const { return this->Why.c_str(); }
   ///@}

@@ -29,7 +29,7 @@
  * also `Block`.
  *
  * @par Several processes:
- * Each untangles its own part. Points of ghost cells stay, so that the parts still fit together.
+ * The mesh has to be on the first process; otherwise an error.
  *
  * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see
  * tautline/Untangling/Untangle.h.

@@ -420,7 +420,8 @@ void Study::recommend()
     if (this->Result.ties > 0)
     {
       why = "No clear recommendation: the times of " + std::to_string(this->Result.ties + 1) +
-        " combinations differ by less than " + digits(noise) + " s, the noise. The fastest was ";
+        " combinations differ by less than " + digits(noise) +
+        " s, the noise: raise Repetitions, or take a finer mesh. The fastest was ";
     }
     why += this->nameIn(best.combination) + ": " + digits(best.seconds) + " s";
     if (best.combination.method != KrylovMethod::Direct)

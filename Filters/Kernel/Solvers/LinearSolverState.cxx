@@ -231,8 +231,9 @@ void LinearSolverState::configure()
   petsc(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCFIELDSPLIT, &split));
   if (split && this->System.blockSize < 2)
   {
-    throw Error("PETSc option -pc_type fieldsplit: it splits the unknowns by their components, as "
-                "those of a displacement; this system has one unknown per point.");
+    throw Error(
+      "PETSc option -pc_type fieldsplit: it splits the unknowns by their components, as "
+      "those of a displacement; this system has one unknown per point. Remove the option.");
   }
   this->OptionSet.rejectUnused(false);
   // The function test(), called in each iteration, calls the one chosen by now.
