@@ -5,6 +5,7 @@ import csv
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, points, refused, run_tests, shell as run
+from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_INT, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
 
 BRACKET, TANGLED, PLATE = DATA / "bracket.vtu", DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
@@ -152,6 +153,21 @@ def test_worst_metric():
     solid = tl.optimize(BRACKET, preset="worst element").statistics["imr"]
     assert solid["worst_after"] <= tl.optimize(BRACKET).statistics["imr"]["worst_after"] <= solid["worst_before"]
     refused("no metric 'beauty'", tl.optimize, PLATE, worst_metric="beauty")
+
+
+def test_integer_points():
+    """Points of an integer type become double, not truncated."""
+    mesh = tl.read(PLATE)
+    places = points(mesh)
+    whole = vtkPoints()
+    whole.SetDataType(VTK_INT)
+    for place in np.round(1000 * places / np.ptp(places)).astype(int):
+        whole.InsertNextPoint(*place)
+    mesh.SetPoints(whole)
+    result = tl.optimize(mesh)
+    assert result.mesh.GetPoints().GetDataType() == VTK_DOUBLE
+    measured = tl.quality(result.mesh, "imr").statistics["imr"]
+    assert np.isclose(measured["mean"], result.statistics["imr"]["mean_after"]), measured
 
 
 def test_free_boundary():

@@ -120,6 +120,22 @@ void testBoundaries()
   checkCounts(featuresOf(square, options), 4, 4, 1);
 }
 
+/// The border of two regions of a surface is a curve without corners, whatever the order of cells.
+void testNumbering()
+{
+  MeshData cube = cubeSurface(CellType::Triangle, 4);
+  cube.transform([](const Vec3& p) { return 4.0 * p; });
+  constexpr unsigned orders = 10;
+  for (unsigned seed = 0; seed < orders; ++seed)
+  {
+    const MeshData data = shuffled(cube, seed);
+    const std::vector<double> regions = twoRegions(data);
+    FeatureOptions options;
+    options.regions = regions.data();
+    checkCounts(featuresOf(data, options), 12, 20, 10);
+  }
+}
+
 /// Given kinds replace those found.
 void testKinds()
 {
@@ -158,6 +174,7 @@ int TestFeatures(int, char*[])
 {
   testSurfaces();
   testBoundaries();
+  testNumbering();
   testKinds();
   return exitCode();
 }
