@@ -113,6 +113,17 @@ def test_refused():
     refused("there is no such file", tl.improve, "absent.vtu")
 
 
+def test_unused_far_point():
+    """A point that no cell uses does not determine the unit of the computation."""
+    mesh = slivers()
+    near = tl.improve(mesh)
+    mesh.GetPointData().Initialize()
+    mesh.GetPoints().InsertNextPoint(1e30, 0, 0)
+    far = tl.improve(mesh)
+    assert near.smallest_angle > near.smallest_angle_before
+    assert (far.smallest_angle, far.tetrahedra) == (near.smallest_angle, near.tetrahedra), far.summary
+
+
 def test_command():
     source, mesh, table = OUT / "slivers.vtu", OUT / "improved.vtu", OUT / "improved.csv"
     tl.write(slivers(), source)
