@@ -10,6 +10,7 @@
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tautline
@@ -88,17 +89,21 @@ void expectAdapted(const MeshFile& mesh)
 /// Writes the mesh in the format it was read from, and reads that again.
 void expectRoundTrip(const MeshFile& mesh, const std::string& name, Read read, Write write)
 {
+  std::vector<std::string> files;
   try
   {
-    write(mesh, name);
+    files = write(mesh, name);
   }
   catch (const Error&)
   {
     return; // the format cannot hold this mesh
   }
-  const MeshFile again = read(name, true);
+  const bool written = std::find(files.begin(), files.end(), name) != files.end();
+  const MeshFile again = read(written ? name : files.front(), true);
   expectThat(same(mesh.points, again.points), "points that were written read back");
-  expectThat(mesh.cellTypes == again.cellTypes && mesh.connectivity == again.connectivity,
+  // Points without cells become a .node file alone, which is read as vertices.
+  expectThat(mesh.cellTypes.empty() ||
+      (mesh.cellTypes == again.cellTypes && mesh.connectivity == again.connectivity),
     "cells that were written read back");
 }
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# fuzz.sh BUILD SECONDS: runs every fuzz target for so many seconds, two at a time, and fails on any finding.
+# fuzz.sh BUILD SECONDS [SEED]: runs every fuzz target for so many seconds, two at a time, and fails on any finding.
+# SEED: that of the random numbers, so that a run can be repeated; 0, the default: another one each time.
 # New inputs that reach new code are kept in BUILD/corpus; an input that fails is saved in BUILD/findings. To keep
 # one as a regression test, mend the cause and copy it to Testing/Fuzz/Corpus/TARGET.
 set -euo pipefail
-build="$1" seconds="$2"
+build="$1" seconds="$2" seed="${3:-0}"
 top="$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)"
 fuzzer="$build/bin/TautlineFuzzer"
 targets=("$top"/Corpus/*/)
@@ -27,10 +28,10 @@ fuzz() {
   export TAUTLINE_FUZZ_TARGET="$target" TAUTLINE_FUZZ_DIR="$work/$target"
   mkdir -p "$TAUTLINE_FUZZ_DIR" "$build/corpus/$target"
   if ((libfuzzer)); then
-    "$fuzzer" -max_total_time="$seconds" -timeout="$longest" -rss_limit_mb="$memory" -max_len=16384 -print_final_stats=1 \
+    "$fuzzer" -seed="$seed" -max_total_time="$seconds" -timeout="$longest" -rss_limit_mb="$memory" -max_len=16384 -print_final_stats=1 \
       -artifact_prefix="$build/findings/$target-" "$build/corpus/$target" "$top/Corpus/$target"
   else
-    "$fuzzer" "$target" "$top/Corpus/$target" "$seconds" "$RANDOM" "$build/findings/$target-input"
+    "$fuzzer" "$target" "$top/Corpus/$target" "$seconds" "$((seed > 0 ? seed : RANDOM))" "$build/findings/$target-input"
     rm -f "$build/findings/$target-input"
   fi
 }
