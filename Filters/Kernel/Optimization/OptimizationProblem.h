@@ -22,7 +22,7 @@ public:
   /**
    * @param points where the optimization starts; moved in place
    * @param clock started with the run; the time limit counts from there
-   * Throws Error on options that do not fit the mesh.
+   * The options have been checked, see checkOptions().
    */
   OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points,
     const Stopwatch& clock);

@@ -156,7 +156,6 @@ void testOne(int number, Totals& totals)
   TAUTLINE_CHECK(worstOf(now, options, type) <= worst + rounding * std::abs(worst));
   const Targets* of = preset == Preset::PreserveShape ? &targets : nullptr;
   const double first = objectiveOf(preset, mesh, of), last = objectiveOf(preset, now, of);
-  // The worst element may cost a part of the mean, that of its own preset.
   TAUTLINE_CHECK(last <= first * (1 + rounding));
   totals.better += last < 0.999 * first;
 }
