@@ -177,6 +177,7 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
                   : NotRunMark);
     table.add("Time set-up (s)", row.linear.setupSeconds);
     table.add("Time solve (s)", row.linear.solveSeconds);
+    table.add("Time CPU (s)", row.cpuSeconds);
     table.add("N iterations", row.linear.iterations);
     table.add("N condition", row.condition);
     table.add("N true residual", std::isfinite(row.trueResidual) ? row.trueResidual : 0.0);

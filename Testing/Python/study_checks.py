@@ -8,7 +8,8 @@ import shutil
 from pathlib import Path
 
 from tautline import __main__ as command_line
-from tautline.studies import _common
+from tautline.studies import _common, _verdicts
+from wrong_data import Recorder, check_verdicts
 
 SMALLEST_PICTURE = 5000  # bytes; an empty one has fewer
 
@@ -18,12 +19,16 @@ class Studies:
 
     def __init__(self, directory: Path) -> None:
         self.directory = directory
+        #: By study the arguments with which its findings were stated.
+        self.calls: dict = {}
         shutil.rmtree(directory, ignore_errors=True)
 
     def run(self, study: str, *options: str) -> str:
         """Run a study in the small size; what it prints."""
-        with contextlib.redirect_stdout(io.StringIO()) as printed:
+        recorder = Recorder(study)
+        with contextlib.redirect_stdout(io.StringIO()) as printed, recorder:
             assert command_line.main(["study", study, "--small", "--out", str(self.directory / study), *options]) == 0
+        self.calls[study] = recorder.calls
         return printed.getvalue()
 
     def rows(self, study: str, table: str) -> list:
@@ -35,8 +40,11 @@ class Studies:
         """The numbers of a column by the row's label."""
         return {row[head]: float(row[name]) for row in self.rows(study, table)}
 
-    def check(self, study: str, findings: int, pictures: tuple, tables: dict) -> None:
-        """Check the number of findings, the pictures, the number of rows of tables, and that numbers are finite."""
+    def check(self, study: str, findings: int, pictures: tuple, tables: dict, others=()) -> None:
+        """Check the number of findings, the pictures, the number of rows of tables, and that numbers are finite.
+
+        others: calls of the functions that state findings, with numbers that change verdicts.
+        """
         folder = self.directory / study
         for table, count in tables.items():
             rows = self.rows(study, table)
@@ -48,12 +56,15 @@ class Studies:
                         assert math.isfinite(float(value)), f"{file.name}: {name} is {value}"
         found = self.rows(study, "findings")
         assert len(found) == findings, f"{study}: {len(found)} findings, not {findings}"
-        assert {row["holds"] for row in found} <= {"yes", "no"}
+        known = (_verdicts.HOLDS, _verdicts.DOES_NOT_HOLD, _verdicts.NOT_DECIDED, _verdicts.TOO_SMALL)
+        assert {row["verdict"] for row in found} <= set(known)
         assert all(row["figures"] and row["finding"] for row in found)
         text = (folder / f"{study}.txt").read_text(encoding="utf-8")
-        holding = sum(row["holds"] == "yes" for row in found)
+        holding = sum(row["verdict"] == _verdicts.HOLDS for row in found)
         assert f"{holding} of {findings} hold" in text
-        assert text.count("HOLDS (") == holding and text.count("DOES NOT HOLD (") == findings - holding
+        for verdict in known:
+            assert text.count(f"- {verdict.upper()} (") == sum(row["verdict"] == verdict for row in found), verdict
+        check_verdicts(study, self.calls[study], self.directory / "wrong_data", others)
         for picture in pictures if _common.pyplot else ():
             assert (folder / f"{picture}.png").stat().st_size > SMALLEST_PICTURE, f"{study}/{picture}.png is empty"
 

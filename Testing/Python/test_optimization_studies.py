@@ -5,7 +5,8 @@ from importlib import import_module
 import numpy as np
 from checks import OUT, shell
 from study_checks import Studies, pictures, refused_command
-from tautline.studies import names
+from tautline.studies import _verdicts, names, smoothing_times
+from wrong_data import verdicts
 
 studies = Studies(OUT / "studies_optimization")
 MULTI = ("exponential-sum", "objective-product", "equal-sum")
@@ -34,7 +35,18 @@ STUDIES = {
 def run_all():
     for study, expected in STUDIES.items():
         assert "Findings of the dissertation" in studies.run(study)
-        studies.check(study, *expected)
+        theirs = dissertation(studies.calls[study]) if study == "smoothing_times" else ()
+        studies.check(study, *expected, theirs)
+    found = verdicts(theirs, studies.directory / "dissertation")
+    assert all(v == "holds" for (source, _), v in found.items() if source.startswith("Table 2.6")), found
+
+
+def dissertation(calls):
+    """The calls of the findings of smoothing_times with the times that the dissertation printed."""
+    times = {(domain, metric): _verdicts.Times((float(seconds),))
+             for domain, row in smoothing_times.TABLE_2_6.items()
+             for metric, seconds in zip(smoothing_times.METRICS, row)}
+    return [(function, (times, *others), named) for function, (_, *others), named in calls]
 
 
 def check_list():

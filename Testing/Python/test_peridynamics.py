@@ -1,14 +1,15 @@
 """The functions peridynamics and interaction_layer, their commands, and small runs of the studies."""
 
-import csv
 import math
 
 import checks
 import numpy as np
 import tautline as tl
 from checks import points, refused, run_tests, shell, square
+from study_checks import Studies
 from tautline.studies import _horizon, names
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from wrong_data import verdicts
 
 OUT = checks.OUT / "peridynamics"
 OUT.mkdir(parents=True, exist_ok=True)
@@ -70,12 +71,36 @@ def test_commands():
     assert "there is no study" in shell("study", "absent", code=1)
 
 
+def printed(calls):
+    """The calls on the tables with the printed numbers as ours, to the finest mesh."""
+    return [(function, ({(table, *key): (number, number) for table, row in _horizon.TABLES.items()
+                         for key, number in row.items()},), named) for function, _, named in calls]
+
+
+def stated(calls):
+    """The calls on the horizon, the element size and the aspect ratio with numbers as the dissertation states them."""
+    ideal = {
+        "horizon_findings": ({("constant", 1): -2.0, ("linear", 4): -1.95},
+                             {"constant": [25.0, 6.2, 25.5, 6.1], "linear": [20.0, 5.0, 20.2, 5.1]}),
+        "size_findings": ({(1.0, 0.2): [0.3, 0.1, 0.02], (2.5, 0.2): [1.05, 0.98, 0.95]},),
+        "ratio_findings": ({40: [10.0, 14.0, 14.1, 14.0]},),
+    }
+    return [(function, ideal[function.__name__], named) for function, _, named in calls]
+
+
 def test_studies():
+    studies = Studies(OUT / "studies")
+    expected = {"peridynamics_tables": 7, "peridynamics_horizon": 7, "peridynamics_kernel": 2}
+
     def rows(name):
-        shell("study", name, "--size", "small", "--threads", 1, "--out", OUT / name)
-        assert "Finding" in (OUT / name / f"{name}.txt").read_text()
-        with open(OUT / name / f"{name}.csv", newline="") as file:
-            return list(csv.DictReader(file))
+        studies.run(name, "--threads", "1")
+        others = {"peridynamics_tables": printed, "peridynamics_horizon": stated}
+        theirs = others[name](studies.calls[name]) if name in others else ()
+        studies.check(name, expected[name], (name,) if name == "peridynamics_tables" else (), {}, theirs)
+        if name == "peridynamics_horizon":
+            found = verdicts(theirs, OUT / "stated")
+            assert len(found) == 7 and set(found.values()) == {"holds"}, found
+        return studies.rows(name, name)
 
     for row in rows("peridynamics_tables"):
         key = int(row["aspect_ratio"]), int(row["n"]), float(row["delta"])

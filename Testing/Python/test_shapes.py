@@ -5,7 +5,9 @@ import csv
 import numpy as np
 import tautline as tl
 from checks import OUT, refused, run_tests, shell
-from tautline.studies import _silhouettes
+from study_checks import Studies
+from tautline.studies import _silhouettes, shapes
+from wrong_data import verdicts
 
 OUTPUT = OUT / "shapes"
 OUTPUT.mkdir(parents=True, exist_ok=True)
@@ -104,14 +106,21 @@ def test_commands():
 
 
 def test_study():
-    options = ["--size", "small", "--locations", "contour", "--no-pictures", "--out", "study"]
-    told = run("study", "shapes", *options)
-    rows = {row["method"]: row for row in csv.DictReader(open(OUTPUT / "study" / "table_5_1.csv"))}
+    studies = Studies(OUTPUT / "study")
+    told = studies.run("shapes", "--locations", "contour", "--no-pictures")
+    studies.check("shapes", 2, (), {"table_5_1": 3})
+    rows = {row["method"]: row for row in studies.rows("shapes", "table_5_1")}
     assert rows["dissertation"]["dissertation"] == "72.2" and rows["felzenszwalb"]["dissertation"] == "64.4"
     assert 100 > float(rows["dissertation"]["rate"]) > float(rows["felzenszwalb"]["rate"]) > 30, rows
     assert "synthetic silhouettes" in told
     assert "labels.csv" in run("study", "shapes", "--data", "nowhere", code=1)
-    assert "holds, by" in (OUTPUT / "study" / "findings.txt").read_text(), told
+    function, (rates, halves, _, _), _ = studies.calls["shapes"][0]
+    of_kimia = function, ({**rates, **shapes.PRINTED}, (97.1, 97.0), True, {"theta = 0.5 d_max": 72.2}), {}
+    found = verdicts([of_kimia], OUTPUT / "study")
+    assert len(found) == 5 and set(found.values()) == {"holds"}, found
+    other = function, ({**rates, "felzenszwalb": 80.0, "dissertation": 70.0}, (97.1, 80.0), True,
+                       {"theta = 0.5 d_max": 60.0}), {}
+    assert set(verdicts([other], OUTPUT / "study").values()) == {"does not hold"}
 
 
 run_tests(globals())

@@ -36,6 +36,7 @@ _STUDY_COLUMNS = {
     "Result": "result",
     "Time set-up (s)": "setup_seconds",
     "Time solve (s)": "solve_seconds",
+    "Time CPU (s)": "cpu_seconds",
     "N iterations": "iterations",
     "N condition": "condition",
     "N true residual": "true_residual",
@@ -102,8 +103,8 @@ class SolverStudyResult:
     """The result of solver_study()."""
 
     #: A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it failed),
-    #: result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds, iterations,
-    #: condition (of P^-1 A; nan: unknown), true_residual, converged, reason; of composite data also block.
+    #: result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds, cpu_seconds
+    #: (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual, converged, reason; of composite data also block.
     rows: list[dict[str, Any]]
     #: The name of the recommended combination and the reason for it; "" if none converged or the times of the fastest
     #: do not differ by more than a tenth or a millisecond.

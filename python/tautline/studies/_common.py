@@ -17,10 +17,12 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 from tautline import _optimization
-from tautline._errors import Messages, run, watch
+from tautline._errors import Error, Messages, run, watch
 from tautline._arguments import pick
 from tautline._files import make_folder, replace_text, save_figure
 from tautline._tables import align, csv_rows
+
+from ._verdicts import DOES_NOT_HOLD, HOLDS, TOO_SMALL, Times, Verdict, word
 
 try:
     import matplotlib
@@ -82,6 +84,8 @@ class Run:
     reason: str
     #: Meshes after the iterations asked for.
     kept: dict[int, vtkDataSet] = field(default_factory=dict)
+    #: CPU seconds of whole runs of the same optimization; empty: of this run alone.
+    repeated: tuple[float, ...] = ()
 
     def at(self, quantity: str, iteration: int) -> float:
         """The value after an iteration, or after the last one if the run stopped earlier."""
@@ -96,6 +100,10 @@ class Run:
 
     def last_second(self) -> float:
         return float(self.seconds[-1])
+
+    def times(self) -> Times:
+        """The CPU seconds of all runs."""
+        return Times(self.repeated or (self.last_second(),))
 
 
 #: What is measured: name: (metric, aggregation of its values over the valid elements).
@@ -134,15 +142,21 @@ def improve(
     optimizer: str = "nlcg",
     keep: Sequence[int] = (),
     trace: bool = True,
+    repeats: int = 1,
     **options: Any,
 ) -> Run:
     """Run vtkMeshOptimizer, and measure the mesh after each iteration, or without trace at the start and the end.
 
-    keep: iterations after which the mesh is kept. options: see _configured().
+    keep: iterations after which the mesh is kept. repeats: number of runs, for the times; the fastest one is returned.
+    options: see _configured().
     """
     filter_, messages = _configured(mesh, method, iterations, optimizer, **options)
     filter_.SetAnimation(trace)
-    seconds = _timed(filter_, messages)
+    timed = []
+    for _ in range(repeats):
+        filter_.Modified()
+        timed.append(_timed(filter_, messages))
+    seconds = min(timed, key=lambda stamps: stamps[-1])
     count = len(seconds)
     rows, kept = [], {}
     for step in range(count) if trace else (0, count - 1):
@@ -163,7 +177,8 @@ def improve(
     if mesh.GetNumberOfCells() >= LARGE:
         text = f"{method.name}, {optimizer}: {count - 1} iterations, {seconds[-1]:.1f} CPU s"
         print(text, file=sys.stderr, flush=True)
-    return Run(method, optimizer, steps, seconds, values, final, filter_.GetReason(), kept)
+    repeated = tuple(float(stamps[-1]) for stamps in timed)
+    return Run(method, optimizer, steps, seconds, values, final, filter_.GetReason(), kept, repeated)
 
 
 def _configured(
@@ -278,27 +293,46 @@ def scaled(mesh: vtkDataSet, factor: float) -> vtkDataSet:
 # --- reports --------------------------------------------------------------------------------------------
 
 
-def parser(name: str, text: str | None, cells: int = 0, threads: bool = True) -> argparse.ArgumentParser:
-    """The options every study has; without threads, those that always use one."""
-    made = argparse.ArgumentParser(prog=f"python3 -m tautline study {name}", description=(text or "").split("\n")[0])
-    made.add_argument("--small", action="store_true", help="a small mesh, for a test: seconds")
+def parser(name: str, text: str | None, cells: int = 0, threads: int | None = 1, repeats: int = 0) -> Options:
+    """The options every study has. threads: the default, None for studies that always use one. repeats: see below."""
+    made = Options(prog=f"python3 -m tautline study {name}", description=(text or "").split("\n")[0])
+    made.add_argument("--small", action="store_true", help="a small mesh, for a test: seconds; without verdicts")
     made.add_argument(
         "--out", type=Path, default=Path(f"study-{name}"), metavar="DIR", help="directory of the output (%(default)s)",
     )
-    if threads:
-        made.add_argument("--threads", type=int, default=1, help="0 is all cores (%(default)s, for comparable times)")
+    if threads is not None:
+        made.add_argument("--threads", type=int, default=threads,
+                          help="0 is all cores (%(default)s" + (", for comparable times)" if threads == 1 else ")"))
+    if repeats:
+        made.add_argument("--repeats", type=int, default=repeats, metavar="N",
+                          help="runs of what is timed; a verdict on times needs several (default: %(default)s)")
     if cells:
         made.add_argument("--cells", type=int, default=0, help=f"approximate number (default: {cells:,})")
     return made
 
 
-class Report:
-    """Collects tables, pictures and findings of a study and writes them to a directory."""
+class Options(argparse.ArgumentParser):
+    """The options of a study."""
 
-    def __init__(self, name: str, title: str, out: Path) -> None:
-        self.name, self.out = name, Path(out)
+    def parse_args(self, *arguments: Any, **more: Any) -> argparse.Namespace:  # type: ignore[override]
+        given = super().parse_args(*arguments, **more)
+        if getattr(given, "repeats", 1) < 1:
+            raise Error(f"--repeats is {given.repeats}; at least one run is needed")
+        if given.small and hasattr(given, "repeats"):
+            given.repeats = 1
+        return given
+
+
+class Report:
+    """Collects tables, pictures and findings of a study and writes them to a directory.
+
+    small: whether the meshes are too small for verdicts; the findings then have figures only.
+    """
+
+    def __init__(self, name: str, title: str, out: Path, small: bool = False) -> None:
+        self.name, self.out, self.small = name, Path(out), small
         self.parts = [f"{title}\n{'=' * len(title)}"]
-        self.findings: list[tuple[str, str, bool, str]] = []
+        self.findings: list[tuple[str, str, str, str]] = []  # source, sentence, verdict, figures
         make_folder(self.out)
 
     def text(self, paragraph: str) -> None:
@@ -338,9 +372,13 @@ class Report:
         ]
         self.csv(file, ["method", "optimizer", "iteration", "cpu_seconds", *names], rows)
 
-    def finding(self, source: str, sentence: str, holds: bool, figures: str) -> None:
-        """Add a statement of the dissertation, whether our numbers agree with it, and the numbers."""
-        self.findings.append((source, sentence, bool(holds), figures))
+    def finding(self, source: str, sentence: str, holds: Verdict, figures: str, any_size: bool = False) -> None:
+        """Add a statement of the dissertation, whether our numbers agree with it (None: not decided), and the numbers.
+
+        any_size: whether a small mesh decides it, too.
+        """
+        verdict = TOO_SMALL if self.small and not any_size else word(None if holds is None else bool(holds))
+        self.findings.append((source, sentence, verdict, figures))
 
     def plot(self, file: str, runs: Sequence[Run], panels: Sequence[tuple[str, str, bool]]) -> None:
         """A picture of quantities against iterations; a panel is (quantity, label of the axis, logarithmic)."""
@@ -471,13 +509,14 @@ class Report:
 
     def finish(self, heading: str = "Findings of the dissertation") -> int:
         """Write and print the report; `heading` is that of the findings."""
-        holding = sum(holds for _, _, holds, _ in self.findings)
-        lines = [f"{heading}: {holding} of {len(self.findings)} hold"]
-        for source, sentence, holds, figures in self.findings:
-            lines.append(f"- {'HOLDS' if holds else 'DOES NOT HOLD'} ({source}): {sentence}\n    ours: {figures}")
+        verdicts = [verdict for _, _, verdict, _ in self.findings]
+        undecided = len(verdicts) - verdicts.count(HOLDS) - verdicts.count(DOES_NOT_HOLD)
+        lines = [f"{heading}: {verdicts.count(HOLDS)} of {len(verdicts)} hold"
+                 + (f", {undecided} are not decided" if undecided else "")]
+        for source, sentence, verdict, figures in self.findings:
+            lines.append(f"- {verdict.upper()} ({source}): {sentence}\n    ours: {figures}")
         self.parts.append("\n".join(lines))
-        self.csv("findings", ["source", "finding", "holds", "figures"],
-                 [[s, f, "yes" if h else "no", n] for s, f, h, n in self.findings])
+        self.csv("findings", ["source", "finding", "verdict", "figures"], self.findings)
         text = "\n\n".join(self.parts) + "\n"
         replace_text(self.out / f"{self.name}.txt", text)
         print(text)

@@ -12,9 +12,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
-from tautline._errors import Error
 
 from ._common import Report, cells_of, parser, points_of, sizes_of
+from ._verdicts import Times
 
 
 @dataclass(frozen=True)
@@ -76,10 +76,15 @@ class Deformed:
     mesh: vtkDataSet
     inverted: int  # elements that are not valid
     impossible: int  # elements that no positions of interior points make valid
-    seconds: float  # CPU seconds, the fastest of the repetitions
+    times: Times  # CPU seconds of the repetitions
     reached: float  # fraction of the motion: less than 1 where no further step was possible
     coefficients: tuple[float, float, float]
     shapes: np.ndarray  # (4.22) of every element, inverted ones too
+
+    @property
+    def seconds(self) -> float:
+        """CPU seconds, the fastest of the repetitions."""
+        return self.times.best
 
     @property
     def complete(self) -> bool:
@@ -92,15 +97,7 @@ class Deformed:
 
 
 def parse(name: str, text: str | None, arguments: Sequence[str], repeats: int = 3) -> argparse.Namespace:
-    made = parser(name, text, threads=False)
-    made.add_argument("--repeats", type=int, default=repeats, metavar="N",
-                      help="number of runs, of which the fastest counts (default: %(default)s)")
-    given = made.parse_args(arguments)
-    if given.repeats < 1:
-        raise Error(f"--repeats is {given.repeats}; at least one run is needed")
-    if given.small:
-        given.repeats = 1
-    return given
+    return parser(name, text, threads=None, repeats=repeats).parse_args(arguments)
 
 
 class Moving:
@@ -141,7 +138,7 @@ def deform(initial: vtkDataSet, displacement: np.ndarray, method: str, *, repeat
         seconds.append(time.process_time() - began)
     known = result.statistics
     return Deformed(
-        result.mesh, result.inverted, result.impossible, min(seconds), known["amount"],
+        result.mesh, result.inverted, result.impossible, Times(tuple(seconds)), known["amount"],
         tuple(known[f"c{k}{k}"] for k in "xyz"), similarity(initial, points_of(result.mesh)),
     )
 

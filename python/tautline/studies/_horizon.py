@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import argparse
 import math
-import time
-from pathlib import Path
 from typing import Any, Sequence
 
 import numpy as np
 
 import tautline
 
-from .._files import make_folder, replace_text, save_figure
-from .._tables import align, csv_rows
+from .._files import save_figure
+from . import _common
 
 #: Tables 4.1 to 4.3 as printed: (aspect ratio, n = 1 / h, delta) and the condition numbers.
 _KEYS = [(ar, n, delta) for ar in (1, 4) for n in (10, 20, 40) for delta in (0.2, 0.3, 0.4)]
@@ -85,36 +83,20 @@ def condition(*arguments: Any, **options: Any) -> float:
     return math.nan if result is None else result.condition
 
 
-class Report:
-    """Rows for a CSV file, charts and a text, written to one directory."""
+class Report(_common.Report):
+    """A report with charts of several curves."""
 
-    def __init__(self, name: str, directory: str) -> None:
-        self.name, self.directory = name, Path(directory)
-        self.lines: list[str] = []
-        self.started = time.time()
-        make_folder(self.directory)
-
-    def text(self, text: str = "") -> None:
-        print(text, flush=True)
-        self.lines.append(text)
-
-    def table(self, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
-        self.text(align(rows, headings) + "\n")
-
-    def write_csv(self, file: str, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
-        replace_text(self.directory / file, csv_rows([headings, *rows]))
+    def texts(self, title: str, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
+        """A table in the report alone; numbers are texts already."""
+        self.aligned(title, headings, [[str(value) for value in row] for row in rows])
 
     def chart(self, file: str, panels: Sequence[dict[str, Any]]) -> None:
         """Panels side by side: dicts of title, x, y (labels), lines {label: (x, y[, style])}, scales."""
-        try:
-            from matplotlib.backends.backend_agg import FigureCanvasAgg
-            from matplotlib.figure import Figure
-        except ImportError:
-            self.text(f"{file} is not drawn: there is no matplotlib (Debian: python3-matplotlib)")
+        if not self._pictures():
             return
-        figure = Figure(figsize=(5.2 * len(panels), 4.2), layout="constrained")
-        FigureCanvasAgg(figure)
-        for axes, panel in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
+        figure, axes_of = _common.pyplot.subplots(
+            1, len(panels), figsize=(5.2 * len(panels), 4.2), layout="constrained", squeeze=False)  # fmt: skip
+        for axes, panel in zip(axes_of[0], panels):
             colors: dict[str, str] = {}  # one for both discretizations
             for label, (x, y, *style) in panel["lines"].items():
                 color = colors.setdefault(label.split(", dissertation")[0], f"C{len(colors) % 10}")
@@ -127,22 +109,13 @@ class Report:
             axes.set_yscale(panel.get("yscale", "linear"))
             axes.grid(True, which="major", alpha=0.3)
             axes.legend(fontsize=8)
-        save_figure(figure, self.directory / file, dpi=90)
-
-    def close(self) -> int:
-        self.text(f"{time.time() - self.started:.1f} s")
-        replace_text(self.directory / f"{self.name}.txt", "\n".join(self.lines) + "\n")
-        print("\n".join(str(path) for path in sorted(self.directory.glob(f"{self.name}*"))))
-        return 0
+        save_figure(figure, self.out / f"{file}.png", dpi=90)
+        _common.pyplot.close(figure)
 
 
 def parse(name: str, text: str, arguments: Sequence[str]) -> argparse.Namespace:
-    """The options every study has."""
-    parser = argparse.ArgumentParser(prog=f"python3 -m tautline study {name}", description=text)
-    parser.add_argument("--size", choices=("small", "full"), default="full", help="small: seconds, trends only")
-    parser.add_argument("--out", default=name, metavar="DIR", help="directory of the output (default: ./NAME)")
-    parser.add_argument("--threads", type=int, default=0, help="0, the default, is all cores")
-    return parser.parse_args(arguments)
+    """The options every study has; by default all cores are used."""
+    return _common.parser(name, text, threads=0).parse_args(arguments)
 
 
 def exponent(x: Sequence[float], y: Sequence[float]) -> float:

@@ -75,16 +75,16 @@ def families(per_class: int = 11, classes: int = 9, seed: int = 1) -> tuple[list
     return images, labels
 
 
-def data_set(folder: str | None, size: str, seed: int):
+def data_set(folder: str | None, small: bool, seed: int):
     """Shapes, labels or None, number of matches that count, description: those of a folder, or the families if None.
 
-    folder: has a list labels.csv, see tautline.read_silhouettes(). size: of the families, "small", "medium" or "full".
+    folder: has a list labels.csv, see tautline.read_silhouettes(). small: fewer families of fewer members.
     """
     if folder is not None:
         if not (Path(folder) / "labels.csv").is_file():
             raise Error(f"{folder}: there is no list labels.csv in it")
         return tautline.read_silhouettes(folder), None, _BEST, f"The silhouettes in {Path(folder).name}"
-    per_class, classes = {"small": (4, 5), "medium": (8, 9), "full": (11, 9)}[size]
+    per_class, classes = (4, 5) if small else (11, 9)
     shapes, labels = families(per_class, classes, seed)
     text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed}. {_NOTE}"
     return shapes, labels, min(_BEST, per_class - 1), text

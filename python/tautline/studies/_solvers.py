@@ -15,6 +15,7 @@ import tautline
 
 from ._common import Method, Report, improve, parser, pyplot
 from ._solver_tables import CELLS, COMBINATIONS
+from ._verdicts import Times
 
 DOMAINS = ("wrench", "hinge")
 #: The three problems of Table 2.3.
@@ -38,12 +39,13 @@ REDUCTION = 0.95
 SWEEPS = 200
 INITIAL_FRACTION = 0.5  # of the interior vertices, perturbed before smoothing
 FULL, SMALL = 500_000, 1_000
+REPEATS = 3  # runs of each combination, for their times
 SIZES = tuple(CELLS["wrench"])
 
 
 def options(name: str, text: str | None, pdes: bool = True, full: int = FULL) -> argparse.ArgumentParser:
     """The options of a study of solvers; --size is a number of vertices."""
-    made = parser(name, text)
+    made = parser(name, text, repeats=REPEATS)
     made.add_argument("--size", type=vertices, default=0, metavar="N",
                       help=f"vertices of each mesh, 10K to 500K (default: {full // 1000}K)")
     made.add_argument("--domain", choices=DOMAINS, action="append", help="one of the two domains (default: both)")
@@ -97,13 +99,18 @@ class Solve:
     """The result of a combination of solver and preconditioner."""
 
     number: int
-    #: Wall seconds including the set-up of the preconditioner, as in the dissertation.
-    seconds: float
+    #: CPU seconds including the set-up of the preconditioner, of each run.
+    times: Times
     iterations: int
     converged: bool
     #: Stopped at the time limit: neither converged nor failed.
     unfinished: bool
     reason: str
+
+    @property
+    def seconds(self) -> float:
+        """CPU seconds of the fastest run."""
+        return self.times.best
 
     def shown(self, value: float) -> str:
         if self.unfinished:
@@ -116,14 +123,16 @@ def solve(mesh: vtkDataSet, pde: str, given: argparse.Namespace, **more) -> dict
     options = {"combinations": list(given.combinations), "combination_time_limit": given.time_limit, "time_limit": 0.0,
                "conditions": False, "threads": given.threads, **PDES[pde], **more}
     began = time.perf_counter()
-    found = tautline.solver_study(mesh, **options)
+    runs = [tautline.solver_study(mesh, **options).rows for _ in range(given.repeats)]
     if mesh.GetNumberOfPoints() >= SIZES[1]:
         print(f"{pde}: {time.perf_counter() - began:.0f} s", file=sys.stderr, flush=True)
-    return {row["number"]: _solve(row) for row in found.rows}
+    return {rows[0]["number"]: _solve(rows) for rows in zip(*runs)}
 
 
-def _solve(row: dict[str, Any]) -> Solve:
-    return Solve(row["number"], row["setup_seconds"] + row["solve_seconds"], row["iterations"], row["converged"],
+def _solve(rows: Sequence[dict[str, Any]]) -> Solve:
+    """A combination of its rows in several runs of the study."""
+    row = min(rows, key=lambda r: r["cpu_seconds"])
+    return Solve(row["number"], Times(tuple(r["cpu_seconds"] for r in rows)), row["iterations"], row["converged"],
                  "time limit" in row["reason"], row["reason"])
 
 
@@ -162,6 +171,11 @@ def within(found: dict[int, Solve], theirs: Sequence[float | None], factor: floa
     ratios = {n: found[n].iterations / theirs[n - 1] for n in both}
     off = {n: r for n, r in ratios.items() if not 1 / factor <= r <= factor}
     return len(both) - len(off), len(both), ", ".join(f"{n} {LABELS[n]}: {r:.2f} times" for n, r in off.items())
+
+
+def times_of(row: dict[int, Solve], without: Sequence[int] = ()) -> dict[int, Times]:
+    """The times of the converged combinations."""
+    return {n: s.times for n, s in row.items() if s.converged and n not in without}
 
 
 def fastest(row: dict[int, Solve]) -> list[int]:

@@ -7,7 +7,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, points_of, scaled, sizes_of
+from ._common import Report, Run, points_of, scaled, sizes_of
 from ._tangled import after, untangled_after
 from ._warped import better_worst, experiment, harmonic, of_points, options, warp
 
@@ -25,7 +25,7 @@ def warped_bore(small: bool) -> tuple[vtkDataSet, float]:
 
 def main(arguments: list[str]) -> int:
     given = options("bore", __doc__, arguments)
-    report = Report("bore", "Bore in space (section 3.5.2)", given.out)
+    report = Report("bore", "Bore in space (section 3.5.2)", given.out, given.small)
     report.text(
         "The dissertation uses meshes of other authors; this one is the project's domain `bore`, a block with "
         "a bore that widens in the middle. Its condition numbers (Table 3.9) are those of the study conditioning."
@@ -34,6 +34,11 @@ def main(arguments: list[str]) -> int:
     iterations = 5 if given.small else STEPS[-1]
     motion = f"{amount:.3f} times the motion of the domain"
     runs = experiment(report, mesh, motion, "elements have the mean size 1", iterations, STEPS, {}, given)
+    findings(report, runs)
+    return report.finish()
+
+
+def findings(report: Report, runs: dict[str, Run]) -> None:
     figures = after(runs)
     report.finding(
         "3.5.2", "SI alone does not eliminate the inverted elements", runs["si"].last("inverted") > 0, figures,
@@ -42,4 +47,3 @@ def main(arguments: list[str]) -> int:
                         ("untangle", "Untangling alone")):
         report.finding("3.5.2", f"{label} eliminates them in one iteration", untangled_after(runs[name]) <= 1, figures)
     better_worst(report, runs, "Table 3.9")
-    return report.finish()

@@ -66,7 +66,7 @@ def findings(report: Report, of: dict[str, list[Deformed]], columns: list[str]) 
 def main(arguments: list[str]) -> int:
     given = parse("deformation_methods", __doc__, arguments, repeats=1)
     report = Report("deformation_methods", "Methods of mesh deformation on six moving domains (sections 4.7 and 4.10)",
-                    given.out)
+                    given.out, given.small)
     report.text(
         "The examples of the study `deformation` at the dissertation's largest motion and 1.5 times that, all methods "
         "with their defaults. At 1.5 times its motion the gate touches the opposite wall: no mesh is valid there, and "

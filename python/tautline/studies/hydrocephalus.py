@@ -49,7 +49,7 @@ def warped_brain(small: bool) -> tuple[vtkDataSet, vtkDataSet, float]:
 
 def main(arguments: list[str]) -> int:
     given = options("hydrocephalus", __doc__, arguments)
-    report = Report("hydrocephalus", "Hydrocephalus in the plane (section 3.5.1)", given.out)
+    report = Report("hydrocephalus", "Hydrocephalus in the plane (section 3.5.1)", given.out, given.small)
     report.text(
         "The dissertation's brain comes from segmented images, which are not published. This one is the project's "
         "parametric domain `brain`: an outline with two ventricles that shrink, more in width than in height, as "
@@ -63,6 +63,11 @@ def main(arguments: list[str]) -> int:
     runs = experiment(report, mesh, motion, unit, iterations, STEPS, TABLE_3_7, given)
     close_up(report, initial, mesh, runs)
 
+    findings(report, runs, iterations)
+    return report.finish()
+
+
+def findings(report: Report, runs: dict[str, Run], iterations: int) -> None:
     figures = after(runs)
     ends = {n: untangled_after(r) for n, r in runs.items()}
     si = runs["si"]
@@ -82,4 +87,3 @@ def main(arguments: list[str]) -> int:
     report.finding("Table 3.7", "The objective product does not eliminate all (there 6 are left)",
                    runs["objective-product"].last("inverted") > 0, figures)
     better_worst(report, runs, "Figure 3.11")
-    return report.finish()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ._common import Report, compare, percent
-from ._pairs import MULTI, Goals, everywhere, experiment, options
+from ._pairs import Outcome, MULTI, Goals, everywhere, experiment, options
+from ._verdicts import Verdict, all_of, below, quickest, slowest
 
 # Table 3.2, seconds after 1, 5, 10 and 20 iterations.
 TIMES = {
@@ -29,12 +30,16 @@ GOALS = Goals(
 
 def main(arguments: list[str]) -> int:
     given = options(GOALS, __doc__, arguments)
-    report = Report(GOALS.name, GOALS.title, given.out)
-    found = experiment(GOALS, given, report)
+    report = Report(GOALS.name, GOALS.title, given.out, given.small)
+    findings(report, experiment(GOALS, given, report))
+    return report.finish()
+
+
+def findings(report: Report, found: Outcome) -> None:
     runs = found.nlcg
     imr, size = runs["imr"], runs["size"]
 
-    def finding(sentence: str, holds: bool, figures: str, source: str = "3.4.1") -> None:
+    def finding(sentence: str, holds: Verdict, figures: str, source: str = "3.4.1") -> None:
         report.finding(source, sentence, holds, figures)
 
     holds, where = everywhere(
@@ -66,16 +71,16 @@ def main(arguments: list[str]) -> int:
     gain = 1 - runs["exponential-sum"].last("imr_worst") / size.last("imr_worst")
     finding("The exponential sum has a far better worst element by IMR (96.6 %) than size alone", gain > 0.9,
         f"{percent(gain)}, the dissertation's {percent(WORST_GAIN)}")
-    seconds = {name: r.last_second() for name, r in runs.items()}
-    timing = ", ".join(f"{n} {s:.3g} s" for n, s in seconds.items())
-    finding("Size alone is the fastest", seconds["size"] == min(seconds.values()), timing, "Table 3.2")
-    ratio = seconds["objective-product"] / seconds["size"]
-    finding("The objective product takes about two times as long as size alone (1.5 to 2.5)", 1.5 <= ratio <= 2.5,
-        f"{ratio:.2f} times, the dissertation's {TIMES['objective-product'][-1] / TIMES['size'][-1]:.2f}", "Table 3.2")
-    finding("The exponential sum is the slowest", seconds["exponential-sum"] == max(seconds.values()), timing,
-            "Table 3.2")
+    times = {name: r.times() for name, r in runs.items()}
+    timing = ", ".join(f"{n} {t}" for n, t in times.items())
+    finding("Size alone is the fastest", quickest(times, "size"), timing, "Table 3.2")
+    product, alone = times["objective-product"], times["size"]
+    finding("The objective product takes about two times as long as size alone (1.5 to 2.5)",
+        all_of((below(alone, product, 1 / 1.5), below(product, alone, 2.5))),
+        f"{product.best / alone.best:.2f} times, the dissertation's "
+        f"{TIMES['objective-product'][-1] / TIMES['size'][-1]:.2f}", "Table 3.2")
+    finding("The exponential sum is the slowest", slowest(times, "exponential-sum"), timing, "Table 3.2")
     others = min(runs[name].last("imr_worst") for name in MULTI[1:])
     finding("Of the multiobjective methods the exponential sum has the best worst shape (by 1 % at least)",
         runs["exponential-sum"].last("imr_worst") <= 0.99 * others,
         compare({n: runs[n] for n in MULTI}, "imr_worst"), "3.6, conclusions")
-    return report.finish()

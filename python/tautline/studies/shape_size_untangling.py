@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, compare, measure, parser, scaled
+from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, compare, measure, parser, scaled
 from ._tangled import NOTE, after, by_unit, counts, diverged, tangled_methods, untangle, untangled_after
 from .shape_untangling import CELLS_3D, INVERTED_3D, tangled
 
@@ -27,7 +27,7 @@ def main(arguments: list[str]) -> int:
     made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
                       help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
     given = made.parse_args(arguments)
-    report = Report("shape_size_untangling", "Shape, size and untangling (section 3.4.4)", given.out)
+    report = Report("shape_size_untangling", "Shape, size and untangling (section 3.4.4)", given.out, given.small)
     cells = given.cells or (3_000 if given.small else CELLS_3D)
     mesh = tangled("disk3d", cells, INVERTED_3D if cells == CELLS_3D else INVERTED_3D / CELLS_3D)
     mesh = scaled(mesh, (SIZE_RMS / measure(mesh, ["size_rms"])["size_rms"]) ** (1.0 / 3.0))
@@ -59,6 +59,11 @@ def main(arguments: list[str]) -> int:
         ("size_rms", "Average element quality, size (rms)", False),
     ])
 
+    findings(report, runs)
+    return report.finish()
+
+
+def findings(report: Report, runs: dict[str, Run]) -> None:
     when = after(runs)
     untangling = ("untangle", *MULTI)
     report.finding("Table 3.6", "The multiobjective methods and untangling alone eliminate all inverted elements",
@@ -85,4 +90,3 @@ def main(arguments: list[str]) -> int:
                    f"size alone: inverted {runs['size'].last('inverted'):g}, average SI "
                    f"{runs['size'].first('si_mean'):.4g} to {runs['size'].last('si_mean'):.4g}, size "
                    f"{runs['size'].first('size_rms'):.4g} to {runs['size'].last('size_rms'):.4g}")
-    return report.finish()

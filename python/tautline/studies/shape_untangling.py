@@ -86,7 +86,7 @@ def main(arguments: list[str]) -> int:
                       help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
     made.add_argument("--no-large", action="store_true", help=f"leave out the mesh of {LARGE:,} triangles")
     given = made.parse_args(arguments)
-    report = Report("shape_untangling", "Shape and untangling (section 3.4.3)", given.out)
+    report = Report("shape_untangling", "Shape and untangling (section 3.4.3)", given.out, given.small)
     common = dict(patch_iterations=given.patch_iterations, threads=given.threads)
     every = tangled_methods("si", "untangle_beta")
     flat = tangled("barrier2d", 3_000 if given.small else CELLS_2D, 0.01 if given.small else INVERTED_2D)

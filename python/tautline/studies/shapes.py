@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
+import math
 import time
 from pathlib import Path
 from typing import Any
@@ -12,10 +12,11 @@ from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
 
 import tautline as tl
 
-from .._files import make_folder, replace_bytes, replace_text
-from .._tables import csv_rows
+from .._files import replace_bytes
 from . import _silhouettes
+from ._common import Report, parser
 
+KIMIA_SHAPES = 99  # of the dissertation's set
 #: Table 5.1 of the dissertation, percent.
 PRINTED = {"felzenszwalb": 64.4, "dissertation": 72.2}
 TITLES = {
@@ -23,14 +24,10 @@ TITLES = {
     "dissertation": "with distortion and centre of mass",
     "highest": "highest rate",
 }
-#: How the weights of the setting with the highest rate were found, and what they reach on Kimia's set.
-CHOICE = (
-    "Highest rate: descriptor, rotation, ordering and b (a = 4 b) were chosen on the odd classes of Kimia's set alone "
-    "(97.1 % of their best matches are right); the queries of the even classes, ranked against all 99, reach 97.0 %, "
-    "against their own half 98.9 %, all 97.1 %. The search ended at a time limit; continued, b = 6 has one more hit of "
-    "550 on the odd classes and 96.8 % on the even ones; it was not adopted. Spacing, points, directed edges and the "
-    "sum of both directions had been chosen on queries of all classes."
-)
+#: Within which a rate is the printed one, in points.
+RATE_TOLERANCE = 1.0
+#: theta makes little difference where the rates differ by at most so many points.
+LITTLE = 1.0
 _BASE = dict(setting="custom", spacing=25.0, locations="near grid", a=12.0, b=3.0, centre_tolerance=1 / 3)
 
 
@@ -57,10 +54,6 @@ def _sweep(locations: str) -> list[tuple[str, dict[str, Any]]]:
     for spacing in (15.0, 20.0, 35.0):
         rows.append((f"spacing {spacing:g}", dict(base, spacing=spacing)))
     return rows
-
-
-def _write(file: Path, head: list[str], rows: list[list[Any]]) -> None:
-    replace_text(file, csv_rows([head, *rows]))
 
 
 def _images(shapes: Any) -> list[vtkImageData]:
@@ -210,52 +203,66 @@ def _figures(out: Path, shapes: Any, results: dict[str, Any], options: Any) -> N
         canvas.save(out / "figure_5_3.png")
 
 
+def by_half(result: Any) -> tuple[float, float]:
+    """The rates of the queries of the odd classes (first, third, ...) and of the even ones, ranked against all."""
+    names = list(dict.fromkeys(result.labels))
+    hits = _correct(result) / min(10, len(result.labels) - 1)
+    odd = np.array([names.index(label) % 2 == 0 for label in result.labels])
+    return tuple(float(100 * hits[half].mean()) if half.any() else math.nan for half in (odd, ~odd))
+
+
+def findings(report: Report, rates: dict[str, float], halves: tuple[float, float], printed: bool,
+             swept: dict[str, float]) -> None:
+    """The findings on the recognition rates. printed: whether the set is the dissertation's; swept: by setting."""
+    gain = rates["dissertation"] - rates["felzenszwalb"]
+    report.finding("5.3", "Distortion and centre of mass raise the rate (there by "
+                   f"{PRINTED['dissertation'] - PRINTED['felzenszwalb']:.1f} points)", gain > 0,
+                   f"by {gain:.1f} points, from {rates['felzenszwalb']:.1f} to {rates['dissertation']:.1f} %",
+                   any_size=True)  # fmt: skip
+    for key, rate in PRINTED.items() if printed else ():
+        report.finding("Table 5.1", f"{TITLES[key]}: {rate} % (within {RATE_TOLERANCE:g} points)",
+                       abs(rates[key] - rate) <= RATE_TOLERANCE, f"{rates[key]:.1f} %")  # fmt: skip
+    odd, even = halves
+    report.finding("in addition", "Highest rate: the weights, chosen on the odd classes of Kimia's set alone, reach "
+                   f"the same rate on the even ones (within {LITTLE:g} points)", abs(odd - even) <= LITTLE if printed
+                   else None, f"{odd:.1f} % on the odd classes, {even:.1f} % on the even ones of this set")  # fmt: skip
+    if swept:
+        spread = abs(swept["theta = 0.5 d_max"] - rates["dissertation"])
+        report.finding("5.3", f"theta between d_max / 3 and d_max / 2 makes little difference ({LITTLE:g} points)",
+                       spread <= LITTLE, f"{spread:.1f} points apart")  # fmt: skip
+
+
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="python3 -m tautline study shapes", description=__doc__)
-    parser.add_argument("--data", metavar="FOLDER", help="with labels.csv and images (default: a synthetic set)")
-    parser.add_argument("--size", choices=("small", "medium", "full"), default="full", help="of the synthetic set")
-    parser.add_argument("--seed", type=int, default=1, help="of the synthetic set")
-    parser.add_argument("--locations", choices=("grid", "near grid", "contour"), default="near grid",
-                        help="of the dissertation's setting; grid takes hours on 99 shapes")  # fmt: skip
-    parser.add_argument("--sweep", action="store_true", help="also sweep a / b, theta, grid and spacing")
-    parser.add_argument("--threads", type=int, default=0)
-    parser.add_argument("--no-pictures", action="store_true")
-    parser.add_argument("--out", type=Path, default=Path("study-shapes"))
-    options = parser.parse_args(argv)
-    make_folder(options.out)
-    shapes, labels, best, text = _silhouettes.data_set(options.data, options.size, options.seed)
-    print(text)
+    made = parser("shapes", __doc__, threads=0)
+    made.add_argument("--data", metavar="FOLDER", help="with labels.csv and images (default: a synthetic set)")
+    made.add_argument("--seed", type=int, default=1, help="of the synthetic set (default: %(default)s)")
+    made.add_argument("--locations", choices=("grid", "near grid", "contour"), default="near grid",
+                      help="of the dissertation's setting; grid takes hours on 99 shapes")  # fmt: skip
+    made.add_argument("--sweep", action="store_true", help="also sweep a / b, theta, grid and spacing")
+    made.add_argument("--no-pictures", action="store_true")
+    options = made.parse_args(argv)
+    report = Report("shapes", "Shape matching and retrieval (chapter 5)", options.out, options.small)
+    shapes, labels, best, text = _silhouettes.data_set(options.data, options.small, options.seed)
+    report.text(f"{text}\nLocations of the dissertation's setting: {options.locations} (30 x 30).")
     results, rows = {}, []
     for key, setting in _settings(options.locations).items():
-        start = time.perf_counter()
+        start = time.process_time()
         results[key] = tl.retrieval(shapes, labels, best=best, threads=options.threads, **setting)
         r = results[key]
-        rows.append([key, f"{r.rate:.1f}", PRINTED.get(key, ""), f"{time.perf_counter() - start:.1f}", *r.correct_at])
-        print(f"{TITLES[key]:40}{r.rate:6.1f} %   dissertation {PRINTED.get(key, '-')}   {rows[-1][3]} s")
+        rows.append([key, r.rate, PRINTED.get(key, math.nan), time.process_time() - start, *r.correct_at])
     ranks = [f"correct_at_{k}" for k in range(1, len(rows[0]) - 3)]
-    _write(options.out / "table_5_1.csv", ["method", "rate", "dissertation", "seconds", *ranks], rows)
-
-    gain = results["dissertation"].rate - results["felzenszwalb"].rate
-    findings = [
-        f"Data: {text}",
-        f"Locations of the dissertation's setting: {options.locations} (30 x 30).",
-        "Distortion and centre of mass raise the rate (dissertation: by 7.8 points): "
-        + f"{'holds' if gain > 0 else 'does not hold'}, by {gain:.1f} points.",
-    ]
-    findings.append(CHOICE)
-    if options.sweep:
-        swept = []
-        for name, setting in _sweep(options.locations):
-            r = tl.retrieval(shapes, labels, best=best, threads=options.threads, **setting)
-            swept.append([name, f"{r.rate:.2f}"])
-            print(f"{name:40}{r.rate:6.1f} %")
-        _write(options.out / "sweep.csv", ["setting", "rate"], swept)
-        theta = {name: float(rate) for name, rate in swept if name.startswith("theta")}
-        spread = abs(theta["theta = 0.5 d_max"] - results["dissertation"].rate)
-        findings.append(f"theta between d_max / 3 and d_max / 2 makes little difference: {spread:.1f} points apart.")
-    replace_text(options.out / "findings.txt", "\n".join(findings) + "\n")
-    print("\n".join(findings[1:]))
+    report.csv("table_5_1", ["method", "rate", "dissertation", "cpu_seconds", *ranks], rows)
+    report.aligned("Table 5.1: rates in percent, in brackets those of the dissertation  [table_5_1.csv]",
+                   ["energy", "rate", "CPU s"],
+                   [[TITLES[row[0]], f"{row[1]:.1f}" + (f" ({PRINTED[row[0]]})" if row[0] in PRINTED else ""),
+                     f"{row[3]:.1f}"] for row in rows])  # fmt: skip
+    swept = {}
+    for name, setting in _sweep(options.locations) if options.sweep else ():
+        swept[name] = tl.retrieval(shapes, labels, best=best, threads=options.threads, **setting).rate
+    if swept:
+        report.table("sweep", "Rates by setting", ["setting", "rate"], list(map(list, swept.items())))
+    printed = options.data is not None and len(results["highest"].labels) == KIMIA_SHAPES
+    findings(report, {key: r.rate for key, r in results.items()}, by_half(results["highest"]), printed, swept)
     if not options.no_pictures:
         _figures(options.out, shapes, results, options)
-    print(options.out)
-    return 0
+    return report.finish()

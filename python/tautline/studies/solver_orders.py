@@ -18,7 +18,8 @@ def main(arguments: list[str]) -> int:
     given = options("solver_orders", __doc__).parse_args(arguments)
     largest = size_of(given)
     sizes = [n for n in (SMALL_SIZES if given.small else SIZES) if n <= largest]
-    report = Report("solver_orders", "Orders of iterations and time (section 2.7.3, Experiment 3)", given.out)
+    report = Report("solver_orders", "Orders of iterations and time (section 2.7.3, Experiment 3)", given.out,
+                    given.small)
     report.text(
         "Meshes smoothed by IMR to 95 % of the possible reduction with " + ", ".join(f"{n:,}" for n in sizes) +
         " vertices; s of O(N^s) by linear least squares in logarithms, of the combinations that converged on all."
