@@ -14,8 +14,9 @@
  * number; `Total time (s)`, set-up of the preconditioner and solve, 0 if it failed; `Result`, the
  * same as text, "*" if it failed as in the dissertation's tables, "-" if there was no time for it;
  * `Time set-up (s)`, `Time solve (s)`, `Time CPU (s)` of the process for both, `N iterations`,
- * `N condition` of P^-1 A (an estimate; 0: not known), `N true residual`, norm of b - A x over that of b; `N converged`, 1 or 0; `Reason`; of
- * composite data sets also `Block`. ParaView's bar chart shows the total time.
+ * `N condition` of P^-1 A (an estimate; 0: not known), `N true residual`, norm of b - A x over that
+ * of b; `N converged`, 1 or 0; `Reason`; of composite data sets also `Block`. ParaView's bar chart
+ * shows the total time.
  *
  * @sa vtkEllipticSolver, vtkConditionEstimator, tautline/Elliptic/SolverStudy.h
  */

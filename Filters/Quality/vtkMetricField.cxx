@@ -115,6 +115,11 @@ int vtkMetricField::RequestData(
           tautline::Vec3{ this->Vertex3[0], this->Vertex3[1], this->Vertex3[2] } });
       tautline::EvaluationOptions options;
       options.threads = this->Threads;
+      options.parameters.beta = this->Beta;
+      if (!std::isfinite(this->Beta))
+      {
+        throw tautline::Error("Beta must be a finite number.");
+      }
       const std::vector<tautline::Metric> metrics = this->GetSelection().metrics();
       tautline::requireMemory(static_cast<double>(grid.count()) *
           static_cast<double>(1 + metrics.size() * sizeof(double)),
@@ -156,4 +161,5 @@ void vtkMetricField::PrintSelf(ostream& os, vtkIndent indent)
   print("Vertex3", this->Vertex3);
   print("Bounds", this->Bounds);
   print("Dimensions", this->Dimensions);
+  os << indent << "Beta: " << this->Beta << "\n";
 }

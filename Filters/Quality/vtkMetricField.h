@@ -102,6 +102,16 @@ public:
   vtkGetVector3Macro(Dimensions, int);
   ///@}
 
+  ///@{
+  /**
+   * Beta of the untangling metric: the area or volume that an element should have at least, in the
+   * unit of the vertices. The default is 0.25, as in dissertation Figure 3.1 (e); with 0 the metric
+   * is 0 wherever the cell is not inverted.
+   */
+  vtkSetMacro(Beta, double);
+  vtkGetMacro(Beta, double);
+  ///@}
+
   /// The field.
   vtkImageData* GetOutput();
 
@@ -125,6 +135,7 @@ private:
   double Vertex3[3] = { 0.5, 0.86602540378443864676, 0 };
   double Bounds[6] = { -1, 2, 0, 2, 0, 2 };
   int Dimensions[3] = { 301, 201, 101 };
+  double Beta = 0.25;
 };
 
 #endif

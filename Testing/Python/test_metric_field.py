@@ -15,6 +15,10 @@ def test_metric_field():
     solid = tl.metric_field("size", "tetrahedron", vertices=np.eye(3), bounds=(0, 1, 0, 1, 0, 1), dimensions=(2, 3, 4))
     assert solid.values["size"].shape == (4, 3, 2)
     assert abs(solid.values["size"][-1, -1, -1] - 1 / 3) < 1e-14, "(1, 1, 1) above the face of the unit simplex"
+    flat = tl.metric_field("untangle_beta", bounds=(0, 1, 0, 2), dimensions=(2, 5))
+    assert np.allclose(flat.values["untangle_beta"][:, 0], [0.25, 0, 0, 0, 0]), "(3.3) at y = 0, 0.5, ..."
+    assert tl.metric_field("untangle_beta", beta=0.0).values["untangle_beta"].max() == 0
+    refused("beta", tl.metric_field, beta=float("nan"))
     refused("there are 'triangle', 'tetrahedron'", tl.metric_field, cell="prism")
     refused("vertices have the shape (1, 3)", tl.metric_field, vertices=[[0, 0, 0]])
     refused("whole numbers from 1", tl.metric_field, dimensions=(0, 1, 1))

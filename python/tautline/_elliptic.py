@@ -104,7 +104,8 @@ class SolverStudyResult:
 
     #: A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it failed),
     #: result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds, cpu_seconds
-    #: (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual, converged, reason; of composite data also block.
+    #: (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual, converged, reason; of
+    #: composite data also block.
     rows: list[dict[str, Any]]
     #: The name of the recommended combination and the reason for it; "" if none converged or the times of the fastest
     #: do not differ by more than a tenth or a millisecond.

@@ -10,7 +10,7 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from . import _commands, _vtk
-from ._arguments import pick, set_threads, set_time_limit
+from ._arguments import pick, set_threads, set_time_limit, within
 from ._arrays import point_array
 from ._errors import Error, interruptible, run
 from ._metrics import Metrics, choose
@@ -37,6 +37,7 @@ def metric_field(
     vertices: Sequence | None = None,
     bounds: Sequence[float] = (-1, 2, 0, 2, 0, 2),
     dimensions: Sequence[int] = (301, 201, 101),
+    beta: float = 0.25,
     time_limit: float = 0.0,
     threads: int = 0,
 ) -> MetricFieldResult:
@@ -48,6 +49,8 @@ def metric_field(
         base of the regular cell with edges of length 1, from the origin along x.
     bounds: range of the free vertex: xmin, xmax, ymin, ymax, and of a tetrahedron zmin, zmax.
     dimensions: number of grid points along x, y, and of a tetrahedron z, each at least 1.
+    beta: parameter of the untangling metric, the least area or volume of a valid element, in the unit of the vertices;
+        the default is that of Figure 3.1 (e).
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
 
@@ -70,6 +73,7 @@ def metric_field(
         raise Error(f"dimensions are {tuple(dimensions)}; whole numbers from 1 are expected")
     source.SetBounds(*box, *[0.0] * (6 - len(box)))
     source.SetDimensions(*(int(n) for n in counts), *[1] * (3 - len(counts)))
+    source.SetBeta(within("beta", beta, -np.inf, np.inf))
     set_time_limit(source, time_limit)
     set_threads(source, threads)
     run(source, messages)
@@ -109,11 +113,12 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--bounds", type=float, nargs=6, metavar="X",
                         help="range of the vertex: xmin xmax ymin ymax zmin zmax (default: -1 2 0 2 0 2)")  # fmt: skip
     parser.add_argument("--dimensions", type=int, nargs=3, metavar="N", help="grid points (default: 301 201 101)")
+    parser.add_argument("--beta", type=float, default=0.25, help="of the untangling metric (default: %(default)s)")
 
 
 def _run(arguments: argparse.Namespace) -> None:
     options = {name: value for name in ("bounds", "dimensions") if (value := getattr(arguments, name))}
-    options |= _commands.given(arguments, ("time_limit", "threads"))
+    options |= _commands.given(arguments, ("beta", "time_limit", "threads"))
     result = metric_field(arguments.metrics, arguments.cell, **options)
     for name, values in result.values.items():
         valid = values[result.validity == 1]

@@ -53,6 +53,29 @@ void testDefaults()
   }
 }
 
+// (3.3): (|A - beta| - (A - beta)) / 2 with A = y / 2, everywhere on the default grid.
+void testBeta()
+{
+  vtkNew<vtkMetricField> field;
+  field->ClearMetrics();
+  field->AddMetricByName("untangle_beta");
+  TAUTLINE_CHECK_NEAR(field->GetBeta(), 0.25, 0);
+  for (double beta : { 0.25, 0.0, 0.6, -0.1 })
+  {
+    field->SetBeta(beta);
+    field->Update();
+    vtkImageData* image = field->GetOutput();
+    double largest = 0;
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+    {
+      const double q = component(image->GetPointData(), "untangle_beta", i);
+      TAUTLINE_CHECK_NEAR(q, std::max(0.0, beta - 0.5 * image->GetPoint(i)[1]), 1e-14);
+      largest = std::max(largest, q);
+    }
+    TAUTLINE_CHECK_NEAR(largest, std::max(0.0, beta), 1e-14);
+  }
+}
+
 void testIdealApex()
 {
   vtkNew<vtkMetricField> field;
@@ -68,6 +91,7 @@ void testIdealApex()
         field->AddMetric(static_cast<int>(info.metric));
       }
     }
+    field->SetBeta(0);
     auto values = [&](double y, double z)
     {
       setPoint(field, 0.5, y, z);
@@ -315,6 +339,7 @@ void testScales()
 int TestMetricField(int, char*[])
 {
   testDefaults();
+  testBeta();
   testIdealApex();
   testTetrahedronAgainstCells();
   testPieces();

@@ -25,7 +25,8 @@ def main(arguments: list[str]) -> int:
         "10,000 iterations, GMRES(30), SSOR with omega 1, BoomerAMG with its defaults. Seconds are CPU seconds with "
         f"the set-up of the preconditioner, the fastest of {given.repeats} run(s). '*' is a failure, '>' the time "
         "limit. The dissertation's numbers are of 500,000 vertices, PETSc 3.0 and an Intel Nehalem at 2.66 GHz. In "
-        "addition to Table 2.5, elasticity is solved by multigrid with the rigid body modes: " + ", ".join(f"{n} {LABELS[n]}" for n in NEAR_NULL_SPACE) + "."
+        "addition to Table 2.5, elasticity is solved by multigrid with the rigid body modes: "
+        + ", ".join(f"{n} {LABELS[n]}" for n in NEAR_NULL_SPACE) + "."
     )
     for pde in given.pde or PDES:
         for domain in given.domain or DOMAINS:
