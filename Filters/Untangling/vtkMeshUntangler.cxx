@@ -146,6 +146,7 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   }
 
   tautline::UntangleOptions options;
+  options.method = static_cast<tautline::UntangleMethod>(this->Method);
   options.effort = static_cast<tautline::Effort>(this->Effort);
   options.maximumSeconds = this->GetRemainingSeconds();
   options.fixed = mesh.fixed().data();
@@ -192,6 +193,7 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
 void vtkMeshUntangler::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Method: " << this->Method << "\n";
   os << indent << "Effort: " << this->Effort << "\n";
   os << indent << "FixBoundary: " << this->FixBoundary << "\n";
 }

@@ -59,6 +59,21 @@ public:
   vtkTypeMacro(vtkMeshUntangler, vtkMeshMotionAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  enum Methods
+  {
+    AUTOMATIC = 0,
+    SIMULTANEOUS = 1
+  };
+  ///@{
+  /**
+   * The method: AUTOMATIC moves what is around inverted elements, then all points, as far as
+   * Effort allows; SIMULTANEOUS is the simultaneous untangling and smoothing of Escobar et al.
+   * 2003, which moves every point, for comparison. The default is AUTOMATIC.
+   */
+  vtkTautlineSetRangeMacro(Method, int, AUTOMATIC, SIMULTANEOUS);
+  vtkGetMacro(Method, int);
+  ///@}
+
   enum Efforts
   {
     LOCAL = 0,
@@ -67,8 +82,9 @@ public:
   };
   ///@{
   /**
-   * The effort: LOCAL moves only what is around inverted elements, NORMAL then all points,
-   * THOROUGH for thousands of iterations and from several starts. The default is NORMAL.
+   * The effort of the automatic method: LOCAL moves only what is around inverted elements, NORMAL
+   * then all points, THOROUGH for thousands of iterations and from several starts. The default is
+   * NORMAL.
    */
   vtkTautlineSetRangeMacro(Effort, int, LOCAL, THOROUGH);
   vtkGetMacro(Effort, int);
@@ -110,6 +126,7 @@ private:
 
   void Untangle(const tautline::InputBlock& block, tautline::TableRows& history);
 
+  int Method = AUTOMATIC;
   int Effort = NORMAL;
   bool FixBoundary = true;
   std::string Reason;

@@ -271,6 +271,10 @@ def test_untangle():
     stopped = tl.optimize(TANGLED, time_limit=1e-6)  # one limit for untangling and optimization
     assert stopped.inverted > 0 and "untangling came first and left some inverted." in stopped.summary, stopped.summary
     refused("untangle first", tl.optimize, TANGLED, untangle_first=False)
+    every = tl.untangle(TANGLED, method="simultaneous")  # moves all, and smooths
+    assert every.inverted == 0 and tl.quality(every, "imr").values["imr"].mean() < tl.quality(
+        result, "imr").values["imr"].mean()
+    refused("method is 'x'", tl.untangle, TANGLED, method="x")
     stuck = tl.untangle(TANGLED, fixed=np.ones(2343))
     assert stuck.inverted == stuck.impossible == 41 and (np.unique(stuck.obstacle) == [0, 2]).all()
     assert "all its points are fixed" in stuck.summary and "Element " in stuck.summary
@@ -289,6 +293,8 @@ def test_commands():
     assert [float(row["objective"]) for row in rows] == expected.history["objective"].tolist()
     assert "Inverse mean ratio: mean" in text and str(mesh) in text
     assert "All elements are valid; 41 were not." in run("untangle", TANGLED, "-o", mesh)
+    run("untangle", TANGLED, "-o", mesh, "--method", "simultaneous")
+    assert (points(tl.read(mesh)) == points(tl.untangle(TANGLED, method="simultaneous").mesh)).all()
     assert "no metric 'nope'" in run("optimize", PLATE, "-o", mesh, "--objective", "nope", code=1)
     assert "is not KEY=VALUE" in run("optimize", PLATE, "-o", mesh, "--objective", "imr,x", code=2)
     assert "invalid choice: 'x'" in run("untangle", PLATE, "-o", mesh, "--effort", "x", code=2)

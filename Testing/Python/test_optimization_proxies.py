@@ -85,7 +85,8 @@ assert abs(worst[0] - before[1]) < 1e-9 and worst[2] == after[1] and worst[1] < 
 
 # untangled, and the state file
 tangled = simple.OpenDataFile(TANGLED)
-untangled = UntangleMesh(registrationName="Untangled", Input=tangled, Effort="Thorough")  # noqa: F821
+untangled = UntangleMesh(registrationName="Untangled", Input=tangled, Effort="Thorough",
+                          Method="Simultaneous untangling and smoothing")  # noqa: F821
 untangled.UpdatePipeline()
 assert untangled.CellData["Validity"].GetRange() == (1, 1) and untangled.CellData["Obstacle"].GetRange() == (0, 0)
 untangled.UpdatePropertyInformation()
@@ -126,3 +127,4 @@ again.UpdatePipeline()
 assert again.CellData["rr"].GetRange() == expected
 assert (simple.FindSource("Known").UseBestKnown, simple.FindSource("Known").BestKnown) == (1, 0)
 assert simple.FindSource("Moving").Animation == 1 and simple.FindSource("Untangled").Effort == "Thorough"
+assert simple.FindSource("Untangled").Method == "Simultaneous untangling and smoothing"

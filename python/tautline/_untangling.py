@@ -15,6 +15,7 @@ from ._arrays import POINTS, InputArrays, cell_array, history_of, point_array, t
 from ._errors import interruptible, run
 from ._io import Mesh, as_mesh
 
+METHODS = ("automatic", "simultaneous")
 EFFORTS = ("local", "normal", "thorough")
 _FIXED = 0  # input array of vtkMeshUntangler
 
@@ -50,6 +51,7 @@ def untangle(
     mesh: Mesh,
     effort: str = "normal",
     *,
+    method: str = "automatic",
     fixed: str | Sequence | None = None,
     fix_boundary: bool = True,
     time_limit: float = 0.0,
@@ -60,6 +62,8 @@ def untangle(
 
     mesh: a vtkDataSet with explicit points, a composite data set, a file name or (points, cells). It is not changed.
     effort: "local" (moves points around inverted elements only), "normal" (then all points) or "thorough".
+    method: "automatic", or "simultaneous", the simultaneous untangling and smoothing of Escobar et al. 2003, which
+        moves every point and takes no effort, for comparison.
     fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
     fix_boundary: whether the points of the boundary stay in place.
     time_limit: seconds; 0 is no limit.
@@ -76,6 +80,7 @@ def untangle(
     filter_ = _vtk.vtkMeshUntangler()
     inputs = InputArrays(filter_, as_mesh(mesh))
     filter_.SetEffort(pick("effort", effort, EFFORTS))
+    filter_.SetMethod(pick("method", method, METHODS))
     filter_.SetFixBoundary(bool(fix_boundary))
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
@@ -106,10 +111,11 @@ def add_commands(commands: Any) -> None:
     parser = _commands.add_command(commands, "untangle", _run_untangle, "move points so that elements become valid")
     _commands.add_moving_points(parser)
     parser.add_argument("--effort", choices=EFFORTS, default="normal")
+    parser.add_argument("--method", choices=METHODS, default="automatic", help="simultaneous: Escobar et al. 2003")
 
 
 def _run_untangle(arguments: argparse.Namespace) -> int:
-    names = ("effort", "fixed", "time_limit", "threads", "merge_coincident_points")
+    names = ("effort", "method", "fixed", "time_limit", "threads", "merge_coincident_points")
     result = untangle(arguments.mesh, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))

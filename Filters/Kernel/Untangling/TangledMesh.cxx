@@ -243,7 +243,7 @@ double TangledMesh<Dim>::regularization(const PatchState& state) const
 
 template <int Dim>
 bool TangledMesh<Dim>::relax(
-  double* x, std::int32_t v, int steps, bool tryCenter, Patch<Dim>& patch) const
+  double* x, std::int32_t v, int steps, bool tryCenter, Patch<Dim>& patch, bool mayInvert) const
 {
   this->gather(x, v, patch);
   std::array<double, Dim> d{};
@@ -291,7 +291,7 @@ bool TangledMesh<Dim>::relax(
       if (valueOver<Dim>(patch, to.data(), energy) <= sum.f + ArmijoConstant * t * slope)
       {
         const PatchState next = this->examine(patch, to.data());
-        if (next.invalid <= state.invalid)
+        if (next.invalid <= state.invalid || (mayInvert && state.invalid > 0))
         {
           d = to;
           state = next;

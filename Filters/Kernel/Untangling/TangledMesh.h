@@ -72,9 +72,11 @@ public:
    * to more invalid simplices. The regularization is chosen for the patch, anew in each step.
    * @param tryCenter where simplices stay invalid, try the Chebyshev centre of the patch
    * @param patch work space
+   * @param mayInvert whether more simplices of a patch with invalid ones may become invalid
    * @return whether v moved
    */
-  bool relax(double* x, std::int32_t v, int steps, bool tryCenter, Patch<Dim>& patch) const;
+  bool relax(double* x, std::int32_t v, int steps, bool tryCenter, Patch<Dim>& patch,
+    bool mayInvert = false) const;
 
   /// Calls visit(v, patch) for all free vertices with a nonzero flag (all if flags is null), in an
   /// order and concurrency that make the result independent of the number of threads; visit may

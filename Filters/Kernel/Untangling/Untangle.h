@@ -11,6 +11,10 @@
  * wedges that are then folded between valid corners are repaired one by one, as far as their
  * neighbours allow. A cell counts as valid when its Jacobian determinant is positive everywhere
  * (Mesh::classifyCells()). The connectivity never changes. Planar and volume meshes.
+ *
+ * UntangleMethod::Simultaneous is the method of Escobar et al. as published, for comparison: each
+ * free vertex of the mesh, one after the other, minimizes the regularized energy of its elements,
+ * whether they are inverted or not, and a step may invert others.
  */
 #ifndef tautline_Untangle_h
 #define tautline_Untangle_h
@@ -22,7 +26,8 @@ namespace tautline
 {
 /**
  * @brief Untangles. The result never has more inverted or degenerate elements than the input; fixed
- * points and points that need not move keep their bits.
+ * points and, by the automatic method, points that need not move keep their bits. A valid mesh is
+ * returned as it is.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
  * Throws Error for a surface mesh in space with inverted elements.
  */

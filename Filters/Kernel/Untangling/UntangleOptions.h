@@ -17,9 +17,19 @@ enum class Effort : int
   Thorough = 2 ///< at most 5000 iterations, restarts with slower schedules
 };
 
+/// How to untangle. The numbers are stable: ParaView state files hold them.
+enum class UntangleMethod : int
+{
+  Automatic = 0, ///< around the inverted elements, then what is left all at once, see Untangle.h
+  /// Simultaneous untangling and smoothing as published by Escobar et al. 2003: sweeps over all
+  /// free vertices, until all elements are valid and the energy has converged, at most 100.
+  Simultaneous = 1
+};
+
 struct UntangleOptions
 {
-  Effort effort = Effort::Normal;
+  UntangleMethod method = UntangleMethod::Automatic;
+  Effort effort = Effort::Normal; ///< of the automatic method
   /// Seconds of wall time; 0: no limit. Honoured within one iteration.
   double maximumSeconds = 0.0;
   const unsigned char* fixed = nullptr; ///< as in OptimizeOptions

@@ -5,6 +5,8 @@
 #include "InfeasibleSimplices.h"
 #include "RotationContinuation.h"
 
+#include <limits>
+
 namespace tautline
 {
 namespace
@@ -441,6 +443,58 @@ const double* Untangler<Dim>::run(double margin)
   this->examine();
   this->Progress.forgetBest();
   this->record();
+  if (this->Options.method == UntangleMethod::Simultaneous)
+  {
+    this->untangleSimultaneously();
+  }
+  else
+  {
+    this->untangleAutomatically();
+  }
+  std::copy_n(this->Progress.best(), this->Coordinates, this->x());
+  this->examine();
+  return this->x();
+}
+
+/// Sweeps over all vertices until the energy of a valid mesh has converged.
+template <int Dim>
+void Untangler<Dim>::untangleSimultaneously()
+{
+  constexpr int sweeps = 100, steps = 4;
+  constexpr double tolerance = 1e-3;
+  GlobalDescent<Dim> function(this->Tangled);
+  double energy = std::numeric_limits<double>::infinity();
+  for (int sweep = 0; sweep < sweeps && !this->stopped(); ++sweep)
+  {
+    this->Tangled.sweep(nullptr,
+      [&](std::int32_t v, Patch<Dim>& patch)
+      { this->Tangled.relax(this->x(), v, steps, false, patch, true); });
+    this->examine();
+    if (this->untangled())
+    {
+      this->Progress.forgetBest(); // the last of the valid ones is the smoothest
+    }
+    this->record();
+    if (this->untangled())
+    {
+      function.start(this->x(), 0.0);
+      if (energy - function.energy() < tolerance * energy)
+      {
+        break;
+      }
+      energy = function.energy();
+    }
+  }
+  if (!this->untangled() && !this->stopped())
+  {
+    this->excludeInfeasible(); // for the reasons of what is left
+  }
+}
+
+/// Around the invalid simplices, then what is left all at once.
+template <int Dim>
+void Untangler<Dim>::untangleAutomatically()
+{
   // Few invalid simplices: first the vertices around them alone.
   constexpr double many = 0.05;
   const bool onlyLocal = this->Options.effort == Effort::Local;
@@ -467,9 +521,6 @@ const double* Untangler<Dim>::run(double margin)
     this->Progress.forgetBest();
     this->record();
   }
-  std::copy_n(this->Progress.best(), this->Coordinates, this->x());
-  this->examine();
-  return this->x();
 }
 
 template class Untangler<2>;

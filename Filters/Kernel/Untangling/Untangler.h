@@ -77,6 +77,8 @@ private:
   void untangleNearby();
   void untangleGlobally();
   void untangleThoroughly(const std::vector<double>& before, double firstEps);
+  void untangleAutomatically();
+  void untangleSimultaneously();
 
   SimplexMesh& Simplices;
   const UntangleOptions& Options;

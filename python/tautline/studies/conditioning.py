@@ -69,8 +69,8 @@ def warped(report: Report, given) -> None:
     brain_findings(report, found)
     mesh, _ = warped_bore(given.small)
     meshes = untangled(mesh, given)
-    sus = tautline.untangle(mesh, threads=given.threads)
-    meshes["sus"] = ("Untangle Mesh (there: SUS)", sus.mesh)
+    sus = tautline.untangle(mesh, method="simultaneous", threads=given.threads)
+    meshes["sus"] = ("Simultaneous untangling and smoothing", sus.mesh)
     found = compare(report, "table_3_9", "Table 3.9, bore", meshes, TABLE_3_9, given.threads)
     bore_findings(report, found)
 
