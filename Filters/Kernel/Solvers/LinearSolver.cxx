@@ -88,7 +88,8 @@ WatchLimits hardLimits(
 
 //------------------------------------------------------------------------------
 LinearSolver::LinearSolver(const LinearSystem& system, const SolverOptions& options)
-  : Options(options)
+  : System(system)
+  , Options(options)
 {
   const WatchLimits limits = hardLimits(options.maximumSeconds, options.cancelled, system);
   struct Making
@@ -179,15 +180,28 @@ double LinearSolver::setUp()
   return job->seconds;
 }
 
+/// What a solve returns once the work was given up: x is what it starts from.
+LinearSolution LinearSolver::lost(const double* b, double* x) const
+{
+  const SparseMatrix& matrix = *this->System.matrix;
+  if (!this->Options.initialGuess)
+  {
+    std::fill_n(x, matrix.size, 0.0);
+  }
+  LinearSolution solution;
+  solution.reason = this->Lost;
+  solution.message = this->LostMessage;
+  solution.trueResidual = residualOf(matrix, b, x, this->Options.threads).relative();
+  return solution;
+}
+
 //------------------------------------------------------------------------------
 LinearSolution LinearSolver::solve(const double* b, double* x)
 {
   LinearSolution solution;
   if (!this->Impl)
   {
-    solution.reason = this->Lost;
-    solution.message = this->LostMessage;
-    return solution;
+    return this->lost(b, x);
   }
   this->Impl->requireAlive();
   const std::shared_ptr<LinearSolverState> state = this->Impl;
@@ -198,6 +212,7 @@ LinearSolution LinearSolver::solve(const double* b, double* x)
     hardLimits(this->Options.maximumSeconds, this->Options.cancelled, state->System);
   const Index n = state->Objects.localSize();
   const bool watched = petscWatchable(limits);
+  const double* const given = b;
   if (watched)
   {
     job->b.assign(b, b + n);
@@ -218,14 +233,10 @@ LinearSolution LinearSolver::solve(const double* b, double* x)
     });
   if (result != WatchResult::Finished)
   {
-    if (!this->Options.initialGuess)
-    {
-      std::fill_n(x, n, 0.0);
-    }
-    solution.reason = reasonOf(result);
-    solution.message = givenUp(result, job->stage, this->Options);
-    solution.setupSeconds = job->stage == Stage::SetUp ? job->time.seconds() : 0.0;
-    this->abandon(solution.reason, solution.message);
+    const double setUp = job->stage == Stage::SetUp ? job->time.seconds() : 0.0;
+    this->abandon(reasonOf(result), givenUp(result, job->stage, this->Options));
+    solution = this->lost(given, x);
+    solution.setupSeconds = setUp;
     return solution;
   }
   if (watched)

@@ -70,8 +70,10 @@ public:
 
 private:
   void abandon(SolveReason reason, const std::string& stage);
+  LinearSolution lost(const double* b, double* x) const;
 
   std::shared_ptr<LinearSolverState> Impl; // null when it was given up
+  LinearSystem System;
   SolverOptions Options;
   SolveReason Lost = SolveReason::Exact; // why it was given up; Exact: it was not
   std::string LostMessage;

@@ -437,6 +437,18 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
 //------------------------------------------------------------------------------
 LinearSolution LinearSolverState::solve(const double* b, double* x)
 {
+  this->Verified = false;
+  LinearSolution solution = this->attempt(b, x);
+  if (!this->Verified)
+  {
+    solution.trueResidual = this->residual(b, x).relative();
+  }
+  return solution;
+}
+
+/// solve() without the residual of what is returned unverified: x as it was.
+LinearSolution LinearSolverState::attempt(const double* b, double* x)
+{
   LinearSolution solution;
   this->Residuals.clear();
   this->Stopped = SolveReason::Exact;
@@ -516,17 +528,23 @@ bool LinearSolverState::tighten(const LinearSolution& solution, int most)
   return true;
 }
 
-/// Copies the solution to x and verifies it. x stays as it was where it is not finite.
+/// Copies the solution to x and verifies it. x stays as it was if solution or residual is not finite.
 void LinearSolverState::takeSolution(
   const double* b, Vec unknowns, double* x, LinearSolution& solution)
 {
   const Index n = this->Objects.localSize();
   std::vector<double> values(static_cast<std::size_t>(n));
   this->Objects.copyOut(unknowns, values.data());
-  if (!this->Objects.anywhere(!finite(values.data(), n)))
+  Residual residual;
+  const bool valid = !this->Objects.anywhere(!finite(values.data(), n));
+  if (valid)
+  {
+    residual = this->residual(b, values.data());
+  }
+  if (valid && std::isfinite(residual.after))
   {
     std::copy(values.begin(), values.end(), x);
-    this->verify(b, x, solution);
+    this->verify(b, x, residual, solution);
   }
   else if (converged(solution.reason))
   {
@@ -535,7 +553,7 @@ void LinearSolverState::takeSolution(
 }
 
 //------------------------------------------------------------------------------
-/// The 2-norm of a vector of this rank's contributions, without overflow.
+/// The 2-norm of a vector of this rank's contributions.
 double LinearSolverState::norm(const std::vector<double>& contributions) const
 {
   if (this->Objects.ranks() > 1)
@@ -546,18 +564,7 @@ double LinearSolverState::norm(const std::vector<double>& contributions) const
     petsc(VecNorm(rows, NORM_2, &norm));
     return norm;
   }
-  double largest = 0.0;
-  for (const double value : contributions)
-  {
-    largest = std::max(largest, std::abs(value));
-  }
-  double sum = 0.0;
-  for (const double value : contributions)
-  {
-    const double scaled = largest > 0.0 ? value / largest : 0.0;
-    sum += scaled * scaled;
-  }
-  return largest * std::sqrt(sum);
+  return norm2(contributions);
 }
 
 /// Relative to the right-hand side.
@@ -584,22 +591,29 @@ double LinearSolverState::roundingLevel(const double* b, const double* x) const
   return RoundingUnits * std::numeric_limits<double>::epsilon() * this->norm(sizes);
 }
 
-/**
- * @brief The residual of the system itself, by Tautline's own product: a preconditioner may make a
- * large one look small, a factorization does not notice that a matrix is singular, and some methods
- * report success without any work.
- */
-void LinearSolverState::verify(const double* b, const double* x, LinearSolution& solution)
+/// By Tautline's own product.
+Residual LinearSolverState::residual(const double* b, const double* x) const
 {
-  const auto n = static_cast<std::size_t>(this->Objects.localSize());
-  std::vector<double> residual(n);
-  this->System.matrix->multiply(x, residual.data(), this->Options.threads);
-  for (std::size_t i = 0; i < n; ++i)
+  const SparseMatrix& matrix = *this->System.matrix;
+  if (this->Objects.ranks() == 1)
   {
-    residual[i] = b[i] - residual[i];
+    return residualOf(matrix, b, x, this->Options.threads);
   }
-  const double before = this->norm(std::vector<double>(b, b + n)), after = this->norm(residual);
-  solution.trueResidual = before > 0.0 && std::isfinite(after) ? after / before : 0.0;
+  const std::vector<double> whole(b, b + matrix.size);
+  return { this->norm(whole), this->norm(remainder(matrix, b, x, this->Options.threads)) };
+}
+
+/**
+ * @brief The residual of the system itself: a preconditioner may make a large one look small, a
+ * factorization does not notice that a matrix is singular, and some methods report success without
+ * any work.
+ */
+void LinearSolverState::verify(
+  const double* b, const double* x, const Residual& residual, LinearSolution& solution)
+{
+  const double before = residual.before, after = residual.after;
+  this->Verified = true;
+  solution.trueResidual = residual.relative();
   const bool direct = this->Options.method == KrylovMethod::Direct;
   if (direct)
   {

@@ -6,6 +6,7 @@
 #define tautline_LinearSolverState_h
 
 #include "PetscObjects.h"
+#include "Residual.h"
 #include "SolverOptions.h"
 #include "Watchdog.h"
 
@@ -55,6 +56,7 @@ struct LinearSolverState
   double Relative = 0.0, Absolute = 0.0;    // tolerances
   SolveReason Stopped = SolveReason::Exact; // TimeLimit or Aborted
   std::exception_ptr Thrown;                // by the observer
+  bool Verified = false;                    // whether the residual of the solution is known
 
   ~LinearSolverState();
 
@@ -69,7 +71,9 @@ private:
   double allowedResidual() const;
   double norm(const std::vector<double>& contributions) const;
   double roundingLevel(const double* b, const double* x) const;
-  void verify(const double* b, const double* x, LinearSolution& solution);
+  LinearSolution attempt(const double* b, double* x);
+  Residual residual(const double* b, const double* x) const;
+  void verify(const double* b, const double* x, const Residual& residual, LinearSolution& solution);
   void ritzValues(LinearSolution& solution);
   bool shouldStop(int iteration, double norm);
   bool userStops(int iteration, double norm);

@@ -3,6 +3,7 @@
 #include "PetscOptionRules.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "tautline/Ranks/PointNumbering.h"
 #include "tautline/Ranks/RankExchange.h"
@@ -76,8 +77,11 @@ bool PetscOptionSet::has(const std::string& name) const
 
 bool PetscOptionSet::changesMatrix() const
 {
-  return this->Text.find("diagonal_scale") != std::string::npos ||
-    this->Text.find("in_place") != std::string::npos;
+  std::string lower = this->Text; // PETSc's names are not case-sensitive
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower.find("diagonal_scale") != std::string::npos ||
+    lower.find("in_place") != std::string::npos;
 }
 
 void PetscOptionSet::setDefault(const std::string& name, const std::string& value)

@@ -134,8 +134,9 @@ struct LinearSolution
   int iterations = 0;
   double setupSeconds =
     0.0; ///< of the preconditioner or factorization; 0 when it was there already
-  double solveSeconds = 0.0;     ///< without set-up
-  double trueResidual = 0.0;     ///< |b - A x| / |b| in the end; 0 if b is 0
+  double solveSeconds = 0.0; ///< without set-up
+  /// |b - A x| / |b| of the x that is returned, however the solve ended; 0 if b is 0 or not finite.
+  double trueResidual = 0.0;
   std::vector<double> residuals; ///< norms as the method measures them; [0] is the initial one
   double ritzSmallest = 0.0, ritzLargest = 0.0; ///< of P^-1 A, if requested and available; else 0
 };

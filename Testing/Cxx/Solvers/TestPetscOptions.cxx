@@ -367,16 +367,66 @@ void testFalseConvergence()
     TAUTLINE_CHECK(limited || contains(solution.message, "residual"));
     TAUTLINE_CHECK_RELATIVE(solution.trueResidual, relativeResidual(a, x, b), 1e-10);
   }
-  // A system scaled while it is solved is verified unscaled.
-  SolverOptions options;
-  options.preconditioner = Preconditioner::Jacobi;
-  options.petscOptions = "-ksp_diagonal_scale";
-  const std::vector<double> b = someVector(a.size);
-  std::vector<double> x(b.size());
-  LinearSolver solver(systemOf(a), options);
-  const LinearSolution solution = solver.solve(b.data(), x.data());
-  TAUTLINE_CHECK_RELATIVE(solution.trueResidual, relativeResidual(a, x, b), 1e-10);
-  TAUTLINE_CHECK(!converged(solution.reason) || relativeResidual(a, x, b) < 1e-2);
+  // A system scaled while it is solved is verified unscaled, and stays as it was.
+  for (const char* text : { "-ksp_diagonal_scale", "-KSP_Diagonal_Scale" })
+  {
+    const Context context(text);
+    SparseMatrix uneven = gridMatrix(40, [](int i, int j) { return i == j ? 4.0 + i % 7 : -1.0; });
+    const std::vector<double> before = uneven.values;
+    SolverOptions options;
+    options.preconditioner = Preconditioner::Jacobi;
+    options.petscOptions = text;
+    const std::vector<double> b = someVector(uneven.size);
+    std::vector<double> x(b.size());
+    LinearSolver solver(systemOf(uneven), options);
+    const LinearSolution solution = solver.solve(b.data(), x.data());
+    TAUTLINE_CHECK_RELATIVE(solution.trueResidual, relativeResidual(uneven, x, b), 1e-10);
+    TAUTLINE_CHECK(!converged(solution.reason) || relativeResidual(uneven, x, b) < 1e-2);
+    TAUTLINE_CHECK(uneven.values == before);
+  }
+}
+
+/// However a solve ends, the residual is that of what it returns.
+void testResidualsOfFailures()
+{
+  struct Case
+  {
+    const char* text;
+    double last; // diagonal entry of the last row
+    SolveReason reason;
+  };
+  const Case cases[] = { { "", 0.0, SolveReason::PreconditionerFailed }, // set-up
+    { "-pc_type ilu -pc_factor_shift_type none", 0.0, SolveReason::PreconditionerFailed },
+    { "-ksp_type richardson -ksp_richardson_scale 1e200 -ksp_divtol 1e308", 4.0,
+      SolveReason::NotANumber },
+    { "-ksp_type richardson -ksp_richardson_scale 1e30", 4.0, SolveReason::Diverged },
+    { "-ksp_max_it 2", 4.0, SolveReason::IterationLimit } };
+  constexpr int size = 6;
+  for (const Case& failure : cases)
+  {
+    for (const bool guess : { false, true })
+    {
+      const Context context(failure.text);
+      const SparseMatrix a = gridMatrix(size,
+        [&](int i, int j) { return i != j            ? -1.0
+                              : i + 1 == size * size ? failure.last
+                                                     : 4.0; });
+      const std::vector<double> b = someVector(a.size);
+      std::vector<double> x(b.size(), 1.0);
+      SolverOptions options;
+      options.preconditioner = Preconditioner::Jacobi;
+      options.petscOptions = failure.text;
+      options.initialGuess = guess;
+      LinearSolver solver(systemOf(a), options);
+      for (int i = 0; i < 2; ++i)
+      {
+        const LinearSolution solution = solver.solve(b.data(), x.data());
+        TAUTLINE_CHECK(solution.reason == failure.reason);
+        TAUTLINE_CHECK(solution.trueResidual > 0.0);
+        TAUTLINE_CHECK_RELATIVE(solution.trueResidual, relativeResidual(a, x, b), 1e-10);
+      }
+    }
+  }
 }
 }
 
@@ -389,5 +439,6 @@ int TestPetscOptions(int argc, char* argv[])
   testFieldSplit();
   testWording();
   testFalseConvergence();
+  testResidualsOfFailures();
   return exitCode();
 }

@@ -206,7 +206,18 @@ void testGivenUp(const SolverOptions& options, SolveReason reason, double longes
   TAUTLINE_CHECK(time.seconds() < longest);
   TAUTLINE_CHECK(solution.message.find(part) != std::string::npos);
   TAUTLINE_CHECK_EQUAL(x[0], 0.0);
-  TAUTLINE_CHECK(solver.solve(b.data(), x.data()).reason == reason);
+  TAUTLINE_CHECK_EQUAL(solution.trueResidual, 1.0);
+  std::fill(x.begin(), x.end(), 1.0);
+  const LinearSolution again = solver.solve(b.data(), x.data());
+  TAUTLINE_CHECK(again.reason == reason);
+  TAUTLINE_CHECK_EQUAL(x[0], 0.0);
+  TAUTLINE_CHECK_EQUAL(again.trueResidual, 1.0);
+  // With an initial guess it is that which is returned, and its residual.
+  std::fill(x.begin(), x.end(), 1.0);
+  solver.options().initialGuess = true;
+  TAUTLINE_CHECK_RELATIVE(
+    solver.solve(b.data(), x.data()).trueResidual, relativeResidual(*matrix, x, b), 1e-12);
+  TAUTLINE_CHECK_EQUAL(x[0], 1.0);
   TAUTLINE_CHECK_EQUAL(solver.setUp(), 0.0);
   // The work goes on without the matrix it was given.
   matrix.reset();
