@@ -92,8 +92,6 @@ protected:
   /// Reports the progress on a block, 0 to 1. @return false if the execution is to be aborted
   bool ProceedInBlock(int block, double fraction);
 
-  bool KeepsBest() const override { return true; }
-
   bool MergeCoincidentPoints = true;
 
 private:

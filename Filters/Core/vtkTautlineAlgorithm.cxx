@@ -108,6 +108,7 @@ vtkTypeBool vtkTautlineAlgorithm::ProcessRequest(
     return this->Superclass::ProcessRequest(request, inputs, outputs);
   }
   this->Start = std::chrono::steady_clock::now();
+  this->Best = false;
   bool complete = false;
   const tautline::ExecutionLimits limits = { this->GetExecutionSeconds(),
     [this] { return this->KeepsBest(); } };
@@ -217,7 +218,7 @@ double vtkTautlineAlgorithm::GetExecutionSeconds() const
 //------------------------------------------------------------------------------
 bool vtkTautlineAlgorithm::KeepsBest() const
 {
-  return false;
+  return this->Best;
 }
 
 //------------------------------------------------------------------------------

@@ -112,9 +112,13 @@ protected:
 
   /**
    * Whether RequestData() itself returns the best result so far on abort and at the time limit.
-   * Default: no. Asked during the execution.
+   * Default: once HaveBest() was called in this execution; before, it has nothing but its set-up,
+   * and ends with an error. Asked during the execution.
    */
   virtual bool KeepsBest() const;
+
+  /// From here on RequestData() has a result that it returns on abort and at the time limit.
+  void HaveBest() { this->Best = true; }
 
   /// What is left of the time of this execution, in seconds: above 0 even if it is over; 0 is no
   /// limit. All blocks of composite data share it.
@@ -166,6 +170,7 @@ private:
 
   std::vector<int> SelectionPorts;
   std::chrono::steady_clock::time_point Start; ///< of the execution
+  bool Best = false;                           ///< whether HaveBest() was called in this execution
 };
 
 #endif

@@ -417,6 +417,8 @@ protected:
     vtkInformationVector* outputVector) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  /// The input, at first.
+  bool KeepsBest() const override { return true; }
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void ClearResult() override;

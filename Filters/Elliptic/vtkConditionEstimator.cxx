@@ -175,7 +175,7 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
   options.omega = this->Omega;
   options.tolerance = this->Tolerance;
   options.maximumIterations = this->MaximumIterations;
-  options.maximumSeconds = this->GetSecondsLeft();
+  options.maximumSeconds = this->GetRemainingSeconds();
   options.petscOptions = this->PETScOptions;
   const double share = this->Preconditioner == none ? 1.0 : 0.5;
   options.progress = [&](double fraction)
@@ -234,7 +234,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   }
 
   tautline::ConditionOptions limits;
-  limits.maximumSeconds = this->GetSecondsLeft();
+  limits.maximumSeconds = this->GetRemainingSeconds();
   limits.cancelled = this->Cancelled();
   const tautline::ElementContributions elements =
     tautline::elementContributions(system, this->ComputeShares, this->Threads, limits);

@@ -77,7 +77,6 @@ int vtkEllipticAlgorithm::RequestData(
   this->ClearResult();
   this->Failed = false;
   this->Fraction = 0.0;
-  this->Begin = std::chrono::steady_clock::now();
   this->Unknowns = 0;
   this->AssemblySeconds = 0.0;
   const int succeeded = this->Attempt(outputVector, "solve on a coarser mesh, or on more processes",
@@ -98,6 +97,7 @@ int vtkEllipticAlgorithm::RequestData(
           const tautline::EllipticInput problem(mesh, choice, this, processes, this->Threads);
           this->Unknowns += problem.system().unknowns();
           this->AssemblySeconds += problem.system().assembleSeconds();
+          this->HaveBest();
           this->Compute(problem, mesh, processes, rows);
           this->Describe(mesh, problem.notice());
         });
@@ -148,14 +148,6 @@ bool vtkEllipticAlgorithm::Report(const tautline::LocalMesh& mesh, double fracti
 std::function<bool()> vtkEllipticAlgorithm::Cancelled()
 {
   return [this]() { return !this->Proceed(this->Fraction); };
-}
-
-//------------------------------------------------------------------------------
-double vtkEllipticAlgorithm::GetSecondsLeft() const
-{
-  constexpr double smallest = 1e-9; // 0 would mean no limit
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - this->Begin;
-  return this->TimeLimit > 0 ? std::max(smallest, this->TimeLimit - spent.count()) : 0.0;
 }
 
 //------------------------------------------------------------------------------

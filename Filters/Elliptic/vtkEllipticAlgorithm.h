@@ -37,7 +37,6 @@
 #include "vtkTautlineSetRange.h"    // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
 
-#include <chrono>     // for Begin
 #include <functional> // for Cancelled()
 #include <string>     // for expressions
 
@@ -251,10 +250,6 @@ protected:
   /// of the function is true to stop.
   std::function<bool()> Cancelled();
 
-  bool KeepsBest() const override { return true; }
-  /// What is left of the time limit for this data set, above 0; 0: no limit.
-  double GetSecondsLeft() const;
-
   double Omega = 1.0;
   std::string PETScOptions;
   bool MergeCoincidentPoints = true;
@@ -285,7 +280,6 @@ private:
   std::string GivenExpression;
   bool Failed = false;
   double Fraction = 0.0;
-  std::chrono::steady_clock::time_point Begin;
   vtkIdType Unknowns = 0;
   double AssemblySeconds = 0.0;
 };

@@ -87,7 +87,7 @@ tautline::SolverOptions vtkEllipticSolver::GetSolverOptions() const
   options.method = static_cast<tautline::KrylovMethod>(this->Solver);
   options.preconditioner = static_cast<tautline::Preconditioner>(this->Preconditioner);
   this->SetCommonOptions(options);
-  options.maximumSeconds = this->GetSecondsLeft();
+  options.maximumSeconds = this->GetRemainingSeconds();
   if (this->FastMultigrid && this->Preconditioner == AMG && this->Solver != DIRECT &&
     this->PETScOptions.find("-pc_") == std::string::npos)
   {

@@ -153,7 +153,7 @@ void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::Loc
   options.solver.maximumSeconds = this->CombinationTimeLimit;
   options.conditions = this->EstimateConditions;
   options.repetitions = this->Repetitions;
-  options.maximumSeconds = this->GetSecondsLeft();
+  options.maximumSeconds = this->GetRemainingSeconds();
   options.solver.cancelled = this->Cancelled();
   options.progress = [&](double fraction) { return this->Report(mesh, fraction); };
   const tautline::SolverStudy study = tautline::studySolvers(input.system(), options);

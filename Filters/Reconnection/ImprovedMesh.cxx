@@ -1,6 +1,7 @@
 #include "ImprovedMesh.h"
 
 #include "MeshOutput.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Quality/Metrics.h"
 
 #include "vtkCellData.h"
@@ -137,6 +138,7 @@ void writePointData(const ReconnectableMesh& input, const ReconnectionResult& re
   vtkNew<vtkIdList> corners;
   for (std::size_t i = 0; i < geometry.points.size(); ++i)
   {
+    pollInterruption(static_cast<Index>(i));
     const vtkIdType id = static_cast<vtkIdType>(i);
     const Index original = result.originalPoints[geometry.points[i]];
     if (original >= 0)
@@ -177,6 +179,7 @@ void writeCellData(const ReconnectableMesh& input, const ReconnectionResult& res
   originals->SetNumberOfValues(count);
   for (vtkIdType cell = 0; cell < count; ++cell)
   {
+    pollInterruption(cell);
     const Index original = input.inputCell(result.originalCells[cell]);
     to->CopyData(from, original, cell);
     originals->SetValue(cell, original);

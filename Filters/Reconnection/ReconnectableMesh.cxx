@@ -2,6 +2,7 @@
 
 #include "PointMerge.h"
 
+#include "tautline/Core/Interruption.h"
 #include "vtkCell.h"
 #include "vtkCellType.h"
 #include "vtkCellTypes.h"
@@ -125,6 +126,7 @@ void ReconnectableMesh::takeTetrahedra()
   std::map<int, Index> counts;
   for (vtkIdType cell = 0; cell < this->Input->GetNumberOfCells(); ++cell)
   {
+    pollInterruption(cell);
     ++counts[this->Input->GetCellType(cell)];
   }
   const Index tetrahedra = counts[VTK_TETRA];
@@ -165,6 +167,7 @@ void ReconnectableMesh::takeTetrahedra()
   vtkNew<vtkIdList> points;
   for (vtkIdType cell = 0; cell < this->Input->GetNumberOfCells(); ++cell)
   {
+    pollInterruption(cell);
     if (this->Input->GetCellType(cell) == VTK_TETRA)
     {
       this->Input->GetCellPoints(cell, points);
@@ -216,6 +219,7 @@ void ReconnectableMesh::setRegions(vtkDataArray* ofCells)
   std::map<double, Index> numbers;
   for (Index cell = 0; cell < count; ++cell)
   {
+    pollInterruption(cell);
     const double value = ofCells->GetComponent(this->inputCell(cell), 0);
     if (!std::isfinite(value))
     {

@@ -152,8 +152,12 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   options.fixed = mesh.fixed().data();
   options.threads = this->Threads;
   options.observer = [&](const tautline::IterationState& state)
-  { return this->ProceedInBlock(block.number, state.progress); };
+  {
+    this->HaveBest();
+    return this->ProceedInBlock(block.number, state.progress);
+  };
   tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);
+  this->HaveBest();
   std::string unsettled;
   result.points = mesh.settle(result.points, unsettled);
   if (!unsettled.empty())

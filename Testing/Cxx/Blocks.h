@@ -141,6 +141,27 @@ inline MeshData movedBlock(CellType type, Index n, double amplitude, unsigned se
   return data;
 }
 
+/** A Moebius band of so many quadrilaterals: a surface without a consistent orientation. */
+inline MeshData moebiusBand(Index count)
+{
+  constexpr double half = 0.3; // of its width
+  MeshData band;
+  for (Index i = 0; i < count; ++i)
+  {
+    const double a = 2 * M_PI * static_cast<double>(i) / static_cast<double>(count);
+    const Vec3 out = { std::cos(a), std::sin(a), 0 };
+    const Vec3 across = half * (std::cos(a / 2) * out + Vec3{ 0, 0, std::sin(a / 2) });
+    band.addPoint(out - across);
+    band.addPoint(out + across);
+  }
+  for (Index i = 0; i + 1 < count; ++i)
+  {
+    band.addCell(CellType::Quadrilateral, { 2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2 });
+  }
+  band.addCell(CellType::Quadrilateral, { 2 * count - 2, 2 * count - 1, 0, 1 });
+  return band;
+}
+
 } // namespace tautline
 
 #endif

@@ -11,16 +11,19 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkCallbackCommand.h"
+#include "vtkCell.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkExecutive.h"
+#include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtkUnstructuredGridReader.h"
 
 #include <string>
 
@@ -50,6 +53,34 @@ inline vtkSmartPointer<vtkUnstructuredGrid> toGrid(const MeshData& data, int typ
     grid->InsertNextCell(data.types[cell], static_cast<vtkIdType>(ids.size()), ids.data());
   }
   return grid;
+}
+
+/** The points and cells of a grid. */
+inline MeshData toMesh(vtkUnstructuredGrid* grid)
+{
+  MeshData data;
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    Vec3 p;
+    grid->GetPoint(i, p.data());
+    data.addPoint(p);
+  }
+  for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i)
+  {
+    vtkIdList* ids = grid->GetCell(i)->GetPointIds();
+    data.addCell(grid->GetCellType(i), std::vector<Index>(ids->begin(), ids->end()));
+  }
+  return data;
+}
+
+/** The unstructured grid of a legacy VTK file, with all its arrays of scalars. */
+inline vtkSmartPointer<vtkUnstructuredGrid> readGrid(const std::string& file)
+{
+  vtkNew<vtkUnstructuredGridReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->ReadAllScalarsOn();
+  reader->Update();
+  return reader->GetOutput();
 }
 
 /** Every cell becomes a polygon. */

@@ -43,6 +43,7 @@ void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord
   record.belowTarget = 0;
   for (TetId t = 0; t < mesh.slots(); ++t)
   {
+    pollInterruption(static_cast<Index>(t));
     if (!mesh.alive(t))
     {
       continue;
@@ -266,6 +267,7 @@ void Run::findObstacles(const std::vector<char>& fixedPoints) const
   double forcedMeanRatio = 1.0;
   for (TetId t = 0; t < this->Mesh.slots(); ++t)
   {
+    pollInterruption(static_cast<Index>(t));
     if (!this->Mesh.alive(t))
     {
       continue;
@@ -287,6 +289,7 @@ void Run::findObstacles(const std::vector<char>& fixedPoints) const
   this->Result.forcedInverseMeanRatio = std::pow(forcedMeanRatio, -2.0 / 3.0);
   for (TetId t = 0; t < this->Mesh.slots(); ++t)
   {
+    pollInterruption(static_cast<Index>(t));
     if (!this->Mesh.alive(t))
     {
       continue;

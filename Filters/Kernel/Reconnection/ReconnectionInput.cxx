@@ -2,6 +2,8 @@
 
 #include "tautline/Core/Memory.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <limits>
 
 namespace tautline
@@ -140,6 +142,7 @@ void checkFaces(const TetrahedronMesh& mesh)
   Index sameSide = 0;
   for (TetId t = 0; t < mesh.slots(); ++t)
   {
+    pollInterruption(static_cast<Index>(t));
     for (int i = 0; i < 4; ++i)
     {
       const std::int32_t n = mesh.tet(t).neighbors[i];

@@ -1,5 +1,7 @@
 #include "ReconnectionOutput.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <limits>
 #include <unordered_set>
 
@@ -123,6 +125,7 @@ std::vector<Index> writePoints(const Mesh& mesh, const ReconnectionInput& input,
   Index count = 0;
   for (PointId v = 0; v < changed.pointSlots(); ++v)
   {
+    pollInterruption(static_cast<Index>(v));
     const bool original = v < view.numberOfPoints;
     if (!changed.used(v) && !(original && !inInput[v]))
     {
@@ -159,6 +162,7 @@ void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const Tetra
   const PointId inputPoints = static_cast<PointId>(mesh.view().numberOfPoints);
   for (TetId t = 0; t < changed.slots(); ++t)
   {
+    pollInterruption(static_cast<Index>(t));
     if (!changed.alive(t))
     {
       continue;
@@ -183,6 +187,7 @@ void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const Tetra
   }
   for (PointId p = inputPoints; p < changed.pointSlots(); ++p)
   {
+    pollInterruption(static_cast<Index>(p));
     if (numbers[p] < 0)
     {
       continue;

@@ -1,5 +1,7 @@
 #include "TetrahedronMesh.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <numeric>
 
 namespace tautline
@@ -71,6 +73,7 @@ void TetrahedronMesh::connect()
   };
   for (TetId t = 0; t < n; ++t)
   {
+    pollInterruption(static_cast<Index>(t));
     for (int i = 0; i < 4; ++i)
     {
       const TriangleVertices f = this->face(t, i);
@@ -82,6 +85,7 @@ void TetrahedronMesh::connect()
   std::vector<std::int64_t> next(starts.begin(), starts.end() - 1);
   for (TetId t = 0; t < n; ++t)
   {
+    pollInterruption(static_cast<Index>(t));
     for (int i = 0; i < 4; ++i)
     {
       const TriangleVertices key = keyOf(t, i);
@@ -90,6 +94,7 @@ void TetrahedronMesh::connect()
   }
   for (std::size_t v = 0; v < this->Points.size(); ++v)
   {
+    pollInterruption(static_cast<Index>(v));
     const auto begin = uses.begin() + starts[v], end = uses.begin() + starts[v + 1];
     std::sort(begin, end,
       [](const Use& a, const Use& b)

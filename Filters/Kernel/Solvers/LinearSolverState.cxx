@@ -528,7 +528,7 @@ bool LinearSolverState::tighten(const LinearSolution& solution, int most)
   return true;
 }
 
-/// Copies the solution to x and verifies it. x stays as it was if solution or residual is not finite.
+/// Copies the solution to x and verifies it. x stays as it was unless both are finite.
 void LinearSolverState::takeSolution(
   const double* b, Vec unknowns, double* x, LinearSolution& solution)
 {

@@ -29,6 +29,9 @@ public:
 
   /// Whether a limit or the observer has ended the untangling; the result holds the reason.
   bool stopped() const { return this->Stopped; }
+  /// Whether the time limit is reached, and ends the untangling there.
+  bool late() const { return this->Clock.reached(this->Options.maximumSeconds); }
+  void stopLate() { this->stop(StopReason::TimeLimit); }
   /// The coordinates with the fewest invalid cells, and the number of those.
   const double* best() const { return this->Best.data(); }
   Index fewestInvalid() const { return this->FewestInvalid; }

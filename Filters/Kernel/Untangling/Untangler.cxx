@@ -4,6 +4,7 @@
 #include "HarmonicMap.h"
 #include "InfeasibleSimplices.h"
 #include "RotationContinuation.h"
+#include "tautline/Core/Interruption.h"
 
 #include <limits>
 
@@ -443,13 +444,34 @@ const double* Untangler<Dim>::run(double margin)
   this->examine();
   this->Progress.forgetBest();
   this->record();
-  if (this->Options.method == UntangleMethod::Simultaneous)
+  // A sweep or a harmonic map of a large mesh ends where it polls.
+  struct OutOfTime
   {
-    this->untangleSimultaneously();
+  };
+  try
+  {
+    const PollScope scope(
+      [this]
+      {
+        if (this->Progress.late())
+        {
+          throw OutOfTime();
+        }
+      });
+    if (this->Options.method == UntangleMethod::Simultaneous)
+    {
+      this->untangleSimultaneously();
+    }
+    else
+    {
+      this->untangleAutomatically();
+    }
   }
-  else
+  catch (const OutOfTime&)
   {
-    this->untangleAutomatically();
+    this->Progress.stopLate();
+    this->Continuing = false;
+    this->Tangled.setMargin(margin);
   }
   std::copy_n(this->Progress.best(), this->Coordinates, this->x());
   this->examine();

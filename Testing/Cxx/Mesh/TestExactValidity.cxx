@@ -2,12 +2,7 @@
 // the determinant, in any frame and numbering, at the limits; the minimum.
 #include "Blocks.h"
 #include "Check.h"
-
-#include "vtkCell.h"
-#include "vtkIdList.h"
-#include "vtkNew.h"
-#include "vtkUnstructuredGrid.h"
-#include "vtkUnstructuredGridReader.h"
+#include "VtkMeshes.h"
 
 #include <filesystem>
 
@@ -330,27 +325,6 @@ void testKnownValues()
 }
 
 //------------------------------------------------------------------------------
-MeshData readMesh(const std::string& file)
-{
-  vtkNew<vtkUnstructuredGridReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  vtkUnstructuredGrid* grid = reader->GetOutput();
-  MeshData data;
-  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
-  {
-    Vec3 p;
-    grid->GetPoint(i, p.data());
-    data.addPoint(p);
-  }
-  for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i)
-  {
-    vtkIdList* ids = grid->GetCell(i)->GetPointIds();
-    data.addCell(grid->GetCellType(i), std::vector<Index>(ids->begin(), ids->end()));
-  }
-  return data;
-}
-
 /// Hexahedral meshes with elements that are valid at the corners only.
 void testFiles(const std::string& directory)
 {
@@ -362,7 +336,7 @@ void testFiles(const std::string& directory)
     {
       continue;
     }
-    const MeshData data = readMesh(file);
+    const MeshData data = toMesh(readGrid(file));
     const std::vector<signed char> validity = validityOf(data);
     const std::vector<double> minimum = valuesOf(data, Metric::MinimumJacobian);
     Index invalid = 0, folded = 0;

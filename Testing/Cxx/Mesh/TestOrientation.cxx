@@ -178,21 +178,7 @@ void testSurfaceOrientation()
   TAUTLINE_CHECK_EQUAL(o.disagreeing, 3);
   TAUTLINE_CHECK_EQUAL(o.negativeCells, 0); // a surface has no signs
 
-  MeshData moebius; // five quadrilaterals with half a turn
-  constexpr int count = 5;
-  for (int i = 0; i < count; ++i)
-  {
-    const double a = 2 * M_PI * i / count, half = 0.3;
-    const Vec3 out = { std::cos(a), std::sin(a), 0 };
-    const Vec3 across = half * (std::cos(a / 2) * out + Vec3{ 0, 0, std::sin(a / 2) });
-    moebius.addPoint(out - across);
-    moebius.addPoint(out + across);
-  }
-  for (Index i = 0; i + 1 < count; ++i)
-  {
-    moebius.addCell(CellType::Quadrilateral, { 2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2 });
-  }
-  moebius.addCell(CellType::Quadrilateral, { 2 * count - 2, 2 * count - 1, 0, 1 });
+  const MeshData moebius = moebiusBand(5);
   TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(moebius.view())).state, Orientation::Mixed);
   TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(moebius.view())).disagreeing, 1);
   const Mesh band(moebius.view());

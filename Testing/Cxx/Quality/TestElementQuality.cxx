@@ -363,22 +363,8 @@ void testReversed()
 void testMoebius()
 {
   constexpr int count = 12;
-  MeshData band;
-  for (int i = 0; i < count; ++i)
-  {
-    const double a = 2 * M_PI * i / count, half = 0.3;
-    const Vec3 out = { std::cos(a), std::sin(a), 0 };
-    const Vec3 across = half * (std::cos(a / 2) * out + Vec3{ 0, 0, std::sin(a / 2) });
-    band.addPoint(out - across);
-    band.addPoint(out + across);
-  }
-  for (Index i = 0; i + 1 < count; ++i)
-  {
-    band.addCell(CellType::Quadrilateral, { 2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2 });
-  }
-  band.addCell(CellType::Quadrilateral, { 2 * count - 2, 2 * count - 1, 0, 1 });
   vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(toGrid(band));
+  filter->SetInputData(toGrid(moebiusBand(count)));
   Messages messages(filter);
   filter->Update();
   TAUTLINE_CHECK(messages.has("like those of a Moebius band"));

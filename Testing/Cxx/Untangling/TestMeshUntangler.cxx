@@ -4,6 +4,7 @@
 
 #include "tautline/Perturbation/Perturb.h"
 #include "tautline/Untangling/Untangle.h"
+#include "vtkInterruption.h"
 #include "vtkMeshUntangler.h"
 
 #include "vtkCallbackCommand.h"
@@ -262,13 +263,33 @@ void testStops()
   Messages messages(filter);
   filter->SetInputData(toGrid(data));
   vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
-    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
-  filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  abort->SetCallback(
+    [](vtkObject* caller, unsigned long, void*, void*)
+    {
+      auto* algorithm = static_cast<vtkAlgorithm*>(caller);
+      algorithm->SetAbortExecute(algorithm->GetProgress() > 0);
+    });
+  const auto aborting = filter->AddObserver(vtkCommand::ProgressEvent, abort);
   filter->Update();
   TAUTLINE_CHECK(invalidOf(withPointsOf(data, meshOf(filter))) <= invalidOf(data));
-  filter->RemoveAllObservers();
+  filter->RemoveObserver(aborting);
   filter->SetAbortExecute(0);
+  // Before the first iteration there is nothing: no output, or an error that names the limit.
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  const auto early = filter->AddObserver(vtkInterruption::PollEvent, abort);
+  filter->Modified();
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
+  TAUTLINE_CHECK_EQUAL(
+    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  filter->RemoveObserver(early);
+  filter->SetAbortExecute(0);
+  messages.clear();
+  filter->SetTimeLimit(1e-9);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("The time limit of 1e-09 s is reached"));
+  filter->SetTimeLimit(0);
   std::vector<double> first;
   for (int threads : { 1, 2, 4 })
   {

@@ -6,23 +6,23 @@
 
 #include "Blocks.h"
 #include "Check.h"
+#include "VtkMeshes.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Untangling/LinearProgram.h"
 #include "tautline/Perturbation/Perturb.h"
 #include "tautline/Untangling/Untangle.h"
 
-#include "vtkCell.h"
 #include "vtkDataArray.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnstructuredGrid.h"
-#include "vtkUnstructuredGridReader.h"
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <thread>
 
 using namespace tautline;
 
@@ -262,23 +262,8 @@ void testFiles(const std::string& directory)
     {
       continue;
     }
-    vtkNew<vtkUnstructuredGridReader> reader;
-    reader->SetFileName(file.c_str());
-    reader->ReadAllScalarsOn();
-    reader->Update();
-    vtkUnstructuredGrid* grid = reader->GetOutput();
-    MeshData data;
-    for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
-    {
-      Vec3 p;
-      grid->GetPoint(i, p.data());
-      data.addPoint(p);
-    }
-    for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i)
-    {
-      vtkIdList* ids = grid->GetCell(i)->GetPointIds();
-      data.addCell(grid->GetCellType(i), std::vector<Index>(ids->begin(), ids->end()));
-    }
+    const vtkSmartPointer<vtkUnstructuredGrid> grid = readGrid(file);
+    const MeshData data = toMesh(grid);
     const UntangleResult byBoundary = checkUntangles(data, name);
     TAUTLINE_CHECK(byBoundary.invertedBefore > 0);
     vtkDataArray* flags = grid->GetPointData()->GetArray("fixed");
@@ -551,6 +536,32 @@ void testLimits()
   TAUTLINE_CHECK(result.invertedAfter <= before);
 }
 
+/// A time limit that is reached within the first sweep ends it there.
+void testTimeLimitWithinSweep()
+{
+  constexpr double limit = 0.2;
+  const MeshData data = movedBlock(CellType::Tetrahedron, 24, 0.9);
+  UntangleOptions options;
+  options.maximumSeconds = limit;
+  bool begun = false, slept = false;
+  options.observer = [&](const IterationState&)
+  {
+    begun = true;
+    return true;
+  };
+  const PollScope scope(
+    [&]
+    {
+      slept = begun;
+      std::this_thread::sleep_for(std::chrono::duration<double>(begun ? limit : 0.0));
+    });
+  const UntangleResult result = untangle(Mesh(data.view()), options);
+  TAUTLINE_CHECK(slept && result.reason == StopReason::TimeLimit);
+  TAUTLINE_CHECK_EQUAL(result.history.size(), 1u);
+  TAUTLINE_CHECK(result.invertedBefore > 0 && result.invertedAfter == result.invertedBefore);
+  TAUTLINE_CHECK(result.points == data.points);
+}
+
 void testSurface()
 {
   MeshData data = block(CellType::Quadrilateral, 4);
@@ -640,6 +651,7 @@ int TestUntangle(int argc, char* argv[])
   timed("obstacles", testObstacles);
   timed("degenerate", testDegenerate);
   timed("limits", testLimits);
+  timed("limit within a sweep", testTimeLimitWithinSweep);
   timed("surface", testSurface);
   return exitCode();
 }
