@@ -1,6 +1,7 @@
 #include "Parallel.h"
 
 #include "Interruption.h"
+#include "MachineLoad.h"
 
 #include <pthread.h>
 #include <tbb/global_control.h>
@@ -66,6 +67,13 @@ double threadSeconds()
   return static_cast<double>(time.tv_sec) + nano * static_cast<double>(time.tv_nsec);
 }
 
+/// Whether so many threads of all processes have work that each gets half a core at most.
+bool isCrowded()
+{
+  constexpr int threadsPerCore = 2;
+  return runnableThreads() > threadsPerCore * allThreads();
+}
+
 //------------------------------------------------------------------------------
 /**
  * What a thread learns from its loops. A worker is worth its start only in a loop that takes longer
@@ -93,11 +101,21 @@ public:
   }
 
   /// Whether workers are worth while in a loop that is not brief.
-  bool inviteWorkers(double expected) const
+  bool inviteWorkers(double expected)
   {
     constexpr double share = 0.4, enough = 1e-3, manySlices = 0.3;
-    const bool busy = this->Passed > enough && this->Computed < share * this->Passed;
-    return !busy || expected > manySlices;
+    constexpr std::chrono::milliseconds interval(20);
+    if (expected > manySlices)
+    {
+      return true;
+    }
+    // A thread that has slept gets a core at once even on a busy machine: its share is not all.
+    if (const Clock::time_point now = Clock::now(); now >= this->NextLook)
+    {
+      this->Crowded = isCrowded();
+      this->NextLook = now + interval;
+    }
+    return !this->Crowded && (this->Passed <= enough || this->Computed >= share * this->Passed);
   }
 
   /// Adds the seconds that the caller computed for in a loop.
@@ -124,6 +142,8 @@ public:
 private:
   std::unordered_map<ChunkWork::Function, double> ChunkSeconds; ///< by what a chunk does
   double Computed = 0, Passed = 0;                              ///< in loops, older ones less
+  Clock::time_point NextLook;                                   ///< at the machine
+  bool Crowded = false;
 };
 
 //------------------------------------------------------------------------------

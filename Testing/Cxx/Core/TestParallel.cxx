@@ -3,6 +3,7 @@
 // asleep.
 #include "Check.h"
 
+#include "tautline/Core/MachineLoad.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
@@ -12,6 +13,7 @@
 #include <functional>
 #include <numeric>
 #include <thread>
+#include <vector>
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -306,7 +308,9 @@ void testWaiting()
 {
   constexpr int loops = 20;
   constexpr double pause = 10e-3, share = 0.03;
+  constexpr int crowded = 2; // runnable threads per core: no worker is asked then
   std::atomic<int> waited{ 0 };
+  bool alone = false;
   const Stopwatch time;
   const double before = cpuSeconds();
   for (int loop = 0; loop < loops; ++loop)
@@ -334,12 +338,46 @@ void testWaiting()
             sleepFor(pause);
           });
       });
+    alone = alone || runnableThreads() > crowded * resolveThreads(0);
     sleepFor(pause);
   }
   const double used = cpuSeconds() - before, wall = time.seconds();
   TAUTLINE_CHECK(wall >= loops * pause);
   TAUTLINE_CHECK(used < share * wall);
-  TAUTLINE_CHECK(resolveThreads(0) == 1 || waited > 0);
+  TAUTLINE_CHECK(resolveThreads(0) == 1 || alone || waited > 0);
+}
+
+/// Threads that compute are counted.
+void testMachineLoad()
+{
+#ifdef __linux__
+  constexpr int number = 6, attempts = 20;
+  std::atomic<bool> end{ false };
+  std::vector<std::thread> threads;
+  for (int i = 0; i < number; ++i)
+  {
+    threads.emplace_back(
+      [&end]
+      {
+        while (!end)
+        {
+        }
+      });
+  }
+  // Each attempt sees those that have started by then.
+  int most = 0;
+  for (int i = 0; i < attempts && most <= number; ++i)
+  {
+    most = std::max(most, runnableThreads());
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  end = true;
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  TAUTLINE_CHECK(most > number);
+#endif
 }
 }
 
@@ -348,7 +386,7 @@ int TestParallel(int, char*[])
   TAUTLINE_CHECK(resolveThreads(0) >= 1);
   TAUTLINE_CHECK_EQUAL(resolveThreads(3), 3);
   for (const auto& test : { testEveryChunkOnce, testScratch, testErrors, testProceed, testNesting,
-         testSeveralCallers, testFork, testWaiting })
+         testSeveralCallers, testFork, testWaiting, testMachineLoad })
   {
     inNewThread(test);
   }

@@ -1,0 +1,16 @@
+#include "MachineLoad.h"
+
+#include <fstream>
+
+namespace tautline
+{
+int runnableThreads()
+{
+  // "0.08 0.09 0.41 3/512 4711": averages, then those that are runnable of all.
+  std::ifstream file("/proc/loadavg");
+  double average = 0.0;
+  int runnable = 0;
+  file >> average >> average >> average >> runnable;
+  return file ? runnable : 0;
+}
+}
