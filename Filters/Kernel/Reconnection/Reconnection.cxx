@@ -169,6 +169,10 @@ bool Run::record(int pass, double progress)
   this->Result.history.push_back(record);
   this->Progress = progress;
   this->LastCall = record.seconds;
+  if (this->Result.reason == StopReason::Aborted)
+  {
+    return false; // within the pass: the observer is not called again
+  }
   return !this->Options.observer || this->Options.observer(record, progress);
 }
 

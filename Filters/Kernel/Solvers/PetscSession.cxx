@@ -299,6 +299,14 @@ void destroyInSession(void* object, void (*destroy)(void*))
   putOff().Objects.emplace_back(object, destroy);
 }
 
+void keepForever(void* object)
+{
+  static std::mutex guard;
+  static auto* const kept = new std::vector<void*>; // threads may outlive static objects
+  const std::lock_guard<std::mutex> lock(guard);
+  kept->push_back(object);
+}
+
 const std::string& petscMessage()
 {
   return collected();

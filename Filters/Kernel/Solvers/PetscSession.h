@@ -131,6 +131,9 @@ inline void petsc(PetscErrorCode code)
   }
 }
 
+/// Keeps the address of an object that cannot be destroyed, so that it does not count as lost.
+void keepForever(void* object);
+
 /// Owns a PETSc object. Its destructor must run within a PetscScope; it does nothing once PETSc has
 /// gone.
 template <class Object, PetscErrorCode (*Destroy)(Object*)>
@@ -157,8 +160,12 @@ public:
     this->Generation = petscGeneration();
     return &this->Held;
   }
-  /// Gives up the object without destroying it.
-  void leak() { this->Held = nullptr; }
+  /// Gives up the object without destroying it: it is kept until the process ends.
+  void leak()
+  {
+    keepForever(this->Held);
+    this->Held = nullptr;
+  }
   void reset()
   {
     if (this->Held && petscUsable() && this->Generation == petscGeneration())

@@ -329,7 +329,7 @@ void testWaiting()
               const Stopwatch patience;
               while (!begun && !patience.reached(pause))
               {
-                sleepFor(1e-4);
+                sleepFor(0.1 * pause);
               }
               waited += begun;
               return;
