@@ -26,9 +26,9 @@ FLOORS = (
     ("Geometry", "Mesh"),
     ("Quality", "Shapes", "Domains", "Perturbation", "Ranks"),
     ("Objectives", "Patches", "Solvers"),
-    ("Untangling", "Reconnection", "Elliptic", "Peridynamics"),
+    ("Untangling", "Elliptic", "Peridynamics"),
     ("Optimization",),
-    ("Deformation",),
+    ("Deformation", "Reconnection"),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS, 1) for room in rooms}
 #: The rooms of TautlineSolvers; the others are TautlineKernel.

@@ -46,8 +46,9 @@ void checkCells(const Mesh& mesh)
   }
 }
 
-/// The regions' numbers, from 0 in the order in which they occur.
-std::vector<std::int32_t> renumber(const Index* regions, Index count)
+}
+
+std::vector<std::int32_t> renumberRegions(const Index* regions, Index count)
 {
   std::vector<std::int32_t> result(regions ? count : 0);
   if (!regions)
@@ -63,7 +64,6 @@ std::vector<std::int32_t> renumber(const Index* regions, Index count)
       std::lower_bound(known.begin(), known.end(), regions[i]) - known.begin());
   }
   return result;
-}
 }
 
 void checkReconnectionOptions(const ReconnectionOptions& options)
@@ -128,7 +128,7 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
       std::swap(input.cells[c][2], input.cells[c][3]);
     }
   }
-  input.regions = renumber(options.regions, view.numberOfCells);
+  input.regions = renumberRegions(options.regions, view.numberOfCells);
   return input;
 }
 

@@ -21,6 +21,9 @@ struct ReconnectionInput
   int exponent = 0;                  ///< point = input's times 2^-exponent
 };
 
+/// The regions' numbers, from 0 in increasing order; empty for null.
+std::vector<std::int32_t> renumberRegions(const Index* regions, Index count);
+
 /// Throws Error for options out of range.
 void checkReconnectionOptions(const ReconnectionOptions& options);
 

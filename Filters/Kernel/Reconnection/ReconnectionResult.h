@@ -37,6 +37,7 @@ struct ReconnectionResult
 {
   std::vector<double> points;    ///< x y z per point
   std::vector<Index> tetrahedra; ///< four points per cell, in the order of VTK
+  std::vector<Index> triangles;  ///< of improveTriangles(): three points per cell
   /// Per point of the output: the point of the input it is, or -1 for a point that was inserted.
   /// Points of the input keep their order; those that no cell uses are kept.
   std::vector<Index> originalPoints;

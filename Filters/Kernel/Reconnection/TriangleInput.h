@@ -1,0 +1,57 @@
+/**
+ * @file TriangleInput.h
+ * @brief Checks the input of the reconnection of triangles, and converts it. Internal: not
+ * installed.
+ */
+#ifndef tautline_TriangleInput_h
+#define tautline_TriangleInput_h
+
+#include "ReconnectionResult.h"
+#include "StarSmoothing.h"
+#include "TriangleMesh.h"
+#include "TriangleOptions.h"
+#include "TriangleSurface.h"
+
+namespace tautline
+{
+/**
+ * @brief The arrays of a TriangleMesh: coordinates times a power of two, so that the largest is
+ * about 1; those of a planar mesh in its plane, with z = 0.
+ */
+struct TriangleInput
+{
+  std::vector<Vec3> points;
+  std::vector<Corners> cells;        ///< positive in a plane, also those of a mirrored mesh
+  std::vector<std::int32_t> regions; ///< renumbered from 0; empty: one region
+  std::vector<std::array<Index, 2>> walls; ///< edges that are kept
+  std::vector<char> corners;               ///< points that are kept; empty: none
+  std::vector<int> patches;                ///< per cell; empty: planar
+  TriangleSurface surface;
+  bool planar = true;
+  int exponent = 0; ///< point = input's times 2^-exponent, in the frame
+  Vec3 origin = { 0, 0, 0 };
+
+  /// A point in the coordinates of the mesh.
+  Vec3 leave(const Mesh& mesh, const Vec3& x) const;
+};
+
+/// Throws Error for options out of range.
+void checkTriangleOptions(const TriangleOptions& options);
+
+/// Converts. Throws Error for cells and points that reconnection cannot take.
+TriangleInput convertTriangles(const Mesh& mesh, const TriangleOptions& options);
+
+/// What the points may do: Free is within the plane or patch. Points of walls and non-manifold ones
+/// are fixed; with Flat, those within straight walls move along these.
+std::vector<PointFreedom> findFreedoms(
+  const TriangleMesh& mesh, const TriangleInput& input, const TriangleOptions& options);
+
+/// Cells of the output that are below the target, why, and the bounds that the walls force.
+void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoints,
+  const TriangleOptions& options, ReconnectionResult& result);
+
+/// Writes points, triangles and how they follow from the input.
+void convertOutput(const Mesh& mesh, const TriangleInput& input, const TriangleMesh& before,
+  const TriangleMesh& changed, ReconnectionResult& result);
+}
+#endif

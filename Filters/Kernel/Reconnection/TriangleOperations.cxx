@@ -1,0 +1,429 @@
+#include "TriangleOperations.h"
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// Two qualities that differ by less are the same: rounding must not decide.
+constexpr double SameQuality = 1e-9;
+/// Rounds of flips, and of flips and motions, after an insertion or a contraction.
+constexpr int FlipRounds = 4, TidyRounds = 3;
+constexpr int TidySteps = 2;
+/// Triangles visited on the way to a place.
+constexpr int MaxWalk = 40;
+/// The mean ratio is at least so many times the quality.
+constexpr double LeastRatio = 1.1547005383792515; // 2 / sqrt(3)
+
+Vec3 normalAround(const TriangleMesh& mesh, const std::vector<TriId>& triangles)
+{
+  Vec3 sum = { 0, 0, 0 };
+  for (TriId t : triangles)
+  {
+    const Corners& v = mesh.triangle(t).vertices;
+    const Vec3& a = mesh.point(v[0]);
+    sum += cross(mesh.point(v[1]) - a, mesh.point(v[2]) - a);
+  }
+  const double length = norm(sum);
+  return length > 0.0 ? (1.0 / length) * sum : Vec3{ 0, 0, 1 };
+}
+}
+
+//------------------------------------------------------------------------------
+/// Whether a triangle may be in the mesh: positive, above the floor, and on the surface.
+bool TriangleOperations::accepts(const Corners& v, TriId origin) const
+{
+  const double q = this->Mesh.qualityOf(v);
+  const auto x = [&](int k) -> const Vec3& { return this->Mesh.point(v[k]); };
+  if (!(q > 0.0) ||
+    (q * LeastRatio < this->leastMeanRatio &&
+      measureTriangle(x(0), x(1), x(2), this->Input.planar).meanRatio < this->leastMeanRatio))
+  {
+    return false;
+  }
+  return this->Input.planar ||
+    this->Input.surface.accepts(x(0), x(1), x(2), this->Input.patches[origin]);
+}
+
+void TriangleOperations::touch(const std::vector<TriId>& triangles)
+{
+  this->Stamps.resize(this->Mesh.pointSlots(), 0);
+  ++this->Clock;
+  for (TriId t : triangles)
+  {
+    for (VertexId v : this->Mesh.triangle(t).vertices)
+    {
+      this->Stamps[v] = this->Clock;
+    }
+  }
+}
+
+/// Compares the transaction's triangles with those before, in increasing order of quality.
+bool TriangleOperations::improves()
+{
+  const Index size = this->Mesh.size();
+  this->Mesh.compare(this->Changed, this->Before);
+  this->After.clear();
+  for (TriId t : this->Changed)
+  {
+    this->After.push_back(this->Mesh.quality(t));
+  }
+  if (this->Before.empty() || this->After.empty() || size > this->largestSize ||
+    size < this->smallestSize)
+  {
+    return false;
+  }
+  std::sort(this->Before.begin(), this->Before.end());
+  std::sort(this->After.begin(), this->After.end());
+  if (!(this->After.front() > this->Before.front() + this->leastGain))
+  {
+    return false;
+  }
+  return std::all_of(this->Changed.begin(), this->Changed.end(),
+    [this](TriId t)
+    { return this->accepts(this->Mesh.triangle(t).vertices, this->Mesh.triangle(t).origin); });
+}
+
+/// Carries out an operation, tidies up around it, and keeps it only if that is an improvement.
+template <class Operation>
+bool TriangleOperations::attempt(const Operation& operation, Index& counter)
+{
+  const Counts before = this->Count;
+  this->Mesh.begin();
+  if (operation())
+  {
+    this->tidy();
+    if (this->improves())
+    {
+      this->Mesh.commit();
+      ++counter;
+      this->touch(this->Changed);
+      return true;
+    }
+  }
+  this->Mesh.undo();
+  this->Count = before;
+  return false;
+}
+
+//------------------------------------------------------------------------------
+bool TriangleOperations::isBetterFlip(TriId t, int i)
+{
+  if (this->Mesh.isWall(t, i))
+  {
+    return false;
+  }
+  const Triangle& up = this->Mesh.triangle(t);
+  const TriId n = up.neighbors[i] >> 2;
+  const Triangle& down = this->Mesh.triangle(n);
+  const VertexId a = up.vertices[i], b = up.vertices[Next[i]], c = up.vertices[Previous[i]];
+  const VertexId d = down.vertices[up.neighbors[i] & 3];
+  const Corners first = { a, b, d }, second = { a, d, c };
+  const double before = std::min(up.quality, down.quality);
+  const double after = std::min(this->Mesh.qualityOf(first), this->Mesh.qualityOf(second));
+  return after > before * (1.0 + SameQuality) && this->accepts(first, up.origin) &&
+    this->accepts(second, down.origin);
+}
+
+bool TriangleOperations::flip(TriId t, int i)
+{
+  if (!this->isBetterFlip(t, i))
+  {
+    return false;
+  }
+  const TriId n = this->Mesh.triangle(t).neighbors[i] >> 2;
+  if (!this->Mesh.flip(t, i))
+  {
+    return false;
+  }
+  ++this->Count.flips;
+  if (!this->Mesh.inTransaction())
+  {
+    this->Changed = { t, n };
+    this->touch(this->Changed);
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+/// The directions in which a point moves; `Around` is its star.
+TriangleStar::Directions TriangleOperations::directionsAt(VertexId v) const
+{
+  TriangleStar::Directions directions;
+  const Vec3 up = this->Input.planar ? Vec3{ 0, 0, 1 } : normalAround(this->Mesh, this->Around);
+  const PointFreedom& freedom = this->freedoms[v];
+  if (freedom.kind == PointFreedom::OnLine)
+  {
+    directions.first = freedom.direction;
+    directions.second = cross(up, freedom.direction);
+    directions.count = 1;
+  }
+  else if (!this->Input.planar)
+  {
+    int least = 0;
+    for (int k = 1; k < 3; ++k)
+    {
+      least = std::abs(up[k]) < std::abs(up[least]) ? k : least;
+    }
+    Vec3 axis = { 0, 0, 0 };
+    axis[least] = 1.0;
+    const Vec3 first = cross(up, axis);
+    directions.first = (1.0 / norm(first)) * first;
+    directions.second = cross(up, directions.first);
+  }
+  return directions;
+}
+
+bool TriangleOperations::applyMotion(VertexId v, int steps)
+{
+  if (!this->Mesh.used(v) || this->freedoms[v].kind == PointFreedom::Fixed)
+  {
+    return false;
+  }
+  this->Mesh.star(v, this->Around);
+  this->Star.clear();
+  this->Star.leastGain = this->leastGain;
+  for (TriId t : this->Around)
+  {
+    const Corners& c = this->Mesh.triangle(t).vertices;
+    const int k = this->Mesh.indexOf(t, v);
+    this->Star.addEdge(this->Mesh.point(c[Next[k]]), this->Mesh.point(c[Previous[k]]));
+  }
+  const TriangleStar::Directions directions = this->directionsAt(v);
+  std::function<Vec3(const Vec3&)> project;
+  if (!this->Input.planar && this->freedoms[v].kind != PointFreedom::OnLine)
+  {
+    const int patch = this->patchOf(this->Around.front());
+    project = [this, patch](const Vec3& x) { return this->Input.surface.closest(x, patch); };
+  }
+  const Vec3 start = this->Mesh.point(v);
+  Vec3 x = start;
+  const double before = this->Star.evaluate(x, directions.normal());
+  if (!(this->Star.maximize(x, steps, directions, project) > before + this->leastGain))
+  {
+    return false;
+  }
+  this->Mesh.movePoint(v, x, this->Around);
+  const bool valid = std::all_of(this->Around.begin(), this->Around.end(),
+    [&](TriId t)
+    {
+      const Triangle& triangle = this->Mesh.triangle(t);
+      return triangle.quality > before && this->accepts(triangle.vertices, triangle.origin);
+    });
+  if (!valid)
+  {
+    this->Mesh.movePoint(v, start, this->Around);
+  }
+  this->Count.moves += valid;
+  return valid;
+}
+
+bool TriangleOperations::smooth(VertexId v, int steps)
+{
+  if (!this->applyMotion(v, steps))
+  {
+    return false;
+  }
+  this->Changed = this->Around;
+  this->touch(this->Changed);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+/// Flips edges and moves points of the transaction's triangles while that improves them.
+void TriangleOperations::tidy()
+{
+  std::vector<VertexId> points;
+  for (int round = 0; round < TidyRounds; ++round)
+  {
+    bool any = false, flipped = this->flips;
+    for (int k = 0; flipped && k < FlipRounds; ++k)
+    {
+      flipped = false;
+      this->Mesh.compare(this->Near, this->Before);
+      for (TriId t : this->Near)
+      {
+        for (int i = 0; i < 3; ++i)
+        {
+          flipped = this->flip(t, i) || flipped;
+        }
+      }
+      any = any || flipped;
+    }
+    if (this->moves)
+    {
+      points.clear();
+      this->Mesh.compare(this->Near, this->Before);
+      for (TriId t : this->Near)
+      {
+        const Corners& v = this->Mesh.triangle(t).vertices;
+        points.insert(points.end(), v.begin(), v.end());
+      }
+      // New points first: they have the largest numbers.
+      std::sort(points.begin(), points.end(), std::greater<>());
+      points.erase(std::unique(points.begin(), points.end()), points.end());
+      for (VertexId v : points)
+      {
+        any = this->applyMotion(v, TidySteps) || any;
+      }
+    }
+    if (!any)
+    {
+      return;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool TriangleOperations::contract(TriId t, int i, int j)
+{
+  const Corners& c = this->Mesh.triangle(t).vertices;
+  const PointFreedom& freedom = this->freedoms[c[i]];
+  const bool wall = this->Mesh.isWall(t, 3 - i - j);
+  if (freedom.kind == PointFreedom::Fixed || (freedom.kind == PointFreedom::OnLine && !wall) ||
+    this->Mesh.size() <= this->smallestSize)
+  {
+    return false;
+  }
+  return this->attempt(
+    [&]
+    {
+      const VertexId w = c[j];
+      if (!this->Mesh.contract(t, i, j))
+      {
+        return false;
+      }
+      // Inverted triangles cannot be repaired by flips that look at two triangles only.
+      this->Mesh.star(w, this->Near);
+      return std::all_of(this->Near.begin(), this->Near.end(),
+        [this](TriId s) { return this->Mesh.quality(s) > 0.0; });
+    },
+    this->Count.contractions);
+}
+
+bool TriangleOperations::mayDivide(TriId t, int i) const
+{
+  if (!this->Mesh.isWall(t, i))
+  {
+    return true;
+  }
+  const Corners& v = this->Mesh.triangle(t).vertices;
+  // Edges of three triangles have such ends; the others would not be divided.
+  return this->dividesWalls &&
+    !(this->Mesh.isNonManifold(v[Next[i]]) && this->Mesh.isNonManifold(v[Previous[i]]));
+}
+
+/// Divides an edge at its middle.
+VertexId TriangleOperations::divide(TriId t, int i)
+{
+  const Corners v = this->Mesh.triangle(t).vertices;
+  const Vec3 a = this->Mesh.point(v[Next[i]]), b = this->Mesh.point(v[Previous[i]]);
+  PointFreedom freedom;
+  Vec3 x = 0.5 * (a + b);
+  if (this->Mesh.isWall(t, i))
+  {
+    freedom = { PointFreedom::OnLine, (1.0 / norm(b - a)) * (b - a) };
+  }
+  else if (!this->Input.planar)
+  {
+    x = this->Input.surface.closest(x, this->patchOf(t));
+  }
+  const VertexId p = this->Mesh.splitEdge(t, i, x);
+  this->freedoms.resize(this->Mesh.pointSlots());
+  this->freedoms[p] = freedom;
+  return p;
+}
+
+/// Inserts a point at a place of the plane, found from a triangle on; behind a wall, on the wall.
+bool TriangleOperations::insertAt(TriId t, const Vec3& x)
+{
+  for (int step = 0; step < MaxWalk; ++step)
+  {
+    const Corners& v = this->Mesh.triangle(t).vertices;
+    int beyond = -1;
+    double least = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const Vec3 &a = this->Mesh.point(v[Next[i]]), &b = this->Mesh.point(v[Previous[i]]);
+      const double side = cross(b - a, x - a)[2] / norm(b - a);
+      if (side < least)
+      {
+        least = side;
+        beyond = i;
+      }
+    }
+    if (beyond < 0)
+    {
+      const VertexId p = this->Mesh.splitTriangle(t, x);
+      this->freedoms.resize(this->Mesh.pointSlots());
+      this->freedoms[p] = PointFreedom();
+      this->Mesh.star(p, this->Near);
+      return std::all_of(this->Near.begin(), this->Near.end(),
+        [this](TriId s) { return this->Mesh.quality(s) > 0.0; });
+    }
+    if (this->Mesh.isWall(t, beyond))
+    {
+      if (!this->mayDivide(t, beyond))
+      {
+        return false;
+      }
+      this->divide(t, beyond);
+      return true;
+    }
+    t = this->Mesh.triangle(t).neighbors[beyond] >> 2;
+  }
+  return false;
+}
+
+bool TriangleOperations::insert(TriId t)
+{
+  if (this->Mesh.size() >= this->largestSize)
+  {
+    return false;
+  }
+  const Corners v = this->Mesh.triangle(t).vertices;
+  const Vec3 &a = this->Mesh.point(v[0]), &b = this->Mesh.point(v[1]), &c = this->Mesh.point(v[2]);
+  const double lengths[3] = { norm(c - b), norm(a - c), norm(b - a) };
+  const auto longest = static_cast<int>(std::max_element(lengths, lengths + 3) - lengths);
+  const auto shortest = static_cast<int>(std::min_element(lengths, lengths + 3) - lengths);
+  if (this->Input.planar)
+  {
+    // Off-centre: the apex over the shortest edge that has the target angle (A. Ungor, 2004), or the
+    // centre of the circumcircle if that is nearer.
+    const Vec3 e = this->Mesh.point(v[Previous[shortest]]) - this->Mesh.point(v[Next[shortest]]);
+    const Vec3 middle = 0.5 *
+      (this->Mesh.point(v[Previous[shortest]]) + this->Mesh.point(v[Next[shortest]]));
+    const Vec3 inwards = { -e[1], e[0], 0.0 };
+    const double angle = std::asin(std::min(this->target, 0.99));
+    const double sine = this->Mesh.quality(t);
+    const double height = 0.5 / std::tan(0.5 * angle);
+    // Of the centre: R cos(A) for the angle A opposite the edge, its length 1 = 2 R sin(A).
+    const double centre = 0.5 * std::sqrt(std::max(1.0 - sine * sine, 0.0)) / sine;
+    for (double h : { std::min(height, centre), centre })
+    {
+      const Vec3 x = middle + h * inwards;
+      if (std::isfinite(x[0] + x[1]) &&
+        this->attempt([&] { return this->insertAt(t, x); }, this->Count.insertions))
+      {
+        return true;
+      }
+    }
+  }
+  for (int i : { longest, 3 - longest - shortest, shortest })
+  {
+    if (this->mayDivide(t, i) &&
+      this->attempt(
+        [&]
+        {
+          this->divide(t, i);
+          return true;
+        },
+        this->Count.insertions))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+}

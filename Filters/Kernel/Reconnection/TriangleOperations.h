@@ -1,0 +1,91 @@
+/**
+ * @file TriangleOperations.h
+ * @brief The operations of the reconnection of triangles, each accepted only if it improves the
+ * triangles it affects. Internal: not installed.
+ *
+ * Qualities of the affected triangles are compared in increasing order, before and after: the first
+ * that differs decides. Operations return whether the mesh changed; changed() then lists the
+ * triangles to look at again.
+ */
+#ifndef tautline_TriangleOperations_h
+#define tautline_TriangleOperations_h
+
+#include "StarSmoothing.h"
+#include "TriangleInput.h"
+#include "TriangleMesh.h"
+#include "TriangleStar.h"
+
+namespace tautline
+{
+class TAUTLINE_KERNEL_EXPORT TriangleOperations
+{
+public:
+  /// How many were accepted.
+  struct Counts
+  {
+    Index flips = 0, contractions = 0, insertions = 0, moves = 0;
+  };
+
+  TriangleOperations(TriangleMesh& mesh, const TriangleInput& input)
+    : Mesh(mesh)
+    , Input(input)
+  {
+  }
+
+  /// One per point slot of the mesh; those of new points are set here.
+  std::vector<PointFreedom> freedoms;
+  double leastMeanRatio = 0;               ///< no operation makes a triangle with a smaller one
+  Index smallestSize = 0, largestSize = 0; ///< bounds of the number of triangles
+  bool dividesWalls = false;               ///< whether edges of walls may be divided
+  /// What insertions and contractions are followed by.
+  bool flips = true, moves = true;
+  double leastGain = 1e-4; ///< of the smallest quality, by a motion or a compound change
+  double target = 1;       ///< the quality that inserted points aim at
+
+  /// Replaces edge i by the other diagonal of its two triangles.
+  bool flip(TriId t, int i);
+  /// Moves a point to where the smallest quality of its star is largest.
+  bool smooth(VertexId v, int steps);
+  /// Moves vertex i into vertex j, then flips and moves around.
+  bool contract(TriId t, int i, int j);
+  /// Inserts a point at one of several places in or near the triangle, then flips and moves around.
+  bool insert(TriId t);
+
+  const std::vector<TriId>& changed() const { return this->Changed; }
+  const Counts& counts() const { return this->Count; }
+  /// Increases with each change near a point.
+  std::uint32_t stamp(VertexId v) const
+  {
+    return v < static_cast<VertexId>(this->Stamps.size()) ? this->Stamps[v] : 0;
+  }
+  std::uint32_t clock() const { return this->Clock; }
+
+private:
+  template <class Operation>
+  bool attempt(const Operation& operation, Index& counter);
+  bool accepts(const Corners& v, TriId origin) const;
+  bool improves();
+  bool isBetterFlip(TriId t, int i);
+  bool applyMotion(VertexId v, int steps);
+  void tidy();
+  bool mayDivide(TriId t, int i) const;
+  VertexId divide(TriId t, int i);
+  bool insertAt(TriId t, const Vec3& x);
+  int patchOf(TriId t) const
+  {
+    return this->Input.planar ? 0 : this->Input.patches[this->Mesh.triangle(t).origin];
+  }
+  TriangleStar::Directions directionsAt(VertexId v) const;
+  void touch(const std::vector<TriId>& triangles);
+
+  TriangleMesh& Mesh;
+  const TriangleInput& Input;
+  Counts Count;
+  TriangleStar Star;
+  std::vector<TriId> Changed, Around, Near;
+  std::vector<double> Before, After;
+  std::vector<std::uint32_t> Stamps;
+  std::uint32_t Clock = 0;
+};
+}
+#endif

@@ -1,0 +1,42 @@
+/**
+ * @file TriangleOptions.h
+ * @brief The options of improveTriangles().
+ */
+#ifndef tautline_TriangleOptions_h
+#define tautline_TriangleOptions_h
+
+#include "ReconnectionOptions.h"
+
+#include <vector>
+
+namespace tautline
+{
+/**
+ * @brief The options; those of tetrahedra hold for triangles, with these remarks. `boundary` is
+ * that of borders, edges between regions and sharp edges: with Flat, their points move along
+ * straight parts and are contracted there, and their edges are divided. `targetAngle` is of the
+ * angles of triangles, 40 degrees by default; counts are of triangles.
+ */
+struct TriangleOptions : ReconnectionOptions
+{
+  static constexpr double DefaultTargetAngle = 40.0;
+  TriangleOptions() { this->targetAngle = DefaultTargetAngle; }
+
+  /// Pairs of points: edges that are kept as the border is. Others than edges have no effect.
+  std::vector<std::array<Index, 2>> markedEdges;
+  /// First all edges are flipped that should be, also far from triangles below the target.
+  bool swapEverywhere = true;
+  ///@{ Of surfaces in space.
+  /// Degrees, 0 to 180: edges between facets that differ by more are kept.
+  double featureAngle = 40.0;
+  /// Degrees, 0 to 90: the normals of changed triangles are as close to that of the input below.
+  double surfaceAngle = 20.0;
+  /// Changed triangles are as close to the input, as a multiple of the diagonal of its box; 0 to 1.
+  double surfaceDistance = 1e-3;
+  ///@}
+};
+
+/// Sets the operations and the target of a preset for triangles; the rest stays.
+TAUTLINE_KERNEL_EXPORT void applyPreset(ReconnectionPreset preset, TriangleOptions& options);
+}
+#endif

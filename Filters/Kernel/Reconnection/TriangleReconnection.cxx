@@ -1,0 +1,394 @@
+#include "TriangleReconnection.h"
+
+#include "TriangleInput.h"
+#include "TriangleOperations.h"
+#include "tautline/Core/Interruption.h"
+#include "tautline/Core/Stopwatch.h"
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// Qualities of the first passes: the worst triangles first, also of the whole mesh.
+constexpr double FirstTargets[] = { 0.3, 0.5 };
+/// The last pass is repeated, at most so often, as long as the worst quality gains so much by it.
+constexpr int Repetitions = 4;
+constexpr double RepetitionGain = 1e-3;
+/// What a motion has to gain at first, and in the last pass.
+constexpr double FirstGain = 1e-3, FineGain = 1e-4;
+/// Steps of a point, each time.
+constexpr int Steps = 3;
+/// Angle of the preset RemoveSlivers; that of the others is the default of the options.
+constexpr double SliverAngle = 15.0;
+/// Wall time between two calls of the observer during a pass, and attempts between two checks.
+constexpr double ObserverSeconds = 0.1;
+constexpr Index ProceedInterval = 32;
+
+double sineOf(double degrees)
+{
+  return std::sin(degrees * (Pi / 180.0));
+}
+
+/// One pass: which triangles are improved, and how.
+struct TrianglePass
+{
+  double target = 1;
+  bool swap = false, smooth = false, contract = false, insert = false;
+  double leastGain = FirstGain;
+};
+
+ReconnectionRecord measure(const TriangleMesh& mesh, double target)
+{
+  ReconnectionRecord record;
+  double quality = 1.0, smallest = 180.0, largest = 0.0, meanRatio = 1.0;
+  for (TriId t = 0; t < mesh.slots(); ++t)
+  {
+    if (!mesh.alive(t))
+    {
+      continue;
+    }
+    const Corners& v = mesh.triangle(t).vertices;
+    const Vec3 &a = mesh.point(v[0]), &b = mesh.point(v[1]), &c = mesh.point(v[2]);
+    const std::array<double, 2> angles = triangleAngles(a, b, c);
+    smallest = std::min(smallest, angles[0]);
+    largest = std::max(largest, angles[1]);
+    quality = std::min(quality, mesh.quality(t));
+    meanRatio = std::min(meanRatio, std::abs(measureTriangle(a, b, c, mesh.planar()).meanRatio));
+    record.belowTarget += mesh.quality(t) < target;
+  }
+  record.tetrahedra = mesh.size();
+  record.worstQuality = quality;
+  record.smallestAngle = smallest;
+  record.largestAngle = largest;
+  record.worstInverseMeanRatio = 1.0 / meanRatio;
+  return record;
+}
+
+/// First flips everywhere, then flips and motions for ever better triangles, then all the rest.
+std::vector<TrianglePass> planPasses(const TriangleOptions& options)
+{
+  const double target = sineOf(options.targetAngle);
+  const bool keepsCount = options.smallestCount == 1.0 && options.largestCount == 1.0;
+  std::vector<TrianglePass> passes;
+  TrianglePass pass;
+  pass.swap = options.swap;
+  if (options.swap && options.swapEverywhere)
+  {
+    passes.push_back(pass);
+  }
+  pass.smooth = options.smooth;
+  for (double first : FirstTargets)
+  {
+    if (first < target)
+    {
+      pass.target = first;
+      passes.push_back(pass);
+    }
+  }
+  pass.target = target;
+  passes.push_back(pass);
+  pass.insert = options.insert && !keepsCount;
+  pass.contract = options.contract && !keepsCount;
+  if (pass.insert || pass.contract)
+  {
+    passes.push_back(pass);
+  }
+  if (options.compound)
+  {
+    pass.leastGain = FineGain;
+    passes.push_back(pass);
+  }
+  return passes;
+}
+
+//------------------------------------------------------------------------------
+/// The run of the passes with its queue, clock, observer and records.
+class TriangleRun
+{
+public:
+  TriangleRun(TriangleMesh& mesh, const TriangleInput& input, const TriangleOptions& options,
+    ReconnectionResult& result)
+    : Mesh(mesh)
+    , Options(options)
+    , Result(result)
+    , Operations(mesh, input)
+  {
+  }
+
+  void run(const std::vector<PointFreedom>& freedoms);
+
+private:
+  struct Entry
+  {
+    double quality;
+    TriId triangle;
+    /// The worst triangle, of equal ones that with the smallest id, is at the top of a heap.
+    bool operator<(const Entry& other) const
+    {
+      return this->quality != other.quality ? this->quality > other.quality
+                                            : this->triangle > other.triangle;
+    }
+  };
+
+  void prepare(const std::vector<PointFreedom>& freedoms);
+  bool record(int pass, double progress);
+  bool proceed();
+  bool runPass(const TrianglePass& pass);
+  bool improve(TriId t, const TrianglePass& pass);
+  void pushChanged(double target);
+  bool isWaiting(const Entry& entry);
+
+  TriangleMesh& Mesh;
+  const TriangleOptions& Options;
+  ReconnectionResult& Result;
+  TriangleOperations Operations;
+  std::vector<Entry> Heap;
+  std::vector<std::uint32_t> Tried; ///< clock at the last attempt in vain, per slot
+  Stopwatch Clock;
+  double LastCall = 0, Progress = 0;
+  Index Attempts = 0;
+};
+
+bool TriangleRun::record(int pass, double progress)
+{
+  ReconnectionRecord record = measure(this->Mesh, sineOf(this->Options.targetAngle));
+  record.pass = pass;
+  record.seconds = this->Clock.seconds();
+  const TriangleOperations::Counts& counts = this->Operations.counts();
+  record.edgeRemovals = counts.flips;
+  record.contractions = counts.contractions;
+  record.insertions = counts.insertions;
+  record.moves = counts.moves;
+  this->Result.history.push_back(record);
+  this->Progress = progress;
+  this->LastCall = record.seconds;
+  return !this->Options.observer || this->Options.observer(record, progress);
+}
+
+bool TriangleRun::proceed()
+{
+  if (this->Clock.reached(this->Options.maximumSeconds))
+  {
+    this->Result.reason = StopReason::TimeLimit;
+    return false;
+  }
+  throwIfInterrupted();
+  const double now = this->Clock.seconds();
+  if (this->Options.observer && now - this->LastCall > ObserverSeconds)
+  {
+    this->LastCall = now;
+    if (!this->Options.observer(this->Result.history.back(), this->Progress))
+    {
+      this->Result.reason = StopReason::Aborted;
+      return false;
+    }
+  }
+  return true;
+}
+
+void TriangleRun::pushChanged(double target)
+{
+  for (TriId t : this->Operations.changed())
+  {
+    if (this->Mesh.alive(t) && this->Mesh.quality(t) < target)
+    {
+      this->Heap.push_back({ this->Mesh.quality(t), t });
+      std::push_heap(this->Heap.begin(), this->Heap.end());
+    }
+  }
+}
+
+bool TriangleRun::improve(TriId t, const TrianglePass& pass)
+{
+  for (int i = 0; pass.swap && i < 3; ++i)
+  {
+    if (this->Operations.flip(t, i))
+    {
+      this->pushChanged(pass.target);
+      return true;
+    }
+  }
+  bool moved = false;
+  const Corners v = this->Mesh.triangle(t).vertices;
+  for (int i = 0; pass.smooth && i < 3; ++i)
+  {
+    if (this->Operations.smooth(v[i], Steps))
+    {
+      moved = true;
+      this->pushChanged(pass.target);
+    }
+  }
+  bool changed = moved;
+  for (int i = 0; pass.contract && !changed && i < 3; ++i)
+  {
+    for (int j = 0; j < 3 && !changed; ++j)
+    {
+      changed = i != j && this->Operations.contract(t, i, j);
+    }
+  }
+  changed = changed || (pass.insert && this->Operations.insert(t));
+  if (changed && !moved)
+  {
+    this->pushChanged(pass.target);
+  }
+  return changed;
+}
+
+/// Whether the triangle is still as it was when it was put into the queue, and worth a try.
+bool TriangleRun::isWaiting(const Entry& entry)
+{
+  const TriId t = entry.triangle;
+  if (t >= this->Mesh.slots() || !this->Mesh.alive(t) || this->Mesh.quality(t) != entry.quality)
+  {
+    return false;
+  }
+  this->Tried.resize(this->Mesh.slots(), 0);
+  std::uint32_t newest = 0;
+  for (VertexId v : this->Mesh.triangle(t).vertices)
+  {
+    newest = std::max(newest, this->Operations.stamp(v));
+  }
+  return this->Tried[t] <= newest;
+}
+
+/// @return false if stopped
+bool TriangleRun::runPass(const TrianglePass& pass)
+{
+  this->Heap.clear();
+  this->Tried.assign(this->Mesh.slots(), 0);
+  this->Operations.leastGain = pass.leastGain;
+  for (TriId t = 0; t < this->Mesh.slots(); ++t)
+  {
+    if (this->Mesh.alive(t) && this->Mesh.quality(t) < pass.target)
+    {
+      this->Heap.push_back({ this->Mesh.quality(t), t });
+    }
+  }
+  std::make_heap(this->Heap.begin(), this->Heap.end());
+  while (!this->Heap.empty())
+  {
+    std::pop_heap(this->Heap.begin(), this->Heap.end());
+    const Entry entry = this->Heap.back();
+    this->Heap.pop_back();
+    if (!this->isWaiting(entry))
+    {
+      continue;
+    }
+    if (++this->Attempts % ProceedInterval == 0 && !this->proceed())
+    {
+      return false;
+    }
+    if (!this->improve(entry.triangle, pass))
+    {
+      this->Tried[entry.triangle] = this->Operations.clock() + 1;
+    }
+    else if (this->Mesh.alive(entry.triangle) &&
+      this->Mesh.quality(entry.triangle) == entry.quality)
+    {
+      this->Heap.push_back(entry);
+      std::push_heap(this->Heap.begin(), this->Heap.end());
+    }
+  }
+  return true;
+}
+
+void TriangleRun::prepare(const std::vector<PointFreedom>& freedoms)
+{
+  TriangleOperations& operations = this->Operations;
+  operations.freedoms = freedoms;
+  operations.flips = this->Options.swap;
+  operations.moves = this->Options.smooth;
+  operations.dividesWalls = this->Options.boundary == ReconnectionBoundary::Flat;
+  operations.target = sineOf(this->Options.targetAngle);
+  operations.leastMeanRatio = 1.0 / this->Result.history.front().worstInverseMeanRatio;
+  const double size = static_cast<double>(this->Mesh.size());
+  operations.smallestSize = static_cast<Index>(std::ceil(this->Options.smallestCount * size));
+  operations.largestSize = static_cast<Index>(std::min(this->Options.largestCount * size,
+    static_cast<double>(std::numeric_limits<std::int32_t>::max() / 8)));
+}
+
+void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
+{
+  const bool started = this->record(0, 0.0);
+  this->prepare(freedoms);
+  std::vector<TrianglePass> passes = planPasses(this->Options);
+  const std::size_t planned = passes.size();
+  bool stopped = !started;
+  this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
+  for (std::size_t i = 0; i < passes.size() && !stopped; ++i)
+  {
+    const ReconnectionRecord before = this->Result.history.back();
+    if (before.belowTarget == 0 && passes[i].target < 1.0)
+    {
+      break;
+    }
+    stopped = !this->runPass(passes[i]);
+    const double progress = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
+    if (!this->record(static_cast<int>(i) + 1, progress) && !stopped)
+    {
+      stopped = true;
+      this->Result.reason = StopReason::Aborted;
+    }
+    const double gain = this->Result.history.back().worstQuality - before.worstQuality;
+    if (i + 1 == passes.size() && gain > RepetitionGain && passes.size() < planned + Repetitions)
+    {
+      passes.push_back(passes[i]);
+    }
+  }
+  if (!stopped && this->Result.history.back().belowTarget == 0)
+  {
+    this->Result.reason = StopReason::Reduction;
+  }
+}
+
+void checkEdges(const TriangleMesh& mesh)
+{
+  if (mesh.planar() && mesh.nonManifoldEdges() > 0)
+  {
+    throw Error(std::to_string(mesh.nonManifoldEdges()) +
+      " edges of a planar mesh have three or more triangles, or two on the same side: remove "
+      "duplicate or overlapping triangles first");
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void applyPreset(ReconnectionPreset preset, TriangleOptions& options)
+{
+  if (preset == ReconnectionPreset::Custom)
+  {
+    return;
+  }
+  applyPreset(preset, static_cast<ReconnectionOptions&>(options));
+  const bool slivers = preset == ReconnectionPreset::RemoveSlivers;
+  options.swapEverywhere = !slivers;
+  options.targetAngle = slivers ? SliverAngle : TriangleOptions::DefaultTargetAngle;
+}
+
+ReconnectionResult improveTriangles(const Mesh& mesh, const TriangleOptions& options)
+{
+  checkTriangleOptions(options);
+  const TriangleInput input = convertTriangles(mesh, options);
+  TriangleMesh changing(input.points, input.cells, input.regions, input.walls, input.planar);
+  checkEdges(changing);
+  const TriangleMesh before = changing;
+  ReconnectionResult result;
+  const std::vector<PointFreedom> freedoms = findFreedoms(changing, input, options);
+  std::vector<char> fixedPoints(freedoms.size(), 0);
+  for (std::size_t v = 0; v < freedoms.size(); ++v)
+  {
+    fixedPoints[v] = options.fixed && options.fixed[v];
+    result.pointsOnLines += freedoms[v].kind == PointFreedom::OnLine;
+    result.pointsInPlanes += !input.planar && freedoms[v].kind == PointFreedom::Free;
+  }
+  if (changing.size() > 0)
+  {
+    TriangleRun(changing, input, options, result).run(freedoms);
+    findObstacles(changing, fixedPoints, options, result);
+  }
+  convertOutput(mesh, input, before, changing, result);
+  return result;
+}
+}

@@ -1,0 +1,173 @@
+#include "TriangleStar.h"
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// Functions that are larger than the smallest by more than this do not limit a step.
+constexpr double Band = 0.3;
+/// The smallest of the functions, at most so many.
+constexpr std::size_t MaxFunctions = 24;
+/// Exchanges of weight between two functions, and where these end.
+constexpr int Exchanges = 60;
+constexpr double Balanced = 1e-7;
+/// The weight of the square of the step times the square of the shortest edge: at first, and how
+/// it changes after a step that failed or did not.
+constexpr double FirstWeight = 3.0, Harder = 4.0, Softer = 0.5;
+constexpr int Trials = 5;
+
+double signedArea2(const Vec3& c, const Vec3& normal)
+{
+  return dot(c, normal) < 0.0 ? -norm(c) : norm(c);
+}
+}
+
+double TriangleStar::evaluate(const Vec3& p, const Vec3& normal) const
+{
+  double smallest = std::numeric_limits<double>::max();
+  for (const auto& [a, b] : this->Edges)
+  {
+    const Vec3 u = a - p, v = b - p, w = b - a;
+    const double u2 = dot(u, u), v2 = dot(v, v), w2 = dot(w, w);
+    const double product = u2 * v2 * w2;
+    const double q = product > 0.0
+      ? signedArea2(cross(u, v), normal) * std::sqrt(std::min({ u2, v2, w2 }) / product)
+      : 0.0;
+    smallest = std::min(smallest, q);
+  }
+  return smallest;
+}
+
+/// The sines of the angles near the smallest one: D / (u v), D twice the area.
+void TriangleStar::linearize(const Vec3& p, const Directions& directions)
+{
+  this->Functions.clear();
+  const Vec3 up = directions.normal();
+  const auto add = [&](double value, const Vec3& gradient)
+  {
+    const double along = directions.count > 1 ? dot(gradient, directions.second) : 0.0;
+    this->Functions.push_back({ value, { dot(gradient, directions.first), along }, 0.0 });
+  };
+  for (const auto& [a, b] : this->Edges)
+  {
+    const Vec3 u = a - p, v = b - p, w = b - a;
+    const double u1 = norm(u), v1 = norm(v), w1 = norm(w);
+    const Vec3 c = cross(u, v);
+    const double area2 = norm(c);
+    if (!(u1 * v1 * w1 * area2 > 0.0))
+    {
+      continue;
+    }
+    const double d = signedArea2(c, up);
+    const Vec3 gradD = cross((1.0 / area2) * c, w);
+    // The gradients of u1 and v1 with respect to p are -u / u1 and -v / v1.
+    const Vec3 toU = (1.0 / (u1 * u1)) * u, toV = (1.0 / (v1 * v1)) * v;
+    const double atP = d / (u1 * v1), atA = d / (u1 * w1), atB = d / (v1 * w1);
+    add(atP, (1.0 / (u1 * v1)) * gradD + atP * (toU + toV));
+    add(atA, (1.0 / (u1 * w1)) * gradD + atA * toU);
+    add(atB, (1.0 / (v1 * w1)) * gradD + atB * toV);
+  }
+  const auto less = [](const Function& f, const Function& g) { return f.value < g.value; };
+  std::stable_sort(this->Functions.begin(), this->Functions.end(), less);
+  std::size_t count = 0;
+  while (count < std::min(this->Functions.size(), MaxFunctions) &&
+    this->Functions[count].value <= this->Functions.front().value + Band)
+  {
+    ++count;
+  }
+  this->Functions.resize(count);
+}
+
+/// The step that maximizes the smallest linear function less weight / 2 times its square: by the
+/// dual problem, exchanging the weights of two functions at a time.
+Vec2 TriangleStar::solve(double weight)
+{
+  std::vector<Function>& f = this->Functions;
+  for (Function& function : f)
+  {
+    function.weight = 0.0;
+  }
+  f.front().weight = 1.0;
+  Vec2 step = (1.0 / weight) * f.front().gradient;
+  for (int k = 0; k < Exchanges; ++k)
+  {
+    Function *low = nullptr, *high = nullptr;
+    double lowest = std::numeric_limits<double>::max(), highest = -lowest;
+    for (Function& function : f)
+    {
+      const double value = function.value + dot(function.gradient, step);
+      if (value < lowest)
+      {
+        lowest = value;
+        low = &function;
+      }
+      if (function.weight > 0.0 && value > highest)
+      {
+        highest = value;
+        high = &function;
+      }
+    }
+    const Vec2 difference = low->gradient - high->gradient;
+    const double square = dot(difference, difference);
+    if (low == high || highest - lowest < Balanced || !(square > 0.0))
+    {
+      break;
+    }
+    const double moved = std::min(high->weight, (highest - lowest) * weight / square);
+    high->weight -= moved;
+    low->weight += moved;
+    step = step + (moved / weight) * difference;
+  }
+  return step;
+}
+
+double TriangleStar::maximize(Vec3& p, int steps, const Directions& directions,
+  const std::function<Vec3(const Vec3&)>& project)
+{
+  const Vec3 up = directions.normal();
+  double quality = this->evaluate(p, up);
+  double length2 = std::numeric_limits<double>::max();
+  for (const auto& [a, b] : this->Edges)
+  {
+    length2 = std::min(length2, dot(b - a, b - a));
+  }
+  double weight = FirstWeight;
+  for (int accepted = 0; accepted < steps && length2 > 0.0; ++accepted)
+  {
+    this->linearize(p, directions);
+    if (this->Functions.empty())
+    {
+      return quality;
+    }
+    bool moved = false;
+    for (int trial = 0; trial < Trials && !moved; ++trial)
+    {
+      const Vec2 step = this->solve(weight / length2);
+      Vec3 trialPoint = p + step[0] * directions.first;
+      if (directions.count > 1)
+      {
+        trialPoint = trialPoint + step[1] * directions.second;
+      }
+      if (project)
+      {
+        trialPoint = project(trialPoint);
+      }
+      const double trialQuality = this->evaluate(trialPoint, up);
+      moved = trialQuality > quality + this->leastGain;
+      if (moved)
+      {
+        p = trialPoint;
+        quality = trialQuality;
+      }
+      weight *= moved ? Softer : Harder;
+    }
+    if (!moved)
+    {
+      break;
+    }
+  }
+  return quality;
+}
+}
