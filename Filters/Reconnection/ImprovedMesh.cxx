@@ -12,6 +12,7 @@
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -20,7 +21,6 @@ namespace tautline
 {
 namespace
 {
-constexpr int TetrahedronPoints = 4;
 constexpr const char* AngleArray = "min_angle";
 constexpr const char* RatioArray = "imr";
 
@@ -29,7 +29,9 @@ struct Geometry
 {
   std::vector<Index> points; ///< of the result, in the order of the output
   std::vector<double> coordinates;
-  std::vector<Index> tetrahedra;
+  std::vector<Index> connectivity;
+  int corners = 0; ///< of a cell
+  std::size_t cells() const { return this->connectivity.size() / this->corners; }
 };
 
 /// The result without the points that were merged into another one.
@@ -48,22 +50,25 @@ Geometry geometryOf(const ReconnectableMesh& input, const ReconnectionResult& re
       geometry.coordinates.insert(geometry.coordinates.end(), x, x + 3);
     }
   }
-  geometry.tetrahedra.resize(result.tetrahedra.size());
-  std::transform(result.tetrahedra.begin(), result.tetrahedra.end(), geometry.tetrahedra.begin(),
+  geometry.corners = input.corners();
+  const std::vector<Index>& cells = input.isTriangles() ? result.triangles : result.tetrahedra;
+  geometry.connectivity.resize(cells.size());
+  std::transform(cells.begin(), cells.end(), geometry.connectivity.begin(),
     [&numbers](Index p) { return numbers[p]; });
   return geometry;
 }
 
-/// Measures the tetrahedra with their points at some coordinates. @return whether all are valid
+/// Measures the cells with their points at some coordinates. @return whether all are valid
 bool measure(const Geometry& geometry, const std::vector<double>& coordinates, bool mirrored,
   int threads, ImprovedMesh& measured)
 {
-  const std::size_t count = geometry.tetrahedra.size() / TetrahedronPoints;
-  std::vector<unsigned char> types(count, VTK_TETRA);
+  const std::size_t count = geometry.cells();
+  const CellType type = geometry.corners == 3 ? CellType::Triangle : CellType::Tetrahedron;
+  std::vector<unsigned char> types(count, geometry.corners == 3 ? VTK_TRIANGLE : VTK_TETRA);
   std::vector<Index> offsets(count + 1);
   for (std::size_t i = 0; i <= count; ++i)
   {
-    offsets[i] = static_cast<Index>(TetrahedronPoints * i);
+    offsets[i] = static_cast<Index>(geometry.corners * i);
   }
   MeshView view;
   view.numberOfPoints = static_cast<Index>(coordinates.size() / 3);
@@ -71,7 +76,7 @@ bool measure(const Geometry& geometry, const std::vector<double>& coordinates, b
   view.numberOfCells = static_cast<Index>(count);
   view.cellTypes = types.data();
   view.offsets = offsets.data();
-  view.connectivity = geometry.tetrahedra.data();
+  view.connectivity = geometry.connectivity.data();
   Mesh mesh(view, threads);
   mesh.setMirrored(mirrored);
   std::vector<signed char> validity(count);
@@ -85,7 +90,7 @@ bool measure(const Geometry& geometry, const std::vector<double>& coordinates, b
   measured.centers.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
-    measured.centers.push_back(mesh.center(static_cast<Index>(i), CellType::Tetrahedron));
+    measured.centers.push_back(mesh.center(static_cast<Index>(i), type));
   }
   return std::all_of(validity.begin(), validity.end(), [](signed char v) { return v == Valid; });
 }
@@ -103,7 +108,7 @@ bool isWorse(const ImprovedMesh& measured, const ReconnectionRecord& before)
 
 /// Sets the points in the precision of the input where that does.
 ImprovedMesh writePoints(const ReconnectableMesh& input, const ReconnectionResult& result,
-  const Geometry& geometry, int threads, vtkUnstructuredGrid* output)
+  const Geometry& geometry, int threads, vtkPointSet* output)
 {
   const bool mirrored = input.mesh().mirrored();
   ImprovedMesh improved;
@@ -121,7 +126,7 @@ ImprovedMesh writePoints(const ReconnectableMesh& input, const ReconnectionResul
     }
     points = makePoints(geometry.coordinates, 3);
     improved.note = "The points are in double precision: rounded to the single precision of the "
-                    "input, a tetrahedron would be worse than before.";
+                    "input, an element would be worse than before.";
   }
   measure(geometry, geometry.coordinates, mirrored, threads, improved);
   output->SetPoints(points);
@@ -129,7 +134,7 @@ ImprovedMesh writePoints(const ReconnectableMesh& input, const ReconnectionResul
 }
 
 void writePointData(const ReconnectableMesh& input, const ReconnectionResult& result,
-  const Geometry& geometry, vtkUnstructuredGrid* output)
+  const Geometry& geometry, vtkPointSet* output)
 {
   vtkPointData* from = input.input()->GetPointData();
   vtkPointData* to = output->GetPointData();
@@ -151,8 +156,8 @@ void writePointData(const ReconnectableMesh& input, const ReconnectionResult& re
       ++place;
     }
     const MeshView& view = input.mesh().view();
-    corners->SetNumberOfIds(TetrahedronPoints);
-    std::copy_n(view.connectivity + view.offsets[place->cell], TetrahedronPoints, corners->begin());
+    corners->SetNumberOfIds(geometry.corners);
+    std::copy_n(view.connectivity + view.offsets[place->cell], geometry.corners, corners->begin());
     to->InterpolatePoint(from, id, corners, const_cast<double*>(place->weights.data()));
   }
   to->RemoveArray(vtkDataSetAttributes::GhostArrayName());
@@ -168,7 +173,7 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, const std::vector<doub
 }
 
 void writeCellData(const ReconnectableMesh& input, const ReconnectionResult& result,
-  const ImprovedMesh& improved, vtkUnstructuredGrid* output)
+  const ImprovedMesh& improved, vtkPointSet* output)
 {
   const auto count = static_cast<vtkIdType>(result.originalCells.size());
   vtkCellData* from = input.input()->GetCellData();
@@ -195,12 +200,20 @@ void writeCellData(const ReconnectableMesh& input, const ReconnectionResult& res
 
 //------------------------------------------------------------------------------
 ImprovedMesh writeImproved(const ReconnectableMesh& input, const ReconnectionResult& result,
-  int threads, vtkUnstructuredGrid* output)
+  int threads, vtkPointSet* output)
 {
   const Geometry geometry = geometryOf(input, result);
   output->Initialize();
   const ImprovedMesh improved = writePoints(input, result, geometry, threads, output);
-  output->SetCells(VTK_TETRA, makeCells(geometry.tetrahedra, TetrahedronPoints));
+  const auto cells = makeCells(geometry.connectivity, geometry.corners);
+  if (auto* grid = vtkUnstructuredGrid::SafeDownCast(output))
+  {
+    grid->SetCells(input.isTriangles() ? VTK_TRIANGLE : VTK_TETRA, cells);
+  }
+  else
+  {
+    vtkPolyData::SafeDownCast(output)->SetPolys(cells);
+  }
   writePointData(input, result, geometry, output);
   writeCellData(input, result, improved, output);
   output->GetFieldData()->ShallowCopy(input.input()->GetFieldData());

@@ -19,7 +19,7 @@ constexpr const char* OriginalCellArray = "OriginalCellId";
 /// What writeImproved() measured and found.
 struct ImprovedMesh
 {
-  std::vector<double> smallestAngles;    ///< dihedral, in degrees, per cell
+  std::vector<double> smallestAngles;    ///< dihedral of tetrahedra, in degrees, per cell
   std::vector<double> inverseMeanRatios; ///< per cell
   std::vector<Vec3> centers;             ///< per cell
   std::string note;                      ///< a sentence if single precision did not do, else ""
@@ -35,6 +35,6 @@ struct ImprovedMesh
  * precision stay so unless a tetrahedron would not be valid, or the worst one worse than before.
  */
 ImprovedMesh writeImproved(const ReconnectableMesh& input, const ReconnectionResult& result,
-  int threads, vtkUnstructuredGrid* output);
+  int threads, vtkPointSet* output);
 }
 #endif

@@ -11,6 +11,7 @@
 #include "vtkGenericCell.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
+#include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
@@ -23,22 +24,18 @@ namespace tautline
 {
 namespace
 {
-constexpr int TetrahedronPoints = 4;
-
-vtkUnstructuredGrid* gridOf(vtkDataSet* input)
+vtkPointSet* meshOf(vtkDataSet* input)
 {
-  auto* grid = vtkUnstructuredGrid::SafeDownCast(input);
-  if (!grid)
+  auto* mesh = vtkPointSet::SafeDownCast(input);
+  if (!vtkUnstructuredGrid::SafeDownCast(mesh) && !vtkPolyData::SafeDownCast(mesh))
   {
     throw Error(std::string("The mesh is a ") + input->GetClassName() +
-      ", not an unstructured grid of tetrahedra: run " +
-      (vtkPolyData::SafeDownCast(input) ? "a mesher (or Delaunay 3D)" : "Tetrahedralize") +
-      " first.");
+      ", not an unstructured grid of tetrahedra or triangles: run Tetrahedralize first.");
   }
-  return grid;
+  return mesh;
 }
 
-void refuseGhosts(vtkUnstructuredGrid* grid)
+void refuseGhosts(vtkDataSet* grid)
 {
   vtkUnsignedCharArray* flags = grid->GetCellGhostArray();
   Index ghosts = 0;
@@ -88,12 +85,12 @@ std::string listOf(const std::map<int, Index>& counts)
 
 //------------------------------------------------------------------------------
 ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int threads)
-  : Input(gridOf(input))
-  , Tetrahedra(this->Input)
+  : Input(meshOf(input))
+  , Taken(this->Input)
 {
   refuseGhosts(this->Input);
-  this->takeTetrahedra();
-  this->Adapter = std::make_unique<MeshAdapter>(this->Tetrahedra, threads);
+  this->findKind();
+  this->Adapter = std::make_unique<MeshAdapter>(this->Taken, threads);
   this->Fixed.assign(this->mesh().view().numberOfPoints, 0);
   if (mergePoints)
   {
@@ -111,17 +108,20 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
     this->Notice = describeSeams(seams, this->mesh());
     if (seams.merged > 0)
     {
-      this->Notice += " The facets there are treated as boundary.";
+      this->Notice += this->isTriangles() ? " The edges there are treated as border."
+                                          : " The facets there are treated as boundary.";
     }
   }
-  for (const std::string& more : { this->Adapter->orient(), this->Adapter->notice() })
+  for (const std::string& more : { this->Adapter->orient(nullptr, !this->isTriangles()), this->Adapter->notice() })
   {
     this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
   }
+  this->takeLines();
 }
 
 //------------------------------------------------------------------------------
-void ReconnectableMesh::takeTetrahedra()
+/// Finds whether the mesh is of tetrahedra or triangles, and leaves out cells of lower dimension.
+void ReconnectableMesh::findKind()
 {
   std::map<int, Index> counts;
   for (vtkIdType cell = 0; cell < this->Input->GetNumberOfCells(); ++cell)
@@ -129,50 +129,81 @@ void ReconnectableMesh::takeTetrahedra()
     pollInterruption(cell);
     ++counts[this->Input->GetCellType(cell)];
   }
-  const Index tetrahedra = counts[VTK_TETRA];
-  counts.erase(VTK_TETRA);
-  std::map<int, Index> solids;
-  bool curved = false;
-  constexpr int Volume = 3;
+  std::map<int, Index> ofDimension[4], curved[4];
   vtkNew<vtkGenericCell> any;
   for (const auto& [type, count] : counts)
   {
     any->SetCellType(type);
-    if (any->GetCellDimension() == Volume)
+    const int dimension = any->GetCellDimension();
+    ofDimension[dimension][type] = count;
+    if (!any->IsLinear())
     {
-      solids[type] = count;
-      curved = curved || !any->IsLinear();
+      curved[dimension][type] = count;
     }
   }
-  if (!solids.empty())
+  const int dimension = ofDimension[3].empty() && !ofDimension[2].empty() ? 2 : 3;
+  const int type = dimension == 3 ? VTK_TETRA : VTK_TRIANGLE;
+  const char* cells = dimension == 3 ? "tetrahedra" : "triangles";
+  this->Corners = dimension + 1;
+  const Index taken = counts[type];
+  counts.erase(type);
+  ofDimension[dimension].erase(type);
+  if (!ofDimension[dimension].empty())
   {
-    throw Error(listOf(solids) + ": Improve Mesh takes linear tetrahedra only; run " +
-      (curved ? "Tessellate" : "Tetrahedralize") + " first.");
+    const char* remedy = dimension == 3 ? "Tetrahedralize" : "Triangulate";
+    throw Error(listOf(ofDimension[dimension]) + ": Improve Mesh takes linear " + cells +
+      " only; run " + (curved[dimension].empty() ? remedy : "Tessellate") + " first.");
   }
-  if (tetrahedra == 0)
+  if (taken == 0)
   {
     throw Error(listOf(counts) +
-      ", but no tetrahedron: Improve Mesh takes tetrahedra; run a mesher (or Delaunay 3D) first.");
+      ", but no tetrahedron or triangle: Improve Mesh takes one of these; run a mesher (or "
+      "Delaunay 2D or 3D) first.");
   }
   if (counts.empty())
   {
     return;
   }
-  this->LeftOut = listOf(counts) +
-    " beside the tetrahedra are left out of the output. To keep facets inside the mesh, choose a "
-    "region array of the tetrahedra.";
-  this->Tetrahedra = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  this->Tetrahedra->SetPoints(this->Input->GetPoints());
-  this->Tetrahedra->AllocateExact(tetrahedra, TetrahedronPoints * tetrahedra);
+  this->LeftOut = listOf(counts) + " beside the " + cells + " are left out of the output. " +
+    (this->isTriangles() ? "Edges of the mesh that lines join are kept."
+                         : "To keep facets inside the mesh, choose a region array of the "
+                           "tetrahedra.");
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(this->Input->GetPoints());
+  grid->AllocateExact(taken, this->Corners * taken);
   vtkNew<vtkIdList> points;
   for (vtkIdType cell = 0; cell < this->Input->GetNumberOfCells(); ++cell)
   {
     pollInterruption(cell);
-    if (this->Input->GetCellType(cell) == VTK_TETRA)
+    if (this->Input->GetCellType(cell) == type)
     {
       this->Input->GetCellPoints(cell, points);
-      this->Tetrahedra->InsertNextCell(VTK_TETRA, points);
+      grid->InsertNextCell(type, points);
       this->Cells.push_back(cell);
+    }
+  }
+  this->Taken = grid;
+}
+
+//------------------------------------------------------------------------------
+/// The edges that lines beside triangles mark.
+void ReconnectableMesh::takeLines()
+{
+  vtkNew<vtkIdList> points;
+  for (vtkIdType cell = 0; this->isTriangles() && cell < this->Input->GetNumberOfCells(); ++cell)
+  {
+    const int type = this->Input->GetCellType(cell);
+    if (type != VTK_LINE && type != VTK_POLY_LINE)
+    {
+      continue;
+    }
+    this->Input->GetCellPoints(cell, points);
+    const std::vector<Index>& one = this->Adapter->coincident().representative;
+    const auto id = [&](vtkIdType i)
+    { return one.empty() ? points->GetId(i) : one[points->GetId(i)]; };
+    for (vtkIdType i = 0; i + 1 < points->GetNumberOfIds(); ++i)
+    {
+      this->Lines.push_back({ id(i), id(i + 1) });
     }
   }
 }

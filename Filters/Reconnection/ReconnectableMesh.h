@@ -1,7 +1,7 @@
 /**
  * @file ReconnectableMesh.h
- * @brief The input of Improve Mesh as the kernel takes it: its tetrahedra, fixed points and
- * regions.
+ * @brief The input of Improve Mesh as the kernel takes it: its tetrahedra or triangles, fixed
+ * points and regions.
  */
 #ifndef tautline_ReconnectableMesh_h
 #define tautline_ReconnectableMesh_h
@@ -16,13 +16,14 @@
 
 class vtkDataArray;
 class vtkDataSet;
-class vtkUnstructuredGrid;
+class vtkPointSet;
 
 namespace tautline
 {
 /**
  * @class tautline::ReconnectableMesh
- * @brief The tetrahedra of an unstructured grid, oriented consistently: see MeshAdapter::orient().
+ * @brief The tetrahedra of an unstructured grid, or the triangles of a mesh without volume cells,
+ * oriented consistently: see MeshAdapter::orient().
  *
  * The data set must outlive it and not change meanwhile.
  */
@@ -31,13 +32,20 @@ class ReconnectableMesh
 public:
   /**
    * @brief Throws Error that names the remedy for other data sets, for cells of volume that are not
-   * linear tetrahedra, for ghost cells, and where there is no tetrahedron.
+   * linear tetrahedra, where there are none for cells of area that are not linear triangles, for
+   * ghost cells, and where there are neither.
    * Cells of lower dimension are left out, see leftOut().
    * @param mergePoints whether coincident points on seams become one
    */
   ReconnectableMesh(vtkDataSet* input, bool mergePoints, int threads);
 
-  vtkUnstructuredGrid* input() const { return this->Input; }
+  vtkPointSet* input() const { return this->Input; }
+  /// Whether the cells are triangles, not tetrahedra.
+  bool isTriangles() const { return this->Corners == 3; }
+  /// The number of points of a cell.
+  int corners() const { return this->Corners; }
+  /// Of triangles: the pairs of points that lines of the input join.
+  const std::vector<std::array<Index, 2>>& lines() const { return this->Lines; }
   const Mesh& mesh() const { return this->Adapter->mesh(); }
   /// The cell of the input that a cell of mesh() is.
   Index inputCell(Index cell) const { return this->Cells.empty() ? cell : this->Cells[cell]; }
@@ -66,11 +74,14 @@ public:
   const std::string& leftOut() const { return this->LeftOut; }
 
 private:
-  void takeTetrahedra();
+  void findKind();
+  void takeLines();
 
-  vtkUnstructuredGrid* Input;
-  vtkSmartPointer<vtkUnstructuredGrid> Tetrahedra; ///< the input, or a grid of its tetrahedra
-  std::vector<Index> Cells;                        ///< empty if all cells are tetrahedra
+  vtkPointSet* Input;
+  int Corners = 4;
+  vtkSmartPointer<vtkPointSet> Taken; ///< the input, or a grid of its tetrahedra or triangles
+  std::vector<Index> Cells;           ///< empty if all cells are taken
+  std::vector<std::array<Index, 2>> Lines;
   std::unique_ptr<MeshAdapter> Adapter;
   std::vector<unsigned char> Fixed;
   std::vector<Index> Regions;

@@ -6,6 +6,7 @@
 #include "Processes.h"
 #include "ReconnectableMesh.h"
 #include "TableRows.h"
+#include "tautline/Reconnection/TriangleReconnection.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -13,9 +14,9 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
 #include "vtkSelection.h"
 #include "vtkTable.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <array>
@@ -30,25 +31,49 @@ constexpr int FixedArray = 0, RegionArray = 1;
 constexpr int ListedElements = 10;
 
 /// In the order of tautline::ReconnectionObstacle.
-constexpr std::array<const char*, 6> obstacles = { "it is not below the target",
+using Reasons = std::array<const char*, 6>;
+constexpr Reasons obstacles = { "it is not below the target",
   "no operation improves it, or a limit ended the run",
   "the facets that it has on the boundary or between regions allow no better one",
   "it has a fixed point", "it has a point between regions", "it has a point on the boundary" };
 
 /// What would help, in the same order.
-constexpr std::array<const char*, 6> remedies = { "",
+constexpr Reasons remedies = { "",
   "try the preset Aggressive, a larger time limit or other counts",
   "let the boundary slide in flat parts, or repair the surface mesh", "fix fewer points",
   "choose fewer regions", "let the boundary slide in flat parts" };
+
+/// The same for triangles.
+constexpr Reasons edgeObstacles = { "it is not below the target",
+  "no operation improves it, or a limit ended the run",
+  "the angle between two edges that are kept allows no better one", "it has a fixed point",
+  "it has a point between regions or on a sharp edge", "it has a point on the border" };
+constexpr Reasons edgeRemedies = { "",
+  "try the preset Aggressive, a larger time limit, other counts or, on a surface, a larger surface "
+  "distance",
+  "change the geometry", "fix fewer points",
+  "let the boundary slide in flat parts, choose fewer regions or a larger feature angle",
+  "let the boundary slide in flat parts" };
+
+/// How the elements and their angles are called.
+struct Words
+{
+  const char *one, *many, *title, *angle;
+  const Reasons &obstacles, &remedies;
+};
+constexpr Words tetrahedra = { "tetrahedron", "tetrahedra", "Tetrahedra", "dihedral angle",
+  obstacles, remedies };
+constexpr Words triangles = { "triangle", "triangles", "Triangles", "angle", edgeObstacles,
+  edgeRemedies };
 
 const char* reasonText(tautline::StopReason reason)
 {
   switch (reason)
   {
     case tautline::StopReason::Reduction:
-      return "Every tetrahedron has reached the target.";
+      return "Every element has reached the target.";
     case tautline::StopReason::NoProgress:
-      return "No operation improves the worst tetrahedra any further.";
+      return "No operation improves the worst elements any further.";
     default:
       return tautline::describe(reason);
   }
@@ -83,7 +108,7 @@ void addHistory(tautline::TableRows& rows, const std::vector<tautline::Reconnect
     add("Smallest angle", record.smallestAngle);
     add("Largest angle", record.largestAngle);
     add("Worst imr", record.worstInverseMeanRatio);
-    add("N tetrahedra", record.tetrahedra);
+    add("N elements", record.tetrahedra);
     add("N below target", record.belowTarget);
     add("N edge removals", record.edgeRemovals);
     add("N face removals", record.faceRemovals);
@@ -97,7 +122,7 @@ void addHistory(tautline::TableRows& rows, const std::vector<tautline::Reconnect
 
 void addRemaining(tautline::TableRows& rows, const std::vector<tautline::Index>& cells,
   const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved,
-  const std::string& block)
+  const Words& words, const std::string& block)
 {
   for (const tautline::Index cell : cells)
   {
@@ -108,7 +133,7 @@ void addRemaining(tautline::TableRows& rows, const std::vector<tautline::Index>&
     rows.add("X", improved.centers[cell][0]);
     rows.add("Y", improved.centers[cell][1]);
     rows.add("Z", improved.centers[cell][2]);
-    rows.addText("Reason", obstacles[result.obstacles[cell]]);
+    rows.addText("Reason", words.obstacles[result.obstacles[cell]]);
   }
 }
 
@@ -137,16 +162,16 @@ std::string describeOperations(const tautline::ReconnectionRecord& record)
 /// What remains below the target, why, and which are the worst.
 std::string describeRemaining(const std::vector<tautline::Index>& cells,
   const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved,
-  double targetAngle)
+  const Words& words, double targetAngle)
 {
   std::ostringstream text;
   if (cells.empty())
   {
-    text << "No tetrahedron remains below the target of " << targetAngle << " degrees.";
+    text << "No " << words.one << " remains below the target of " << targetAngle << " degrees.";
     return text.str();
   }
-  text << cells.size() << (cells.size() == 1 ? " tetrahedron remains" : " tetrahedra remain")
-       << " below the target of " << targetAngle << " degrees:";
+  text << cells.size() << " " << (cells.size() == 1 ? words.one : words.many)
+       << (cells.size() == 1 ? " remains" : " remain") << " below the target of " << targetAngle << " degrees:";
   std::array<tautline::Index, obstacles.size()> counts = {};
   for (const tautline::Index cell : cells)
   {
@@ -156,7 +181,8 @@ std::string describeRemaining(const std::vector<tautline::Index>& cells,
   {
     if (counts[k] > 0)
     {
-      text << "\n- " << counts[k] << ": " << obstacles[k] << " (" << remedies[k] << ")";
+      text << "\n- " << counts[k] << ": " << words.obstacles[k] << " (" << words.remedies[k]
+           << ")";
     }
   }
   const auto listed = std::min<std::size_t>(cells.size(), ListedElements);
@@ -164,9 +190,9 @@ std::string describeRemaining(const std::vector<tautline::Index>& cells,
   {
     const tautline::Vec3& at = improved.centers[cells[i]];
     text << "\nElement " << cells[i] << " at (" << at[0] << ", " << at[1] << ", " << at[2]
-         << "): smallest dihedral angle " << improved.smallestAngles[cells[i]]
+         << "): smallest " << words.angle << " " << improved.smallestAngles[cells[i]]
          << ", inverse mean ratio " << improved.inverseMeanRatios[cells[i]] << "; "
-         << obstacles[result.obstacles[cells[i]]] << ".";
+         << words.obstacles[result.obstacles[cells[i]]] << ".";
   }
   if (cells.size() > listed)
   {
@@ -176,12 +202,12 @@ std::string describeRemaining(const std::vector<tautline::Index>& cells,
 }
 
 /// Before and after, in words.
-std::string describeResult(const tautline::ReconnectionResult& result)
+std::string describeResult(const tautline::ReconnectionResult& result, const Words& words)
 {
   const tautline::ReconnectionRecord &first = result.history.front(), &last = result.history.back();
   std::ostringstream text;
-  text << reasonText(result.reason) << "\nTetrahedra: " << first.tetrahedra << " to "
-       << last.tetrahedra << ". Smallest dihedral angle: " << first.smallestAngle << " to "
+  text << reasonText(result.reason) << "\n" << words.title << ": " << first.tetrahedra << " to "
+       << last.tetrahedra << ". Smallest " << words.angle << ": " << first.smallestAngle << " to "
        << last.smallestAngle << " degrees; largest: " << first.largestAngle << " to "
        << last.largestAngle << ". Worst inverse mean ratio: " << first.worstInverseMeanRatio
        << " to " << last.worstInverseMeanRatio << ".\nOperations: " << describeOperations(last)
@@ -234,7 +260,7 @@ void vtkMeshImprover::ClearResult()
 {
   this->Superclass::ClearResult();
   this->Reason.clear();
-  this->TetrahedraBefore = this->TetrahedraAfter = this->Remaining = 0;
+  this->ElementsBefore = this->ElementsAfter = this->Remaining = 0;
   this->SmallestAngleBefore = this->SmallestAngleAfter = 0.0;
   this->WorstBefore = this->WorstAfter = 0.0;
 }
@@ -254,25 +280,53 @@ void vtkMeshImprover::CheckSeams(vtkDataObject* input)
 }
 
 //------------------------------------------------------------------------------
-tautline::ReconnectionOptions vtkMeshImprover::MakeOptions() const
+/// Sets all options but the preset.
+void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
 {
-  tautline::ReconnectionOptions options;
   options.swap = this->Swap;
   options.smooth = this->Smooth;
   options.contract = this->Contract;
   options.insert = this->Insert;
   options.compound = this->Compound;
-  tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
-  if (this->TargetAngle > 0)
-  {
-    options.targetAngle = this->TargetAngle;
-  }
   options.boundary = static_cast<tautline::ReconnectionBoundary>(this->Boundary);
   options.flatTolerance = this->FlatTolerance;
   options.smallestCount = this->SmallestCount;
   options.largestCount = this->LargestCount;
   options.maximumSeconds = this->GetRemainingSeconds();
-  return options;
+}
+
+//------------------------------------------------------------------------------
+/// Runs the kernel on a mesh. @param targetAngle set to the one that was used
+tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableMesh& mesh,
+  const tautline::InputBlock& block, int blocks, double& targetAngle)
+{
+  const auto prepare = [&](auto& options)
+  {
+    this->SetOptions(options);
+    tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
+    if (this->TargetAngle > 0)
+    {
+      options.targetAngle = this->TargetAngle;
+    }
+    targetAngle = options.targetAngle;
+    options.fixed = mesh.fixed().data();
+    options.regions = mesh.regions().empty() ? nullptr : mesh.regions().data();
+    options.observer = [&](const tautline::ReconnectionRecord&, double progress)
+    { return this->Proceed((block.number + progress) / static_cast<double>(blocks)); };
+  };
+  if (!mesh.isTriangles())
+  {
+    tautline::ReconnectionOptions options;
+    prepare(options);
+    return tautline::improveConnectivity(mesh.mesh(), options);
+  }
+  tautline::TriangleOptions options;
+  prepare(options);
+  options.featureAngle = this->FeatureAngle;
+  options.surfaceAngle = this->SurfaceAngle;
+  options.surfaceDistance = this->SurfaceDistance;
+  options.markedEdges = mesh.lines();
+  return tautline::improveTriangles(mesh.mesh(), options);
 }
 
 //------------------------------------------------------------------------------
@@ -288,28 +342,25 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
   }
   mesh.setRegions(tautline::chosenArray(this, RegionArray, block.input, "of regions"));
 
-  tautline::ReconnectionOptions options = this->MakeOptions();
-  options.fixed = mesh.fixed().data();
-  options.regions = mesh.regions().empty() ? nullptr : mesh.regions().data();
-  options.observer = [&](const tautline::ReconnectionRecord&, double progress)
-  { return this->Proceed((block.number + progress) / static_cast<double>(blocks)); };
-  const tautline::ReconnectionResult result = tautline::improveConnectivity(mesh.mesh(), options);
+  double targetAngle = 0.0;
+  const Words& words = mesh.isTriangles() ? triangles : tetrahedra;
+  const tautline::ReconnectionResult result = this->Run(mesh, block, blocks, targetAngle);
   const tautline::ImprovedMesh improved = tautline::writeImproved(
-    mesh, result, this->Threads, vtkUnstructuredGrid::SafeDownCast(block.output));
+    mesh, result, this->Threads, vtkPointSet::SafeDownCast(block.output));
 
   const std::vector<tautline::Index> cells = remainingOf(result, improved);
   addHistory(history, result.history, block.name);
-  addRemaining(remaining, cells, result, improved, block.name);
+  addRemaining(remaining, cells, result, improved, words, block.name);
   this->TakeResult(result);
   this->Remaining += static_cast<vtkIdType>(cells.size());
   this->AddToSummary(
-    (block.name.empty() ? "" : "In " + block.name + ": ") + describeResult(result));
-  this->AddToSummary(describeRemaining(cells, result, improved, options.targetAngle));
+    (block.name.empty() ? "" : "In " + block.name + ": ") + describeResult(result, words));
+  this->AddToSummary(describeRemaining(cells, result, improved, words, targetAngle));
   if (!cells.empty())
   {
     std::ostringstream bound;
-    bound << "With the facets of its boundary and between regions, no mesh has a worst inverse "
-             "mean ratio below "
+    bound << "With the " << (mesh.isTriangles() ? "edges" : "facets")
+          << " of its boundary and between regions, no mesh has a worst inverse mean ratio below "
           << result.forcedInverseMeanRatio << ".";
     this->AddToSummary(bound.str());
   }
@@ -323,15 +374,15 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
 void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result)
 {
   const tautline::ReconnectionRecord &first = result.history.front(), &last = result.history.back();
-  const bool none = this->TetrahedraBefore == 0;
+  const bool none = this->ElementsBefore == 0;
   const auto smaller = [none](double& number, double other)
   { number = none ? other : std::min(number, other); };
   smaller(this->SmallestAngleBefore, first.smallestAngle);
   smaller(this->SmallestAngleAfter, last.smallestAngle);
   this->WorstBefore = std::max(this->WorstBefore, first.worstInverseMeanRatio);
   this->WorstAfter = std::max(this->WorstAfter, last.worstInverseMeanRatio);
-  this->TetrahedraBefore += first.tetrahedra;
-  this->TetrahedraAfter += last.tetrahedra;
+  this->ElementsBefore += first.tetrahedra;
+  this->ElementsAfter += last.tetrahedra;
   this->Reason = reasonText(result.reason);
 }
 
@@ -350,5 +401,8 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FlatTolerance: " << this->FlatTolerance << "\n";
   os << indent << "SmallestCount: " << this->SmallestCount << "\n";
   os << indent << "LargestCount: " << this->LargestCount << "\n";
+  os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
+  os << indent << "SurfaceAngle: " << this->SurfaceAngle << "\n";
+  os << indent << "SurfaceDistance: " << this->SurfaceDistance << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
 }

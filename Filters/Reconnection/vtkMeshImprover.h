@@ -1,18 +1,25 @@
 /**
  * @class vtkMeshImprover
- * @brief Improves the worst tetrahedra of a mesh by changing its connectivity and moving points.
+ * @brief Improves the worst tetrahedra or triangles of a mesh by changing its connectivity and
+ * moving points.
  *
- * Takes unstructured grids of linear tetrahedra, or blocks of these. Edges and faces are swapped,
- * edges contracted, points inserted and moved around the worst tetrahedra, until every dihedral
- * angle is between TargetAngle and 180 degrees minus it or nothing helps. The smallest dihedral
- * angle and the worst inverse mean ratio of the output are never worse than those of the input. By
- * default the surface stays: the same points and the same facets.
+ * Takes unstructured grids of linear tetrahedra, unstructured grids and poly data of linear
+ * triangles, or blocks of these. Edges and faces are swapped, edges contracted, points inserted and
+ * moved around the worst elements, until every dihedral angle is between TargetAngle and 180
+ * degrees minus it, or every angle of a triangle above it, or nothing helps. The smallest angle and
+ * the worst inverse mean ratio of the output are never worse than those of the input. By default
+ * the boundary stays: the same points and the same facets or edges.
  *
- * Other cells of volume, ghost cells and inverted tetrahedra are refused (run vtkMeshUntangler
- * first); cells of lower dimension are left out with a warning. A mesh reversed throughout is
- * treated as its mirror image; in one of mixed orientation, the cells in the opposite order are
- * listed in that of the others. vtkMeshOptimizer improves the average element and keeps the
- * connectivity.
+ * Triangles: planar meshes and surfaces in space. Edges on the border, between regions, under lines
+ * beside the triangles and, on surfaces, sharp edges (FeatureAngle) stay; so do corners. Other
+ * points of a surface stay on the facets of the input, and changed triangles within
+ * SurfaceDistance and SurfaceAngle of them. The area of a planar mesh and of each region stays.
+ *
+ * Other cells of volume (of area, where there are none of volume), ghost cells and inverted
+ * elements are refused (run vtkMeshUntangler first); cells of lower dimension are left out with a
+ * warning. A mesh reversed throughout is treated as its mirror image; in one of mixed orientation,
+ * the cells in the opposite order are listed in that of the others. vtkMeshOptimizer improves the
+ * average element and keeps the connectivity.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay. The points also stay where
@@ -23,17 +30,18 @@
  * The new mesh. Points of the input keep their data; new ones interpolate theirs in the cell of the
  * input that they are in. The cell array `OriginalCellId` is the cell of the input, of the same
  * region, that contains the centroid, and cells have its data. The cell arrays `min_angle` (the
- * smallest dihedral angle in degrees) and `imr` (the inverse mean ratio) are those of the output.
- * Global ids of points and cells are left out, as they would not be unique.
+ * smallest angle in degrees, of tetrahedra dihedral) and `imr` (the inverse mean ratio) are those of
+ * the output. Global ids of points and cells are left out, as they would not be unique.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is pass i (0 is the input): `Smallest angle`, `Largest angle`,
- * `Worst imr`, `N tetrahedra`, `N below target`; accepted operations since the start:
+ * `Worst imr`, `N elements`, `N below target`; accepted operations since the start:
  * `N edge removals`, `N face removals`, `N boundary swaps`, `N contractions`, `N insertions`,
- * `N moves`; `Time (s)`; of composite data sets also `Block`.
+ * `N moves`; `Time (s)`; of composite data sets also `Block`. Flips of edges between triangles are
+ * edge removals.
  *
  * @par Output port 2 `Remaining`:
- * A vtkTable of the tetrahedra that are still below the target, the worst first: `Cell` (id in the
+ * A vtkTable of the elements that are still below the target, the worst first: `Cell` (id in the
  * output), `Smallest angle`, `imr`, `X`, `Y`, `Z` (the centroid), `Reason`; of composite data sets
  * also `Block`.
  *
@@ -122,7 +130,7 @@ public:
   /**
    * Degrees, 0 to 60: tetrahedra are worked on while they have a dihedral angle below it or above
    * 180 degrees minus it, or a mean ratio as bad. 0, the default, is that of the preset: 15 for
-   * REMOVE_SLIVERS, 33.4 for the others.
+   * REMOVE_SLIVERS, 33.4 for the others (40 for triangles).
    */
   vtkTautlineSetRangeMacro(TargetAngle, double, 0.0, 60.0);
   vtkGetMacro(TargetAngle, double);
@@ -152,7 +160,22 @@ public:
 
   ///@{
   /**
-   * The number of tetrahedra stays within these multiples of the input's: 0 to 1 and at least 1.
+   * Of surfaces in space. FeatureAngle, 0 to 180 degrees: edges between facets that differ by more
+   * are kept. SurfaceAngle, 0 to 90 degrees, and SurfaceDistance, 0 to 1 times the diagonal of the
+   * mesh: how far changed triangles turn and move away from the input. The defaults are 40, 20 and
+   * 0.001.
+   */
+  vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
+  vtkGetMacro(FeatureAngle, double);
+  vtkTautlineSetRangeMacro(SurfaceAngle, double, 0.0, 90.0);
+  vtkGetMacro(SurfaceAngle, double);
+  vtkTautlineSetRangeMacro(SurfaceDistance, double, 0.0, 1.0);
+  vtkGetMacro(SurfaceDistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * The number of elements stays within these multiples of the input's: 0 to 1 and at least 1.
    * Both 1: no point is inserted or removed. The defaults are 0.9 and 1.1.
    */
   vtkTautlineSetRangeMacro(SmallestCount, double, 0.0, 1.0);
@@ -180,12 +203,12 @@ public:
   ///@{
   /**
    * The result of the last execution, of all blocks together: why the (last) run ended, the numbers
-   * of tetrahedra, the smallest dihedral angles in degrees, the largest inverse mean ratios, and
-   * the number of tetrahedra that remain below the target.
+   * of elements, the smallest angles in degrees, the largest inverse mean ratios, and the number of
+   * elements that remain below the target.
    */
   const char* GetReason() const { return this->Reason.c_str(); }
-  vtkIdType GetTetrahedraBefore() const { return this->TetrahedraBefore; }
-  vtkIdType GetTetrahedraAfter() const { return this->TetrahedraAfter; }
+  vtkIdType GetElementsBefore() const { return this->ElementsBefore; }
+  vtkIdType GetElementsAfter() const { return this->ElementsAfter; }
   double GetSmallestAngleBefore() const { return this->SmallestAngleBefore; }
   double GetSmallestAngleAfter() const { return this->SmallestAngleAfter; }
   double GetWorstBefore() const { return this->WorstBefore; }
@@ -214,7 +237,9 @@ private:
     RemainingPort = 2  // output
   };
 
-  tautline::ReconnectionOptions MakeOptions() const;
+  void SetOptions(tautline::ReconnectionOptions& options) const;
+  tautline::ReconnectionResult Run(const tautline::ReconnectableMesh& mesh,
+    const tautline::InputBlock& block, int blocks, double& targetAngle);
   void CheckSeams(vtkDataObject* input);
   void Improve(const tautline::InputBlock& block, int blocks, tautline::TableRows& history,
     tautline::TableRows& remaining);
@@ -231,11 +256,14 @@ private:
   double FlatTolerance = 1e-8;
   double SmallestCount = 0.9;
   double LargestCount = 1.1;
+  double FeatureAngle = 40.0;
+  double SurfaceAngle = 20.0;
+  double SurfaceDistance = 1e-3;
   bool MergeCoincidentPoints = true;
 
   std::string Reason;
-  vtkIdType TetrahedraBefore = 0;
-  vtkIdType TetrahedraAfter = 0;
+  vtkIdType ElementsBefore = 0;
+  vtkIdType ElementsAfter = 0;
   double SmallestAngleBefore = 0.0;
   double SmallestAngleAfter = 0.0;
   double WorstBefore = 0.0;

@@ -45,10 +45,10 @@ def test_improve():
         assert np.isclose(result.smallest_angle_before, before.values["min_angle"].min())
         assert np.isclose(result.smallest_angle, result.min_angle.min()) and np.isclose(result.worst, result.imr.max())
         assert result.smallest_angle > result.smallest_angle_before and result.worst < result.worst_before, preset
-        assert result.tetrahedra == result.mesh.GetNumberOfCells() == len(result.original_cell)
-        assert 0.9 * result.tetrahedra_before <= result.tetrahedra <= 1.1 * result.tetrahedra_before
+        assert result.elements == result.mesh.GetNumberOfCells() == len(result.original_cell)
+        assert 0.9 * result.elements_before <= result.elements <= 1.1 * result.elements_before
         history = result.history
-        assert history["tetrahedra"][0] == result.tetrahedra_before and history["tetrahedra"][-1] == result.tetrahedra
+        assert history["elements"][0] == result.elements_before and history["elements"][-1] == result.elements
         assert (np.diff(history["worst_imr"]) <= 1e-9).all() and (np.diff(history["seconds"]) >= 0).all()
         assert history["moves"].dtype == int and (preset != "swap only" or history["moves"][-1] == 0)
         assert len(result.remaining.get("cell", ())) == history["below_target"][-1]
@@ -84,10 +84,10 @@ def test_inputs():
         blocks.SetBlock(i, tl.from_arrays(points(mesh), cells[region == i]))
     refused("blocks would come apart", tl.improve, blocks, boundary="flat")
     both = tl.improve(blocks)
-    assert both.tetrahedra_before == len(cells) and set(both.history["block"]) == {"block 1", "block 2"}
+    assert both.elements_before == len(cells) and set(both.history["block"]) == {"block 1", "block 2"}
     assert np.isclose(both.smallest_angle, both.min_angle.min()) and "In block 2: " in both.summary
     cells = [[0, 1, 2, 3]]
-    assert tl.improve(([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], cells)).tetrahedra == 1
+    assert tl.improve(([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], cells)).elements == 1
     custom = tl.improve(slivers(), "custom", smooth=False, insert=False, contract=False, compound=False)
     assert custom.history["moves"][-1] == 0 and custom.history["edge_removals"][-1] > 0
     flat = tl.improve(slivers(), boundary="flat", time_limit=60)
@@ -121,7 +121,7 @@ def test_unused_far_point():
     mesh.GetPoints().InsertNextPoint(1e30, 0, 0)
     far = tl.improve(mesh)
     assert near.smallest_angle > near.smallest_angle_before
-    assert (far.smallest_angle, far.tetrahedra) == (near.smallest_angle, near.tetrahedra), far.summary
+    assert (far.smallest_angle, far.elements) == (near.smallest_angle, near.elements), far.summary
 
 
 def test_command():
@@ -132,8 +132,8 @@ def test_command():
     expected = tl.improve(source, "aggressive", regions="region")
     assert (points(tl.read(mesh)) == points(expected.mesh)).all()
     rows = list(csv.DictReader(open(table, encoding="utf-8")))
-    assert len(rows) == len(expected.history["tetrahedra"])
-    assert int(rows[-1]["tetrahedra"]) == expected.tetrahedra, rows[-1]
+    assert len(rows) == len(expected.history["elements"])
+    assert int(rows[-1]["elements"]) == expected.elements, rows[-1]
     run("improve", source, "-o", mesh, "--preset", "custom", "--no-insert", "--no-contract", "--no-compound")
     few = tl.improve(source, "custom", insert=False, contract=False, compound=False)
     assert (points(tl.read(mesh)) == points(few.mesh)).all()

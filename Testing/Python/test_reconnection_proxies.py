@@ -26,7 +26,7 @@ assert best.SmallestAngleAfter > best.SmallestAngleBefore and best.WorstAfter < 
 assert abs(best.CellData["min_angle"].GetRange()[0] - best.SmallestAngleAfter) < 1e-6
 assert abs(best.CellData["imr"].GetRange()[1] - best.WorstAfter) < 1e-6
 assert "Smallest dihedral angle: " in best.Summary, best.Summary
-assert column(best, 1, "N tetrahedra")[-1] == best.TetrahedraAfter
+assert column(best, 1, "N elements")[-1] == best.ElementsAfter
 assert len(column(best, 2, "Cell") if best.Remaining else []) == best.Remaining
 
 # every property of the panel arrives

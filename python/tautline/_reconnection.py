@@ -1,4 +1,4 @@
-"""The function improve: change the connectivity of a mesh of tetrahedra so that its worst elements become better."""
+"""The function improve: change the connectivity of tetrahedra or triangles so that the worst elements become better."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ BOUNDARIES = ("fixed", "flat")
 _FIXED, _REGIONS = 0, 1  # input arrays of vtkMeshImprover
 _MAX_ANGLE = 60.0
 _MAX_FLAT_TOLERANCE = 1.0
+_MAX_FEATURE_ANGLE, _MAX_SURFACE_ANGLE = 180.0, 90.0
 _OPERATIONS = {name: flag_option("Set" + name.title()) for name in ("swap", "smooth", "contract", "insert", "compound")}
 
 
@@ -30,21 +31,21 @@ class ImproveResult:
 
     #: The new mesh with the data of the input, `OriginalCellId`, `min_angle` and `imr`.
     mesh: vtkDataObject
-    #: Per pass (0 is the input): smallest_angle, largest_angle, worst_imr, tetrahedra, below_target, edge_removals,
-    #: face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite data also block.
+    #: Per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals
+    #: (of triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite data also block.
     history: dict[str, Any]
-    #: The tetrahedra that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, reason; of
+    #: The elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, reason; of
     #: composite data also block. Empty if there are none.
     remaining: dict[str, Any]
     #: Per cell the cell of the input that it has its data from, m.
     original_cell: np.ndarray
-    #: Per cell, m: smallest dihedral angle in degrees, inverse mean ratio.
+    #: Per cell, m: smallest angle in degrees (of tetrahedra dihedral), inverse mean ratio.
     min_angle: np.ndarray
     imr: np.ndarray
-    #: Number of tetrahedra before and after.
-    tetrahedra_before: int
-    tetrahedra: int
-    #: Smallest dihedral angle in degrees before and after.
+    #: Number of elements before and after.
+    elements_before: int
+    elements: int
+    #: Smallest angle in degrees before and after.
     smallest_angle_before: float
     smallest_angle: float
     #: Worst inverse mean ratio before and after.
@@ -66,6 +67,9 @@ def improve(
     smallest_count: float = 0.9,
     largest_count: float = 1.1,
     flat_tolerance: float = 1e-8,
+    feature_angle: float = 40.0,
+    surface_angle: float = 20.0,
+    surface_distance: float = 1e-3,
     regions: str | Sequence | None = None,
     fixed: str | Sequence | None = None,
     time_limit: float = 0.0,
@@ -73,23 +77,27 @@ def improve(
     merge_coincident_points: bool = True,
     **operations: bool,
 ) -> ImproveResult:
-    """Improve the worst tetrahedra of a mesh by swaps, contraction, insertion and motion of points.
+    """Improve the worst tetrahedra or triangles of a mesh by swaps, contraction, insertion and motion of points.
 
-    The smallest dihedral angle and the worst inverse mean ratio never become worse.
+    The smallest angle and the worst inverse mean ratio never become worse. Triangles are a planar mesh or a surface.
 
-    mesh: tetrahedra: a vtkUnstructuredGrid, a composite data set of these, a file name or (points, cells). It is not
-        changed. Cells of lower dimension are left out.
-    preset: "remove slivers" (changes only neighbourhoods of tetrahedra with dihedral angles below 15 or above 165
-        degrees), "swap only" (no point moves), "swap and smooth" (no point is inserted or removed), "aggressive" (every
+    mesh: tetrahedra or triangles: a vtkUnstructuredGrid, vtkPolyData of triangles, a composite data set of these, a
+        file name or (points, cells). It is not changed. Cells of lower dimension are left out; lines beside triangles
+        mark edges that stay.
+    preset: "remove slivers" (changes only neighbourhoods of elements with dihedral angles below 15 or above 165
+        degrees, of triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is inserted or removed), "aggressive" (every
         operation everywhere) or "custom" (the operations given).
     boundary: "fixed" (same points and facets) or "flat" (points slide in flat parts and along straight edges, facets
         there change; the shape stays).
-    target_angle: dihedral angle in degrees, at most 60, that every tetrahedron should reach; None or 0: that of
-        the preset, 15 for "remove slivers" and 33.4 for the others.
-    smallest_count, largest_count: bounds of the number of tetrahedra as multiples of that of the input. Both 1: no
+    target_angle: (dihedral) angle in degrees, at most 60, that every element should reach; None or 0: that of the
+        preset, 15 for "remove slivers" and 33.4 (triangles: 40) for the others.
+    smallest_count, largest_count: bounds of the number of elements as multiples of that of the input. Both 1: no
         point is inserted or removed.
     flat_tolerance: angle in degrees, 0 to 1, up to which facets are coplanar, with boundary "flat".
-    regions: the region of each cell, m, or the name of a cell array; facets between regions stay.
+    feature_angle: of a surface: edges between facets that differ by more degrees, 0 to 180, stay, and so do corners.
+    surface_angle, surface_distance: of a surface: how far the normals of changed triangles turn from the input below,
+        in degrees, 0 to 90, and how far triangles are from it, 0 to 1 times the diagonal of the mesh. Points are on it.
+    regions: the region of each cell, m, or the name of a cell array; facets (edges) between regions stay.
     fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
     time_limit: seconds; 0 is no limit.
     threads: number of threads for measuring; 0 is all cores. The result does not depend on it.
@@ -117,6 +125,9 @@ def improve(
     filter_.SetSmallestCount(within("smallest_count", smallest_count, 0, 1))
     filter_.SetLargestCount(within("largest_count", largest_count, 1, np.inf))
     filter_.SetFlatTolerance(within("flat_tolerance", flat_tolerance, 0, _MAX_FLAT_TOLERANCE))
+    filter_.SetFeatureAngle(within("feature_angle", feature_angle, 0, _MAX_FEATURE_ANGLE))
+    filter_.SetSurfaceAngle(within("surface_angle", surface_angle, 0, _MAX_SURFACE_ANGLE))
+    filter_.SetSurfaceDistance(within("surface_distance", surface_distance, 0, 1))
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
@@ -132,8 +143,8 @@ def improve(
         original_cell=cell_array(output, "OriginalCellId"),
         min_angle=cell_array(output, "min_angle"),
         imr=cell_array(output, "imr"),
-        tetrahedra_before=filter_.GetTetrahedraBefore(),
-        tetrahedra=filter_.GetTetrahedraAfter(),
+        elements_before=filter_.GetElementsBefore(),
+        elements=filter_.GetElementsAfter(),
         smallest_angle_before=filter_.GetSmallestAngleBefore(),
         smallest_angle=filter_.GetSmallestAngleAfter(),
         worst_before=filter_.GetWorstBefore(),
@@ -160,7 +171,7 @@ def _named(table: Any) -> dict[str, Any]:
 
 def add_commands(commands: Any) -> None:
     """Add `improve` to the subparsers of the command line."""
-    text = "change the connectivity of tetrahedra so that the worst become better"
+    text = "change the connectivity of tetrahedra or triangles so that the worst become better"
     parser = _commands.add_command(commands, "improve", _run_improve, text)
     _commands.add_moving_points(parser)
     parser.add_argument("--preset", choices=PRESETS, default="remove slivers")
@@ -170,17 +181,23 @@ def add_commands(commands: Any) -> None:
                         help="up to which facets are coplanar, with --boundary flat (default: 1e-8)")  # fmt: skip
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
     parser.add_argument("--target-angle", type=float, metavar="DEGREES",
-                        help="dihedral angle to be reached by all (default: that of the preset)")  # fmt: skip
+                        help="(dihedral) angle to be reached by all (default: that of the preset)")  # fmt: skip
+    parser.add_argument("--feature-angle", type=float, metavar="DEGREES", default=40.0,
+                        help="sharper edges of a surface stay (default: 40)")  # fmt: skip
+    parser.add_argument("--surface-angle", type=float, metavar="DEGREES", default=20.0,
+                        help="of normals from the input surface, at most (default: 20)")  # fmt: skip
+    parser.add_argument("--surface-distance", type=float, metavar="FACTOR", default=1e-3,
+                        help="from the input surface, relative to the diagonal (default: 1e-3)")  # fmt: skip
     parser.add_argument("--regions", metavar="ARRAY", help="cell array with regions, whose common facets stay")
     parser.add_argument("--smallest-count", type=float, default=0.9, metavar="FACTOR",
-                        help="least number of tetrahedra, relative to the input (default: 0.9)")  # fmt: skip
+                        help="least number of elements, relative to the input (default: 0.9)")  # fmt: skip
     parser.add_argument("--largest-count", type=float, default=1.1, metavar="FACTOR",
-                        help="largest number of tetrahedra, relative to the input (default: 1.1)")  # fmt: skip
+                        help="largest number of elements, relative to the input (default: 1.1)")  # fmt: skip
 
 
 def _run_improve(arguments: argparse.Namespace) -> None:
     names = ("preset", "boundary", "target_angle", "regions", "smallest_count", "largest_count")
-    names += ("flat_tolerance", "fixed", "time_limit", "threads", "merge_coincident_points")
+    names += ("flat_tolerance", "feature_angle", "surface_angle", "surface_distance", "fixed", "time_limit", "threads", "merge_coincident_points")
     left_out = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
     result = improve(arguments.mesh, **_commands.given(arguments, names), **left_out)
     print(result.summary)

@@ -103,8 +103,8 @@ void testKernel()
     const MeshData after = dataOf(meshOf(filter));
     TAUTLINE_CHECK(after.points == expected.points);
     TAUTLINE_CHECK(after.connectivity == expected.tetrahedra);
-    TAUTLINE_CHECK_EQUAL(filter->GetTetrahedraBefore(), data.numberOfCells());
-    TAUTLINE_CHECK_EQUAL(filter->GetTetrahedraAfter(), after.numberOfCells());
+    TAUTLINE_CHECK_EQUAL(filter->GetElementsBefore(), data.numberOfCells());
+    TAUTLINE_CHECK_EQUAL(filter->GetElementsAfter(), after.numberOfCells());
     const ReconnectionRecord& last = expected.history.back();
     TAUTLINE_CHECK_EQUAL(filter->GetSmallestAngleAfter(), last.smallestAngle);
     TAUTLINE_CHECK_EQUAL(filter->GetWorstAfter(), last.worstInverseMeanRatio);
@@ -379,7 +379,7 @@ void testInputs()
     TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid));
   }
   TAUTLINE_CHECK_EQUAL(
-    filter->GetTetrahedraAfter(), first->GetNumberOfCells() + third->GetNumberOfCells());
+    filter->GetElementsAfter(), first->GetNumberOfCells() + third->GetNumberOfCells());
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
   TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 3: "));
   blocks->SetBlock(1, toGrid(blockMesh(CellType::Hexahedron, 1, 1, 1)));
