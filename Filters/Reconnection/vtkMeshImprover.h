@@ -163,7 +163,7 @@ public:
    * Of surfaces in space. FeatureAngle, 0 to 180 degrees: edges between facets that differ by more
    * are kept. SurfaceAngle, 0 to 90 degrees, and SurfaceDistance, 0 to 1 times the diagonal of the
    * mesh: how far changed triangles turn and move away from the input. The defaults are 40, 20 and
-   * 0.001.
+   * 0.005.
    */
   vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
@@ -258,7 +258,7 @@ private:
   double LargestCount = 1.1;
   double FeatureAngle = 40.0;
   double SurfaceAngle = 20.0;
-  double SurfaceDistance = 1e-3;
+  double SurfaceDistance = 5e-3;
   bool MergeCoincidentPoints = true;
 
   std::string Reason;

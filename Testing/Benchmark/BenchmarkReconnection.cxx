@@ -1,13 +1,15 @@
-// Reconnection of a mesh of tetrahedra, one thread: CPU time per tetrahedron, the worst values, and
-// the number of operations, by preset and boundary.
+// Reconnection of a mesh of tetrahedra and one of triangles, one thread: CPU time per element, the
+// worst values, and the number of operations, by preset and boundary.
 //
 // usage: BenchmarkReconnection FILE.vtk     the mesh, legacy VTK
-//        BenchmarkReconnection SIZE         a cube of 6 SIZE^3 tetrahedra with moved points
+//        BenchmarkReconnection SIZE         a cube of 6 SIZE^3 tetrahedra with moved points,
+//                                    and a square of 200 SIZE^2 triangles
 
 #include "Clocks.h"
 #include "KuhnMesh.h"
 
 #include "tautline/Reconnection/Reconnection.h"
+#include "tautline/Reconnection/TriangleReconnection.h"
 
 #include "vtkCell.h"
 #include "vtkNew.h"
@@ -82,24 +84,61 @@ MeshData makeMesh(Index n)
   return data;
 }
 
+/// Cases of triangles.
+constexpr Case triangleCases[] = {
+  { "triangles, slivers", ReconnectionPreset::RemoveSlivers, ReconnectionBoundary::Fixed, 0.0 },
+  { "triangles, swap", ReconnectionPreset::SwapOnly, ReconnectionBoundary::Fixed, 0.0 },
+  { "triangles, swap and smooth", ReconnectionPreset::SwapAndSmooth, ReconnectionBoundary::Fixed,
+    0.0 },
+  { "triangles", ReconnectionPreset::Aggressive, ReconnectionBoundary::Fixed, 0.0 },
+  { "triangles, flat", ReconnectionPreset::Aggressive, ReconnectionBoundary::Flat, 0.0 },
+};
+
+/// The points inside a square moved at random by up to a third of the spacing.
+MeshData makeSheet(Index n)
+{
+  MeshData data = blockMesh(CellType::Triangle, n, n, 0);
+  const double side = static_cast<double>(n);
+  Random random(1);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      const bool inside = p[0] > 0.0 && p[0] < side && p[1] > 0.0 && p[1] < side;
+      const Vec3 d = random.vector(-0.24, 0.24);
+      return inside ? p + Vec3{ d[0], d[1], 0.0 } : p;
+    });
+  return data;
+}
+
+ReconnectionResult improve(const Mesh& mesh, const ReconnectionOptions& options)
+{
+  return improveConnectivity(mesh, options);
+}
+
+ReconnectionResult improve(const Mesh& mesh, const TriangleOptions& options)
+{
+  return improveTriangles(mesh, options);
+}
+
+template <class Options>
 void measure(const MeshData& data, const Case& work)
 {
   const Mesh mesh(data.view());
-  ReconnectionOptions options;
+  Options options;
   applyPreset(work.preset, options);
   options.boundary = work.boundary;
   options.targetAngle = work.targetAngle > 0.0 ? work.targetAngle : options.targetAngle;
   const double start = processTime();
-  const ReconnectionResult result = improveConnectivity(mesh, options);
+  const ReconnectionResult result = improve(mesh, options);
   const double seconds = processTime() - start;
   const ReconnectionRecord& last = result.history.back();
   const auto print = [&](const char* what, double value)
   { std::printf("%s: %s\t%.10g\n", work.name, what, value); };
   print("cpu seconds", seconds);
-  print("microseconds per tetrahedron", 1e6 * seconds / static_cast<double>(data.numberOfCells()));
+  print("microseconds per element", 1e6 * seconds / static_cast<double>(data.numberOfCells()));
   print("smallest angle", last.smallestAngle);
   print("worst inverse mean ratio", last.worstInverseMeanRatio);
-  print("tetrahedra", static_cast<double>(last.tetrahedra));
+  print("elements", static_cast<double>(last.tetrahedra));
   print("below target", static_cast<double>(last.belowTarget));
   print("edge removals", static_cast<double>(last.edgeRemovals));
   print("face removals", static_cast<double>(last.faceRemovals));
@@ -123,7 +162,16 @@ int main(int argc, char* argv[])
     const MeshData data = size > 0 ? makeMesh(size) : readMesh(argv[1]);
     for (const Case& work : cases)
     {
-      measure(data, work);
+      measure<ReconnectionOptions>(data, work);
+    }
+    constexpr Index SquaresPerCube = 10;
+    const MeshData sheet = makeSheet(SquaresPerCube * size);
+    for (const Case& work : triangleCases)
+    {
+      if (size > 0)
+      {
+        measure<TriangleOptions>(sheet, work);
+      }
     }
   }
   catch (const std::exception& error)

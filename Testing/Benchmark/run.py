@@ -4,7 +4,8 @@ Every time is the best of several turns, and every ratio is between times of one
 are CPU time; those of the thread speed-up are wall time. Prints tables; writes benchmark.json (times in
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
 elements, optimization.json and .csv of the optimizer (see optimization.py), and deformation.json and .csv of warping
-(see deformation.py) to the output directory, by default DIR/benchmark.
+(see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py) to the output
+directory, by default DIR/benchmark.
 """
 
 import argparse
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import deformation
 import optimization
+import reconnection
 
 KERNEL, FILTER, MEMORY = "kernel", "filter", ("memory-tautline", "memory-verdict")
 
@@ -199,13 +201,25 @@ def run_deformation(build: Path, output: Path, repeats: int, quick: bool) -> Non
     save(output, "deformation", times, table)
 
 
+def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> None:
+    unit = yardstick(build, repeats)["yardstick"]
+    times, rows = reconnection.run(build / "bin" / "BenchmarkReconnection", unit, quick)
+    show_table(rows)
+    head, table = "", {}
+    for what, number, _ in rows:
+        head = head if what.startswith(" ") else what.split(":")[0]
+        table[f"{head}: {what.strip()}" if what.startswith(" ") else what] = number
+    save(output, "reconnection", times, table)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parser.add_argument("--only", choices=("quality", "optimization", "deformation"), help="one part; both otherwise")
+    parser.add_argument("--only", choices=("quality", "optimization", "deformation", "reconnection"),
+                        help="one part; all otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
-    parser.add_argument("--quick", action="store_true", help="optimization, deformation: tiny meshes only")
+    parser.add_argument("--quick", action="store_true", help="tiny meshes only, but for quality")
     parser.add_argument("--huge", action="store_true", help="optimization: also 10,000,000 tetrahedra")
     parser.add_argument("--output", type=Path, help="where the results go")
     options = parser.parse_args()
@@ -214,6 +228,8 @@ def main() -> int:
         run_quality(options.build, output, options.size, options.repeats or 9)
     if options.only in (None, "deformation"):
         run_deformation(options.build, output, options.repeats or 3, options.quick)
+    if options.only in (None, "reconnection"):
+        run_reconnection(options.build, output, options.repeats or 3, options.quick)
     if options.only in (None, "optimization"):
         run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
     return 0

@@ -64,6 +64,15 @@ def check_deformation(output: Path) -> None:
         assert measured[f"stages: {motion} iterations"] == 0, measured
 
 
+def check_reconnection(output: Path) -> None:
+    measured, ratios = read(output, "reconnection")
+    assert measured["triangles: smallest angle"] > 30 and measured["slivers: smallest angle"] > 10, measured
+    # What never becomes worse with more operations, and swaps keep the number of triangles.
+    assert measured["triangles, swap: elements"] == 2 * 40**2, measured
+    assert measured["triangles, swap: smallest angle"] <= measured["triangles: smallest angle"], measured
+    assert all(number > 0 for key, number in ratios.items() if key.endswith("passes per element")), ratios
+
+
 def main(build: Path, output: Path) -> int:
     subprocess.run(["cmake", "--build", str(build), "--target", "benchmarks"], check=True)
     script = Path(__file__).with_name("run.py")
@@ -73,6 +82,7 @@ def main(build: Path, output: Path) -> int:
     check_quality(output)
     check_optimization(output)
     check_deformation(output)
+    check_reconnection(output)
     return 0
 
 

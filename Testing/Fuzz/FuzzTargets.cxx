@@ -10,7 +10,8 @@ const std::vector<FuzzTarget>& fuzzTargets()
   static const std::vector<FuzzTarget> targets = { { "tetgen", fuzzTetGen }, { "medit", fuzzMedit },
     { "gmsh", fuzzGmsh }, { "off", fuzzOff }, { "image", fuzzImage },
     { "imagelist", fuzzImageList }, { "silhouette", fuzzSilhouette }, { "quality", fuzzQuality },
-    { "mesh", fuzzMesh }, { "move", fuzzMove }, { "petscoptions", fuzzPetscOptions } };
+    { "mesh", fuzzMesh }, { "move", fuzzMove }, { "reconnection", fuzzReconnection },
+    { "petscoptions", fuzzPetscOptions } };
   return targets;
 }
 

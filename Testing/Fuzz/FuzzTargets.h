@@ -77,6 +77,8 @@ void fuzzSilhouette(std::string_view bytes);
 void fuzzQuality(std::string_view bytes);
 void fuzzMesh(std::string_view bytes);
 void fuzzMove(std::string_view bytes);
+// FuzzReconnection.cxx:
+void fuzzReconnection(std::string_view bytes);
 // FuzzSolvers.cxx:
 void fuzzPetscOptions(std::string_view bytes);
 }

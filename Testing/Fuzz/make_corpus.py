@@ -213,6 +213,8 @@ def main() -> None:
         "move": [bytes([kind, kind % 2, 1]) + noise(80 + 200 * (kind % 2 == 0), 32) for kind in range(4)],
         "petscoptions": [b"\0" + text for text in OPTIONS] + [bytes([1]) + noise(30) for _ in range(6)],
     }
+    more = np.random.default_rng(15)  # the inputs above stay
+    numbers["reconnection"] = [bytes([kind]) + bytes(more.integers(0, 256, 600).astype(np.uint8)) for kind in range(6)]
     for target, inputs in numbers.items():
         (CORPUS / target).mkdir(parents=True, exist_ok=True)
         for number, data in enumerate(inputs):

@@ -54,7 +54,7 @@ def test_improve():
         assert len(result.remaining.get("cell", ())) == history["below_target"][-1]
         assert "Smallest dihedral angle: " in result.summary and result.reason in result.summary
     easy = tl.improve(mesh, target_angle=1)
-    assert easy.reason == "Every tetrahedron has reached the target." and not easy.remaining, easy.summary
+    assert easy.reason == "Every element has reached the target." and not easy.remaining, easy.summary
 
 
 def test_data():

@@ -32,7 +32,8 @@ class ImproveResult:
     #: The new mesh with the data of the input, `OriginalCellId`, `min_angle` and `imr`.
     mesh: vtkDataObject
     #: Per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals
-    #: (of triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite data also block.
+    #: (of triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite data
+    #: also block.
     history: dict[str, Any]
     #: The elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, reason; of
     #: composite data also block. Empty if there are none.
@@ -69,7 +70,7 @@ def improve(
     flat_tolerance: float = 1e-8,
     feature_angle: float = 40.0,
     surface_angle: float = 20.0,
-    surface_distance: float = 1e-3,
+    surface_distance: float = 5e-3,
     regions: str | Sequence | None = None,
     fixed: str | Sequence | None = None,
     time_limit: float = 0.0,
@@ -85,8 +86,8 @@ def improve(
         file name or (points, cells). It is not changed. Cells of lower dimension are left out; lines beside triangles
         mark edges that stay.
     preset: "remove slivers" (changes only neighbourhoods of elements with dihedral angles below 15 or above 165
-        degrees, of triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is inserted or removed), "aggressive" (every
-        operation everywhere) or "custom" (the operations given).
+        degrees, of triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is
+        inserted or removed), "aggressive" (every operation everywhere) or "custom" (the operations given).
     boundary: "fixed" (same points and facets) or "flat" (points slide in flat parts and along straight edges, facets
         there change; the shape stays).
     target_angle: (dihedral) angle in degrees, at most 60, that every element should reach; None or 0: that of the
@@ -186,8 +187,8 @@ def add_commands(commands: Any) -> None:
                         help="sharper edges of a surface stay (default: 40)")  # fmt: skip
     parser.add_argument("--surface-angle", type=float, metavar="DEGREES", default=20.0,
                         help="of normals from the input surface, at most (default: 20)")  # fmt: skip
-    parser.add_argument("--surface-distance", type=float, metavar="FACTOR", default=1e-3,
-                        help="from the input surface, relative to the diagonal (default: 1e-3)")  # fmt: skip
+    parser.add_argument("--surface-distance", type=float, metavar="FACTOR", default=5e-3,
+                        help="from the input surface, relative to the diagonal (default: 5e-3)")  # fmt: skip
     parser.add_argument("--regions", metavar="ARRAY", help="cell array with regions, whose common facets stay")
     parser.add_argument("--smallest-count", type=float, default=0.9, metavar="FACTOR",
                         help="least number of elements, relative to the input (default: 0.9)")  # fmt: skip
@@ -197,7 +198,8 @@ def add_commands(commands: Any) -> None:
 
 def _run_improve(arguments: argparse.Namespace) -> None:
     names = ("preset", "boundary", "target_angle", "regions", "smallest_count", "largest_count")
-    names += ("flat_tolerance", "feature_angle", "surface_angle", "surface_distance", "fixed", "time_limit", "threads", "merge_coincident_points")
+    names += ("flat_tolerance", "feature_angle", "surface_angle", "surface_distance")
+    names += ("fixed", "time_limit", "threads", "merge_coincident_points")
     left_out = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
     result = improve(arguments.mesh, **_commands.given(arguments, names), **left_out)
     print(result.summary)

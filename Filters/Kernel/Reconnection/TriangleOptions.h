@@ -32,7 +32,7 @@ struct TriangleOptions : ReconnectionOptions
   /// Degrees, 0 to 90: the normals of changed triangles are as close to that of the input below.
   double surfaceAngle = 20.0;
   /// Changed triangles are as close to the input, as a multiple of the diagonal of its box; 0 to 1.
-  double surfaceDistance = 1e-3;
+  double surfaceDistance = 5e-3;
   ///@}
 };
 

@@ -19,17 +19,16 @@ bool TriangleSurface::accepts(const Vec3& a, const Vec3& b, const Vec3& c, int p
   const SurfaceProjection& surface = this->Patches[patch];
   const Vec3 centre = (1.0 / 3.0) * (a + b + c);
   const Vec3 normal = cross(b - a, c - a);
-  if (!(dot(normal, surface.direction(centre)) >= this->Cosine * norm(normal)))
-  {
-    return false;
-  }
+  // The mean normal: slivers of the input may be turned anywhere.
+  Vec3 below = { 0, 0, 0 };
   for (const Vec3& x : { centre, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a) })
   {
     if (!(norm(surface.closest(x) - x) <= this->Distance))
     {
       return false;
     }
+    below += surface.direction(x);
   }
-  return true;
+  return dot(normal, below) >= this->Cosine * norm(normal) * norm(below);
 }
 }

@@ -253,8 +253,12 @@ void testRefusals()
   };
   refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), "8 hexahedra: Improve Mesh takes");
   refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), "run Tetrahedralize first");
-  refused(toGrid(blockMesh(CellType::Triangle, 2, 2, 0)), "8 triangles, but no tetrahedron");
-  refused(toPolyData(blockMesh(CellType::Triangle, 2, 2, 0)), "The mesh is a vtkPolyData");
+  MeshData mixed = blockMesh(CellType::Triangle, 2, 2, 0);
+  mixed.addCell(CellType::Quadrilateral, { 0, 1, 4, 3 });
+  for (vtkDataSet* of : { static_cast<vtkDataSet*>(toGrid(mixed)), static_cast<vtkDataSet*>(toPolyData(mixed)) })
+  {
+    refused(of, "1 quadrilaterals: Improve Mesh takes linear triangles only; run Triangulate first");
+  }
   vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 3);
   refused(image, "run Tetrahedralize first");

@@ -1,0 +1,46 @@
+// 100,000 accepted operations on changing meshes, adjacency, orientation, area and volume checked
+// after each.
+
+#include "Check.h"
+#include "ReconnectionSteps.h"
+
+#include "tautline/Core/Random.h"
+
+using namespace tautline;
+
+namespace
+{
+constexpr long Wanted = 50000;
+constexpr long Attempts = 4000; // with one mesh
+
+template <class Change>
+void testOperations(const char* name, const Change& change)
+{
+  const Context context(name);
+  long accepted = 0;
+  try
+  {
+    for (Index mesh = 0; accepted < Wanted; ++mesh)
+    {
+      constexpr std::uint64_t Seed = 20261122;
+      SplitMix random(Seed, 0, mesh);
+      Choices choices = { [&] { return static_cast<std::uint32_t>(random.next() >> 32); },
+        [] { return true; } };
+      accepted += change(choices, Attempts);
+    }
+  }
+  catch (const std::logic_error& violation)
+  {
+    std::cerr << violation.what() << " after " << accepted << " operations on former meshes\n";
+    TAUTLINE_CHECK(!"the operations keep the mesh");
+  }
+  TAUTLINE_CHECK(accepted >= Wanted);
+}
+}
+
+int TestReconnectionSteps(int, char*[])
+{
+  testOperations("triangles", changeTriangles);
+  testOperations("tetrahedra", changeTetrahedra);
+  return exitCode();
+}

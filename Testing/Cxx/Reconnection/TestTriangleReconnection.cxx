@@ -1,0 +1,454 @@
+// improveTriangles() of planar meshes: known optima, invariances, what is kept.
+
+#include "Triangulating.h"
+
+using namespace tautline;
+
+namespace
+{
+using Preset = ReconnectionPreset;
+
+constexpr Preset presets[] = { Preset::RemoveSlivers, Preset::SwapOnly, Preset::SwapAndSmooth,
+  Preset::Aggressive };
+
+Vec2 flat(const Vec3& p)
+{
+  return { p[0], p[1] };
+}
+
+std::set<std::array<Index, 3>> cellsOf(const MeshData& data)
+{
+  std::set<std::array<Index, 3>> cells;
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    std::array<Index, 3> t;
+    std::copy_n(&data.connectivity[3 * c], 3, t.begin());
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    cells.insert(t);
+  }
+  return cells;
+}
+
+/// Flips lead from any triangulation to that of Delaunay: no point in any circumcircle. Its
+/// smallest angle is the largest of all triangulations of the points.
+void testDelaunay()
+{
+  for (unsigned seed = 1; seed <= 8; ++seed)
+  {
+    const MeshData delaunay = delaunaySquare(150, seed);
+    const MeshData input = randomlyFlipped(delaunay, 4000, seed);
+    TAUTLINE_CHECK(smallestAngle(input) < 0.5 * smallestAngle(delaunay));
+    const ReconnectionResult result = reconnect(input, triangleOptions(Preset::SwapOnly));
+    const MeshData output = trianglesOf(result);
+    checkTriangles(input, result);
+    TAUTLINE_CHECK(output.points == input.points);
+    TAUTLINE_CHECK_RELATIVE(smallestAngle(output), smallestAngle(delaunay), 1e-12);
+    TAUTLINE_CHECK(cellsOf(output) == cellsOf(delaunay));
+    for (Index c = 0; c < output.numberOfCells(); ++c)
+    {
+      const Index* v = &output.connectivity[3 * c];
+      const Vec2 p = flat(output.point(v[0])), q = flat(output.point(v[1]));
+      const Vec2 r = flat(output.point(v[2]));
+      for (Index i = 0; i < output.numberOfPoints(); ++i)
+      {
+        TAUTLINE_CHECK(inCircle(p, q, r, flat(output.point(i))) <= 0);
+      }
+    }
+  }
+}
+
+/// The largest smallest angle of all triangulations of a convex polygon, by dynamic programming.
+double bestOfPolygon(const MeshData& data, Index n)
+{
+  const auto angle = [&](Index a, Index b, Index c)
+  {
+    return smallestAngle(
+      singleCell(CellType::Triangle, { data.point(a), data.point(b), data.point(c) }));
+  };
+  std::vector<std::vector<double>> best(n, std::vector<double>(n, 180.0));
+  for (Index length = 2; length < n; ++length)
+  {
+    for (Index i = 0; i + length < n; ++i)
+    {
+      best[i][i + length] = 0.0;
+      for (Index k = i + 1; k < i + length; ++k)
+      {
+        best[i][i + length] = std::max(best[i][i + length],
+          std::min({ best[i][k], best[k][i + length], angle(i, k, i + length) }));
+      }
+    }
+  }
+  return best[0][n - 1];
+}
+
+void testPolygon()
+{
+  constexpr Index corners = 11;
+  for (unsigned seed = 1; seed <= 6; ++seed)
+  {
+    Random random(seed);
+    std::vector<double> turns(corners);
+    for (double& turn : turns)
+    {
+      turn = random.uniform(0.0, 2.0 * Pi);
+    }
+    std::sort(turns.begin(), turns.end());
+    MeshData fan;
+    for (double turn : turns)
+    {
+      fan.addPoint({ 3.0 * std::cos(turn), std::sin(turn), 0.5 });
+    }
+    for (Index i = 1; i + 1 < corners; ++i)
+    {
+      fan.addCell(CellType::Triangle, { 0, i, i + 1 });
+    }
+    const ReconnectionResult result = reconnect(fan, triangleOptions(Preset::SwapOnly));
+    TAUTLINE_CHECK_RELATIVE(
+      result.history.back().smallestAngle, bestOfPolygon(fan, corners), 1e-9);
+  }
+}
+
+/// A point within a regular hexagon goes to its middle: all angles are then 60 degrees.
+void testHexagon()
+{
+  MeshData data;
+  for (int k = 0; k < 6; ++k)
+  {
+    data.addPoint({ std::cos(k * Pi / 3), std::sin(k * Pi / 3), 0.0 });
+  }
+  data.addPoint({ 0.6, 0.31, 0.0 });
+  for (Index k = 0; k < 6; ++k)
+  {
+    data.addCell(CellType::Triangle, { k, (k + 1) % 6, 6 });
+  }
+  TriangleOptions options = triangleOptions(Preset::SwapAndSmooth);
+  options.swap = false;
+  options.targetAngle = 60.0;
+  const ReconnectionResult result = reconnect(data, options);
+  TAUTLINE_CHECK(result.history.back().smallestAngle > 59.5);
+  TAUTLINE_CHECK(norm(trianglesOf(result).point(6)) < 0.01);
+}
+
+/// Every preset on a sheet of slivers: never worse, the border and the area stay.
+void testPresets()
+{
+  for (Preset preset : presets)
+  {
+    const Context context("preset " + std::to_string(static_cast<int>(preset)));
+    const MeshData data = sliverSheet(16);
+    const ReconnectionResult result = reconnect(data, triangleOptions(preset));
+    const MeshData output = trianglesOf(result);
+    checkTriangles(data, result);
+    TAUTLINE_CHECK_RELATIVE(areaOf(output), areaOf(data), 1e-14);
+    TAUTLINE_CHECK(borderOf(output) == borderOf(data));
+    const double angle = result.history.back().smallestAngle;
+    TAUTLINE_CHECK(result.history.front().smallestAngle < 1.0);
+    TAUTLINE_CHECK(angle >= (preset == Preset::SwapOnly ? 2.0
+                        : preset == Preset::SwapAndSmooth ? 25.0
+                        : preset == Preset::Aggressive    ? 39.9
+                                                          : 15.0));
+    TAUTLINE_CHECK(preset != Preset::SwapOnly || output.points == data.points);
+    const ReconnectionResult again = reconnect(data, triangleOptions(preset));
+    TAUTLINE_CHECK(again.points == result.points && again.triangles == result.triangles);
+    // Original cells contain the centroids.
+    for (Index c = 0; c < output.numberOfCells(); ++c)
+    {
+      const Index* v = &output.connectivity[3 * c];
+      const Vec3 x =
+        (1.0 / 3.0) * (output.point(v[0]) + output.point(v[1]) + output.point(v[2]));
+      const Index* w = &data.connectivity[3 * result.originalCells[c]];
+      for (int k = 0; k < 3; ++k)
+      {
+        const Vec3 a = data.point(w[k]), b = data.point(w[(k + 1) % 3]);
+        TAUTLINE_CHECK(cross(b - a, x - a)[2] > -1e-9);
+      }
+    }
+    for (const PointInterpolation& place : result.interpolations)
+    {
+      Vec3 x = { 0, 0, 0 };
+      for (int k = 0; k < 3; ++k)
+      {
+        x += place.weights[k] * data.point(data.connectivity[3 * place.cell + k]);
+      }
+      TAUTLINE_CHECK(norm(x - output.point(place.point)) < 1e-12);
+      TAUTLINE_CHECK_EQUAL(result.originalPoints[place.point], -1);
+    }
+  }
+}
+
+/// The same triangulation for other units, directions and numbers.
+void testInvariance()
+{
+  const MeshData data = randomlyFlipped(delaunaySquare(200, 3), 3000, 3);
+  const TriangleOptions swap = triangleOptions(Preset::SwapOnly);
+  const auto expected = cellsOf(trianglesOf(reconnect(data, swap)));
+  MeshData sheet = sliverSheet(14, 3);
+  sheet.transform([](Vec3 p) { return (1.0 / 14.0) * p; });
+  for (double scale : { 1e-8, 1e8, 0x1p-90, 0x1p80 })
+  {
+    const Context context("scale " + std::to_string(scale));
+    MeshData scaled = data;
+    scaled.transform([&](Vec3 p) { return scale * p; });
+    TAUTLINE_CHECK(cellsOf(trianglesOf(reconnect(scaled, swap))) == expected);
+    scaled = sheet;
+    scaled.transform([&](Vec3 p) { return scale * p; });
+    const ReconnectionResult result = reconnect(scaled, triangleOptions(Preset::Aggressive));
+    TAUTLINE_CHECK(result.history.back().smallestAngle > 39.9);
+    TAUTLINE_CHECK_RELATIVE(areaOf(trianglesOf(result)), scale * scale, 1e-13);
+  }
+  Random random(4);
+  for (int i = 0; i < 4; ++i)
+  {
+    const Context context("rotation " + std::to_string(i));
+    auto turn = randomRotation(random);
+    // Planar meshes are positive seen along their normal, whose largest component is positive.
+    const Vec3 n = turn[2];
+    const double largest = std::max({ n[0], n[1], n[2] }), least = std::min({ n[0], n[1], n[2] });
+    if (-least > largest)
+    {
+      turn[1] = -1.0 * turn[1];
+      turn[2] = -1.0 * turn[2];
+      turn[0] = cross(turn[1], turn[2]);
+    }
+    MeshData turned = data;
+    turned.transform([&](Vec3 p) { return turn * p + Vec3{ 1, 2, 3 }; });
+    TAUTLINE_CHECK(cellsOf(trianglesOf(reconnect(turned, swap))) == expected);
+    turned = sheet;
+    turned.transform([&](Vec3 p) { return turn * p + Vec3{ 1, 2, 3 }; });
+    const ReconnectionResult result = reconnect(turned, triangleOptions(Preset::Aggressive));
+    const MeshData output = trianglesOf(result);
+    TAUTLINE_CHECK(result.history.back().smallestAngle > 39.9);
+    TAUTLINE_CHECK_RELATIVE(areaOf(output), 1.0, 1e-13);
+    const Vec3 normal = turn * Vec3{ 0, 0, 1 };
+    for (Index p = 0; p < output.numberOfPoints(); ++p)
+    {
+      TAUTLINE_CHECK(std::abs(dot(output.point(p) - Vec3{ 1, 2, 3 }, normal)) < 1e-14);
+    }
+  }
+  const MeshData other = shuffled(data, 9);
+  const auto angles = [](const MeshData& of)
+  {
+    std::vector<double> values = valuesOf(of, Metric::MinimumAngle);
+    std::sort(values.begin(), values.end());
+    return values;
+  };
+  const std::vector<double> one = angles(trianglesOf(reconnect(data, swap)));
+  const std::vector<double> two = angles(trianglesOf(reconnect(other, swap)));
+  TAUTLINE_CHECK_EQUAL(one.size(), two.size());
+  for (std::size_t i = 0; i < one.size(); ++i)
+  {
+    TAUTLINE_CHECK_RELATIVE(one[i], two[i], 1e-9);
+  }
+  // Reversed throughout: the mirror image.
+  MeshData reversed = data;
+  for (Index c = 0; c < reversed.numberOfCells(); ++c)
+  {
+    std::swap(reversed.connectivity[3 * c], reversed.connectivity[3 * c + 1]);
+  }
+  Mesh mirrored(reversed.view());
+  mirrored.setMirrored(true);
+  const ReconnectionResult result = improveTriangles(mirrored, swap);
+  for (Index c = 0; c < static_cast<Index>(result.originalCells.size()); ++c)
+  {
+    TAUTLINE_CHECK(areaVector(trianglesOf(result), c)[2] < 0.0);
+  }
+  TAUTLINE_CHECK_RELATIVE(
+    result.history.back().smallestAngle, reconnect(data, swap).history.back().smallestAngle, 1e-9);
+}
+
+/// Regions keep their areas, their common edges and their cells.
+void testRegions()
+{
+  const MeshData data = sliverSheet(14, 7);
+  std::vector<Index> regions(data.numberOfCells());
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    regions[c] = (c / 2 % 14 < 6 ? 4 : -1) + (c / 28 < 5 ? 7 : 0);
+  }
+  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    TriangleOptions options = triangleOptions(Preset::Aggressive);
+    options.regions = regions.data();
+    options.boundary = boundary;
+    const ReconnectionResult result = reconnect(data, options);
+    const MeshData output = trianglesOf(result);
+    checkTriangles(data, result);
+    std::vector<Index> after;
+    for (Index original : result.originalCells)
+    {
+      after.push_back(regions[original]);
+    }
+    for (Index region : { -1, 4, 6, 11 })
+    {
+      TAUTLINE_CHECK_RELATIVE(
+        areaOf(output, after, region), areaOf(data, regions, region), 1e-13);
+    }
+    TAUTLINE_CHECK(result.history.back().smallestAngle >= 10.0 * result.history.front().smallestAngle);
+  }
+}
+
+/// Straight parts of the border: points slide, are removed and added there; the shape stays.
+void testFlat()
+{
+  // Points of the border that are unevenly spaced.
+  MeshData data = sliverSheet(12, 3, 0.3);
+  data.transform(
+    [](Vec3 p)
+    { return Vec3{ p[0] + 0.07 * p[0] * p[0], p[1] + 0.3 * std::sin(p[1]), 0.0 }; });
+  TriangleOptions options = triangleOptions(Preset::Aggressive);
+  const double kept = reconnect(data, options).history.back().smallestAngle;
+  options.boundary = ReconnectionBoundary::Flat;
+  options.smallestCount = 0.5;
+  const ReconnectionResult result = reconnect(data, options);
+  const MeshData output = trianglesOf(result);
+  checkTriangles(data, result);
+  TAUTLINE_CHECK(result.pointsOnLines == 4 * 11);
+  TAUTLINE_CHECK(borderOf(output) != borderOf(data));
+  TAUTLINE_CHECK_RELATIVE(areaOf(output), areaOf(data), 1e-13);
+  const double right = 12 + 0.07 * 144, top = 12 + 0.3 * std::sin(12.0);
+  for (const auto& [a, b] : borderOf(output))
+  {
+    const auto along = [&](int axis, double value)
+    { return std::abs(a[axis] - value) < 1e-13 && std::abs(b[axis] - value) < 1e-13; };
+    TAUTLINE_CHECK(along(0, 0.0) || along(0, right) || along(1, 0.0) || along(1, top));
+  }
+  TAUTLINE_CHECK(result.history.back().smallestAngle >= 40.0 && kept >= 39.0);
+}
+
+void testCount()
+{
+  const MeshData data = sliverSheet(14, 11);
+  for (double factor : { 1.0, 1.02, 1.1 })
+  {
+    TriangleOptions options = triangleOptions(Preset::Aggressive);
+    options.smallestCount = 1.0 / factor;
+    options.largestCount = factor;
+    const ReconnectionResult result = reconnect(data, options);
+    const double ratio = static_cast<double>(result.history.back().tetrahedra) /
+      static_cast<double>(data.numberOfCells());
+    TAUTLINE_CHECK(ratio <= factor && ratio >= 1.0 / factor - 1e-12);
+    if (factor == 1.0)
+    {
+      TAUTLINE_CHECK_EQUAL(result.history.back().insertions, 0);
+      TAUTLINE_CHECK_EQUAL(result.history.back().contractions, 0);
+    }
+  }
+}
+
+/// Marked edges and fixed points stay; what they hold below the target is said to be so.
+void testKept()
+{
+  const MeshData data = sliverSheet(12, 13);
+  TriangleOptions options = triangleOptions(Preset::Aggressive);
+  std::vector<unsigned char> fixed(data.numberOfPoints(), 0);
+  for (std::size_t i = 0; i < fixed.size(); i += 5)
+  {
+    fixed[i] = 1;
+  }
+  options.fixed = fixed.data();
+  Index next = 0;
+  for (const auto& use : edgesOf(data))
+  {
+    if (++next % 9 == 0)
+    {
+      options.markedEdges.push_back({ use.first[1], use.first[0] });
+    }
+  }
+  const ReconnectionResult result = reconnect(data, options);
+  const MeshData output = trianglesOf(result);
+  checkTriangles(data, result);
+  std::vector<Index> place(data.numberOfPoints(), -1);
+  for (std::size_t i = 0; i < result.originalPoints.size(); ++i)
+  {
+    if (result.originalPoints[i] >= 0)
+    {
+      place[result.originalPoints[i]] = static_cast<Index>(i);
+    }
+  }
+  for (std::size_t i = 0; i < fixed.size(); i += 5)
+  {
+    TAUTLINE_CHECK(place[i] >= 0 && output.point(place[i]) == data.point(static_cast<Index>(i)));
+  }
+  const auto edges = edgesOf(output);
+  for (const EdgeKey& edge : options.markedEdges)
+  {
+    const Index a = place[edge[0]], b = place[edge[1]];
+    TAUTLINE_CHECK(a >= 0 && b >= 0 && edges.count({ std::min(a, b), std::max(a, b) }) == 1);
+  }
+  Index below = 0;
+  std::map<int, Index> reasons;
+  for (signed char obstacle : result.obstacles)
+  {
+    below += obstacle != 0;
+    ++reasons[obstacle];
+  }
+  TAUTLINE_CHECK_EQUAL(below, result.history.back().belowTarget);
+  TAUTLINE_CHECK(reasons[static_cast<int>(ReconnectionObstacle::FixedPoints)] > 0);
+  TAUTLINE_CHECK(reasons[static_cast<int>(ReconnectionObstacle::Interface)] > 0);
+
+  std::fill(fixed.begin(), fixed.end(), 1);
+  options.swap = options.insert = false;
+  const ReconnectionResult still = reconnect(data, options);
+  TAUTLINE_CHECK(still.points == data.points && still.triangles == data.connectivity);
+}
+
+/// A corner of 20 degrees: no mesh has a larger smallest angle, and that is reported.
+void testForced()
+{
+  constexpr double corner = 20.0 * Pi / 180.0;
+  MeshData data;
+  data.addPoint({ 0, 0, 0 });
+  data.addPoint({ 1, 0, 0 });
+  data.addPoint({ std::cos(corner), std::sin(corner), 0 });
+  data.addCell(CellType::Triangle, { 0, 1, 2 });
+  const ReconnectionResult result = reconnect(data, triangleOptions(Preset::Aggressive));
+  TAUTLINE_CHECK_EQUAL(result.history.back().tetrahedra, 1);
+  TAUTLINE_CHECK_EQUAL(
+    static_cast<int>(result.obstacles[0]), static_cast<int>(ReconnectionObstacle::Facets));
+  TAUTLINE_CHECK_RELATIVE(result.forcedQuality, std::sin(corner), 1e-12);
+  TAUTLINE_CHECK_RELATIVE(
+    result.forcedInverseMeanRatio, valuesOf(data, Metric::InverseMeanRatio)[0], 1e-12);
+}
+
+void testLimits()
+{
+  const MeshData data = sliverSheet(40, 3);
+  TriangleOptions options = triangleOptions(Preset::Aggressive);
+  options.maximumSeconds = 1e-9;
+  const ReconnectionResult timed = reconnect(data, options);
+  TAUTLINE_CHECK(timed.reason == StopReason::TimeLimit);
+  checkTriangles(data, timed);
+  options.maximumSeconds = 0.0;
+  for (int allowed : { 0, 1, 3 })
+  {
+    int calls = 0;
+    double last = 0.0;
+    options.observer = [&](const ReconnectionRecord&, double progress)
+    {
+      TAUTLINE_CHECK(progress >= last && progress <= 1.0);
+      last = progress;
+      return calls++ < allowed;
+    };
+    const ReconnectionResult stopped = reconnect(data, options);
+    TAUTLINE_CHECK(stopped.reason == StopReason::Aborted);
+    TAUTLINE_CHECK_EQUAL(calls, allowed + 1);
+    checkTriangles(data, stopped);
+  }
+}
+}
+
+int TestTriangleReconnection(int, char*[])
+{
+  testDelaunay();
+  testPolygon();
+  testHexagon();
+  testPresets();
+  testInvariance();
+  testRegions();
+  testFlat();
+  testCount();
+  testKept();
+  testForced();
+  testLimits();
+  return exitCode();
+}

@@ -1,0 +1,420 @@
+// improveTriangles() of surfaces in space, and input that is hard to take.
+
+#include "Triangulating.h"
+
+using namespace tautline;
+
+namespace
+{
+using Preset = ReconnectionPreset;
+
+/// The distance of a point from the triangles of a mesh.
+double distanceFrom(const MeshData& data, const Vec3& x)
+{
+  double least = std::numeric_limits<double>::max();
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    Vec3 p[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      p[k] = data.point(data.connectivity[3 * c + k]);
+    }
+    const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
+    bool inside = true;
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vec3 e = p[(k + 1) % 3] - p[k];
+      inside = inside && dot(cross(e, x - p[k]), n) >= 0.0;
+      const double s = std::clamp(dot(x - p[k], e) / dot(e, e), 0.0, 1.0);
+      least = std::min(least, norm(x - (p[k] + s * e)));
+    }
+    if (inside)
+    {
+      least = std::min(least, std::abs(dot(x - p[0], n)) / norm(n));
+    }
+  }
+  return least;
+}
+
+/// Whether every edge has two cells, with opposite senses.
+bool isClosed(const MeshData& data)
+{
+  std::map<EdgeKey, int> senses;
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const Index a = data.connectivity[3 * c + k], b = data.connectivity[3 * c + (k + 1) % 3];
+      senses[{ std::min(a, b), std::max(a, b) }] += a < b ? 1 : 1000;
+    }
+  }
+  return std::all_of(senses.begin(), senses.end(), [](const auto& s) { return s.second == 1001; });
+}
+
+/// The surface with points moved along its facets by up to some fraction of their stars.
+MeshData slid(const MeshData& data, unsigned seed, double amount, bool onSphere)
+{
+  MeshData result = data;
+  Random random(seed);
+  const VertexCells cells = Mesh(data.view()).vertexCells();
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Index first = cells.offsets[i], count = cells.offsets[i + 1] - first;
+    const Vec3 n = areaVector(result, cells.cells[first]);
+    bool flat = true;
+    for (Index k = 0; k < count; ++k)
+    {
+      const Vec3 m = areaVector(data, cells.cells[first + k]);
+      flat = flat && norm(cross(m, n)) < 1e-9 * dot(m, m);
+    }
+    if (!flat && !onSphere)
+    {
+      continue;
+    }
+    // Towards a point of the star, so that it stays in a facet of a flat star.
+    const Index c = cells.cells[first + random.integer(count)];
+    const Index other = data.connectivity[3 * c + random.integer(3)];
+    const double size = amount * random.uniform(0.3, 1.0);
+    Vec3 x = data.point(i) + size * (data.point(other) - data.point(i));
+    x = onSphere ? (1.0 / norm(x)) * x : x;
+    const Vec3 before = result.point(i);
+    result.setPoint(i, x);
+    for (Index k = 0; k < count; ++k)
+    {
+      const Vec3 m = areaVector(result, cells.cells[first + k]);
+      const Vec3 old = areaVector(data, cells.cells[first + k]);
+      if (!(dot(m, old) > 0.02 * dot(old, old)))
+      {
+        result.setPoint(i, before);
+        break;
+      }
+    }
+  }
+  return result;
+}
+
+double volumeOf(const MeshData& data)
+{
+  return volumeWithin(data, data.points);
+}
+
+/// Points of the sphere stay on its facets; triangles are near it and turned like it.
+void testSphere()
+{
+  const MeshData data = slid(sphereSurface(CellType::Triangle, 7), 3, 0.7, true);
+  const auto turnOf = [](const MeshData& mesh)
+  {
+    double largest = 0.0;
+    for (Index c = 0; c < mesh.numberOfCells(); ++c)
+    {
+      const Index* v = &mesh.connectivity[3 * c];
+      const Vec3 x = mesh.point(v[0]) + mesh.point(v[1]) + mesh.point(v[2]);
+      const Vec3 n = areaVector(mesh, c);
+      largest = std::max(largest, std::atan2(norm(cross(n, x)), dot(n, x)) * 180.0 / Pi);
+    }
+    return largest;
+  };
+  for (Preset preset : { Preset::RemoveSlivers, Preset::SwapOnly, Preset::SwapAndSmooth,
+         Preset::Aggressive })
+  {
+    const Context context("sphere, preset " + std::to_string(static_cast<int>(preset)));
+    const ReconnectionResult result = reconnect(data, triangleOptions(preset));
+    const MeshData output = trianglesOf(result);
+    checkTriangles(data, result);
+    TAUTLINE_CHECK(isClosed(output));
+    double farthest = 0.0, deviation = 0.0;
+    for (Index i = 0; i < output.numberOfPoints(); ++i)
+    {
+      farthest = std::max(farthest, distanceFrom(data, output.point(i)));
+    }
+    for (Index c = 0; c < output.numberOfCells(); ++c)
+    {
+      const Index* v = &output.connectivity[3 * c];
+      const Vec3 x = (1.0 / 3.0) * (output.point(v[0]) + output.point(v[1]) + output.point(v[2]));
+      deviation = std::max(deviation, distanceFrom(data, x));
+    }
+    std::cout << turnOf(data) << " " << turnOf(output) << " " << smallestAngle(data) << " " << smallestAngle(output) << " " << deviation << "\n";
+    TAUTLINE_CHECK(turnOf(output) <= turnOf(data) + 20.0);
+    TAUTLINE_CHECK(farthest < 1e-12);
+    TAUTLINE_CHECK(deviation <= 5e-3 * 2.0 * std::sqrt(3.0));
+    TAUTLINE_CHECK(std::abs(volumeOf(output) / volumeOf(data) - 1.0) < 2e-2);
+    TAUTLINE_CHECK(preset != Preset::SwapOnly || output.points == data.points);
+    if (preset != Preset::SwapOnly)
+    {
+      TAUTLINE_CHECK(result.history.back().smallestAngle > 15.0);
+    }
+  }
+}
+
+/// A cube keeps its edges and corners; its faces are flat, so that area and volume stay.
+void testCube()
+{
+  const MeshData data = slid(cubeSurface(CellType::Triangle, 8), 5, 0.95, false);
+  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    TriangleOptions options = triangleOptions(Preset::Aggressive);
+    options.boundary = boundary;
+    const ReconnectionResult result = reconnect(data, options);
+    const MeshData output = trianglesOf(result);
+    checkTriangles(data, result);
+    TAUTLINE_CHECK(isClosed(output));
+    TAUTLINE_CHECK_RELATIVE(areaOf(output), 6.0, 1e-12);
+    TAUTLINE_CHECK_RELATIVE(volumeOf(output), 1.0, 1e-12);
+    TAUTLINE_CHECK(result.history.front().smallestAngle < 6.0);
+    TAUTLINE_CHECK(result.history.back().smallestAngle > 34.0);
+  }
+}
+
+/// Rims of a cylinder stay when they are features, and its radius is kept within the distance.
+void testCylinder()
+{
+  const MeshData data = slid(cylinderSurface(48, 14), 7, 0.9, false);
+  TriangleOptions options = triangleOptions(Preset::Aggressive);
+  const ReconnectionResult result = reconnect(data, options);
+  const MeshData output = trianglesOf(result);
+  checkTriangles(data, result);
+  TAUTLINE_CHECK(isClosed(output));
+  std::set<Vec3> points;
+  for (Index i = 0; i < output.numberOfPoints(); ++i)
+  {
+    points.insert(output.point(i));
+  }
+  int rim = 0;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Vec3 p = data.point(i);
+    if (std::abs(std::hypot(p[0], p[1]) - 1.0) < 1e-9 && (p[2] == 0.0 || p[2] == 2.0))
+    {
+      ++rim;
+      TAUTLINE_CHECK(points.count(p) == 1);
+    }
+  }
+  TAUTLINE_CHECK_EQUAL(rim, 96);
+}
+
+/// Two triangles whose common edge a flip would improve, folded along it.
+MeshData roof(double degrees)
+{
+  const double turn = degrees * Pi / 180.0;
+  MeshData data;
+  data.addPoint({ -1, 0, 0 });
+  data.addPoint({ 1, 0, 0 });
+  data.addPoint({ 0, 0.2, 0 });
+  data.addPoint({ 0, -0.2 * std::cos(turn), -0.2 * std::sin(turn) });
+  data.addCell(CellType::Triangle, { 0, 1, 2 });
+  data.addCell(CellType::Triangle, { 1, 0, 3 });
+  return data;
+}
+
+/// A fold is flipped only where it is flat within the angle and the distance, and not at a feature.
+void testFold()
+{
+  const auto flips = [](double fold, double angle, double distance, double feature)
+  {
+    TriangleOptions options = triangleOptions(Preset::SwapOnly);
+    options.surfaceAngle = angle;
+    options.surfaceDistance = distance;
+    options.featureAngle = feature;
+    return reconnect(roof(fold), options).history.back().edgeRemovals;
+  };
+  TAUTLINE_CHECK_EQUAL(flips(30, 60, 1, 40), 1);
+  TAUTLINE_CHECK_EQUAL(flips(30, 5, 1, 40), 0);
+  TAUTLINE_CHECK_EQUAL(flips(30, 60, 1e-3, 40), 0);
+  TAUTLINE_CHECK_EQUAL(flips(30, 60, 1, 20), 0);
+  TAUTLINE_CHECK_EQUAL(flips(0.1, 5, 1e-3, 40), 1);
+}
+
+/// Edges of three triangles, points where sheets touch, bands without orientation: kept.
+void testNonManifold()
+{
+  // Three sheets of 6 x 6 squares that share the edges on the line y = z = 0.
+  MeshData sheets;
+  const MeshData sheet = sliverSheet(6, 11);
+  for (int k = 0; k < 3; ++k)
+  {
+    const double turn = k * 2.0 * Pi / 3.0;
+    std::vector<Index> ids;
+    for (Index i = 0; i < sheet.numberOfPoints(); ++i)
+    {
+      const Vec3 p = sheet.point(i);
+      ids.push_back(k > 0 && i < 7
+          ? i
+          : sheets.addPoint({ p[0], p[1] * std::cos(turn), p[1] * std::sin(turn) }));
+    }
+    for (Index c = 0; c < sheet.numberOfCells(); ++c)
+    {
+      const Index* v = &sheet.connectivity[3 * c];
+      sheets.addCell(CellType::Triangle, { ids[v[0]], ids[v[1]], ids[v[2]] });
+    }
+  }
+  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    TriangleOptions options = triangleOptions(Preset::Aggressive);
+    options.boundary = boundary;
+    const ReconnectionResult result = reconnect(sheets, options);
+    const MeshData output = trianglesOf(result);
+    checkTriangles(sheets, result);
+    TAUTLINE_CHECK_RELATIVE(areaOf(output), areaOf(sheets), 1e-12);
+    int triple = 0;
+    for (const auto& use : edgesOf(output))
+    {
+      triple += use.second.size() == 3;
+    }
+    TAUTLINE_CHECK_EQUAL(triple, 6);
+  }
+
+  // Two fans that touch at a point.
+  MeshData bow;
+  bow.addPoint({ 0, 0, 0 });
+  for (int side : { 1, -1 })
+  {
+    const Index first = bow.numberOfPoints();
+    bow.addPoint({ side * 1.0, -0.1 * side, 0.3 });
+    bow.addPoint({ side * 1.1, 0.0, 0.0 });
+    bow.addPoint({ side * 1.0, 0.1 * side, 0.2 });
+    bow.addCell(CellType::Triangle, { 0, first, first + 1 });
+    bow.addCell(CellType::Triangle, { 0, first + 1, first + 2 });
+  }
+  const ReconnectionResult touched = reconnect(bow, triangleOptions(Preset::Aggressive));
+  checkTriangles(bow, touched);
+  TAUTLINE_CHECK(trianglesOf(touched).point(0) == bow.point(0));
+
+  // A Moebius band: one edge has both triangles in the same sense, wherever one starts.
+  MeshData band;
+  constexpr Index pieces = 24;
+  for (Index i = 0; i < pieces; ++i)
+  {
+    const double t = 2.0 * Pi * i / pieces;
+    for (double w : { -0.3, 0.3 })
+    {
+      const double r = 1.0 + w * std::cos(0.5 * t);
+      band.addPoint({ r * std::cos(t), r * std::sin(t), w * std::sin(0.5 * t) });
+    }
+  }
+  for (Index i = 0; i < pieces; ++i)
+  {
+    const bool last = i + 1 == pieces;
+    const Index a = 2 * i, b = a + 1, c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    band.addCell(CellType::Triangle, { a, c, b });
+    band.addCell(CellType::Triangle, { b, c, d });
+  }
+  const ReconnectionResult turned = reconnect(band, triangleOptions(Preset::Aggressive));
+  checkTriangles(band, turned);
+}
+
+void testSmall()
+{
+  MeshData one;
+  one.addPoint({ 0, 0, 0 });
+  one.addPoint({ 4, 0, 0 });
+  one.addPoint({ 1, 1, 0.5 });
+  one.addPoint({ 7, 7, 7 });
+  one.addCell(CellType::Triangle, { 0, 1, 2 });
+  const ReconnectionResult single = reconnect(one, triangleOptions(Preset::Aggressive));
+  checkTriangles(one, single);
+  TAUTLINE_CHECK(single.triangles == one.connectivity && single.points == one.points);
+  // Of a tetrahedron's surface no edge can be flipped or contracted.
+  MeshData tetrahedron;
+  for (const Vec3& p : { Vec3{ 0, 0, 0 }, Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 0.1 } })
+  {
+    tetrahedron.addPoint(p);
+  }
+  for (const std::vector<Index>& v :
+    { std::vector<Index>{ 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 0, 3, 2 } })
+  {
+    tetrahedron.addCell(CellType::Triangle, v);
+  }
+  TriangleOptions free = triangleOptions(Preset::Aggressive);
+  free.featureAngle = 180.0;
+  free.surfaceAngle = 90.0;
+  free.surfaceDistance = 1.0;
+  free.smallestCount = 0.0;
+  free.largestCount = 10.0;
+  const ReconnectionResult closed = reconnect(tetrahedron, free);
+  checkTriangles(tetrahedron, closed);
+  TAUTLINE_CHECK(isClosed(trianglesOf(closed)));
+  const ReconnectionResult none = reconnect(MeshData(), triangleOptions(Preset::Aggressive));
+  TAUTLINE_CHECK(none.triangles.empty() && none.history.empty());
+}
+
+void testRefusals()
+{
+  const TriangleOptions defaults = triangleOptions(Preset::Aggressive);
+  MeshData quads = blockMesh(CellType::Quadrilateral, 2, 2, 0);
+  TAUTLINE_CHECK_THROWS(reconnect(quads, defaults), "4 cells are not triangles");
+  TAUTLINE_CHECK_THROWS(reconnect(quads, defaults), "Triangulate");
+  MeshData inverted = blockMesh(CellType::Triangle, 2, 2, 0);
+  inverted.setPoint(4, { 5, 1, 0 });
+  TAUTLINE_CHECK_THROWS(reconnect(inverted, defaults), "Untangle Mesh");
+  MeshData broken = blockMesh(CellType::Triangle, 2, 2, 0);
+  broken.points[0] = std::numeric_limits<double>::quiet_NaN();
+  TAUTLINE_CHECK_THROWS(reconnect(broken, defaults), "NaN or infinite");
+  // Points that coincide within a cell, and the same triangle twice.
+  MeshData twice = blockMesh(CellType::Triangle, 2, 2, 0);
+  twice.setPoint(4, twice.point(1));
+  TAUTLINE_CHECK_THROWS(reconnect(twice, defaults), "degenerate");
+  MeshData doubled = blockMesh(CellType::Triangle, 2, 2, 0);
+  doubled.addCell(CellType::Triangle, { 0, 1, 4 });
+  TAUTLINE_CHECK_THROWS(reconnect(doubled, defaults), "overlapping");
+  MeshData folded = cubeSurface(CellType::Triangle, 2);
+  folded.setPoint(folded.connectivity[0], folded.point(folded.connectivity[1]));
+  TAUTLINE_CHECK_THROWS(reconnect(folded, defaults), "degenerate triangles: run Clean");
+  const auto refuses = [](auto change, const char* text)
+  {
+    TriangleOptions options;
+    change(options);
+    const MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
+    TAUTLINE_CHECK_THROWS(reconnect(data, options), text);
+  };
+  refuses([](TriangleOptions& o) { o.featureAngle = -1; }, "feature angle");
+  refuses([](TriangleOptions& o) { o.surfaceAngle = 91; }, "surface angle");
+  refuses([](TriangleOptions& o) { o.surfaceDistance = std::nan(""); }, "surface distance");
+  refuses([](TriangleOptions& o) { o.targetAngle = 61; }, "target angle");
+  // Points that coincide where cells only touch are borders.
+  MeshData apart = blockMesh(CellType::Triangle, 3, 3, 0);
+  const MeshData other = blockMesh(CellType::Triangle, 3, 3, 0);
+  for (Index i = 0; i < other.numberOfPoints(); ++i)
+  {
+    apart.addPoint(other.point(i) + Vec3{ 3, 0, 0 });
+  }
+  for (Index c = 0; c < other.numberOfCells(); ++c)
+  {
+    const Index* v = &other.connectivity[3 * c];
+    apart.addCell(CellType::Triangle, { 16 + v[0], 16 + v[1], 16 + v[2] });
+  }
+  checkTriangles(apart, reconnect(apart, defaults));
+}
+
+/// The same results for other units.
+void testScales()
+{
+  const MeshData data = slid(sphereSurface(CellType::Triangle, 8), 3, 0.8, true);
+  const ReconnectionResult expected = reconnect(data, triangleOptions(Preset::Aggressive));
+  for (double scale : { 0x1p-30, 0x1p30, 1e-8, 1e8 })
+  {
+    MeshData scaled = data;
+    scaled.transform([&](Vec3 p) { return scale * p; });
+    const ReconnectionResult result = reconnect(scaled, triangleOptions(Preset::Aggressive));
+    checkTriangles(scaled, result);
+    if (std::exp2(std::round(std::log2(scale))) == scale)
+    {
+      TAUTLINE_CHECK(result.triangles == expected.triangles);
+    }
+    TAUTLINE_CHECK(
+      result.history.back().smallestAngle > 0.9 * expected.history.back().smallestAngle);
+  }
+}
+}
+
+int TestTriangleSurfaces(int, char*[])
+{
+  testSphere();
+  testCube();
+  testCylinder();
+  testFold();
+  testNonManifold();
+  testSmall();
+  testRefusals();
+  testScales();
+  return exitCode();
+}

@@ -1,0 +1,35 @@
+/**
+ * @file ReconnectionSteps.h
+ * @brief Random operations on changing meshes, each checked: for the fuzzer and a test of many.
+ */
+#ifndef tautline_ReconnectionSteps_h
+#define tautline_ReconnectionSteps_h
+
+#include <cstdint>
+#include <functional>
+
+namespace tautline
+{
+/// Arbitrary numbers.
+struct Choices
+{
+  std::function<std::uint32_t()> next;
+  std::function<bool()> left; ///< false: no further operation
+  int operator()(int count) { return static_cast<int>(this->next() % count); }
+  double real(double low, double high) { return low + (high - low) * (this->next() * 0x1p-32); }
+};
+
+/**
+ * @brief Changes a small planar mesh or a closed surface of triangles by flips, divisions,
+ * contractions, motions and compound operations; a part of them is undone. After each, adjacency,
+ * orientation, the area (of planar meshes) and Euler's number are checked.
+ * @param attempts the largest number of operations tried
+ * @return the number of operations that were accepted; throws std::logic_error for a violation
+ */
+long changeTriangles(Choices& choices, long attempts);
+
+/// The same for tetrahedra, by the operations of CavityOperations and random motions; the volume is
+/// checked.
+long changeTetrahedra(Choices& choices, long attempts);
+}
+#endif

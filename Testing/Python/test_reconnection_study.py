@@ -1,0 +1,67 @@
+"""The study of reconnection in the small size; its verdicts follow from its numbers."""
+
+from checks import OUT
+from study_checks import Studies
+from tautline.studies import reconnection
+
+studies = Studies(OUT / "studies_reconnection")
+TABLES = {domain: len(reconnection.STEPS) for domain in reconnection.DOMAINS} | {"refinement": 2}
+
+
+def run_all():
+    printed = studies.run("reconnection")
+    assert "Findings: " in printed
+    text = (studies.directory / "reconnection" / "reconnection.txt").read_text(encoding="utf-8")
+    assert text in printed
+    studies.check("reconnection", 5 * len(reconnection.DOMAINS) + 1, (), TABLES)
+
+
+def rows_of(domain: str) -> dict[str, list[float]]:
+    return {
+        row["mesh"]: [float(row[column]) for column in reconnection.COLUMNS]
+        for row in studies.rows("reconnection", domain)
+    }
+
+
+def test_numbers():
+    """Slivers are there before and not after; condition numbers are above 1."""
+    for domain in reconnection.DOMAINS:
+        rows = rows_of(domain)
+        angle = {name: row[reconnection.ANGLE] for name, row in rows.items()}
+        assert angle["with slivers"] < 2 and angle["remove slivers"] >= 15, angle
+        assert angle["aggressive"] > 20, angle
+        for row in rows.values():
+            assert row[reconnection.CONDITION] > 1 and row[reconnection.PRECONDITIONED] > 1, row
+            assert row[reconnection.ITERATIONS] >= 5, row
+
+
+def test_verdicts():
+    """Each verdict holds for the numbers of the study, and does not for numbers that contradict it."""
+    for domain in reconnection.DOMAINS:
+        rows = rows_of(domain)
+        found = [v[1] for v in reconnection.verdicts(domain, rows)]
+        assert found == [r["holds"] == "yes" for r in studies.rows("reconnection", "findings")
+                         if r["source"] == domain]
+        assert found[:3] == [True] * 3, reconnection.verdicts(domain, rows)
+    good = {name: [10.0, 20.0, 2.0, 50.0, 5.0, 9.0] for name in reconnection.STEPS}
+    good["with slivers"] = [10.0, 0.1, 90.0, 5e3, 500.0, 90.0]
+    good["best shape (points move)"][reconnection.ANGLE] = 5.0
+    assert all(v[1] for v in reconnection.verdicts("any", good))
+    wrong = (("remove slivers", reconnection.CONDITION, 6e3, 0),
+             ("remove slivers", reconnection.PRECONDITIONED, 501, 1),
+             ("remove slivers", reconnection.ITERATIONS, 90, 2), ("aggressive", reconnection.ITERATIONS, 10, 3),
+             ("best shape (points move)", reconnection.ANGLE, 20.0, 4))
+    for name, column, value, index in wrong:
+        bad = {key: list(row) for key, row in good.items()}
+        bad[name][column] = value
+        assert [v[1] for v in reconnection.verdicts("any", bad)][index] is False, (name, column)
+    fine = {"a": [29.0, 100.0, 35.0, 100.0]}
+    assert reconnection.refinement_verdict(fine)[1]
+    for row in ([36.0, 100.0, 35.0, 100.0], [29.0, 99.0, 35.0, 100.0]):
+        assert not reconnection.refinement_verdict({"a": row})[1]
+
+
+if __name__ == "__main__":
+    run_all()
+    test_numbers()
+    test_verdicts()
