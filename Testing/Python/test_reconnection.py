@@ -4,9 +4,10 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import OUT, points, refused, run_tests, shell as run, square
+from checks import OUT, points, refused, run_tests, shell as run
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData
+from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 
 def slivers():
@@ -94,6 +95,95 @@ def test_inputs():
     assert flat.smallest_angle >= flat.smallest_angle_before
 
 
+def sheet():
+    """The wrench with inner points moved at random; a linear field, and two regions."""
+    mesh = tl.perturb(tl.domain("wrench", 1500), 0.95, 100.0, seed=2).mesh
+    field = numpy_to_vtk(points(mesh) @ [2.0, -1.0, 0.5] + 3, deep=True)
+    field.SetName("field")
+    mesh.GetPointData().AddArray(field)
+    x = triangles(mesh).mean(axis=1)[:, 0]
+    region = numpy_to_vtk((x > np.median(x)).astype(int), deep=True)
+    region.SetName("region")
+    mesh.GetCellData().AddArray(region)
+    return mesh
+
+
+def triangles(mesh):
+    """The corners of each triangle."""
+    cells = mesh.GetPolys() if mesh.IsA("vtkPolyData") else mesh.GetCells()
+    return points(mesh)[vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3)]
+
+
+def areas(mesh):
+    corner = triangles(mesh)
+    return np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1) / 2
+
+
+def test_triangles():
+    """Data, regions and tables of triangles; the area stays."""
+    mesh = sheet()
+    region = vtk_to_numpy(mesh.GetCellData().GetArray("region"))
+    for preset, angle in (("remove slivers", 15), ("swap only", 0.8), ("swap and smooth", 5), ("aggressive", 20)):
+        for boundary in ("fixed", "flat"):
+            result = tl.improve(mesh, preset, boundary=boundary, regions="region")
+            after = tl.quality(result, ["min_angle", "imr"])
+            assert after.inverted == 0 and np.allclose(result.min_angle, after.values["min_angle"])
+            assert np.allclose(result.imr, after.values["imr"]) and result.worst <= result.worst_before
+            assert result.smallest_angle_before < 1 and result.smallest_angle >= angle, result.summary
+            assert np.isclose(areas(result.mesh).sum(), areas(mesh).sum(), rtol=1e-13, atol=0)
+            now = vtk_to_numpy(result.mesh.GetCellData().GetArray("region"))
+            assert (now == region[result.original_cell]).all()
+            for number in (0, 1):
+                ours, theirs = areas(result.mesh)[now == number].sum(), areas(mesh)[region == number].sum()
+                assert np.isclose(ours, theirs, rtol=1e-12, atol=0), (preset, boundary)
+            history = result.history
+            assert history["elements"][-1] == result.elements == result.mesh.GetNumberOfCells()
+            assert history["face_removals"][-1] == 0 and history["edge_removals"][-1] > 0
+            assert len(result.remaining.get("cell", ())) == history["below_target"][-1]
+            assert "Triangles: " in result.summary and "Smallest angle: " in result.summary
+            if preset == "aggressive":  # moved points keep their values, inserted ones interpolate
+                field = vtk_to_numpy(result.mesh.GetPointData().GetArray("field"))
+                assert np.isfinite(field).all() and len(field) == result.mesh.GetNumberOfPoints()
+    free = tl.improve(mesh, "aggressive", boundary="flat")
+    assert free.smallest_angle > 38, free.summary
+
+
+def test_surface():
+    """Poly data stays poly data; a closed surface stays closed; lines mark edges."""
+    ball = vtkSphereSource()
+    ball.SetThetaResolution(30)
+    ball.SetPhiResolution(40)
+    ball.Update()
+    result = tl.improve(ball.GetOutput(), "aggressive")
+    assert result.mesh.IsA("vtkPolyData") and result.mesh.GetNumberOfPolys() == result.elements
+    assert result.smallest_angle > 2 * result.smallest_angle_before, result.summary
+    assert abs(areas(result.mesh).sum() / areas(ball.GetOutput()).sum() - 1) < 5e-3
+    radii = np.linalg.norm(points(result.mesh), axis=1)
+    assert radii.max() <= 0.5 + 1e-6 and radii.min() > 0.49
+
+    grid = tl.from_arrays([[0, 0], [4, 0], [2, 0.5], [2, -0.5]], [[0, 1, 2], [0, 3, 1]])
+    assert tl.improve(grid, "swap only").history["edge_removals"][-1] == 1
+    lined = vtkPolyData()
+    lined.SetPoints(grid.GetPoints())
+    lines = vtkCellArray()
+    lines.InsertNextCell(2, [1, 0])
+    lined.SetLines(lines)
+    lined.SetPolys(grid.GetCells())
+    kept = tl.improve(lined, "swap only")
+    assert kept.history["edge_removals"][-1] == 0 and "1 lines beside the triangles" in kept.summary, kept.summary
+    assert kept.original_cell.tolist() == [1, 2]
+
+
+def test_mixed_blocks():
+    """Blocks of tetrahedra and of triangles are improved each on its own."""
+    blocks = vtkMultiBlockDataSet()
+    blocks.SetBlock(0, sheet())
+    blocks.SetBlock(1, slivers())
+    both = tl.improve(blocks, "swap only", merge_coincident_points=False)
+    assert "Triangles: " in both.summary and "Tetrahedra: " in both.summary
+    assert both.elements == sheet().GetNumberOfCells() + both.mesh.GetBlock(1).GetNumberOfCells()
+
+
 def test_refused():
     for text, options in (
         ("preset is 'best'", {"preset": "best"}),
@@ -109,7 +199,16 @@ def test_refused():
     ):
         refused(text, tl.improve, slivers(), **options)
     refused("run Untangle Mesh first", tl.improve, tl.perturb(slivers(), tangle=0.05))
-    refused("no tetrahedron", tl.improve, square(4))
+    for text, options in (
+        ("feature_angle is 181", {"feature_angle": 181}),
+        ("surface_angle is -1", {"surface_angle": -1}),
+        ("surface_distance is 2", {"surface_distance": 2}),
+    ):
+        refused(text, tl.improve, sheet(), **options)
+    quads = tl.from_arrays([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0]], {
+        "quadrilateral": [[0, 1, 2, 3]], "triangle": [[1, 4, 2]]})
+    refused("1 quadrilaterals: Improve Mesh takes linear triangles only; run Triangulate first", tl.improve, quads)
+    refused("run Untangle Mesh first", tl.improve, tl.perturb(sheet(), tangle=0.05))
     refused("there is no such file", tl.improve, "absent.vtu")
 
 
@@ -138,6 +237,11 @@ def test_command():
     few = tl.improve(source, "custom", insert=False, contract=False, compound=False)
     assert (points(tl.read(mesh)) == points(few.mesh)).all()
     assert few.mesh.GetNumberOfPoints() == slivers().GetNumberOfPoints()
+    flat = OUT / "sheet.vtu"
+    tl.write(sheet(), flat)
+    text = run("improve", flat, "-o", mesh, "--preset", "aggressive", "--feature-angle", "30", "--surface-angle", "10",
+               "--surface-distance", "0.01")
+    assert "Triangles: " in text and (points(tl.read(mesh)) == points(tl.improve(flat, "aggressive").mesh)).all()
     assert "invalid choice: 'x'" in run("improve", source, "-o", mesh, "--preset", "x", code=2)
 
 

@@ -5,7 +5,7 @@ from study_checks import Studies
 from tautline.studies import reconnection
 
 studies = Studies(OUT / "studies_reconnection")
-TABLES = {domain: len(reconnection.STEPS) for domain in reconnection.DOMAINS} | {"refinement": 2}
+TABLES = {domain: len(reconnection.STEPS) for domain in reconnection.DOMAINS} | {"refinement": len(reconnection.PLANAR)}
 
 
 def run_all():

@@ -255,10 +255,10 @@ void testRefusals()
   refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), "run Tetrahedralize first");
   MeshData mixed = blockMesh(CellType::Triangle, 2, 2, 0);
   mixed.addCell(CellType::Quadrilateral, { 0, 1, 4, 3 });
-  for (vtkDataSet* of : { static_cast<vtkDataSet*>(toGrid(mixed)), static_cast<vtkDataSet*>(toPolyData(mixed)) })
-  {
-    refused(of, "1 quadrilaterals: Improve Mesh takes linear triangles only; run Triangulate first");
-  }
+  const char* triangulate =
+    "1 quadrilaterals: Improve Mesh takes linear triangles only; run Triangulate first";
+  refused(toGrid(mixed), triangulate);
+  refused(toPolyData(mixed), triangulate);
   vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 3);
   refused(image, "run Tetrahedralize first");

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Callable
 
-from vtkmodules.vtkCommonDataModel import vtkDataSet
+import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPolyData
 
 import tautline
 
@@ -24,7 +26,9 @@ STEPS: dict[str, Callable[[vtkDataSet, int], vtkDataSet]] = {
 }
 #: The domains of the condition numbers; those of the comparison with Delaunay refinement.
 DOMAINS = ("disk3d", "wrench")
-PLANAR = ("wrench", "hinge")
+PLANAR = ("plate", "wrench", "hinge")
+#: A square plate with a round hole, meshed with a larger smallest angle than the domains.
+SIDE, RADIUS, AROUND, PLATE_ANGLE = 2.0, 0.4, 64, 33.0
 Rows = dict[str, list[float]]
 
 
@@ -67,11 +71,35 @@ def refinement_verdict(rows: Rows) -> tuple[str, bool, str]:
     return "The smallest angle is at least that of Delaunay refinement with as many points", holds, shown
 
 
+def plate(cells: int) -> vtkDataSet:
+    """Delaunay refinement of the plate."""
+    turns = 2 * np.pi * np.arange(AROUND) / AROUND
+    corners = 0.5 * SIDE * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], float)
+    points = np.vstack([corners, RADIUS * np.column_stack([np.cos(turns), np.sin(turns)])])
+    square = np.column_stack([np.arange(4), (np.arange(4) + 1) % 4])
+    hole = 4 + np.column_stack([np.arange(AROUND), (np.arange(AROUND) + 1) % AROUND])
+    outline = vtkPolyData()
+    xyz = vtkPoints()
+    for x, y in points:
+        xyz.InsertNextPoint(x, y, 0.0)
+    lines = vtkCellArray()
+    for edge in np.vstack([square, hole]):
+        lines.InsertNextCell(2, [int(i) for i in edge])
+    outline.SetPoints(xyz)
+    outline.SetLines(lines)
+    mesher = tautline.vtkTriangleMesher()
+    mesher.SetInputData(outline)
+    mesher.SetMinimumAngle(PLATE_ANGLE)
+    mesher.SetSize(float(np.sqrt(4.0 * (SIDE**2 - np.pi * RADIUS**2) / cells)))
+    mesher.Update()
+    return mesher.GetOutput()
+
+
 def against_refinement(cells: int, threads: int) -> Rows:
     """Delaunay refinements, then the same meshes perturbed and improved with no more points."""
     rows = {}
     for name in PLANAR:
-        refined = tautline.domain(name, cells)
+        refined = plate(cells) if name == "plate" else tautline.domain(name, cells)
         angle = tautline.improve(refined, "custom", swap=False, smooth=False, contract=False, insert=False,
                                  compound=False, threads=threads).smallest_angle
         poor = tautline.perturb(refined, PERTURBED, 100.0).mesh
