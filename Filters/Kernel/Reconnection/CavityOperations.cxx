@@ -8,6 +8,16 @@ namespace
 constexpr double SameQuality = 1e-9;
 }
 
+void CavityOperations::addCounts(const OperationCounts& counts)
+{
+  this->Counts.edgeRemovals += counts.edgeRemovals;
+  this->Counts.faceRemovals += counts.faceRemovals;
+  this->Counts.boundarySwaps += counts.boundarySwaps;
+  this->Counts.contractions += counts.contractions;
+  this->Counts.insertions += counts.insertions;
+  this->Counts.moves += counts.moves;
+}
+
 bool CavityOperations::aboveFloor(
   const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, double q) const
 {

@@ -31,14 +31,9 @@ struct OperationCounts
   Index contractions = 0, insertions = 0, moves = 0;
 };
 
-class TAUTLINE_KERNEL_EXPORT CavityOperations
+/// What operations keep to, and the freedom of points.
+struct OperationRules
 {
-public:
-  explicit CavityOperations(TetrahedronMesh& mesh)
-    : Mesh(mesh)
-  {
-  }
-
   /// One per point slot of the mesh; those of new points are free.
   std::vector<PointFreedom> freedoms;
   QualityFloor floor;
@@ -47,6 +42,15 @@ public:
   bool swapsBoundary = false;
   /// Sine of the largest angle between coplanar facets, or directions that are the same.
   double flatTolerance = 0;
+};
+
+class TAUTLINE_KERNEL_EXPORT CavityOperations : public OperationRules
+{
+public:
+  explicit CavityOperations(TetrahedronMesh& mesh)
+    : Mesh(mesh)
+  {
+  }
 
   /// Removes the edge of vertices i and j of a tetrahedron: Klincsek's dynamic programming finds
   /// the triangulation of its ring with the best worst tetrahedron.
@@ -79,6 +83,7 @@ public:
 
   const std::vector<TetId>& changed() const { return this->Created; }
   const OperationCounts& counts() const { return this->Counts; }
+  void addCounts(const OperationCounts& counts);
   /// Increases with each change near a point: its own moves and those of its neighbours.
   std::uint32_t stamp(PointId v) const { return this->Stamps[v]; }
   std::uint32_t clock() const { return this->Clock; }

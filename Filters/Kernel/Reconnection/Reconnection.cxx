@@ -1,12 +1,16 @@
 #include "Reconnection.h"
 
 #include "BoundaryFreedom.h"
+#include "MeshBlocks.h"
 #include "ReconnectionOutput.h"
 #include "Schedule.h"
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
+#include <atomic>
 #include <limits>
+#include <thread>
 
 namespace tautline
 {
@@ -27,6 +31,12 @@ constexpr int Repetitions = 3;
 constexpr double RepetitionGain = 2e-3;
 /// Angle of the preset RemoveSlivers; that of the others is the default of the options.
 constexpr double SliverAngle = 15.0;
+/// The largest number of times that blocks are halved, and of partitions in different directions.
+constexpr int MaxLevels = 8, Partitions = 3;
+/// How far beyond the faces between blocks the next partition starts, in rings of tetrahedra.
+constexpr int StartRings = 1;
+/// Progress when all blocks are done.
+constexpr double BlockProgress = 0.9;
 /// Wall time between two calls of the observer during a pass.
 constexpr double ObserverSeconds = 0.1;
 
@@ -126,6 +136,18 @@ std::vector<PassOptions> planPasses(const ReconnectionOptions& options)
   return passes;
 }
 
+/// How often a mesh is halved until the next half would be smaller than a block.
+int levelsOf(Index size, Index blockSize)
+{
+  int levels = 0;
+  while (levels < MaxLevels && size / 2 >= blockSize)
+  {
+    size /= 2;
+    ++levels;
+  }
+  return levels;
+}
+
 //------------------------------------------------------------------------------
 /// The run of the passes with its clock, observer and records.
 class Run
@@ -148,6 +170,11 @@ private:
   bool proceed();
   void setFloor();
   void setBounds();
+  bool runPasses(std::vector<PassOptions> passes);
+  bool runInBlocks(const std::vector<PassOptions>& passes, int levels);
+  bool runBlocks(
+    MeshBlockList& blocks, const std::vector<PassOptions>& passes, const std::vector<char>& starts);
+  std::vector<char> addRings(std::vector<char> flags) const;
 
   TetrahedronMesh& Mesh;
   const ReconnectionOptions& Options;
@@ -233,9 +260,22 @@ void Run::run(const std::vector<PointFreedom>& freedoms)
   this->setFloor();
   this->Passes.proceed = [this]() { return this->proceed(); };
   std::vector<PassOptions> passes = planPasses(this->Options);
-  const std::size_t planned = passes.size();
-  bool stopped = !started;
   this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
+  const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
+  const bool goesOn = started && (levels == 0 || this->runInBlocks(passes, levels));
+  const bool stopped = !goesOn || !this->runPasses(passes);
+  if (!stopped && this->Result.history.back().belowTarget == 0)
+  {
+    this->Result.reason = StopReason::Reduction;
+  }
+}
+
+/// Runs the passes, the last one repeatedly; false if stopped.
+bool Run::runPasses(std::vector<PassOptions> passes)
+{
+  const std::size_t planned = passes.size();
+  const double start = this->Progress;
+  bool stopped = false;
   for (std::size_t i = 0; i < passes.size() && !stopped; ++i)
   {
     const ReconnectionRecord before = this->Result.history.back();
@@ -244,8 +284,8 @@ void Run::run(const std::vector<PointFreedom>& freedoms)
       break;
     }
     stopped = this->Passes.run(passes[i]) < 0;
-    const double progress = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
-    if (!this->record(static_cast<int>(i) + 1, progress) && !stopped)
+    const double done = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
+    if (!this->record(before.pass + 1, start + (1.0 - start) * done) && !stopped)
     {
       stopped = true;
       this->Result.reason = StopReason::Aborted;
@@ -257,10 +297,108 @@ void Run::run(const std::vector<PointFreedom>& freedoms)
       passes.push_back(passes[i]);
     }
   }
-  if (!stopped && this->Result.history.back().belowTarget == 0)
+  return !stopped;
+}
+
+/// Flags also the points of the tetrahedra around.
+std::vector<char> Run::addRings(std::vector<char> flags) const
+{
+  flags.resize(this->Mesh.pointSlots(), 0);
+  for (int ring = 0; ring < StartRings; ++ring)
   {
-    this->Result.reason = StopReason::Reduction;
+    const std::vector<char> inner = flags;
+    for (TetId t = 0; t < this->Mesh.slots(); ++t)
+    {
+      const TetVertices& v = this->Mesh.tet(t).vertices;
+      if (this->Mesh.alive(t) &&
+        std::any_of(v.begin(), v.end(), [&](PointId p) { return inner[p] != 0; }))
+      {
+        std::for_each(v.begin(), v.end(), [&](PointId p) { flags[p] = 1; });
+      }
+    }
   }
+  return flags;
+}
+
+/// Runs all passes in each block, several blocks at a time; false if stopped.
+bool Run::runBlocks(
+  MeshBlockList& blocks, const std::vector<PassOptions>& passes, const std::vector<char>& starts)
+{
+  std::atomic<bool> stop{ false };
+  const std::thread::id caller = std::this_thread::get_id();
+  const auto proceed = [&]()
+  {
+    const bool goesOn = !stop &&
+      (std::this_thread::get_id() == caller ? this->proceed()
+                                            : !this->Clock.reached(this->Options.maximumSeconds));
+    if (!goesOn)
+    {
+      stop = true;
+    }
+    return goesOn;
+  };
+  const auto runBlock = [&](Index b)
+  {
+    MeshBlock& block = *blocks[b];
+    Schedule& schedule = block.schedule();
+    schedule.proceed = proceed;
+    schedule.postponed = block.shared();
+    for (PointId v : starts.empty() ? std::vector<PointId>() : block.points())
+    {
+      schedule.starts.push_back(starts[v]);
+    }
+    try
+    {
+      std::all_of(passes.begin(), passes.end(),
+        [&](const PassOptions& pass) { return !stop && schedule.run(pass) >= 0; });
+    }
+    catch (...)
+    {
+      stop = true; // the other blocks need not be finished
+      throw;
+    }
+  };
+  parallelFor(static_cast<Index>(blocks.size()), 1, this->Options.threads, runBlock);
+  if (stop && this->Result.reason == StopReason::NoProgress)
+  {
+    this->Result.reason = StopReason::TimeLimit;
+  }
+  return !stop;
+}
+
+/// Runs the passes in blocks of several partitions; false if stopped. Where a partition has its
+/// faces between blocks, the next one goes on; the last faces are left to the passes of the whole.
+bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels)
+{
+  std::vector<char> starts;
+  for (int k = 0; k < Partitions; ++k)
+  {
+    MeshBlockList blocks =
+      cutIntoBlocks(this->Mesh, this->Operations, k, levels, this->Options.threads);
+    bool goesOn = this->runBlocks(blocks, passes, starts);
+    std::vector<char> next(this->Mesh.pointSlots(), 0);
+    for (const auto& block : blocks)
+    {
+      const std::vector<PointId>& points = block->points();
+      for (std::size_t v = 0; v < points.size(); ++v)
+      {
+        next[points[v]] |= block->shared()[v] && (starts.empty() || starts[points[v]]);
+      }
+    }
+    joinBlocks(this->Mesh, this->Operations, blocks, this->Options.threads);
+    starts = this->addRings(std::move(next));
+    if (!this->record(k + 1, BlockProgress * (k + 1) / Partitions) && goesOn)
+    {
+      goesOn = false;
+      this->Result.reason = StopReason::Aborted;
+    }
+    if (!goesOn)
+    {
+      return false;
+    }
+  }
+  this->Passes.starts = starts;
+  return true;
 }
 
 /// Gives the reason for each tetrahedron below the target, and the bounds of the walls.

@@ -32,9 +32,10 @@
 namespace tautline
 {
 /**
- * @brief Improves the connectivity and the points of a tetrahedral mesh. One thread; the result is
- * the same in every run, unless a limit ends it. Memory: about 250 bytes per tetrahedron with the
- * result.
+ * @brief Improves the connectivity and the points of a tetrahedral mesh. The result is the same in
+ * every run and for any number of threads, unless a limit ends it. Large meshes are worked on in
+ * blocks, see ReconnectionOptions::blockSize; only these use several threads. Memory: about 250
+ * bytes per tetrahedron with the result, 360 with blocks.
  *
  * Throws Error, with a remedy, for cells that are not linear tetrahedra, for coordinates that are
  * not finite, for inverted or degenerate tetrahedra, and for faces that are used by three or more

@@ -12,6 +12,8 @@ namespace
 {
 /// Of mesh, workspace and result.
 constexpr double BytesPerTetrahedron = 250.0;
+/// Of the blocks beside these.
+constexpr double BlockBytesPerTetrahedron = 110.0;
 constexpr double LargestTargetAngle = 60.0, LargestFlatTolerance = 1.0;
 
 void checkCells(const Mesh& mesh)
@@ -83,6 +85,7 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
     "the smallest count must be from 0 to 1 times that of the input");
   check(options.largestCount >= 1.0 && std::isfinite(options.largestCount),
     "the largest count must be finite and at least that of the input");
+  check(options.blockSize >= 1, "the size of blocks must be at least 1");
   check(!(options.maximumSeconds < 0.0), "the time limit must not be negative");
 }
 
@@ -90,7 +93,9 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
 {
   checkCells(mesh);
   const MeshView& view = mesh.view();
-  requireMemory(BytesPerTetrahedron * static_cast<double>(view.numberOfCells),
+  const bool inBlocks = view.numberOfCells >= 2 * options.blockSize;
+  requireMemory((BytesPerTetrahedron + (inBlocks ? BlockBytesPerTetrahedron : 0.0)) *
+      static_cast<double>(view.numberOfCells),
     "reconnection of this mesh", "take a smaller mesh");
   std::vector<signed char> validity(view.numberOfCells);
   mesh.classifyCells(validity.data());

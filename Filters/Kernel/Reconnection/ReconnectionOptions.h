@@ -82,6 +82,14 @@ struct ReconnectionOptions
    * and faces makes it.
    */
   double smallestCount = 0.9, largestCount = 1.1;
+  /// The largest number of threads, see Parallel.h; 0: all cores. The result does not depend on it.
+  int threads = 0;
+  /**
+   * @brief Meshes of twice as many tetrahedra, at least 1, are cut into blocks of one to two times
+   * as many, on which threads work at the same time; what is at the planes between blocks follows
+   * in blocks cut in other directions. The result depends on it.
+   */
+  Index blockSize = 65536;
   /// Seconds of wall time; 0: no limit. Honoured within a fraction of a second.
   double maximumSeconds = 0.0;
   /// Called after each pass with a new record, and a few times a second with the last one; return

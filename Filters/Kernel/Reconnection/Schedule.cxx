@@ -65,6 +65,20 @@ void Schedule::push(TetId t, double target)
   std::push_heap(this->Heap.begin(), this->Heap.end());
 }
 
+bool Schedule::isFlagged(TetId t, const std::vector<char>& flags) const
+{
+  const TetVertices& v = this->Mesh.tet(t).vertices;
+  return std::any_of(v.begin(), v.end(),
+    [&](PointId p) { return p < static_cast<PointId>(flags.size()) && flags[p]; });
+}
+
+/// Whether a pass starts with a tetrahedron; it does not with those outside a block.
+bool Schedule::startsWith(TetId t) const
+{
+  return this->Mesh.alive(t) && this->Mesh.region(t) >= 0 &&
+    (this->starts.empty() || this->isFlagged(t, this->starts));
+}
+
 bool Schedule::swap(TetId t)
 {
   for (int i = 0; i < 4; ++i)
@@ -133,6 +147,10 @@ bool Schedule::improve(TetId t, const PassOptions& options)
   {
     return true;
   }
+  if (this->isFlagged(t, this->postponed))
+  {
+    return false;
+  }
   using Compound = CavityOperations::Compound;
   const auto tryCompound = [&](Compound kind)
   { return options.compound && this->Operations.tryCompound(t, kind); };
@@ -155,7 +173,7 @@ Index Schedule::run(const PassOptions& options)
   this->Operations.setLeastGain(options.leastGain);
   for (TetId t = 0; t < this->Mesh.slots(); ++t)
   {
-    if (this->Mesh.alive(t) && this->Mesh.quality(t) < options.target)
+    if (this->startsWith(t) && this->Mesh.quality(t) < options.target)
     {
       this->Heap.push_back({ this->Mesh.quality(t), t });
     }

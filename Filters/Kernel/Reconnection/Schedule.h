@@ -39,6 +39,13 @@ public:
   /// Called now and then with the number of operations so far; returns false to stop.
   std::function<bool()> proceed;
 
+  /// One flag per point. A pass starts with the tetrahedra that have a point with it; empty: with
+  /// all.
+  std::vector<char> starts;
+  /// One flag per point. Tetrahedra that have a point with it are only improved by what keeps the
+  /// number of points; empty: none.
+  std::vector<char> postponed;
+
   /// Runs a pass. @return the number of operations that were accepted, or -1 if stopped
   Index run(const PassOptions& options);
 
@@ -61,6 +68,8 @@ private:
   };
 
   void push(TetId t, double target);
+  bool startsWith(TetId t) const;
+  bool isFlagged(TetId t, const std::vector<char>& flags) const;
   bool improve(TetId t, const PassOptions& options);
   bool swap(TetId t);
   bool contract(TetId t);

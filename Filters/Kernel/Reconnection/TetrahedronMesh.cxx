@@ -55,6 +55,50 @@ TetrahedronMesh::TetrahedronMesh(std::vector<Vec3> points, const std::vector<Tet
   this->connect();
 }
 
+TetrahedronMesh::TetrahedronMesh(TetrahedronArrays arrays)
+  : Tets(std::move(arrays.tets))
+  , Quality(std::move(arrays.quality))
+  , Region(std::move(arrays.region))
+  , Origin(std::move(arrays.origin))
+  , Mark(Tets.size(), 0)
+  , Points(std::move(arrays.points))
+  , PointTet(Points.size(), NoId)
+  , InputPoints(arrays.inputPoints)
+{
+  for (TetId t = this->slots() - 1; t >= 0; --t) // the next to be used is the first
+  {
+    if (!this->alive(t))
+    {
+      this->FreeTets.push_back(t);
+      continue;
+    }
+    ++this->Alive;
+    for (PointId v : this->Tets[t].vertices)
+    {
+      this->PointTet[v] = t;
+    }
+  }
+  for (PointId v = this->pointSlots() - 1; v >= this->InputPoints; --v)
+  {
+    if (!this->used(v))
+    {
+      this->FreePoints.push_back(v);
+    }
+  }
+}
+
+TetrahedronArrays TetrahedronMesh::release()
+{
+  TetrahedronArrays arrays;
+  arrays.tets = std::move(this->Tets);
+  arrays.quality = std::move(this->Quality);
+  arrays.region = std::move(this->Region);
+  arrays.origin = std::move(this->Origin);
+  arrays.points = std::move(this->Points);
+  arrays.inputPoints = this->InputPoints;
+  return arrays;
+}
+
 /// Finds the neighbours: faces are filed by their smallest vertex, then compared.
 void TetrahedronMesh::connect()
 {

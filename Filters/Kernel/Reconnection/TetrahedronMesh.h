@@ -88,12 +88,28 @@ struct Replacement
   }
 };
 
+/// What a mesh is made of. Entries of the same tetrahedron, and of the same point, correspond.
+struct TetrahedronArrays
+{
+  std::vector<Tetrahedron> tets; ///< also free slots
+  std::vector<double> quality;
+  std::vector<std::int32_t> region;
+  std::vector<TetId> origin;
+  std::vector<Vec3> points;
+  PointId inputPoints = 0; ///< the first points are the input's: their ids are not used again
+};
+
 class TAUTLINE_KERNEL_EXPORT TetrahedronMesh
 {
 public:
   /// Positive tetrahedra. @param regions one per tetrahedron, or empty: one region
   TetrahedronMesh(std::vector<Vec3> points, const std::vector<TetVertices>& cells,
     const std::vector<std::int32_t>& regions = {});
+  /// Connected already: neighbours of all faces are as given.
+  explicit TetrahedronMesh(TetrahedronArrays arrays);
+
+  /// Moves everything out; the mesh must not be used afterwards but to be replaced.
+  TetrahedronArrays release();
 
   ///@{ Slots, some of which may be free.
   TetId slots() const { return static_cast<TetId>(this->Tets.size()); }
@@ -111,6 +127,8 @@ public:
   TetId origin(TetId t) const { return this->Origin[t]; }
   const Vec3& point(PointId v) const { return this->Points[v]; }
   TetId tetOf(PointId v) const { return this->PointTet[v]; }
+
+  PointId inputPoints() const { return this->InputPoints; }
 
   /// Faces that are used by three or more tetrahedra; these are walls on all sides.
   Index nonManifoldFaces() const { return this->NonManifoldFaces; }

@@ -1,0 +1,425 @@
+#include "MeshBlocks.h"
+
+#include "tautline/Core/Parallel.h"
+
+#include <limits>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+/// Of so many tetrahedra one decides where the planes are.
+constexpr TetId SampleStep = 16;
+
+Vec3 normalized(const Vec3& v)
+{
+  return (1.0 / norm(v)) * v;
+}
+
+/// Three orthogonal directions; no two of different frames are parallel.
+std::array<Vec3, 3> directionsOf(int frame)
+{
+  if (frame == 0)
+  {
+    return { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
+  }
+  const Vec3 a = normalized(frame == 1 ? Vec3{ 1, 1, 1 } : Vec3{ -1, 1, 0.5 });
+  const Vec3 b = normalized(cross(a, frame == 1 ? Vec3{ 0, 0, 1 } : Vec3{ 0, 1, 1 }));
+  return { a, b, cross(a, b) };
+}
+
+Vec3 sumOfVertices(const TetrahedronMesh& mesh, TetId t)
+{
+  const TetVertices& v = mesh.tet(t).vertices;
+  return mesh.point(v[0]) + mesh.point(v[1]) + mesh.point(v[2]) + mesh.point(v[3]);
+}
+
+/// A tree of planes: the children of node i are 2 i + 1 (below the plane) and 2 i + 2.
+class PlaneTree
+{
+public:
+  PlaneTree(const TetrahedronMesh& mesh, int frame, int levels)
+    : Directions(directionsOf(frame))
+    , Nodes((std::size_t(1) << levels) - 1)
+    , Levels(levels)
+  {
+    std::vector<Vec3> sample;
+    for (TetId t = 0; t < mesh.slots(); t += SampleStep)
+    {
+      if (mesh.alive(t))
+      {
+        sample.push_back(sumOfVertices(mesh, t));
+      }
+    }
+    this->split(0, sample.begin(), sample.end());
+  }
+
+  std::uint8_t find(const Vec3& x) const
+  {
+    std::size_t node = 0;
+    for (int level = 0; level < this->Levels; ++level)
+    {
+      const Node& n = this->Nodes[node];
+      node = 2 * node + (dot(this->Directions[n.direction], x) < n.position ? 1 : 2);
+    }
+    return static_cast<std::uint8_t>(node - this->Nodes.size());
+  }
+
+private:
+  struct Node
+  {
+    int direction = 0;
+    double position = 0;
+  };
+  using Iterator = std::vector<Vec3>::iterator;
+
+  void split(std::size_t node, Iterator begin, Iterator end)
+  {
+    if (node >= this->Nodes.size() || begin == end)
+    {
+      return;
+    }
+    Node& n = this->Nodes[node];
+    double longest = -1.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const auto less = [&](const Vec3& a, const Vec3& b)
+      { return dot(this->Directions[k], a) < dot(this->Directions[k], b); };
+      const auto ends = std::minmax_element(begin, end, less);
+      const double extent = dot(this->Directions[k], *ends.second - *ends.first);
+      if (extent > longest)
+      {
+        longest = extent;
+        n.direction = k;
+      }
+    }
+    const Vec3 direction = this->Directions[n.direction];
+    const Iterator middle = begin + (end - begin) / 2;
+    std::nth_element(begin, middle, end,
+      [&](const Vec3& a, const Vec3& b) { return dot(direction, a) < dot(direction, b); });
+    n.position = dot(direction, *middle);
+    this->split(2 * node + 1, begin, middle);
+    this->split(2 * node + 2, middle, end);
+  }
+
+  std::array<Vec3, 3> Directions;
+  std::vector<Node> Nodes;
+  int Levels;
+};
+}
+
+std::vector<std::uint8_t> partition(const TetrahedronMesh& mesh, int frame, int levels, int threads)
+{
+  const PlaneTree tree(mesh, frame, levels);
+  std::vector<std::uint8_t> blocks(mesh.slots(), 0);
+  forEachChunk(mesh.slots(), threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index t = begin; t < end; ++t)
+      {
+        const TetId id = static_cast<TetId>(t);
+        blocks[t] = mesh.alive(id) ? tree.find(sumOfVertices(mesh, id)) : 0;
+      }
+    });
+  return blocks;
+}
+
+//------------------------------------------------------------------------------
+MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
+  std::vector<TetId> own, const std::vector<std::uint8_t>& blocks)
+  : Own(std::move(own))
+  , Mesh(this->extract(whole, blocks))
+  , Operations(this->Mesh)
+  , Passes(this->Mesh, this->Operations)
+{
+  this->Operations.floor = rules.floor;
+  this->Operations.swapsBoundary = rules.swapsBoundary;
+  this->Operations.flatTolerance = rules.flatTolerance;
+  const double share = static_cast<double>(this->Own.size()) / static_cast<double>(whole.size());
+  const auto shareOf = [share](Index count) {
+    return static_cast<Index>(std::floor(share * static_cast<double>(std::max<Index>(count, 0))));
+  };
+  this->Operations.largestSize = this->Mesh.size() + shareOf(rules.largestSize - whole.size());
+  this->Operations.smallestSize = this->Mesh.size() - shareOf(whole.size() - rules.smallestSize);
+  this->Shared.assign(this->Points.size(), 0);
+  for (std::size_t k = this->Own.size(); k < this->Own.size() + this->Outside.size(); ++k)
+  {
+    for (PointId v : this->Mesh.tet(static_cast<TetId>(k)).vertices)
+    {
+      this->Shared[v] = 1;
+    }
+  }
+  for (std::size_t v = 0; v < this->Points.size(); ++v)
+  {
+    this->Operations.freedoms.push_back(this->Shared[v]
+        ? PointFreedom{ PointFreedom::Fixed, { 0, 0, 0 } }
+        : rules.freedoms[this->Points[v]]);
+  }
+}
+
+/// The tetrahedra that the own ones meet, once each, and the faces between.
+void MeshBlock::addOutside(
+  const TetrahedronMesh& whole, const std::vector<std::uint8_t>& blocks, TetrahedronArrays& arrays)
+{
+  const std::uint8_t block = blocks[this->Own[0]];
+  for (TetId t : this->Own)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      const std::int32_t n = whole.tet(t).neighbors[i];
+      if (n != NoId && blocks[n >> 2] != block)
+      {
+        this->Faces.push_back({ 4 * t + i, n, NoId });
+        this->Outside.push_back(n >> 2);
+      }
+    }
+  }
+  std::sort(this->Outside.begin(), this->Outside.end());
+  this->Outside.erase(std::unique(this->Outside.begin(), this->Outside.end()), this->Outside.end());
+  const auto localOf = [](const std::vector<TetId>& ids, TetId t)
+  { return static_cast<TetId>(std::lower_bound(ids.begin(), ids.end(), t) - ids.begin()); };
+  const TetId own = static_cast<TetId>(this->Own.size());
+  for (TetId t : this->Outside)
+  {
+    arrays.tets.push_back({ whole.tet(t).vertices, { NoId, NoId, NoId, NoId } });
+    arrays.quality.push_back(whole.quality(t));
+    arrays.region.push_back(OutsideBlock);
+    arrays.origin.push_back(NoId);
+  }
+  for (SharedFace& f : this->Faces)
+  {
+    const TetId inside = localOf(this->Own, f.inside >> 2);
+    const TetId outside = own + localOf(this->Outside, f.outside >> 2);
+    f.local = 4 * outside + (f.outside & 3);
+    arrays.tets[inside].neighbors[f.inside & 3] = f.local;
+    arrays.tets[outside].neighbors[f.outside & 3] = 4 * inside + (f.inside & 3);
+  }
+}
+
+/// Gives points the numbers of the block: first those of the input, then inserted ones.
+void MeshBlock::numberPoints(const TetrahedronMesh& whole, TetrahedronArrays& arrays)
+{
+  for (const Tetrahedron& t : arrays.tets)
+  {
+    this->Points.insert(this->Points.end(), t.vertices.begin(), t.vertices.end());
+  }
+  std::sort(this->Points.begin(), this->Points.end());
+  this->Points.erase(std::unique(this->Points.begin(), this->Points.end()), this->Points.end());
+  const auto localOf = [&](PointId v)
+  {
+    return static_cast<PointId>(
+      std::lower_bound(this->Points.begin(), this->Points.end(), v) - this->Points.begin());
+  };
+  for (Tetrahedron& t : arrays.tets)
+  {
+    std::transform(t.vertices.begin(), t.vertices.end(), t.vertices.begin(), localOf);
+  }
+  for (PointId v : this->Points)
+  {
+    arrays.points.push_back(whole.point(v));
+  }
+  arrays.inputPoints = localOf(whole.inputPoints());
+}
+
+TetrahedronArrays MeshBlock::extract(
+  const TetrahedronMesh& whole, const std::vector<std::uint8_t>& blocks)
+{
+  TetrahedronArrays arrays;
+  std::vector<std::int32_t> locals(this->Own.back() - this->Own.front() + 1, NoId);
+  for (std::size_t k = 0; k < this->Own.size(); ++k)
+  {
+    locals[this->Own[k] - this->Own.front()] = static_cast<std::int32_t>(k);
+  }
+  const std::uint8_t block = blocks[this->Own[0]];
+  for (TetId t : this->Own)
+  {
+    Tetrahedron tet = whole.tet(t);
+    for (std::int32_t& n : tet.neighbors)
+    {
+      const bool inside = n != NoId && blocks[n >> 2] == block;
+      n = inside ? 4 * locals[(n >> 2) - this->Own.front()] + (n & 3) : NoId;
+    }
+    arrays.tets.push_back(tet);
+    arrays.quality.push_back(whole.quality(t));
+    arrays.region.push_back(whole.region(t));
+    arrays.origin.push_back(whole.origin(t));
+  }
+  this->addOutside(whole, blocks, arrays);
+  this->numberPoints(whole, arrays);
+  return arrays;
+}
+
+MeshBlockList cutIntoBlocks(
+  const TetrahedronMesh& whole, const OperationRules& rules, int frame, int levels, int threads)
+{
+  const std::vector<std::uint8_t> blocks = partition(whole, frame, levels, threads);
+  std::vector<std::vector<TetId>> own(std::size_t(1) << levels);
+  for (TetId t = 0; t < whole.slots(); ++t)
+  {
+    if (whole.alive(t))
+    {
+      own[blocks[t]].push_back(t);
+    }
+  }
+  own.erase(std::remove_if(
+              own.begin(), own.end(), [](const std::vector<TetId>& tets) { return tets.empty(); }),
+    own.end());
+  MeshBlockList list(own.size());
+  parallelFor(static_cast<Index>(own.size()), 1, threads,
+    [&](Index b) { list[b].reset(new MeshBlock(whole, rules, std::move(own[b]), blocks)); });
+  return list;
+}
+
+//------------------------------------------------------------------------------
+/// Joins blocks: the ids that what is new gets, and the faces between the blocks.
+class BlockJoin
+{
+public:
+  BlockJoin(TetrahedronMesh& whole, MeshBlockList& blocks)
+    : Blocks(blocks)
+    , Arrays(whole.release())
+  {
+    std::size_t tets = this->Arrays.tets.size(), points = this->Arrays.points.size();
+    for (const auto& block : blocks)
+    {
+      this->FirstTets.push_back(static_cast<TetId>(tets));
+      this->FirstPoints.push_back(static_cast<PointId>(points));
+      tets += block->Mesh.slots() - this->knownTets(*block);
+      points += block->Mesh.pointSlots() - block->Points.size();
+    }
+    this->Arrays.tets.resize(tets, { { NoId, NoId, NoId, NoId }, { NoId, NoId, NoId, NoId } });
+    this->Arrays.quality.resize(tets, 0.0);
+    this->Arrays.region.resize(tets, 0);
+    this->Arrays.origin.resize(tets, NoId);
+    this->Arrays.points.resize(points);
+  }
+
+  /// Which face the outer side of each face between blocks is now: after all blocks were changed.
+  void matchFaces()
+  {
+    for (std::size_t b = 0; b < this->Blocks.size(); ++b)
+    {
+      const MeshBlock& block = *this->Blocks[b];
+      for (const MeshBlock::SharedFace& f : block.Faces)
+      {
+        const std::int32_t now = block.Mesh.tet(f.local >> 2).neighbors[f.local & 3];
+        this->Now.push_back({ f.inside, 4 * this->tetOf(b, now >> 2) + (now & 3) });
+      }
+    }
+    std::sort(this->Now.begin(), this->Now.end());
+  }
+
+  void write(std::size_t b)
+  {
+    const MeshBlock& block = *this->Blocks[b];
+    const TetId known = this->knownTets(block);
+    for (TetId t = 0; t < block.Mesh.slots(); ++t)
+    {
+      if (t < known && t >= static_cast<TetId>(block.Own.size()))
+      {
+        continue; // outside
+      }
+      const TetId id = this->tetOf(b, t);
+      Tetrahedron& tet = this->Arrays.tets[id];
+      tet = block.Mesh.tet(t);
+      if (!block.Mesh.alive(t))
+      {
+        continue;
+      }
+      for (PointId& v : tet.vertices)
+      {
+        v = this->pointOf(b, v);
+      }
+      for (std::int32_t& n : tet.neighbors)
+      {
+        const bool isOutside =
+          n != NoId && n >> 2 < known && n >> 2 >= static_cast<TetId>(block.Own.size());
+        n = n == NoId || isOutside ? NoId : 4 * this->tetOf(b, n >> 2) + (n & 3);
+      }
+      this->Arrays.quality[id] = block.Mesh.quality(t);
+      this->Arrays.region[id] = block.Mesh.region(t);
+      this->Arrays.origin[id] = block.Mesh.origin(t);
+    }
+    for (PointId v = 0; v < block.Mesh.pointSlots(); ++v)
+    {
+      if (v >= static_cast<PointId>(block.Points.size()) || !block.Shared[v])
+      {
+        this->Arrays.points[this->pointOf(b, v)] = block.Mesh.point(v);
+      }
+    }
+  }
+
+  /// Connects the blocks, after all of them were written.
+  void connect()
+  {
+    for (const auto& block : this->Blocks)
+    {
+      for (const MeshBlock::SharedFace& f : block->Faces)
+      {
+        const std::int32_t own = this->faceNow(f.inside);
+        this->Arrays.tets[own >> 2].neighbors[own & 3] = this->faceNow(f.outside);
+      }
+    }
+  }
+
+  /// Sets the freedoms of the new points, and adds the counts.
+  void finish(TetrahedronMesh& whole, CavityOperations& operations)
+  {
+    operations.freedoms.resize(this->Arrays.points.size());
+    for (std::size_t b = 0; b < this->Blocks.size(); ++b)
+    {
+      CavityOperations& own = this->Blocks[b]->Operations;
+      operations.addCounts(own.counts());
+      for (std::size_t v = this->Blocks[b]->Points.size(); v < own.freedoms.size(); ++v)
+      {
+        operations.freedoms[this->pointOf(b, static_cast<PointId>(v))] = own.freedoms[v];
+      }
+    }
+    whole = TetrahedronMesh(std::move(this->Arrays));
+    operations.prepareStamps();
+  }
+
+private:
+  static TetId knownTets(const MeshBlock& block)
+  {
+    return static_cast<TetId>(block.Own.size() + block.Outside.size());
+  }
+  TetId tetOf(std::size_t b, TetId t) const
+  {
+    const MeshBlock& block = *this->Blocks[b];
+    return t < static_cast<TetId>(block.Own.size())
+      ? block.Own[t]
+      : this->FirstTets[b] + t - this->knownTets(block);
+  }
+  PointId pointOf(std::size_t b, PointId v) const
+  {
+    const std::vector<PointId>& points = this->Blocks[b]->Points;
+    const PointId known = static_cast<PointId>(points.size());
+    return v < known ? points[v] : this->FirstPoints[b] + v - known;
+  }
+  std::int32_t faceNow(std::int32_t before) const
+  {
+    return std::lower_bound(this->Now.begin(), this->Now.end(),
+      std::make_pair(before, std::numeric_limits<std::int32_t>::min()))
+      ->second;
+  }
+
+  MeshBlockList& Blocks;
+  TetrahedronArrays Arrays;
+  std::vector<TetId> FirstTets;     ///< id of the first new tetrahedron of each block
+  std::vector<PointId> FirstPoints; ///< the same of points
+  std::vector<std::pair<std::int32_t, std::int32_t>> Now; ///< codes of faces between blocks
+};
+
+void joinBlocks(
+  TetrahedronMesh& whole, CavityOperations& operations, MeshBlockList& blocks, int threads)
+{
+  BlockJoin join(whole, blocks);
+  join.matchFaces();
+  parallelFor(static_cast<Index>(blocks.size()), 1, threads,
+    [&](Index b) { join.write(static_cast<std::size_t>(b)); });
+  join.connect();
+  join.finish(whole, operations);
+}
+}

@@ -1,0 +1,96 @@
+/**
+ * @file MeshBlocks.h
+ * @brief A large mesh cut into blocks that are changed independently, and joined again. Internal:
+ * not installed.
+ *
+ * A block is a mesh of its own: its tetrahedra, and as a wall the tetrahedra that they meet in the
+ * rest of the mesh (region OutsideBlock). The points of the latter are fixed, so that the faces
+ * between blocks stay and the changed blocks fit together:
+ *
+ *        block 0   |   block 1            the points on the line | stay; in the next partition,
+ *      ------------x------------          cut in other directions, they are inside a block
+ *        block 2   |   block 3
+ *
+ * Partition, blocks and their numbering depend on the mesh alone, not on threads.
+ */
+#ifndef tautline_MeshBlocks_h
+#define tautline_MeshBlocks_h
+
+#include "Schedule.h"
+
+#include <memory>
+
+namespace tautline
+{
+/// The region of tetrahedra that are not of the block.
+constexpr std::int32_t OutsideBlock = -1;
+
+/**
+ * @brief The block of each slot of a mesh: planes cut the mesh in halves, these in halves, and so
+ * on, always across their longest extent in a frame.
+ * @param frame 0, 1 or 2: the three directions of cuts, oblique to those of the other frames
+ * @param levels there are 2^levels blocks
+ */
+std::vector<std::uint8_t> partition(
+  const TetrahedronMesh& mesh, int frame, int levels, int threads);
+
+/// A block with the operations and the schedule for it.
+class MeshBlock
+{
+public:
+  /**
+   * @param own the tetrahedra of the block, in increasing order
+   * @param blocks the block of each slot
+   * @param rules of the whole mesh; the bounds of the size are shared among the blocks
+   */
+  MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules, std::vector<TetId> own,
+    const std::vector<std::uint8_t>& blocks);
+
+  TetrahedronMesh& mesh() { return this->Mesh; }
+  CavityOperations& operations() { return this->Operations; }
+  Schedule& schedule() { return this->Passes; }
+  /// The points of the whole mesh that the block has.
+  const std::vector<PointId>& points() const { return this->Points; }
+  /// For each of these, whether it is on a face between blocks.
+  const std::vector<char>& shared() const { return this->Shared; }
+
+private:
+  friend class BlockJoin;
+
+  /// A face between the block and the rest.
+  struct SharedFace
+  {
+    std::int32_t inside, outside; ///< codes in the whole mesh, before any change
+    std::int32_t local;           ///< code of the outer side in this mesh
+  };
+
+  TetrahedronArrays extract(const TetrahedronMesh& whole, const std::vector<std::uint8_t>& blocks);
+  void addOutside(const TetrahedronMesh& whole, const std::vector<std::uint8_t>& blocks,
+    TetrahedronArrays& arrays);
+  void numberPoints(const TetrahedronMesh& whole, TetrahedronArrays& arrays);
+
+  std::vector<TetId> Own;
+  std::vector<TetId> Outside;  ///< of the whole mesh; they follow the own ones
+  std::vector<PointId> Points; ///< of the whole mesh
+  std::vector<char> Shared;
+  std::vector<SharedFace> Faces;
+  TetrahedronMesh Mesh;
+  CavityOperations Operations;
+  Schedule Passes;
+};
+
+using MeshBlockList = std::vector<std::unique_ptr<MeshBlock>>;
+
+/// Cuts a mesh into blocks.
+MeshBlockList cutIntoBlocks(
+  const TetrahedronMesh& whole, const OperationRules& rules, int frame, int levels, int threads);
+
+/**
+ * @brief Puts the changed blocks into the mesh they were cut from. Tetrahedra and points that were
+ * not changed keep their ids; what is new follows, in the order of the blocks.
+ * @param operations of the whole mesh: gets the counts, and the freedoms of new points
+ */
+void joinBlocks(
+  TetrahedronMesh& whole, CavityOperations& operations, MeshBlockList& blocks, int threads);
+}
+#endif
