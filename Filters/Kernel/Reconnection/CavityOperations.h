@@ -80,6 +80,8 @@ public:
     Swap
   };
   bool tryCompound(TetId t, Compound kind);
+  /// The largest number of swaps and insertions that follow a tentative change.
+  int repairs = 0;
 
   const std::vector<TetId>& changed() const { return this->Created; }
   const OperationCounts& counts() const { return this->Counts; }
@@ -109,23 +111,30 @@ private:
     double quality = -1;
   };
 
-  /// A step that was carried out tentatively.
+  /// A step that was carried out tentatively: a replacement, the motion of a point (nothing
+  /// before), or the use of a point for an insertion (nothing created).
   struct Step
   {
-    std::vector<TetVertices> before; ///< empty: a point was moved
+    std::vector<TetVertices> before;
     std::vector<TetId> created;
     std::vector<double> qualities; ///< of `before`; where a point was moved, of `created`
     bool opensBoundary = false;
     PointId point = NoId;
     Vec3 position = { 0, 0, 0 };
+    bool isReused = false; ///< whether the point for an insertion existed
+    PointFreedom freedom;  ///< its former one
   };
 
   bool commit();
   bool applyChange();
   bool isValidChange();
   bool smoothAround(double above);
+  void cleanAffected();
+  bool repair(TetId t);
+  bool repairAround(double above);
   bool finishCompound(double above);
   void undo();
+  void restorePoint(const Step& step);
   bool findInsertion(TetId t, Insertion& best, std::vector<Insertion>* all = nullptr);
   bool applyInsertion(const Insertion& best);
   bool prepareEdgeRemoval(TetId t, int i, int j, double above);

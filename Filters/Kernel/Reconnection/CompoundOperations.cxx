@@ -11,11 +11,15 @@ constexpr double Tolerated = 0.5;
 constexpr std::size_t MaxInsertions = 4;
 /// Rounds of smoothing before a tentative change is judged, and steps of each vertex in a round.
 constexpr int Rounds = 4, RoundSteps = 2;
+/// After these, the worst tetrahedron is repaired if its quality is at least this fraction of the
+/// quality before the change.
+constexpr double Repairable = 0.85;
 }
 
 /// Moves the vertices of the affected tetrahedra; true as soon as all of these are above a quality.
 bool CavityOperations::smoothAround(double above)
 {
+  this->cleanAffected();
   std::vector<PointId> vertices;
   for (TetId t : this->Affected)
   {
@@ -42,12 +46,68 @@ bool CavityOperations::smoothAround(double above)
   return false;
 }
 
+/// Removes tetrahedra from the affected ones that are no more, and repetitions.
+void CavityOperations::cleanAffected()
+{
+  std::vector<TetId>& tets = this->Affected;
+  std::sort(tets.begin(), tets.end());
+  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
+  tets.erase(
+    std::remove_if(tets.begin(), tets.end(), [this](TetId t) { return !this->Mesh.alive(t); }),
+    tets.end());
+}
+
+/// Improves the worst of the affected tetrahedra by a swap or an insertion.
+bool CavityOperations::repair(TetId t)
+{
+  const double q = this->Mesh.quality(t) * (1.0 + 2.0 * CertainQuality);
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int j = i + 1; j < 4; ++j)
+    {
+      if (this->prepareEdgeRemoval(t, i, j, q) && this->commit())
+      {
+        ++(this->Ring.closed ? this->Counts.edgeRemovals : this->Counts.boundarySwaps);
+        return true;
+      }
+    }
+    if (this->prepareFaceRemoval(t, i, q) && this->commit())
+    {
+      ++this->Counts.faceRemovals;
+      return true;
+    }
+  }
+  Insertion best;
+  best.quality = q;
+  return this->findInsertion(t, best) && this->applyInsertion(best);
+}
+
+/// After a change that smoothing did not make an improvement: repairs the worst of the affected
+/// tetrahedra, again and again.
+bool CavityOperations::repairAround(double above)
+{
+  for (int k = 0; k < this->repairs; ++k)
+  {
+    this->cleanAffected();
+    const auto worst = std::min_element(this->Affected.begin(), this->Affected.end(),
+      [this](TetId a, TetId b) { return this->Mesh.quality(a) < this->Mesh.quality(b); });
+    if (worst == this->Affected.end() || this->Mesh.quality(*worst) < Repairable * above ||
+      !this->repair(*worst))
+    {
+      return false;
+    }
+    if (this->smoothAround(above))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Keeps the tentative steps if every affected tetrahedron is above a quality and the floor.
 bool CavityOperations::finishCompound(double above)
 {
-  std::sort(this->Affected.begin(), this->Affected.end());
-  this->Affected.erase(
-    std::unique(this->Affected.begin(), this->Affected.end()), this->Affected.end());
+  this->cleanAffected();
   for (TetId t : this->Affected)
   {
     const TetVertices& v = this->Mesh.tet(t).vertices;
@@ -62,11 +122,26 @@ bool CavityOperations::finishCompound(double above)
   return true;
 }
 
+/// Gives a point that is not used its former place and freedom.
+void CavityOperations::restorePoint(const Step& step)
+{
+  this->Mesh.movePoint(step.point, step.position, {}, nullptr);
+  this->freedoms[step.point] = step.freedom;
+}
+
 void CavityOperations::undo()
 {
   for (auto step = this->Steps.rbegin(); step != this->Steps.rend(); ++step)
   {
     this->Change.clear();
+    if (step->created.empty())
+    {
+      if (step->isReused)
+      {
+        this->restorePoint(*step);
+      }
+      continue;
+    }
     if (step->before.empty())
     {
       this->Mesh.movePoint(step->point, step->position, step->created, step->qualities.data());
@@ -99,7 +174,8 @@ bool CavityOperations::attempt(double above, const Operation& operation)
   this->Affected.clear();
   this->Tentative = true;
   const bool changed = operation();
-  const bool kept = changed && this->smoothAround(above) && this->finishCompound(above);
+  const bool kept = changed && (this->smoothAround(above) || this->repairAround(above)) &&
+    this->finishCompound(above);
   if (changed && !kept)
   {
     this->undo();

@@ -222,7 +222,17 @@ bool CavityOperations::applyInsertion(const Insertion& best)
   {
     this->addToCavity(s);
   }
-  const PointId p = this->Mesh.addPoint(best.point);
+  // A point that an earlier step of this change has freed is used again: undoing has to restore it.
+  const PointId p = this->Mesh.nextPoint();
+  Step former;
+  former.point = p;
+  former.isReused = p < this->Mesh.pointSlots();
+  if (former.isReused)
+  {
+    former.position = this->Mesh.point(p);
+    former.freedom = this->freedoms[p];
+  }
+  this->Mesh.addPoint(best.point);
   this->freedoms.resize(this->Mesh.pointSlots());
   this->freedoms[p] = best.freedom;
   this->prepareStamps();
@@ -253,9 +263,21 @@ bool CavityOperations::applyInsertion(const Insertion& best)
           std::binary_search(kept.begin(), kept.end(), u));
     }
   }
+  if (this->Tentative)
+  {
+    this->Steps.push_back(former);
+  }
   if (!valid || !this->commit())
   {
     this->Mesh.releasePoint(p);
+    if (former.isReused)
+    {
+      this->restorePoint(former);
+    }
+    if (this->Tentative)
+    {
+      this->Steps.pop_back();
+    }
     return false;
   }
   ++this->Counts.insertions;

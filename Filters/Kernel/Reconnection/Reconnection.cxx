@@ -26,6 +26,11 @@ constexpr double TargetGain = 1e-3, FineGain = 5e-4;
 constexpr double HighTarget = 0.57, HighTargetGain = 4e-3;
 /// Steps of a point, each time, in the last pass; the others have two.
 constexpr int CompoundSteps = 4;
+/// Swaps and insertions that may follow a tentative change, in the last pass.
+constexpr int Repairs = 4;
+/// It ends after so many tetrahedra tried in vain, and one more of so many of the mesh: these take
+/// some milliseconds each.
+constexpr Index MaxFailures = 100, TetrahedraPerFailure = 10000;
 /// The last pass is repeated, at most so often, as long as the worst quality gains so much by it.
 constexpr int Repetitions = 3;
 constexpr double RepetitionGain = 2e-3;
@@ -35,6 +40,8 @@ constexpr double SliverAngle = 15.0;
 constexpr int MaxLevels = 8, Partitions = 3;
 /// How far beyond the faces between blocks the next partition starts, in rings of tetrahedra.
 constexpr int StartRings = 1;
+/// Blocks pay where at least this part of the tetrahedra is worked on.
+constexpr double BlockFraction = 0.1;
 /// Progress when all blocks are done.
 constexpr double BlockProgress = 0.9;
 /// Wall time between two calls of the observer during a pass.
@@ -49,7 +56,7 @@ double radians(double degrees)
 /// measured.
 void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord& record)
 {
-  double quality = 1.0, smallest = 180.0, largest = 0.0, meanRatio = 1.0;
+  double quality = 1.0, smallest = 180.0, largest = 0.0, meanRatio = 1.0, sufficient = 2.0;
   record.belowTarget = 0;
   for (TetId t = 0; t < mesh.slots(); ++t)
   {
@@ -61,9 +68,7 @@ void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord
     const double q = mesh.quality(t);
     quality = std::min(quality, q);
     record.belowTarget += q < target;
-    // All angles are between asin(q) and 180 degrees minus it, the mean ratio's power is above q.
-    const double bound = std::asin(std::min(q, 1.0)) * (180.0 / Pi);
-    if (bound >= smallest && 180.0 - bound <= largest && q >= meanRatio)
+    if (q >= sufficient)
     {
       continue;
     }
@@ -75,6 +80,9 @@ void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord
       largest = std::max(largest, angle);
     }
     meanRatio = std::min(meanRatio, measure(x(0), x(1), x(2), x(3)).meanRatio);
+    // All angles are between asin(q) and 180 degrees minus it, the mean ratio's power is above q.
+    sufficient = std::max({ meanRatio, std::sin(radians(std::min(smallest, 90.0))),
+      std::sin(radians(std::max(largest, 90.0))) });
   }
   record.tetrahedra = mesh.size();
   record.worstQuality = quality;
@@ -94,7 +102,7 @@ void copyCounts(const OperationCounts& counts, ReconnectionRecord& record)
 }
 
 /// First swaps and smoothing, for ever better tetrahedra; then insertion, then what is costly.
-std::vector<PassOptions> planPasses(const ReconnectionOptions& options)
+std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index size)
 {
   const double target = std::sin(radians(options.targetAngle));
   PassOptions pass;
@@ -131,6 +139,9 @@ std::vector<PassOptions> planPasses(const ReconnectionOptions& options)
     pass.compound = true;
     pass.leastGain = FineGain;
     pass.smoothingSteps = CompoundSteps;
+    passes.push_back(pass);
+    pass.repairs = Repairs;
+    pass.maxFailures = MaxFailures + size / TetrahedraPerFailure;
     passes.push_back(pass);
   }
   return passes;
@@ -172,6 +183,7 @@ private:
   void setBounds();
   bool runPasses(std::vector<PassOptions> passes);
   bool runInBlocks(const std::vector<PassOptions>& passes, int levels);
+  bool paysInBlocks(const std::vector<char>& starts) const;
   bool runBlocks(
     MeshBlockList& blocks, const std::vector<PassOptions>& passes, const std::vector<char>& starts);
   std::vector<char> addRings(std::vector<char> flags) const;
@@ -259,7 +271,7 @@ void Run::run(const std::vector<PointFreedom>& freedoms)
   const bool started = this->record(0, 0.0);
   this->setFloor();
   this->Passes.proceed = [this]() { return this->proceed(); };
-  std::vector<PassOptions> passes = planPasses(this->Options);
+  std::vector<PassOptions> passes = planPasses(this->Options, this->Mesh.size());
   this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
   const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
   const bool goesOn = started && (levels == 0 || this->runInBlocks(passes, levels));
@@ -283,6 +295,10 @@ bool Run::runPasses(std::vector<PassOptions> passes)
     {
       break;
     }
+    if (passes[i].repairs > 0)
+    {
+      this->Passes.starts.clear(); // blocks leave this pass out
+    }
     stopped = this->Passes.run(passes[i]) < 0;
     const double done = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
     if (!this->record(before.pass + 1, start + (1.0 - start) * done) && !stopped)
@@ -291,7 +307,14 @@ bool Run::runPasses(std::vector<PassOptions> passes)
       this->Result.reason = StopReason::Aborted;
     }
     const double gain = this->Result.history.back().worstQuality - before.worstQuality;
-    if (i + 1 == passes.size() && passes[i].compound && gain > RepetitionGain &&
+    if (this->Passes.exhausted() && !stopped)
+    {
+      // What the repairs left below the target, without compound operations.
+      passes.push_back(passes[i]);
+      passes.back().compound = false;
+      passes.back().maxFailures = 0;
+    }
+    else if (i + 1 == passes.size() && passes[i].compound && gain > RepetitionGain &&
       passes.size() < planned + Repetitions)
     {
       passes.push_back(passes[i]);
@@ -350,7 +373,8 @@ bool Run::runBlocks(
     try
     {
       std::all_of(passes.begin(), passes.end(),
-        [&](const PassOptions& pass) { return !stop && schedule.run(pass) >= 0; });
+        [&](const PassOptions& pass)
+        { return pass.repairs > 0 || (!stop && schedule.run(pass) >= 0); });
     }
     catch (...)
     {
@@ -366,12 +390,27 @@ bool Run::runBlocks(
   return !stop;
 }
 
+/// Whether enough tetrahedra are below the target, of those that passes start with.
+bool Run::paysInBlocks(const std::vector<char>& starts) const
+{
+  const double target = std::sin(radians(this->Options.targetAngle));
+  Index count = 0;
+  for (TetId t = 0; t < this->Mesh.slots(); ++t)
+  {
+    const TetVertices& v = this->Mesh.tet(t).vertices;
+    count += this->Mesh.alive(t) && this->Mesh.quality(t) < target &&
+      (starts.empty() ||
+        std::any_of(v.begin(), v.end(), [&](PointId p) { return starts[p] != 0; }));
+  }
+  return static_cast<double>(count) >= BlockFraction * static_cast<double>(this->Mesh.size());
+}
+
 /// Runs the passes in blocks of several partitions; false if stopped. Where a partition has its
-/// faces between blocks, the next one goes on; the last faces are left to the passes of the whole.
+/// faces between blocks, the next one goes on; what then is left, the passes of the whole have.
 bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels)
 {
   std::vector<char> starts;
-  for (int k = 0; k < Partitions; ++k)
+  for (int k = 0; k < Partitions && this->paysInBlocks(starts); ++k)
   {
     MeshBlockList blocks =
       cutIntoBlocks(this->Mesh, this->Operations, k, levels, this->Options.threads);

@@ -171,6 +171,7 @@ Index Schedule::run(const PassOptions& options)
   this->Tried.assign(this->Mesh.slots(), 0);
   this->Operations.prepareStamps();
   this->Operations.setLeastGain(options.leastGain);
+  this->Operations.repairs = options.repairs;
   for (TetId t = 0; t < this->Mesh.slots(); ++t)
   {
     if (this->startsWith(t) && this->Mesh.quality(t) < options.target)
@@ -179,8 +180,8 @@ Index Schedule::run(const PassOptions& options)
     }
   }
   std::make_heap(this->Heap.begin(), this->Heap.end());
-  Index accepted = 0, tries = 0;
-  while (!this->Heap.empty())
+  Index accepted = 0, tries = 0, failures = 0;
+  while (!this->Heap.empty() && (options.maxFailures == 0 || failures < options.maxFailures))
   {
     std::pop_heap(this->Heap.begin(), this->Heap.end());
     const Entry entry = this->Heap.back();
@@ -210,9 +211,11 @@ Index Schedule::run(const PassOptions& options)
     }
     else
     {
+      ++failures;
       this->Tried[t] = this->Operations.clock() + 1;
     }
   }
+  this->Exhausted = options.maxFailures > 0 && failures >= options.maxFailures;
   return accepted;
 }
 }

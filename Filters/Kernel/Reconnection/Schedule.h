@@ -22,6 +22,8 @@ struct PassOptions
   bool contract = false;
   bool insert = false;
   bool compound = false;   ///< also insertions (and contractions) that pay only after smoothing
+  Index maxFailures = 0;   ///< ends after so many tetrahedra tried in vain; 0: no limit
+  int repairs = 0;         ///< see CavityOperations::repairs
   int smoothingSteps = 2;  ///< of a vertex, each time
   double leastGain = 2e-3; ///< a vertex is moved if its star's smallest quality gains so much
 };
@@ -48,6 +50,9 @@ public:
 
   /// Runs a pass. @return the number of operations that were accepted, or -1 if stopped
   Index run(const PassOptions& options);
+
+  /// Whether the last pass ended for PassOptions::maxFailures.
+  bool exhausted() const { return this->Exhausted; }
 
   /// The largest (mean ratio)^(3/2) of a tetrahedron on a face: its apex is over the centre.
   double facetBound(TetId t, int i) const;
@@ -77,6 +82,7 @@ private:
   TetrahedronMesh& Mesh;
   CavityOperations& Operations;
   std::vector<Entry> Heap;
+  bool Exhausted = false;
   std::vector<std::uint32_t> Tried; ///< clock at the last attempt in vain, per slot
 };
 }

@@ -162,6 +162,11 @@ public:
 
   /// A point without tetrahedra. The next replacement may use it; else release it.
   PointId addPoint(const Vec3& x);
+  /// The id that addPoint() will return; below pointSlots() if it was used before.
+  PointId nextPoint() const
+  {
+    return this->FreePoints.empty() ? this->pointSlots() : this->FreePoints.back();
+  }
   void releasePoint(PointId v);
   /// Takes a point back that a replacement has just freed, at its place as it was.
   void reclaimPoint(PointId v);
