@@ -172,6 +172,28 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, const std::vector<doub
   return array;
 }
 
+/// Averages the arrays of real numbers over the cells of the input that each cell overlaps.
+void averageCellData(
+  const ReconnectableMesh& input, const CellOverlaps& overlaps, vtkCellData* from, vtkCellData* to)
+{
+  for (int a = 0; a < from->GetNumberOfArrays(); ++a)
+  {
+    vtkDataArray* source = from->GetArray(a);
+    const bool real =
+      source && (source->GetDataType() == VTK_DOUBLE || source->GetDataType() == VTK_FLOAT);
+    vtkDataArray* target = real && source->GetName() ? to->GetArray(source->GetName()) : nullptr;
+    for (vtkIdType cell = 0; target && cell < target->GetNumberOfTuples(); ++cell)
+    {
+      for (int k = 0; k < source->GetNumberOfComponents(); ++k)
+      {
+        target->SetComponent(cell, k,
+          overlaps.average(
+            cell, [&](Index c) { return source->GetComponent(input.inputCell(c), k); }));
+      }
+    }
+  }
+}
+
 void writeCellData(const ReconnectableMesh& input, const ReconnectionResult& result,
   const ImprovedMesh& improved, vtkPointSet* output)
 {
@@ -188,6 +210,10 @@ void writeCellData(const ReconnectableMesh& input, const ReconnectionResult& res
     const Index original = input.inputCell(result.originalCells[cell]);
     to->CopyData(from, original, cell);
     originals->SetValue(cell, original);
+  }
+  if (!result.overlaps.offsets.empty())
+  {
+    averageCellData(input, result.overlaps, from, to);
   }
   to->RemoveArray(vtkDataSetAttributes::GhostArrayName());
   to->AddArray(originals);

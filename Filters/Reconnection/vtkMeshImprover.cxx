@@ -292,6 +292,9 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
   options.flatTolerance = this->FlatTolerance;
   options.smallestCount = this->SmallestCount;
   options.largestCount = this->LargestCount;
+  options.threads = this->Threads;
+  options.improveMean = this->ThenBestShape;
+  options.overlaps = this->CellTransfer == CONSERVATIVE;
   options.maximumSeconds = this->GetRemainingSeconds();
 }
 
@@ -404,5 +407,7 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "SurfaceAngle: " << this->SurfaceAngle << "\n";
   os << indent << "SurfaceDistance: " << this->SurfaceDistance << "\n";
+  os << indent << "ThenBestShape: " << this->ThenBestShape << "\n";
+  os << indent << "CellTransfer: " << this->CellTransfer << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
 }

@@ -29,8 +29,8 @@
  * @par Output port 0 `Mesh`:
  * The new mesh. Points of the input keep their data; new ones interpolate theirs in the cell of the
  * input that they are in. The cell array `OriginalCellId` is the cell of the input, of the same
- * region, that contains the centroid, and cells have its data. The cell arrays `min_angle` (the
- * smallest angle in degrees, of tetrahedra dihedral) and `imr` (the inverse mean ratio) are those of
+ * region, that contains the centroid, and cells have its data (or averages, see CellTransfer). The
+ * cell arrays `min_angle` (the smallest angle in degrees, of tetrahedra dihedral) and `imr` (the inverse mean ratio) are those of
  * the output. Global ids of points and cells are left out, as they would not be unique.
  *
  * @par Output port 1 `History`:
@@ -186,6 +186,34 @@ public:
 
   ///@{
   /**
+   * Whether points move at the end for the best shape on average: the mean of the inverse mean
+   * ratios, while the smallest dihedral angle and the worst inverse mean ratio stay as good as they
+   * are. The default is off.
+   */
+  vtkSetMacro(ThenBestShape, bool);
+  vtkGetMacro(ThenBestShape, bool);
+  vtkBooleanMacro(ThenBestShape, bool);
+  ///@}
+
+  enum CellTransfers
+  {
+    COPY = 0,
+    CONSERVATIVE = 1
+  };
+  ///@{
+  /**
+   * Where cells have their data from. COPY, the default: from the cell of the input that contains
+   * the centroid. CONSERVATIVE: arrays of real numbers are averages over the cells of the input,
+   * weighted by the volumes that the cell shares with them; so constants stay, and so does the
+   * integral of each array over the mesh. Other arrays are copied from the cell that shares the
+   * largest volume. Costs some 20 microseconds per cell that changed.
+   */
+  vtkTautlineSetRangeMacro(CellTransfer, int, COPY, CONSERVATIVE);
+  vtkGetMacro(CellTransfer, int);
+  ///@}
+
+  ///@{
+  /**
    * Whether points with the same coordinates on facets that match become one, as on the seams of a
    * mesh in pieces; off: seams are treated as boundary. The default is on.
    */
@@ -259,6 +287,8 @@ private:
   double FeatureAngle = 40.0;
   double SurfaceAngle = 20.0;
   double SurfaceDistance = 5e-3;
+  bool ThenBestShape = false;
+  int CellTransfer = COPY;
   bool MergeCoincidentPoints = true;
 
   std::string Reason;

@@ -5,7 +5,8 @@ are CPU time; those of the thread speed-up are wall time. Prints tables; writes 
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
 elements, optimization.json and .csv of the optimizer (see optimization.py), and deformation.json and .csv of warping
 (see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py) to the output
-directory, by default DIR/benchmark.
+directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh compares with the program gmsh,
+where that is installed (see gmsh_comparison.py).
 """
 
 import argparse
@@ -215,7 +216,7 @@ def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> No
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parser.add_argument("--only", choices=("quality", "optimization", "deformation", "reconnection"),
+    parser.add_argument("--only", choices=("quality", "optimization", "deformation", "reconnection", "gmsh"),
                         help="one part; all otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
@@ -232,6 +233,8 @@ def main() -> int:
         run_reconnection(options.build, output, options.repeats or 3, options.quick)
     if options.only in (None, "optimization"):
         run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
+    if options.only in (None, "gmsh"):
+        subprocess.run([sys.executable, str(Path(__file__).with_name("gmsh_comparison.py"))], check=False)
     return 0
 
 

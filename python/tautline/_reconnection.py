@@ -18,6 +18,7 @@ from ._io import Mesh, as_mesh
 #: In the filter's numbering.
 PRESETS = ("custom", "remove slivers", "swap only", "swap and smooth", "aggressive")
 BOUNDARIES = ("fixed", "flat")
+CELL_TRANSFERS = ("copy", "conservative")
 _FIXED, _REGIONS = 0, 1  # input arrays of vtkMeshImprover
 _MAX_ANGLE = 60.0
 _MAX_FLAT_TOLERANCE = 1.0
@@ -73,6 +74,8 @@ def improve(
     surface_distance: float = 5e-3,
     regions: str | Sequence | None = None,
     fixed: str | Sequence | None = None,
+    then_best_shape: bool = False,
+    cell_transfer: str = "copy",
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
@@ -100,8 +103,13 @@ def improve(
         in degrees, 0 to 90, and how far triangles are from it, 0 to 1 times the diagonal of the mesh. Points are on it.
     regions: the region of each cell, m, or the name of a cell array; facets (edges) between regions stay.
     fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
+    then_best_shape: whether points move at the end for the best shape on average (inverse mean ratio), while the
+        smallest dihedral angle and the worst inverse mean ratio stay as good as they are.
+    cell_transfer: "copy" (a cell has the data of the cell of the input that contains its centroid) or "conservative"
+        (real numbers are averages over the cells of the input, weighted by the volumes that the cell shares with them:
+        constants and the integral over the mesh stay; other data are of the cell that shares most).
     time_limit: seconds; 0 is no limit.
-    threads: number of threads for measuring; 0 is all cores. The result does not depend on it.
+    threads: number of threads, which large meshes make use of; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match become one, as on the seams of a
         mesh in pieces. False: seams are boundary.
     operations: of the preset "custom": swap, smooth, contract, insert, compound (operations that pay off only after the
@@ -129,6 +137,8 @@ def improve(
     filter_.SetFeatureAngle(within("feature_angle", feature_angle, 0, _MAX_FEATURE_ANGLE))
     filter_.SetSurfaceAngle(within("surface_angle", surface_angle, 0, _MAX_SURFACE_ANGLE))
     filter_.SetSurfaceDistance(within("surface_distance", surface_distance, 0, 1))
+    filter_.SetThenBestShape(bool(then_best_shape))
+    filter_.SetCellTransfer(pick("cell_transfer", cell_transfer, CELL_TRANSFERS))
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
@@ -189,6 +199,10 @@ def add_commands(commands: Any) -> None:
                         help="of normals from the input surface, at most (default: 20)")  # fmt: skip
     parser.add_argument("--surface-distance", type=float, metavar="FACTOR", default=5e-3,
                         help="from the input surface, relative to the diagonal (default: 5e-3)")  # fmt: skip
+    parser.add_argument("--then-best-shape", action="store_true",
+                        help="move points at the end for the best shape on average, the worst being held")  # fmt: skip
+    parser.add_argument("--cell-transfer", choices=CELL_TRANSFERS, default="copy",
+                        help="cell data copied from one cell, or averages that keep totals (default: copy)")  # fmt: skip
     parser.add_argument("--regions", metavar="ARRAY", help="cell array with regions, whose common facets stay")
     parser.add_argument("--smallest-count", type=float, default=0.9, metavar="FACTOR",
                         help="least number of elements, relative to the input (default: 0.9)")  # fmt: skip
@@ -200,6 +214,7 @@ def _run_improve(arguments: argparse.Namespace) -> None:
     names = ("preset", "boundary", "target_angle", "regions", "smallest_count", "largest_count")
     names += ("flat_tolerance", "feature_angle", "surface_angle", "surface_distance")
     names += ("fixed", "time_limit", "threads", "merge_coincident_points")
+    names += ("then_best_shape", "cell_transfer")
     left_out = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
     result = improve(arguments.mesh, **_commands.given(arguments, names), **left_out)
     print(result.summary)

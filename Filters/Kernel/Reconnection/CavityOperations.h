@@ -59,6 +59,9 @@ public:
   bool removeFaces(TetId t, int i);
   /// Moves a vertex to where the smallest quality of its star is largest.
   bool smooth(PointId v, int steps);
+  /// Moves a vertex so that the sum of the inverse mean ratios around decreases and nothing falls
+  /// below the floor. @return the decrease
+  double improveMean(PointId v);
   /// Sets what a motion has to gain; points that could not be moved are tried again.
   void setLeastGain(double gain)
   {

@@ -44,6 +44,11 @@ constexpr int StartRings = 1;
 constexpr double BlockFraction = 0.1;
 /// Progress when all blocks are done.
 constexpr double BlockProgress = 0.9;
+/// Sweeps for the mean end when one decreases the sum by less than this part, or after so many.
+constexpr double LeastMeanDecrease = 2e-5;
+constexpr int MaxMeanSweeps = 60;
+/// Points between two calls of the observer in these.
+constexpr PointId MeanInterval = 256;
 /// Wall time between two calls of the observer during a pass.
 constexpr double ObserverSeconds = 0.1;
 
@@ -179,7 +184,8 @@ public:
 private:
   bool record(int pass, double progress);
   bool proceed();
-  void setFloor();
+  void setFloor(const ReconnectionRecord& record);
+  bool improveMean();
   void setBounds();
   bool runPasses(std::vector<PassOptions> passes);
   bool runInBlocks(const std::vector<PassOptions>& passes, int levels);
@@ -236,14 +242,13 @@ bool Run::proceed()
   return true;
 }
 
-/// Nothing becomes worse than the worst of the input.
-void Run::setFloor()
+/// Nothing becomes worse than the worst of the mesh of a record.
+void Run::setFloor(const ReconnectionRecord& record)
 {
-  const ReconnectionRecord& input = this->Result.history.front();
   QualityFloor& floor = this->Operations.floor;
-  floor.smallestAngle = input.smallestAngle;
-  floor.meanRatio = std::pow(input.worstInverseMeanRatio, -1.5);
-  const double sine = input.smallestAngle < 90.0 ? std::sin(radians(input.smallestAngle)) : 1.0;
+  floor.smallestAngle = record.smallestAngle;
+  floor.meanRatio = std::pow(record.worstInverseMeanRatio, -1.5);
+  const double sine = record.smallestAngle < 90.0 ? std::sin(radians(record.smallestAngle)) : 1.0;
   floor.sufficient = std::max(sine, floor.meanRatio);
 }
 
@@ -269,13 +274,14 @@ void Run::run(const std::vector<PointFreedom>& freedoms)
   this->setBounds();
   this->Result.reason = StopReason::NoProgress;
   const bool started = this->record(0, 0.0);
-  this->setFloor();
+  this->setFloor(this->Result.history.front());
   this->Passes.proceed = [this]() { return this->proceed(); };
   std::vector<PassOptions> passes = planPasses(this->Options, this->Mesh.size());
   this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
   const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
   const bool goesOn = started && (levels == 0 || this->runInBlocks(passes, levels));
-  const bool stopped = !goesOn || !this->runPasses(passes);
+  const bool stopped =
+    !goesOn || !this->runPasses(passes) || (this->Options.improveMean && !this->improveMean());
   if (!stopped && this->Result.history.back().belowTarget == 0)
   {
     this->Result.reason = StopReason::Reduction;
@@ -319,6 +325,33 @@ bool Run::runPasses(std::vector<PassOptions> passes)
     {
       passes.push_back(passes[i]);
     }
+  }
+  return !stopped;
+}
+
+/// Moves all points in turn for the mean, the worst being held; false if stopped.
+bool Run::improveMean()
+{
+  const ReconnectionRecord before = this->Result.history.back();
+  this->setFloor(before);
+  bool stopped = false;
+  for (int sweep = 0; sweep < MaxMeanSweeps && !stopped; ++sweep)
+  {
+    double decrease = 0.0;
+    for (PointId v = 0; v < this->Mesh.pointSlots() && !stopped; ++v)
+    {
+      stopped = v % MeanInterval == 0 && !this->proceed();
+      decrease += stopped ? 0.0 : this->Operations.improveMean(v);
+    }
+    if (decrease < LeastMeanDecrease * static_cast<double>(this->Mesh.size()))
+    {
+      break;
+    }
+  }
+  if (!this->record(before.pass + 1, 1.0) && !stopped)
+  {
+    stopped = true;
+    this->Result.reason = StopReason::Aborted;
   }
   return !stopped;
 }
@@ -542,6 +575,10 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
     run.findObstacles(fixedPoints);
   }
   convertOutput(mesh, input, changing, locator, result);
+  if (options.overlaps)
+  {
+    computeOverlaps(input, changing, locator, options.threads, result);
+  }
   return result;
 }
 }

@@ -62,6 +62,12 @@ struct ReconnectionOptions
    */
   bool compound = true;
   /**
+   * @brief Whether points move at the end so that the mean of the inverse mean ratios becomes as
+   * small as the worst tetrahedra allow: the smallest dihedral angle and the largest inverse mean
+   * ratio stay as good as they are.
+   */
+  bool improveMean = false;
+  /**
    * @brief Degrees, above 0 and at most 60. Tetrahedra are worked on while their quality is below
    * the sine of this angle; when none is, all dihedral angles are between it and 180 degrees minus
    * it, and the run ends. The default is about what fixed boundaries of good facets allow; with
@@ -82,6 +88,12 @@ struct ReconnectionOptions
    * and faces makes it.
    */
   double smallestCount = 0.9, largestCount = 1.1;
+  /**
+   * @brief Whether the overlaps of the cells of the output with those of the input are computed,
+   * for a conservative transfer of quantities. Then the original cells are those that overlap most.
+   * Costs some 20 microseconds per cell that changed.
+   */
+  bool overlaps = false;
   /// The largest number of threads, see Parallel.h; 0: all cores. The result does not depend on it.
   int threads = 0;
   /**

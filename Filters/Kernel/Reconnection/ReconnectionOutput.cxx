@@ -9,8 +9,9 @@ namespace tautline
 {
 namespace
 {
-/// Cells visited in the search for a point, and the negative weight that is rounding.
-constexpr std::size_t MaxVisited = 400;
+/// Cells visited on the straight way to a point and in the search around, and the negative weight
+/// that is rounding.
+constexpr std::size_t MaxWalked = 400, MaxSearched = 20000;
 constexpr double WeightTolerance = -1e-12;
 }
 
@@ -55,7 +56,7 @@ TetId InputLocator::locate(const Vec3& x, TetId start) const
 {
   // Straight on, over the face that x is farthest beyond, as long as there is a neighbour.
   TetId t = start;
-  for (std::size_t i = 0; i < MaxVisited; ++i)
+  for (std::size_t i = 0; i < MaxWalked; ++i)
   {
     const std::array<double, 4> w = this->weights(x, t);
     const auto least = std::min_element(w.begin(), w.end());
@@ -80,7 +81,7 @@ TetId InputLocator::search(const Vec3& x, TetId start) const
   std::unordered_set<TetId> known = { start };
   TetId nearest = start;
   double best = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < queue.size() && i < MaxVisited; ++i)
+  for (std::size_t i = 0; i < queue.size() && i < MaxSearched; ++i)
   {
     const TetId t = queue[i];
     const std::array<double, 4> w = this->weights(x, t);
@@ -142,6 +143,7 @@ std::vector<Index> writePoints(const Mesh& mesh, const ReconnectionInput& input,
   }
   return numbers;
 }
+}
 
 bool isUnchanged(const ReconnectionInput& input, const TetrahedronMesh& changed, TetId t)
 {
@@ -152,7 +154,6 @@ bool isUnchanged(const ReconnectionInput& input, const TetrahedronMesh& changed,
   const TetVertices& v = input.cells[t];
   return std::all_of(
     v.begin(), v.end(), [&](PointId p) { return changed.point(p) == input.points[p]; });
-}
 }
 
 void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const TetrahedronMesh& changed,

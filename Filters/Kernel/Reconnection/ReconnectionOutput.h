@@ -21,6 +21,13 @@ public:
   /// The cell of the same region as `start` that contains x; where none does (by rounding, outside
   /// the mesh), the nearest of those that were visited.
   TetId locate(const Vec3& x, TetId start) const;
+  /**
+   * @brief The cells that a tetrahedron overlaps, and the volumes that they share, times 6. Empty
+   * if there are none.
+   * @param start a cell of its region, near it
+   */
+  std::vector<std::pair<TetId, double>> overlaps(
+    const std::array<Vec3, 4>& corners, TetId start) const;
   /// Barycentric coordinates of x.
   std::array<double, 4> weights(const Vec3& x, TetId cell) const;
 
@@ -31,6 +38,13 @@ private:
   const ReconnectionInput& Input;
   std::vector<std::array<std::int32_t, 4>> Neighbors;
 };
+
+/// Whether a tetrahedron is one of the input, its points where they were.
+bool isUnchanged(const ReconnectionInput& input, const TetrahedronMesh& changed, TetId t);
+
+/// Sets ReconnectionResult::overlaps, and the original cells to those that overlap most.
+void computeOverlaps(const ReconnectionInput& input, const TetrahedronMesh& changed,
+  const InputLocator& locator, int threads, ReconnectionResult& result);
 
 /// Writes points, tetrahedra and their origins.
 void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const TetrahedronMesh& changed,

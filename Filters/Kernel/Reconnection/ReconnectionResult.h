@@ -33,6 +33,33 @@ struct PointInterpolation
   std::array<double, 4> weights = { 0, 0, 0, 0 };
 };
 
+/// Which cells of the input the cells of the output overlap, in compressed rows.
+struct CellOverlaps
+{
+  std::vector<Index> offsets; ///< cells + 1
+  std::vector<Index> cells;   ///< of the input
+  /// The part of the volume of the output's cell that is in the input's; the sum of a row is 1.
+  std::vector<double> fractions;
+
+  /**
+   * @brief The average of a field of the input over a cell of the output. Exact for constants; the
+   * integral over the mesh stays, to rounding.
+   * @param values of the cells of the input
+   */
+  template <class Values>
+  double average(Index cell, const Values& values) const
+  {
+    const Index begin = this->offsets[cell], end = this->offsets[cell + 1];
+    const double first = values(this->cells[begin]);
+    double sum = 0.0;
+    for (Index k = begin; k < end; ++k)
+    {
+      sum += this->fractions[k] * (values(this->cells[k]) - first);
+    }
+    return first + sum;
+  }
+};
+
 struct ReconnectionResult
 {
   std::vector<double> points;    ///< x y z per point
@@ -49,6 +76,8 @@ struct ReconnectionResult
    * are not changed keep their order.
    */
   std::vector<Index> originalCells;
+  /// With ReconnectionOptions::overlaps, else empty.
+  CellOverlaps overlaps;
   std::vector<signed char> obstacles; ///< a ReconnectionObstacle per cell of the output
   std::vector<ReconnectionRecord> history;
   StopReason reason = StopReason::NoProgress;  ///< or Reduction (target), TimeLimit, Aborted

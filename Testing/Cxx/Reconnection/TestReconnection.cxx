@@ -2,14 +2,18 @@
 
 #include "Reconnecting.h"
 
+#include "tautline/Optimization/Optimize.h"
+
+#include <numeric>
+
 using namespace tautline;
 
 namespace
 {
-using Preset = ReconnectionPreset;
+using Kind = ReconnectionPreset;
 
-constexpr Preset presets[] = { Preset::RemoveSlivers, Preset::SwapOnly, Preset::SwapAndSmooth,
-  Preset::Aggressive };
+constexpr Kind presets[] = { Kind::RemoveSlivers, Kind::SwapOnly, Kind::SwapAndSmooth,
+  Kind::Aggressive };
 
 /// Barycentric coordinates of x in a cell.
 std::array<double, 4> weightsOf(const MeshData& data, Index cell, const Vec3& x)
@@ -79,7 +83,7 @@ void testPresets()
   {
     const MeshData data = sliverBlock(5, seed, 1.2);
     const auto facets = outerFacets(data);
-    for (Preset preset : presets)
+    for (Kind preset : presets)
     {
       const Context context(
         "preset " + std::to_string(static_cast<int>(preset)) + " seed " + std::to_string(seed));
@@ -91,7 +95,7 @@ void testPresets()
       const double count = static_cast<double>(result.history.back().tetrahedra) /
         static_cast<double>(data.numberOfCells());
       TAUTLINE_CHECK(count >= 0.9 && count <= 1.1);
-      const double aim = preset == Preset::SwapOnly ? 1.0 : 10.0;
+      const double aim = preset == Kind::SwapOnly ? 1.0 : 10.0;
       TAUTLINE_CHECK(
         result.history.back().smallestAngle > aim + result.history.front().smallestAngle);
       // Unchanged by a second run, bit for bit.
@@ -104,7 +108,7 @@ void testPresets()
 void testSwapOnly()
 {
   const MeshData data = sliverBlock(5, 9, 1.2);
-  const ReconnectionResult result = reconnect(data, optionsOf(Preset::SwapOnly));
+  const ReconnectionResult result = reconnect(data, optionsOf(Kind::SwapOnly));
   TAUTLINE_CHECK(result.points == data.points);
   TAUTLINE_CHECK(result.tetrahedra != data.connectivity);
   TAUTLINE_CHECK_EQUAL(result.history.back().moves, Index(0));
@@ -115,7 +119,7 @@ void testSwapOnly()
 void testTargets()
 {
   const MeshData data = sliverBlock(6, 5, 0.9);
-  const ReconnectionResult slivers = reconnect(data, optionsOf(Preset::RemoveSlivers));
+  const ReconnectionResult slivers = reconnect(data, optionsOf(Kind::RemoveSlivers));
   TAUTLINE_CHECK(slivers.history.back().smallestAngle >= 15.0);
   TAUTLINE_CHECK(slivers.history.back().largestAngle <= 165.0);
   TAUTLINE_CHECK_EQUAL(static_cast<int>(slivers.reason), static_cast<int>(StopReason::Reduction));
@@ -126,7 +130,7 @@ void testTargets()
     same += std::equal(&output.connectivity[4 * c], &output.connectivity[4 * c] + 4,
       &data.connectivity[4 * slivers.originalCells[c]]);
   }
-  const ReconnectionResult all = reconnect(data, optionsOf(Preset::Aggressive));
+  const ReconnectionResult all = reconnect(data, optionsOf(Kind::Aggressive));
   TAUTLINE_CHECK(same > output.numberOfCells() / 3);
   TAUTLINE_CHECK(all.history.back().moves > 2 * slivers.history.back().moves);
   TAUTLINE_CHECK(all.history.back().smallestAngle > slivers.history.back().smallestAngle + 5.0);
@@ -182,7 +186,7 @@ void testScales()
         Vec3{ std::sin(p[1] + 2 * p[2] + p[0]), std::sin(2 * p[0] + 3 * p[2]),
           std::sin(3 * p[0] + 2 * p[1]) };
     });
-  for (Preset preset : presets)
+  for (Kind preset : presets)
   {
     const Context context("preset " + std::to_string(static_cast<int>(preset)));
     const ReconnectionOptions options = optionsOf(preset);
@@ -205,9 +209,9 @@ void testScales()
       MeshData moved = data;
       moved.transform(map);
       const ReconnectionResult result = reconnect(moved, options);
-      TAUTLINE_CHECK(preset != Preset::SwapOnly || result.tetrahedra == reference.tetrahedra);
+      TAUTLINE_CHECK(preset != Kind::SwapOnly || result.tetrahedra == reference.tetrahedra);
       TAUTLINE_CHECK_RELATIVE(result.history.back().worstQuality,
-        reference.history.back().worstQuality, preset == Preset::SwapOnly ? 1e-8 : 0.1);
+        reference.history.back().worstQuality, preset == Kind::SwapOnly ? 1e-8 : 0.1);
     };
     const Columns turn = rotation({ 1, 2, 3 }, 1.0);
     compare([](const Vec3& p) { return 1e-8 * p; });
@@ -392,6 +396,144 @@ void testObstacles()
   TAUTLINE_CHECK_EQUAL(below, result.history.back().belowTarget);
   TAUTLINE_CHECK(held > 0);
 }
+
+/// Blocks of a mesh: the same result with any number of threads, as good as without blocks, walls
+/// and volumes of regions kept, every cell of the input covered.
+void testBlocks()
+{
+  const MeshData data = sliverBlock(12, 11, 0.9);
+  std::vector<Index> regions;
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    const Index* v = &data.connectivity[4 * c];
+    const Vec3 sum = data.point(v[0]) + data.point(v[1]) + data.point(v[2]) + data.point(v[3]);
+    regions.push_back(sum[0] < 4.0 * 5.0);
+  }
+  ReconnectionOptions options = optionsOf(Kind::Aggressive);
+  options.regions = regions.data();
+  const ReconnectionResult whole = reconnect(data, options);
+  options.blockSize = data.numberOfCells() / 9; // 8 blocks
+  options.threads = 1;
+  const ReconnectionResult result = reconnect(data, options);
+  checkResult(data, result);
+  checkOrigins(data, result);
+  TAUTLINE_CHECK(result.points != whole.points); // done in another order
+  const auto worst = [](const ReconnectionResult& r) { return r.history.back().worstQuality; };
+  TAUTLINE_CHECK(worst(result) > 0.9 * worst(whole));
+  TAUTLINE_CHECK(result.history.back().belowTarget < 2 * whole.history.back().belowTarget + 10);
+  TAUTLINE_CHECK(result.history.back().insertions > 0);
+  std::vector<Index> regionsAfter;
+  for (Index original : result.originalCells)
+  {
+    regionsAfter.push_back(regions[original]);
+  }
+  const MeshData output = outputOf(result);
+  for (Index region : { 0, 1 })
+  {
+    TAUTLINE_CHECK(outerFacets(output, regionsAfter, region) == outerFacets(data, regions, region));
+  }
+  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    options.boundary = boundary;
+    options.threads = 1;
+    const ReconnectionResult one = reconnect(data, options);
+    checkResult(data, one);
+    for (int threads : { 2, 5 })
+    {
+      options.threads = threads;
+      const ReconnectionResult other = reconnect(data, options);
+      TAUTLINE_CHECK(other.points == one.points);
+      TAUTLINE_CHECK(other.tetrahedra == one.tetrahedra);
+      TAUTLINE_CHECK(other.originalCells == one.originalCells);
+    }
+  }
+  options.observer = [&](const ReconnectionRecord& record, double) { return record.pass < 1; };
+  const ReconnectionResult aborted = reconnect(data, options);
+  checkResult(data, aborted);
+  TAUTLINE_CHECK(aborted.reason == StopReason::Aborted);
+}
+
+/// With the worst held, the mean becomes about that of Best shape alone on the same cells.
+void testMean()
+{
+  const MeshData data = sliverBlock(6, 9, 0.9);
+  const auto meanOf = [](const MeshData& mesh)
+  {
+    const std::vector<double> values = valuesOf(mesh, Metric::InverseMeanRatio);
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    ReconnectionOptions options = optionsOf(Kind::Aggressive);
+    options.boundary = boundary;
+    const ReconnectionResult plain = reconnect(data, options);
+    options.improveMean = true;
+    const ReconnectionResult held = reconnect(data, options);
+    checkResult(data, held);
+    const ReconnectionRecord &before = plain.history.back(), &after = held.history.back();
+    TAUTLINE_CHECK(held.tetrahedra == plain.tetrahedra);
+    TAUTLINE_CHECK(after.smallestAngle >= before.smallestAngle * (1.0 - 1e-12));
+    TAUTLINE_CHECK(after.worstInverseMeanRatio <= before.worstInverseMeanRatio * (1.0 + 1e-12));
+    TAUTLINE_CHECK(meanOf(outputOf(held)) < 0.99 * meanOf(outputOf(plain)));
+    if (boundary == ReconnectionBoundary::Fixed)
+    {
+      MeshData shape = outputOf(plain);
+      const OptimizeResult best = optimize(Mesh(shape.view()), OptimizeOptions());
+      shape.points = best.points;
+      TAUTLINE_CHECK(meanOf(outputOf(held)) <= 1.02 * meanOf(shape));
+    }
+  }
+}
+
+/// Overlaps cover each cell of the input, averages are exact for constants and keep the integral.
+void testOverlaps()
+{
+  const MeshData data = sliverBlock(4, 5, 0.9);
+  std::vector<double> field;
+  Random random(4);
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    field.push_back(random.vector(-1.0, 3.0)[0]);
+  }
+  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    ReconnectionOptions options = optionsOf(Kind::Aggressive);
+    options.boundary = boundary;
+    TAUTLINE_CHECK(reconnect(data, options).overlaps.offsets.empty());
+    options.overlaps = true;
+    const ReconnectionResult result = reconnect(data, options);
+    const MeshData output = outputOf(result);
+    const CellOverlaps& overlaps = result.overlaps;
+    TAUTLINE_CHECK_EQUAL(static_cast<Index>(overlaps.offsets.size()), output.numberOfCells() + 1);
+    std::vector<double> covered(data.numberOfCells(), 0.0);
+    double before = 0.0, after = 0.0, size = 0.0;
+    for (Index c = 0; c < output.numberOfCells(); ++c)
+    {
+      double most = 0.0, sum = 0.0;
+      for (Index k = overlaps.offsets[c]; k < overlaps.offsets[c + 1]; ++k)
+      {
+        covered[overlaps.cells[k]] += overlaps.fractions[k] * volumeOf(output, c);
+        most = std::max(most, overlaps.fractions[k]);
+        sum += overlaps.fractions[k];
+      }
+      TAUTLINE_CHECK_NEAR(sum, 1.0, 1e-14);
+      const Index* begin = &overlaps.cells[overlaps.offsets[c]];
+      const Index* end = begin + (overlaps.offsets[c + 1] - overlaps.offsets[c]);
+      const Index* original = std::find(begin, end, result.originalCells[c]);
+      TAUTLINE_CHECK(original != end);
+      TAUTLINE_CHECK_EQUAL(overlaps.fractions[original - overlaps.cells.data()], most);
+      after += volumeOf(output, c) * overlaps.average(c, [&](Index i) { return field[i]; });
+      TAUTLINE_CHECK_EQUAL(overlaps.average(c, [](Index) { return 0.1; }), 0.1);
+    }
+    for (Index c = 0; c < data.numberOfCells(); ++c)
+    {
+      TAUTLINE_CHECK_RELATIVE(covered[c], volumeOf(data, c), 1e-9);
+      before += volumeOf(data, c) * field[c];
+      size += volumeOf(data, c) * std::abs(field[c]);
+    }
+    TAUTLINE_CHECK_NEAR(after, before, 1e-12 * size);
+  }
+}
 }
 
 int TestReconnection(int, char*[])
@@ -405,5 +547,8 @@ int TestReconnection(int, char*[])
   testFlat();
   testLimits();
   testObstacles();
+  testBlocks();
+  testMean();
+  testOverlaps();
   return exitCode();
 }

@@ -168,6 +168,89 @@ void testNonManifold()
   }
 }
 
+/// Regions in the pattern of a chessboard meet at edges and at a point; each keeps its facets.
+void testRegionsAtPoint()
+{
+  const MeshData data = sliverBlock(4, 6, 1.0);
+  std::vector<Index> regions;
+  const MeshData plain = blockMesh(CellType::Tetrahedron, 4, 4, 4);
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    const Vec3 m = Mesh(plain.view()).center(c, CellType::Tetrahedron);
+    regions.push_back(((m[0] < 2) + (m[1] < 2) + (m[2] < 2)) % 2);
+  }
+  for (Index blockSize : { data.numberOfCells(), data.numberOfCells() / 4 })
+  {
+    ReconnectionOptions options;
+    options.regions = regions.data();
+    options.blockSize = blockSize;
+    const ReconnectionResult result = reconnect(data, options);
+    checkResult(data, result);
+    TAUTLINE_CHECK(result.history.back().edgeRemovals > 0);
+    std::vector<Index> after;
+    for (Index original : result.originalCells)
+    {
+      after.push_back(regions[original]);
+    }
+    for (Index region : { 0, 1 })
+    {
+      TAUTLINE_CHECK(
+        outerFacets(outputOf(result), after, region) == outerFacets(data, regions, region));
+    }
+  }
+}
+
+/// One layer of cells: every cavity touches the boundary on two sides.
+void testThinPlate()
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, 8, 8, 1);
+  Random random(2);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      const bool rim = p[0] == 0.0 || p[0] == 8.0 || p[1] == 0.0 || p[1] == 8.0;
+      const Vec3 d = random.vector(-0.2, 0.2);
+      return rim ? p : p + Vec3{ d[0], d[1], 0.0 };
+    });
+  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    ReconnectionOptions options;
+    options.boundary = boundary;
+    const ReconnectionResult result = reconnect(data, options);
+    checkResult(data, result);
+    if (boundary == ReconnectionBoundary::Fixed)
+    {
+      TAUTLINE_CHECK(outerFacets(outputOf(result)) == outerFacets(data));
+    }
+    else
+    {
+      TAUTLINE_CHECK(result.history.back().worstQuality > result.history.front().worstQuality);
+    }
+  }
+}
+
+/// Points at the same place in two parts that touch: both parts stay as they are there.
+void testDuplicatePoints()
+{
+  MeshData data = sliverBlock(3, 3, 1.0);
+  const Index first = data.numberOfPoints();
+  const MeshData other = sliverBlock(3, 4, 1.0);
+  for (Index i = 0; i < other.numberOfPoints(); ++i)
+  {
+    data.addPoint(other.point(i) + Vec3{ 3, 0, 0 });
+  }
+  for (Index c = 0; c < other.numberOfCells(); ++c)
+  {
+    const Index* v = &other.connectivity[4 * c];
+    data.addCell(CellType::Tetrahedron,
+      std::vector<Index>{ v[0] + first, v[1] + first, v[2] + first, v[3] + first });
+  }
+  const ReconnectionResult result = reconnect(data, {});
+  checkResult(data, result);
+  TAUTLINE_CHECK(result.history.back().smallestAngle > result.history.front().smallestAngle);
+  TAUTLINE_CHECK(outerFacets(outputOf(result)) == outerFacets(data));
+}
+
 /// All cells listed in the opposite order: the result is, too.
 void testMirrored()
 {
@@ -196,6 +279,9 @@ int TestReconnectionInputs(int, char*[])
   testOptions();
   testSmall();
   testNonManifold();
+  testRegionsAtPoint();
+  testThinPlate();
+  testDuplicatePoints();
   testMirrored();
   return exitCode();
 }

@@ -405,6 +405,7 @@ void testRandomOperations(int wanted)
       }
       const std::vector<double> state = stateOf(mesh);
       const OperationCounts counts = operations.counts();
+      operations.repairs = attempt % 8 == 0 ? 2 : 0; // after tentative changes
       if (!operate(operations, mesh, t, random))
       {
         const std::vector<double> after = stateOf(mesh);

@@ -1,0 +1,135 @@
+// Motion of a vertex that improves the mean of the inverse mean ratios around.
+#include "CavityOperations.h"
+
+#include <Eigen/Dense>
+
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// The inverse mean ratio is S / (12 (d / 2)^(2/3)), with the sum S of the squared edges and six
+/// times the volume d.
+constexpr double RatioFactor = 12.0;
+/// Halvings of a step that is too long.
+constexpr int Halvings = 6;
+/// A decrease that is kept, relative to the sum.
+constexpr double LeastDecrease = 1e-7;
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Vector3d toEigen(const Vec3& v)
+{
+  return { v[0], v[1], v[2] };
+}
+
+/// Sum of the inverse mean ratios with its derivatives; infinite where a volume is not positive.
+struct RatioSum
+{
+  double value = 0;
+  Vector3d gradient = Vector3d::Zero();
+  Matrix3d hessian = Matrix3d::Zero();
+
+  void add(const Vec3& p, const std::array<Vec3, 3>& f, bool derivatives)
+  {
+    const Vec3 u = f[0] - p, v = f[1] - p, w = f[2] - p;
+    const Vec3 ab = f[1] - f[0], bc = f[2] - f[1], ca = f[0] - f[2];
+    const double d = dot(u, cross(v, w));
+    if (!(d > 0.0))
+    {
+      this->value = std::numeric_limits<double>::infinity();
+      return;
+    }
+    const double s = dot(u, u) + dot(v, v) + dot(w, w) + dot(ab, ab) + dot(bc, bc) + dot(ca, ca);
+    const double scale = 1.0 / (RatioFactor * std::cbrt(0.25 * d * d));
+    this->value += scale * s;
+    if (derivatives)
+    {
+      // d is linear in p, S quadratic.
+      const Vector3d gs = -2.0 * toEigen(u + v + w);
+      const Vector3d gd = (-1.0 / d) * toEigen(cross(f[1] - f[0], f[2] - f[0]));
+      this->gradient += scale * (gs - (2.0 / 3.0) * s * gd);
+      this->hessian += scale *
+        (6.0 * Matrix3d::Identity() - (2.0 / 3.0) * (gs * gd.transpose() + gd * gs.transpose()) +
+          (10.0 / 9.0) * s * gd * gd.transpose());
+    }
+  }
+};
+
+/// Newton's step in the directions that a point has; along the gradient where that is no descent.
+Vec3 stepOf(const RatioSum& sum, const PointFreedom& freedom)
+{
+  Vector3d g = sum.gradient;
+  Matrix3d h = sum.hessian;
+  if (freedom.kind != PointFreedom::Free)
+  {
+    const Vector3d n = toEigen(freedom.direction);
+    const Matrix3d along = n * n.transpose();
+    const Matrix3d allowed =
+      freedom.kind == PointFreedom::OnLine ? along : Matrix3d(Matrix3d::Identity() - along);
+    g = allowed * g;
+    h = Matrix3d(allowed * h * allowed) +
+      h.trace() * (Matrix3d::Identity() - allowed); // no step in the other directions
+  }
+  Vector3d step = -h.ldlt().solve(g);
+  if (!step.allFinite() || step.dot(g) >= 0.0)
+  {
+    step = -g / h.trace();
+  }
+  return freedom.project({ step[0], step[1], step[2] });
+}
+}
+
+double CavityOperations::improveMean(PointId v)
+{
+  const PointFreedom& freedom = this->freedoms[v];
+  if (freedom.kind == PointFreedom::Fixed || !this->Mesh.used(v))
+  {
+    return 0.0;
+  }
+  this->Mesh.star(v, this->Star);
+  std::vector<std::array<Vec3, 3>> faces;
+  for (TetId t : this->Star)
+  {
+    const TriangleVertices f = this->Mesh.face(t, this->Mesh.tet(t).indexOf(v));
+    faces.push_back({ this->Mesh.point(f[0]), this->Mesh.point(f[1]), this->Mesh.point(f[2]) });
+  }
+  const auto evaluate = [&](const Vec3& p, bool derivatives)
+  {
+    RatioSum sum;
+    for (const auto& f : faces)
+    {
+      sum.add(p, f, derivatives);
+    }
+    return sum;
+  };
+  const Vec3 start = this->Mesh.point(v);
+  const RatioSum before = evaluate(start, true);
+  if (!std::isfinite(before.value))
+  {
+    return 0.0;
+  }
+  Vec3 step = stepOf(before, freedom);
+  for (int k = 0; k < Halvings; ++k, step = 0.5 * step)
+  {
+    const Vec3 p = start + step;
+    const double decrease = before.value - evaluate(p, false).value;
+    const bool kept = decrease > LeastDecrease * before.value &&
+      std::all_of(faces.begin(), faces.end(),
+        [&](const std::array<Vec3, 3>& f)
+        {
+          const double q = exactQuality(p, f[0], f[1], f[2]);
+          return q > CertainQuality && this->aboveFloor(p, f[0], f[1], f[2], q);
+        });
+    if (kept)
+    {
+      this->Mesh.movePoint(v, p, this->Star, nullptr);
+      ++this->Counts.moves;
+      return decrease;
+    }
+  }
+  return 0.0;
+}
+}
