@@ -32,8 +32,9 @@ struct ImprovedMesh
  *
  * Points of the input keep their data; inserted ones interpolate. Cells have the data of the cell
  * in OriginalCellId; with ReconnectionResult::overlaps, real numbers are averages over the cells of
- * the input that they overlap. Global ids are left out, as they would not be unique. Points in single
- * precision stay so unless a tetrahedron would not be valid, or the worst one worse than before.
+ * the input that they overlap. Global ids are left out, as they would not be unique. Points in
+ * single precision stay so unless a tetrahedron would not be valid, or the worst one worse than
+ * before.
  */
 ImprovedMesh writeImproved(const ReconnectableMesh& input, const ReconnectionResult& result,
   int threads, vtkPointSet* output);

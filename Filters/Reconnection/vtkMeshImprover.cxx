@@ -27,7 +27,7 @@ vtkStandardNewMacro(vtkMeshImprover);
 namespace
 {
 constexpr int NumberOfInputPorts = 2, NumberOfOutputPorts = 3;
-constexpr int FixedArray = 0, RegionArray = 1;
+constexpr int FixedArray = 0, RegionArray = 1, SizeArray = 2;
 constexpr int ListedElements = 10;
 
 /// In the order of tautline::ReconnectionObstacle.
@@ -293,6 +293,8 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
   options.smallestCount = this->SmallestCount;
   options.largestCount = this->LargestCount;
   options.threads = this->Threads;
+  options.edgeLength = this->EdgeLength;
+  options.edgeFactor = this->EdgeFactor;
   options.improveMean = this->ThenBestShape;
   options.overlaps = this->CellTransfer == CONSERVATIVE;
   options.maximumSeconds = this->GetRemainingSeconds();
@@ -321,7 +323,15 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
   {
     tautline::ReconnectionOptions options;
     prepare(options);
+    const std::vector<double> sizes = this->SetSize(block.input, options);
+    options.sizes = sizes.data();
     return tautline::improveConnectivity(mesh.mesh(), options);
+  }
+  if (this->Size != ANY_LENGTH || this->ThenBestShape || this->CellTransfer != COPY)
+  {
+    throw tautline::Error("Target lengths of edges, Then Best Shape and conservative cell data are "
+                          "for tetrahedra: switch them off for triangles. Optimize Mesh improves "
+                          "the mean shape of triangles.");
   }
   tautline::TriangleOptions options;
   prepare(options);
@@ -330,6 +340,39 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
   options.surfaceDistance = this->SurfaceDistance;
   options.markedEdges = mesh.lines();
   return tautline::improveTriangles(mesh.mesh(), options);
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkMeshImprover::SetSize(
+  vtkDataSet* input, tautline::ReconnectionOptions& options)
+{
+  using tautline::ReconnectionSize;
+  options.size = this->Size == EDGE_LENGTH ? ReconnectionSize::Length
+    : this->Size == LENGTH_OF_INPUT        ? ReconnectionSize::Input
+                                           : ReconnectionSize::None;
+  std::vector<double> sizes;
+  if (this->Size != SIZE_ARRAY)
+  {
+    return sizes;
+  }
+  vtkDataArray* array = tautline::chosenArray(this, SizeArray, input, "of target lengths");
+  const int components = array ? array->GetNumberOfComponents() : 0;
+  if (components != 1 && components != 6 && components != 9)
+  {
+    throw tautline::Error("target lengths are needed: choose a point array with one component "
+                          "(lengths) or six or nine (metric tensors)");
+  }
+  // Of nine components those of the upper triangle, in VTK's order of six.
+  constexpr std::array<int, 6> upper = { 0, 4, 8, 1, 5, 2 };
+  options.size = components == 1 ? ReconnectionSize::Lengths : ReconnectionSize::Metrics;
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    for (int k = 0; k < std::min(components, static_cast<int>(upper.size())); ++k)
+    {
+      sizes.push_back(array->GetComponent(i, components == 9 ? upper[k] : k));
+    }
+  }
+  return sizes;
 }
 
 //------------------------------------------------------------------------------
@@ -407,6 +450,9 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "SurfaceAngle: " << this->SurfaceAngle << "\n";
   os << indent << "SurfaceDistance: " << this->SurfaceDistance << "\n";
+  os << indent << "Size: " << this->Size << "\n";
+  os << indent << "EdgeLength: " << this->EdgeLength << "\n";
+  os << indent << "EdgeFactor: " << this->EdgeFactor << "\n";
   os << indent << "ThenBestShape: " << this->ThenBestShape << "\n";
   os << indent << "CellTransfer: " << this->CellTransfer << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";

@@ -30,8 +30,8 @@
  * The new mesh. Points of the input keep their data; new ones interpolate theirs in the cell of the
  * input that they are in. The cell array `OriginalCellId` is the cell of the input, of the same
  * region, that contains the centroid, and cells have its data (or averages, see CellTransfer). The
- * cell arrays `min_angle` (the smallest angle in degrees, of tetrahedra dihedral) and `imr` (the inverse mean ratio) are those of
- * the output. Global ids of points and cells are left out, as they would not be unique.
+ * cell arrays `min_angle` (the smallest angle in degrees, of tetrahedra dihedral) and `imr` (the
+ * inverse mean ratio) are those of the output. Global ids of points and cells are left out, as they would not be unique.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is pass i (0 is the input): `Smallest angle`, `Largest angle`,
@@ -67,6 +67,9 @@
 #include "vtkTautlineTimedAlgorithm.h"
 
 #include <string> // for Reason
+#include <vector> // for SetSize
+
+class vtkDataSet;
 
 namespace tautline
 {
@@ -184,6 +187,37 @@ public:
   vtkGetMacro(LargestCount, double);
   ///@}
 
+  enum Sizes
+  {
+    ANY_LENGTH = 0,
+    EDGE_LENGTH = 1,
+    SIZE_ARRAY = 2,
+    LENGTH_OF_INPUT = 3
+  };
+  ///@{
+  /**
+   * The target length of edges: contraction makes none longer than EdgeFactor times it, insertion
+   * none shorter than it divided by EdgeFactor. ANY_LENGTH, the default: no target. EDGE_LENGTH:
+   * EdgeLength. SIZE_ARRAY: the point array at index 2 (SetInputArrayToProcess), lengths (one
+   * component) or metric tensors in which edges of the target length have length 1 (six components
+   * in the order of VTK, or nine). LENGTH_OF_INPUT: the mean length of the edges at each point.
+   */
+  vtkTautlineSetRangeMacro(Size, int, ANY_LENGTH, LENGTH_OF_INPUT);
+  vtkGetMacro(Size, int);
+  ///@}
+
+  ///@{
+  /// With EDGE_LENGTH: the target length, above 0. The default is 1.
+  vtkTautlineSetRangeMacro(EdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(EdgeLength, double);
+  ///@}
+
+  ///@{
+  /// How much longer or shorter than the target new edges may be, above 1. The default is 2.
+  vtkTautlineSetRangeMacro(EdgeFactor, double, 1.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(EdgeFactor, double);
+  ///@}
+
   ///@{
   /**
    * Whether points move at the end for the best shape on average: the mean of the inverse mean
@@ -268,6 +302,7 @@ private:
   void SetOptions(tautline::ReconnectionOptions& options) const;
   tautline::ReconnectionResult Run(const tautline::ReconnectableMesh& mesh,
     const tautline::InputBlock& block, int blocks, double& targetAngle);
+  std::vector<double> SetSize(vtkDataSet* input, tautline::ReconnectionOptions& options);
   void CheckSeams(vtkDataObject* input);
   void Improve(const tautline::InputBlock& block, int blocks, tautline::TableRows& history,
     tautline::TableRows& remaining);
@@ -287,6 +322,9 @@ private:
   double FeatureAngle = 40.0;
   double SurfaceAngle = 20.0;
   double SurfaceDistance = 5e-3;
+  int Size = ANY_LENGTH;
+  double EdgeLength = 1.0;
+  double EdgeFactor = 2.0;
   bool ThenBestShape = false;
   int CellTransfer = COPY;
   bool MergeCoincidentPoints = true;

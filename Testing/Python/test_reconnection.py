@@ -76,6 +76,57 @@ def test_data():
     assert "it has a fixed point" in still.remaining["reason"]
 
 
+def test_cell_transfer():
+    """Averages keep the integral of real cell arrays and constants; integers are copied. The mean improves."""
+    mesh = slivers()
+    cells = mesh.GetNumberOfCells()
+    for name, values in (("heat", np.random.default_rng(1).uniform(-1, 3, cells)), ("one", np.full(cells, 0.1)),
+                         ("pair", points_of_cells(mesh)[:, :2].copy())):  # fmt: skip
+        array = numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        mesh.GetCellData().AddArray(array)
+
+    def arrays(result):
+        data = result.mesh.GetCellData()
+        return {name: vtk_to_numpy(data.GetArray(name)) for name in ("heat", "one", "pair", "region")}
+
+    copied = tl.improve(mesh, "aggressive")
+    averaged = tl.improve(mesh, "aggressive", cell_transfer="conservative")
+    before = {name: vtk_to_numpy(mesh.GetCellData().GetArray(name)) for name in ("heat", "one", "pair", "region")}
+    after, plain, sizes = arrays(averaged), arrays(copied), volumes(averaged.mesh)
+    for name in ("heat", "pair"):
+        total, scale = volumes(mesh) @ before[name], volumes(mesh) @ np.abs(before[name])
+        assert (np.abs(sizes @ after[name] - total) < 1e-11 * scale).all(), name
+        assert (np.abs(volumes(copied.mesh) @ plain[name] - total) > 1e-6 * scale).all(), name
+    assert (after["one"] == 0.1).all() and (after["region"] == before["region"][averaged.original_cell]).all()
+    shaped = tl.improve(mesh, "aggressive", then_best_shape=True)
+    assert shaped.smallest_angle >= copied.smallest_angle and shaped.worst <= copied.worst
+    assert shaped.imr.mean() < 0.995 * copied.imr.mean()
+
+
+def test_edge_length():
+    """Target lengths bound insertion, by whichever way they are given."""
+    mesh = slivers()
+    count = mesh.GetNumberOfPoints()
+    assert tl.improve(mesh, "aggressive").history["insertions"][-1] > 0
+    size = np.ptp(points(mesh), axis=0).max()
+    long = tl.improve(mesh, "aggressive", edge_length=10 * size)
+    assert long.history["insertions"][-1] == 0
+    tensors = np.tile(np.array([1, 1, 1, 0, 0, 0]) / (10 * size) ** 2, (count, 1))
+    full = np.tile(np.eye(3).ravel() / (10 * size) ** 2, (count, 1))
+    for sizes in (np.full(count, 10 * size), tensors, full):
+        same = tl.improve(mesh, "aggressive", edge_length=sizes)
+        assert (points(same.mesh) == points(long.mesh)).all() and not same.mesh.GetPointData().HasArray("edge_length")
+    own = tl.improve(mesh, "aggressive", edge_length="input", edge_factor=1.1)
+    assert own.history["insertions"][-1] < tl.improve(mesh, "aggressive").history["insertions"][-1]
+    named = tl.improve(mesh, "aggressive", edge_length="field")  # 0.5 to 5.5 times the size of the mesh
+    assert named.history["insertions"][-1] == 0
+    refused("edge_factor", tl.improve, mesh, edge_factor=0.5)
+    refused("not positive", tl.improve, mesh, edge_length=np.zeros(count))
+    refused("no point array 'x'", tl.improve, mesh, edge_length="x")
+    refused("above 0", tl.improve, mesh, edge_length=0)
+
+
 def test_inputs():
     mesh = slivers()
     cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 4)
@@ -189,6 +240,7 @@ def test_refused():
         ("preset is 'best'", {"preset": "best"}),
         ("boundary is 'x'", {"boundary": "x"}),
         ("target_angle is 61", {"target_angle": 61}),
+        ("cell_transfer is 'x'", {"cell_transfer": "x"}),
         ("smallest_count is 2", {"smallest_count": 2}),
         ("largest_count is 0.5", {"largest_count": 0.5}),
         ("flat_tolerance is 2", {"flat_tolerance": 2}),
@@ -242,6 +294,14 @@ def test_command():
     text = run("improve", flat, "-o", mesh, "--preset", "aggressive", "--feature-angle", "30", "--surface-angle", "10",
                "--surface-distance", "0.01")
     assert "Triangles: " in text and (points(tl.read(mesh)) == points(tl.improve(flat, "aggressive").mesh)).all()
+    refused("for tetrahedra: switch them off", tl.improve, flat, then_best_shape=True)
+    run("improve", source, "-o", mesh, "--edge-length", "0.25", "--preset", "aggressive", "--edge-factor", "1.2")
+    sized = tl.improve(source, "aggressive", edge_length=0.25, edge_factor=1.2)
+    assert (points(tl.read(mesh)) == points(sized.mesh)).all()
+    run("improve", source, "-o", mesh, "--then-best-shape", "--cell-transfer", "conservative")
+    shaped = tl.improve(source, then_best_shape=True, cell_transfer="conservative")
+    assert (points(tl.read(mesh)) == points(shaped.mesh)).all()
+    assert (points(shaped.mesh) != points(tl.improve(source).mesh)).any()
     assert "invalid choice: 'x'" in run("improve", source, "-o", mesh, "--preset", "x", code=2)
 
 

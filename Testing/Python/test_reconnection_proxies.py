@@ -46,6 +46,25 @@ assert column(best, 1, "N moves")[-1] == 0 and column(best, 1, "N edge removals"
 assert "the target of 20 degrees" in best.Summary, best.Summary
 expected = best.CellData["min_angle"].GetRange()
 
+# cell data and average shape
+averaged = ImproveMesh(Input=regions, Preset="Aggressive", CellTransfer="Conservative", ThenBestShape=1)  # noqa: F821
+plain = ImproveMesh(Input=regions, Preset="Aggressive")  # noqa: F821
+for one in (averaged, plain):
+    one.UpdatePipeline()
+sized = ImproveMesh(Input=regions, Preset="Aggressive", Size="One length", EdgeLength=100)  # noqa: F821
+sized.UpdatePipeline()
+assert column(sized, 1, "N insertions")[-1] == 0 < column(plain, 1, "N insertions")[-1]
+sized.Size, sized.EdgeFactor = "Those of the input", 1.1
+sized.UpdatePipeline()
+assert column(sized, 1, "N insertions")[-1] < column(plain, 1, "N insertions")[-1]
+lengths = simple.Calculator(worse, AttributeType="Point Data", ResultArrayName="length", Function="100")
+sized = ImproveMesh(Input=lengths, Preset="Aggressive", Size="Point array")  # noqa: F821
+sized.SizeArray = ["POINTS", "length"]
+sized.UpdatePipeline()
+assert column(sized, 1, "N insertions")[-1] == 0
+assert averaged.CellData["region"].GetRange() == (1, 1)
+assert column(averaged, 1, "N moves")[-1] > column(plain, 1, "N moves")[-1]
+
 # points that stay
 fixed = simple.Calculator(worse, AttributeType="Point Data", ResultArrayName="stay", Function="1")
 held = ImproveMesh(Input=fixed, Preset="Swap and smooth", FixedPoints=["POINTS", "stay"])  # noqa: F821

@@ -19,7 +19,7 @@ from ._io import Mesh, as_mesh
 PRESETS = ("custom", "remove slivers", "swap only", "swap and smooth", "aggressive")
 BOUNDARIES = ("fixed", "flat")
 CELL_TRANSFERS = ("copy", "conservative")
-_FIXED, _REGIONS = 0, 1  # input arrays of vtkMeshImprover
+_FIXED, _REGIONS, _SIZES = 0, 1, 2  # input arrays of vtkMeshImprover
 _MAX_ANGLE = 60.0
 _MAX_FLAT_TOLERANCE = 1.0
 _MAX_FEATURE_ANGLE, _MAX_SURFACE_ANGLE = 180.0, 90.0
@@ -74,6 +74,8 @@ def improve(
     surface_distance: float = 5e-3,
     regions: str | Sequence | None = None,
     fixed: str | Sequence | None = None,
+    edge_length: float | str | Sequence | None = None,
+    edge_factor: float = 2.0,
     then_best_shape: bool = False,
     cell_transfer: str = "copy",
     time_limit: float = 0.0,
@@ -103,6 +105,10 @@ def improve(
         in degrees, 0 to 90, and how far triangles are from it, 0 to 1 times the diagonal of the mesh. Points are on it.
     regions: the region of each cell, m, or the name of a cell array; facets (edges) between regions stay.
     fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
+    edge_length: target length of edges, which bounds contraction and insertion; None: any length. A number; "input"
+        (the mean length of the edges at each point); or per point a length, n, or a metric tensor in which edges of the
+        target length have length 1, n x 6 in the order of VTK or n x 9; or the name of such a point array.
+    edge_factor: how many times longer or shorter than the target new edges may be, above 1.
     then_best_shape: whether points move at the end for the best shape on average (inverse mean ratio), while the
         smallest dihedral angle and the worst inverse mean ratio stay as good as they are.
     cell_transfer: "copy" (a cell has the data of the cell of the input that contains its centroid) or "conservative"
@@ -137,6 +143,8 @@ def improve(
     filter_.SetFeatureAngle(within("feature_angle", feature_angle, 0, _MAX_FEATURE_ANGLE))
     filter_.SetSurfaceAngle(within("surface_angle", surface_angle, 0, _MAX_SURFACE_ANGLE))
     filter_.SetSurfaceDistance(within("surface_distance", surface_distance, 0, 1))
+    _set_size(filter_, inputs, edge_length)
+    filter_.SetEdgeFactor(within("edge_factor", edge_factor, 1, np.inf))
     filter_.SetThenBestShape(bool(then_best_shape))
     filter_.SetCellTransfer(pick("cell_transfer", cell_transfer, CELL_TRANSFERS))
     set_time_limit(filter_, time_limit)
@@ -163,6 +171,20 @@ def improve(
         reason=filter_.GetReason(),
         summary=filter_.GetSummary(),
     )
+
+
+def _set_size(filter_: Any, inputs: InputArrays, edge_length: float | str | Sequence | None) -> None:
+    """Choose where the target length of edges comes from."""
+    if edge_length is None:
+        return
+    if isinstance(edge_length, str) and edge_length == "input":
+        filter_.SetSize(filter_.LENGTH_OF_INPUT)
+    elif np.ndim(edge_length) == 0 and not isinstance(edge_length, str):
+        filter_.SetSize(filter_.EDGE_LENGTH)
+        filter_.SetEdgeLength(within("edge_length", edge_length, 0, np.inf))
+    else:
+        filter_.SetSize(filter_.SIZE_ARRAY)
+        inputs.use(_SIZES, edge_length, "edge_length", POINTS)
 
 
 def _named(table: Any) -> dict[str, Any]:
@@ -199,10 +221,14 @@ def add_commands(commands: Any) -> None:
                         help="of normals from the input surface, at most (default: 20)")  # fmt: skip
     parser.add_argument("--surface-distance", type=float, metavar="FACTOR", default=5e-3,
                         help="from the input surface, relative to the diagonal (default: 5e-3)")  # fmt: skip
+    parser.add_argument("--edge-length", type=_length_or_name, metavar="LENGTH|ARRAY|input",
+                        help="target length of edges: number, point array, or that of the input")  # fmt: skip
+    parser.add_argument("--edge-factor", type=float, default=2.0, metavar="FACTOR",
+                        help="how much longer or shorter new edges may be (default: 2)")  # fmt: skip
     parser.add_argument("--then-best-shape", action="store_true",
                         help="move points at the end for the best shape on average, the worst being held")  # fmt: skip
     parser.add_argument("--cell-transfer", choices=CELL_TRANSFERS, default="copy",
-                        help="cell data copied from one cell, or averages that keep totals (default: copy)")  # fmt: skip
+                        help="cell data of one cell, or averages that keep totals (default: copy)")  # fmt: skip
     parser.add_argument("--regions", metavar="ARRAY", help="cell array with regions, whose common facets stay")
     parser.add_argument("--smallest-count", type=float, default=0.9, metavar="FACTOR",
                         help="least number of elements, relative to the input (default: 0.9)")  # fmt: skip
@@ -210,11 +236,18 @@ def add_commands(commands: Any) -> None:
                         help="largest number of elements, relative to the input (default: 1.1)")  # fmt: skip
 
 
+def _length_or_name(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def _run_improve(arguments: argparse.Namespace) -> None:
     names = ("preset", "boundary", "target_angle", "regions", "smallest_count", "largest_count")
-    names += ("flat_tolerance", "feature_angle", "surface_angle", "surface_distance")
-    names += ("fixed", "time_limit", "threads", "merge_coincident_points")
-    names += ("then_best_shape", "cell_transfer")
+    names += ("edge_length", "edge_factor", "then_best_shape", "cell_transfer", "flat_tolerance", "fixed")
+    names += ("feature_angle", "surface_angle", "surface_distance")
+    names += ("time_limit", "threads", "merge_coincident_points")
     left_out = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
     result = improve(arguments.mesh, **_commands.given(arguments, names), **left_out)
     print(result.summary)

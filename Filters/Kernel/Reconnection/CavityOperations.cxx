@@ -204,6 +204,41 @@ bool CavityOperations::smooth(PointId v, int steps)
 }
 
 //------------------------------------------------------------------------------
+/// Whether the new edges of a point are not too short (insertion) or too long (contraction).
+bool CavityOperations::keepsLengths(
+  PointId v, const std::vector<PointId>& others, bool isInsertion) const
+{
+  const double factor = this->edgeFactor * this->edgeFactor;
+  return this->metrics.empty() ||
+    std::all_of(others.begin(), others.end(),
+      [&](PointId u)
+      {
+        const double length = u == v ? 1.0
+                                     : squaredLength(this->Mesh.point(u) - this->Mesh.point(v),
+                                         this->metrics[u], this->metrics[v]);
+        return isInsertion ? length * factor >= 1.0 : length <= factor;
+      });
+}
+
+/// The metric of an inserted point: the mean of those around.
+void CavityOperations::setMetric(PointId p, const std::vector<PointId>& around)
+{
+  if (this->metrics.empty())
+  {
+    return;
+  }
+  this->metrics.resize(this->Mesh.pointSlots());
+  EdgeMetric mean = {};
+  for (PointId u : around)
+  {
+    for (std::size_t k = 0; k < mean.size(); ++k)
+    {
+      mean[k] += this->metrics[u][k] / static_cast<double>(around.size());
+    }
+  }
+  this->metrics[p] = mean;
+}
+
 /// Whether moving v into its neighbour w leaves walls and fixed points as they are.
 bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring) const
 {
@@ -256,6 +291,10 @@ bool CavityOperations::prepareContraction(TetId t, int i, int j, double above)
       return false;
     }
     this->Change.add(vertices, q);
+    if (!this->keepsLengths(w, { vertices.begin(), vertices.end() }, false))
+    {
+      return false;
+    }
   }
   return true;
 }

@@ -11,6 +11,7 @@
 #ifndef tautline_CavityOperations_h
 #define tautline_CavityOperations_h
 
+#include "EdgeMetric.h"
 #include "StarSmoothing.h"
 
 namespace tautline
@@ -36,6 +37,10 @@ struct OperationRules
 {
   /// One per point slot of the mesh; those of new points are free.
   std::vector<PointFreedom> freedoms;
+  /// One per point slot, in which target lengths of edges are 1; empty: any length.
+  std::vector<EdgeMetric> metrics;
+  /// How much longer or shorter new edges may be.
+  double edgeFactor = 2.0;
   QualityFloor floor;
   Index smallestSize = 0, largestSize = 0; ///< bounds of the number of tetrahedra
   /// Edges between coplanar facets may be removed, facets and edges of the boundary divided.
@@ -126,6 +131,7 @@ private:
     Vec3 position = { 0, 0, 0 };
     bool isReused = false; ///< whether the point for an insertion existed
     PointFreedom freedom;  ///< its former one
+    EdgeMetric metric = {};
   };
 
   bool commit();
@@ -162,6 +168,8 @@ private:
   bool isOpened(const CavityFace& face, const Insertion& insertion) const;
   PointFreedom freedomOnEdge(const EdgeRing& ring) const;
   bool isOuter(const EdgeRing& ring) const;
+  bool keepsLengths(PointId v, const std::vector<PointId>& others, bool isInsertion) const;
+  void setMetric(PointId p, const std::vector<PointId>& around);
   bool canContract(PointId v, PointId w, const EdgeRing& ring) const;
 
   TetrahedronMesh& Mesh;

@@ -127,6 +127,10 @@ void CavityOperations::restorePoint(const Step& step)
 {
   this->Mesh.movePoint(step.point, step.position, {}, nullptr);
   this->freedoms[step.point] = step.freedom;
+  if (!this->metrics.empty())
+  {
+    this->metrics[step.point] = step.metric;
+  }
 }
 
 void CavityOperations::undo()

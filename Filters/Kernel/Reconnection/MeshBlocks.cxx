@@ -134,6 +134,7 @@ MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
   , Passes(this->Mesh, this->Operations)
 {
   this->Operations.floor = rules.floor;
+  this->Operations.edgeFactor = rules.edgeFactor;
   this->Operations.swapsBoundary = rules.swapsBoundary;
   this->Operations.flatTolerance = rules.flatTolerance;
   const double share = static_cast<double>(this->Own.size()) / static_cast<double>(whole.size());
@@ -152,6 +153,10 @@ MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
   }
   for (std::size_t v = 0; v < this->Points.size(); ++v)
   {
+    if (!rules.metrics.empty())
+    {
+      this->Operations.metrics.push_back(rules.metrics[this->Points[v]]);
+    }
     this->Operations.freedoms.push_back(this->Shared[v]
         ? PointFreedom{ PointFreedom::Fixed, { 0, 0, 0 } }
         : rules.freedoms[this->Points[v]]);
@@ -367,13 +372,22 @@ public:
   void finish(TetrahedronMesh& whole, CavityOperations& operations)
   {
     operations.freedoms.resize(this->Arrays.points.size());
+    if (!operations.metrics.empty())
+    {
+      operations.metrics.resize(this->Arrays.points.size());
+    }
     for (std::size_t b = 0; b < this->Blocks.size(); ++b)
     {
       CavityOperations& own = this->Blocks[b]->Operations;
       operations.addCounts(own.counts());
       for (std::size_t v = this->Blocks[b]->Points.size(); v < own.freedoms.size(); ++v)
       {
-        operations.freedoms[this->pointOf(b, static_cast<PointId>(v))] = own.freedoms[v];
+        const PointId p = this->pointOf(b, static_cast<PointId>(v));
+        operations.freedoms[p] = own.freedoms[v];
+        if (!operations.metrics.empty())
+        {
+          operations.metrics[p] = own.metrics[v];
+        }
       }
     }
     whole = TetrahedronMesh(std::move(this->Arrays));

@@ -231,6 +231,7 @@ bool CavityOperations::applyInsertion(const Insertion& best)
   {
     former.position = this->Mesh.point(p);
     former.freedom = this->freedoms[p];
+    former.metric = this->metrics.empty() ? EdgeMetric{} : this->metrics[p];
   }
   this->Mesh.addPoint(best.point);
   this->freedoms.resize(this->Mesh.pointSlots());
@@ -253,7 +254,11 @@ bool CavityOperations::applyInsertion(const Insertion& best)
   }
   // Points inside the cavity vanish: only those that are free may.
   std::sort(kept.begin(), kept.end());
-  bool valid = true;
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  std::vector<PointId> around = kept;
+  around.erase(std::find(around.begin(), around.end(), p));
+  this->setMetric(p, around);
+  bool valid = this->keepsLengths(p, around, true);
   for (TetId s : best.tets)
   {
     for (PointId u : this->Mesh.tet(s).vertices)

@@ -31,6 +31,8 @@ constexpr int Repairs = 4;
 /// It ends after so many tetrahedra tried in vain, and one more of so many of the mesh: these take
 /// some milliseconds each.
 constexpr Index MaxFailures = 100, TetrahedraPerFailure = 10000;
+/// The same on the whole mesh after its blocks.
+constexpr Index WholeFailures = 50;
 /// The last pass is repeated, at most so often, as long as the worst quality gains so much by it.
 constexpr int Repetitions = 3;
 constexpr double RepetitionGain = 2e-3;
@@ -152,6 +154,29 @@ std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index si
   return passes;
 }
 
+/// For what repairs that were ended early left below the target.
+PassOptions withoutCompound(PassOptions pass)
+{
+  pass.compound = false;
+  pass.maxFailures = 0;
+  return pass;
+}
+
+/// Those that what blocks left needs: the compound ones, and the one before these that does most.
+std::vector<PassOptions> lastPasses(const std::vector<PassOptions>& passes)
+{
+  std::vector<PassOptions> last;
+  for (const PassOptions& pass : passes)
+  {
+    if (!last.empty() && !last.back().compound)
+    {
+      last.pop_back();
+    }
+    last.push_back(pass);
+  }
+  return last;
+}
+
 /// How often a mesh is halved until the next half would be smaller than a block.
 int levelsOf(Index size, Index blockSize)
 {
@@ -178,7 +203,7 @@ public:
   {
   }
 
-  void run(const std::vector<PointFreedom>& freedoms);
+  void run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics);
   void findObstacles(const std::vector<char>& fixedPoints) const;
 
 private:
@@ -264,9 +289,11 @@ void Run::setBounds()
         static_cast<double>(std::numeric_limits<std::int32_t>::max() / 4)));
 }
 
-void Run::run(const std::vector<PointFreedom>& freedoms)
+void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics)
 {
   this->Operations.freedoms = freedoms;
+  this->Operations.metrics = std::move(metrics);
+  this->Operations.edgeFactor = this->Options.edgeFactor;
   this->Operations.swapsBoundary =
     this->Options.swap && this->Options.boundary == ReconnectionBoundary::Flat;
   this->Operations.flatTolerance = std::max(
@@ -280,6 +307,10 @@ void Run::run(const std::vector<PointFreedom>& freedoms)
   this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
   const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
   const bool goesOn = started && (levels == 0 || this->runInBlocks(passes, levels));
+  if (!this->Passes.starts.empty())
+  {
+    passes = lastPasses(passes);
+  }
   const bool stopped =
     !goesOn || !this->runPasses(passes) || (this->Options.improveMean && !this->improveMean());
   if (!stopped && this->Result.history.back().belowTarget == 0)
@@ -301,9 +332,11 @@ bool Run::runPasses(std::vector<PassOptions> passes)
     {
       break;
     }
-    if (passes[i].repairs > 0)
+    if (passes[i].repairs > 0 && !this->Passes.starts.empty())
     {
-      this->Passes.starts.clear(); // blocks leave this pass out
+      // Again the worst of the whole mesh, after the blocks had their share of failures.
+      this->Passes.starts.clear();
+      passes[i].maxFailures = WholeFailures;
     }
     stopped = this->Passes.run(passes[i]) < 0;
     const double done = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
@@ -315,10 +348,7 @@ bool Run::runPasses(std::vector<PassOptions> passes)
     const double gain = this->Result.history.back().worstQuality - before.worstQuality;
     if (this->Passes.exhausted() && !stopped)
     {
-      // What the repairs left below the target, without compound operations.
-      passes.push_back(passes[i]);
-      passes.back().compound = false;
-      passes.back().maxFailures = 0;
+      passes.push_back(withoutCompound(passes[i]));
     }
     else if (i + 1 == passes.size() && passes[i].compound && gain > RepetitionGain &&
       passes.size() < planned + Repetitions)
@@ -406,8 +436,18 @@ bool Run::runBlocks(
     try
     {
       std::all_of(passes.begin(), passes.end(),
-        [&](const PassOptions& pass)
-        { return pass.repairs > 0 || (!stop && schedule.run(pass) >= 0); });
+        [&](PassOptions pass)
+        {
+          // Of the failures that a pass may have, the block has its share.
+          const Index share = (pass.maxFailures * block.mesh().size()) / this->Mesh.size();
+          pass.maxFailures = pass.maxFailures > 0 ? std::max<Index>(share, 1) : 0;
+          bool goesOn = !stop && schedule.run(pass) >= 0;
+          if (goesOn && schedule.exhausted())
+          {
+            goesOn = schedule.run(withoutCompound(pass)) >= 0;
+          }
+          return goesOn;
+        });
     }
     catch (...)
     {
@@ -571,7 +611,7 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   Run run(changing, options, result);
   if (changing.size() > 0)
   {
-    run.run(freedoms);
+    run.run(freedoms, edgeMetrics(input, options));
     run.findObstacles(fixedPoints);
   }
   convertOutput(mesh, input, changing, locator, result);

@@ -85,6 +85,10 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
     "the smallest count must be from 0 to 1 times that of the input");
   check(options.largestCount >= 1.0 && std::isfinite(options.largestCount),
     "the largest count must be finite and at least that of the input");
+  check(options.size != ReconnectionSize::Length ||
+      (options.edgeLength > 0.0 && std::isfinite(options.edgeLength)),
+    "the target length of edges must be above 0");
+  check(options.edgeFactor > 1.0, "the factor of the lengths of edges must be above 1");
   check(options.blockSize >= 1, "the size of blocks must be at least 1");
   check(!(options.maximumSeconds < 0.0), "the time limit must not be negative");
 }

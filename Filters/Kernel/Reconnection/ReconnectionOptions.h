@@ -50,6 +50,16 @@ struct ReconnectionRecord
   Index moves = 0; ///< of points
 };
 
+/// Where the target lengths of edges come from. The numbers are stable.
+enum class ReconnectionSize : int
+{
+  None = 0,    ///< any length
+  Length = 1,  ///< ReconnectionOptions::edgeLength everywhere
+  Lengths = 2, ///< a length per point
+  Metrics = 3, ///< a metric tensor per point: e . M e is 1 for an edge e of the target length
+  Input = 4    ///< the mean length of the edges of the input at each point
+};
+
 struct ReconnectionOptions
 {
   bool swap = true;     ///< removal of edges and of faces
@@ -88,6 +98,18 @@ struct ReconnectionOptions
    * and faces makes it.
    */
   double smallestCount = 0.9, largestCount = 1.1;
+  /**
+   * @brief Target lengths of edges, which bound contraction and insertion: an edge that a
+   * contraction makes is at most edgeFactor times the target, one that an insertion makes is at
+   * least the target divided by edgeFactor. The lengths are measured with the mean of the metrics
+   * of the ends.
+   */
+  ReconnectionSize size = ReconnectionSize::None;
+  double edgeLength = 0; ///< with Length: above 0
+  /// With Lengths one positive number per point, with Metrics a positive definite tensor as xx yy
+  /// zz xy yz xz.
+  const double* sizes = nullptr;
+  double edgeFactor = 2.0; ///< above 1
   /**
    * @brief Whether the overlaps of the cells of the output with those of the input are computed,
    * for a conservative transfer of quantities. Then the original cells are those that overlap most.

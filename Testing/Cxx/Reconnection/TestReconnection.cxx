@@ -453,6 +453,110 @@ void testBlocks()
   TAUTLINE_CHECK(aborted.reason == StopReason::Aborted);
 }
 
+/// The edges of a mesh, as pairs of points given by their coordinates.
+std::set<std::array<Vec3, 2>> edgesOf(const MeshData& data)
+{
+  std::set<std::array<Vec3, 2>> edges;
+  for (std::size_t i = 0; i < data.connectivity.size(); ++i)
+  {
+    for (std::size_t j = i + 1; j / 4 == i / 4 && j < data.connectivity.size(); ++j)
+    {
+      std::array<Vec3, 2> edge = { data.point(data.connectivity[i]),
+        data.point(data.connectivity[j]) };
+      std::sort(edge.begin(), edge.end());
+      edges.insert(edge);
+    }
+  }
+  return edges;
+}
+
+/// Target lengths bound the edges that insertions and contractions make.
+void testSizes()
+{
+  const MeshData data = sliverBlock(5, 7, 1.0);
+  const std::set<std::array<Vec3, 2>> before = edgesOf(data);
+  const auto newLengths = [&](const ReconnectionResult& result)
+  {
+    std::vector<double> lengths = { 1.0 };
+    for (const auto& edge : edgesOf(outputOf(result)))
+    {
+      if (before.count(edge) == 0)
+      {
+        lengths.push_back(norm(edge[1] - edge[0]));
+      }
+    }
+    return lengths;
+  };
+  ReconnectionOptions options;
+  options.smallestCount = 0.0;
+  options.largestCount = 10.0;
+  options.swap = options.smooth = options.contract = false;
+  const ReconnectionResult inserted = reconnect(data, options);
+  const std::vector<double> anyInserted = newLengths(inserted);
+  const double shortest = *std::min_element(anyInserted.begin(), anyInserted.end());
+  options.size = ReconnectionSize::Length;
+  options.edgeFactor = 1.25;
+  options.edgeLength = 2.0 * shortest;
+  const ReconnectionResult fewer = reconnect(data, options);
+  const std::vector<double> longer = newLengths(fewer);
+  TAUTLINE_CHECK(longer.size() > 1 && longer.size() < anyInserted.size());
+  TAUTLINE_CHECK(*std::min_element(longer.begin(), longer.end()) >= 1.6 * shortest);
+  options.edgeLength = 10.0;
+  TAUTLINE_CHECK_EQUAL(reconnect(data, options).history.back().insertions, Index(0));
+
+  options.insert = false;
+  options.contract = true;
+  options.edgeLength = 100.0;
+  const std::vector<double> anyContracted = newLengths(reconnect(data, options));
+  const double longest = *std::max_element(anyContracted.begin(), anyContracted.end());
+  options.edgeLength = 0.75 * longest;
+  const std::vector<double> limited = newLengths(reconnect(data, options));
+  TAUTLINE_CHECK(longest > 1.0);
+  TAUTLINE_CHECK(*std::max_element(limited.begin(), limited.end()) <= 0.9376 * longest);
+
+  // The same by a length and by a tensor per point; other tensors and the input's lengths differ.
+  ReconnectionOptions all;
+  all.size = ReconnectionSize::Length;
+  all.edgeLength = 0.5;
+  all.edgeFactor = 1.1;
+  const ReconnectionResult uniform = reconnect(data, all);
+  TAUTLINE_CHECK(uniform.history.back().insertions > 0);
+  std::vector<double> lengths(data.numberOfPoints(), 0.5), tensors;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    tensors.insert(tensors.end(), { 4.0, 4.0, 4.0, 0.0, 0.0, 0.0 });
+  }
+  all.size = ReconnectionSize::Lengths;
+  all.sizes = lengths.data();
+  TAUTLINE_CHECK(reconnect(data, all).points == uniform.points);
+  all.size = ReconnectionSize::Metrics;
+  all.sizes = tensors.data();
+  TAUTLINE_CHECK(reconnect(data, all).points == uniform.points);
+  for (std::size_t i = 0; i < tensors.size(); i += 6)
+  {
+    tensors[i] = 0.01; // twenty times longer in x
+  }
+  TAUTLINE_CHECK(reconnect(data, all).points != uniform.points);
+  all.size = ReconnectionSize::Input;
+  checkResult(data, reconnect(data, all));
+  TAUTLINE_CHECK(reconnect(data, all).points != uniform.points);
+
+  all.size = ReconnectionSize::Metrics;
+  tensors[3] = 5.0;
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), "1 metric tensors are not positive definite");
+  all.size = ReconnectionSize::Lengths;
+  all.sizes = lengths.data();
+  lengths[4] = 0.0;
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), "1 target lengths of edges are not positive");
+  all.sizes = nullptr;
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), "are missing");
+  all.size = ReconnectionSize::Length;
+  all.edgeLength = 0.0;
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), "must be above 0");
+  all.edgeLength = all.edgeFactor = 1.0;
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), "must be above 1");
+}
+
 /// With the worst held, the mean becomes about that of Best shape alone on the same cells.
 void testMean()
 {
@@ -548,6 +652,7 @@ int TestReconnection(int, char*[])
   testLimits();
   testObstacles();
   testBlocks();
+  testSizes();
   testMean();
   testOverlaps();
   return exitCode();
