@@ -2,11 +2,13 @@
 
 #include "VersionCheck.h"
 
+#include "vtkClientServerInterpreterInitializer.h"
 #include "vtkElementQuality.h"
 #include "vtkOutputWindow.h"
 #include "vtkPVVersion.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSettings.h"
+#include "vtkSMTautlineMetricsDomain.h"
 #include "vtkVersion.h"
 
 //------------------------------------------------------------------------------
@@ -30,4 +32,11 @@ void tautlineInstallColorMaps()
   constexpr double belowSiteAndUser = -1.0;
   vtkSMSettings::GetInstance()->AddCollectionFromString(
     vtkElementQuality::GetColorMapSettings(), belowSiteAndUser);
+}
+
+//------------------------------------------------------------------------------
+void tautlineRegisterDomains()
+{
+  vtkClientServerInterpreterInitializer::GetInitializer()->RegisterCallback(
+    vtkSMTautlineMetricsDomain::Register);
 }

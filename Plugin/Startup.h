@@ -13,4 +13,7 @@ void tautlineCheckVersion();
 /** Gives the arrays of Tautline's filters default colour maps; the user's own take precedence. */
 void tautlineInstallColorMaps();
 
+/** Lets ParaView create the domain of the menus of metrics. */
+void tautlineRegisterDomains();
+
 #endif

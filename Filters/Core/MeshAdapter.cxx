@@ -420,7 +420,9 @@ std::string MeshAdapter::notice() const
         vtkCellTypes::GetClassNameFromTypeId(entry.first) + ",";
     }
     text.back() = '.';
-    text += " Run Triangulate or Tetrahedralize first to measure them. ";
+    // ParaView's Triangulate takes poly data only; Tetrahedralize takes all data sets.
+    text += " Run Tetrahedralize first to measure them: it cuts all cells into triangles or "
+            "tetrahedra. ";
   }
   if (mesh.nonFinitePoints() > 0)
   {

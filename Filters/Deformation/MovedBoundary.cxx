@@ -123,8 +123,8 @@ void requireElements(const MovableMesh& mesh)
   if (shapeless > 0)
   {
     throw Error("The mesh has " + text(shapeless) +
-      " polygons, polyhedra or other cells that cannot be warped: run Triangulate (polygons) or "
-      "Tetrahedralize first.");
+      " polygons, polyhedra or other cells that cannot be warped: run Tetrahedralize first, "
+      "which cuts all cells into triangles or tetrahedra.");
   }
   if (inverted > 0)
   {

@@ -133,7 +133,7 @@ void OptimizerSetup::slideOnGeometry(const OptimizerSettings& settings, vtkDataS
     throw Error(mesh.dimension() == Dimension::Volume
         ? "The Geometry has volume cells: run Extract Surface on it first."
         : "The Geometry has no triangles or quadrilaterals: give a surface, for example an STL "
-          "file, or run Triangulate on it first.");
+          "file, or run Tetrahedralize on it first, which cuts polygons into triangles.");
   }
   FeatureOptions options;
   options.angle = settings.featureAngle;

@@ -91,10 +91,17 @@ void vtkMeshOptimizer::AddObjectiveByName(
 //------------------------------------------------------------------------------
 void vtkMeshOptimizer::SetWorstMetric(int metric)
 {
-  if (metric < -1 || metric >= static_cast<int>(tautline::metricRegistry().size()))
+  try
   {
-    vtkErrorMacro(<< "There is no metric number " << metric
-                  << "; -1 is automatic. Element Quality and its help page list the metrics.");
+    if (metric != -1)
+    {
+      tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if there is none
+    }
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what()
+                  << " -1 is automatic. Element Quality and its help page list the metrics.");
     return;
   }
   if (metric != this->WorstMetric)
@@ -102,6 +109,12 @@ void vtkMeshOptimizer::SetWorstMetric(int metric)
     this->WorstMetric = metric;
     this->Modified();
   }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMeshOptimizer::GetUserMetrics()
+{
+  return tautline::listUserMetrics();
 }
 
 //------------------------------------------------------------------------------

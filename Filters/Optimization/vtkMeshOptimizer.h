@@ -492,6 +492,8 @@ public:
   /// By name, label or symbol; unknown names are an error.
   void SetWorstMetricByName(const char* name);
   ///@}
+  /// The metrics that were registered (vtkUserMetric, libraries): a line "number<tab>label" each.
+  static std::string GetUserMetrics();
 
   ///@{
   /**

@@ -41,7 +41,9 @@ HorizonInput::HorizonInput(
     {
       throw Error("the mesh has " + std::to_string(block.count) + " cells that are no triangles (" +
         topology(block.type).name +
-        "): run Triangulate first, or for a volume take a slice or its surface");
+        "): run Tetrahedralize first, which cuts them into triangles, or for a volume take a slice "
+        "or "
+        "its surface");
     }
     triangles = block.type == CellType::Triangle ? &block : triangles;
   }

@@ -1,5 +1,7 @@
 #include "MetricSelection.h"
 
+#include "tautline/Quality/UserMetric.h"
+
 #include <algorithm>
 
 namespace tautline
@@ -31,7 +33,7 @@ bool MetricSelection::addByName(const char* name)
     {
       message += std::string(" ") + known.name;
     }
-    throw Error(message + ".");
+    throw Error(message + ". " + metricLoadErrors());
   }
   return this->add(static_cast<int>(info->metric));
 }

@@ -146,6 +146,12 @@ int vtkElementQuality::GetNumberOfKnownMetrics()
 }
 
 //------------------------------------------------------------------------------
+int vtkElementQuality::GetNumberOfBuiltInMetrics()
+{
+  return tautline::numberOfBuiltInMetrics();
+}
+
+//------------------------------------------------------------------------------
 std::string vtkElementQuality::GetKnownMetric(int i)
 {
   return i >= 0 && i < GetNumberOfKnownMetrics()

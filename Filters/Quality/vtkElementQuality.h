@@ -248,9 +248,11 @@ public:
   ///@{
   /**
    * The registry of metrics as text, for scripts and documentation: metric i as one line of
-   * tab-separated fields (empty if there is no such metric), and the names of the fields.
+   * tab-separated fields (empty if there is no such metric), and the names of the fields. The
+   * built-in metrics come first, then those that were registered.
    */
   static int GetNumberOfKnownMetrics();
+  static int GetNumberOfBuiltInMetrics();
   static std::string GetKnownMetric(int i);
   static std::string GetKnownMetricFields();
   ///@}

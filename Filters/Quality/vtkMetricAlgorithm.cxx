@@ -59,6 +59,12 @@ int vtkMetricAlgorithm::GetNumberOfMetrics() const
 }
 
 //------------------------------------------------------------------------------
+std::string vtkMetricAlgorithm::GetUserMetrics()
+{
+  return tautline::listUserMetrics();
+}
+
+//------------------------------------------------------------------------------
 void vtkMetricAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

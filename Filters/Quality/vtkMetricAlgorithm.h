@@ -17,6 +17,7 @@
 #include "vtkTautlineTimedAlgorithm.h"
 
 #include <memory> // for Selection
+#include <string> // for GetUserMetrics
 
 namespace tautline
 {
@@ -38,6 +39,8 @@ public:
   void ClearMetrics();
   /// The number of metrics added.
   int GetNumberOfMetrics() const;
+  /// The metrics that were registered (vtkUserMetric, libraries): a line "number<tab>label" each.
+  static std::string GetUserMetrics();
 
 protected:
   vtkMetricAlgorithm();

@@ -135,7 +135,8 @@ SourceMesh takeSourceMesh(vtkDataSet* mesh)
     if (mesh->GetCellType(cell) != VTK_TRIANGLE)
     {
       throw Error("Cell " + std::to_string(cell) +
-        " of the source mesh is not a triangle: run Triangulate first.");
+        " of the source mesh is not a triangle: run Tetrahedralize first, which cuts all cells of "
+        "a plane mesh into triangles.");
     }
     vtkIdList* ids = mesh->GetCell(cell)->GetPointIds();
     double x[3][3];

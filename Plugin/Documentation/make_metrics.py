@@ -29,7 +29,8 @@ def registry() -> list:
     """Every metric as a dict of the registry's fields."""
     fields = vtkElementQuality.GetKnownMetricFields().split("\t")
     count = vtkElementQuality.GetNumberOfKnownMetrics()
-    return [dict(zip(fields, vtkElementQuality.GetKnownMetric(i).split("\t"))) for i in range(count)]
+    facts = [dict(zip(fields, vtkElementQuality.GetKnownMetric(i).split("\t"))) for i in range(count)]
+    return facts[: vtkElementQuality.GetNumberOfBuiltInMetrics()]
 
 
 # --- the help page ---------------------------------------------------------------------------------
@@ -85,9 +86,13 @@ def page(metrics: list) -> str:
 def domain(metrics: list) -> str:
     entries = "".join(f'    <Entry value="{m["number"]}" text="{html.escape(m["label"])}"/>\n' for m in metrics)
     return f"""<!-- Written by Plugin/Documentation/make_metrics.py from the registry of metrics. -->
-<Snippet>
-  <EnumerationDomain name="enum">
-{entries}  </EnumerationDomain>
+<Snippet automatic="">
+  <TautlineMetricsDomain name="enum">
+<?if automatic?>    <Entry value="-1" text="@automatic@"/><?end?>
+{entries}    <RequiredProperties>
+      <Property name="UserMetrics" function="List"/>
+    </RequiredProperties>
+  </TautlineMetricsDomain>
 </Snippet>
 """
 

@@ -22,12 +22,23 @@ if grep -rlF --include='*.cmake' -e "$build" -e "$work/first" "$tree"; then
 fi
 
 echo "--- a C++ program finds the package, first without VTK, then with a module"
-for program in kernel_consumer solvers_consumer module_consumer; do
+for program in kernel_consumer solvers_consumer module_consumer metric_consumer; do
   "$cmake" -S "$here/$program" -B "$work/$program" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$tree" >"$work/$program.log"
   "$cmake" --build "$work/$program" >>"$work/$program.log"
-  "$work/$program/$program"
+  arguments=()
+  if [[ $program == metric_consumer ]]; then arguments=("$work/$program/libmy_metrics.so"); fi
+  "$work/$program/$program" "${arguments[@]}"
 done
+
+if [[ -d $tree/lib/python3 ]]; then
+  echo "--- the shell knows the metrics of a library"
+  for name in my_distortion longest_edge; do
+    metrics="$(PYTHONPATH="$tree/lib/python3/dist-packages" TAUTLINE_METRICS="$work/metric_consumer/libmy_metrics.so" \
+      "$python" -m tautline metrics)"
+    if [[ $metrics != *"$name"* ]]; then echo "the metric $name is not listed" >&2; exit 1; fi
+  done
+fi
 
 echo "--- a program that evaluates a metric loads the kernel, oneTBB and the compiler's own libraries, nothing else"
 expected='TautlineKernel|tbb|stdc\+\+|m|gcc_s|c|pthread|dl|rt'

@@ -17,7 +17,7 @@ from ._errors import Aborted, Error
 from ._io import Mesh, read, write
 from ._mesh import from_arrays
 from ._metric_field import MetricFieldResult, metric_field
-from ._metrics import metrics
+from ._metrics import load_metrics, metrics, register_metric, unregister_metric
 from ._quality import QualityResult, criteria, quality
 
 globals().update(_vtk.CLASSES)

@@ -3,8 +3,9 @@
  * @brief A packet of doubles, one per element of a batch, with the functions metrics need.
  *
  * The width is that of the machine the kernel is compiled for: 8 (AVX-512), 4 (AVX) or 2.
- * Arithmetic and comparisons are the compiler's vector extensions. Internal to the kernel: not
- * installed.
+ * Arithmetic and comparisons are the compiler's vector extensions. Packets
+ * are not passed to or from the library: a user's own metric (UserMetric.h) may be compiled for
+ * another width.
  */
 #ifndef tautline_Packet_h
 #define tautline_Packet_h

@@ -37,7 +37,8 @@ void requireElements(const Mesh& mesh)
     throw Error(std::to_string(mesh.unsupportedCells()) +
       " cells are not triangles, quadrilaterals, tetrahedra, hexahedra, wedges or pyramids (" +
       first([](int type) { return cornerType(type) == CellType::Unsupported; }) +
-      "). Extract the others, or run Tetrahedralize (volumes) or Triangulate (surfaces).");
+      "). Extract the others, or run Tetrahedralize, which cuts all cells into triangles or "
+      "tetrahedra.");
   }
   if (mesh.higherOrderCells() > 0)
   {

@@ -92,6 +92,7 @@ ObjectiveSumState::ObjectiveSumState(const Mesh& mesh, const Objective& given, i
 {
   const MetricInfo& info = metricInfo(this->objective.metric);
   checkTemplate(this->objective);
+  requireDerivatives(info);
   if (this->elements.empty())
   {
     throw Error("The metric \"" + std::string(info.label) +

@@ -15,7 +15,8 @@ bool isElement(const Mesh& mesh, CellType type)
   return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
 }
 
-/// Calls visit(cell, validity, value) for each element of the mesh's dimension.
+/// Calls visit(cell, validity, value) for each element of the mesh's dimension; value is null where
+/// the metric is not defined.
 template <class Visit>
 void forEachElement(const Mesh& mesh, const Objective& judged, const Visit& visit)
 {
@@ -26,11 +27,11 @@ void forEachElement(const Mesh& mesh, const Objective& judged, const Visit& visi
   evaluateMetric(mesh, judged.metric, judged.evaluation, values.data());
   for (const CellBlock& block : mesh.blocks())
   {
-    const bool measured =
-      isElement(mesh, block.type) && metricInfo(judged.metric).definedOn(block.type);
-    for (Index i = 0; measured && i < block.count; ++i)
+    const bool measured = metricInfo(judged.metric).definedOn(block.type);
+    for (Index i = 0; isElement(mesh, block.type) && i < block.count; ++i)
     {
-      visit(block.cell(i), validity[block.cell(i)], values[block.cell(i)]);
+      const Index cell = block.cell(i);
+      visit(cell, validity[cell], measured ? &values[cell] : nullptr);
     }
   }
 }
@@ -77,13 +78,18 @@ QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
   this->Worst = this->Larger ? infinity : -infinity;
   bool valid = true;
   forEachElement(input, this->Judged,
-    [&](Index, signed char validity, double value)
+    [&](Index, signed char validity, const double* value)
     {
       valid = valid && validity == Valid;
-      this->Worst = this->Larger ? std::min(this->Worst, value) : std::max(this->Worst, value);
+      if (value)
+      {
+        this->Worst = this->Larger ? std::min(this->Worst, *value) : std::max(this->Worst, *value);
+      }
     });
-  this->ValidInput = valid;
-  this->Active = valid && info.direction != Direction::Neutral && std::isfinite(this->Worst);
+  this->ValidInput = this->Active = valid;
+  // Elements that the metric does not judge stay valid nevertheless.
+  this->HoldWorst =
+    this->HoldWorst && info.direction != Direction::Neutral && std::isfinite(this->Worst);
 }
 
 //------------------------------------------------------------------------------
@@ -102,9 +108,9 @@ std::vector<char> QualityGuard::offenders(const Mesh& mesh) const
 {
   std::vector<char> flags;
   forEachElement(mesh, this->Judged,
-    [&](Index cell, signed char validity, double value)
+    [&](Index cell, signed char validity, const double* value)
     {
-      if (validity != Valid || this->worse(value))
+      if (validity != Valid || (value && this->worse(*value)))
       {
         flags.resize(mesh.view().numberOfCells, 0);
         flags[cell] = 1;

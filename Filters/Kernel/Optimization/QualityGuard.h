@@ -29,7 +29,7 @@ public:
   QualityGuard(const Mesh& input, const OptimizeOptions& options);
 
   /// Whether there is something to hold: not where the input has invalid elements, which untangling
-  /// answers for, where inversion is allowed, nor for metrics where neither direction is better.
+  /// answers for, nor where inversion is allowed. Elements the metric is not defined on stay valid.
   bool active() const { return this->Active; }
   /// Whether the input has no invalid element and inversion is not allowed.
   bool holdsObjective() const { return this->ValidInput; }

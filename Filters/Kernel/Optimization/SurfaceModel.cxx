@@ -73,6 +73,8 @@ private:
   void findDirections();
   void findFacetsOfPoints();
   void findNormals(const std::vector<Index>& facets);
+  void chooseNormals(const std::vector<Index>& facets, const std::vector<Index>& points,
+    const std::vector<Vec3>& fitted);
   Vec3 fitNormal(Index point, int patch, const Vec3& first) const;
   std::vector<Index> ringOf(Index point, int patch) const;
   const CurveEdge* edgeOf(Index a, Index b) const;
@@ -182,15 +184,20 @@ std::vector<Index> ModelMaker::ringOf(Index point, int patch) const
 }
 
 //------------------------------------------------------------------------------
-/// The normal of the quadric through a point that fits the two rings of neighbours best.
+/**
+ * @brief The normal of the cubic height field through a point that fits the two rings of neighbours
+ * best; of the quadric where they are few, as on borders. `first` where they do not determine it.
+ */
 Vec3 ModelMaker::fitNormal(Index point, int patch, const Vec3& first) const
 {
-  constexpr int unknowns = 5;
+  constexpr int quadric = 5, cubic = 9;
+  constexpr std::size_t enoughForCubic = 12; // the fit is to smooth, not to interpolate
   const std::vector<Index> ring = this->ringOf(point, patch);
-  if (ring.size() < unknowns)
+  if (ring.size() < quadric)
   {
     return first;
   }
+  const int unknowns = ring.size() >= enoughForCubic ? cubic : quadric;
   const Vec3 axis = std::abs(first[0]) < 0.5 ? Vec3{ 1, 0, 0 } : Vec3{ 0, 1, 0 };
   const Vec3 u = unitOf(cross(first, axis)), v = cross(first, u), center = this->at(point);
   double size = 0;
@@ -204,9 +211,14 @@ Vec3 ModelMaker::fitNormal(Index point, int patch, const Vec3& first) const
   {
     const Vec3 d = (1 / size) * (this->at(ring[i]) - center);
     const double x = dot(d, u), y = dot(d, v), weight = 1 / std::max(norm(d), 1e-3);
-    rows.row(static_cast<Eigen::Index>(i)) << x, y, x * x, x * y, y * y;
-    rows.row(static_cast<Eigen::Index>(i)) *= weight;
-    heights[static_cast<Eigen::Index>(i)] = weight * dot(d, first);
+    const double terms[cubic] = { x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y,
+      y * y * y };
+    const auto row = static_cast<Eigen::Index>(i);
+    for (int k = 0; k < unknowns; ++k)
+    {
+      rows(row, k) = weight * terms[k];
+    }
+    heights[row] = weight * dot(d, first);
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(rows);
   solver.setThreshold(1e-3);
@@ -222,7 +234,7 @@ Vec3 ModelMaker::fitNormal(Index point, int patch, const Vec3& first) const
 //------------------------------------------------------------------------------
 void ModelMaker::findNormals(const std::vector<Index>& facets)
 {
-  std::vector<Index> border;
+  std::vector<Index> points;
   for (Index f : facets)
   {
     const Features::Facet& facet = this->TheFeatures.facets[f];
@@ -244,10 +256,7 @@ void ModelMaker::findNormals(const std::vector<Index>& facets)
       {
         this->Normal[p] += (1 / weight) * cross(out, back);
       }
-      if (this->TheFeatures.kind[p] != PatchPoint)
-      {
-        border.push_back(p);
-      }
+      points.push_back(p);
     }
   }
   for (Index f : facets)
@@ -258,18 +267,58 @@ void ModelMaker::findNormals(const std::vector<Index>& facets)
       this->Normal[facet.nodes[k]] = unitOf(this->Normal[facet.nodes[k]]);
     }
   }
-  // With neighbours on one side only, the facets' normals are biased.
-  std::sort(border.begin(), border.end());
-  border.erase(std::unique(border.begin(), border.end()), border.end());
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
   const int patch = facets.empty() ? -1 : this->TheFeatures.facets[facets[0]].patch;
-  std::vector<Vec3> fitted;
-  for (Index p : border)
+  std::vector<Vec3> fitted(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
   {
-    fitted.push_back(this->fitNormal(p, patch, this->Normal[p]));
+    fitted[i] = this->fitNormal(points[i], patch, this->Normal[points[i]]);
   }
-  for (std::size_t i = 0; i < border.size(); ++i)
+  this->chooseNormals(facets, points, fitted);
+}
+
+//------------------------------------------------------------------------------
+/**
+ * @brief Takes the fitted normal of a point where it agrees better with those of its neighbours
+ * than the normal of the facets; on the border of a patch always, as the facets' are biased there.
+ *
+ * Along an arc of a circle a chord d is at the same angle to both normals, d . (n + n') = 0; on any
+ * smooth surface this is of the third order of |d|. The facets' normals are exact on spheres and
+ * where the mesh is regular, the fitted ones are of higher order elsewhere.
+ */
+void ModelMaker::chooseNormals(const std::vector<Index>& facets, const std::vector<Index>& points,
+  const std::vector<Vec3>& fitted)
+{
+  constexpr double clearly = 0.5; // both contain what the curvature changes along the chords
+  const auto place = [&](Index p)
+  { return std::lower_bound(points.begin(), points.end(), p) - points.begin(); };
+  std::vector<double> ofFacets(points.size(), 0.0), ofFit(points.size(), 0.0);
+  for (Index f : facets)
   {
-    this->Normal[border[i]] = fitted[i];
+    const Features::Facet& facet = this->TheFeatures.facets[f];
+    for (int k = 0; k < facet.size; ++k)
+    {
+      const Index p = facet.nodes[k], q = facet.nodes[(k + 1) % facet.size];
+      const auto i = place(p), j = place(q);
+      const Vec3 chord = this->at(q) - this->at(p);
+      const double perLength2 = 1 / dot(chord, chord);
+      const double a = dot(chord, this->Normal[p] + this->Normal[q]) * perLength2,
+                   b = dot(chord, fitted[i] + fitted[j]) * perLength2;
+      for (const auto end : { i, j })
+      {
+        ofFacets[end] += a * a;
+        ofFit[end] += b * b;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const Index p = points[i];
+    if (this->TheFeatures.kind[p] != PatchPoint || ofFit[i] < clearly * ofFacets[i])
+    {
+      this->Normal[p] = fitted[i];
+    }
   }
 }
 

@@ -15,8 +15,9 @@ struct BatchContext : CellSource
 {
   const EvaluationOptions* options = nullptr;
   bool largerIsBetter = false;
-  bool scaleInvariant = false; ///< the metric does not depend on the size of T
-  int lengthPower = 0;         ///< of metrics that are not functions of T: their unit
+  bool scaleInvariant = false;      ///< the metric does not depend on the size of T
+  int lengthPower = 0;              ///< of metrics that are not functions of T: their unit
+  const UserMetric* user = nullptr; ///< evaluates a metric that is not built in
 };
 
 /// Cells and their vertices, with the values and gradients that an evaluator finds.
@@ -50,5 +51,8 @@ struct MetricCode
 MetricCode targetMetricCode(Metric metric);
 MetricCode simplexMetricCode(Metric metric);
 MetricCode cellMetricCode(Metric metric);
+/// For metrics that were registered: of T, and of the corners.
+MetricCode userTargetMetricCode(bool singular);
+MetricCode userCornerMetricCode();
 }
 #endif

@@ -28,6 +28,9 @@ MetricCode metricCode(Metric metric);
 /// Throws Error on a metric that the mesh's dimension does not define, and on options out of range.
 void checkEvaluation(const Mesh& mesh, const MetricInfo& info, const EvaluationOptions& options);
 
+/// Throws Error on a metric that can only be measured.
+void requireDerivatives(const MetricInfo& info);
+
 /// The evaluator of a metric on a block, or null where the metric is not defined.
 BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
   const CellBlock& block, bool withGradient);

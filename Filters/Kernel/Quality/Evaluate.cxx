@@ -1,4 +1,5 @@
 #include "ElementSum.h"
+#include "UserMetric.h"
 
 #include "tautline/Mesh/CoordinateFrame.h"
 
@@ -12,7 +13,15 @@ namespace tautline
 //------------------------------------------------------------------------------
 MetricCode metricCode(Metric metric)
 {
-  switch (metricInfo(metric).family)
+  const MetricInfo& info = metricInfo(metric);
+  if (info.user)
+  {
+    return !info.user->hasDerivatives() ? MetricCode()
+      : info.family == MetricFamily::Target
+      ? userTargetMetricCode(info.inverted != InvertedValue::Larger)
+      : userCornerMetricCode();
+  }
+  switch (info.family)
   {
     case MetricFamily::Target:
       return targetMetricCode(metric);
@@ -65,11 +74,39 @@ BatchContext contextFor(
   const MetricInfo& info = metricInfo(metric);
   const CellTopology& t = topology(block.type);
   return { { &mesh, &block, &t }, &options, info.direction == Direction::LargerIsBetter,
-    info.scaleInvariant, info.family == MetricFamily::Target ? 0 : info.lengthPower(t.dimension) };
+    info.scaleInvariant,
+    info.family == MetricFamily::Target || info.user ? 0 : info.lengthPower(t.dimension),
+    info.user };
+}
+
+//------------------------------------------------------------------------------
+void requireDerivatives(const MetricInfo& info)
+{
+  if (info.user && !info.user->hasDerivatives())
+  {
+    throw Error(std::string(info.label) +
+      " has no derivatives: it measures elements and cannot be optimized. Register it in C++ "
+      "(tautline/Quality/UserMetric.h), or choose another metric.");
+  }
 }
 
 namespace
 {
+/// A point as a user's metric sees it: in the plane of a planar mesh, mirrored with the mesh.
+Vec3 cornerAsSeen(const Mesh& mesh, const CellTopology& t, Vec3 p)
+{
+  if (t.dimension == 2 && mesh.dimension() == Dimension::Planar)
+  {
+    const auto& frame = mesh.frame();
+    return { dot(frame[mesh.mirrored() ? 1 : 0], p), dot(frame[mesh.mirrored() ? 0 : 1], p), 0 };
+  }
+  if (mesh.mirrored() && mesh.dimension() == Dimension::Volume)
+  {
+    p[0] = -p[0];
+  }
+  return p;
+}
+
 /// The smallest number with all digits.
 constexpr double smallestNormal = std::numeric_limits<double>::min();
 
@@ -115,10 +152,49 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
   return count;
 }
 
+/// Evaluates a metric of many elements at once, block by block, in the calling thread.
+void evaluateElementsMetric(const Mesh& mesh, const MetricInfo& info, double* values)
+{
+  const MeshView& view = mesh.view();
+  std::fill(values, values + view.numberOfCells, 0.0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    if (!info.definedOn(block.type) || block.count == 0)
+    {
+      continue;
+    }
+    const CellTopology& t = topology(block.type);
+    std::vector<double> points(3 * t.nodes * block.count), found(block.count);
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index* nodes = view.connectivity + view.offsets[block.cell(i)];
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        const Vec3 p = cornerAsSeen(mesh, t, pointOf(view, nodes[k]));
+        std::copy(p.begin(), p.end(), points.begin() + 3 * (t.nodes * i + k));
+      }
+    }
+    info.user->evaluateElements(block.type, block.count, points.data(), found.data());
+    for (Index i = 0; i < block.count; ++i)
+    {
+      values[block.cell(i)] = std::isfinite(found[i]) ? found[i] : 0.0;
+    }
+  }
+}
+
 Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values,
   double* gradients)
 {
   checkEvaluation(mesh, metricInfo(metric), options);
+  if (const UserMetric* user = metricInfo(metric).user; user && !user->hasDerivatives())
+  {
+    if (gradients)
+    {
+      requireDerivatives(metricInfo(metric));
+    }
+    evaluateElementsMetric(mesh, metricInfo(metric), values);
+    return 0;
+  }
   const MeshView& view = mesh.view();
   const MetricCode code = metricCode(metric);
   // Cells without a value get 0; nothing is filled if every cell has one.

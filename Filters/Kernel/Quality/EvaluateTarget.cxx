@@ -1,5 +1,6 @@
 #include "Batch.h"
 #include "TargetMetrics.h"
+#include "UserMetric.h"
 
 #include <algorithm>
 
@@ -17,7 +18,16 @@ struct Corner
   Packet axes[2][3] = {}; ///< 2D: the frame A is taken in
   TargetInvariants<N> invariants;
   Packet cofactor[N][N];
+  Packet slope[N][N]; ///< dq/dT of a user's metric; the others give d/d(invariants)
   Mask degenerate;
+};
+
+/// A metric that was registered: BatchContext::user evaluates it.
+template <bool Singular>
+struct UserTarget : TargetMetric
+{
+  static constexpr bool user = true;
+  static constexpr bool singular = Singular;
 };
 
 /// Frames of a planar mesh are the mesh's; a mirrored mesh is viewed from the other side.
@@ -337,6 +347,11 @@ void addGradient(const BatchContext& context, const Corner<N>& corner, int sampl
   {
     for (int c = 0; c < N; ++c)
     {
+      if constexpr (M::user)
+      {
+        p[r][c] = corner.slope[r][c];
+        continue;
+      }
       p[r][c] = 2.0 * d.norm2 * corner.t[r][c] + d.det * corner.cofactor[r][c];
     }
     if constexpr (M::usesTrace)
@@ -410,7 +425,8 @@ void addGradient(const BatchContext& context, const Corner<N>& corner, int sampl
 
 /// Value (and partial derivatives) of a metric at a corner, 0 where it is singular.
 template <class M, int N>
-Packet evaluateFormula(const BatchContext& context, const Corner<N>& corner, TargetInvariants<N>& d)
+Packet evaluateInvariants(
+  const BatchContext& context, const Corner<N>& corner, TargetInvariants<N>& d)
 {
   Packet q = M::template evaluate<N>(corner.invariants, d, context.options->parameters);
   if constexpr (M::singular)
@@ -422,6 +438,29 @@ Packet evaluateFormula(const BatchContext& context, const Corner<N>& corner, Tar
     }
   }
   return q;
+}
+
+/// As above, also for a user's metric.
+template <class M, int N, bool WithGradient>
+Packet evaluateFormula(const BatchContext& context, Corner<N>& corner, TargetInvariants<N>& d)
+{
+  if constexpr (M::user)
+  {
+    Packet q;
+    context.user->evaluate(context.topology->type, PacketWidth, PacketWidth,
+      reinterpret_cast<const double*>(corner.t), reinterpret_cast<double*>(&q),
+      WithGradient ? reinterpret_cast<double*>(corner.slope) : nullptr);
+    for (Packet* part = &corner.slope[0][0];
+         M::singular && WithGradient && part != &corner.slope[0][0] + N * N; ++part)
+    {
+      *part = select(corner.degenerate, Packet{}, *part);
+    }
+    return M::singular ? select(corner.degenerate, Packet{}, q) : q;
+  }
+  else
+  {
+    return evaluateInvariants<M, N>(context, corner, d);
+  }
 }
 
 /// Weights dQ/dq_s of the samples and the combined value Q.
@@ -523,7 +562,7 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
   {
     TargetInvariants<N> d;
     evaluateCorner<M, N>(context, batch, 0, own, corner);
-    batch.value = evaluateFormula<M, N>(context, corner, d);
+    batch.value = evaluateFormula<M, N, WithGradient>(context, corner, d);
     if constexpr (WithGradient)
     {
       addGradient<M, N>(context, corner, 0, d, broadcast(1.0), batch);
@@ -537,7 +576,7 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
   {
     TargetInvariants<N> d;
     evaluateCorner<M, N>(context, batch, s, own, corner);
-    q[s] = evaluateFormula<M, N>(context, corner, d);
+    q[s] = evaluateFormula<M, N, false>(context, corner, d);
     negative[s] = (corner.invariants.det < 0.0) & ~corner.degenerate;
     if constexpr (!M::singular)
     {
@@ -563,7 +602,7 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
     {
       TargetInvariants<N> d;
       evaluateCorner<M, N>(context, batch, s, own, corner);
-      evaluateFormula<M, N>(context, corner, d);
+      evaluateFormula<M, N, true>(context, corner, d);
       addGradient<M, N>(context, corner, s, d, select(zero, Packet{}, weights[s]), batch);
     }
   }
@@ -585,6 +624,11 @@ MetricCode codeOf()
   }
   return code;
 }
+}
+
+MetricCode userTargetMetricCode(bool singular)
+{
+  return singular ? codeOf<UserTarget<true>>() : codeOf<UserTarget<false>>();
 }
 
 MetricCode targetMetricCode(Metric metric)

@@ -3,6 +3,7 @@
  * @brief The table of facts on every metric.
  */
 #include "Metrics.h"
+#include "RegisteredMetrics.h"
 
 #include <algorithm>
 #include <cctype>
@@ -229,21 +230,38 @@ std::string lowerCase(std::string text)
 }
 }
 
-const std::vector<MetricInfo>& metricRegistry()
+const std::vector<MetricInfo>& builtInMetrics()
 {
   static const std::vector<MetricInfo> registry = makeRegistry();
   return registry;
 }
 
+const std::vector<MetricInfo>& metricRegistry()
+{
+  loadMetricsOfEnvironment();
+  return knownMetrics();
+}
+
+int numberOfBuiltInMetrics()
+{
+  return static_cast<int>(builtInMetrics().size());
+}
+
 const MetricInfo& metricInfo(Metric metric)
 {
-  const auto& registry = metricRegistry();
+  const auto& builtIn = builtInMetrics();
   const int number = static_cast<int>(metric);
-  if (number < 0 || number >= static_cast<int>(registry.size()))
+  if (number >= 0 && number < static_cast<int>(builtIn.size()))
   {
-    throw Error("There is no metric number " + std::to_string(number) + ".");
+    return builtIn[number];
   }
-  return registry[number];
+  loadMetricsOfEnvironment();
+  if (const MetricInfo* info = registeredMetric(metric))
+  {
+    return *info;
+  }
+  throw Error("There is no metric number " + std::to_string(number) + "." +
+    (number > 0 ? " A user's metric of this number is not registered." : ""));
 }
 
 int MetricInfo::lengthPower(int dimension) const
@@ -296,6 +314,17 @@ std::string metricFields()
   return "number\tname\tlabel\tsymbol\taliases\tformula\tsource\tdimensions\tcell types\tfull 2D\t"
          "full 3D\tacceptable 2D\tacceptable 3D\tideal 2D\tideal 3D\tdirection\tinverted\tbarrier\t"
          "differentiable\tscale invariant\trotation invariant\tunit";
+}
+
+std::string listUserMetrics()
+{
+  std::string lines;
+  for (const MetricInfo& info : metricRegistry())
+  {
+    lines += info.user ? std::to_string(static_cast<int>(info.metric)) + "\t" + info.label + "\n"
+                       : std::string();
+  }
+  return lines;
 }
 
 std::string describeMetric(const MetricInfo& info)

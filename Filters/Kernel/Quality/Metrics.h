@@ -89,8 +89,10 @@ enum class MetricFamily
 {
   Target,  ///< a function of T = A W^-1 at each corner; takes targets and a combination
   Simplex, ///< a function of the edges and faces of a triangle or tetrahedron
-  Cell     ///< a function of the whole cell's angles and lengths
+  Cell     ///< a function of the whole cell: its angles and lengths, its corners
 };
+
+class UserMetric;
 
 /// Parameters of the few metrics that have any.
 struct Parameters
@@ -135,6 +137,8 @@ struct MetricInfo
   bool scaleInvariant;    ///< with the default target
   bool rotationInvariant; ///< false: depends on the orientation in space; needs Planar or Volume
   const char* unit;       ///< "", "degrees", "length^n", ...
+  /// Evaluates a metric that was registered (UserMetric.h); null: a built-in one.
+  const UserMetric* user = nullptr;
   /// The range for one dimension.
   const Range& full(int dimension) const { return dimension == 2 ? full2D : full3D; }
   const Range& acceptable(int dimension) const
@@ -147,8 +151,14 @@ struct MetricInfo
   bool definedOn(CellType type) const { return (cellTypes >> topologyIndex(type)) & 1u; }
 };
 
-/// Every metric, in the order of its number.
+/**
+ * @brief Every metric: the built-in ones in the order of their numbers, then the registered ones in
+ * the order of registration. What is returned stays as it is when another one is registered.
+ */
 TAUTLINE_KERNEL_EXPORT const std::vector<MetricInfo>& metricRegistry();
+
+/// How many metrics are built in; their numbers are those below it.
+TAUTLINE_KERNEL_EXPORT int numberOfBuiltInMetrics();
 
 /// The facts of one metric.
 TAUTLINE_KERNEL_EXPORT const MetricInfo& metricInfo(Metric metric);
@@ -164,6 +174,9 @@ TAUTLINE_KERNEL_EXPORT const MetricInfo* findMetric(const std::string& name);
  * metricFields(): for scripts and documentation.
  */
 TAUTLINE_KERNEL_EXPORT std::string describeMetric(const MetricInfo& info);
+
+/// Numbers and labels of the registered metrics, tab-separated, a line each: for menus.
+TAUTLINE_KERNEL_EXPORT std::string listUserMetrics();
 
 /// The names of the fields of describeMetric(), tab-separated.
 TAUTLINE_KERNEL_EXPORT std::string metricFields();

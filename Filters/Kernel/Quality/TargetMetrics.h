@@ -44,6 +44,8 @@ struct TargetMetric
   static constexpr bool usesSize = false;
   static constexpr bool in2D = true;
   static constexpr bool in3D = true;
+  /// Whether the formula is that of a user's metric.
+  static constexpr bool user = false;
 };
 
 constexpr double sqrt3 = 1.7320508075688772;

@@ -105,7 +105,7 @@ void testRelatedTypes()
   TAUTLINE_CHECK(!contains(adapter.notice(), "vtkVertex")); // no quality is expected of it
   TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkPolygon"));
   TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkTriangleStrip"));
-  TAUTLINE_CHECK(contains(adapter.notice(), "Triangulate"));
+  TAUTLINE_CHECK(contains(adapter.notice(), "Run Tetrahedralize first"));
 }
 
 //------------------------------------------------------------------------------

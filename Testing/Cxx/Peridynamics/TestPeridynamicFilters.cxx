@@ -290,7 +290,7 @@ void testErrors()
   check(filter, "time limit");
   filter->SetTimeLimit(0.0);
   filter->SetInputData(toGrid(blockMesh(CellType::Quadrilateral, 3, 3, 0)));
-  check(filter, "9 cells that are no triangles (quadrilateral): run Triangulate first");
+  check(filter, "9 cells that are no triangles (quadrilateral): run Tetrahedralize first");
   filter->SetInputData(toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2)));
   check(filter, "no triangles (tetrahedron)");
   MeshData curved = blockMesh(CellType::Triangle, 4, 4, 0);

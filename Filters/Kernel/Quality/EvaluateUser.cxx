@@ -1,0 +1,72 @@
+#include "Batch.h"
+#include "UserMetric.h"
+
+namespace tautline
+{
+namespace
+{
+/// Coordinates as a user's metric sees them: in the plane of a planar mesh, in the mesh's unit.
+template <int Nodes>
+void loadCorners(
+  const Batch& batch, const Packet (*axes)[3], Packet unit, Packet (&points)[Nodes][3])
+{
+  for (int k = 0; k < Nodes; ++k)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      points[k][c] = unit *
+        (!axes      ? batch.points[k][c]
+            : c < 2 ? dot(axes[c], batch.points[k])
+                    : Packet{});
+    }
+  }
+}
+
+template <int Nodes, bool WithGradient>
+void evaluateCorners(const BatchContext& context, Batch& batch)
+{
+  const Mesh& mesh = *context.mesh;
+  const bool planar = context.topology->dimension == 2 && mesh.dimension() == Dimension::Planar;
+  Packet axes[2][3] = {};
+  for (int a = 0; planar && a < 2; ++a)
+  {
+    const Vec3& axis = mesh.frame()[mesh.mirrored() ? 1 - a : a];
+    for (int c = 0; c < 3; ++c)
+    {
+      axes[a][c] = broadcast(axis[c]);
+    }
+  }
+  const Packet unit = batch.scaled ? batch.unit : broadcast(1.0);
+  Packet points[Nodes][3], slopes[Nodes][3];
+  loadCorners<Nodes>(batch, planar ? axes : nullptr, unit, points);
+  context.user->evaluate(context.topology->type, PacketWidth, PacketWidth,
+    reinterpret_cast<const double*>(points), reinterpret_cast<double*>(&batch.value),
+    WithGradient ? reinterpret_cast<double*>(slopes) : nullptr);
+  if constexpr (WithGradient)
+  {
+    // By the coordinates of the batch, which are those of the mesh per unit.
+    for (int k = 0; k < Nodes; ++k)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        batch.gradient[k][c] = unit *
+          (planar ? Packet(axes[0][c] * slopes[k][0] + axes[1][c] * slopes[k][1]) : slopes[k][c]);
+      }
+    }
+  }
+}
+
+template <bool WithGradient>
+void evaluateAny(const BatchContext& context, Batch& batch)
+{
+  withNodes(*context.topology,
+    [&](auto nodes) { evaluateCorners<decltype(nodes)::value, WithGradient>(context, batch); });
+}
+}
+
+//------------------------------------------------------------------------------
+MetricCode userCornerMetricCode()
+{
+  return { evaluateAny<false>, evaluateAny<true>, evaluateAny<false>, evaluateAny<true> };
+}
+}

@@ -1,0 +1,340 @@
+#include "RegisteredMetrics.h"
+#include "UserMetric.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <deque>
+#include <mutex>
+#include <sstream>
+
+namespace tautline
+{
+namespace
+{
+/// Numbers of registered metrics: above those of the built-in ones, for all time.
+constexpr std::uint32_t firstNumber = 1000000, numbers = 1000000000;
+
+/// The number of a name: FNV-1a, 32 bits.
+int numberOf(const std::string& name)
+{
+  constexpr std::uint32_t offsetBasis = 2166136261u, prime = 16777619u;
+  std::uint32_t hash = offsetBasis;
+  for (const unsigned char c : name)
+  {
+    hash = (hash ^ c) * prime;
+  }
+  return static_cast<int>(firstNumber + hash % numbers);
+}
+
+/// A registered metric and what its facts point to.
+struct Registered
+{
+  MetricDescription description;
+  std::unique_ptr<const UserMetric> metric;
+  MetricInfo info;
+  bool listed;
+};
+
+/**
+ * @brief All that was ever registered. Lists are never changed, but replaced, and never freed:
+ * whoever goes through one is not disturbed.
+ */
+struct Registry
+{
+  std::mutex mutex;
+  std::deque<Registered> metrics;
+  std::deque<std::vector<MetricInfo>> lists;
+  std::atomic<const std::vector<MetricInfo>*> current{ nullptr }; ///< null: none was registered
+  std::string errors;
+};
+
+Registry& registry()
+{
+  static Registry& instance = *new Registry; // static objects of other libraries may outlive it
+  return instance;
+}
+
+void publish(Registry& all)
+{
+  all.lists.push_back(builtInMetrics());
+  for (const Registered& r : all.metrics)
+  {
+    if (r.listed)
+    {
+      all.lists.back().push_back(r.info);
+    }
+  }
+  all.current = &all.lists.back();
+}
+
+void completeDescription(MetricDescription& d)
+{
+  const auto valid = [](char c)
+  { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  if (d.name.empty() || !(d.name[0] >= 'a' && d.name[0] <= 'z') ||
+    !std::all_of(d.name.begin(), d.name.end(), valid))
+  {
+    throw Error("'" + d.name +
+      "' cannot be the name of a metric: it takes lower case letters, digits and underscores, and "
+      "starts with a letter.");
+  }
+  d.label = d.label.empty() ? d.name : d.label;
+  d.symbol = d.symbol.empty() ? d.name : d.symbol;
+  for (const std::string* text :
+    { &d.label, &d.symbol, &d.aliases, &d.formula, &d.source, &d.unit })
+  {
+    if (std::any_of(text->begin(), text->end(), [](unsigned char c) { return c < ' '; }))
+    {
+      throw Error("The texts of the metric " + d.name +
+        " must not contain tabs, line ends or other control characters.");
+    }
+  }
+}
+
+/// The cell types of the dimensions.
+unsigned typesOf(const MetricDescription& d)
+{
+  unsigned types = 0;
+  for (int i = 0; i < NumberOfCellTypes; ++i)
+  {
+    const bool wanted = topologies()[i].dimension == 2 ? d.in2D : d.in3D;
+    types |= wanted ? d.cellTypes & (1u << i) : 0u;
+  }
+  return types;
+}
+
+MetricInfo infoOf(const MetricDescription& d, const UserMetric& metric)
+{
+  const bool target = metric.argument() == MetricArgument::Jacobian;
+  const unsigned types = typesOf(d);
+  const unsigned flat = 3; // triangles and quadrilaterals
+  return { static_cast<Metric>(numberOf(d.name)), d.name.c_str(), d.label.c_str(), d.symbol.c_str(),
+    d.aliases.c_str(), d.formula.c_str(), d.source.c_str(),
+    target ? MetricFamily::Target : MetricFamily::Cell, (types & flat) != 0, (types & ~flat) != 0,
+    types, d.full, d.full, d.acceptable, d.acceptable, d.ideal, d.ideal, d.direction, d.inverted,
+    d.barrier, d.differentiable, d.scaleInvariant, d.rotationInvariant, d.unit.c_str(), &metric };
+}
+
+/// Throws Error if another metric is found by one of the names.
+void requireFree(const MetricDescription& d)
+{
+  std::vector<std::string> names = { d.name, d.label, d.symbol };
+  std::istringstream aliases(d.aliases);
+  for (std::string alias; std::getline(aliases, alias, ',');)
+  {
+    names.push_back(alias);
+  }
+  for (const std::string& name : names)
+  {
+    if (const MetricInfo* other = findMetric(name))
+    {
+      throw Error("The metric " + d.name + " cannot be registered: there is a metric '" + name +
+        "' (" + other->label + ") already. Choose another name, label, symbol or alias" +
+        (other->user ? ", or remove the other one first." : "."));
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+const std::vector<MetricInfo>& knownMetrics()
+{
+  const std::vector<MetricInfo>* current = registry().current.load();
+  return current ? *current : builtInMetrics();
+}
+
+//------------------------------------------------------------------------------
+const MetricInfo* registeredMetric(Metric metric)
+{
+  for (const MetricInfo& info : knownMetrics())
+  {
+    if (info.metric == metric)
+    {
+      return &info;
+    }
+  }
+  // One that was removed may be in use still.
+  Registry& all = registry();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  for (auto r = all.metrics.rbegin(); r != all.metrics.rend(); ++r)
+  {
+    if (r->info.metric == metric)
+    {
+      return &r->info;
+    }
+  }
+  return nullptr;
+}
+
+//------------------------------------------------------------------------------
+UserMetric::~UserMetric() = default;
+
+//------------------------------------------------------------------------------
+void UserMetric::evaluateElements(
+  CellType type, Index count, const double* points, double* values) const
+{
+  // Only metrics of many elements are evaluated in this way.
+  const int nodes = topology(type).nodes;
+  for (Index i = 0; i < count; ++i)
+  {
+    this->evaluate(type, 1, 1, points + 3 * nodes * i, values + i, nullptr);
+  }
+}
+
+//------------------------------------------------------------------------------
+Metric registerMetric(
+  const MetricDescription& description, std::unique_ptr<const UserMetric> metric)
+{
+  if (!metric)
+  {
+    throw Error("The metric " + description.name + " has no function.");
+  }
+  MetricDescription complete = description;
+  completeDescription(complete);
+  requireFree(complete);
+  complete.cellTypes = typesOf(complete);
+  tryMetric(complete, *metric);
+
+  Registry& all = registry();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  const Metric number = static_cast<Metric>(numberOf(complete.name));
+  for (const Registered& r : all.metrics)
+  {
+    if (r.listed && r.info.metric == number)
+    {
+      throw Error("The names " + complete.name + " and " + r.info.name +
+        " have the same number: choose another name for one of the metrics.");
+    }
+  }
+  // The facts point to the texts in their final place.
+  all.metrics.push_back({ std::move(complete), std::move(metric), {}, true });
+  Registered& added = all.metrics.back();
+  added.info = infoOf(added.description, *added.metric);
+  publish(all);
+  return number;
+}
+
+namespace
+{
+/// A function of the corners of many elements.
+class ElementsMetric : public UserMetric
+{
+public:
+  explicit ElementsMetric(ElementsFunction function)
+    : UserMetric(MetricArgument::Elements)
+    , Function(std::move(function))
+  {
+  }
+  void evaluate(CellType, int, int, const double*, double*, double*) const override
+  {
+    throw Error("A metric of many elements is not evaluated for some of them.");
+  }
+  void evaluateElements(
+    CellType type, Index count, const double* points, double* values) const override
+  {
+    this->Function(type, count, points, values);
+  }
+
+private:
+  ElementsFunction Function;
+};
+}
+
+//------------------------------------------------------------------------------
+Metric registerElementsMetric(const MetricDescription& description, ElementsFunction function)
+{
+  if (!function)
+  {
+    throw Error("The metric " + description.name + " has no function.");
+  }
+  return registerMetric(description, std::make_unique<const ElementsMetric>(std::move(function)));
+}
+
+//------------------------------------------------------------------------------
+void unregisterMetric(const std::string& name)
+{
+  Registry& all = registry();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  for (Registered& r : all.metrics)
+  {
+    if (r.listed && r.description.name == name)
+    {
+      r.listed = false;
+      publish(all);
+      return;
+    }
+  }
+  throw Error("No metric '" + name + "' was registered.");
+}
+
+//------------------------------------------------------------------------------
+void loadMetrics(const std::string& library)
+{
+  const std::string before = metricLoadErrors();
+  // Never unloaded: its metrics stay.
+  if (!dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE))
+  {
+    const char* reason = dlerror();
+    throw Error("The library of metrics " + library +
+      " cannot be loaded: " + (reason ? reason : "unknown reason") + ".");
+  }
+  Registry& all = registry();
+  std::string errors;
+  {
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    errors = all.errors.substr(before.size());
+    all.errors = before;
+  }
+  if (!errors.empty())
+  {
+    errors.pop_back(); // the line end
+    throw Error("In the library of metrics " + library + ": " + errors);
+  }
+}
+
+//------------------------------------------------------------------------------
+void loadMetricsOfEnvironment()
+{
+  // Not std::call_once: a library that is loaded may look metrics up itself.
+  static std::atomic<bool> begun{ false };
+  if (begun.load(std::memory_order_relaxed) || begun.exchange(true))
+  {
+    return;
+  }
+  const char* libraries = std::getenv("TAUTLINE_METRICS");
+  std::istringstream list(libraries ? libraries : "");
+  for (std::string library; std::getline(list, library, ':');)
+  {
+    try
+    {
+      if (!library.empty())
+      {
+        loadMetrics(library);
+      }
+    }
+    catch (const std::exception& error)
+    {
+      MetricRegistration::addError(std::string("TAUTLINE_METRICS: ") + error.what());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string metricLoadErrors()
+{
+  Registry& all = registry();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  return all.errors;
+}
+
+//------------------------------------------------------------------------------
+void MetricRegistration::addError(const std::string& message)
+{
+  Registry& all = registry();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  all.errors += message + "\n";
+}
+}

@@ -1,0 +1,537 @@
+/**
+ * @file UserMetric.h
+ * @brief A metric of one's own: written as a formula, registered by name.
+ *
+ * A registered metric is known to all that know the built-in ones: evaluateMetric(), objectives of
+ * every template, criteria, the filters, ParaView's menus, the shell and Python. There are three
+ * kinds:
+ *
+ *  - a function of T = A W^-1, the Jacobian of a corner relative to the target (JacobianMetric). It
+ *    takes targets and a combination of the corners, as the built-in target metrics do;
+ *  - a function of the corners of the element (CornerMetric);
+ *  - a function of the corners of many elements at once, without derivatives (ElementsMetric): to
+ *    measure and to colour, not to optimize. Those of Python are of this kind.
+ *
+ * Example: the inverse mean ratio, for T. The derivatives come from automatic differentiation.
+ *
+ *     struct Ratio
+ *     {
+ *       template <class Number, int N>
+ *       Number value(const tautline::CornerJacobian<Number, N>& T) const
+ *       {
+ *         return T.norm2() / (N * pow(T.det(), 2.0 / N));
+ *       }
+ *     };
+ *
+ *     tautline::MetricDescription facts;
+ *     facts.name = "my_ratio";
+ *     facts.label = "My ratio";
+ *     facts.barrier = true;
+ *     const tautline::Metric ratio = tautline::registerJacobianMetric(facts, Ratio());
+ *
+ * A struct that also has `template <class Number, int N> void slope(const CornerJacobian<Number, N>&
+ * T, Number (&dT)[N][N]) const` gives its derivatives itself; registration compares them with finite
+ * differences. Testing/Install/metric_consumer is a complete example.
+ */
+#ifndef tautline_UserMetric_h
+#define tautline_UserMetric_h
+
+#include "DualNumber.h"
+#include "Metrics.h"
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace tautline
+{
+/// What registration needs to know of a metric; the counterpart of MetricInfo.
+struct MetricDescription
+{
+  /// Of the cell array: lower case letters, digits and underscores, starting with a letter.
+  std::string name;
+  std::string label;   ///< for menus; the default is the name
+  std::string symbol;  ///< the default is the name
+  std::string aliases; ///< other names, comma separated
+  std::string formula;
+  std::string source;
+  std::string unit;              ///< "", "degrees", "length^n", "1/length", ...
+  bool in2D = true, in3D = true; ///< triangles and quadrilaterals; the others
+  unsigned cellTypes = allTypes; ///< of these dimensions: bits 1 << topologyIndex(type)
+  Range full = { 0, infinity };  ///< values of valid elements
+  Range acceptable = { 0, infinity };
+  double ideal = std::numeric_limits<double>::quiet_NaN(); ///< NaN: depends on the size
+  Direction direction = Direction::SmallerIsBetter;
+  /**
+   * @brief The value of an inverted element. Functions of T: unless it is Larger, a degenerate
+   * corner has the value 0, and in an element with inverted corners only these are combined.
+   */
+  InvertedValue inverted = InvertedValue::Unsigned;
+  /// Tends to infinity as an element degenerates: objectives are infinite unless all are valid.
+  bool barrier = false;
+  bool differentiable = true;    ///< everywhere on valid elements; else almost everywhere
+  bool scaleInvariant = false;   ///< with the default target; checked
+  bool rotationInvariant = true; ///< checked
+
+  static constexpr unsigned allTypes = (1u << NumberOfCellTypes) - 1;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+};
+
+/// What a user's metric is a function of.
+enum class MetricArgument
+{
+  Jacobian, ///< T at a corner, row by row: n^2 numbers
+  Corners,  ///< x y z of the corners: 3 numbers each
+  Elements  ///< as Corners, without derivatives
+};
+
+/// Evaluates a user's metric. The templates below implement it; it must be thread-safe.
+class TAUTLINE_KERNEL_EXPORT UserMetric
+{
+public:
+  explicit UserMetric(MetricArgument argument)
+    : Argument(argument)
+  {
+  }
+  virtual ~UserMetric();
+  MetricArgument argument() const { return this->Argument; }
+  bool hasDerivatives() const { return this->Argument != MetricArgument::Elements; }
+
+  /**
+   * @brief Evaluates several elements (or corners) of one type.
+   * @param count how many
+   * @param stride argument k of element i is at arguments[k * stride + i]; at least count
+   * @param values stride numbers
+   * @param slopes derivatives by the arguments, laid out as these; null: not wanted
+   */
+  virtual void evaluate(CellType type, int count, int stride, const double* arguments,
+    double* values, double* slopes) const = 0;
+
+  /**
+   * @brief Evaluates elements of one type, at any number, from the calling thread.
+   * @param points x y z of the corners of each element, one element after another
+   */
+  virtual void evaluateElements(
+    CellType type, Index count, const double* points, double* values) const;
+
+private:
+  MetricArgument Argument;
+};
+
+/// T = A W^-1 at a corner. N is the dimension.
+template <class Number, int N>
+class CornerJacobian
+{
+public:
+  static constexpr int dimension = N;
+  explicit CornerJacobian(const Packet (&t)[N][N])
+    : T(t)
+  {
+  }
+  /// The entry in a row and a column, 0 to N - 1.
+  Number operator()(int row, int column) const
+  {
+    return Number::variable(this->T[row][column], N * row + column);
+  }
+  /// |T|^2, the sum of the squares of the entries.
+  Number norm2() const
+  {
+    Packet sum = {};
+    return this->assemble(sum,
+      [&](int r, int c)
+      {
+        sum += this->T[r][c] * this->T[r][c];
+        return 2.0 * this->T[r][c];
+      });
+  }
+  /// tau = det T: negative where the corner is inverted.
+  Number det() const
+  {
+    Packet sum = {};
+    return this->assemble(sum,
+      [&](int r, int c)
+      {
+        const Packet cofactor = this->cofactor(r, c);
+        sum += r == 0 ? this->T[r][c] * cofactor : Packet{};
+        return cofactor;
+      });
+  }
+  /// tr T, the sum of the diagonal.
+  Number trace() const
+  {
+    Packet sum = {};
+    return this->assemble(sum,
+      [&](int r, int c)
+      {
+        sum += r == c ? this->T[r][c] : Packet{};
+        return broadcast(r == c ? 1.0 : 0.0);
+      });
+  }
+  /// |adj T|^2 = |T^-1|^2 tau^2; in 2D it is |T|^2.
+  Number adjugate2() const
+  {
+    if constexpr (N == 2)
+    {
+      return this->norm2();
+    }
+    else
+    {
+      // d|adj T|^2 / dT = 2 (|T|^2 T - T T^t T)
+      Packet gram[3][3], norm2 = {}, sum = {};
+      for (int r = 0; r < 3; ++r)
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          gram[r][c] = this->T[0][r] * this->T[0][c] + this->T[1][r] * this->T[1][c] +
+            this->T[2][r] * this->T[2][c];
+        }
+        norm2 += gram[r][r];
+      }
+      return this->assemble(sum,
+        [&](int r, int c)
+        {
+          const Packet cofactor = this->cofactor(r, c);
+          sum += cofactor * cofactor;
+          return 2.0 *
+            (norm2 * this->T[r][c] -
+              (this->T[r][0] * gram[0][c] + this->T[r][1] * gram[1][c] +
+                this->T[r][2] * gram[2][c]));
+        });
+    }
+  }
+
+private:
+  /// A number whose derivative by entry r c is slope(r, c), which also adds to the value.
+  template <class Slope>
+  static Number assemble(Packet& sum, const Slope& slope)
+  {
+    Number result;
+    for (int r = 0; r < N; ++r)
+    {
+      for (int c = 0; c < N; ++c)
+      {
+        const Packet part = slope(r, c);
+        if (Number::variables > 0)
+        {
+          result.slope[Number::variables > 0 ? N * r + c : 0] = part;
+        }
+      }
+    }
+    result.value = sum;
+    return result;
+  }
+  Packet cofactor(int r, int c) const
+  {
+    if constexpr (N == 2)
+    {
+      return r == c ? this->T[1 - r][1 - c] : -this->T[1 - r][1 - c];
+    }
+    else
+    {
+      const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+      return this->T[r1][c1] * this->T[r2][c2] - this->T[r1][c2] * this->T[r2][c1];
+    }
+  }
+
+  const Packet (&T)[N][N];
+};
+
+/**
+ * @brief The corners of an element. A planar mesh is seen in its plane: z is 0 and a valid element
+ * counter-clockwise; a mesh that is reversed throughout is seen mirrored.
+ */
+template <class Number, int Nodes>
+class ElementCorners
+{
+public:
+  static constexpr int nodes = Nodes;
+  ElementCorners(CellType type, const Packet (&points)[Nodes][3])
+    : Type(type)
+    , Points(points)
+  {
+  }
+  CellType type() const { return this->Type; }
+  /// x y z of a corner.
+  DualVector<Number> point(int node) const
+  {
+    DualVector<Number> result;
+    for (int c = 0; c < 3; ++c)
+    {
+      result[c] = Number::variable(this->Points[node][c], 3 * node + c);
+    }
+    return result;
+  }
+  /// The vector from one corner to another.
+  DualVector<Number> edge(int from, int to) const
+  {
+    DualVector<Number> result;
+    for (int c = 0; c < 3; ++c)
+    {
+      result[c] = Number(this->Points[to][c] - this->Points[from][c]);
+      if (Number::variables > 0)
+      {
+        result[c].slope[Number::variables > 0 ? 3 * to + c : 0] = broadcast(1.0);
+        result[c].slope[Number::variables > 0 ? 3 * from + c : 0] = broadcast(-1.0);
+      }
+    }
+    return result;
+  }
+
+private:
+  CellType Type;
+  const Packet (&Points)[Nodes][3];
+};
+
+namespace user_metric
+{
+/// Loads the arguments of elements [first, first + PacketWidth); the last one fills the packet.
+template <int Count>
+void load(const double* arguments, int first, int count, int stride, Packet* to)
+{
+  for (int k = 0; k < Count; ++k)
+  {
+    const double* from = arguments + k * stride;
+    if (first + PacketWidth <= stride)
+    {
+      std::memcpy(to + k, from + first, sizeof(Packet));
+      continue;
+    }
+    Packet lanes = {};
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      lanes[l] = from[first + l < count ? first + l : count - 1];
+    }
+    to[k] = lanes;
+  }
+}
+
+/// Stores a packet where there is room.
+inline void store(Packet x, int first, int stride, double* to)
+{
+  const int room = stride - first < PacketWidth ? stride - first : PacketWidth;
+  std::memcpy(to + first, &x, room * sizeof(double));
+}
+
+/// Whether a function gives its derivatives.
+template <class Function, class Argument, class Slopes, class = void>
+struct HasSlope : std::false_type
+{
+};
+template <class Function, class Argument, class Slopes>
+struct HasSlope<Function, Argument, Slopes,
+  std::void_t<decltype(std::declval<const Function&>().slope(
+    std::declval<const Argument&>(), std::declval<Slopes&>()))>> : std::true_type
+{
+};
+}
+
+/// A metric that is a function of T.
+template <class Function>
+class JacobianMetric : public UserMetric
+{
+public:
+  explicit JacobianMetric(Function function)
+    : UserMetric(MetricArgument::Jacobian)
+    , Formula(std::move(function))
+  {
+  }
+  void evaluate(CellType type, int count, int stride, const double* arguments, double* values,
+    double* slopes) const override
+  {
+    const bool flat = type == CellType::Triangle || type == CellType::Quadrilateral;
+    flat ? this->evaluateIn<2>(count, stride, arguments, values, slopes)
+         : this->evaluateIn<3>(count, stride, arguments, values, slopes);
+  }
+
+private:
+  template <int N>
+  void evaluateIn(
+    int count, int stride, const double* arguments, double* values, double* slopes) const
+  {
+    for (int first = 0; first < count; first += PacketWidth)
+    {
+      Packet t[N][N];
+      user_metric::load<N * N>(arguments, first, count, stride, &t[0][0]);
+      const CornerJacobian<DualNumber<0>, N> plain(t);
+      if (!slopes)
+      {
+        user_metric::store(this->Formula.value(plain).value, first, stride, values);
+        continue;
+      }
+      using Slopes = DualNumber<0>[N][N];
+      if constexpr (user_metric::HasSlope<Function, CornerJacobian<DualNumber<0>, N>,
+                      Slopes>::value)
+      {
+        Slopes own;
+        this->Formula.slope(plain, own);
+        user_metric::store(this->Formula.value(plain).value, first, stride, values);
+        for (int k = 0; k < N * N; ++k)
+        {
+          user_metric::store(own[k / N][k % N].value, first, stride, slopes + k * stride);
+        }
+      }
+      else
+      {
+        const auto q = this->Formula.value(CornerJacobian<DualNumber<N * N>, N>(t));
+        user_metric::store(q.value, first, stride, values);
+        for (int k = 0; k < N * N; ++k)
+        {
+          user_metric::store(q.slope[k], first, stride, slopes + k * stride);
+        }
+      }
+    }
+  }
+
+  Function Formula;
+};
+
+/// A metric that is a function of the corners of the element.
+template <class Function>
+class CornerMetric : public UserMetric
+{
+public:
+  explicit CornerMetric(Function function)
+    : UserMetric(MetricArgument::Corners)
+    , Formula(std::move(function))
+  {
+  }
+  void evaluate(CellType type, int count, int stride, const double* arguments, double* values,
+    double* slopes) const override
+  {
+    switch (type)
+    {
+      case CellType::Triangle:
+        return this->evaluateOn<3>(type, count, stride, arguments, values, slopes);
+      case CellType::Quadrilateral:
+      case CellType::Tetrahedron:
+        return this->evaluateOn<4>(type, count, stride, arguments, values, slopes);
+      case CellType::Pyramid:
+        return this->evaluateOn<5>(type, count, stride, arguments, values, slopes);
+      case CellType::Wedge:
+        return this->evaluateOn<6>(type, count, stride, arguments, values, slopes);
+      default:
+        return this->evaluateOn<8>(type, count, stride, arguments, values, slopes);
+    }
+  }
+
+private:
+  template <int Nodes>
+  void evaluateOn(CellType type, int count, int stride, const double* arguments, double* values,
+    double* slopes) const
+  {
+    for (int first = 0; first < count; first += PacketWidth)
+    {
+      Packet points[Nodes][3];
+      user_metric::load<3 * Nodes>(arguments, first, count, stride, &points[0][0]);
+      const ElementCorners<DualNumber<0>, Nodes> plain(type, points);
+      if (!slopes)
+      {
+        user_metric::store(this->Formula.value(plain).value, first, stride, values);
+        continue;
+      }
+      using Slopes = DualNumber<0>[Nodes][3];
+      if constexpr (user_metric::HasSlope<Function, ElementCorners<DualNumber<0>, Nodes>,
+                      Slopes>::value)
+      {
+        Slopes own;
+        this->Formula.slope(plain, own);
+        user_metric::store(this->Formula.value(plain).value, first, stride, values);
+        for (int k = 0; k < 3 * Nodes; ++k)
+        {
+          user_metric::store(own[k / 3][k % 3].value, first, stride, slopes + k * stride);
+        }
+      }
+      else
+      {
+        const auto q =
+          this->Formula.value(ElementCorners<DualNumber<3 * Nodes>, Nodes>(type, points));
+        user_metric::store(q.value, first, stride, values);
+        for (int k = 0; k < 3 * Nodes; ++k)
+        {
+          user_metric::store(q.slope[k], first, stride, slopes + k * stride);
+        }
+      }
+    }
+  }
+
+  Function Formula;
+};
+
+/**
+ * @brief Values of elements of one type: `points` has x y z of the corners of each of `count`
+ * elements, one after another; `values` takes one number each. Values that are not finite become 0.
+ */
+using ElementsFunction =
+  std::function<void(CellType type, Index count, const double* points, double* values)>;
+
+/**
+ * @brief Registers a metric, for the rest of the process. Its number is made from its name: it is
+ * the same in every session, whatever else is registered.
+ *
+ * The metric is tried first: its values must be finite on elements near the ideal one, and its
+ * derivatives and invariances those that it claims. @throws Error names what is not so, a name or
+ * label that is taken, or facts that contradict each other.
+ */
+TAUTLINE_KERNEL_EXPORT Metric registerMetric(
+  const MetricDescription& description, std::unique_ptr<const UserMetric> metric);
+
+/// Registers a function of T: a struct with a template `value` (and `slope`), see above.
+template <class Function>
+Metric registerJacobianMetric(const MetricDescription& description, Function function)
+{
+  return registerMetric(
+    description, std::make_unique<const JacobianMetric<Function>>(std::move(function)));
+}
+
+/// Registers a function of the corners.
+template <class Function>
+Metric registerCornerMetric(const MetricDescription& description, Function function)
+{
+  return registerMetric(
+    description, std::make_unique<const CornerMetric<Function>>(std::move(function)));
+}
+
+/// Registers a function of the corners of many elements; for measuring only.
+TAUTLINE_KERNEL_EXPORT Metric registerElementsMetric(
+  const MetricDescription& description, ElementsFunction function);
+
+/**
+ * @brief Removes a registered metric from the lists; the number remains valid for evaluations under
+ * way, and the name can be registered again. @throws Error if no user's metric has the name.
+ */
+TAUTLINE_KERNEL_EXPORT void unregisterMetric(const std::string& name);
+
+/**
+ * @brief Loads a shared library that registers metrics (MetricRegistration). The libraries in the
+ * environment variable TAUTLINE_METRICS, separated by colons, are loaded when metrics are first
+ * looked up; what went wrong with these is in metricLoadErrors().
+ * @throws Error if it cannot be loaded, or a registration in it failed
+ */
+TAUTLINE_KERNEL_EXPORT void loadMetrics(const std::string& library);
+
+/// What was wrong with registrations made while a library was loaded, a line each; or "".
+TAUTLINE_KERNEL_EXPORT std::string metricLoadErrors();
+
+/// A registration as a static object of a library: it throws nothing, see metricLoadErrors().
+class MetricRegistration
+{
+public:
+  template <class Register>
+  explicit MetricRegistration(const Register& work)
+  {
+    try
+    {
+      work();
+    }
+    catch (const std::exception& error)
+    {
+      addError(error.what());
+    }
+  }
+  TAUTLINE_KERNEL_EXPORT static void addError(const std::string& message);
+};
+}
+#endif

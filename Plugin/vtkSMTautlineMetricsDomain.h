@@ -1,0 +1,47 @@
+/**
+ * @class vtkSMTautlineMetricsDomain
+ * @brief The metrics a property may have: those of the XML, and those registered on the server.
+ *
+ * An enumeration whose further entries come from an information property, a line "number<tab>label"
+ * for each (vtkElementQuality::GetUserMetrics()). The list is read when the proxy is created, so
+ * that a metric that was registered before is in the menu.
+ *
+ *     <TautlineMetricsDomain name="enum">
+ *       <Entry value="0" text="Inverse mean ratio"/>
+ *       <RequiredProperties>
+ *         <Property name="UserMetrics" function="List"/>
+ *       </RequiredProperties>
+ *     </TautlineMetricsDomain>
+ *
+ * @sa tautline/Quality/UserMetric.h
+ */
+
+#ifndef vtkSMTautlineMetricsDomain_h
+#define vtkSMTautlineMetricsDomain_h
+
+#include "vtkSMEnumerationDomain.h"
+
+class vtkClientServerInterpreter;
+
+class vtkSMTautlineMetricsDomain : public vtkSMEnumerationDomain
+{
+public:
+  static vtkSMTautlineMetricsDomain* New();
+  vtkTypeMacro(vtkSMTautlineMetricsDomain, vtkSMEnumerationDomain);
+
+  /// Adds the entries of the information property that are not there yet.
+  void Update(vtkSMProperty* requestingProperty) override;
+
+  /// Lets ParaView find the class by its name.
+  static void Register(vtkClientServerInterpreter* interpreter);
+
+protected:
+  vtkSMTautlineMetricsDomain() = default;
+  ~vtkSMTautlineMetricsDomain() override = default;
+
+private:
+  vtkSMTautlineMetricsDomain(const vtkSMTautlineMetricsDomain&) = delete;
+  void operator=(const vtkSMTautlineMetricsDomain&) = delete;
+};
+
+#endif

@@ -1,0 +1,151 @@
+"""Metrics of the user: a numpy function, and a compiled library (argument 1), in Python and in the shell."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import tautline as tl
+from checks import DATA, refused, run_tests
+
+LIBRARY = sys.argv[1]
+PLATE, BRACKET = DATA / "plate.vtu", DATA / "bracket.vtu"
+
+
+def longest(corners, cell_type):
+    """The longest distance of two corners."""
+    differences = corners[:, :, None, :] - corners[:, None, :, :]
+    return np.sqrt((differences**2).sum(axis=3)).max(axis=(1, 2))
+
+
+def corners_of(mesh, cells):
+    points = np.array([mesh.GetPoint(i) for i in range(mesh.GetNumberOfPoints())])
+    return [points[[mesh.GetCell(c).GetPointId(k) for k in range(mesh.GetCell(c).GetNumberOfPoints())]] for c in cells]
+
+
+def test_register():
+    calls = []
+
+    def function(corners, cell_type):
+        calls.append((cell_type, corners.shape))
+        return longest(corners, cell_type)
+
+    number = tl.register_metric("longest", function, label="Longest distance", formula="max |p - q|", unit="length",
+                                acceptable=(0, 0.3))  # fmt: skip
+    assert number == 300445941, "the number is that of the name, in every session"
+    # Tried on two cells of each type as they are, and turned.
+    assert [(name, shape) for name, shape in calls[::2]] == [
+        ("triangle", (2, 3, 3)), ("quadrilateral", (2, 4, 3)), ("tetrahedron", (2, 4, 3)), ("hexahedron", (2, 8, 3)),
+        ("wedge", (2, 6, 3)), ("pyramid", (2, 5, 3))] and calls[1::2] == calls[::2], calls  # fmt: skip
+    facts = {facts["name"]: facts for facts in tl.metrics()}
+    assert facts["longest"]["label"] == "Longest distance" and facts["longest"]["number"] == number
+    assert facts["longest"]["cell_types"][0] == "triangle" and facts["longest"]["dimensions"] == [2, 3]
+    for mesh in (PLATE, BRACKET):
+        calls.clear()
+        result = tl.quality(mesh, ["imr", "longest"])
+        cells = sum(shape[0] for _, shape in calls)
+        assert len({name for name, _ in calls}) == len(calls), "once for all cells of a type"
+        assert cells == result.mesh.GetNumberOfCells(), (cells, calls)
+        some = range(0, result.mesh.GetNumberOfCells(), 7)
+        expected = [longest(p[None], "") for p in corners_of(result.mesh, some)]
+        assert np.allclose(result.values["longest"][some], np.ravel(expected), rtol=1e-12)
+        statistics = result.statistics["longest"]
+        assert statistics["maximum"] == statistics["worst"] == result.values["longest"].max()
+        assert np.isclose(statistics["mean"], result.values["longest"].mean(), rtol=1e-12)
+        array = result.mesh.GetCellData().GetArray("longest")
+        assert array.GetRange() == (statistics["minimum"], statistics["maximum"])
+    same = tl.quality(PLATE, "Longest distance")  # by its label
+    assert list(same.values) == ["longest"]
+    comparison = tl.compare(PLATE, PLATE, "longest")
+    assert "longest" in str(comparison.__dict__)
+    field = tl.metric_field("longest")
+    assert field is not None
+    graded = tl.quality(PLATE, "imr", criteria=json.dumps(
+        {"name": "long", "criteria": [{"metric": "longest", "failed": 1e-3}]}))  # fmt: skip
+    assert "longest" in graded.values, graded.values.keys()
+
+
+def test_replaced_and_removed():
+    tl.register_metric("constant", lambda corners, cell: np.ones(len(corners)))
+    assert (tl.quality(PLATE, "constant").values["constant"] == 1).all()
+    tl.register_metric("constant", lambda corners, cell: np.full(len(corners), 2.0))
+    assert (tl.quality(PLATE, "constant").values["constant"] == 2).all()
+    tl.register_metric("constant", lambda corners, cell: np.full(len(corners), np.nan) if len(corners) > 2 else
+                       np.zeros(len(corners)))  # fmt: skip
+    assert (tl.quality(PLATE, "constant").values["constant"] == 0).all(), "what is not finite becomes 0"
+    tl.unregister_metric("constant")
+    refused("There is no metric 'constant'", tl.quality, PLATE, "constant")
+    refused("no metric 'constant' was registered", tl.unregister_metric, "constant")
+
+
+def test_only_some_cells():
+    tl.register_metric("flat_only", lambda p, cell: np.full(len(p), 3.0), cell_types=["triangle", "quadrilateral"])
+    assert (tl.quality(PLATE, "flat_only").values["flat_only"] == 3).all()
+    assert (tl.quality(BRACKET, "flat_only").values["flat_only"] == 0).all()
+
+
+def test_refused():
+    def fails(corners, cell_type):
+        raise KeyError("no such thing")
+
+    ones = lambda corners, cell: np.ones(len(corners))  # noqa: E731
+    refused("there is a metric 'imr'", tl.register_metric, "imr", ones)
+    refused("cannot be the name", tl.register_metric, "My metric", ones)
+    refused("a function is expected", tl.register_metric, "mine", 3)
+    refused("KeyError: 'no such thing'", tl.register_metric, "mine", fails)
+    refused("values of shape (3,); (2,) is expected", tl.register_metric, "mine", lambda p, cell: np.ones(3))
+    refused("could not convert", tl.register_metric, "mine", lambda p, cell: ["a"] * len(p))
+    refused("not finite on a valid triangle", tl.register_metric, "mine", lambda p, cell: np.full(len(p), np.inf))
+    refused("did you mean 'triangle'", tl.register_metric, "mine", ones, cell_types=["triangel"])
+    refused("did you mean 'larger is better'", tl.register_metric, "mine", ones, direction="larger is beter")
+    refused("depends on the scale", tl.register_metric, "mine", longest, scale_invariant=True)
+    refused("depends on the rotation", tl.register_metric, "mine", lambda p, cell: p[:, 0, 0])
+    assert not any(facts["name"] == "mine" for facts in tl.metrics())
+    # A function that fails later: an error of the filter, and the next mesh is measured.
+    wrong = {"now": False}
+    tl.register_metric("sometimes", lambda p, cell: p[:, 0, 5] if wrong["now"] else np.ones(len(p)))
+    wrong["now"] = True
+    refused("The metric sometimes failed on", tl.quality, PLATE, "sometimes")
+    wrong["now"] = False
+    assert (tl.quality(PLATE, "sometimes").values["sometimes"] == 1).all()
+    # It cannot be optimized.
+    if hasattr(tl, "optimize"):
+        refused("has no derivatives", tl.optimize, PLATE, objectives=["sometimes"])
+    refused("cannot be loaded", tl.load_metrics, "/nonexistent.so")
+
+
+def shell(*arguments, library=LIBRARY):
+    environment = {**os.environ, "TAUTLINE_METRICS": library}
+    return subprocess.run([sys.executable, "-m", "tautline", *arguments], env=environment, text=True,
+                          capture_output=True)  # fmt: skip
+
+
+def test_library():
+    run = shell("metrics", "--json")
+    names = [facts["name"] for facts in json.loads(run.stdout)]
+    assert names[-2:] == ["my_distortion", "longest_edge"], names
+    measured = shell("quality", str(PLATE), "--metrics", "my_distortion,imr", "--json")
+    assert measured.returncode == 0, measured.stderr
+    assert "my_distortion" in measured.stdout
+    wrong = shell("quality", str(PLATE), "--metrics", "my_distortion", library="/nonexistent.so")
+    assert wrong.returncode != 0 and "TAUTLINE_METRICS" in wrong.stderr and "cannot be loaded" in wrong.stderr, wrong
+    wrong = shell("metrics", library="/nonexistent.so")
+    assert wrong.returncode != 0 and "cannot be loaded" in wrong.stderr
+
+    assert tl.load_metrics(LIBRARY) == ["my_distortion", "longest_edge"]
+    result = tl.quality(BRACKET, ["my_distortion", "imr", "longest_edge"])
+    # |T|^2 / det^(2/3) - 3 = 3 (IMR - 1) on tetrahedra
+    assert np.allclose(result.values["my_distortion"], 3 * (result.values["imr"] - 1), rtol=1e-10, atol=1e-12)
+    edges = [longest(p[None], "")[0] for p in corners_of(result.mesh, range(20))]
+    assert np.allclose(result.values["longest_edge"][:20], edges, rtol=1e-12)
+    if hasattr(tl, "optimize"):
+        moved = tl.perturb(BRACKET, fraction=0.3, seed=1)
+        better = tl.optimize(moved, objectives=["my_distortion"])
+        before = tl.quality(moved, "my_distortion").values["my_distortion"]
+        after = tl.quality(better, "my_distortion").values["my_distortion"]
+        assert (after**2).sum() < 0.5 * (before**2).sum(), ((before**2).sum(), (after**2).sum())
+
+
+if __name__ == "__main__":
+    run_tests(globals())
