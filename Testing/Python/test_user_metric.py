@@ -61,9 +61,10 @@ def test_register():
     assert "longest" in str(comparison.__dict__)
     field = tl.metric_field("longest")
     assert field is not None
-    graded = tl.quality(PLATE, "imr", criteria=json.dumps(
-        {"name": "long", "criteria": [{"metric": "longest", "failed": 1e-3}]}))  # fmt: skip
-    assert "longest" in graded.values, graded.values.keys()
+    limits = {"all": {"ideal": 0, "good": 1e-6, "warn": 1e-5, "fail": 1e-4, "worst": 1}}
+    text = json.dumps({"name": "long", "criteria": [{"metric": "longest", "weight": 1, "limits": limits}]})
+    graded = tl.quality(PLATE, "imr", criteria=text)
+    assert graded.verdict == "failed" and "longest" in graded.values
 
 
 def test_replaced_and_removed():

@@ -570,13 +570,15 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
     return;
   }
 
-  Packet q[MaxNodes] = {}, weights[MaxNodes] = {};
+  constexpr int kept = M::user && WithGradient ? MaxNodes : 1; // a user's formula is evaluated once
+  Packet q[MaxNodes] = {}, weights[MaxNodes] = {}, slopes[kept][N][N];
   Mask negative[MaxNodes] = {}, degenerate = {};
   for (int s = 0; s < samples; ++s)
   {
     TargetInvariants<N> d;
     evaluateCorner<M, N>(context, batch, s, own, corner);
-    q[s] = evaluateFormula<M, N, false>(context, corner, d);
+    q[s] = evaluateFormula < M, N, WithGradient && M::user > (context, corner, d);
+    std::copy_n(&corner.slope[0][0], M::user && WithGradient ? N * N : 0, &slopes[s % kept][0][0]);
     negative[s] = (corner.invariants.det < 0.0) & ~corner.degenerate;
     if constexpr (!M::singular)
     {
@@ -602,7 +604,14 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
     {
       TargetInvariants<N> d;
       evaluateCorner<M, N>(context, batch, s, own, corner);
-      evaluateFormula<M, N, true>(context, corner, d);
+      if constexpr (M::user)
+      {
+        std::copy_n(&slopes[s][0][0], N * N, &corner.slope[0][0]);
+      }
+      else
+      {
+        evaluateFormula<M, N, true>(context, corner, d);
+      }
       addGradient<M, N>(context, corner, s, d, select(zero, Packet{}, weights[s]), batch);
     }
   }

@@ -165,6 +165,110 @@ void testSphere()
   }
 }
 
+/// How far a point is from the ellipsoid with these half axes, to first order.
+double offEllipsoid(const Vec3& p, const Vec3& axes)
+{
+  double f = -1;
+  Vec3 gradient;
+  for (int c = 0; c < 3; ++c)
+  {
+    f += p[c] * p[c] / (axes[c] * axes[c]);
+    gradient[c] = 2 * p[c] / (axes[c] * axes[c]);
+  }
+  return std::abs(f) / norm(gradient);
+}
+
+/// An ellipsoid: five runs in a row, each of which makes its model anew from the points of the last.
+/// Twice the resolution divides the distance by eight or so; it does not grow from run to run.
+void testEllipsoid()
+{
+  const Vec3 axes = { 1, 0.7, 0.5 };
+  for (CellType type : { CellType::Quadrilateral, CellType::Triangle })
+  {
+    double last = 1;
+    const std::pair<int, double> sizes[] = { { 8, 3e-4 }, { 16, 3e-5 }, { 32, 1e-5 } };
+    for (const auto& [n, allowed] : sizes)
+    {
+      const Context context(std::string(topology(type).name) + " " + std::to_string(n));
+      MeshData data = sphereSurface(type, n);
+      data.transform(
+        [&](const Vec3& p) {
+          return Vec3{ axes[0] * p[0], axes[1] * p[1], axes[2] * p[2] };
+        });
+      double mean = 0, second = 0;
+      for (int repeat = 0; repeat < 5; ++repeat)
+      {
+        data.points = runOnFeatures(data).points;
+        double off = 0;
+        mean = 0;
+        for (Index p = 0; p < data.numberOfPoints(); ++p)
+        {
+          const double distance = offEllipsoid(data.point(p), axes);
+          off = std::max(off, distance);
+          mean += distance / static_cast<double>(data.numberOfPoints());
+        }
+        TAUTLINE_CHECK(off < allowed);
+        second = repeat == 1 ? mean : second;
+      }
+      TAUTLINE_CHECK(mean < 1.1 * second);
+      TAUTLINE_CHECK(mean < last / (n == 32 ? 4 : 8));
+      last = mean;
+    }
+  }
+}
+
+/// A torus whose points crowd on one side of the tube.
+void testTorus()
+{
+  const double turn = 2 * std::acos(-1.0), tube = 0.4;
+  for (CellType type : { CellType::Quadrilateral, CellType::Triangle })
+  {
+    MeshData data;
+    const Index around = 48, across = 16;
+    for (Index i = 0; i < around; ++i)
+    {
+      for (Index j = 0; j < across; ++j)
+      {
+        const double a = turn * static_cast<double>(i) / around;
+        const double even = turn * static_cast<double>(j) / across;
+        const double b = even + 0.35 * std::sin(even), r = 1 + tube * std::cos(b);
+        data.addPoint({ r * std::cos(a), r * std::sin(a), tube * std::sin(b) });
+      }
+    }
+    for (Index i = 0; i < around; ++i)
+    {
+      for (Index j = 0; j < across; ++j)
+      {
+        const Index next = (i + 1) % around * across, here = i * across, up = (j + 1) % across;
+        const Index a = here + j, b = next + j, c = next + up, d = here + up;
+        if (type == CellType::Quadrilateral)
+        {
+          data.addCell(type, std::vector<Index>{ a, b, c, d });
+        }
+        else
+        {
+          data.addCell(type, std::vector<Index>{ a, b, c });
+          data.addCell(type, std::vector<Index>{ a, c, d });
+        }
+      }
+    }
+    const std::vector<double> before = data.points;
+    for (int repeat = 0; repeat < 3; ++repeat)
+    {
+      data.points = runOnFeatures(data).points;
+      double off = 0, moved = 0;
+      for (Index p = 0; p < data.numberOfPoints(); ++p)
+      {
+        const Vec3 x = data.point(p);
+        off = std::max(off, std::abs(std::hypot(std::hypot(x[0], x[1]) - 1, x[2]) - tube));
+        moved = std::max(moved, norm(x - at(before, p)));
+      }
+      TAUTLINE_CHECK(off < 5e-6);
+      TAUTLINE_CHECK(moved > 0.01);
+    }
+  }
+}
+
 /// The boundary of a volume mesh, and the interface of its regions.
 void testVolume()
 {
@@ -265,6 +369,8 @@ int TestOptimizeFeatures(int, char*[])
   testCube();
   testCylinder();
   testSphere();
+  testEllipsoid();
+  testTorus();
   testVolume();
   testGeometry();
   return exitCode();
