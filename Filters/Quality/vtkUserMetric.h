@@ -16,7 +16,7 @@
  * @code
  * metric = vtkUserMetric()
  * metric.SetName("height")
- * metric.AddObserver("UserEvent", lambda metric, event: fill(metric.GetCorners(), metric.GetValues()))
+ * metric.AddObserver("UserEvent", lambda m, event: fill(m.GetCorners(), m.GetValues()))
  * metric.AddToRegistry()
  * @endcode
  *

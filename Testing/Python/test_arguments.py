@@ -13,7 +13,8 @@ FUNCTIONS = {name: value for name, value in vars(tl).items() if isfunction(value
 NEEDED = {"domain": ("square",), "write": (OUT / "arguments.vtu",), "compare": (square(2),), "warp": ()}
 #: What these functions take first is not a mesh.
 NO_MESH = ("domain", "domains", "metrics", "metric_field", "from_arrays", "read", "read_silhouettes", "retrieval",
-           "silhouette", "match", "solver_combinations", "load_metrics", "register_metric", "unregister_metric")  # fmt: skip
+           "silhouette", "match", "solver_combinations", "load_metrics", "register_metric",
+           "unregister_metric")  # fmt: skip
 
 
 def blocks():

@@ -29,9 +29,9 @@
  *     facts.barrier = true;
  *     const tautline::Metric ratio = tautline::registerJacobianMetric(facts, Ratio());
  *
- * A struct that also has `template <class Number, int N> void slope(const CornerJacobian<Number, N>&
- * T, Number (&dT)[N][N]) const` gives its derivatives itself; registration compares them with finite
- * differences. Testing/Install/metric_consumer is a complete example.
+ * A struct that also has `template <class Number, int N> void slope(const CornerJacobian<Number,
+ * N>& T, Number (&dT)[N][N]) const` gives its derivatives itself; registration compares them with
+ * finite differences. Testing/Install/metric_consumer is a complete example.
  */
 #ifndef tautline_UserMetric_h
 #define tautline_UserMetric_h

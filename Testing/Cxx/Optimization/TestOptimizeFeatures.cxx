@@ -178,8 +178,9 @@ double offEllipsoid(const Vec3& p, const Vec3& axes)
   return std::abs(f) / norm(gradient);
 }
 
-/// An ellipsoid: five runs in a row, each of which makes its model anew from the points of the last.
-/// Twice the resolution divides the distance by eight or so; it does not grow from run to run.
+/// An ellipsoid: five runs in a row, each of which makes its model anew from the points of the
+/// last. Twice the resolution divides the distance by eight or so; it does not grow from run to
+/// run.
 void testEllipsoid()
 {
   const Vec3 axes = { 1, 0.7, 0.5 };
