@@ -12,6 +12,12 @@
  * TargetMetrics.h), the ratio is a function q(N, D), N is quadratic in the edges of the corner and
  * D linear in each of them. For the other metrics it is made of central differences of the analytic
  * gradients.
+ *
+ * N / D^(2/n) is a convex function of T and D together, and falls with D. So the Hessian is a
+ * positive semidefinite part and the second derivatives of D, times a factor below 0. The latter
+ * can be left out: they cancel where the factor is the same in all elements round a point, as the
+ * volume of these elements is that of their hull. (V. Garanzha et al., "Foldover-free maps in 50
+ * lines of code", ACM Trans. Graph. 40, 2021, section 4, do so for a similar function.)
  */
 #ifndef tautline_ElementHessianBatches_h
 #define tautline_ElementHessianBatches_h
@@ -75,6 +81,13 @@ inline bool hasAnalyticHessian(const Objective& objective)
     options.combination == Combination::Mean &&
     (!options.targets || options.targets->metricRoots.empty());
 }
+
+/// Which Hessian of the inverse mean ratio is wanted. That of other metrics is always exact.
+enum class HessianForm
+{
+  Exact, ///< may be indefinite
+  Convex ///< the positive semidefinite part: without the second derivatives of D
+};
 
 //------------------------------------------------------------------------------
 /// One corner of a batch of elements, in the coordinates of hessianAxes().
@@ -203,11 +216,12 @@ void evaluateRatio(
 
 /// Adds factor times the Hessian of q at a corner.
 template <int Dim>
-void addRatioHessian(
-  const RatioCorner<Dim>& corner, const std::array<int, 4>& nodes, Packet factor, Packet* h)
+void addRatioHessian(const RatioCorner<Dim>& corner, const std::array<int, 4>& nodes, Packet factor,
+  HessianForm form, Packet* h)
 {
   const Packet nd = factor * corner.qND, dd = factor * corner.qDD;
-  const Packet n = 2.0 * factor * corner.qN, d = factor * corner.qD * corner.det;
+  const Packet n = 2.0 * factor * corner.qN;
+  const Packet d = form == HessianForm::Exact ? Packet(factor * corner.qD * corner.det) : Packet{};
   // The blocks between the edges, then between the nodes: the corner's own node has minus the sums.
   Packet block[Dim + 1][Dim + 1][Dim][Dim] = {};
   for (int k = 0; k < Dim; ++k)
@@ -272,8 +286,8 @@ void addRatioHessian(
 
 /// The lower triangles of a batch for objectives of which hasAnalyticHessian() is true.
 template <int Nodes, int Dim>
-void ratioHessians(
-  const BatchContext& context, const ElementFunction& function, const Batch& batch, Packet* h)
+void ratioHessians(const BatchContext& context, const ElementFunction& function, const Batch& batch,
+  HessianForm form, Packet* h)
 {
   Packet axes[Dim][3], x[MaxNodes][Dim];
   batchAxes<Dim>(context, axes);
@@ -316,7 +330,7 @@ void ratioHessians(
   const Packet first = share * weight * (squared ? Packet(2.0 * q) : broadcast(1.0));
   for (int s = 0; s < samples; ++s)
   {
-    addRatioHessian<Dim>(corner[s], topology.cornerNodes[s], first, h);
+    addRatioHessian<Dim>(corner[s], topology.cornerNodes[s], first, form, h);
   }
   for (int r = 0; squared && r < rows; ++r)
   {
@@ -437,7 +451,7 @@ void rotate(Packet (&a)[Rows][Rows], Packet (&v)[Rows][Rows], int p, int q)
  * of the slopes with the mean or the maximum itself held fixed.
  */
 template <int Dim, class Work>
-void forEachHessian(const ObjectiveSum& objective, const Work& work)
+void forEachHessian(const ObjectiveSum& objective, HessianForm form, const Work& work)
 {
   const ObjectiveSumState& sum = objective.state();
   const ElementSum& elements = sum.elements;
@@ -473,7 +487,7 @@ void forEachHessian(const ObjectiveSum& objective, const Work& work)
             gather<Nodes>(context, elements.order(chunk), begin, count, batch, nodes);
             if (analytic)
             {
-              ratioHessians<Nodes, Dim>(context, sum.function, batch, h);
+              ratioHessians<Nodes, Dim>(context, sum.function, batch, form, h);
             }
             else
             {

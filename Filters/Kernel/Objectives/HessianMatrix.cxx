@@ -217,10 +217,10 @@ void HessianMatrix::clear()
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale)
+void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, HessianForm form)
 {
   const bool full = this->ThePattern == Pattern::Full;
-  forEachHessian<Dim>(objective,
+  forEachHessian<Dim>(objective, form,
     [&](auto nodesOfCell, const Batch& batch, const BatchNodes&, Packet* h)
     {
       constexpr int Nodes = decltype(nodesOfCell)::value;
@@ -274,7 +274,19 @@ void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale)
 
 void HessianMatrix::add(const ObjectiveSum& objective, double scale)
 {
-  this->Size == 2 ? this->addBlocks<2>(objective, scale) : this->addBlocks<3>(objective, scale);
+  this->Size == 2 ? this->addBlocks<2>(objective, scale, HessianForm::Exact)
+                  : this->addBlocks<3>(objective, scale, HessianForm::Exact);
+}
+
+void HessianMatrix::addConvexPart(const ObjectiveSum& objective, double scale)
+{
+  this->Size == 2 ? this->addBlocks<2>(objective, scale, HessianForm::Convex)
+                  : this->addBlocks<3>(objective, scale, HessianForm::Convex);
+}
+
+bool HessianMatrix::hasConvexPart(const ObjectiveSum& objective)
+{
+  return hasAnalyticHessian(objective.state().objective);
 }
 
 //------------------------------------------------------------------------------
@@ -403,8 +415,19 @@ void HessianMatrix::invertDiagonal()
     });
 }
 
+void HessianMatrix::factorizeByMultigrid()
+{
+  if (!this->Grids)
+  {
+    this->Grids = std::make_unique<Multigrid>(this->Threads);
+  }
+  this->Grids->build({ this->Size, this->Rows, this->Starts.data(), this->Columns.data(),
+    this->Diagonal.data(), this->Blocks.data() });
+}
+
 void HessianMatrix::factorize()
 {
+  this->Grids.reset();
   this->Size == 2 ? this->invertDiagonal<2>() : this->invertDiagonal<3>();
 }
 
@@ -496,9 +519,13 @@ void HessianMatrix::sweep(const double* r, double* z) const
     });
 }
 
-void HessianMatrix::precondition(const double* r, double* z) const
+void HessianMatrix::precondition(const double* r, double* z)
 {
-  if (this->Size == 2)
+  if (this->Grids)
+  {
+    this->Grids->apply(r, z);
+  }
+  else if (this->Size == 2)
   {
     this->applyDiagonal<2>(r, z);
   }

@@ -10,6 +10,7 @@
 #ifndef tautline_HessianMatrix_h
 #define tautline_HessianMatrix_h
 
+#include "Multigrid.h"
 #include "ObjectiveSum.h"
 
 namespace tautline
@@ -17,6 +18,8 @@ namespace tautline
 /// The axes of the coordinates: right-handed for the elements, so that a mirrored mesh has mirrored
 /// axes. The first two are in the plane of a planar mesh.
 TAUTLINE_KERNEL_EXPORT std::array<Vec3, 3> coordinateAxes(const Mesh& mesh);
+
+enum class HessianForm;
 
 class TAUTLINE_KERNEL_EXPORT HessianMatrix
 {
@@ -53,6 +56,14 @@ public:
    */
   void add(const ObjectiveSum& objective, double scale);
   /**
+   * @brief Adds scale times the positive semidefinite part of the Hessian of an objective of which
+   * hasConvexPart() is true; see ElementHessianBatches.h.
+   */
+  void addConvexPart(const ObjectiveSum& objective, double scale);
+  /// Whether the positive semidefinite part is known: for sums of the inverse mean ratio or of its
+  /// square.
+  static bool hasConvexPart(const ObjectiveSum& objective);
+  /**
    * @brief Replaces the matrix by P A P for points that may move in some directions only, with the
    * mean of its diagonal in the other directions.
    * @param row of the point
@@ -61,19 +72,25 @@ public:
   void restrict(Index row, const double* projector);
   /// Prepares precondition(): to be called when the matrix is complete.
   void factorize();
+  /**
+   * @brief As factorize(), for a positive semidefinite matrix of the full pattern: precondition()
+   * is then a cycle of Multigrid.
+   */
+  void factorizeByMultigrid();
 
   /// product = A d. Not of the diagonal pattern.
   void times(const double* d, double* product) const;
   /**
    * @brief z = M^-1 r, with M symmetric and positive definite: the diagonal blocks with the
    * absolute values of their eigenvalues; in volumes with symmetric Gauss-Seidel inside fixed
-   * ranges of rows, which does not pay in planar meshes.
+   * ranges of rows, which does not pay in planar meshes. After factorizeByMultigrid() it is only
+   * nearly linear.
    */
-  void precondition(const double* r, double* z) const;
+  void precondition(const double* r, double* z);
 
 private:
   template <int Dim>
-  void addBlocks(const ObjectiveSum& objective, double scale);
+  void addBlocks(const ObjectiveSum& objective, double scale, HessianForm form);
   template <int Dim>
   void invertDiagonal();
   template <int Dim>
@@ -97,6 +114,7 @@ private:
   std::vector<Index> PlaceStarts;            ///< of each cell
   std::vector<double> Blocks;                ///< Size x Size numbers for each place
   std::vector<double> Inverse;               ///< of the diagonal blocks
+  std::unique_ptr<Multigrid> Grids;          ///< the preconditioner, if it is that
 };
 }
 #endif

@@ -206,16 +206,24 @@ void GlobalFunction::linearize(const double*)
     this->makeMatrix();
   }
   this->Hessian->clear();
+  // With the positive semidefinite part of each Hessian no direction of Newton's method needs a
+  // shift, and multigrid solves its systems.
+  bool convex = this->Newton;
   for (std::size_t i = 0; i < this->Objectives.size(); ++i)
   {
-    this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
+    convex = convex && this->Slopes[i] >= 0 && HessianMatrix::hasConvexPart(this->Problem.sum(i));
+  }
+  for (std::size_t i = 0; i < this->Objectives.size(); ++i)
+  {
+    convex ? this->Hessian->addConvexPart(this->Problem.sum(i), this->Slopes[i])
+           : this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
   }
   const OptimizeOptions& options = this->Problem.options();
   if (options.slideLines || options.slidePlanes)
   {
     this->forEachFree([&](std::size_t i, std::size_t p) { this->restrict(i, p); });
   }
-  this->Hessian->factorize();
+  convex ? this->Hessian->factorizeByMultigrid() : this->Hessian->factorize();
 }
 
 //------------------------------------------------------------------------------

@@ -14,8 +14,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 using Vector = std::vector<double>;
 
 // Line search.
-constexpr double curvatureNewton = 0.9; // of the slope that may remain
+constexpr double curvatureQuasiNewton = 0.9; // of the slope that may remain
 constexpr double curvatureConjugate = 0.2;
+constexpr double curvatureNewton = 0.3; // beyond it a longer step is tried: it costs little beside
+                                        // the direction
+constexpr double shortening = 0.5, lengthening = 4; // of Newton's first trial step
 constexpr int maxTrials = 40;
 constexpr double longestExtension = 100; // of the first trial step
 constexpr double extendAtLeast = 1.5, extendAtMost = 5.0;
@@ -74,6 +77,7 @@ private:
   void evaluate(Trial& trial);
   void accept(const Trial& trial);
   bool search(double first, double curvature, bool strong);
+  bool searchNewton();
   double firstStep() const;
   /// z = P r, or r.
   bool precondition(const Vector& r, Vector& z);
@@ -96,6 +100,7 @@ private:
   double F = infinity, Norm = 0, FirstNorm = 0, Slope = 0;
   double Step = 0, StepSlope = 0; ///< of the last step
   double First = 1;               ///< first trial step along D
+  double FirstNewton = 1;         ///< first trial step along Newton's direction
   double Shift = 0;               ///< of Newton's system, in units of the preconditioner
   double Promised = infinity;     ///< by Newton's quadratic model, of the next step
   bool Preconditioned = false;
@@ -210,6 +215,61 @@ bool Minimizer::search(double first, double curvature, bool strong)
     return false;
   }
   this->accept(found ? now : best);
+  return true;
+}
+
+/**
+ * @brief Goes along Newton's direction: at first by the whole step, or a shorter one where the last
+ * had to be short; by less until the value is low enough; or further, while much of the slope
+ * remains and the value falls. From meshes of flat elements the whole step multiplies their height
+ * by a constant only.
+ */
+bool Minimizer::searchNewton()
+{
+  const double limit =
+    this->Function.largestStep(this->X, this->D.data(), longestExtension * this->FirstNewton);
+  if (!(limit > 0))
+  {
+    return false;
+  }
+  Trial now;
+  now.t = std::min(this->FirstNewton, limit);
+  const auto low = [&]
+  {
+    this->evaluate(now);
+    return now.f <= this->F + ArmijoConstant * now.t * this->Slope && now.f <= this->F;
+  };
+  int trials = 1;
+  for (; !low(); ++trials)
+  {
+    if (trials == maxTrials)
+    {
+      return false;
+    }
+    now.t *= shortening;
+  }
+  const double whole = this->Slope;
+  double t = now.t;
+  this->accept(now);
+  const bool shortened = trials > 1;
+  while (!shortened && now.slope < curvatureNewton * whole && trials < maxTrials && t < limit)
+  {
+    // From where the step has led, to where the slope would vanish if it went on changing so.
+    const double secant = now.slope / (whole - now.slope) * t;
+    Trial next;
+    next.t =
+      std::min({ std::max(secant, (extendAtLeast - 1) * t), (extendAtMost - 1) * t, limit - t });
+    this->Slope = now.slope;
+    now = next;
+    ++trials;
+    if (!low() || now.slope > -curvatureNewton * whole)
+    {
+      break;
+    }
+    t += now.t;
+    this->accept(now);
+  }
+  this->FirstNewton = std::min(1.0, lengthening * t);
   return true;
 }
 
@@ -350,9 +410,22 @@ double Minimizer::solveNewton(double shift)
         r[k] += a * (product[k] + shift * md[k]);
       });
     model += decrease;
+    complete = i * decrease <= innerShare * model;
+    if (complete)
+    {
+      break;
+    }
     this->precondition(r, this->Z);
-    const double next = this->dot(r, this->Z), beta = next / rz;
-    complete = i * decrease <= innerShare * model || !(next > innerResidual * first);
+    // The preconditioner may change a little with the residual: flexible conjugate gradients.
+    const double next = this->dot(r, this->Z);
+    const double change =
+      this->Algebra.sum([&](Index k) { return this->Z[k] * (product[k] + shift * md[k]); });
+    const double beta = a * change / rz;
+    complete = next >= 0 && next <= innerResidual * first;
+    if (!(next > 0))
+    {
+      break; // what is left is rounding, or a preconditioner that does not suit
+    }
     if (this->Options.outOfTime && this->Options.outOfTime())
     {
       break;
@@ -400,7 +473,7 @@ bool Minimizer::iterate()
   const Optimizer method = this->Options.method;
   const bool conjugateGradient = method == Optimizer::ConjugateGradientFletcherReeves ||
     method == Optimizer::ConjugateGradientPolakRibiere;
-  const double curvature = conjugateGradient ? curvatureConjugate : curvatureNewton;
+  const double curvature = conjugateGradient ? curvatureConjugate : curvatureQuasiNewton;
   if (method == Optimizer::NewtonConjugateGradient)
   {
     this->newton();
@@ -420,7 +493,9 @@ bool Minimizer::iterate()
   const double length = std::sqrt(this->dot(this->D, this->D));
   const bool descent = this->Slope < -minDescent * length * this->Norm;
   bool moved = (descent || this->Fresh) && this->Slope < 0 && std::isfinite(length) &&
-    this->search(this->First, curvature, conjugateGradient);
+    (method == Optimizer::NewtonConjugateGradient && !this->Fresh
+        ? this->searchNewton()
+        : this->search(this->First, curvature, conjugateGradient));
   if (!moved && !this->Fresh)
   {
     this->Memory.clear();

@@ -1,0 +1,628 @@
+#include "Multigrid.h"
+
+#include "Aggregation.h"
+
+#include "tautline/Core/Parallel.h"
+#include "tautline/Core/VectorAlgebra.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+constexpr int pairings = 3;            // of rows, from a level to the next
+constexpr Index coarsest = 60;         // rows that are solved by a dense factorization
+constexpr double slowCoarsening = 0.8; // ratio of rows beyond which no coarser level is made
+constexpr int maxLevels = 30;
+constexpr double enough =
+  0.25; // reduction by the first step on a coarse level, that needs no second
+constexpr int rebuildAfter = 4;    // matrices of one pattern, after which rows are aggregated anew
+constexpr double flattest = 1e-14; // pivot relative to the largest diagonal entry of its block
+
+template <int Dim>
+void multiplyAdd(const double* block, const double* x, double* y)
+{
+  for (int r = 0; r < Dim; ++r)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      y[r] += block[Dim * r + c] * x[c];
+    }
+  }
+}
+
+/// The inverse of a symmetric positive semidefinite block, by a Cholesky factorization of it scaled
+/// to a diagonal of 1, with pivots kept off 0.
+template <int Dim>
+void invert(const double* block, double* inverse)
+{
+  double scale[Dim], lower[Dim][Dim] = {}, w[Dim][Dim] = {};
+  for (int r = 0; r < Dim; ++r)
+  {
+    const double d = block[Dim * r + r];
+    scale[r] = d > 0 ? 1 / std::sqrt(d) : 0.0;
+    scale[r] = std::isfinite(scale[r]) ? scale[r] : 0.0;
+  }
+  for (int r = 0; r < Dim; ++r)
+  {
+    for (int c = 0; c <= r; ++c)
+    {
+      double sum = r == c ? 1.0 : scale[r] * scale[c] * block[Dim * r + c];
+      for (int k = 0; k < c; ++k)
+      {
+        sum -= lower[r][k] * lower[c][k];
+      }
+      lower[r][c] = r == c ? std::sqrt(std::max(sum, flattest)) : sum / lower[c][c];
+    }
+  }
+  // The inverse of the factor.
+  for (int c = 0; c < Dim; ++c)
+  {
+    w[c][c] = 1 / lower[c][c];
+    for (int r = c + 1; r < Dim; ++r)
+    {
+      double sum = 0;
+      for (int k = c; k < r; ++k)
+      {
+        sum -= lower[r][k] * w[k][c];
+      }
+      w[r][c] = sum / lower[r][r];
+    }
+  }
+  for (int r = 0; r < Dim; ++r)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      double sum = 0;
+      for (int k = std::max(r, c); k < Dim; ++k)
+      {
+        sum += w[k][r] * w[k][c];
+      }
+      inverse[Dim * r + c] = scale[r] * scale[c] * sum;
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+struct Multigrid::Level
+{
+  BlockMatrixView matrix; ///< of this level; its arrays are those below except on the finest
+  std::vector<std::int32_t> starts, columns, diagonals;
+  std::vector<double> blocks;
+  std::vector<double> added;           ///< to the diagonals, for the smoother
+  std::vector<double> inverse;         ///< of the diagonal blocks with that
+  std::vector<std::int32_t> aggregate; ///< of each row, on the next level
+  std::vector<std::int32_t> places;    ///< of each block, on the next level
+  std::vector<double> r, z;            ///< right-hand side and solution, of coarse levels
+  std::vector<double> rest, step;      ///< work space
+  std::vector<double> q, p, ap, aq;    ///< work space of solveCoarse()
+  std::vector<double> dense;           ///< factor of the coarsest matrix, row by row
+};
+
+Multigrid::Multigrid(int threads)
+  : Threads(threads)
+{
+}
+
+Multigrid::~Multigrid() = default;
+
+//------------------------------------------------------------------------------
+namespace
+{
+using Level = Multigrid::Level;
+
+/**
+ * @brief What is added to the diagonal of a row for its couplings to other ranges, which sweeps do
+ * not see: half of the sum of their sizes, in units of the diagonals. The smoother then converges
+ * (A. Baker et al., "Multigrid smoothers for ultraparallel computing", SIAM J. Sci. Comput. 33,
+ * 2011: l1 smoothers).
+ */
+template <int Dim>
+void addOutside(const BlockMatrixView& a, Index row, Index begin, Index end, double* added)
+{
+  const auto diagonal = [&](Index of, int c)
+  { return a.blocks[static_cast<Index>(Dim * Dim) * a.diagonals[of] + (Dim + 1) * c]; };
+  std::fill_n(added, Dim, 0.0);
+  for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
+  {
+    const std::int32_t column = a.columns[i];
+    if (column >= begin && column < end)
+    {
+      continue;
+    }
+    const double* block = a.blocks + static_cast<Index>(Dim * Dim) * i;
+    for (int r = 0; r < Dim; ++r)
+    {
+      for (int c = 0; c < Dim; ++c)
+      {
+        const double ratio = diagonal(row, r) / diagonal(column, c);
+        const double part = 0.5 * std::abs(block[Dim * r + c]) * std::sqrt(ratio);
+        added[r] += std::isfinite(part) ? part : 0.0;
+      }
+    }
+  }
+}
+
+template <int Dim>
+void invertDiagonals(Level& level, int threads)
+{
+  const BlockMatrixView& a = level.matrix;
+  level.inverse.resize(static_cast<std::size_t>(Dim * Dim) * a.rows);
+  level.added.resize(static_cast<std::size_t>(Dim) * a.rows);
+  forEachChunk(a.rows, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        double* added = level.added.data() + Dim * row;
+        addOutside<Dim>(a, row, begin, end, added);
+        double block[Dim * Dim];
+        std::copy_n(a.blocks + static_cast<Index>(Dim * Dim) * a.diagonals[row], Dim * Dim, block);
+        for (int c = 0; c < Dim; ++c)
+        {
+          block[(Dim + 1) * c] += added[c];
+        }
+        invert<Dim>(block, level.inverse.data() + Dim * Dim * row);
+      }
+    });
+}
+
+/// The coupling of rows: the size of what their block adds to the rigidity.
+template <int Dim>
+Graph graphOf(const BlockMatrixView& a, int threads)
+{
+  Graph graph;
+  graph.starts.assign(a.starts, a.starts + a.rows + 1);
+  graph.columns.assign(a.columns, a.columns + a.starts[a.rows]);
+  graph.strengths.resize(graph.columns.size());
+  // In units of the diagonal, so that no number leaves the range of float.
+  std::vector<double> scale(a.rows);
+  for (Index row = 0; row < a.rows; ++row)
+  {
+    const double* block = a.blocks + static_cast<Index>(Dim * Dim) * a.diagonals[row];
+    double trace = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      trace += block[Dim * c + c];
+    }
+    scale[row] = trace > 0 ? 1 / std::sqrt(trace) : 0.0;
+  }
+  forEachChunk(a.rows, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
+        {
+          const double* block = a.blocks + static_cast<Index>(Dim * Dim) * i;
+          double sum = 0;
+          for (int c = 0; c < Dim; ++c)
+          {
+            sum -= block[Dim * c + c];
+          }
+          graph.strengths[i] =
+            static_cast<float>(std::max(0.0, sum * scale[row] * scale[a.columns[i]]));
+        }
+      }
+    });
+  return graph;
+}
+
+/// Adds up the blocks of the next level.
+template <int Dim>
+void addBlocks(const Level& fine, Level& coarse)
+{
+  std::fill(coarse.blocks.begin(), coarse.blocks.end(), 0.0);
+  for (std::size_t i = 0; i < fine.places.size(); ++i)
+  {
+    const double* from = fine.matrix.blocks + static_cast<std::size_t>(Dim * Dim) * i;
+    double* to = coarse.blocks.data() + static_cast<std::size_t>(Dim * Dim) * fine.places[i];
+    for (int k = 0; k < Dim * Dim; ++k)
+    {
+      to[k] += from[k];
+    }
+  }
+}
+
+/// Finds the aggregates of a level and makes the next; null where rows hardly couple.
+template <int Dim>
+std::unique_ptr<Level> coarsened(Level& fine, int threads)
+{
+  const BlockMatrixView& a = fine.matrix;
+  Graph graph = graphOf<Dim>(a, threads);
+  fine.aggregate.resize(a.rows);
+  std::iota(fine.aggregate.begin(), fine.aggregate.end(), 0);
+  fine.places.resize(graph.columns.size());
+  std::iota(fine.places.begin(), fine.places.end(), 0);
+  std::vector<std::int32_t> pairs, places;
+  std::int32_t count = 0;
+  for (int i = 0; i < pairings; ++i)
+  {
+    count = pairUp(graph, pairs);
+    graph = joined(graph, pairs, count, places);
+    for (std::int32_t& aggregate : fine.aggregate)
+    {
+      aggregate = pairs[aggregate];
+    }
+    for (std::int32_t& place : fine.places)
+    {
+      place = places[place];
+    }
+  }
+  if (static_cast<double>(count) > slowCoarsening * static_cast<double>(a.rows))
+  {
+    return nullptr;
+  }
+  auto coarse = std::make_unique<Level>();
+  coarse->starts = std::move(graph.starts);
+  coarse->columns = std::move(graph.columns);
+  coarse->blocks.resize(static_cast<std::size_t>(Dim * Dim) * coarse->columns.size());
+  addBlocks<Dim>(fine, *coarse);
+  coarse->diagonals.resize(count);
+  for (std::int32_t row = 0; row < count; ++row)
+  {
+    const auto begin = coarse->columns.begin() + coarse->starts[row],
+               end = coarse->columns.begin() + coarse->starts[row + 1];
+    coarse->diagonals[row] =
+      static_cast<std::int32_t>(std::lower_bound(begin, end, row) - coarse->columns.begin());
+  }
+  coarse->matrix = { Dim, count, coarse->starts.data(), coarse->columns.data(),
+    coarse->diagonals.data(), coarse->blocks.data() };
+  return coarse;
+}
+
+/// The Cholesky factor of the coarsest matrix, with pivots kept off 0.
+template <int Dim>
+void factorizeDense(Level& level)
+{
+  const BlockMatrixView& a = level.matrix;
+  const std::size_t n = static_cast<std::size_t>(Dim) * a.rows;
+  level.dense.assign(n * n, 0.0);
+  for (Index row = 0; row < a.rows; ++row)
+  {
+    for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
+    {
+      for (int k = 0; k < Dim * Dim; ++k)
+      {
+        level.dense[(Dim * row + k / Dim) * n + Dim * a.columns[i] + k % Dim] =
+          a.blocks[static_cast<Index>(Dim * Dim) * i + k];
+      }
+    }
+  }
+  for (std::size_t r = 0; r < n; ++r)
+  {
+    double* row = level.dense.data() + r * n;
+    const double diagonal = row[r];
+    for (std::size_t c = 0; c <= r; ++c)
+    {
+      const double* other = level.dense.data() + c * n;
+      double sum = row[c];
+      for (std::size_t k = 0; k < c; ++k)
+      {
+        sum -= row[k] * other[k];
+      }
+      if (c < r)
+      {
+        row[c] = sum / other[c];
+      }
+      else
+      {
+        const double pivot = std::max(sum, flattest * diagonal);
+        row[c] = pivot > 0 && std::isfinite(pivot) ? std::sqrt(pivot) : 1.0;
+      }
+    }
+  }
+}
+
+void solveDense(const std::vector<double>& factor, std::size_t n, const double* b, double* x)
+{
+  for (std::size_t r = 0; r < n; ++r)
+  {
+    double sum = b[r];
+    for (std::size_t k = 0; k < r; ++k)
+    {
+      sum -= factor[r * n + k] * x[k];
+    }
+    x[r] = sum / factor[r * n + r];
+  }
+  for (std::size_t r = n; r-- > 0;)
+  {
+    x[r] /= factor[r * n + r];
+    for (std::size_t k = 0; k < r; ++k)
+    {
+      x[k] -= factor[r * n + k] * x[r];
+    }
+  }
+}
+
+template <int Dim>
+void multiply(const BlockMatrixView& a, int threads, const double* x, double* y)
+{
+  forEachChunk(a.rows, threads,
+    [=](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        double sum[Dim] = {};
+        for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
+        {
+          multiplyAdd<Dim>(a.blocks + static_cast<Index>(Dim * Dim) * i,
+            x + static_cast<Index>(Dim) * a.columns[i], sum);
+        }
+        std::copy_n(sum, Dim, y + Dim * row);
+      }
+    });
+}
+
+/// z = (L + D)^-1 r inside each range of rows, and rest = r - A z.
+template <int Dim>
+void forward(const Level& level, int threads, const double* r, double* z, double* rest)
+{
+  const BlockMatrixView& a = level.matrix;
+  forEachChunk(a.rows, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        double sum[Dim] = {}, own[Dim] = {};
+        for (std::int32_t i = a.starts[row]; i < a.diagonals[row]; ++i)
+        {
+          if (a.columns[i] >= begin)
+          {
+            multiplyAdd<Dim>(a.blocks + static_cast<Index>(Dim * Dim) * i,
+              z + static_cast<Index>(Dim) * a.columns[i], sum);
+          }
+        }
+        for (int c = 0; c < Dim; ++c)
+        {
+          sum[c] = r[Dim * row + c] - sum[c];
+        }
+        multiplyAdd<Dim>(level.inverse.data() + Dim * Dim * row, sum, own);
+        std::copy_n(own, Dim, z + Dim * row);
+      }
+    });
+  // What the sweep has solved leaves no rest: the couplings to later rows do, and those between
+  // ranges.
+  forEachChunk(a.rows, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index row = begin; row < end; ++row)
+      {
+        double sum[Dim] = {};
+        const auto add = [&](std::int32_t i)
+        {
+          multiplyAdd<Dim>(a.blocks + static_cast<Index>(Dim * Dim) * i,
+            z + static_cast<Index>(Dim) * a.columns[i], sum);
+        };
+        for (std::int32_t i = a.starts[row]; i < a.starts[row + 1] && a.columns[i] < begin; ++i)
+        {
+          add(i);
+        }
+        for (std::int32_t i = a.diagonals[row] + 1; i < a.starts[row + 1]; ++i)
+        {
+          add(i);
+        }
+        for (int c = 0; c < Dim; ++c)
+        {
+          rest[Dim * row + c] = level.added[Dim * row + c] * z[Dim * row + c] - sum[c];
+        }
+      }
+    });
+}
+
+/// z += (D + U)^-1 rest inside each range of rows.
+template <int Dim>
+void backward(const Level& level, int threads, const double* rest, double* step, double* z)
+{
+  const BlockMatrixView& a = level.matrix;
+  forEachChunk(a.rows, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index row = end - 1; row >= begin; --row)
+      {
+        double sum[Dim] = {}, own[Dim] = {};
+        for (std::int32_t i = a.diagonals[row] + 1; i < a.starts[row + 1]; ++i)
+        {
+          if (a.columns[i] < end)
+          {
+            multiplyAdd<Dim>(a.blocks + static_cast<Index>(Dim * Dim) * i,
+              step + static_cast<Index>(Dim) * a.columns[i], sum);
+          }
+        }
+        for (int c = 0; c < Dim; ++c)
+        {
+          sum[c] = rest[Dim * row + c] - sum[c];
+        }
+        multiplyAdd<Dim>(level.inverse.data() + Dim * Dim * row, sum, own);
+        for (int c = 0; c < Dim; ++c)
+        {
+          step[Dim * row + c] = own[c];
+          z[Dim * row + c] += own[c];
+        }
+      }
+    });
+}
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void Multigrid::buildLevels()
+{
+  for (;;)
+  {
+    Level& level = *this->Levels.back();
+    const std::size_t entries = static_cast<std::size_t>(Dim) * level.matrix.rows;
+    for (std::vector<double>* work : { &level.rest, &level.step })
+    {
+      work->resize(entries);
+    }
+    if (this->Levels.size() > 1)
+    {
+      for (std::vector<double>* work :
+        { &level.r, &level.z, &level.q, &level.p, &level.ap, &level.aq })
+      {
+        work->resize(entries);
+      }
+    }
+    if (level.matrix.rows <= coarsest)
+    {
+      factorizeDense<Dim>(level);
+      return;
+    }
+    invertDiagonals<Dim>(level, this->Threads);
+    std::unique_ptr<Level> next =
+      this->Levels.size() < maxLevels ? coarsened<Dim>(level, this->Threads) : nullptr;
+    if (!next)
+    {
+      return; // a smoother alone
+    }
+    this->Levels.push_back(std::move(next));
+  }
+}
+
+/// New numbers in the levels there are.
+template <int Dim>
+void Multigrid::refill()
+{
+  for (std::size_t i = 0; i < this->Levels.size(); ++i)
+  {
+    Level& level = *this->Levels[i];
+    if (!level.dense.empty())
+    {
+      factorizeDense<Dim>(level);
+      return;
+    }
+    invertDiagonals<Dim>(level, this->Threads);
+    if (i + 1 < this->Levels.size())
+    {
+      addBlocks<Dim>(level, *this->Levels[i + 1]);
+    }
+  }
+}
+
+void Multigrid::build(const BlockMatrixView& matrix)
+{
+  const bool same = !this->Levels.empty() && this->Size == matrix.size &&
+    this->Levels[0]->matrix.rows == matrix.rows &&
+    this->Levels[0]->matrix.columns == matrix.columns;
+  if (same && ++this->Reused < rebuildAfter)
+  {
+    this->Levels[0]->matrix = matrix;
+    this->Size == 2 ? this->refill<2>() : this->refill<3>();
+    return;
+  }
+  this->Reused = 0;
+  this->Size = matrix.size;
+  this->Levels.clear();
+  this->Levels.push_back(std::make_unique<Level>());
+  this->Levels[0]->matrix = matrix;
+  this->Size == 2 ? this->buildLevels<2>() : this->buildLevels<3>();
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void Multigrid::cycle(std::size_t i, const double* r, double* z)
+{
+  Level& level = *this->Levels[i];
+  const Index n = Dim * level.matrix.rows;
+  if (!level.dense.empty())
+  {
+    solveDense(level.dense, n, r, z);
+    return;
+  }
+  forward<Dim>(level, this->Threads, r, z, level.rest.data());
+  if (i + 1 < this->Levels.size())
+  {
+    Level& coarse = *this->Levels[i + 1];
+    std::fill(coarse.r.begin(), coarse.r.end(), 0.0);
+    for (Index row = 0; row < level.matrix.rows; ++row)
+    {
+      for (int c = 0; c < Dim; ++c)
+      {
+        coarse.r[static_cast<Index>(Dim) * level.aggregate[row] + c] += level.rest[Dim * row + c];
+      }
+    }
+    this->solveCoarse<Dim>(i + 1);
+    for (Index row = 0; row < level.matrix.rows; ++row)
+    {
+      for (int c = 0; c < Dim; ++c)
+      {
+        const double correction = coarse.z[static_cast<Index>(Dim) * level.aggregate[row] + c];
+        level.step[Dim * row + c] = correction;
+        z[Dim * row + c] += correction;
+      }
+    }
+    // step is used again below: the product goes where it is not needed.
+    std::vector<double>& product = level.rest;
+    const BlockMatrixView& a = level.matrix;
+    forEachChunk(a.rows, this->Threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index row = begin; row < end; ++row)
+        {
+          double sum[Dim] = {};
+          for (std::int32_t k = a.starts[row]; k < a.starts[row + 1]; ++k)
+          {
+            multiplyAdd<Dim>(a.blocks + static_cast<Index>(Dim * Dim) * k,
+              level.step.data() + static_cast<Index>(Dim) * a.columns[k], sum);
+          }
+          for (int c = 0; c < Dim; ++c)
+          {
+            product[Dim * row + c] -= sum[c];
+          }
+        }
+      });
+  }
+  backward<Dim>(level, this->Threads, level.rest.data(), level.step.data(), z);
+}
+
+/// One or two steps of flexible conjugate gradients from 0.
+template <int Dim>
+void Multigrid::solveCoarse(std::size_t i)
+{
+  Level& level = *this->Levels[i];
+  const std::size_t n = static_cast<std::size_t>(Dim) * level.matrix.rows;
+  if (!level.dense.empty())
+  {
+    this->cycle<Dim>(i, level.r.data(), level.z.data());
+    return;
+  }
+  const VectorAlgebra algebra(n, this->Threads);
+  this->cycle<Dim>(i, level.r.data(), level.p.data());
+  multiply<Dim>(level.matrix, this->Threads, level.p.data(), level.ap.data());
+  const double pap = algebra.dot(level.p.data(), level.ap.data());
+  const double pr = algebra.dot(level.p.data(), level.r.data());
+  const double before = algebra.dot(level.r.data(), level.r.data());
+  const double alpha = pap > 0 && std::isfinite(pr / pap) ? pr / pap : 0.0;
+  algebra.each(
+    [&](Index k)
+    {
+      level.z[k] = alpha * level.p[k];
+      level.r[k] -= alpha * level.ap[k];
+    });
+  const double after = algebra.dot(level.r.data(), level.r.data());
+  if (alpha == 0 || !(after > enough * enough * before))
+  {
+    return;
+  }
+  this->cycle<Dim>(i, level.r.data(), level.q.data());
+  multiply<Dim>(level.matrix, this->Threads, level.q.data(), level.aq.data());
+  // q is made conjugate to p.
+  const double overlap = algebra.dot(level.q.data(), level.ap.data()) / pap;
+  const double qaq = algebra.dot(level.q.data(), level.aq.data()) - overlap * overlap * pap;
+  const double qr = algebra.dot(level.q.data(), level.r.data());
+  const double beta = qaq > 0 && std::isfinite(qr / qaq) ? qr / qaq : 0.0;
+  algebra.each([&](Index k) { level.z[k] += beta * (level.q[k] - overlap * level.p[k]); });
+}
+
+//------------------------------------------------------------------------------
+void Multigrid::apply(const double* r, double* z)
+{
+  this->Size == 2 ? this->cycle<2>(0, r, z) : this->cycle<3>(0, r, z);
+}
+}
