@@ -146,7 +146,7 @@ def quality(
 def criteria(name: str) -> dict[str, Any]:
     """The preset quality criteria of a name, to be used by quality() as they are or after a change.
 
-    name: "fem", "skewness" or "optistruct".
+    name: "fem", "skewness", "optistruct", "hypermesh", "nastran" or "ansys".
 
     A dict with name, source, and criteria, a list: metric, weight, and limits by cell type or "all", each a dict of
     ideal, good, warn, fail and worst. An element beyond warn gets a warning, one beyond fail fails.
@@ -281,7 +281,7 @@ def add_commands(commands: Any) -> None:
 
     preset = _commands.add_command(commands, "criteria", _run_criteria, "print preset quality criteria as JSON",
                                    threads=False)  # fmt: skip
-    preset.add_argument("name", metavar="NAME", help="fem, skewness or optistruct")
+    preset.add_argument("name", metavar="NAME", help="fem, skewness, optistruct, hypermesh, nastran or ansys")
 
 
 def _run_criteria(arguments: argparse.Namespace) -> None:

@@ -18,7 +18,7 @@ struct CriteriaPreset
   const char* json;
 };
 
-constexpr std::array<CriteriaPreset, 3> CriteriaPresetTexts = { {
+constexpr std::array<CriteriaPreset, 6> CriteriaPresetTexts = { {
   { "fem", R"json({
   "name": "FEM default",
   "source": [
@@ -69,6 +69,62 @@ constexpr std::array<CriteriaPreset, 3> CriteriaPresetTexts = { {
       "limits": {
         "triangle": { "ideal": 60, "good": 90, "warn": 165, "fail": 177, "worst": 180 },
         "quadrilateral": { "ideal": 90, "good": 120, "warn": 165, "fail": 177, "worst": 180 } } }
+  ]
+}
+)json" },
+  { "hypermesh", R"json({
+  "name": "HyperMesh shells",
+  "source": [
+    "Altair HyperMesh: the default criteria of the quality index of shells, the string array of",
+    "*setqualitycriteria in command files of the versions 2021, 2022.3 and 2025; formulas: Altair",
+    "HyperMesh 2024 help, Element Quality Calculations, HyperMesh, with the shortest edge as",
+    "length. Not here, as no metric has their definition: warpage, skew, Jacobian, taper, length" ],
+  "criteria": [
+    { "metric": "edge_ratio", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 1, "good": 2, "warn": 4.4, "fail": 5, "worst": 10 },
+        "quadrilateral": { "ideal": 1, "good": 2, "warn": 4.4, "fail": 5, "worst": 10 } } },
+    { "metric": "min_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 60, "good": 50, "warn": 34, "fail": 30, "worst": 15 },
+        "quadrilateral": { "ideal": 90, "good": 70, "warn": 46, "fail": 40, "worst": 20 } } },
+    { "metric": "max_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 60, "good": 80, "warn": 112, "fail": 120, "worst": 150 },
+        "quadrilateral": { "ideal": 90, "good": 110, "warn": 134, "fail": 140, "worst": 160 } } }
+  ]
+}
+)json" },
+  { "nastran", R"json({
+  "name": "Autodesk Nastran shells",
+  "source": [
+    "Autodesk Nastran 2025 reference, section 5, geometry processor parameters TRIMINIATOL,",
+    "TRIMAXIATOL, QUADMINIATOL, QUADMAXIATOL: default tolerances of warnings; there are none of",
+    "errors by default, so that elements fail at 0 and 180 degrees. Not here, as no metric has",
+    "their definition: skew, taper, warping, and angles of the faces of solids" ],
+  "criteria": [
+    { "metric": "min_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 60, "good": 40, "warn": 10, "fail": 0, "worst": 0 },
+        "quadrilateral": { "ideal": 90, "good": 60, "warn": 25, "fail": 0, "worst": 0 } } },
+    { "metric": "max_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 60, "good": 90, "warn": 170, "fail": 180, "worst": 180 },
+        "quadrilateral": { "ideal": 90, "good": 120, "warn": 165, "fail": 180, "worst": 180 } } }
+  ]
+}
+)json" },
+  { "ansys", R"json({
+  "name": "ANSYS Mechanical APDL triangles",
+  "source": [
+    "ANSYS Mechanical APDL 2023 R2 command reference, SHPP, notes: maximum corner angle of a",
+    "triangle; formula: ANSYS Mechanical APDL theory reference, 12.1 Element Shape Testing. Not",
+    "here, as no metric has their definition: aspect ratio, parallel deviation, Jacobian ratio,",
+    "warping factor. See skewness for ANSYS ICEM CFD" ],
+  "criteria": [
+    { "metric": "max_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 60, "good": 90, "warn": 165, "fail": 179.9, "worst": 180 } } }
   ]
 }
 )json" },

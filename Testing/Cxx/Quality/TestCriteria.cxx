@@ -112,6 +112,42 @@ void testRefused()
     "has a criterion already");
 }
 
+/// Limits warn and fail of the presets, as their sources have them.
+void testPresets()
+{
+  using Limits = std::array<double, 2>;
+  const auto limits = [](const char* preset, const char* metric, CellType type)
+  {
+    const QualityCriteria criteria = parseCriteria(presetCriteria(preset));
+    for (const QualityCriterion& criterion : criteria.criteria)
+    {
+      const auto& found = criterion.limits[topologyIndex(type)];
+      if (criterion.metric == findMetric(metric)->metric && found)
+      {
+        return Limits{ found->warn, found->fail };
+      }
+    }
+    return Limits{ 0, 0 };
+  };
+  const auto triangle = CellType::Triangle, quad = CellType::Quadrilateral;
+  TAUTLINE_CHECK((limits("hypermesh", "edge_ratio", quad) == Limits{ 4.4, 5 }));
+  TAUTLINE_CHECK((limits("hypermesh", "min_angle", triangle) == Limits{ 34, 30 }));
+  TAUTLINE_CHECK((limits("hypermesh", "min_angle", quad) == Limits{ 46, 40 }));
+  TAUTLINE_CHECK((limits("hypermesh", "max_angle", triangle) == Limits{ 112, 120 }));
+  TAUTLINE_CHECK((limits("hypermesh", "max_angle", quad) == Limits{ 134, 140 }));
+  TAUTLINE_CHECK((limits("nastran", "min_angle", triangle) == Limits{ 10, 0 }));
+  TAUTLINE_CHECK((limits("nastran", "max_angle", triangle) == Limits{ 170, 180 }));
+  TAUTLINE_CHECK((limits("nastran", "min_angle", quad) == Limits{ 25, 0 }));
+  TAUTLINE_CHECK((limits("nastran", "max_angle", quad) == Limits{ 165, 180 }));
+  TAUTLINE_CHECK((limits("ansys", "max_angle", triangle) == Limits{ 165, 179.9 }));
+  // In solids these metrics are dihedral angles: the limits of faces do not apply.
+  for (const char* preset : { "hypermesh", "nastran", "ansys" })
+  {
+    TAUTLINE_CHECK((limits(preset, "max_angle", CellType::Tetrahedron) == Limits{ 0, 0 }));
+  }
+  TAUTLINE_CHECK_EQUAL(criteriaPresets().size(), std::size_t{ 6 });
+}
+
 /// Separate triangles over a base of length 1, of these heights.
 MeshData triangles(const std::vector<double>& heights)
 {
@@ -190,6 +226,7 @@ int TestCriteria(int, char* argv[])
 {
   testGrades();
   testParse();
+  testPresets();
   testRefused();
   testFilter(argv[2]);
   return exitCode();
