@@ -30,6 +30,16 @@ constexpr const char* EqualColor = "0.90, 0.90, 0.90";
 constexpr const char* BetterColor = "0.10, 0.52, 0.30";
 constexpr const char* WarningColor = "0.96, 0.55, 0.20";
 
+/// The numbers of a colour.
+std::array<double, 3> parsed(const char* rgb)
+{
+  std::istringstream text(rgb);
+  std::array<double, 3> color{};
+  char comma = ',';
+  text >> color[0] >> comma >> color[1] >> comma >> color[2];
+  return color;
+}
+
 std::string invertedColor()
 {
   std::ostringstream text;
@@ -218,6 +228,37 @@ std::vector<ColorMapSpec> metricColorMaps()
     }
   }
   return specs;
+}
+
+//------------------------------------------------------------------------------
+std::array<double, 3> colorOf(const ColorMapSpec& spec, double value)
+{
+  const double badness = (value - spec.good) / (spec.bad - spec.good);
+  if (!std::isfinite(badness))
+  {
+    return parsed(NanColor);
+  }
+  if (spec.negativeInverts && value < 0)
+  {
+    return { InvertedColor[0], InvertedColor[1], InvertedColor[2] };
+  }
+  if (badness <= 0 || badness > 1)
+  {
+    return parsed(badness > 1 ? WorseColor : Ramp[0].rgb);
+  }
+  std::size_t i = 1;
+  while (Ramp[i].badness < badness)
+  {
+    ++i;
+  }
+  const double fraction = (badness - Ramp[i - 1].badness) / (Ramp[i].badness - Ramp[i - 1].badness);
+  const std::array<double, 3> low = parsed(Ramp[i - 1].rgb), high = parsed(Ramp[i].rgb);
+  std::array<double, 3> color{};
+  for (std::size_t channel = 0; channel < color.size(); ++channel)
+  {
+    color[channel] = low[channel] + fraction * (high[channel] - low[channel]);
+  }
+  return color;
 }
 
 //------------------------------------------------------------------------------

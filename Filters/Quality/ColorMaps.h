@@ -16,6 +16,7 @@
 
 #include "TautlineQualityModule.h" // for export macro
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,13 @@ struct ColorMapSpec
  * the arrays *metric* _before and _after with the same range.
  */
 TAUTLINEQUALITY_EXPORT std::vector<ColorMapSpec> metricColorMaps();
+
+/**
+ * @brief The colour of a value, as ParaView draws it with these maps: red, green and blue, 0 to 1.
+ *
+ * Between the colours of the map it is interpolated in RGB, not in Lab, which is hardly different.
+ */
+TAUTLINEQUALITY_EXPORT std::array<double, 3> colorOf(const ColorMapSpec& spec, double value);
 
 /**
  * @brief ParaView settings, as JSON text, that make these colour maps the default of their arrays.

@@ -23,7 +23,8 @@ FLOORS = (
     ("_arguments", "_legacy", "_surfaces", "_vtk_writers"),
     ("_io",),
     ("_commands",),
-    ("_metrics",),
+    ("_html", "_metrics"),
+    ("_quality",),
 )
 TYPE_CHECKING = re.compile(r"^if TYPE_CHECKING:\n(    .*\n)+", re.MULTILINE)
 IMPORT = re.compile(r"^\s*from \.(\w*) import (.*)$", re.MULTILINE)

@@ -19,6 +19,7 @@ from ._mesh import from_arrays
 from ._metric_field import MetricFieldResult, metric_field
 from ._metrics import load_metrics, metrics, register_metric, unregister_metric
 from ._quality import QualityResult, criteria, quality
+from ._report import report
 
 globals().update(_vtk.CLASSES)
 

@@ -74,8 +74,9 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     """Raise Error if a file that the command is to write cannot be written, before it does anything else."""
     if getattr(arguments, "output", None):
         check_output(arguments.output)
-    if getattr(arguments, "csv", None):
-        check_stream_or_target(arguments.csv)
+    for name in ("csv", "report"):
+        if getattr(arguments, name, None):
+            check_stream_or_target(getattr(arguments, name))
 
 
 def save_text(file: str, text: str) -> None:

@@ -20,6 +20,7 @@ from ._errors import Error, checked, interruptible, run, unknown
 from ._files import file_name
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose, metrics as known_metrics
+from ._html import html_report
 from ._tables import quality_json, quality_rows, quality_text
 
 REVERSED = ("measure as given", "measure flipped", "flip output")
@@ -123,6 +124,33 @@ def quality(
     >>> result = tautline.quality("part.vtu", ["imr", "scaled_jacobian"])
     >>> result.statistics["imr"]["worst"], result.inverted
     """
+    filter_ = measure(
+        mesh, metrics, combination=combination, power=power, target=target, reference=reference, size=size,
+        tensor=tensor, beta=beta, epsilon=epsilon, reversed_mesh=reversed_mesh, histogram_bins=histogram_bins,
+        criteria=criteria, time_limit=time_limit, threads=threads,
+    )  # fmt: skip
+    return result_of(filter_)
+
+
+def measure(
+    mesh: Mesh,
+    metrics: Metrics,
+    *,
+    combination: str = "mean",
+    power: float = 2.0,
+    target: str = "ideal",
+    reference: Mesh | None = None,
+    size: str | float | Sequence | None = None,
+    tensor: str | Sequence | None = None,
+    beta: float = 0.0,
+    epsilon: float = 1e-4,
+    reversed_mesh: str = "measure flipped",
+    histogram_bins: int = 32,
+    criteria: str | PathLike | dict[str, Any] | None = None,
+    time_limit: float = 0.0,
+    threads: int = 0,
+) -> Any:
+    """The filter that has measured a mesh; the arguments are those of quality()."""
     filter_ = _vtk.vtkElementQuality()
     inputs = InputArrays(filter_, as_mesh(mesh))
     messages = choose(filter_, metrics)
@@ -139,7 +167,7 @@ def quality(
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_, messages)
     inputs.remove_from(filter_.GetOutputDataObject(0))
-    return _result(filter_)
+    return filter_
 
 
 @checked
@@ -192,7 +220,8 @@ def _set_target(filter_: Any, inputs: InputArrays, target: str, given: dict[str,
     inputs.use(_SIZE if kind == "size" else _TENSOR, value, "target")
 
 
-def _result(filter_: Any) -> QualityResult:
+def result_of(filter_: Any) -> QualityResult:
+    """The result of a filter that was executed."""
     mesh = filter_.GetOutputDataObject(0)
     worst = filter_.GetWorst()
     statistics = _statistics(columns(filter_.GetStatistics()), worst)
@@ -276,6 +305,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--criteria", metavar="NAME|FILE",
                         help="grade the elements by a preset or JSON file; exits with 3 if the mesh fails")  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    parser.add_argument("--report", metavar="FILE", help="write an HTML report, see the command report")
     parser.add_argument("--histogram-bins", type=int, default=32, help=argparse.SUPPRESS)
 
 
@@ -292,11 +322,16 @@ def _run(arguments: argparse.Namespace) -> int:
     names = ("combination", "power", "reference", "tensor", "beta", "epsilon", "reversed_mesh", "histogram_bins")
     names += ("criteria",)
     options = _commands.given(arguments, (*names, "time_limit", "threads"))
-    result = quality(arguments.mesh, arguments.metrics, size=_number_or_name(arguments.size), **options)
+    options["size"] = _number_or_name(arguments.size)
+    filter_ = measure(arguments.mesh, arguments.metrics, **options)
+    result = result_of(filter_)
     print(quality_json(result) if arguments.json else quality_text(result, arguments.worst))
     # Nothing but the JSON on the standard output.
     with redirect_stdout(sys.stderr if arguments.json else sys.stdout):
         _commands.save(result, arguments, quality_rows(result))
+        if arguments.report:
+            settings = {"metrics": arguments.metrics, **options}
+            _commands.save_text(arguments.report, html_report(filter_, arguments.mesh, settings))
     return FAILED if result.verdict in ("failed", "none") else 0
 
 

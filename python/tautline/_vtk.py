@@ -24,6 +24,7 @@ CAPABILITIES = {
     "_quality": "TautlineQuality",
     "_perturbation": "TautlinePerturbation",
     "_comparison": "TautlineQuality",
+    "_report": "TautlineQuality",
     "_metric_field": "TautlineQuality",
     "_metrics": "TautlineQuality",
     "_optimization": "TautlineOptimization",

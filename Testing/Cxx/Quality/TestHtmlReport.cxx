@@ -1,0 +1,166 @@
+/// Reports: text is escaped, elements are closed, tables and histograms have the numbers.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkDoubleArray.h"
+#include "vtkElementQuality.h"
+#include "vtkHtmlReport.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkTable.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cmath>
+
+using namespace tautline;
+
+namespace
+{
+int count(const std::string& text, const std::string& part)
+{
+  int found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+  {
+    ++found;
+  }
+  return found;
+}
+
+bool has(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+void testText()
+{
+  vtkNew<vtkHtmlReport> report;
+  report->Begin("<a> & \"b\"", "line");
+  report->AddHeading("1 < 2");
+  report->AddRow("name", "<value>");
+  report->AddRow("next", nullptr);
+  report->AddText("one\ntwo");
+  report->AddRow("last", "row");
+  const std::string html = report->GetHtml();
+  TAUTLINE_CHECK_EQUAL(count(html, "&lt;a&gt; &amp; &quot;b&quot;"), 2); // title and heading
+  TAUTLINE_CHECK(has(html, "<h2>1 &lt; 2</h2>"));
+  TAUTLINE_CHECK(has(html, "<tr><td>name</td><td>&lt;value&gt;</td></tr>"));
+  TAUTLINE_CHECK(has(html, "<p>one<br>\ntwo</p>"));
+  TAUTLINE_CHECK_EQUAL(count(html, "<table>"), 2);
+  TAUTLINE_CHECK_EQUAL(count(html, "</table>"), 2);
+  report->Begin("new", "");
+  TAUTLINE_CHECK(!has(report->GetHtml(), "name"));
+}
+
+void testTable()
+{
+  vtkNew<vtkHtmlReport> report;
+  report->Begin("t", "");
+  report->AddTable(nullptr);
+  vtkNew<vtkTable> table;
+  report->AddTable(table);
+  TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "<table>"), 0);
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("Id");
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("Value");
+  vtkNew<vtkDoubleArray> places;
+  places->SetName("Places");
+  places->SetNumberOfComponents(4);
+  for (int row = 0; row < 61; ++row)
+  {
+    ids->InsertNextValue(1234567 + row);
+    values->InsertNextValue(1.23456789);
+    places->InsertNextTuple4(0, 0, 0, 0);
+  }
+  table->AddColumn(ids);
+  table->AddColumn(values);
+  table->AddColumn(places);
+  report->AddTable(table);
+  const std::string html = report->GetHtml();
+  TAUTLINE_CHECK(has(html, "<tr><th>Id</th><th>Value</th></tr>")); // 4 components are left out
+  TAUTLINE_CHECK(has(html, "<tr><td>1234567</td><td>1.23457</td></tr>"));
+  TAUTLINE_CHECK(has(html, "1234626") && !has(html, "1234627"));
+  TAUTLINE_CHECK(has(html, "The first 60 of 61 rows."));
+}
+
+/// Triangles over a base of 1; the last is inverted.
+vtkSmartPointer<vtkUnstructuredGrid> strip(const std::vector<double>& heights)
+{
+  MeshData data;
+  for (std::size_t i = 0; i < heights.size(); ++i)
+  {
+    const double x = 2.0 * i;
+    data.addCell(CellType::Triangle,
+      std::vector<Vec3>{ { x, 0, 0 }, { x + 1, 0, 0 }, { x + 0.5, heights[i], 0 } });
+  }
+  return toGrid(data);
+}
+
+void testQuality()
+{
+  vtkNew<vtkElementQuality> filter;
+  const double height = std::sqrt(0.75);
+  filter->SetInputData(strip({ height, height, 0.02, -0.4 }));
+  filter->Update();
+  vtkNew<vtkHtmlReport> report;
+  report->Begin("t", "");
+  TAUTLINE_CHECK_EQUAL(report->AddHistograms(filter->GetStatistics(), filter->GetHistogram()), 1);
+  // Two in the first bin, one above the range, one inverted: the tooltips have the counts.
+  TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), ": 2 elements</title>"), 1);
+  TAUTLINE_CHECK(has(report->GetHtml(), "above 3: 1 elements</title>"));
+  TAUTLINE_CHECK(has(report->GetHtml(), "inverted: 1 elements</title>"));
+  TAUTLINE_CHECK(has(report->GetHtml(), "Grey: acceptable, 1 to 3"));
+  TAUTLINE_CHECK_EQUAL(report->AddHistograms(filter->GetAngles(), nullptr), 0);
+
+  TAUTLINE_CHECK(report->AddMeshPicture(filter->GetOutputDataObject(0), "imr"));
+  TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "src=\"data:image/png;base64,iVBORw0KGgo"), 1);
+  TAUTLINE_CHECK(has(report->GetHtml(), "Inverse mean ratio; blue: inverted"));
+  TAUTLINE_CHECK(
+    report->AddMeshPictures(filter->GetOutputDataObject(0), filter->GetOutputDataObject(0), "imr"));
+  TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "<img "), 3);
+  TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "class=\"legend\""), 2);
+  // Areas have no colours of their own: from the smallest to the largest.
+  filter->AddMetricByName("size");
+  filter->Update();
+  TAUTLINE_CHECK(report->AddMeshPicture(filter->GetOutputDataObject(0), "size"));
+  TAUTLINE_CHECK(has(report->GetHtml(), "<span>-0.2</span>"));
+  // The message of the error event.
+  std::string message;
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(&message);
+  command->SetCallback([](vtkObject*, unsigned long, void* data, void* text)
+    { *static_cast<std::string*>(data) = static_cast<const char*>(text); });
+  report->AddObserver(vtkCommand::ErrorEvent, command);
+  TAUTLINE_CHECK(!report->AddMeshPicture(filter->GetOutputDataObject(0), "si"));
+  TAUTLINE_CHECK(has(message, "no cell array \"si\": measure it first"));
+}
+
+void testComposite()
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, strip({ 0.8, 0.5 }));
+  blocks->SetBlock(2, strip({ 0.3 }));
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputDataObject(blocks);
+  filter->Update();
+  vtkNew<vtkHtmlReport> report;
+  report->Begin("t", "");
+  TAUTLINE_CHECK(report->AddMeshPicture(filter->GetOutputDataObject(0), "imr"));
+  vtkNew<vtkImageData> empty;
+  report->AddImage(empty, "nothing");
+  report->AddImage(nullptr, "nothing");
+  TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "<img "), 1);
+}
+}
+
+int TestHtmlReport(int, char*[])
+{
+  testText();
+  testTable();
+  testQuality();
+  testComposite();
+  return exitCode();
+}

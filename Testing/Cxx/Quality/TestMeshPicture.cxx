@@ -1,0 +1,126 @@
+/// Pictures of meshes: where cells are, which are in front, which are seen through others.
+#include "Check.h"
+#include "Meshes.h"
+#include "tautline/Quality/MeshPicture.h"
+
+#include <cmath>
+
+using namespace tautline;
+
+namespace
+{
+constexpr Color Red = { 1, 0, 0 }, Green = { 0, 1, 0 };
+constexpr int Width = 200, Height = 150;
+
+std::array<int, 3> pixel(const Picture& picture, int x, int y)
+{
+  const std::size_t at = 3 * (static_cast<std::size_t>(y) * picture.width + x);
+  return { picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2] };
+}
+
+/// The share of pixels that are not white.
+double covered(const Picture& picture)
+{
+  int count = 0;
+  for (int y = 0; y < picture.height; ++y)
+  {
+    for (int x = 0; x < picture.width; ++x)
+    {
+      count += pixel(picture, x, y) != std::array<int, 3>{ 255, 255, 255 };
+    }
+  }
+  return static_cast<double>(count) / (picture.width * picture.height);
+}
+
+/// Two squares beside each other, the left one red: 184 pixels wide with the margin of 4 %.
+void testPlane(double scale, const Vec3& shift)
+{
+  MeshData data;
+  const auto at = [&](double x, double y) { return scale * Vec3{ x, y, 0 } + shift; };
+  data.addCell(
+    CellType::Quadrilateral, std::vector<Vec3>{ at(0, 0), at(1, 0), at(1, 1), at(0, 1) });
+  data.addCell(
+    CellType::Quadrilateral, std::vector<Vec3>{ at(1, 0), at(2, 0), at(2, 1), at(1, 1) });
+  const Mesh mesh(data.view());
+  const Picture picture = drawMeshes({ { &mesh, { Red, Green }, {} } }, Width, Height);
+  TAUTLINE_CHECK((pixel(picture, 60, 70) == std::array<int, 3>{ 255, 0, 0 }));
+  TAUTLINE_CHECK((pixel(picture, 140, 80) == std::array<int, 3>{ 0, 255, 0 }));
+  TAUTLINE_CHECK((pixel(picture, 100, 10) == std::array<int, 3>{ 255, 255, 255 }));
+  TAUTLINE_CHECK((pixel(picture, 4, 75) == std::array<int, 3>{ 255, 255, 255 }));
+  TAUTLINE_CHECK_NEAR(covered(picture), 184.0 * 92 / (Width * Height), 0.02);
+  // The edge between them is dark; the diagonals are no edges.
+  TAUTLINE_CHECK(pixel(picture, 100, 75)[0] + pixel(picture, 100, 75)[1] < 200);
+  TAUTLINE_CHECK((pixel(picture, 54, 75) == std::array<int, 3>{ 255, 0, 0 }));
+}
+
+/// Of a cube of 3 x 3 x 3 hexahedra, the cell in the middle is hidden until it is highlighted.
+void testInside()
+{
+  MeshData data;
+  for (int i = 0; i < 64; ++i)
+  {
+    data.addPoint({ double(i % 4), double(i / 4 % 4), double(i / 16) });
+  }
+  for (int i = 0; i < 27; ++i)
+  {
+    const Index p = i % 3 + 4 * (i / 3 % 3) + 16 * (i / 9);
+    data.addCell(CellType::Hexahedron,
+      std::vector<Index>{ p, p + 1, p + 5, p + 4, p + 16, p + 17, p + 21, p + 20 });
+  }
+  const Mesh mesh(data.view());
+  std::vector<Color> colors(27, Green);
+  colors[13] = Red;
+  const auto isRed = [](const std::array<int, 3>& rgb) { return rgb[0] > 120 && rgb[1] < 20; };
+  const Picture hidden = drawMeshes({ { &mesh, colors, {} } }, Width, Height);
+  std::vector<char> highlighted(27, 0);
+  highlighted[13] = 1;
+  const Picture seen = drawMeshes({ { &mesh, colors, highlighted } }, Width, Height);
+  int before = 0, after = 0;
+  for (int y = 0; y < Height; ++y)
+  {
+    for (int x = 0; x < Width; ++x)
+    {
+      before += isRed(pixel(hidden, x, y));
+      after += isRed(pixel(seen, x, y));
+    }
+  }
+  TAUTLINE_CHECK_EQUAL(before, 0);
+  // A ninth of the picture of the cube, but for the edges.
+  TAUTLINE_CHECK_RELATIVE(after / (covered(seen) * Width * Height), 1.0 / 9, 0.25);
+  TAUTLINE_CHECK(isRed(pixel(seen, Width / 2, Height / 2 + 8)));
+  TAUTLINE_CHECK(!isRed(pixel(hidden, Width / 2, Height / 2 + 8)));
+}
+
+void testLimits()
+{
+  TAUTLINE_CHECK_EQUAL(covered(drawMeshes({}, Width, Height)), 0);
+  MeshData data;
+  data.addCell(CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } });
+  data.addCell(
+    CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, std::nan(""), 0 } });
+  const Mesh mesh(data.view());
+  // The second cell has a point that is not finite: the first is as large as fits.
+  TAUTLINE_CHECK(covered(drawMeshes({ { &mesh, { Red, Green }, {} } }, Width, Height)) > 0.2);
+  TAUTLINE_CHECK_THROWS(drawMeshes({}, 8, Height), "16 to 4096 pixels");
+  TAUTLINE_CHECK_THROWS(drawMeshes({}, Width, 5000), "16 to 4096 pixels");
+  TAUTLINE_CHECK_THROWS(
+    drawMeshes({ { &mesh, { Red }, {} } }, Width, Height), "one colour per cell");
+  TAUTLINE_CHECK_THROWS(drawMeshes({ {} }, Width, Height), "one colour per cell");
+  // A mesh without extent is no division by zero.
+  MeshData flat;
+  flat.addCell(CellType::Triangle, std::vector<Vec3>{ { 1, 1, 1 }, { 1, 1, 1 }, { 1, 1, 1 } });
+  const Mesh point(flat.view());
+  TAUTLINE_CHECK_EQUAL(covered(drawMeshes({ { &point, { Red }, {} } }, Width, Height)), 0);
+}
+}
+
+int TestMeshPicture(int, char*[])
+{
+  testPlane(1, { 0, 0, 0 });
+  testPlane(1e-200, { 0, 0, 0 });
+  testPlane(1e200, { 0, 0, 0 });
+  testPlane(3, { -70, 20, 5 });
+  testInside();
+  testLimits();
+  return exitCode();
+}

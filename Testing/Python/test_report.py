@@ -1,0 +1,102 @@
+"""The function and the command report: the numbers, what the file has, and that it needs no other file."""
+
+import base64
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import tautline as tl
+from checks import DATA, OUT, refused, run_tests, shell
+
+VOID = {"meta", "img", "br", "rect"}
+
+
+class Outline(HTMLParser):
+    """The elements that are open, the headings, and rows by their first cell."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.headings, self.rows = [], [], {}
+        self.row = None
+        self.feed(text)
+        assert not self.open, self.open
+
+    def handle_starttag(self, tag, attributes):
+        if tag not in VOID:
+            self.open.append(tag)
+        self.row = [] if tag == "tr" else self.row
+
+    def handle_endtag(self, tag):
+        assert tag in VOID or self.open.pop() == tag, tag
+        if tag == "tr" and self.row:
+            self.rows[self.row[0]] = self.row[1:]
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] == "h2":
+            self.headings.append(data)
+        if self.open and self.open[-1] in ("td", "th"):
+            self.row.append(data)
+
+
+def pictures(html):
+    assert not re.search(r'(src|href)="(?!data:)', html), "another file is needed"
+    found = [base64.b64decode(data) for data in re.findall(r'base64,([^"]+)"', html)]
+    assert all(picture.startswith(b"\x89PNG") for picture in found)
+    return found
+
+
+def test_one():
+    mesh = DATA / "bracket-tangled.vtu"
+    file = OUT / "report-one.html"
+    html = tl.report(mesh, file, metrics=["imr", "scaled_jacobian"], criteria="fem")
+    assert file.read_text(encoding="utf-8") == html
+    outline = Outline(html)
+    expected = ["Mesh", "Result", "Histogram", "Statistics", "Distribution", "Angles", "Criteria", "Settings"]
+    assert outline.headings == expected, outline.headings
+    result = tl.quality(mesh, ["imr", "scaled_jacobian"], criteria="fem")
+    assert outline.rows["Cells"] == ["8140"] and outline.rows["x"] == ["0 to 60"]
+    assert outline.rows["metrics"] == ["imr, scaled_jacobian"] and outline.rows["criteria"] == ["fem"]
+    assert result.summary.splitlines()[1] in html, "the summary"
+    assert len(pictures(html)) == 1 and html.count("<svg") == len(result.statistics)
+    inverted = re.findall(r"inverted: (\d+) elements", html)
+    assert inverted == [str(result.inverted)] * len(result.statistics)
+
+
+def test_before():
+    before = DATA / "bracket-tangled.vtu"
+    after = tl.untangle(before)
+    html = tl.report(after, before=before, title="a & b")
+    outline = Outline(html)
+    assert "<title>a &amp; b</title>" in html
+    assert "Before and after" in outline.headings and "Histogram before" in outline.headings
+    measured = [tl.quality(mesh).statistics["imr"] for mesh in (before, after)]
+    expected = " to ".join(f"{statistics['worst']:.6g}" for statistics in measured)
+    assert outline.rows["imr, worst"] == [expected], outline.rows["imr, worst"]
+    assert outline.rows["imr, inverted"] == ["41 to 0"]
+    change = tl.compare(before, after).statistics["imr"]
+    assert outline.rows["imr"][:2] != [] and str(change["better"]) in html
+    first, second = pictures(html)
+    assert first != second
+    # Of other cells only the statistics are compared.
+    html = tl.report(DATA / "plate.vtu", before=before)
+    assert "The meshes have different cells" in html and len(pictures(html)) == 2
+
+
+def test_shell():
+    plate, file = DATA / "plate.vtu", OUT / "report-shell.html"
+    assert shell("report", plate, "--out", file, "--criteria", "ansys").strip() == str(file)
+    assert "Criteria" in Outline(file.read_text(encoding="utf-8")).headings
+    file = OUT / "report-quality.html"
+    assert shell("quality", plate, "--report", file, "--criteria", "fem", code=3).rstrip().endswith(str(file))
+    assert Outline(file.read_text(encoding="utf-8")).rows["histogram bins"] == ["32"]
+    absent = OUT / "no-such-folder" / "report.html"
+    assert "no-such-folder" in shell("report", plate, "--out", absent, code=1)
+    assert "no-such-folder" in shell("quality", plate, "--report", absent, code=1)
+
+
+def test_errors():
+    refused("no metric", tl.report, DATA / "plate.vtu", metrics="no such")
+    refused("cannot be written", tl.report, DATA / "plate.vtu", Path("/no-such-folder/report.html"))
+
+
+run_tests(globals())
