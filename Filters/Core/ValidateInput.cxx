@@ -3,6 +3,7 @@
 #include "Blocks.h"
 #include "tautline/Mesh/ArrayChecks.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -20,6 +21,7 @@
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
@@ -550,6 +552,40 @@ void validateInput(vtkDataObject* data, const InputRules& rules)
   if (!problem.empty())
   {
     throw Error(problem);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string emptyInput(vtkDataObject* data, const char* needed)
+{
+  const bool points = std::string(needed) == "points";
+  vtkIdType count = 0, ofPoints = 0;
+  bool some = false;
+  forEachLeaf(data,
+    [&](unsigned int, vtkDataSet* leaf)
+    {
+      count += points ? leaf->GetNumberOfPoints() : leaf->GetNumberOfCells();
+      ofPoints += leaf->GetNumberOfPoints();
+      some = true;
+    });
+  auto* controller = vtkMultiProcessController::GetGlobalController();
+  const bool composite = vtkCompositeDataSet::SafeDownCast(data) != nullptr;
+  if ((!some && !composite) || count > 0 || (controller && controller->GetLocalProcessId() > 0))
+  {
+    return "";
+  }
+  return std::string("The input has no ") + needed +
+    (ofPoints > 0 ? ", only points: make cells of them first, with Delaunay 2D or Delaunay 3D."
+                  : ": apply the filters before it, or choose another input.");
+}
+
+//------------------------------------------------------------------------------
+void warnOfEmptyInput(vtkAlgorithm* filter, vtkDataObject* data, const char* needed)
+{
+  const std::string empty = emptyInput(data, needed);
+  if (!empty.empty())
+  {
+    vtkWarningWithObjectMacro(filter, << empty);
   }
 }
 

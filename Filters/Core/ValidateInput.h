@@ -22,6 +22,7 @@
 
 #include <string>
 
+class vtkAlgorithm;
 class vtkDataObject;
 class vtkSelection;
 
@@ -42,6 +43,17 @@ TAUTLINECORE_EXPORT std::string inputProblem(vtkDataObject* data, const InputRul
 
 /// Throws Error with inputProblem().
 TAUTLINECORE_EXPORT void validateInput(vtkDataObject* data, const InputRules& rules = {});
+
+/**
+ * @brief A sentence, with the remedy, on data without points or cells; "" for others, for what is no
+ * data set, and on all processes of a parallel server but the first, which may have no part.
+ * @param needed "cells" or "points"
+ */
+TAUTLINECORE_EXPORT std::string emptyInput(vtkDataObject* data, const char* needed = "cells");
+
+/// Reports emptyInput() as a warning of a filter, unless it is "".
+TAUTLINECORE_EXPORT void warnOfEmptyInput(
+  vtkAlgorithm* filter, vtkDataObject* data, const char* needed);
 
 /// For filters that VTK executes once per block of composite data: a sentence on a block that is
 /// not what they need ("mesh") and is left out.

@@ -157,12 +157,25 @@ int vtkTautlineAlgorithm::ExecuteData(
     this->ClearResult();
     return this->Fail(outputs, problem);
   }
+  std::string empty = tautline::emptyInput(input);
+  if (this->ExecutesOnAllProcesses())
+  {
+    // The first process may have no part of a mesh.
+    const bool here = input->GetNumberOfElements(vtkDataObject::CELL) == 0;
+    empty = tautline::minimumOverProcesses(here) ? empty : "";
+  }
   const std::string notice = tautline::skippedLeaves(input);
   if (!notice.empty())
   {
     vtkWarningMacro(<< notice);
   }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
+  const int executed = this->Superclass::ProcessRequest(request, inputs, outputs);
+  if (executed && !empty.empty())
+  {
+    this->Summary = empty;
+    this->Warn(empty);
+  }
+  return executed;
 }
 
 //------------------------------------------------------------------------------

@@ -63,6 +63,7 @@ int vtkBoundaryMesher::RequestData(
     tautline::validateInput(input, { true });
     if (input->GetNumberOfPoints() == 0)
     {
+      tautline::warnOfEmptyInput(this, input, "points");
       return 1;
     }
     this->Generate(input, output, boundary);

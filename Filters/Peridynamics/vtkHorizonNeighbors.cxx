@@ -203,6 +203,7 @@ int vtkHorizonNeighbors::RequestData(
       tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
     if (input->GetNumberOfCells() == 0)
     {
+      tautline::warnOfEmptyInput(this, vtkDataObject::GetData(inputVector[0]), "cells");
       return 1;
     }
     if (!(this->Horizon > 0.0) || !std::isfinite(this->Horizon))

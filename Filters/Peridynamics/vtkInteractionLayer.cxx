@@ -85,6 +85,7 @@ int vtkInteractionLayer::RequestData(
       tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
     if (input->GetNumberOfCells() == 0)
     {
+      tautline::warnOfEmptyInput(this, vtkDataObject::GetData(inputVector[0]), "cells");
       return 1;
     }
     const tautline::HorizonInput taken(

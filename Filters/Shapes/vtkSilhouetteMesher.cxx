@@ -139,6 +139,7 @@ int vtkSilhouetteMesher::RequestData(
     tautline::validateInput(input);
     if (input->GetNumberOfPoints() == 0)
     {
+      tautline::warnOfEmptyInput(this, input, "points");
       return 1;
     }
     const tautline::GreyImage image(input, this->GetInputArrayToProcess(0, input));
