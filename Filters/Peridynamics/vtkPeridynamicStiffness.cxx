@@ -153,6 +153,11 @@ int vtkPeridynamicStiffness::RequestData(
   this->Assembled = false;
   table->Initialize();
   picture->Initialize();
+  if (this->SparsityPixels == 0)
+  {
+    // The pipeline would execute again for what does not have the extent announced.
+    picture->SetExtent(0, 0, 0, 0, 0, 0);
+  }
   return this->Attempt(outputVector, "choose a smaller horizon or a coarser mesh",
     [&]
     {

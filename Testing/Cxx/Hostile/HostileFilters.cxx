@@ -543,7 +543,7 @@ const std::vector<std::string>& classesWithoutInput()
     "vtkTautlineTimedAlgorithm", "vtkMeshMotionAlgorithm", "vtkMetricAlgorithm",
     "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm", "vtkBoundaryMesher",
     "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField", "vtkDomainSource", "vtkGmshReader",
-    "vtkMeditReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader",
+    "vtkMeditReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader", "vtkHtmlReport",
     "vtkImageFileReader", "vtkInterruption", "vtkTautlineSetRange", "vtkUpdateGuard" };
   return names;
 }
