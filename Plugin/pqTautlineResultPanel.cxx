@@ -3,6 +3,7 @@
 #include "ElementSelection.h"
 #include "PanelWidth.h"
 #include "Report.h"
+#include "SideBySide.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -44,6 +45,7 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   , Browser(new QTextBrowser(this))
   , Copy(new QToolButton(this))
   , Save(new QToolButton(this))
+  , Compare(new QToolButton(this))
   , Note(new QLabel(this))
 {
   this->setShowLabel(false);
@@ -58,12 +60,17 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   this->Save->setText("Save Report...");
   this->Save->setToolTip("Save mesh, settings, result, tables, histogram and the picture of the "
                          "active view as one HTML file.");
+  this->Compare->setObjectName("SideBySide");
+  this->Compare->setText("Side by Side");
+  this->Compare->setToolTip("Show the quality of the mesh before and after in two views beside "
+                            "each other, with one legend and linked cameras.");
   this->Note->setObjectName("Note");
   this->Note->setWordWrap(true);
   this->Note->hide();
 
   auto* buttons = new QHBoxLayout;
   buttons->addStretch();
+  buttons->addWidget(this->Compare);
   buttons->addWidget(this->Copy);
   buttons->addWidget(this->Save);
   auto* layout = new QVBoxLayout(this);
@@ -75,6 +82,8 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   QObject::connect(
     this->Browser, &QTextBrowser::anchorClicked, this, &pqTautlineResultPanel::follow);
   QObject::connect(this->Copy, &QToolButton::clicked, this, &pqTautlineResultPanel::copy);
+  QObject::connect(
+    this->Compare, &QToolButton::clicked, this, &pqTautlineResultPanel::sideBySide);
   QObject::connect(this->Save, &QToolButton::clicked, this, &pqTautlineResultPanel::saveReport);
   QObject::connect(this->Browser->document()->documentLayout(),
     &QAbstractTextDocumentLayout::documentSizeChanged, this, &pqTautlineResultPanel::fitHeight);
@@ -126,6 +135,8 @@ void pqTautlineResultPanel::setText(const QString& text)
     text.isEmpty() ? "<i>No result: apply the filter.</i>" : pqTautlineResultPanel::linked(text));
   this->Copy->setEnabled(!text.isEmpty());
   this->Save->setEnabled(!text.isEmpty());
+  pqPipelineSource* filter = this->source();
+  this->Compare->setVisible(!text.isEmpty() && filter && tautline::changesMesh(filter));
   this->fitHeight();
   if (changed)
   {
@@ -228,5 +239,14 @@ void pqTautlineResultPanel::saveReport()
     const QString file = dialog.getSelectedFiles().first();
     const QString problem = tautline::saveText(file, html);
     this->showNote(problem.isEmpty() ? "Saved: " + file : problem);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::sideBySide()
+{
+  if (pqPipelineSource* filter = this->source())
+  {
+    this->showNote(tautline::showSideBySide(filter));
   }
 }

@@ -51,6 +51,7 @@ public Q_SLOTS:
 private Q_SLOTS:
   void copy();
   void saveReport();
+  void sideBySide();
   void fitWidth();
 
 private:
@@ -65,6 +66,7 @@ private:
   QTextBrowser* Browser;
   QToolButton* Copy;
   QToolButton* Save;
+  QToolButton* Compare; ///< for filters that change a mesh
   QLabel* Note; ///< what was selected or saved, or what is wrong
 };
 

@@ -13,6 +13,9 @@ import numpy
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposite face, of their height
+ALL_FIXED = 2  # of the array Obstacle: all points of the element are fixed
+
 
 def check(function):
     @functools.wraps(function)
@@ -166,3 +169,81 @@ def open_clovers():
         reader = simple.PNGSeriesReader(registrationName=name, FileNames=[os.path.join(data, name + ".png")])
         simple.Show(reader)
     simple.SetActiveSource(reader)
+
+
+@check
+def side_by_side():
+    """Two linked views of the mesh before and after, with the same colours, one legend, and the numbers of the package."""
+    views = [view for view in simple.GetViews() if view.GetXMLName() == "RenderView"][-2:]
+    before, after = (find_named(name) for name in ("Before", "After"))
+    assert before.Input == find("MeshOptimizer").Input and after.Input == find("MeshOptimizer")
+    tables = []
+    for view, quality in zip(views, (before, after)):
+        shown = simple.GetDisplayProperties(quality, view)
+        assert shown.Visibility and shown.ColorArrayName[1] == "imr", shown.ColorArrayName[:]
+        tables.append(shown.LookupTable)
+        values = vtk_to_numpy(servermanager.Fetch(quality).GetCellData().GetArray("imr"))
+        text = find_named(f"{quality_name(quality)}, text").Text
+        assert text == f"{quality_name(quality).lower()}: worst imr {values.max():.3g}, 0 inverted", text
+    assert tables[0].SMProxy == tables[1].SMProxy
+    assert [legends(view) for view in views] == [0, 1], [legends(view) for view in views]
+    # Links follow interactions and Reset Camera.
+    views[1].CameraPosition = [1, 2, 300]
+    simple.ResetCamera(views[0])
+    assert numpy.allclose(views[1].CameraPosition, views[0].CameraPosition), views[1].CameraPosition[:]
+    worst = [vtk_to_numpy(servermanager.Fetch(one).GetCellData().GetArray("imr")).max() for one in (before, after)]
+    assert worst[1] < worst[0], worst
+
+
+def legends(view):
+    """The number of visible legends; GetScalarBar() would make one."""
+    return sum(one.GetXMLName() == "ScalarBarWidgetRepresentation" and one.Visibility for one in view.Representations)
+
+
+def quality_name(source):
+    return next(name for (name, _), one in simple.GetSources().items() if one == source)
+
+
+def find_named(name):
+    return next(one for (known, _), one in simple.GetSources().items() if known == name)
+
+
+@check
+def push_corners():
+    """The bracket with three corners pushed through the opposite faces of their elements."""
+    data = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
+    reader = simple.XMLUnstructuredGridReader(FileName=[os.path.join(data, "bracket.vtu")])
+    mesh = servermanager.Fetch(reader)
+    cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 4)
+    points = vtk_to_numpy(mesh.GetPoints().GetData())
+    corners = numpy.flatnonzero(numpy.bincount(cells.ravel()) == 1)[:PUSHED]
+    assert len(corners) == PUSHED, corners
+    moves = {}
+    for corner in corners:
+        others = [i for i in cells[(cells == corner).any(axis=1)][0] if i != corner]
+        moves[int(corner)] = (points[others].mean(axis=0) + BEYOND * (points[others].mean(axis=0) - points[corner])).tolist()
+    script = f"output.DeepCopy(inputs[0].VTKObject)\nfor i, p in {moves!r}.items():\n    output.VTKObject.GetPoints().SetPoint(i, p)\n"
+    pushed = simple.ProgrammableFilter(registrationName="pushed", Input=reader, Script=script)
+    simple.Show(pushed)
+    simple.SetActiveSource(pushed)
+
+
+@check
+def obstacles():
+    """Three elements stay inverted, with their reason; the summary has the remedy."""
+    untangler = find("MeshUntangler")
+    reasons = vtk_to_numpy(servermanager.Fetch(untangler).GetCellData().GetArray("Obstacle"))
+    assert (reasons == ALL_FIXED).sum() == (reasons > 0).sum() == PUSHED, numpy.unique(reasons, return_counts=True)
+    assert "3 elements" in untangler.Summary, untangler.Summary
+
+
+@check
+def turned_hole():
+    """The points of the hole are turned by 20 degrees about its center; no triangle is inverted."""
+    warp = find("MeshWarp")
+    before, after = (
+        vtk_to_numpy(servermanager.Fetch(one).GetPoints().GetData())[:, :2].astype(float) for one in (warp.Input, warp)
+    )
+    moved = numpy.linalg.norm(after - before, axis=1)
+    assert moved.max() > 0
+    assert "all 1913 elements are valid" in warp.Summary, warp.Summary

@@ -1,0 +1,202 @@
+#include "SideBySide.h"
+
+#include "FetchOutput.h"
+
+#include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
+#include "pqLinksModel.h"
+#include "pqObjectBuilder.h"
+#include "pqOutputPort.h"
+#include "pqPipelineFilter.h"
+#include "pqProxy.h"
+#include "pqRenderView.h"
+#include "pqServer.h"
+#include "pqServerManagerModel.h"
+
+#include "vtkNew.h"
+#include "vtkPVDataInformation.h"
+#include "vtkSMPVRepresentationProxy.h"
+#include "vtkSMParaViewPipelineControllerWithRendering.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxyManager.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSMViewLayoutProxy.h"
+#include "vtkSMViewProxy.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
+
+#include <QList>
+#include <QTimer>
+
+#include <array>
+#include <string>
+
+namespace tautline
+{
+namespace
+{
+
+constexpr int MeshPort = 0;
+constexpr double Half = 0.5;
+constexpr int FontSize = 14;
+
+pqOutputPort* inputOf(pqPipelineSource* source)
+{
+  auto* filter = qobject_cast<pqPipelineFilter*>(source);
+  const QList<pqOutputPort*> ports = filter ? filter->getInputs("Input") : QList<pqOutputPort*>();
+  return ports.size() == 1 ? ports.front() : nullptr;
+}
+
+/// Element Quality of an output, executed.
+pqPipelineSource* measure(pqOutputPort* port, const QString& name)
+{
+  pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
+  pqPipelineSource* quality =
+    builder->createFilter("filters", "ElementQuality", port->getSource(), port->getPortNumber());
+  if (quality)
+  {
+    quality->rename(name);
+    quality->getProxy()->UpdateVTKObjects();
+    quality->updatePipeline();
+    quality->setModifiedState(pqProxy::UNMODIFIED);
+  }
+  return quality;
+}
+
+/// "before: worst imr 99.9, 41 inverted".
+QString describe(pqPipelineSource* quality)
+{
+  const auto data = fetchOutput(quality, "Statistics");
+  vtkTable* statistics = vtkTable::SafeDownCast(data);
+  if (!statistics || statistics->GetNumberOfRows() == 0)
+  {
+    return quality->getSMName();
+  }
+  const auto value = [statistics](const char* column)
+  { return QString::fromStdString(statistics->GetValueByName(0, column).ToString()); };
+  const double worst = statistics->GetValueByName(0, "Worst").ToDouble();
+  return QString("%1: worst %2 %3, %4 inverted")
+    .arg(quality->getSMName().toLower(), value("Metric"), QString::number(worst, 'g', 3),
+      value("Inverted"));
+}
+
+/// Hides the legend, also that of the bad elements, which are shown after this.
+void hideLegendLater(vtkSMProxy* shown, pqView* view)
+{
+  const vtkSmartPointer<vtkSMProxy> representation = shown;
+  QTimer::singleShot(0, view,
+    [representation, view]
+    {
+      vtkSMPVRepresentationProxy::SetScalarBarVisibility(
+        representation, view->getViewProxy(), false);
+      view->render();
+    });
+}
+
+/// Shows the mesh, and a text at the top.
+void fill(pqPipelineSource* quality, pqView* view, bool legend)
+{
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  vtkSMViewProxy* viewProxy = view->getViewProxy();
+  vtkSMProxy* shown = controller->Show(quality->getSourceProxy(), MeshPort, viewProxy);
+  const auto data = fetchOutput(quality, "Statistics");
+  vtkTable* statistics = vtkTable::SafeDownCast(data);
+  if (shown && statistics && statistics->GetNumberOfRows() > 0)
+  {
+    const std::string metric = statistics->GetValueByName(0, "Metric").ToString();
+    vtkSMPVRepresentationProxy::SetScalarColoring(shown, metric.c_str(), vtkDataObject::CELL);
+    vtkSMPVRepresentationProxy::SetScalarBarVisibility(shown, viewProxy, legend);
+    shown->UpdateVTKObjects();
+    if (!legend)
+    {
+      hideLegendLater(shown, view);
+    }
+  }
+  pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
+  pqPipelineSource* text = builder->createSource("sources", "TextSource", quality->getServer());
+  text->rename(quality->getSMName() + ", text");
+  vtkSMPropertyHelper(text->getProxy(), "Text").Set(describe(quality).toUtf8().data());
+  text->getProxy()->UpdateVTKObjects();
+  text->setModifiedState(pqProxy::UNMODIFIED);
+  if (vtkSMProxy* drawn = controller->Show(text->getSourceProxy(), 0, viewProxy))
+  {
+    constexpr int upperCenter = 4; // of the property WindowLocation
+    const double black[3] = { 0, 0, 0 };
+    vtkSMPropertyHelper(drawn, "WindowLocation", true).Set(upperCenter);
+    vtkSMPropertyHelper(drawn, "FontSize", true).Set(FontSize);
+    vtkSMPropertyHelper(drawn, "Color", true).Set(black, 3);
+    drawn->UpdateVTKObjects();
+  }
+}
+
+/// A white background, so that the text is read.
+void brighten(pqView* view)
+{
+  const double white[3] = { 1, 1, 1 };
+  vtkSMProxy* proxy = view->getProxy();
+  vtkSMPropertyHelper(proxy, "UseColorPaletteForBackground", true).Set(0);
+  vtkSMPropertyHelper(proxy, "Background", true).Set(white, 3);
+  proxy->UpdateVTKObjects();
+}
+
+} // anonymous namespace
+
+//------------------------------------------------------------------------------
+bool changesMesh(pqPipelineSource* filter)
+{
+  pqOutputPort* before = inputOf(filter);
+  return before && filter->getProxy()->GetXMLName() != std::string("ElementQuality") &&
+    before->getDataInformation()->GetNumberOfCells() > 0 &&
+    filter->getOutputPort(MeshPort)->getDataInformation()->GetNumberOfCells() > 0;
+}
+
+//------------------------------------------------------------------------------
+QString showSideBySide(pqPipelineSource* filter)
+{
+  if (filter->modifiedState() != pqProxy::UNMODIFIED || !changesMesh(filter))
+  {
+    return "Apply the filter first: there is no mesh before and after it.";
+  }
+  pqApplicationCore* core = pqApplicationCore::instance();
+  pqObjectBuilder* builder = core->getObjectBuilder();
+  pqServer* server = filter->getServer();
+  const std::array<pqPipelineSource*, 2> measured = { measure(inputOf(filter), "Before"),
+    measure(filter->getOutputPort(MeshPort), "After") };
+  if (!measured[0] || !measured[1])
+  {
+    return "The meshes cannot be measured.";
+  }
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  vtkSMSessionProxyManager* manager = server->proxyManager();
+  vtkSmartPointer<vtkSMProxy> made;
+  made.TakeReference(manager->NewProxy("misc", "ViewLayout"));
+  auto* layout = vtkSMViewLayoutProxy::SafeDownCast(made);
+  if (!layout)
+  {
+    return "A layout cannot be made.";
+  }
+  controller->InitializeProxy(layout);
+  controller->RegisterLayoutProxy(layout);
+  const int left = layout->SplitHorizontal(0, Half);
+  std::array<pqView*, 2> views{};
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    views[i] = builder->createView(pqRenderView::renderViewType(), server);
+    layout->AssignView(left + static_cast<int>(i), views[i]->getViewProxy());
+    brighten(views[i]);
+    fill(measured[i], views[i], i == 1);
+  }
+  core->getLinksModel()->addCameraLink(
+    filter->getSMName() + ", before and after", views[0]->getProxy(), views[1]->getProxy());
+  for (pqView* view : views)
+  {
+    view->resetDisplay();
+    view->render();
+  }
+  pqActiveObjects::instance().setActiveView(views[1]);
+  pqActiveObjects::instance().setActiveSource(filter);
+  return {};
+}
+
+} // namespace tautline
