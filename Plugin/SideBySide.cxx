@@ -27,6 +27,7 @@
 #include "vtkVariant.h"
 
 #include <QList>
+#include <QPointer>
 #include <QTimer>
 
 #include <array>
@@ -122,22 +123,25 @@ void fill(pqPipelineSource* quality, pqView* view, bool legend)
   if (vtkSMProxy* drawn = controller->Show(text->getSourceProxy(), 0, viewProxy))
   {
     constexpr int upperCenter = 4; // of the property WindowLocation
-    const double black[3] = { 0, 0, 0 };
     vtkSMPropertyHelper(drawn, "WindowLocation", true).Set(upperCenter);
     vtkSMPropertyHelper(drawn, "FontSize", true).Set(FontSize);
-    vtkSMPropertyHelper(drawn, "Color", true).Set(black, 3);
     drawn->UpdateVTKObjects();
   }
 }
 
-/// A white background, so that the text is read.
-void brighten(pqView* view)
+/// The direction of view of another view, if it is one of meshes.
+void takeCamera(pqView* view, pqView* other)
 {
-  const double white[3] = { 1, 1, 1 };
-  vtkSMProxy* proxy = view->getProxy();
-  vtkSMPropertyHelper(proxy, "UseColorPaletteForBackground", true).Set(0);
-  vtkSMPropertyHelper(proxy, "Background", true).Set(white, 3);
-  proxy->UpdateVTKObjects();
+  if (qobject_cast<pqRenderView*>(other))
+  {
+    for (const char* name : { "CameraPosition", "CameraFocalPoint", "CameraViewUp" })
+    {
+      double values[3] = {};
+      vtkSMPropertyHelper(other->getProxy(), name).Get(values, 3);
+      vtkSMPropertyHelper(view->getProxy(), name).Set(values, 3);
+    }
+    view->getProxy()->UpdateVTKObjects();
+  }
 }
 
 } // anonymous namespace
@@ -161,6 +165,7 @@ QString showSideBySide(pqPipelineSource* filter)
   pqApplicationCore* core = pqApplicationCore::instance();
   pqObjectBuilder* builder = core->getObjectBuilder();
   pqServer* server = filter->getServer();
+  const QPointer<pqView> seen = pqActiveObjects::instance().activeView();
   const std::array<pqPipelineSource*, 2> measured = { measure(inputOf(filter), "Before"),
     measure(filter->getOutputPort(MeshPort), "After") };
   if (!measured[0] || !measured[1])
@@ -184,13 +189,13 @@ QString showSideBySide(pqPipelineSource* filter)
   {
     views[i] = builder->createView(pqRenderView::renderViewType(), server);
     layout->AssignView(left + static_cast<int>(i), views[i]->getViewProxy());
-    brighten(views[i]);
     fill(measured[i], views[i], i == 1);
   }
   core->getLinksModel()->addCameraLink(
     filter->getSMName() + ", before and after", views[0]->getProxy(), views[1]->getProxy());
   for (pqView* view : views)
   {
+    takeCamera(view, seen);
     view->resetDisplay();
     view->render();
   }

@@ -97,7 +97,17 @@ void pqTautlineNavigator::sourceChanged(pqPipelineSource* source)
     return;
   }
   this->Isolate->setChecked(false);
+  if (this->Source)
+  {
+    QObject::disconnect(this->Source, nullptr, this, nullptr);
+  }
   this->Source = source;
+  if (source)
+  {
+    // A warning opens a window during the update: the state follows that of the data.
+    QObject::connect(
+      source, &pqProxy::modifiedStateChanged, this, [this] { this->dataUpdated(this->Source); });
+  }
   this->refresh();
 }
 

@@ -14,6 +14,7 @@ from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposite face, of their height
+TURN = 20  # degrees
 ALL_FIXED = 2  # of the array Obstacle: all points of the element are fixed
 
 
@@ -168,6 +169,7 @@ def open_clovers():
     for name in ("clover-turned", "clover"):
         reader = simple.PNGSeriesReader(registrationName=name, FileNames=[os.path.join(data, name + ".png")])
         simple.Show(reader)
+    simple.ResetCamera()
     simple.SetActiveSource(reader)
 
 
@@ -225,6 +227,7 @@ def push_corners():
     script = f"output.DeepCopy(inputs[0].VTKObject)\nfor i, p in {moves!r}.items():\n    output.VTKObject.GetPoints().SetPoint(i, p)\n"
     pushed = simple.ProgrammableFilter(registrationName="pushed", Input=reader, Script=script)
     simple.Show(pushed)
+    simple.ResetCamera()
     simple.SetActiveSource(pushed)
 
 
@@ -242,8 +245,21 @@ def turned_hole():
     """The points of the hole are turned by 20 degrees about its center; no triangle is inverted."""
     warp = find("MeshWarp")
     before, after = (
-        vtk_to_numpy(servermanager.Fetch(one).GetPoints().GetData())[:, :2].astype(float) for one in (warp.Input, warp)
+        vtk_to_numpy(servermanager.Fetch(one).GetPoints().GetData())[:, :2].astype(float) @ [1, 1j]
+        for one in (warp.Input, warp)
     )
-    moved = numpy.linalg.norm(after - before, axis=1)
-    assert moved.max() > 0
+    # The boundary is the edges of one element; the outside is the bounding rectangle.
+    mesh = servermanager.Fetch(warp.Input)
+    edges = {}
+    for cell in map(mesh.GetCell, range(mesh.GetNumberOfCells())):
+        for i in range(cell.GetNumberOfEdges()):
+            key = tuple(sorted(cell.GetEdge(i).GetPointId(end) for end in range(2)))
+            edges[key] = edges.get(key, 0) + 1
+    boundary = numpy.unique([key for key, count in edges.items() if count == 1])
+    ends = [f(part(before)) for part in (numpy.real, numpy.imag) for f in (numpy.min, numpy.max)]
+    outside = numpy.isin(before.real, ends[:2]) | numpy.isin(before.imag, ends[2:])
+    hole = boundary[~outside[boundary]]
+    assert len(hole) > 10 and numpy.array_equal(before[outside], after[outside])
+    turn = numpy.exp(1j * numpy.radians(TURN))
+    assert numpy.allclose(after[hole] - after[hole].mean(), turn * (before[hole] - before[hole].mean()), atol=1e-6)
     assert "all 1913 elements are valid" in warp.Summary, warp.Summary
