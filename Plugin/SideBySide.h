@@ -17,14 +17,14 @@ namespace tautline
 bool changesMesh(pqPipelineSource* filter);
 
 /**
- * @brief Opens a layout with two views: on the left the mesh before the filter, on the right the one
- * after it.
+ * @brief Opens a layout with two views: on the left the mesh before the filter, on the right the
+ * one after it.
  *
  * Both are measured by Element Quality, with its default metric. Inverted elements inside are
  * visible.
- * The colours mean the same in both views, and the legend is in the right one; the cameras are linked.
- * A text in each view has the worst value and the number of inverted elements. The filter stays the
- * active source.
+ * The colours mean the same in both views, and the legend is in the right one; the cameras are
+ * linked. A text in each view has the worst value and the number of inverted elements. The filter
+ * stays the active source.
  * @return "" or what is wrong, with the remedy
  */
 QString showSideBySide(pqPipelineSource* filter);

@@ -1,5 +1,6 @@
 #include "pqTautlineBadElements.h"
 
+#include "CriteriaTicks.h"
 #include "ProxyKind.h"
 
 #include "pqApplicationCore.h"
@@ -29,11 +30,31 @@ constexpr const char* Opacity = "Opacity";
 constexpr const char* Before = "TautlineOpacityBefore";
 constexpr double EdgeColor[3] = { 0.1, 0.1, 0.1 };
 constexpr const char* Style = "Representation";
+constexpr const char* WorstPort = "Worst";
+constexpr double WorstSize = 12.0; // pixels
 
 pqServerManagerModel* model()
 {
   pqApplicationCore* core = pqApplicationCore::instance();
   return core ? core->getServerManagerModel() : nullptr;
+}
+
+/// Whether a mesh extends in all directions, so that points can lie inside.
+bool isSolid(pqDataRepresentation* mesh)
+{
+  const double* bounds = mesh->getOutputPortFromInput()->getDataInformation()->GetBounds();
+  return bounds[0] < bounds[1] && bounds[2] < bounds[3] && bounds[4] < bounds[5];
+}
+
+/// Draws points as spheres.
+void enlarge(pqDataRepresentation* points)
+{
+  if (points->getProxy()->GetProperty("RenderPointsAsSpheres"))
+  {
+    vtkSMPropertyHelper(points->getProxy(), "RenderPointsAsSpheres").Set(1);
+    vtkSMPropertyHelper(points->getProxy(), "PointSize").Set(WorstSize);
+    points->getProxy()->UpdateVTKObjects();
+  }
 }
 }
 
@@ -83,6 +104,7 @@ void pqTautlineBadElements::arrangeLater(pqPipelineSource* source)
 //------------------------------------------------------------------------------
 void pqTautlineBadElements::arrange(pqPipelineSource* source)
 {
+  pqOutputPort* worst = source->getOutputPort(WorstPort);
   constexpr int meshPort = 0;
   pqOutputPort* bad = source->getOutputPort(tautline::BadElementsPort);
   const bool some = bad->getDataInformation()->GetNumberOfCells() > 0;
@@ -94,17 +116,25 @@ void pqTautlineBadElements::arrange(pqPipelineSource* source)
     {
       continue;
     }
+    tautline::labelLegend(mesh, source->getProxy());
     if (some && mesh->isVisible() && !elements)
     {
       vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
       controller->Show(source->getSourceProxy(), bad->getPortNumber(), view->getViewProxy());
       elements = bad->getRepresentation(view);
     }
+    pqDataRepresentation* points = worst ? worst->getRepresentation(view) : nullptr;
+    const bool pointsInside = points && points->isVisible() && isSolid(mesh);
+    if (pointsInside)
+    {
+      enlarge(points);
+      this->fade(mesh, nullptr);
+    }
     if (some && elements && elements->isVisible())
     {
       this->fade(mesh, elements);
     }
-    else if (!some)
+    else if (!some && !pointsInside)
     {
       this->restore(mesh);
     }
@@ -122,7 +152,7 @@ void pqTautlineBadElements::fade(pqDataRepresentation* mesh, pqDataRepresentatio
   mesh->setProperty(Before, opacity.GetAsDouble());
   opacity.Set(FadedOpacity);
   mesh->getProxy()->UpdateVTKObjects();
-  if (bad->getProxy()->GetProperty(Style))
+  if (bad && bad->getProxy()->GetProperty(Style))
   {
     vtkSMPropertyHelper(bad->getProxy(), Style).Set("Surface With Edges");
     vtkSMPropertyHelper(bad->getProxy(), "EdgeColor").Set(EdgeColor, 3);

@@ -5,7 +5,8 @@
  * Element Quality has an output with the bad elements of a volume mesh. This object, started by the
  * plugin in the GUI, draws it with the mesh and makes the mesh translucent when there are such
  * elements, and opaque again when there are none or the output is switched off. An opacity that the
- * user set is kept.
+ * user set is kept. The output Worst is drawn as spheres, in a translucent mesh, too. With
+ * criteria, the legend of the mesh has labels at their limits.
  */
 
 #ifndef pqTautlineBadElements_h

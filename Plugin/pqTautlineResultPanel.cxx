@@ -82,8 +82,7 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   QObject::connect(
     this->Browser, &QTextBrowser::anchorClicked, this, &pqTautlineResultPanel::follow);
   QObject::connect(this->Copy, &QToolButton::clicked, this, &pqTautlineResultPanel::copy);
-  QObject::connect(
-    this->Compare, &QToolButton::clicked, this, &pqTautlineResultPanel::sideBySide);
+  QObject::connect(this->Compare, &QToolButton::clicked, this, &pqTautlineResultPanel::sideBySide);
   QObject::connect(this->Save, &QToolButton::clicked, this, &pqTautlineResultPanel::saveReport);
   QObject::connect(this->Browser->document()->documentLayout(),
     &QAbstractTextDocumentLayout::documentSizeChanged, this, &pqTautlineResultPanel::fitHeight);

@@ -67,7 +67,7 @@ private:
   QToolButton* Copy;
   QToolButton* Save;
   QToolButton* Compare; ///< for filters that change a mesh
-  QLabel* Note; ///< what was selected or saved, or what is wrong
+  QLabel* Note;         ///< what was selected or saved, or what is wrong
 };
 
 #endif

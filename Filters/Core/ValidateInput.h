@@ -45,8 +45,8 @@ TAUTLINECORE_EXPORT std::string inputProblem(vtkDataObject* data, const InputRul
 TAUTLINECORE_EXPORT void validateInput(vtkDataObject* data, const InputRules& rules = {});
 
 /**
- * @brief A sentence, with the remedy, on data without points or cells; "" for others, for what is no
- * data set, and on all processes of a parallel server but the first, which may have no part.
+ * @brief A sentence, with the remedy, on data without points or cells; "" for others, for what is
+ * no data set, and on all processes of a parallel server but the first, which may have no part.
  * @param needed "cells" or "points"
  */
 TAUTLINECORE_EXPORT std::string emptyInput(vtkDataObject* data, const char* needed = "cells");

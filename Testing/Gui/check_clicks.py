@@ -1,7 +1,7 @@
 """check_clicks.py SESSION.xml LIMIT: a recorded job takes at most so many clicks, and it has the check of its result.
 
-A click is an event of the mouse. Not counted: Ctrl+O, which is recorded as two entries of the menu File; the Python shell,
-in which a session is checked; what comes before the comment "Start" (the mesh is opened), and after "Checks".
+A click is an event of the mouse. Not counted: Ctrl+O, which is recorded as two entries of the menu File; the Python
+shell, in which a session is checked; what comes before the comment "Start" (the mesh is opened), and after "Checks".
 """
 
 import sys

@@ -14,6 +14,7 @@ from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposite face, of their height
+WORST_PORT = 4  # of Element Quality
 TURN = 20  # degrees
 ALL_FIXED = 2  # of the array Obstacle: all points of the element are fixed
 
@@ -175,7 +176,7 @@ def open_clovers():
 
 @check
 def side_by_side():
-    """Two linked views of the mesh before and after, with the same colours, one legend, and the numbers of the package."""
+    """Two linked views of the mesh before and after, with the same colours, one legend, and the worst values."""
     views = [view for view in simple.GetViews() if view.GetXMLName() == "RenderView"][-2:]
     before, after = (find_named(name) for name in ("Before", "After"))
     assert before.Input == find("MeshOptimizer").Input and after.Input == find("MeshOptimizer")
@@ -223,8 +224,13 @@ def push_corners():
     moves = {}
     for corner in corners:
         others = [i for i in cells[(cells == corner).any(axis=1)][0] if i != corner]
-        moves[int(corner)] = (points[others].mean(axis=0) + BEYOND * (points[others].mean(axis=0) - points[corner])).tolist()
-    script = f"output.DeepCopy(inputs[0].VTKObject)\nfor i, p in {moves!r}.items():\n    output.VTKObject.GetPoints().SetPoint(i, p)\n"
+        center = points[others].mean(axis=0)
+        moves[int(corner)] = (center + BEYOND * (center - points[corner])).tolist()
+    script = f"""
+output.DeepCopy(inputs[0].VTKObject)
+for i, p in {moves!r}.items():
+    output.VTKObject.GetPoints().SetPoint(i, p)
+"""
     pushed = simple.ProgrammableFilter(registrationName="pushed", Input=reader, Script=script)
     simple.Show(pushed)
     simple.ResetCamera()
@@ -263,3 +269,63 @@ def turned_hole():
     turn = numpy.exp(1j * numpy.radians(TURN))
     assert numpy.allclose(after[hole] - after[hole].mean(), turn * (before[hole] - before[hole].mean()), atol=1e-6)
     assert "all 1913 elements are valid" in warp.Summary, warp.Summary
+
+
+def legend_labels():
+    """The labels of the legend, or None for those of ParaView."""
+    view = simple.GetActiveView()
+    legend = next(one for one in view.Representations if one.GetXMLName() == "ScalarBarWidgetRepresentation")
+    return list(legend.CustomLabels) if legend.UseCustomLabels else None
+
+
+def set_criteria(criteria):
+    quality = find("ElementQuality")
+    quality.Criteria = criteria
+    quality.UpdatePipeline()
+
+
+@check
+def preset_labels():
+    """Of the preset fem, a warning beyond 3; failures beyond 10 are no colour of the map. Next: own limits."""
+    assert legend_labels() == [3], legend_labels()
+    limits = '{ "ideal": 1, "good": 1.2, "warn": 1.5, "fail": 2.5, "worst": 9 }'
+    set_criteria('{ "criteria": [ { "metric": "imr", "limits": { "all": %s } } ] }' % limits)
+
+
+@check
+def own_labels():
+    assert legend_labels() == [1.5, 2.5], legend_labels()
+    set_criteria("")
+
+
+@check
+def no_labels():
+    assert legend_labels() is None, legend_labels()
+
+
+@check
+def show_worst():
+    quality = find("ElementQuality")
+    assert simple.GetDisplayProperties(quality).Opacity == 1
+    simple.Show(simple.OutputPort(quality, WORST_PORT))
+
+
+@check
+def worst_inside():
+    """The mesh is translucent, the points are spheres."""
+    quality = find("ElementQuality")
+    assert simple.GetDisplayProperties(quality).Opacity < 0.5
+    port = simple.OutputPort(quality, WORST_PORT)
+    shown = simple.GetDisplayProperties(port)
+    assert shown.RenderPointsAsSpheres == 1 and shown.PointSize > 5
+    simple.Render()
+
+
+@check
+def worst_hidden():
+    simple.Hide(simple.OutputPort(find("ElementQuality"), WORST_PORT))
+
+
+@check
+def mesh_opaque():
+    assert simple.GetDisplayProperties(find("ElementQuality")).Opacity == 1
