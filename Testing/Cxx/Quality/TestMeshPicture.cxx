@@ -53,6 +53,39 @@ void testPlane(double scale, const Vec3& shift)
   TAUTLINE_CHECK((pixel(picture, 54, 75) == std::array<int, 3>{ 255, 0, 0 }));
 }
 
+/// Two squares one behind the other, seen along the direction of view: only the front one shows.
+void testFront(bool frontFirst)
+{
+  MeshData data;
+  const Vec3 behind = -2.0 * Vec3{ 0.75, -1.0, 0.55 };
+  const std::vector<Vec3> corners = { { 0, -1, 0 }, { 1, -1, 0 }, { 1, -1, 1 }, { 0, -1, 1 } };
+  for (const bool front : { frontFirst, !frontFirst })
+  {
+    std::vector<Vec3> square = corners;
+    for (Vec3& p : square)
+    {
+      p += front ? Vec3{ 0, 0, 0 } : behind;
+    }
+    data.addCell(CellType::Quadrilateral, square);
+  }
+  const Mesh mesh(data.view());
+  const std::vector<Color> colors =
+    frontFirst ? std::vector<Color>{ Red, Green } : std::vector<Color>{ Green, Red };
+  const Picture picture = drawMeshes({ { &mesh, colors, {} } }, Width, Height);
+  int red = 0, green = 0;
+  for (int y = 0; y < Height; ++y)
+  {
+    for (int x = 0; x < Width; ++x)
+    {
+      const auto rgb = pixel(picture, x, y);
+      red += rgb[0] > rgb[1];
+      green += rgb[1] > rgb[0];
+    }
+  }
+  TAUTLINE_CHECK(red > 0.9 * covered(picture) * Width * Height);
+  TAUTLINE_CHECK(green < 0.01 * red); // rounding at the margin
+}
+
 /// Of a cube of 3 x 3 x 3 hexahedra, the cell in the middle is hidden until it is highlighted.
 void testInside()
 {
@@ -120,6 +153,8 @@ int TestMeshPicture(int, char*[])
   testPlane(1e-200, { 0, 0, 0 });
   testPlane(1e200, { 0, 0, 0 });
   testPlane(3, { -70, 20, 5 });
+  testFront(true);
+  testFront(false);
   testInside();
   testLimits();
   return exitCode();
