@@ -329,3 +329,19 @@ def worst_hidden():
 @check
 def mesh_opaque():
     assert simple.GetDisplayProperties(find("ElementQuality")).Opacity == 1
+
+
+@check
+def objectives_table():
+    """Of three objectives the first was removed: the others moved up, with all they have; the run has two objectives."""
+    optimizer = find("MeshOptimizer")
+    columns = ("Metric", "Template", "Target", "Weight")
+    rows = [tuple(optimizer.GetPropertyValue(f"{column}{row}") for column in columns) for row in (1, 2)]
+    assert optimizer.NumberOfObjectives == 2
+    assert rows == [
+        ("Minimum angle", "Sum of reciprocals", "Ideal element", 0.25),
+        ("Edge length ratio", "As usual for the metric", "Ideal element", 1),
+    ], rows
+    history = servermanager.Fetch(optimizer, idx=1)
+    assert history.GetColumnByName("min_angle worst") and history.GetColumnByName("edge_ratio worst")
+    assert not history.GetColumnByName("imr worst")

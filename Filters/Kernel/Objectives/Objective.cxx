@@ -26,6 +26,28 @@ ObjectiveTemplate defaultTemplate(Metric metric)
 }
 
 //------------------------------------------------------------------------------
+std::string templateProblem(Metric metric, ObjectiveTemplate objectiveTemplate)
+{
+  using T = ObjectiveTemplate;
+  const MetricInfo& info = metricInfo(metric);
+  const std::string label = info.label;
+  if (objectiveTemplate == T::SumOfSquares && info.direction == Direction::LargerIsBetter)
+  {
+    return "A larger value of \"" + label +
+      "\" is better: lowering the sum of its squares would spoil the mesh. Choose a sum of "
+      "reciprocals.";
+  }
+  if (isIn(objectiveTemplate, { T::SumOfReciprocals, T::SumOfSquaredReciprocals }) &&
+    info.direction == Direction::SmallerIsBetter)
+  {
+    return "A smaller value of \"" + label +
+      "\" is better: lowering a sum of its reciprocals would spoil the mesh. Choose the sum of "
+      "squares.";
+  }
+  return "";
+}
+
+//------------------------------------------------------------------------------
 bool canUntangle(const Objective& objective)
 {
   using T = ObjectiveTemplate;

@@ -37,6 +37,8 @@
 
 #include "tautline/Quality/Metrics.h"
 
+#include <string>
+
 namespace tautline
 {
 /// How element values become one number. The numbers are stable: ParaView state files hold them.
@@ -72,6 +74,13 @@ struct Objective
  * SumOfSquares for metrics where smaller is better and for sizes.
  */
 TAUTLINE_KERNEL_EXPORT ObjectiveTemplate defaultTemplate(Metric metric);
+
+/**
+ * @brief Why a template does not suit a metric, with the remedy: minimizing it would make the
+ * elements worse. "" if it does; Default suits each metric.
+ */
+TAUTLINE_KERNEL_EXPORT std::string templateProblem(
+  Metric metric, ObjectiveTemplate objectiveTemplate);
 
 /**
  * @brief Whether the objective is finite on inverted elements and larger the more they are

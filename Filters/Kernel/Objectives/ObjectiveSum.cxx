@@ -4,17 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 namespace tautline
 {
 namespace
 {
-bool isIn(ObjectiveTemplate objectiveTemplate, std::initializer_list<ObjectiveTemplate> templates)
-{
-  return std::find(templates.begin(), templates.end(), objectiveTemplate) != templates.end();
-}
-
 Objective resolved(Objective objective, int threads)
 {
   if (objective.objectiveTemplate == ObjectiveTemplate::Default)
@@ -27,26 +21,16 @@ Objective resolved(Objective objective, int threads)
 
 void checkTemplate(const Objective& objective)
 {
-  const MetricInfo& info = metricInfo(objective.metric);
-  const std::string label = info.label;
   using T = ObjectiveTemplate;
   const int number = static_cast<int>(objective.objectiveTemplate);
   if (number < 0 || number > static_cast<int>(T::Maximum))
   {
     throw Error("There is no objective template number " + std::to_string(number) + ".");
   }
-  if (objective.objectiveTemplate == T::SumOfSquares && info.direction == Direction::LargerIsBetter)
+  const std::string problem = templateProblem(objective.metric, objective.objectiveTemplate);
+  if (!problem.empty())
   {
-    throw Error("A larger value of \"" + label +
-      "\" is better: lowering the sum of its squares would spoil the mesh. Choose a sum of "
-      "reciprocals.");
-  }
-  if (isIn(objective.objectiveTemplate, { T::SumOfReciprocals, T::SumOfSquaredReciprocals }) &&
-    info.direction == Direction::SmallerIsBetter)
-  {
-    throw Error("A smaller value of \"" + label +
-      "\" is better: lowering a sum of its reciprocals would spoil the mesh. Choose the sum of "
-      "squares.");
+    throw Error(problem);
   }
   if (!(objective.weight > 0) || !std::isfinite(objective.weight))
   {

@@ -1,0 +1,58 @@
+#include "ObjectiveRules.h"
+
+#include "tautline/Objectives/Objective.h"
+#include "tautline/Objectives/Scalarization.h"
+#include "tautline/Quality/Metrics.h"
+
+#include "vtkMeshOptimizer.h"
+
+namespace tautline
+{
+
+//------------------------------------------------------------------------------
+std::string targetReason(int metric, int target)
+{
+  const MetricInfo& info = metricInfo(static_cast<Metric>(metric));
+  const std::string label = info.label;
+  if (target == vtkMeshOptimizer::IDEAL)
+  {
+    return "";
+  }
+  if (info.family != MetricFamily::Target)
+  {
+    return label + " does not compare the elements with a target.";
+  }
+  if (target == vtkMeshOptimizer::SIZE && info.scaleInvariant)
+  {
+    return label + " does not depend on the size of the elements.";
+  }
+  return "";
+}
+
+//------------------------------------------------------------------------------
+std::string templateReason(int metric, int objectiveTemplate)
+{
+  return templateProblem(
+    static_cast<Metric>(metric), static_cast<ObjectiveTemplate>(objectiveTemplate));
+}
+
+//------------------------------------------------------------------------------
+std::string weightReason(int scalarization, int objectives)
+{
+  if (objectives < 2)
+  {
+    return "There is only one objective.";
+  }
+  switch (static_cast<Scalarization>(scalarization))
+  {
+    case Scalarization::WeightedSum:
+    case Scalarization::WeightedMinMax:
+    case Scalarization::ExponentialWeighted:
+      return "";
+    default:
+      return "This Scalarization has no weights. Weighted sum, Weighted min-max and Exponential "
+             "weighted have.";
+  }
+}
+
+} // namespace tautline
