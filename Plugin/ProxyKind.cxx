@@ -9,11 +9,16 @@ namespace tautline
 {
 
 //------------------------------------------------------------------------------
-bool isTautline(vtkSMProxy* proxy)
+bool isInMenu(vtkPVXMLElement* hints)
 {
-  vtkPVXMLElement* hints = proxy ? proxy->GetHints() : nullptr;
   vtkPVXMLElement* menu = hints ? hints->FindNestedElementByName("ShowInMenu") : nullptr;
   return menu && std::strcmp(menu->GetAttributeOrEmpty("category"), "Tautline") == 0;
+}
+
+//------------------------------------------------------------------------------
+bool isTautline(vtkSMProxy* proxy)
+{
+  return proxy && isInMenu(proxy->GetHints());
 }
 
 } // namespace tautline

@@ -6,10 +6,14 @@
 #ifndef tautline_ProxyKind_h
 #define tautline_ProxyKind_h
 
+class vtkPVXMLElement;
 class vtkSMProxy;
 
 namespace tautline
 {
+
+/// Whether hints of a proxy put it into the menu Tautline. False for null.
+bool isInMenu(vtkPVXMLElement* hints);
 
 /// Whether the proxy is a filter or source of the menu Tautline. False for null.
 bool isTautline(vtkSMProxy* proxy);

@@ -18,6 +18,8 @@ namespace tautline
 {
 namespace
 {
+PollHook hookOfProcess = nullptr;
+
 bool isAlone()
 {
   vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
@@ -27,7 +29,12 @@ bool isAlone()
 void pollAlgorithm(vtkAlgorithm* algorithm, const ExecutionLimits& limits, const Stopwatch& time)
 {
   algorithm->InvokeEvent(vtkInterruption::PollEvent);
-  if (limits.keepsBest && limits.keepsBest())
+  const bool keepsBest = limits.keepsBest && limits.keepsBest();
+  if (hookOfProcess)
+  {
+    hookOfProcess(algorithm, keepsBest);
+  }
+  if (keepsBest)
   {
     return;
   }
@@ -73,5 +80,11 @@ int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits, vtkIn
     algorithm->SetAbortExecute(1);
     return 1;
   }
+}
+
+//------------------------------------------------------------------------------
+void setPollHook(PollHook hook)
+{
+  hookOfProcess = hook;
 }
 }

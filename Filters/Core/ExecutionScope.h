@@ -36,5 +36,15 @@ struct ExecutionLimits
  */
 TAUTLINECORE_EXPORT int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits,
   vtkInformation* request, vtkInformationVector* outputs, const std::function<int()>& work);
+
+/**
+ * @brief What an application does with each poll of an execution, before the limits are checked:
+ * for instance set AbortExecute because the user asks for it.
+ * @param keepsBest whether the filter returns its best result so far on abort
+ */
+using PollHook = void (*)(vtkAlgorithm* algorithm, bool keepsBest);
+
+/// Sets the hook of the process; null: none, as at the start. To be called before any execution.
+TAUTLINECORE_EXPORT void setPollHook(PollHook hook);
 }
 #endif

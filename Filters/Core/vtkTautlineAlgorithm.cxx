@@ -17,7 +17,9 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 
 namespace
@@ -299,6 +301,24 @@ bool vtkTautlineAlgorithm::Proceed(double fraction)
   this->UpdateProgress(fraction);
   tautline::throwIfInterrupted();
   return this->GetAbortExecute() == 0;
+}
+
+//------------------------------------------------------------------------------
+void vtkTautlineAlgorithm::ShowIteration(
+  const char* filter, int iteration, std::initializer_list<ProgressValue> values)
+{
+  constexpr int digits = 6;
+  std::ostringstream text;
+  text.precision(digits);
+  text << filter << ": iteration " << iteration;
+  for (const ProgressValue& shown : values)
+  {
+    if (std::isfinite(shown.value))
+    {
+      text << ", " << shown.name << " " << shown.value;
+    }
+  }
+  this->SetProgressText(text.str().c_str());
 }
 
 //------------------------------------------------------------------------------

@@ -149,6 +149,21 @@ protected:
   /// Reports progress, 0 to 1. @return false if the execution is to be aborted
   bool Proceed(double fraction);
 
+  /// A number that the text of the progress shows, after its name.
+  struct ProgressValue
+  {
+    const char* name; ///< lower case: "objective"
+    double value;
+  };
+
+  /**
+   * Shows an iteration in the text of the progress, for those who watch it: "Optimize Mesh:
+   * iteration 3, objective 12.5, worst 2.87". Values that are not finite are left out.
+   * @param filter the name in the menu
+   */
+  void ShowIteration(
+    const char* filter, int iteration, std::initializer_list<ProgressValue> values);
+
   /// Adds a paragraph to the summary, unless it is empty.
   void AddToSummary(const std::string& paragraph);
 

@@ -30,6 +30,8 @@ enum Ports
   NumberOfPorts = 3
 };
 
+constexpr const char* FilterName = "Optimize Mesh"; // in the menu
+
 // More time steps than this are of no use to an animation.
 constexpr int MaximumTimeSteps = 1000;
 }
@@ -398,26 +400,27 @@ int vtkMeshOptimizer::RequestData(
   {
     this->Runs.clear();
   }
+  this->SetProgressText(FilterName);
   tautline::TableRows history, statistics;
-  const int succeeded = this->Attempt(outputVector,
-    "optimize the mesh in parts, or reduce Animation Memory",
-    [&]
-    {
-      tautline::OptimizerSettings settings = this->GetSettings();
-      settings.geometry = geometry;
-      tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), "Optimize Mesh");
-      this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
-        this->Boundary != FIXED,
-        [&](const tautline::InputBlock& block)
-        {
-          while (this->Runs.size() <= static_cast<std::size_t>(block.number))
+  const int succeeded =
+    this->Attempt(outputVector, "optimize the mesh in parts, or reduce Animation Memory",
+      [&]
+      {
+        tautline::OptimizerSettings settings = this->GetSettings();
+        settings.geometry = geometry;
+        tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), FilterName);
+        this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
+          this->Boundary != FIXED,
+          [&](const tautline::InputBlock& block)
           {
-            this->Runs.push_back(std::make_unique<tautline::OptimizerRun>());
-          }
-          this->Optimize(
-            settings, block, *this->Runs[block.number], done, time, history, statistics);
-        });
-    });
+            while (this->Runs.size() <= static_cast<std::size_t>(block.number))
+            {
+              this->Runs.push_back(std::make_unique<tautline::OptimizerRun>());
+            }
+            this->Optimize(
+              settings, block, *this->Runs[block.number], done, time, history, statistics);
+          });
+      });
   if (!succeeded)
   {
     this->Runs.clear();
@@ -466,6 +469,10 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
       {
         run.keep(state, coordinates, this->AnimationMemory / this->GetNumberOfBlocks());
       }
+      const tautline::IterationRecord& record = state.record;
+      this->ShowIteration(FilterName, record.iteration,
+        { { "objective", record.objective },
+          { "worst", record.worst.empty() ? vtkMath::Nan() : record.worst.front() } });
       return this->ProceedInBlock(block.number, state.progress);
     };
     run.iterations = -1;

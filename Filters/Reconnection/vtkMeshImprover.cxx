@@ -29,6 +29,7 @@ namespace
 constexpr int NumberOfInputPorts = 2, NumberOfOutputPorts = 3;
 constexpr int FixedArray = 0, RegionArray = 1, SizeArray = 2;
 constexpr int ListedElements = 10;
+constexpr const char* FilterName = "Improve Mesh"; // in the menu
 
 /// In the order of tautline::ReconnectionObstacle.
 using Reasons = std::array<const char*, 6>;
@@ -230,11 +231,12 @@ int vtkMeshImprover::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   this->ClearResult();
+  this->SetProgressText(FilterName);
   return this->Attempt(outputVector, "improve the mesh in parts",
     [&]
     {
       vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-      tautline::requireFirstProcess(input, "Improve Mesh");
+      tautline::requireFirstProcess(input, FilterName);
       this->CheckSeams(input);
       const auto fixed =
         tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
@@ -316,8 +318,13 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
     targetAngle = options.targetAngle;
     options.fixed = mesh.fixed().data();
     options.regions = mesh.regions().empty() ? nullptr : mesh.regions().data();
-    options.observer = [&](const tautline::ReconnectionRecord&, double progress)
-    { return this->Proceed((block.number + progress) / static_cast<double>(blocks)); };
+    options.observer = [&](const tautline::ReconnectionRecord& record, double progress)
+    {
+      this->ShowIteration(FilterName, record.pass,
+        { { "below target", static_cast<double>(record.belowTarget) },
+          { "worst", record.worstInverseMeanRatio } });
+      return this->Proceed((block.number + progress) / static_cast<double>(blocks));
+    };
   };
   if (!mesh.isTriangles())
   {

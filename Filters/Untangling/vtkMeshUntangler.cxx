@@ -29,6 +29,7 @@ constexpr int NumberOfInputPorts = 2, NumberOfOutputPorts = 2;
 constexpr int FixedArray = 0;
 
 constexpr int ListedElements = 10;
+constexpr const char* FilterName = "Untangle Mesh"; // in the menu
 
 /// In the order of tautline::Obstacle.
 constexpr std::array<const char*, 5> reasons = { "valid",
@@ -110,10 +111,11 @@ int vtkMeshUntangler::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   this->ClearResult();
+  this->SetProgressText(FilterName);
   return this->Attempt(outputVector, "untangle the mesh in parts",
     [&]
     {
-      tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), "Untangle Mesh");
+      tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), FilterName);
       tautline::TableRows history;
       this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, !this->FixBoundary,
         [&](const tautline::InputBlock& block) { this->Untangle(block, history); });
@@ -154,6 +156,9 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   options.observer = [&](const tautline::IterationState& state)
   {
     this->HaveBest();
+    this->ShowIteration(FilterName, state.record.iteration,
+      { { "objective", state.record.objective },
+        { "inverted", static_cast<double>(state.record.inverted) } });
     return this->ProceedInBlock(block.number, state.progress);
   };
   tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);

@@ -6,6 +6,7 @@ The numbers are computed here, from the points and cells, or are those of numpy.
 import functools
 import os
 import re
+import subprocess
 import sys
 import traceback
 
@@ -345,3 +346,38 @@ def objectives_table():
     history = servermanager.Fetch(optimizer, idx=1)
     assert history.GetColumnByName("min_angle worst") and history.GetColumnByName("edge_ratio worst")
     assert not history.GetColumnByName("imr worst")
+
+
+@check
+def open_cube():
+    """A mesh whose optimization can take long: 40000 tetrahedra, perturbed."""
+    cube = simple.Tetrahedralize(Input=simple.Wavelet(WholeExtent=[-10, 10] * 3))
+    mesh = simple.PerturbMesh(Input=cube)
+    simple.Show(mesh)
+    simple.SetActiveSource(mesh)
+
+
+@check
+def prepare_long_run():
+    """A run of about half a minute, and a process that will press Stop in it."""
+    optimizer = find("MeshOptimizer")
+    optimizer.Preset, optimizer.Optimizer, optimizer.Scalarization = "Custom", "L-BFGS", "Lexicographic"
+    optimizer.NumberOfObjectives, optimizer.Metric2 = 2, "Edge length ratio"
+    optimizer.MaximumIterations, optimizer.TimeLimit = 1000000, 40
+    optimizer.GradientNorm = optimizer.RelativeChange = 0
+    here = os.path.dirname(os.path.abspath(__file__))
+    subprocess.Popen(["/usr/bin/python3", os.path.join(here, "press_stop.py"), "2"])
+
+
+@check
+def stopped_run():
+    """The run ended by Stop, with the best mesh so far: not the input, and no worse one."""
+    optimizer = find("MeshOptimizer")
+    assert optimizer.Reason == "Stopped on request.", optimizer.Reason
+    mesh, history = servermanager.Fetch(optimizer), servermanager.Fetch(optimizer, idx=1)
+    objective = vtk_to_numpy(history.GetColumnByName("Objective"))
+    assert len(objective) > 3 and objective[-1] < objective[0]
+    moved = vtk_to_numpy(mesh.GetPointData().GetArray("Displacement"))
+    assert mesh.GetNumberOfCells() == 40000 and abs(moved).max() > 0.01
+    quality = [vtk_to_numpy(mesh.GetCellData().GetArray(name)).mean() for name in ("imr_before", "imr")]
+    assert quality[1] < quality[0], quality

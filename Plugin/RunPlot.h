@@ -1,0 +1,53 @@
+/**
+ * @class tautline::RunPlot
+ * @brief Draws two values over the iterations of a run: the first on the left axis, the second on
+ * the right one.
+ *
+ * An axis is logarithmic if all its values are above 0 and they span more than a factor of ten.
+ */
+
+#ifndef tautline_RunPlot_h
+#define tautline_RunPlot_h
+
+#include <QString>
+#include <QWidget>
+
+#include <array>
+#include <vector>
+
+namespace tautline
+{
+
+class RunPlot : public QWidget
+{
+  Q_OBJECT
+
+public:
+  /// A curve: its name, and its values at iterations.
+  struct Curve
+  {
+    QString name;
+    std::vector<std::pair<int, double>> points;
+  };
+
+  explicit RunPlot(QWidget* parent = nullptr);
+
+  /// Forgets the curves.
+  void clear();
+
+  /// Adds values at an iteration; a smaller iteration than the last begins new curves, and the
+  /// same replaces the last values.
+  void add(int iteration, const QString& name, double value, int curve);
+
+  const std::array<Curve, 2>& curves() const { return this->Curves; }
+  QSize sizeHint() const override;
+
+private:
+  void paintEvent(QPaintEvent*) override;
+
+  std::array<Curve, 2> Curves;
+};
+
+} // namespace tautline
+
+#endif

@@ -1,0 +1,297 @@
+#include "pqTautlineRunDock.h"
+
+#include "ProxyKind.h"
+#include "RunControl.h"
+#include "RunPlot.h"
+#include "StopWindow.h"
+
+#include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
+#include "pqPipelineSource.h"
+#include "pqProgressManager.h"
+#include "pqServer.h"
+#include "pqServerManagerModel.h"
+
+#include "vtkPVProxyDefinitionIterator.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMProxy.h"
+#include "vtkSMProxyDefinitionManager.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSmartPointer.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QRegularExpression>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QX11Info>
+
+#include <cstring>
+
+#include <xcb/xcb.h>
+
+namespace
+{
+/// The filters whose values are drawn and that Stop applies to: name of the proxy, in the menu.
+constexpr const char* Iterative[][2] = { { "MeshOptimizer", "Optimize Mesh" },
+  { "MeshUntangler", "Untangle Mesh" }, { "MeshImprover", "Improve Mesh" } };
+
+constexpr const char* StopTip = "End the run with the best mesh so far.";
+constexpr const char* IdleTip = "No filter of Tautline runs.";
+
+bool isIterative(const QString& filter)
+{
+  for (const auto& [proxy, label] : Iterative)
+  {
+    if (filter == label)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Shows what was drawn, though no event is processed.
+void flush()
+{
+  if (xcb_connection_t* display = QX11Info::connection())
+  {
+    xcb_flush(display);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+pqTautlineRunDock::pqTautlineRunDock(QWidget* parentObject)
+  : Superclass("Tautline Run", parentObject)
+  , Content(new QWidget(this))
+  , Filter(new QLabel(this->Content))
+  , Values(new QLabel(this->Content))
+  , Bar(new QProgressBar(this->Content))
+  , Stop(new QToolButton(this->Content))
+  , Plot(new tautline::RunPlot(this->Content))
+  , Cover(std::make_unique<tautline::StopWindow>([] { tautline::requestStop(true); }))
+{
+  this->Content->setObjectName("Content");
+  this->Filter->setObjectName("Filter");
+  this->Values->setObjectName("Values");
+  this->Bar->setObjectName("Progress");
+  this->Stop->setObjectName("Stop");
+  this->Plot->setObjectName("Plot");
+  this->Filter->setText("No run yet.");
+  this->setStop("Stop", IdleTip, false);
+  this->Stop->setToolButtonStyle(Qt::ToolButtonTextOnly);
+  this->Stop->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  // The texts change while no layout can be made.
+  constexpr int letters = 28, lines = 3;
+  this->Values->setMinimumWidth(letters * this->fontMetrics().averageCharWidth());
+  this->Values->setMinimumHeight(lines * this->fontMetrics().lineSpacing());
+  this->Values->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+
+  auto* left = new QVBoxLayout;
+  left->addWidget(this->Filter);
+  left->addWidget(this->Values);
+  left->addWidget(this->Bar);
+  left->addWidget(this->Stop);
+  left->addStretch();
+  auto* layout = new QHBoxLayout(this->Content);
+  layout->addLayout(left);
+  layout->addWidget(this->Plot, 1);
+  this->setWidget(this->Content);
+  this->hide();
+
+  auto* core = pqApplicationCore::instance();
+  auto* manager = core->getProgressManager();
+  QObject::connect(manager, &pqProgressManager::progress, this, &pqTautlineRunDock::progress);
+  QObject::connect(manager, &pqProgressManager::progressEndEvent, this, &pqTautlineRunDock::end);
+  auto* model = core->getServerManagerModel();
+  QObject::connect(
+    model, &pqServerManagerModel::sourceAdded, this, &pqTautlineRunDock::sourceAdded);
+  QObject::connect(
+    model, &pqServerManagerModel::serverAdded, this, &pqTautlineRunDock::serverAdded);
+  for (pqServer* server : model->findItems<pqServer*>())
+  {
+    this->serverAdded(server);
+  }
+}
+
+//------------------------------------------------------------------------------
+pqTautlineRunDock::~pqTautlineRunDock() = default;
+
+//------------------------------------------------------------------------------
+bool pqTautlineRunDock::drawn() const
+{
+  return this->Plot->curves()[0].points.size() > 1;
+}
+
+//------------------------------------------------------------------------------
+QString pqTautlineRunDock::axes() const
+{
+  return this->Plot->curves()[0].name + ", " + this->Plot->curves()[1].name;
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::sourceAdded(pqPipelineSource* source)
+{
+  for (const auto& [proxy, label] : Iterative)
+  {
+    if (!this->Shown && std::strcmp(source->getProxy()->GetXMLName(), proxy) == 0)
+    {
+      this->Shown = true;
+      this->show();
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::serverAdded(pqServer* server)
+{
+  auto* definitions = server->proxyManager()->GetProxyDefinitionManager();
+  for (const char* group : { "filters", "sources" })
+  {
+    vtkSmartPointer<vtkPVProxyDefinitionIterator> all;
+    all.TakeReference(definitions->NewSingleGroupIterator(group));
+    for (all->InitTraversal(); !all->IsDoneWithTraversal(); all->GoToNextItem())
+    {
+      vtkPVXMLElement* definition = all->GetProxyDefinition();
+      vtkPVXMLElement* hints = all->GetProxyHints();
+      if (definition && tautline::isInMenu(hints))
+      {
+        QString name = definition->GetAttributeOrEmpty("class");
+        this->Filters[name.remove(QRegularExpression("^vtk"))] =
+          definition->GetAttributeOrEmpty("label");
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+QString pqTautlineRunDock::filterOf(const QString& text) const
+{
+  // "Optimize Mesh: iteration 3, ...", or the name of a class.
+  const QString name = text.section(':', 0, 0);
+  if (isIterative(name))
+  {
+    return name;
+  }
+  const auto found = this->Filters.find(QString(name).remove(QRegularExpression("^vtk")));
+  return found == this->Filters.end() ? QString() : found->second;
+}
+
+//------------------------------------------------------------------------------
+QString pqTautlineRunDock::whyNoStop(const QString& filter) const
+{
+  pqServer* server = pqActiveObjects::instance().activeServer();
+  if (!isIterative(filter))
+  {
+    return filter + " has no mesh to keep before its end. Its Time Limit ends it.";
+  }
+  if (server && server->getNumberOfPartitions() > 1)
+  {
+    return "A server of several processes cannot be interrupted: one that ends alone leaves the "
+           "others waiting. The Time Limit ends the run.";
+  }
+  return this->Cover->isAvailable() ? ""
+                                    : "Clicks within a run are noticed on X11 only. The Time Limit "
+                                      "ends the run.";
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::setStop(const QString& text, const QString& tip, bool enabled)
+{
+  this->Stop->setText(text);
+  this->Stop->setToolTip(tip);
+  this->Stop->setEnabled(enabled);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::begin(const QString& filter)
+{
+  this->Running = filter;
+  this->Filter->setText(filter);
+  this->Values->clear();
+  this->Plot->clear();
+  const QString reason = this->whyNoStop(filter);
+  this->setStop("Stop", reason.isEmpty() ? StopTip : reason, reason.isEmpty());
+  if (reason.isEmpty())
+  {
+    this->Cover->cover(this->Stop);
+  }
+  else
+  {
+    this->Cover->uncover();
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::showValues(const QString& values)
+{
+  static const QRegularExpression iterationOf("^iteration (\\d+)");
+  static const QRegularExpression valueOf("^(.+) (\\S+)$");
+  const QStringList parts = values.split(", ");
+  const QRegularExpressionMatch iteration = iterationOf.match(parts.value(0));
+  if (!iteration.hasMatch())
+  {
+    return;
+  }
+  for (int i = 1; i < parts.size() && i <= 2; ++i)
+  {
+    const QRegularExpressionMatch value = valueOf.match(parts[i]);
+    bool valid = false;
+    const double number = value.captured(2).toDouble(&valid);
+    if (valid)
+    {
+      this->Plot->add(iteration.captured(1).toInt(), value.captured(1), number, i - 1);
+    }
+  }
+  this->Values->setText(parts.join('\n'));
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::progress(const QString& text, int percent)
+{
+  const QString filter = this->filterOf(text);
+  if (filter.isEmpty())
+  {
+    return;
+  }
+  if (filter != this->Running)
+  {
+    this->begin(filter);
+  }
+  this->showValues(text.section(": ", 1));
+  this->Bar->setValue(percent);
+  if (tautline::isStopRequested())
+  {
+    this->setStop("Stopping ...", "The run ends after this iteration.", false);
+    pqServer* server = pqActiveObjects::instance().activeServer();
+    if (!this->Sent && server)
+    {
+      this->Sent = true;
+      tautline::sendStop(server->session());
+    }
+  }
+  if (this->isVisible())
+  {
+    this->Content->repaint();
+    flush();
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::end()
+{
+  if (this->Running.isEmpty())
+  {
+    return;
+  }
+  const bool stopped = tautline::isStopRequested();
+  this->Filter->setText(this->Running + (stopped ? ": stopped" : ": finished"));
+  this->Running.clear();
+  this->Bar->reset();
+  this->Cover->uncover();
+  this->Sent = false;
+  tautline::requestStop(false);
+  this->setStop("Stop", IdleTip, false);
+}
