@@ -381,3 +381,17 @@ def stopped_run():
     assert mesh.GetNumberOfCells() == 40000 and abs(moved).max() > 0.01
     quality = [vtk_to_numpy(mesh.GetCellData().GetArray(name)).mean() for name in ("imr_before", "imr")]
     assert quality[1] < quality[0], quality
+
+
+@check
+def moved_in_plane():
+    """The hole was translated in the plane, up and to the right as the mouse, and nothing else was done to it."""
+    warp = find("MeshWarp")
+    transform = warp.Transform
+    assert list(transform.Scale) == [1, 1, 1] and list(transform.Rotate) == [0, 0, 0], list(transform.Scale)
+    x, y, z = transform.Translate
+    assert x > 0 and y > 0 and z == 0, (x, y, z)
+    mesh = servermanager.Fetch(warp)
+    assert mesh.GetBounds()[4] == mesh.GetBounds()[5]
+    moved = vtk_to_numpy(mesh.GetPointData().GetArray("Displacement"))
+    assert numpy.allclose(moved[numpy.argmax(numpy.linalg.norm(moved, axis=1))], (x, y, 0), rtol=1e-6)
