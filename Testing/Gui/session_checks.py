@@ -334,7 +334,7 @@ def mesh_opaque():
 
 @check
 def objectives_table():
-    """Of three objectives the first was removed: the others moved up, with all they have; the run has two objectives."""
+    """Of three objectives the first was removed: the others moved up, with all they have; the run has two."""
     optimizer = find("MeshOptimizer")
     columns = ("Metric", "Template", "Target", "Weight")
     rows = [tuple(optimizer.GetPropertyValue(f"{column}{row}") for column in columns) for row in (1, 2)]
@@ -385,7 +385,7 @@ def stopped_run():
 
 @check
 def moved_in_plane():
-    """The hole was translated in the plane, up and to the right as the mouse, and nothing else was done to it."""
+    """The hole was translated in the plane, up and to the right as the mouse, and no more."""
     warp = find("MeshWarp")
     transform = warp.Transform
     assert list(transform.Scale) == [1, 1, 1] and list(transform.Rotate) == [0, 0, 0], list(transform.Scale)
