@@ -15,6 +15,7 @@ void tautlineInstallColorMaps();
 
 /** Lets ParaView create the domain of the menus of metrics. */
 void tautlineRegisterDomains();
+
 /** Lets the user stop a run of a filter that keeps its best result so far; see RunControl.h. */
 void tautlineInstallRunControl();
 
