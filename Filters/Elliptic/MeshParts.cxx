@@ -21,11 +21,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <sstream>
+#include <utility>
 
 namespace tautline
 {
 namespace
 {
+constexpr char SeamRemedy[] = ": on several processes run Merge Blocks first, or switch Merge "
+                              "Coincident Points off to solve on "
+                              "each block by itself.";
+
 /// The partitions of a mesh on this process.
 struct Group
 {
@@ -232,19 +238,26 @@ std::vector<std::vector<char>> sharedPoints(
   return shared;
 }
 
+/// Whether any piece has ghosts. Collective.
+bool anyGhosts(const std::vector<Piece>& pieces, const Processes& processes)
+{
+  return !processes.everywhere(std::none_of(pieces.begin(), pieces.end(),
+    [](const Piece& piece) { return piece.input->GetCellGhostArray() != nullptr; }));
+}
+
+Vec3 placeOf(const Piece& piece, std::size_t point)
+{
+  Vec3 p;
+  piece.input->GetPoint(static_cast<vtkIdType>(point), p.data());
+  return p + Vec3{ 0, 0, 0 }; // -0 becomes 0
+}
+
 /// Global ids by coordinates, which must be equal in all digits. Collective.
 std::vector<std::vector<Index>> generateIds(
   const std::vector<Piece>& pieces, const Processes& processes)
 {
-  const bool ghosts = !processes.everywhere(std::none_of(pieces.begin(), pieces.end(),
-    [](const Piece& piece) { return piece.input->GetCellGhostArray() != nullptr; }));
+  const bool ghosts = anyGhosts(pieces, processes);
   const std::vector<std::vector<char>> shared = sharedPoints(pieces, ghosts, processes);
-  const auto place = [&pieces](std::size_t piece, std::size_t point)
-  {
-    Vec3 p;
-    pieces[piece].input->GetPoint(static_cast<vtkIdType>(point), p.data());
-    return p + Vec3{ 0, 0, 0 }; // -0 becomes 0
-  };
   std::vector<double> coordinates;
   double privates = 0.0;
   for (std::size_t i = 0; i < pieces.size(); ++i)
@@ -253,7 +266,7 @@ std::vector<std::vector<Index>> generateIds(
     {
       if (shared[i][k])
       {
-        const Vec3 p = place(i, k);
+        const Vec3 p = placeOf(pieces[i], k);
         coordinates.insert(coordinates.end(), p.begin(), p.end());
       }
       privates += !shared[i][k];
@@ -281,7 +294,7 @@ std::vector<std::vector<Index>> generateIds(
     for (std::size_t k = 0; k < shared[i].size(); ++k)
     {
       ids[i].push_back(shared[i][k]
-          ? std::lower_bound(places.begin(), places.end(), place(i, k)) - places.begin()
+          ? std::lower_bound(places.begin(), places.end(), placeOf(pieces[i], k)) - places.begin()
           : next++);
     }
   }
@@ -460,6 +473,61 @@ void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, const Pro
 }
 
 //------------------------------------------------------------------------------
+/// Throws Error if points of a group coincide with those of another group, which may be on another
+/// process: then they cannot be joined. Collective.
+void requireNoSeams(const std::vector<Group>& groups, const Processes& processes)
+{
+  std::vector<Piece> pieces;
+  std::vector<double> groupOf;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    for (const Piece& piece : groups[g].pieces)
+    {
+      pieces.push_back(piece);
+      groupOf.push_back(static_cast<double>(g));
+    }
+  }
+  const bool ghosts = anyGhosts(pieces, processes);
+  const std::vector<std::vector<char>> shared = sharedPoints(pieces, ghosts, processes);
+  std::vector<double> numbers; // the place and the group of each
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    for (std::size_t k = 0; k < shared[i].size(); ++k)
+    {
+      if (shared[i][k])
+      {
+        const Vec3 p = placeOf(pieces[i], k);
+        numbers.insert(numbers.end(), { p[0], p[1], p[2], groupOf[i] });
+      }
+    }
+  }
+  numbers = processes.gather(numbers);
+  std::vector<std::pair<Vec3, std::size_t>> places;
+  for (std::size_t k = 0; k + 3 < numbers.size(); k += 4)
+  {
+    places.push_back(
+      { { numbers[k], numbers[k + 1], numbers[k + 2] }, static_cast<std::size_t>(numbers[k + 3]) });
+  }
+  std::sort(places.begin(), places.end());
+  Index points = 0;
+  Vec3 first = { 0, 0, 0 };
+  for (std::size_t k = 1; k < places.size(); ++k)
+  {
+    if (places[k].first == places[k - 1].first && places[k].second != places[k - 1].second)
+    {
+      first = points++ == 0 ? places[k].first : first;
+    }
+  }
+  constexpr Index ofEdge = 2; // one alone is no seam
+  if (points >= ofEdge)
+  {
+    std::ostringstream text;
+    text << points << " points of a block coincide with those of another one, the first is at ("
+         << first[0] << ", " << first[1] << ", " << first[2] << ")" << SeamRemedy;
+    throw Error(text.str());
+  }
+}
+
 /// Makes one of the groups with seams between them. Collective.
 void joinGroups(std::vector<Group>& groups, const Processes& processes)
 {
@@ -493,10 +561,13 @@ void joinGroups(std::vector<Group>& groups, const Processes& processes)
       {
         throw Error(std::to_string(seams.points) +
           " points of a block coincide with those of another one, the first is " + seams.first +
-          ": on several processes run Merge Blocks first, or switch Merge Coincident Points off to "
-          "solve on each block by itself.");
+          SeamRemedy);
       }
     });
+  if (processes.count() > 1 && groups.size() > 1)
+  {
+    requireNoSeams(groups, processes);
+  }
   std::vector<std::size_t> to(groups.size());
   std::iota(to.begin(), to.end(), std::size_t(0));
   for (std::size_t i = 0; seams.points > 0 && i < data.size(); ++i)

@@ -6,7 +6,9 @@
 #include "CriteriaGrader.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
+#include "PieceOrientations.h"
 #include "PointMerge.h"
+#include "Processes.h"
 #include "QualityTotals.h"
 #include "TargetChoice.h"
 #include "tautline/Core/Memory.h"
@@ -192,38 +194,44 @@ int vtkElementQuality::RequestData(
 {
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   this->ClearResult();
-  // A file of criteria may be readable by some processes only.
+  // A block, or a file of criteria, may be wrong on some processes only: then all fail.
+  const auto anywhere = [this](const std::string& own)
+  { return this->Controller ? tautline::firstProblem(own) : own; };
   tautline::CriteriaGrader grader;
-  const std::string wrong =
-    FailureOf("use fewer criteria", [&] { grader = tautline::CriteriaGrader(this->Criteria); });
-  int wrongHere = wrong.empty() ? 0 : 1, wrongAnywhere = wrongHere;
-  if (this->Controller)
+  const std::string wrong = anywhere(
+    FailureOf("use fewer criteria", [&] { grader = tautline::CriteriaGrader(this->Criteria); }));
+  if (!wrong.empty())
   {
-    this->Controller->AllReduce(&wrongHere, &wrongAnywhere, 1, vtkCommunicator::MAX_OP);
+    return this->Fail(outputVector, wrong);
   }
-  if (wrongAnywhere)
+  tautline::PieceOrientations orientations;
+  if (this->Controller && this->Controller->GetNumberOfProcesses() > 1)
   {
-    return this->Fail(
-      outputVector, wrong.empty() ? "The criteria cannot be read on another process." : wrong);
+    const std::string malformed = anywhere(FailureOf("divide the mesh",
+      [&] { orientations.find(vtkDataObject::GetData(inputVector[0]), this->Threads); }));
+    if (!malformed.empty())
+    {
+      return this->Fail(outputVector, malformed);
+    }
+    orientations.gather(this->Controller);
   }
   tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
   tautline::BadElements bad;
-  const std::string failure = FailureOf("choose fewer metrics or measure the mesh in parts",
-    [&]
-    {
-      tautline::forEachBlock(vtkDataObject::GetData(inputVector[0]),
-        vtkDataObject::GetData(inputVector[1]), nullptr, output,
-        [&](const tautline::InputBlock& block)
-        { this->Measure(block.input, block.reference, block.output, totals, grader, bad); });
-    });
-
-  // Every process takes part in what follows, also if its own blocks failed.
-  totals.gather(this->Controller);
-  grader.gather(this->Controller);
+  const std::string failure =
+    anywhere(FailureOf("choose fewer metrics or measure the mesh in parts",
+      [&]
+      {
+        tautline::forEachBlock(vtkDataObject::GetData(inputVector[0]),
+          vtkDataObject::GetData(inputVector[1]), nullptr, output,
+          [&](const tautline::InputBlock& block)
+          { this->Measure(block, orientations.ambiguous(block.flatIndex), totals, grader, bad); });
+      }));
   if (!failure.empty())
   {
     return this->Fail(outputVector, failure);
   }
+  totals.gather(this->Controller);
+  grader.gather(this->Controller);
   // Unlike the tables, each process has its own.
   bad.copyTo(vtkUnstructuredGrid::GetData(outputVector, BadPort));
   if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
@@ -264,10 +272,11 @@ void vtkElementQuality::ClearResult()
 }
 
 //------------------------------------------------------------------------------
-void vtkElementQuality::Measure(vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output,
+void vtkElementQuality::Measure(const tautline::InputBlock& block, bool ambiguous,
   tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad)
 {
   using namespace tautline;
+  vtkDataSet *input = block.input, *output = block.output;
   output->ShallowCopy(input);
   MeshAdapter adapter(input, this->Threads);
   Mesh& mesh = adapter.mesh();
@@ -279,13 +288,13 @@ void vtkElementQuality::Measure(vtkDataSet* input, vtkDataSet* reference, vtkDat
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(cells);
-  this->SettleOrientation(adapter, validity->GetPointer(0), output);
+  this->SettleOrientation(adapter, ambiguous, validity->GetPointer(0), output);
   const std::vector<unsigned char> skip = cellsToSkip(adapter);
   const unsigned char* skipped = skip.empty() ? nullptr : skip.data();
   this->CheckConnections(mesh, skipped);
   totals.addBlock(mesh, validity->GetPointer(0), skipped, this->Threads);
 
-  const Targets targets = this->MakeTargets(input, reference, adapter);
+  const Targets targets = this->MakeTargets(input, block.reference, adapter);
   EvaluationOptions options;
   options.parameters = { this->Beta, this->Epsilon };
   options.combination = static_cast<tautline::Combination>(this->Combination);
@@ -322,15 +331,19 @@ void vtkElementQuality::Measure(vtkDataSet* input, vtkDataSet* reference, vtkDat
 
 //------------------------------------------------------------------------------
 void vtkElementQuality::SettleOrientation(
-  tautline::MeshAdapter& adapter, signed char* validity, vtkDataSet* output)
+  tautline::MeshAdapter& adapter, bool ambiguous, signed char* validity, vtkDataSet* output)
 {
   std::string text;
-  if (this->ReversedMesh == MEASURE_AS_GIVEN)
+  if (this->ReversedMesh == MEASURE_AS_GIVEN || ambiguous)
   {
     const tautline::Mesh& mesh = adapter.mesh();
     mesh.classifyCells(validity, this->Threads);
     text = describe(mesh.orientation(validity), mesh);
     text += text.empty() ? "" : " Cells of negative size count as inverted.";
+    text += !ambiguous || text.empty()
+      ? ""
+      : " The parts of the mesh on other processes are not reversed: if cells are listed in the "
+        "opposite order, gather the mesh on one process, in ParaView by Aggregate Dataset.";
   }
   else
   {

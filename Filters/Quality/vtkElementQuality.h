@@ -107,6 +107,7 @@ class Mesh;
 class MeshAdapter;
 class QualityTotals;
 struct EvaluationOptions;
+struct InputBlock;
 struct Targets;
 }
 
@@ -279,9 +280,11 @@ private:
   vtkElementQuality(const vtkElementQuality&) = delete;
   void operator=(const vtkElementQuality&) = delete;
 
-  void Measure(vtkDataSet* input, vtkDataSet* reference, vtkDataSet* output,
-    tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad);
-  void SettleOrientation(tautline::MeshAdapter& adapter, signed char* validity, vtkDataSet* output);
+  void Measure(const tautline::InputBlock& block, bool ambiguous, tautline::QualityTotals& totals,
+    tautline::CriteriaGrader& grader, tautline::BadElements& bad);
+  /// @param ambiguous whether the pieces on other processes do not agree
+  void SettleOrientation(
+    tautline::MeshAdapter& adapter, bool ambiguous, signed char* validity, vtkDataSet* output);
   /// Adds remarks on coincident points and duplicate cells.
   void CheckConnections(const tautline::Mesh& mesh, const unsigned char* skip);
   tautline::Targets MakeTargets(

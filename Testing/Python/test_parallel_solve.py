@@ -1,4 +1,4 @@
-"""test_parallel_solve.py PVBATCH: pvbatch on 1, 2 and 4 MPI ranks finds the same solutions; skipped without mpirun."""
+"""test_parallel_solve.py PVBATCH: pvbatch on 1, 2 and 4 MPI ranks finds the same numbers; skipped without mpirun."""
 
 import json
 import os
@@ -17,6 +17,7 @@ HERE, OUT = Path(__file__).parent, Path(os.environ["TAUTLINE_TEST_DIR"])
 # As root, too, and wherever processes may not read each other's memory.
 ENVIRONMENT = dict(os.environ, OMPI_MCA_btl_vader_single_copy_mechanism="none", OMP_NUM_THREADS="1")
 CLOSE = 1e-8
+ROUNDING = 1e-12
 SECONDS = 150
 
 
@@ -38,10 +39,24 @@ def close(a, b, tolerance=CLOSE) -> bool:
     return a.shape == b.shape and np.abs(a - b).max() <= tolerance * np.abs(b).max()
 
 
+def check_tables(found: dict, expected: dict) -> None:
+    """Compare the tables of Element Quality: sums may be taken in another order."""
+    assert found.keys() == expected.keys()
+    for name, values in expected.items():
+        numbers = not isinstance(values, str) and not isinstance(values[0], str)
+        same = np.allclose(found[name], values, rtol=ROUNDING, atol=0, equal_nan=True) if numbers else None
+        assert same if numbers else found[name] == values, (name, found[name], values)
+
+
 one = run(1)
 assert one["unknowns 0 0"] == 343 and one["ranks"] == 1
 assert max(one["poisson 0 0"]) > 0.01 and one["flattest 0 0"] > 0
 assert len(one["poisson 0 0"]) == 729 and len(one["elastic"]) == 729
+# Not the same value everywhere, and elements of each grade.
+assert len(one["metric field mean_ratio"]) == 21 * 17 and np.ptp(one["metric field mean_ratio"]) > 0.5
+assert len(one["domain points"]) == 1 and one["domain cells"] > 100
+counts = [one["quality 0"][f"6 {name}"] for name in ("Passed", "Warning", "Failed")]
+assert min(map(min, counts)) > 0 and np.sum(counts, axis=0).tolist() == [3072, 3072], counts
 for ranks in (1, 2, 4):
     found = one if ranks == 1 else run(ranks)
     assert found["ranks"] == ranks
@@ -55,4 +70,10 @@ for ranks in (1, 2, 4):
     assert abs(found["shares"] - 1) < 1e-6, found["shares"]
     assert found["study"] == [1, 1, 1] and found["history"] and found["late"]
     assert all(value == 0 for key, value in found.items() if key.startswith("refused"))
+    # Metric Field and Mesh Domain: value by value. A domain is whole on the first rank.
+    for key in ("mean_ratio", "condition_number", "Validity"):
+        assert found[f"metric field {key}"] == one[f"metric field {key}"], (ranks, key)
+    assert found["domain points"] == one["domain points"] and found["domain cells"] == one["domain cells"]
+    for ghosts in (0, 1):
+        check_tables(found[f"quality {ghosts}"], one["quality 0"])
     print(ranks, "ranks:", found["condition"], found["image"])

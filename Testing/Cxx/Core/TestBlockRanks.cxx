@@ -1,0 +1,354 @@
+// Meshes and composite data on several processes: the numbers of Element Quality are those of the
+// whole mesh on one process, also where pieces are inverted; a block that is wrong on one process
+// is an error on all, as is a seam between blocks on different processes, and none waits for
+// another.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "vtkConditionEstimator.h"
+#include "vtkElementQuality.h"
+#include "vtkEllipticSolver.h"
+#include "vtkSolverStudy.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkMPIController.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+using namespace tautline;
+
+namespace
+{
+constexpr double Rounding = 1e-13; // of sums in another order
+
+/// The rank that has a cell: `ranks - 1` of more than two ranks has none.
+using Owner = std::function<int(Index cell, int takers)>;
+
+int scattered(Index cell, int takers)
+{
+  return static_cast<int>(cell % takers);
+}
+
+/// All points, and the cells of one rank, with global ids.
+vtkSmartPointer<vtkUnstructuredGrid> pieceOf(
+  const MeshData& whole, const Owner& owner, int rank, int ranks)
+{
+  const int takers = ranks > 2 ? ranks - 1 : ranks;
+  MeshData data;
+  data.points = whole.points;
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("ids");
+  for (Index cell = 0; cell < whole.numberOfCells(); ++cell)
+  {
+    if (owner(cell, takers) == rank)
+    {
+      data.addCell(static_cast<int>(whole.types[cell]),
+        std::vector<Index>(whole.connectivity.begin() + whole.offsets[cell],
+          whole.connectivity.begin() + whole.offsets[cell + 1]));
+      ids->InsertNextValue(cell);
+    }
+  }
+  if (data.numberOfCells() == 0)
+  {
+    return vtkSmartPointer<vtkUnstructuredGrid>::New();
+  }
+  auto grid = toGrid(data);
+  grid->GetCellData()->SetGlobalIds(ids);
+  return grid;
+}
+
+void setUp(vtkElementQuality* filter)
+{
+  for (const char* metric : { "imr", "mean_ratio", "scaled_jacobian" })
+  {
+    filter->AddMetricByName(metric);
+  }
+  filter->SetCriteria("fem");
+  filter->SetExtractBad(true);
+}
+
+/// Two values of tables or arrays of all types.
+void compareArrays(vtkAbstractArray* found, vtkAbstractArray* expected)
+{
+  const Context context(expected->GetName() ? expected->GetName() : "");
+  if (!TAUTLINE_CHECK(found && found->GetNumberOfValues() == expected->GetNumberOfValues()))
+  {
+    return;
+  }
+  for (vtkIdType i = 0; i < expected->GetNumberOfValues(); ++i)
+  {
+    const vtkVariant a = found->GetVariantValue(i), b = expected->GetVariantValue(i);
+    if (b.IsString())
+    {
+      TAUTLINE_CHECK_EQUAL(a.ToString(), b.ToString());
+    }
+    else if (!std::isnan(b.ToDouble()) || !std::isnan(a.ToDouble()))
+    {
+      TAUTLINE_CHECK_RELATIVE(a.ToDouble(), b.ToDouble(), Rounding);
+    }
+  }
+}
+
+void compareTables(vtkAlgorithm* found, vtkAlgorithm* expected)
+{
+  int tables = 0;
+  for (int port = 1; port < expected->GetNumberOfOutputPorts(); ++port)
+  {
+    auto* table = vtkTable::SafeDownCast(expected->GetOutputDataObject(port));
+    auto* other = vtkTable::SafeDownCast(found->GetOutputDataObject(port));
+    for (vtkIdType c = 0; table && c < table->GetNumberOfColumns(); ++c)
+    {
+      compareArrays(other->GetColumnByName(table->GetColumnName(c)), table->GetColumn(c));
+    }
+    tables += table && table->GetNumberOfRows() > 0;
+  }
+  TAUTLINE_CHECK_EQUAL(tables, 5);
+}
+
+/// The arrays of the cells of a piece are those in the whole mesh.
+void compareCells(vtkDataSet* piece, vtkDataSet* whole)
+{
+  for (const char* name : { "imr", "scaled_jacobian", "Validity", "Grade", "QualityIndex" })
+  {
+    const Context context(name);
+    for (vtkIdType cell = 0; cell < piece->GetNumberOfCells(); ++cell)
+    {
+      const auto id = static_cast<vtkIdType>(piece->GetCellData()->GetGlobalIds()->GetTuple1(cell));
+      const double a = component(piece->GetCellData(), name, cell);
+      const double b = component(whole->GetCellData(), name, id);
+      TAUTLINE_CHECK(a == b || (std::isnan(a) && std::isnan(b)));
+    }
+  }
+}
+
+/// @param inverted the number of inverted cells that there are at least
+void compareQuality(
+  const char* name, const MeshData& mesh, const Owner& owner, Index inverted, int rank, int ranks)
+{
+  const Context context(name);
+  vtkNew<vtkElementQuality> whole, part;
+  setUp(whole);
+  setUp(part);
+  whole->SetController(nullptr);
+  const auto grid = pieceOf(
+    mesh, [](Index, int) { return 0; }, 0, 1);
+  whole->SetInputData(grid);
+  part->SetInputData(pieceOf(mesh, owner, rank, ranks));
+  whole->Update();
+  part->Update();
+  TAUTLINE_CHECK(whole->GetStatistics()->GetValueByName(0, "Inverted").ToInt() >= inverted);
+  compareCells(vtkDataSet::SafeDownCast(part->GetOutputDataObject(0)),
+    vtkDataSet::SafeDownCast(whole->GetOutputDataObject(0)));
+  TAUTLINE_CHECK_EQUAL(std::string(part->GetVerdict()), std::string(whole->GetVerdict()));
+  TAUTLINE_CHECK_RELATIVE(part->GetQualityIndex(), whole->GetQualityIndex(), Rounding);
+  if (rank == 0)
+  {
+    compareTables(part, whole);
+    compareArrays(part->GetWorst()->GetPointData()->GetArray("CellId"),
+      whole->GetWorst()->GetPointData()->GetArray("CellId"));
+    compareArrays(
+      part->GetWorst()->GetPoints()->GetData(), whole->GetWorst()->GetPoints()->GetData());
+    TAUTLINE_CHECK_EQUAL(std::string(part->GetSummary()), std::string(whole->GetSummary()));
+  }
+}
+
+void testQuality(int rank, int ranks)
+{
+  constexpr Index n = 5;
+  const MeshData moved = movedBlock(CellType::Tetrahedron, n, 0.15);
+  compareQuality("valid", moved, scattered, 0, rank, ranks);
+  const MeshData tangled = movedBlock(CellType::Tetrahedron, n, 0.4);
+  compareQuality("tangled", tangled, scattered, 10, rank, ranks);
+  // The inverted cells by themselves on one rank, as if they were listed in the opposite order.
+  const auto grid = toGrid(tangled);
+  vtkNew<vtkElementQuality> measured;
+  setUp(measured);
+  measured->SetController(nullptr);
+  measured->SetInputData(grid);
+  measured->Update();
+  auto* of = vtkDataSet::SafeDownCast(measured->GetOutputDataObject(0));
+  compareQuality(
+    "inverted apart", tangled,
+    [of](Index cell, int takers)
+    { return component(of->GetCellData(), "Validity", cell) < 0 ? takers - 1 : 0; },
+    10, rank, ranks);
+  // All reversed on all ranks: the mesh is treated as if flipped.
+  MeshData reversed = moved;
+  for (Index cell = 0; cell < reversed.numberOfCells(); ++cell)
+  {
+    std::swap(reversed.connectivity[reversed.offsets[cell]],
+      reversed.connectivity[reversed.offsets[cell] + 1]);
+  }
+  compareQuality("reversed", reversed, scattered, 0, rank, ranks);
+}
+
+//------------------------------------------------------------------------------
+/// A way in which a block can be wrong, and what the message has besides the block.
+using Change = std::function<void(vtkUnstructuredGrid*)>;
+struct Spoil
+{
+  Change change;
+  const char* text;
+};
+
+void cutConnectivity(vtkUnstructuredGrid* grid)
+{
+  grid->GetCells()->GetConnectivityArray()->SetComponent(0, 0, 1e6);
+}
+
+void addQuadraticCell(vtkUnstructuredGrid* grid)
+{
+  grid->GetCellData()->Initialize();
+  const vtkIdType ids[] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9 };
+  grid->InsertNextCell(VTK_QUADRATIC_TETRA, 10, ids);
+}
+
+void repeatCell(vtkUnstructuredGrid* grid)
+{
+  grid->GetCellData()->Initialize();
+  vtkNew<vtkIdList> ids;
+  grid->GetCellPoints(0, ids);
+  grid->InsertNextCell(grid->GetCellType(0), ids);
+}
+
+void moveToNaN(vtkUnstructuredGrid* grid)
+{
+  grid->GetPoints()->SetPoint(0, std::numeric_limits<double>::quiet_NaN(), 0, 0);
+}
+
+void removeSizes(vtkUnstructuredGrid* grid)
+{
+  grid->GetCellData()->RemoveArray("sizes");
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> blockWithSizes(Index n)
+{
+  auto grid = toGrid(blockMesh(CellType::Tetrahedron, n, n, n));
+  vtkNew<vtkDoubleArray> sizes;
+  sizes->SetName("sizes");
+  sizes->SetNumberOfValues(grid->GetNumberOfCells());
+  sizes->Fill(0.2);
+  grid->GetCellData()->AddArray(sizes);
+  return grid;
+}
+
+/// A block of each rank's own and one with a part on each rank; then one that is wrong on the last
+/// rank only, and right again.
+template <class Filter>
+void testSpoiled(const char* name, int rank, int ranks, const std::vector<Spoil>& ways,
+  const std::function<void(Filter*)>& choose)
+{
+  const Context context(name);
+  vtkNew<Filter> filter;
+  Messages messages(filter);
+  choose(filter);
+  // Blocks of their own are far apart.
+  const auto update = [&](const Change& change)
+  {
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    for (int i = 0; i < ranks; ++i)
+    {
+      auto grid = blockWithSizes(3);
+      for (vtkIdType p = 0; p < grid->GetNumberOfPoints(); ++p)
+      {
+        double x[3];
+        grid->GetPoint(p, x);
+        grid->GetPoints()->SetPoint(p, x[0] + 10.0 * i, x[1], x[2]);
+      }
+      if (change && i == ranks - 1)
+      {
+        change(grid);
+      }
+      blocks->SetBlock(i, i == rank ? grid.Get() : nullptr);
+    }
+    messages.clear();
+    filter->SetInputDataObject(0, blocks);
+    filter->Update();
+    auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    return output->GetNumberOfCells();
+  };
+  TAUTLINE_CHECK(update({}) > 0);
+  TAUTLINE_CHECK(messages.empty());
+  for (const Spoil& way : ways)
+  {
+    const Context which(way.text);
+    TAUTLINE_CHECK_EQUAL(update(way.change), 0);
+    TAUTLINE_CHECK(messages.has(way.text));
+    TAUTLINE_CHECK(messages.has("block " + std::to_string(ranks)));
+    TAUTLINE_CHECK(update({}) > 0);
+    TAUTLINE_CHECK(messages.empty());
+  }
+}
+
+void testWrongBlocks(int rank, int ranks)
+{
+  const Spoil ids = { cutConnectivity, "point 1000000" };
+  testSpoiled<vtkElementQuality>("Element Quality", rank, ranks, { ids, { removeSizes, "size" } },
+    [](vtkElementQuality* filter)
+    {
+      filter->AddMetricByName("imr");
+      filter->SetTargetType(vtkElementQuality::SIZE);
+      filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes");
+    });
+  const std::vector<Spoil> ways = { ids, { addQuadraticCell, "Tessellate" },
+    { repeatCell, "the same points" }, { moveToNaN, "finite" } };
+  testSpoiled<vtkEllipticSolver>("Solve PDE", rank, ranks, ways, [](vtkEllipticSolver*) {});
+  testSpoiled<vtkConditionEstimator>("Condition", rank, ranks, ways, [](vtkConditionEstimator*) {});
+  testSpoiled<vtkSolverStudy>(
+    "Solver Study", rank, ranks, ways, [](vtkSolverStudy* filter) { filter->AddCombination(1); });
+}
+
+//------------------------------------------------------------------------------
+/// Two blocks with a seam, each on a rank of its own: in one process they are one mesh.
+void testSeam(int rank)
+{
+  const Context context("seam");
+  constexpr double side = 3;
+  const auto update = [&](vtkEllipticSolver* filter, const Vec3& shift)
+  {
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    for (int i = 0; i < 2; ++i)
+    {
+      MeshData data = blockMesh(CellType::Hexahedron, side, side, side);
+      data.transform([&](const Vec3& p) { return p + static_cast<double>(i) * shift; });
+      blocks->SetBlock(i, i == rank ? toGrid(data).Get() : nullptr);
+    }
+    filter->SetInputDataObject(0, blocks);
+    filter->Update();
+    auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    return output->GetNumberOfCells() > 0;
+  };
+  vtkNew<vtkEllipticSolver> filter;
+  Messages messages(filter);
+  TAUTLINE_CHECK(!update(filter, { side, 0, 0 }));
+  TAUTLINE_CHECK(messages.has("16 points of a block coincide with those of another one, the first "
+                              "is at (3, 0, 0)"));
+  messages.clear();
+  filter->SetMergeCoincidentPoints(false);
+  TAUTLINE_CHECK_EQUAL(update(filter, { side, 0, 0 }), rank < 2);
+  filter->SetMergeCoincidentPoints(true);
+  TAUTLINE_CHECK_EQUAL(update(filter, { side, side, side }), rank < 2); // a corner is no seam
+  TAUTLINE_CHECK(messages.empty());
+}
+}
+
+//------------------------------------------------------------------------------
+int TestBlockRanks(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  const int rank = controller->GetLocalProcessId(), ranks = controller->GetNumberOfProcesses();
+  testQuality(rank, ranks);
+  testWrongBlocks(rank, ranks);
+  testSeam(rank);
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  controller->Finalize();
+  return exitCode();
+}
