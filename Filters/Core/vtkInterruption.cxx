@@ -53,6 +53,18 @@ bool vtkInterruption::IsInterrupted()
 }
 
 //------------------------------------------------------------------------------
+void vtkInterruption::MeasurePolls(bool measure)
+{
+  tautline::measurePolls(measure);
+}
+
+//------------------------------------------------------------------------------
+double vtkInterruption::GetLongestUnpolledSeconds()
+{
+  return tautline::longestUnpolledSeconds();
+}
+
+//------------------------------------------------------------------------------
 void vtkInterruption::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -43,6 +43,16 @@ public:
   /// Whether the computations of this thread are interrupted.
   static bool IsInterrupted();
 
+  ///@{
+  /**
+   * For tests, which find computations without a poll by it: measures the longest time that a
+   * thread computes between two polls, in seconds of its CPU time. MeasurePolls() forgets what was
+   * measured before.
+   */
+  static void MeasurePolls(bool measure);
+  static double GetLongestUnpolledSeconds();
+  ///@}
+
 protected:
   vtkInterruption() = default;
   ~vtkInterruption() override = default;

@@ -4,6 +4,7 @@
 #include "HorizonInput.h"
 #include "Processes.h"
 #include "ValidateInput.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 
@@ -128,6 +129,7 @@ void collectTriangles(const tautline::HorizonInput& taken, const Disc& disc,
   std::map<tautline::Index, vtkIdType> newId;
   for (tautline::Index t = 0; t < mesh.numberOfTriangles(); ++t)
   {
+    tautline::pollInterruption(t);
     const tautline::Index* corners = &mesh.triangles[3 * t];
     double xy[6];
     for (int k = 0; k < 3; ++k)

@@ -3,10 +3,12 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <utility>
 
 #include <csignal>
+#include <ctime>
 
 namespace tautline
 {
@@ -77,9 +79,53 @@ struct State
   bool Cancelled = false, Polling = false;
   PollScope* Innermost = nullptr;
   Clock::time_point Next; ///< when the functions are called again
+  double LastPoll = 0;    ///< CPU seconds of the thread; only while polls are measured
 };
 
 thread_local State state;
+
+/// Of measurePolls(), for all threads.
+std::atomic<bool> Measuring{ false };
+std::atomic<double> LongestUnpolled{ 0.0 };
+
+double threadSeconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  constexpr double nano = 1e-9;
+  return static_cast<double>(time.tv_sec) + nano * static_cast<double>(time.tv_nsec);
+}
+
+/// Begins to measure at the begin of the outermost scope, and after what is no poll.
+void beginUnpolled()
+{
+  if (Measuring.load(std::memory_order_relaxed))
+  {
+    state.LastPoll = threadSeconds();
+  }
+}
+
+/// What is computed until the next poll does not count: it leaves what was interrupted, which
+/// frees memory and can not poll.
+void leaveUnpolled()
+{
+  state.LastPoll = std::numeric_limits<double>::infinity();
+}
+
+/// Takes the time since the last poll.
+void endUnpolled()
+{
+  if (!Measuring.load(std::memory_order_relaxed))
+  {
+    return;
+  }
+  const double now = threadSeconds(), unpolled = now - state.LastPoll;
+  state.LastPoll = now;
+  double longest = LongestUnpolled.load();
+  while (unpolled > longest && !LongestUnpolled.compare_exchange_weak(longest, unpolled))
+  {
+  }
+}
 
 bool signalArrived()
 {
@@ -95,6 +141,14 @@ struct Polling
     constexpr std::chrono::duration<double> interval(PollScope::Interval);
     state.Polling = false;
     state.Next = Clock::now() + std::chrono::duration_cast<Clock::duration>(interval);
+    if (std::uncaught_exceptions() > 0)
+    {
+      leaveUnpolled();
+    }
+    else
+    {
+      beginUnpolled();
+    }
   }
 };
 }
@@ -111,6 +165,10 @@ InterruptScope::InterruptScope(bool handleSignal)
     }
     addHandler();
   }
+  if (!interruptible())
+  {
+    beginUnpolled();
+  }
   ++state.Scopes;
 }
 
@@ -119,6 +177,10 @@ InterruptScope::~InterruptScope()
   if (--state.Scopes == 0)
   {
     state.Cancelled = false;
+  }
+  if (!interruptible())
+  {
+    endUnpolled();
   }
   if (this->Handles)
   {
@@ -145,14 +207,23 @@ bool InterruptScope::interrupted()
 //------------------------------------------------------------------------------
 PollScope::PollScope(std::function<void()> poll)
   : Poll(std::move(poll))
-  , Outer(std::exchange(state.Innermost, this))
+  , Outer(state.Innermost)
 {
+  if (!interruptible())
+  {
+    beginUnpolled();
+  }
+  state.Innermost = this;
   state.Next = Clock::time_point(); // the first call is at once
 }
 
 PollScope::~PollScope()
 {
   state.Innermost = this->Outer;
+  if (!interruptible())
+  {
+    endUnpolled();
+  }
 }
 
 void PollScope::call() const
@@ -171,10 +242,12 @@ void throwIfInterrupted()
   {
     return;
   }
+  endUnpolled();
   if (InterruptScope::interrupted())
   {
     if (std::uncaught_exceptions() == 0)
     {
+      leaveUnpolled();
       throw Interrupted();
     }
     return;
@@ -187,9 +260,22 @@ void throwIfInterrupted()
     }
     if (InterruptScope::interrupted())
     {
+      leaveUnpolled();
       throw Interrupted();
     }
   }
+}
+
+void measurePolls(bool measure)
+{
+  LongestUnpolled = 0.0;
+  Measuring = measure;
+  state.LastPoll = threadSeconds(); // of scopes that exist already
+}
+
+double longestUnpolledSeconds()
+{
+  return LongestUnpolled;
 }
 
 bool interruptible()

@@ -110,6 +110,19 @@ inline void pollInterruption(Index pass)
   }
 }
 
+/**
+ * @brief For tests, which find loops without a poll by it: begins to measure how long threads with
+ * a scope compute without calling throwIfInterrupted(), or ends it. Forgets what was measured.
+ */
+TAUTLINE_KERNEL_EXPORT void measurePolls(bool measure);
+
+/**
+ * @brief The longest time that a thread has computed between two polls, from the begin of its
+ * outermost scope or to its end, since measurePolls(true). CPU seconds of that thread: neither
+ * waiting nor other processes count, nor what follows an interruption.
+ */
+TAUTLINE_KERNEL_EXPORT double longestUnpolledSeconds();
+
 /// Whether throwIfInterrupted() can have an effect on this thread: then work that cannot call it
 /// is worth a watchdog.
 TAUTLINE_KERNEL_EXPORT bool interruptible();

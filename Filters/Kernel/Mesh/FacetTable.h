@@ -50,7 +50,7 @@ public:
     forEachUse(mesh, dimension, skip,
       [&](Index smallest, const FacetUse&) { ++this->Starts[smallest + 1]; });
     std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
-    this->Uses.resize(this->Starts.back());
+    this->makeRoom(this->Starts.back());
     std::vector<Index> next(this->Starts.begin(), this->Starts.end() - 1);
     forEachUse(mesh, dimension, skip,
       [&](Index smallest, const FacetUse& use) { this->Uses[next[smallest]++] = use; });
@@ -85,6 +85,19 @@ public:
   }
 
 private:
+  /// In parts, because clearing that much memory takes a while.
+  void makeRoom(Index uses)
+  {
+    constexpr Index part = Index(1) << 18;
+    this->Uses.reserve(uses);
+    for (Index size = 0; size < uses;)
+    {
+      throwIfInterrupted();
+      size = std::min(uses, size + part);
+      this->Uses.resize(size);
+    }
+  }
+
   /// Moves the uses of a facet by distinct cells to the front. @return the end of these
   Index dropDuplicates(Index begin, Index end)
   {

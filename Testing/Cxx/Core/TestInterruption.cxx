@@ -13,6 +13,7 @@
 
 #include "vtkCallbackCommand.h"
 #include "vtkElementQuality.h"
+#include "vtkHorizonNeighbors.h"
 #include "vtkInterruption.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMultiBlockDataSet.h"
@@ -24,6 +25,7 @@
 #include <thread>
 
 #include <csignal>
+#include <ctime>
 
 using namespace tautline;
 
@@ -240,6 +242,99 @@ void testAbort()
   filter->RemoveObserver(cancelling);
 }
 
+/// A filter that is none of vtkTautlineAlgorithm, with a scope of its own.
+void testHorizonNeighbors()
+{
+  vtkNew<vtkHorizonNeighbors> filter;
+  constexpr Index side = 300;
+  filter->SetInputData(toGrid(blockMesh(CellType::Triangle, side, side, 0)));
+  filter->SetHorizon(side);
+  const auto outputs = [&filter]
+  {
+    vtkIdType cells = 0;
+    for (int port = 0; port < filter->GetNumberOfOutputPorts(); ++port)
+    {
+      cells += vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells();
+    }
+    return cells;
+  };
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  const auto tag = filter->AddObserver(vtkInterruption::PollEvent, abort);
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
+  TAUTLINE_CHECK_EQUAL(outputs(), 0);
+  filter->RemoveObserver(tag);
+  filter->SetAbortExecute(0);
+  filter->Modified();
+  filter->Update();
+  TAUTLINE_CHECK(outputs() > side * side);
+}
+
+//------------------------------------------------------------------------------
+/// What a thread computes between two polls counts, not what it waits, nor what is polled.
+void testMeasure()
+{
+  constexpr double span = 0.05; // seconds of CPU time
+  const auto cpu = []
+  {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  };
+  const auto compute = [&](double seconds, bool poll)
+  {
+    for (const double end = cpu() + seconds; cpu() < end;)
+    {
+      if (poll)
+      {
+        throwIfInterrupted();
+      }
+    }
+  };
+  const auto measured = [&](const std::function<void()>& work)
+  {
+    measurePolls(true);
+    {
+      const InterruptScope scope(false);
+      work();
+    }
+    const double longest = longestUnpolledSeconds();
+    measurePolls(false);
+    return longest;
+  };
+  const double polled = measured([&] { compute(4 * span, true); });
+  const double waiting =
+    measured([&] { std::this_thread::sleep_for(std::chrono::duration<double>(4 * span)); });
+  TAUTLINE_CHECK(polled < span);
+  TAUTLINE_CHECK(waiting < span);
+  for (const bool last : { false, true })
+  {
+    const double unpolled = measured(
+      [&]
+      {
+        compute(span, true);
+        compute(2 * span, false);
+        compute(span, !last); // or up to the end of the scope
+      });
+    TAUTLINE_CHECK(unpolled >= (last ? 3 : 2) * span);
+    TAUTLINE_CHECK(unpolled < (last ? 4 : 3) * span);
+  }
+  // What follows an interruption frees what was computed, and can not poll.
+  TAUTLINE_CHECK(measured(
+                   [&]
+                   {
+                     InterruptScope::cancel();
+                     TAUTLINE_CHECK(interrupts(throwIfInterrupted));
+                     compute(2 * span, false);
+                   }) < span);
+  // A scope without a measure leaves nothing behind, and outside of scopes nothing counts.
+  measurePolls(true);
+  compute(2 * span, false);
+  TAUTLINE_CHECK(measured([] {}) < span);
+}
+
 //------------------------------------------------------------------------------
 /// After the first block the time is over: the others get one iteration at most.
 void testBlocksShareTheTime()
@@ -282,6 +377,8 @@ int TestInterruption(int, char*[])
   testLoop();
   testSolver();
   testAbort();
+  testHorizonNeighbors();
+  testMeasure();
   testBlocksShareTheTime();
   return exitCode();
 }
