@@ -21,7 +21,7 @@ struct SweepResult
     0; ///< of the gradients each vertex saw, over those visited; per length of the mesh
 };
 
-class LocalSweeper
+class TAUTLINE_KERNEL_EXPORT LocalSweeper
 {
 public:
   /**

@@ -131,6 +131,9 @@ void testClosedForms()
     Scalarizer(optionsFor(Scalarization::ExponentialSum), { 1, 1 }, { 5, -700 }).c(), 70, 1e-12);
   TAUTLINE_CHECK_EQUAL(
     Scalarizer(optionsFor(Scalarization::ExponentialSum), { 1, 1 }, { 0, 0 }).c(), 1.0);
+  // The smooth maximum: a tenth of the largest weight.
+  TAUTLINE_CHECK_RELATIVE(
+    Scalarizer(optionsFor(Scalarization::WeightedMinMax), { 2, 5 }, { 7, 3 }).c(), 0.5, 1e-15);
 }
 
 void testExtremes()

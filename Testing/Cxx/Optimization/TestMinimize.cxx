@@ -366,6 +366,40 @@ void testQuadratic()
   }
 }
 
+/// Whose Hessian is not finite when it is first asked for.
+struct LateHessian : Quadratic
+{
+  int products = 0;
+  LateHessian()
+    : Quadratic(40, 1e4)
+  {
+    this->knowsHessian = true;
+  }
+  bool hessianTimes(const double* v, double* product) override
+  {
+    const bool known = Quadratic::hessianTimes(v, product);
+    if (this->products++ == 0)
+    {
+      std::fill_n(product, this->size(), std::nan(""));
+    }
+    return known;
+  }
+};
+
+/// Newton's method takes one other step then, and its own ones from there: steepest descent would
+/// take thousands.
+void testLateHessian()
+{
+  LateHessian f;
+  Vector x(f.size(), 0.0);
+  const MinimizeResult m =
+    minimize(f, x.data(), optionsFor(Optimizer::NewtonConjugateGradient, 60, 1e-8));
+  report("Hessian not finite at first", Optimizer::NewtonConjugateGradient, m);
+  TAUTLINE_CHECK(f.products > 1);
+  TAUTLINE_CHECK(m.reason == StopReason::GradientNorm);
+  TAUTLINE_CHECK(distance(x, f.a) < 1e-4);
+}
+
 void testBarrier()
 {
   for (Optimizer method : methods)
@@ -486,6 +520,7 @@ int TestMinimize(int, char*[])
   testConjugateDirections();
   testRosenbrock();
   testQuadratic();
+  testLateHessian();
   testBarrier();
   testRough();
   testStopping();
