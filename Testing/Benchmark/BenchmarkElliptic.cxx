@@ -1,5 +1,6 @@
 // Assembly of finite element matrices: seconds, the best of several turns, CPU time on one thread
-// and wall time on one and on two; and what BoomerAMG takes for its set-up on the same matrix.
+// and wall time on one and on two; what BoomerAMG takes for its set-up on the same matrix; and what
+// small solves take with and without a time limit, for which they run in another thread.
 // Lines `key<tab>number`.
 //
 // usage: BenchmarkElliptic [CELLS [TURNS]]
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <vector>
 
 using namespace tautline;
 
@@ -77,6 +79,54 @@ void multigrid(const char* name, const Mesh& mesh, Pde pde, int turns)
   std::printf("multigrid %s cpu\t%.6g\n", name, best);
   std::printf("system %s cpu\t%.6g\n", name, all.cpu);
 }
+
+/// CPU seconds of all threads per small solve with its set-up, and again with the same solver. The
+/// solves with and without a limit take turns, so that both meet the same machine.
+void smallSolves(const Mesh& mesh, int turns)
+{
+  constexpr int solves = 200;
+  constexpr double hour = 3600.0;
+  const EllipticSystem system(mesh, {}, {}, 1);
+  std::vector<double> x(system.freePoints().size());
+  Times solve[2], again[2];
+  for (int turn = 0; turn < turns; ++turn)
+  {
+    for (const bool watched : { false, true })
+    {
+      SolverOptions options;
+      options.preconditioner = Preconditioner::Jacobi;
+      options.maximumSeconds = watched ? hour : 0.0;
+      const auto best = [turn](Times& kept, const Times& now)
+      { kept.cpu = turn == 0 ? now.cpu : std::min(kept.cpu, now.cpu); };
+      best(solve[watched],
+        measure(1,
+          [&]()
+          {
+            for (int i = 0; i < solves; ++i)
+            {
+              LinearSolver solver(system.linearSystem(), options);
+              solver.solve(system.rightHandSide().data(), x.data());
+            }
+          }));
+      LinearSolver solver(system.linearSystem(), options);
+      best(again[watched],
+        measure(1,
+          [&]()
+          {
+            for (int i = 0; i < solves; ++i)
+            {
+              std::fill(x.begin(), x.end(), 0.0);
+              solver.solve(system.rightHandSide().data(), x.data());
+            }
+          }));
+    }
+  }
+  std::printf("small solves unknowns\t%zu\n", x.size());
+  std::printf("small solves cpu\t%.6g\n", solve[0].cpu / solves);
+  std::printf("small solves again cpu\t%.6g\n", again[0].cpu / solves);
+  std::printf("small solves with limit over without\t%.6g\n", solve[1].cpu / solve[0].cpu);
+  std::printf("small solves again with limit over without\t%.6g\n", again[1].cpu / again[0].cpu);
+}
 }
 
 int main(int argc, char* argv[])
@@ -103,5 +153,8 @@ int main(int argc, char* argv[])
   multigrid("triangles poisson", planar, Pde::Poisson, turns);
   multigrid("triangles in random order poisson", random, Pde::Poisson, turns);
   multigrid("tetrahedra poisson", volume, Pde::Poisson, turns);
+  constexpr Index small = 10;
+  const MeshData few = movedBlock(CellType::Triangle, small, 0.1);
+  smallSolves(Mesh(few.view()), turns);
   return EXIT_SUCCESS;
 }
