@@ -16,7 +16,7 @@ namespace tautline
 /// Mesh::classifyCorners() of a cell where it is now; NotMeasured for an unsupported type.
 Validity cornerValidity(const Mesh& mesh, Index cell);
 
-class OptimizationProblem
+class TAUTLINE_KERNEL_EXPORT OptimizationProblem
 {
 public:
   /**

@@ -22,7 +22,7 @@ Metric worstMetric(const Mesh& mesh, const OptimizeOptions& options);
  * @brief The worst element of an input whose elements are all valid; and the way back for those
  * that became worse.
  */
-class QualityGuard
+class TAUTLINE_KERNEL_EXPORT QualityGuard
 {
 public:
   /// @param input must outlive the guard

@@ -23,7 +23,7 @@ enum ValidityLevel : signed char
 /// Writes a ValidityLevel per cell.
 void findValidityLevels(const Mesh& mesh, int threads, std::vector<signed char>& levels);
 
-class ValidityGuard
+class TAUTLINE_KERNEL_EXPORT ValidityGuard
 {
 public:
   /// The present validity is the least from now on. The problem has to live as long as this.
