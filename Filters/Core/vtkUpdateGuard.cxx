@@ -45,6 +45,11 @@ void abortIfInterrupted(vtkObject* caller, unsigned long, void*, void*)
   if (tautline::InterruptScope::interrupted())
   {
     static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+    // These do not ask before all arrays are written. Their destructor closes the file.
+    if (caller->IsA("vtkXMLWriterBase"))
+    {
+      throw tautline::Interrupted();
+    }
   }
 }
 

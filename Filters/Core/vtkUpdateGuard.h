@@ -25,7 +25,8 @@ public:
 
   ///@{
   /**
-   * As the methods of vtkAlgorithm with these names. @return the message of what was thrown, or ""
+   * As the methods of vtkAlgorithm with these names. @return the message of what was thrown, or "".
+   * After an interruption (vtkInterruption) the algorithm cannot be updated again.
    */
   static std::string Update(vtkAlgorithm* algorithm);
   static std::string UpdateWholeExtent(vtkAlgorithm* algorithm);

@@ -18,7 +18,8 @@ from typing import Iterator
 
 import tautline as tl
 from checks import OUT
-from interrupted_operations import BEST, LIMIT, OPERATIONS, commands, write_input
+from interrupted_operations import BEST, LIMIT, OPERATIONS, commands, cube, write_input
+from tautline._interrupts import reporting
 from tautline._vtk import CLASSES
 
 INTERRUPTION = CLASSES["vtkInterruption"]
@@ -128,6 +129,34 @@ def check_callbacks() -> None:
     assert tl.domain("wrench", progress=lambda *_: None).GetNumberOfCells() > 0
 
 
+def check_writer() -> None:
+    """VTK's writers of XML files do not ask whether they are to go on: they are ended, and the older file stays."""
+    file = OUT / "interrupts.vtu"
+    tl.write(tl.domain("wrench"), str(file))
+    before = file.read_bytes()
+    mesh = cube(60)
+    cancelled: list[float] = []
+
+    def progress(fraction: float, text: str) -> bool:
+        if fraction > 0:
+            cancelled.append(time.process_time())
+        return not cancelled
+
+    try:
+        with reporting(progress):
+            tl.write(mesh, str(file))
+    except tl.Aborted:
+        seconds = time.process_time() - cancelled[-1]
+    else:
+        raise AssertionError("the writer was not cancelled")
+    print(f"  writer: computed {seconds:.3f} s after False", flush=True)
+    assert len(cancelled) == 1 and seconds < UNPOLLED, (cancelled, seconds)
+    assert file.read_bytes() == before and not list(OUT.glob(".interrupts*")), list(OUT.iterdir())
+    tl.write(tl.domain("wrench"), str(file))  # the next one is not cancelled
+    assert tl.read(str(file)).GetNumberOfCells() > 0
+    file.unlink()
+
+
 def check_limit(name: str) -> None:
     operation, outcome = OPERATIONS[name]
     with suppress(tl.Aborted):  # makes the input, which is kept
@@ -171,6 +200,7 @@ if __name__ == "__main__":
     checks = {"signal": check_signal, "cancel": check_cancel, "limit": check_limit}
     if part == "shell":
         check_callbacks()
+        check_writer()
         check_shell()
     elif part == "some":
         for operation in SOME:
