@@ -115,6 +115,36 @@ void testGradient()
   }
 }
 
+/// The relaxation is the part of Newton's step that is made; steps that short are all taken.
+void testRelaxation()
+{
+  for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
+  {
+    const Context context(topology(type).name);
+    const MeshData data = perturbedBlock(type, 2, 0.05);
+    const Mesh mesh(data.view());
+    const auto step = [&](double relaxation)
+    {
+      SimplexMesh simplices(mesh, nullptr, nullptr, 1);
+      const double* x = simplices.coordinates();
+      const Vec3 before = { x[0], x[1], x[2] };
+      LocalOptions options;
+      options.relaxation = relaxation;
+      std::vector<double> points = data.points;
+      LocalSweeper sweeper(simplices, mesh, points.data(), squaredRatio(), options);
+      std::vector<double> values = { objectiveOf(data, simplices) };
+      sweeper.sweep(theSum(values[0]), values);
+      return Vec3{ x[0], x[1], x[2] } - before;
+    };
+    const Vec3 whole = step(1);
+    TAUTLINE_CHECK(norm(whole) > 1e-3);
+    for (const double relaxation : { 0.3, 0.7 })
+    {
+      TAUTLINE_CHECK(norm(step(relaxation) - relaxation * whole) < 1e-12 * norm(whole));
+    }
+  }
+}
+
 //------------------------------------------------------------------------------
 /// Regular but for one vertex: with culling, sweeps stay near it.
 void testCulling()
@@ -201,6 +231,7 @@ int TestLocalSweep(int, char*[])
     testValues(CellType::Tetrahedron, slides);
   }
   testGradient();
+  testRelaxation();
   testCulling();
   testAllowance();
   return exitCode();
