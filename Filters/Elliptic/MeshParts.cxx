@@ -28,9 +28,9 @@ namespace tautline
 {
 namespace
 {
-constexpr char SeamRemedy[] = ": on several processes run Merge Blocks first, or switch Merge "
-                              "Coincident Points off to solve on "
-                              "each block by itself.";
+constexpr char SeamRemedy[] =
+  ": on several processes run Merge Blocks first, or switch Merge Coincident Points off to solve "
+  "on each block by itself.";
 
 /// The partitions of a mesh on this process.
 struct Group
