@@ -89,6 +89,12 @@ def animation():
     assert list(optimizer.TimestepValues) == expected, optimizer.TimestepValues
     assert list(simple.GetTimeKeeper().TimestepValues) == expected
     assert simple.GetAnimationScene().EndTime == iterations
+    view, chart = chart_in("XYChartView")
+    titles = (view.LeftAxisTitle, view.RightAxisTitle, view.BottomAxisTitle)
+    assert view.LeftAxisLogScale == 1 and titles == ("Objective", "Other series", "Iteration"), titles
+    corners = list(chart.SeriesPlotCorner)
+    corners = dict(zip(corners[::2], corners[1::2]))
+    assert corners.get("Objective", "0") == "0" and corners["imr worst"] == corners["Inverted"] == "1", corners
     before, after = re.search(r"worst ([\d.e+-]+) to ([\d.e+-]+)\.", optimizer.Summary + "\n").groups()
     assert float(after) < float(before), optimizer.Summary
 
