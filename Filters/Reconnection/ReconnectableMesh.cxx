@@ -112,7 +112,8 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
                                           : " The facets there are treated as boundary.";
     }
   }
-  for (const std::string& more : { this->Adapter->orient(nullptr, !this->isTriangles()), this->Adapter->notice() })
+  for (const std::string& more :
+    { this->Adapter->orient(nullptr, !this->isTriangles()), this->Adapter->notice() })
   {
     this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
   }

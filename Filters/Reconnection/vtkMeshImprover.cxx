@@ -39,8 +39,7 @@ constexpr Reasons obstacles = { "it is not below the target",
   "it has a fixed point", "it has a point between regions", "it has a point on the boundary" };
 
 /// What would help, in the same order.
-constexpr Reasons remedies = { "",
-  "try the preset Aggressive, a larger time limit or other counts",
+constexpr Reasons remedies = { "", "try the preset Aggressive, a larger time limit or other counts",
   "let the boundary slide in flat parts, or repair the surface mesh", "fix fewer points",
   "choose fewer regions", "let the boundary slide in flat parts" };
 
@@ -172,7 +171,8 @@ std::string describeRemaining(const std::vector<tautline::Index>& cells,
     return text.str();
   }
   text << cells.size() << " " << (cells.size() == 1 ? words.one : words.many)
-       << (cells.size() == 1 ? " remains" : " remain") << " below the target of " << targetAngle << " degrees:";
+       << (cells.size() == 1 ? " remains" : " remain") << " below the target of " << targetAngle
+       << " degrees:";
   std::array<tautline::Index, obstacles.size()> counts = {};
   for (const tautline::Index cell : cells)
   {
@@ -182,8 +182,7 @@ std::string describeRemaining(const std::vector<tautline::Index>& cells,
   {
     if (counts[k] > 0)
     {
-      text << "\n- " << counts[k] << ": " << words.obstacles[k] << " (" << words.remedies[k]
-           << ")";
+      text << "\n- " << counts[k] << ": " << words.obstacles[k] << " (" << words.remedies[k] << ")";
     }
   }
   const auto listed = std::min<std::size_t>(cells.size(), ListedElements);
@@ -207,12 +206,12 @@ std::string describeResult(const tautline::ReconnectionResult& result, const Wor
 {
   const tautline::ReconnectionRecord &first = result.history.front(), &last = result.history.back();
   std::ostringstream text;
-  text << reasonText(result.reason) << "\n" << words.title << ": " << first.tetrahedra << " to "
-       << last.tetrahedra << ". Smallest " << words.angle << ": " << first.smallestAngle << " to "
-       << last.smallestAngle << " degrees; largest: " << first.largestAngle << " to "
-       << last.largestAngle << ". Worst inverse mean ratio: " << first.worstInverseMeanRatio
-       << " to " << last.worstInverseMeanRatio << ".\nOperations: " << describeOperations(last)
-       << ".";
+  text << reasonText(result.reason) << "\n"
+       << words.title << ": " << first.tetrahedra << " to " << last.tetrahedra << ". Smallest "
+       << words.angle << ": " << first.smallestAngle << " to " << last.smallestAngle
+       << " degrees; largest: " << first.largestAngle << " to " << last.largestAngle
+       << ". Worst inverse mean ratio: " << first.worstInverseMeanRatio << " to "
+       << last.worstInverseMeanRatio << ".\nOperations: " << describeOperations(last) << ".";
   return text.str();
 }
 }
@@ -398,8 +397,8 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
   double targetAngle = 0.0;
   const Words& words = mesh.isTriangles() ? triangles : tetrahedra;
   const tautline::ReconnectionResult result = this->Run(mesh, block, blocks, targetAngle);
-  const tautline::ImprovedMesh improved = tautline::writeImproved(
-    mesh, result, this->Threads, vtkPointSet::SafeDownCast(block.output));
+  const tautline::ImprovedMesh improved =
+    tautline::writeImproved(mesh, result, this->Threads, vtkPointSet::SafeDownCast(block.output));
 
   const std::vector<tautline::Index> cells = remainingOf(result, improved);
   addHistory(history, result.history, block.name);

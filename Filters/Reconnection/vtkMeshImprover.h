@@ -31,7 +31,8 @@
  * input that they are in. The cell array `OriginalCellId` is the cell of the input, of the same
  * region, that contains the centroid, and cells have its data (or averages, see CellTransfer). The
  * cell arrays `min_angle` (the smallest angle in degrees, of tetrahedra dihedral) and `imr` (the
- * inverse mean ratio) are those of the output. Global ids of points and cells are left out, as they would not be unique.
+ * inverse mean ratio) are those of the output. Global ids of points and cells are left out, as they
+ * would not be unique.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is pass i (0 is the input): `Smallest angle`, `Largest angle`,

@@ -197,7 +197,8 @@ private:
     }
     const double s = this->Choose.real(0.1, 0.9), r = this->Choose.real(0.1, 0.9);
     const Vec3 x = this->Mesh.point(v[0]) +
-      s * (this->Mesh.point(v[1]) - this->Mesh.point(v[0]) +
+      s *
+        (this->Mesh.point(v[1]) - this->Mesh.point(v[0]) +
           r * (this->Mesh.point(v[2]) - this->Mesh.point(v[1])));
     if (this->Choose(2) == 0)
     {

@@ -190,7 +190,8 @@ namespace
 {
 /// Calls visit(triangle, its other end) for the walls at a point, once each.
 template <class Visit>
-void forEachWall(const TriangleMesh& mesh, VertexId v, const std::vector<TriId>& around, Visit visit)
+void forEachWall(
+  const TriangleMesh& mesh, VertexId v, const std::vector<TriId>& around, Visit visit)
 {
   for (TriId t : around)
   {
@@ -211,8 +212,8 @@ void forEachWall(const TriangleMesh& mesh, VertexId v, const std::vector<TriId>&
 std::vector<PointFreedom> findFreedoms(
   const TriangleMesh& mesh, const TriangleInput& input, const TriangleOptions& options)
 {
-  const double tolerance = std::max(std::sin(options.flatTolerance * (Pi / 180.0)),
-    4.0 * std::numeric_limits<double>::epsilon());
+  const double tolerance = std::max(
+    std::sin(options.flatTolerance * (Pi / 180.0)), 4.0 * std::numeric_limits<double>::epsilon());
   const bool slide = options.boundary == ReconnectionBoundary::Flat;
   std::vector<PointFreedom> freedoms(mesh.pointSlots());
   std::vector<TriId> around;

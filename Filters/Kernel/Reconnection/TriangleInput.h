@@ -21,8 +21,8 @@ namespace tautline
 struct TriangleInput
 {
   std::vector<Vec3> points;
-  std::vector<Corners> cells;        ///< positive in a plane, also those of a mirrored mesh
-  std::vector<std::int32_t> regions; ///< renumbered from 0; empty: one region
+  std::vector<Corners> cells;              ///< positive in a plane, also those of a mirrored mesh
+  std::vector<std::int32_t> regions;       ///< renumbered from 0; empty: one region
   std::vector<std::array<Index, 2>> walls; ///< edges that are kept
   std::vector<char> corners;               ///< points that are kept; empty: none
   std::vector<int> patches;                ///< per cell; empty: planar

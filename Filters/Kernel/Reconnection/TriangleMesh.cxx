@@ -467,7 +467,8 @@ bool TriangleMesh::canContract(TriId t, int edge, VertexId v, VertexId w) const
   {
     for (VertexId u : this->Triangles[s].vertices)
     {
-      const bool apex = u == v || u == w || std::find(apexes.begin(), apexes.end(), u) != apexes.end();
+      const bool apex =
+        u == v || u == w || std::find(apexes.begin(), apexes.end(), u) != apexes.end();
       if (!apex &&
         std::any_of(others.begin(), others.end(), [&](TriId other) { return has(other, u); }))
       {
@@ -483,9 +484,7 @@ bool TriangleMesh::canContract(TriId t, int edge, VertexId v, VertexId w) const
     return false;
   }
   const auto isolates = [&](TriId s)
-  {
-    return this->isBorder(s, this->indexOf(s, v)) && this->isBorder(s, this->indexOf(s, w));
-  };
+  { return this->isBorder(s, this->indexOf(s, v)) && this->isBorder(s, this->indexOf(s, w)); };
   return !isolates(t) && (border || !isolates(code >> 2));
 }
 
@@ -559,8 +558,7 @@ void TriangleMesh::movePoint(VertexId v, const Vec3& x, const std::vector<TriId>
 std::string TriangleMesh::violationOf(TriId t) const
 {
   const Triangle& triangle = this->Triangles[t];
-  const auto text = [t](const char* what)
-  { return "triangle " + std::to_string(t) + ": " + what; };
+  const auto text = [t](const char* what) { return "triangle " + std::to_string(t) + ": " + what; };
   if (triangle.quality != this->qualityOf(triangle.vertices))
   {
     return text("its quality is not up to date");

@@ -389,11 +389,11 @@ bool TriangleOperations::insert(TriId t)
   const auto shortest = static_cast<int>(std::min_element(lengths, lengths + 3) - lengths);
   if (this->Input.planar)
   {
-    // Off-centre: the apex over the shortest edge that has the target angle (A. Ungor, 2004), or the
-    // centre of the circumcircle if that is nearer.
+    // Off-centre: the apex over the shortest edge that has the target angle (A. Ungor, 2004), or
+    // the centre of the circumcircle if that is nearer.
     const Vec3 e = this->Mesh.point(v[Previous[shortest]]) - this->Mesh.point(v[Next[shortest]]);
-    const Vec3 middle = 0.5 *
-      (this->Mesh.point(v[Previous[shortest]]) + this->Mesh.point(v[Next[shortest]]));
+    const Vec3 middle =
+      0.5 * (this->Mesh.point(v[Previous[shortest]]) + this->Mesh.point(v[Next[shortest]]));
     const Vec3 inwards = { -e[1], e[0], 0.0 };
     const double angle = std::asin(std::min(this->target, 0.99));
     const double sine = this->Mesh.quality(t);

@@ -146,8 +146,8 @@ bool isUnchanged(const TriangleInput& input, const TriangleMesh& changed, TriId 
   }
   const Corners& v = input.cells[t];
   return changed.triangle(t).vertices == v &&
-    std::all_of(v.begin(), v.end(),
-      [&](VertexId p) { return changed.point(p) == input.points[p]; });
+    std::all_of(
+      v.begin(), v.end(), [&](VertexId p) { return changed.point(p) == input.points[p]; });
 }
 }
 
@@ -189,8 +189,8 @@ void convertOutput(const Mesh& mesh, const TriangleInput& input, const TriangleM
     }
     PointInterpolation added;
     added.point = numbers[p];
-    added.cell = locator.locate(
-      changed.point(p), changed.triangle(changed.triangleOf(p)).origin, place);
+    added.cell =
+      locator.locate(changed.point(p), changed.triangle(changed.triangleOf(p)).origin, place);
     std::copy(place.weights.begin(), place.weights.end(), added.weights.begin());
     if (mesh.mirrored() && input.planar)
     {

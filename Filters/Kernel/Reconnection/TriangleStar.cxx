@@ -123,8 +123,8 @@ Vec2 TriangleStar::solve(double weight)
   return step;
 }
 
-double TriangleStar::maximize(Vec3& p, int steps, const Directions& directions,
-  const std::function<Vec3(const Vec3&)>& project)
+double TriangleStar::maximize(
+  Vec3& p, int steps, const Directions& directions, const std::function<Vec3(const Vec3&)>& project)
 {
   const Vec3 up = directions.normal();
   double quality = this->evaluate(p, up);

@@ -23,8 +23,8 @@ public:
 
   bool isPlane() const { return this->Patches.empty(); }
   Vec3 closest(const Vec3& x, int patch) const { return this->Patches[patch].closest(x); }
-  /// Whether a triangle is close to its patch at its centre and the middles of its edges, and turned
-  /// as the patch is there on average.
+  /// Whether a triangle is close to its patch at its centre and the middles of its edges, and
+  /// turned as the patch is there on average.
   bool accepts(const Vec3& a, const Vec3& b, const Vec3& c, int patch) const;
 
 private:

@@ -103,8 +103,7 @@ void testPolygon()
       fan.addCell(CellType::Triangle, { 0, i, i + 1 });
     }
     const ReconnectionResult result = reconnect(fan, triangleOptions(Preset::SwapOnly));
-    TAUTLINE_CHECK_RELATIVE(
-      result.history.back().smallestAngle, bestOfPolygon(fan, corners), 1e-9);
+    TAUTLINE_CHECK_RELATIVE(result.history.back().smallestAngle, bestOfPolygon(fan, corners), 1e-9);
   }
 }
 
@@ -143,10 +142,10 @@ void testPresets()
     TAUTLINE_CHECK(borderOf(output) == borderOf(data));
     const double angle = result.history.back().smallestAngle;
     TAUTLINE_CHECK(result.history.front().smallestAngle < 1.0);
-    TAUTLINE_CHECK(angle >= (preset == Preset::SwapOnly ? 2.0
-                        : preset == Preset::SwapAndSmooth ? 25.0
-                        : preset == Preset::Aggressive    ? 39.9
-                                                          : 15.0));
+    TAUTLINE_CHECK(angle >= (preset == Preset::SwapOnly           ? 2.0
+                                : preset == Preset::SwapAndSmooth ? 25.0
+                                : preset == Preset::Aggressive    ? 39.9
+                                                                  : 15.0));
     TAUTLINE_CHECK(preset != Preset::SwapOnly || output.points == data.points);
     const ReconnectionResult again = reconnect(data, triangleOptions(preset));
     TAUTLINE_CHECK(again.points == result.points && again.triangles == result.triangles);
@@ -154,8 +153,7 @@ void testPresets()
     for (Index c = 0; c < output.numberOfCells(); ++c)
     {
       const Index* v = &output.connectivity[3 * c];
-      const Vec3 x =
-        (1.0 / 3.0) * (output.point(v[0]) + output.point(v[1]) + output.point(v[2]));
+      const Vec3 x = (1.0 / 3.0) * (output.point(v[0]) + output.point(v[1]) + output.point(v[2]));
       const Index* w = &data.connectivity[3 * result.originalCells[c]];
       for (int k = 0; k < 3; ++k)
       {
@@ -280,10 +278,10 @@ void testRegions()
     }
     for (Index region : { -1, 4, 6, 11 })
     {
-      TAUTLINE_CHECK_RELATIVE(
-        areaOf(output, after, region), areaOf(data, regions, region), 1e-13);
+      TAUTLINE_CHECK_RELATIVE(areaOf(output, after, region), areaOf(data, regions, region), 1e-13);
     }
-    TAUTLINE_CHECK(result.history.back().smallestAngle >= 10.0 * result.history.front().smallestAngle);
+    TAUTLINE_CHECK(
+      result.history.back().smallestAngle >= 10.0 * result.history.front().smallestAngle);
   }
 }
 
@@ -293,8 +291,9 @@ void testFlat()
   // Points of the border that are unevenly spaced.
   MeshData data = sliverSheet(12, 3, 0.3);
   data.transform(
-    [](Vec3 p)
-    { return Vec3{ p[0] + 0.07 * p[0] * p[0], p[1] + 0.3 * std::sin(p[1]), 0.0 }; });
+    [](Vec3 p) {
+      return Vec3{ p[0] + 0.07 * p[0] * p[0], p[1] + 0.3 * std::sin(p[1]), 0.0 };
+    });
   TriangleOptions options = triangleOptions(Preset::Aggressive);
   const double kept = reconnect(data, options).history.back().smallestAngle;
   options.boundary = ReconnectionBoundary::Flat;

@@ -114,8 +114,8 @@ void testSphere()
     }
     return largest;
   };
-  for (Preset preset : { Preset::RemoveSlivers, Preset::SwapOnly, Preset::SwapAndSmooth,
-         Preset::Aggressive })
+  for (Preset preset :
+    { Preset::RemoveSlivers, Preset::SwapOnly, Preset::SwapAndSmooth, Preset::Aggressive })
   {
     const Context context("sphere, preset " + std::to_string(static_cast<int>(preset)));
     TriangleOptions options = triangleOptions(preset);
@@ -141,10 +141,11 @@ void testSphere()
     TAUTLINE_CHECK(std::abs(volumeOf(output) / volumeOf(data) - 1.0) < 2e-2);
     TAUTLINE_CHECK(preset != Preset::SwapOnly || output.points == data.points);
     TAUTLINE_CHECK(smallestAngle(data) < 6.0);
-    TAUTLINE_CHECK(result.history.back().smallestAngle > (preset == Preset::SwapOnly ? 12.0
-                                                        : preset == Preset::SwapAndSmooth ? 29.0
-                                                        : preset == Preset::Aggressive ? 40.0
-                                                                                       : 15.0));
+    TAUTLINE_CHECK(
+      result.history.back().smallestAngle > (preset == Preset::SwapOnly           ? 12.0
+                                                : preset == Preset::SwapAndSmooth ? 29.0
+                                                : preset == Preset::Aggressive    ? 40.0
+                                                                                  : 15.0));
   }
 }
 
