@@ -67,7 +67,7 @@ MeshData readMesh(const char* name)
   return data;
 }
 
-/// The points inside a cube moved at random by up to a quarter of the spacing.
+/// The points inside a cube moved at random by up to a fifth of the spacing.
 MeshData makeMesh(Index n)
 {
   MeshData data = cutIntoTetrahedra(blockMesh(CellType::Hexahedron, n, n, n), n);
@@ -78,7 +78,7 @@ MeshData makeMesh(Index n)
     {
       const bool inside =
         std::all_of(p.begin(), p.end(), [&](double x) { return x > 0.0 && x < side; });
-      const Vec3 d = random.vector(-0.25, 0.25);
+      const Vec3 d = random.vector(-0.2, 0.2);
       return inside ? p + d : p;
     });
   return data;
