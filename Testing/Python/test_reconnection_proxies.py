@@ -51,14 +51,14 @@ averaged = ImproveMesh(Input=regions, Preset="Aggressive", CellTransfer="Conserv
 plain = ImproveMesh(Input=regions, Preset="Aggressive")  # noqa: F821
 for one in (averaged, plain):
     one.UpdatePipeline()
-sized = ImproveMesh(Input=regions, Preset="Aggressive", Size="One length", EdgeLength=100)  # noqa: F821
+sized = ImproveMesh(Input=regions, Preset="Aggressive", EdgeLengths="One length", EdgeLength=100)  # noqa: F821
 sized.UpdatePipeline()
 assert column(sized, 1, "N insertions")[-1] == 0 < column(plain, 1, "N insertions")[-1]
-sized.Size, sized.EdgeFactor = "Those of the input", 1.1
+sized.EdgeLengths, sized.EdgeFactor = "Those of the input", 1.1
 sized.UpdatePipeline()
 assert column(sized, 1, "N insertions")[-1] < column(plain, 1, "N insertions")[-1]
 lengths = simple.Calculator(worse, AttributeType="Point Data", ResultArrayName="length", Function="100")
-sized = ImproveMesh(Input=lengths, Preset="Aggressive", Size="Point array")  # noqa: F821
+sized = ImproveMesh(Input=lengths, Preset="Aggressive", EdgeLengths="Point array")  # noqa: F821
 sized.SizeArray = ["POINTS", "length"]
 sized.UpdatePipeline()
 assert column(sized, 1, "N insertions")[-1] == 0

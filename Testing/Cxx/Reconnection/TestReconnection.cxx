@@ -401,26 +401,26 @@ void testObstacles()
 /// and volumes of regions kept, every cell of the input covered.
 void testBlocks()
 {
-  const MeshData data = sliverBlock(12, 11, 0.9);
+  const MeshData data = sliverBlock(9, 11, 0.9);
   std::vector<Index> regions;
   for (Index c = 0; c < data.numberOfCells(); ++c)
   {
     const Index* v = &data.connectivity[4 * c];
     const Vec3 sum = data.point(v[0]) + data.point(v[1]) + data.point(v[2]) + data.point(v[3]);
-    regions.push_back(sum[0] < 4.0 * 5.0);
+    regions.push_back(sum[0] < 4.0 * 4.0);
   }
   ReconnectionOptions options = optionsOf(Kind::Aggressive);
   options.regions = regions.data();
   const ReconnectionResult whole = reconnect(data, options);
-  options.blockSize = data.numberOfCells() / 9; // 8 blocks
+  options.blockSize = data.numberOfCells() / 5; // 4 blocks
   options.threads = 1;
   const ReconnectionResult result = reconnect(data, options);
   checkResult(data, result);
   checkOrigins(data, result);
   TAUTLINE_CHECK(result.points != whole.points); // done in another order
   const auto worst = [](const ReconnectionResult& r) { return r.history.back().worstQuality; };
-  TAUTLINE_CHECK(worst(result) > 0.9 * worst(whole));
-  TAUTLINE_CHECK(result.history.back().belowTarget < 2 * whole.history.back().belowTarget + 10);
+  TAUTLINE_CHECK(worst(result) > 0.7 * worst(whole));
+  TAUTLINE_CHECK(result.history.back().belowTarget < 1.25 * whole.history.back().belowTarget);
   TAUTLINE_CHECK(result.history.back().insertions > 0);
   std::vector<Index> regionsAfter;
   for (Index original : result.originalCells)
@@ -515,34 +515,32 @@ void testSizes()
   TAUTLINE_CHECK(*std::max_element(limited.begin(), limited.end()) <= 0.9376 * longest);
 
   // The same by a length and by a tensor per point; other tensors and the input's lengths differ.
-  ReconnectionOptions all;
-  all.size = ReconnectionSize::Length;
-  all.edgeLength = 0.5;
-  all.edgeFactor = 1.1;
-  const ReconnectionResult uniform = reconnect(data, all);
-  TAUTLINE_CHECK(uniform.history.back().insertions > 0);
-  std::vector<double> lengths(data.numberOfPoints(), 0.5), tensors;
+  const double length = 2.0 * shortest, entry = 1.0 / (length * length);
+  ReconnectionOptions all = options;
+  all.insert = true;
+  all.contract = false;
+  std::vector<double> lengths(data.numberOfPoints(), length), tensors;
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {
-    tensors.insert(tensors.end(), { 4.0, 4.0, 4.0, 0.0, 0.0, 0.0 });
+    tensors.insert(tensors.end(), { entry, entry, entry, 0.0, 0.0, 0.0 });
   }
   all.size = ReconnectionSize::Lengths;
   all.sizes = lengths.data();
-  TAUTLINE_CHECK(reconnect(data, all).points == uniform.points);
+  TAUTLINE_CHECK(reconnect(data, all).points == fewer.points);
   all.size = ReconnectionSize::Metrics;
   all.sizes = tensors.data();
-  TAUTLINE_CHECK(reconnect(data, all).points == uniform.points);
+  TAUTLINE_CHECK(reconnect(data, all).points == fewer.points);
   for (std::size_t i = 0; i < tensors.size(); i += 6)
   {
-    tensors[i] = 0.01; // twenty times longer in x
+    tensors[i] = 0.01 * entry; // ten times longer in x
   }
-  TAUTLINE_CHECK(reconnect(data, all).points != uniform.points);
+  TAUTLINE_CHECK(reconnect(data, all).points != fewer.points);
   all.size = ReconnectionSize::Input;
   checkResult(data, reconnect(data, all));
-  TAUTLINE_CHECK(reconnect(data, all).points != uniform.points);
+  TAUTLINE_CHECK(reconnect(data, all).points != fewer.points);
 
   all.size = ReconnectionSize::Metrics;
-  tensors[3] = 5.0;
+  tensors[3] = 2.0 * entry;
   TAUTLINE_CHECK_THROWS(reconnect(data, all), "1 metric tensors are not positive definite");
   all.size = ReconnectionSize::Lengths;
   all.sizes = lengths.data();
