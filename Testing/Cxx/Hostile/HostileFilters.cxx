@@ -544,7 +544,8 @@ const std::vector<std::string>& classesWithoutInput()
     "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm", "vtkBoundaryMesher",
     "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField", "vtkDomainSource", "vtkGmshReader",
     "vtkMeditReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader", "vtkHtmlReport",
-    "vtkImageFileReader", "vtkInterruption", "vtkTautlineSetRange", "vtkUpdateGuard" };
+    "vtkImageFileReader", "vtkInterruption", "vtkTautlineSetRange", "vtkUpdateGuard",
+    "vtkUserMetric" };
   return names;
 }
 
