@@ -7,8 +7,8 @@
  * triangles", I3D 2001), edges of curves cubic arcs with the tangents of the points. Arcs of
  * circles are exact to the sixth order of the angle of an edge. Normals are those of N. Max,
  * "Weights for computing vertex normals from facet normals", J. Graphics Tools 4(2), 1999, which
- * are exact on spheres, and on the border of a patch those of a quadric through two rings of
- * neighbours.
+ * are exact on spheres; where it agrees clearly better with the neighbours, and on the border of a
+ * patch, those of a cubic (of few neighbours, a quadric) fitted to two rings of neighbours.
  */
 #ifndef tautline_SurfaceModel_h
 #define tautline_SurfaceModel_h
