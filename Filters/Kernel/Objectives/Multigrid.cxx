@@ -621,6 +621,11 @@ void Multigrid::solveCoarse(std::size_t i)
 }
 
 //------------------------------------------------------------------------------
+void multiply(const BlockMatrixView& a, int threads, const double* x, double* y)
+{
+  a.size == 2 ? multiply<2>(a, threads, x, y) : multiply<3>(a, threads, x, y);
+}
+
 void Multigrid::apply(const double* r, double* z)
 {
   this->Size == 2 ? this->cycle<2>(0, r, z) : this->cycle<3>(0, r, z);

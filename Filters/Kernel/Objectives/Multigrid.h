@@ -36,6 +36,10 @@ struct BlockMatrixView
   const double* blocks = nullptr;          ///< size x size numbers a place, row by row
 };
 
+/// y = A x.
+TAUTLINE_KERNEL_EXPORT void multiply(
+  const BlockMatrixView& a, int threads, const double* x, double* y);
+
 class TAUTLINE_KERNEL_EXPORT Multigrid
 {
 public:

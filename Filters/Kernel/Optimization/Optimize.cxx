@@ -1,6 +1,7 @@
 #include "Optimize.h"
 
 #include "GlobalFunction.h"
+#include "HarmonicStart.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "ImproveWorst.h"
@@ -381,6 +382,33 @@ Index countInvalid(const Mesh& mesh, int threads)
 
 //------------------------------------------------------------------------------
 /**
+ * @brief Starts at the harmonic map of the input if elements are free of targets there, valid, and
+ * the objective is smaller. It does not depend on how the input is stretched, and is often close to
+ * the minimum.
+ */
+void takeHarmonicStart(
+  OptimizationProblem& problem, const std::vector<double>& start, const OptimizeResult& result)
+{
+  const OptimizeOptions& options = problem.options();
+  if (options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets ||
+    options.objectives[0].metric != Metric::InverseMeanRatio || problem.outOfTime())
+  {
+    return;
+  }
+  const std::vector<double> harmonic = harmonicPoints(problem, start);
+  if (harmonic.empty())
+  {
+    return;
+  }
+  problem.restart(harmonic);
+  const IterationRecord record = problem.record(0);
+  if (record.inverted > 0 || !(record.objective < result.history.front().objective))
+  {
+    problem.restart(start);
+  }
+}
+
+/**
  * @brief Newton's method from the start, where sweeps converge too slowly. If its matrix does not
  * fit into memory the sweeps go on; if it does not get as far as they did, their points are kept.
  */
@@ -394,6 +422,7 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch,
   problem.restart(start);
   try
   {
+    takeHarmonicStart(problem, start, result);
     result.reason = optimizeGlobally(problem, watch, Optimizer::NewtonConjugateGradient, result);
   }
   catch (const MemoryError&)

@@ -20,7 +20,8 @@ enum class Optimizer : int
 {
   /**
    * @brief LocalNewton. Where its sweeps of one objective converge slowly (seven are judged by the
-   * ratio of their gains), NewtonConjugateGradient from the start; not on surfaces, with limits or
+   * ratio of their gains), NewtonConjugateGradient from the start, or from its harmonic map if that
+   * is valid and has a smaller sum of the inverse mean ratio; not on surfaces, with limits or
    * with points that slide on the boundary. Should a sweep fail to reduce several objectives,
    * LimitedMemoryBFGS from there.
    */

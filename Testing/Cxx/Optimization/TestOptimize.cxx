@@ -574,85 +574,9 @@ void testFaulty()
 }
 }
 
-/// The unit square or cube in n cells a side, whose inner points a function moves.
-template <class Function>
-MeshData stretched(CellType type, int n, const Function& function)
-{
-  MeshData data = blockMesh(type, n, n, topology(type).dimension == 3 ? n : 0);
-  const Mesh mesh(data.view());
-  const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    const Vec3 p = (1.0 / n) * data.point(i);
-    data.setPoint(i, boundary[i] ? p : function(p));
-  }
-  return data;
-}
-
-/// Sheared and strongly stretched meshes, on which sweeps take thousands of iterations: the default
-/// and Newton's method reach the minimum, and stop there for the right reason.
-void testStiff()
-{
-  const auto sine = [](const Vec3& p)
-  {
-    const double s = 0.14 * std::sin(2 * Pi * p[0]) * std::sin(2 * Pi * p[1]);
-    return Vec3{ p[0] + s, p[1] + s, p[2] };
-  };
-  const auto fourth = [](const Vec3& p) { return Vec3{ p[0], p[1] * p[1] * p[1] * p[1], p[2] }; };
-  const auto cubed = [](const Vec3& p) { return Vec3{ p[0], p[1] * p[1] * p[1], p[2] }; };
-  const std::pair<const char*, MeshData> cases[] = {
-    { "sine", stretched(CellType::Quadrilateral, 64, sine) },
-    { "power", stretched(CellType::Quadrilateral, 64, fourth) },
-    { "power of triangles", stretched(CellType::Triangle, 32, fourth) },
-    { "power of hexahedra", stretched(CellType::Hexahedron, 12, cubed) },
-    { "power of tetrahedra", stretched(CellType::Tetrahedron, 8, cubed) }
-  };
-  for (const auto& [name, data] : cases)
-  {
-    const Context context(name);
-    const CellType type = static_cast<CellType>(data.view().cellTypes[0]);
-    OptimizeOptions accurate;
-    accurate.optimizer = Optimizer::NewtonConjugateGradient;
-    accurate.stopping.relativeChange = 1e-10;
-    accurate.stopping.maximumIterations = 1000;
-    const OptimizeResult best = run(data, accurate);
-    const double least = best.history.back().objective;
-    if (type == CellType::Quadrilateral || type == CellType::Hexahedron)
-    {
-      // The uniform grid.
-      TAUTLINE_CHECK_RELATIVE(least, static_cast<double>(data.numberOfCells()), 1e-8);
-    }
-    for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::NewtonConjugateGradient })
-    {
-      const Context which("optimizer " + std::to_string(static_cast<int>(optimizer)));
-      OptimizeOptions options;
-      options.optimizer = optimizer;
-      const OptimizeResult result = run(data, options);
-      TAUTLINE_CHECK(result.history.back().objective <= 1.0001 * least);
-      TAUTLINE_CHECK(result.reason == StopReason::RelativeChange);
-      TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
-      TAUTLINE_CHECK_EQUAL(static_cast<std::size_t>(result.iterations), result.history.size() - 1);
-    }
-    // Out of time, the best so far is returned: here that of the sweeps.
-    OptimizeOptions few;
-    few.stopping.maximumIterations = 8;
-    const OptimizeResult stopped = run(data, few);
-    OptimizeOptions sweeps = few;
-    sweeps.optimizer = Optimizer::LocalNewton;
-    sweeps.stopping.maximumIterations = 7;
-    const OptimizeResult swept = run(data, sweeps);
-    const double reached = sumOfSquares(data, stopped.points, Metric::InverseMeanRatio);
-    TAUTLINE_CHECK(
-      reached <= 1.000001 * sumOfSquares(data, swept.points, Metric::InverseMeanRatio));
-    TAUTLINE_CHECK_RELATIVE(stopped.history.back().objective, reached, 1e-9);
-    TAUTLINE_CHECK(stopped.reason == StopReason::IterationLimit);
-  }
-}
-
 int TestOptimize(int, char*[])
 {
   testMinima();
-  testStiff();
   testSingleVertex();
   testInvariance();
   testThreads();
