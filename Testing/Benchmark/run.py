@@ -3,10 +3,10 @@
 Every time is the best of several turns, and every ratio is between times of one run. Single-thread times
 are CPU time; those of the thread speed-up are wall time. Prints tables; writes benchmark.json (times in
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
-elements, optimization.json and .csv of the optimizer (see optimization.py), and deformation.json and .csv of warping
-(see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py) to the output
-directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh compares with the program gmsh,
-where that is installed (see gmsh_comparison.py).
+elements, optimization.json and .csv of the optimizer (see optimization.py), deformation.json and .csv of warping
+(see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), and stiff.json
+and .csv of stretched meshes (see stiff.py) to the output directory, by default DIR/benchmark. Prints how the preset
+Aggressive of Improve Mesh compares with the program gmsh, where that is installed (see gmsh_comparison.py).
 """
 
 import argparse
@@ -19,6 +19,7 @@ from pathlib import Path
 import deformation
 import optimization
 import reconnection
+import stiff
 
 KERNEL, FILTER, MEMORY = "kernel", "filter", ("memory-tautline", "memory-verdict")
 
@@ -192,36 +193,39 @@ def run_optimization(build: Path, output: Path, repeats: int, quick: bool, huge:
     save(output, "optimization", times, table)
 
 
-def run_deformation(build: Path, output: Path, repeats: int, quick: bool) -> None:
-    times, rows = deformation.run(build / "bin" / "BenchmarkDeformation", repeats, quick)
+def run_table(output: Path, name: str, times: dict[str, float], rows: list[tuple[str, float, str]]) -> None:
+    """Shows and saves rows, of which those that are indented belong to the one above that is not."""
     show_table(rows)
     head, table = "", {}
     for what, number, _ in rows:
         head = head if what.startswith(" ") else what.split(":")[0]
         table[f"{head}: {what.strip()}" if what.startswith(" ") else what] = number
-    save(output, "deformation", times, table)
+    save(output, name, times, table)
+
+
+def run_deformation(build: Path, output: Path, repeats: int, quick: bool) -> None:
+    run_table(output, "deformation", *deformation.run(build / "bin" / "BenchmarkDeformation", repeats, quick))
+
+
+def run_stiff(build: Path, output: Path, repeats: int, quick: bool, huge: bool) -> None:
+    run_table(output, "stiff", *stiff.run(build / "bin" / "BenchmarkStiff", repeats, quick, huge))
 
 
 def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> None:
     unit = yardstick(build, repeats)["yardstick"]
-    times, rows = reconnection.run(build / "bin" / "BenchmarkReconnection", unit, quick)
-    show_table(rows)
-    head, table = "", {}
-    for what, number, _ in rows:
-        head = head if what.startswith(" ") else what.split(":")[0]
-        table[f"{head}: {what.strip()}" if what.startswith(" ") else what] = number
-    save(output, "reconnection", times, table)
+    run_table(output, "reconnection", *reconnection.run(build / "bin" / "BenchmarkReconnection", unit, quick))
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parser.add_argument("--only", choices=("quality", "optimization", "deformation", "reconnection", "gmsh"),
-                        help="one part; all otherwise")
+    parts = ("quality", "optimization", "deformation", "reconnection", "stiff", "gmsh")
+    parser.add_argument("--only", choices=parts, help="one part; all otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
     parser.add_argument("--quick", action="store_true", help="tiny meshes only, but for quality")
-    parser.add_argument("--huge", action="store_true", help="optimization: also 10,000,000 tetrahedra")
+    parser.add_argument("--huge", action="store_true",
+                        help="optimization: also 10,000,000 tetrahedra; stiff: also 1,000,000 cells")
     parser.add_argument("--output", type=Path, help="where the results go")
     options = parser.parse_args()
     output = options.output or options.build / "benchmark"
@@ -233,6 +237,8 @@ def main() -> int:
         run_reconnection(options.build, output, options.repeats or 3, options.quick)
     if options.only in (None, "optimization"):
         run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
+    if options.only in (None, "stiff"):
+        run_stiff(options.build, output, options.repeats or 3, options.quick, options.huge and not options.quick)
     if options.only in (None, "gmsh"):
         subprocess.run([sys.executable, str(Path(__file__).with_name("gmsh_comparison.py"))], check=False)
     return 0

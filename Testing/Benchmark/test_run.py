@@ -73,6 +73,17 @@ def check_reconnection(output: Path) -> None:
     assert all(number > 0 for key, number in ratios.items() if key.endswith("passes per element")), ratios
 
 
+def check_stiff(output: Path) -> None:
+    measured, ratios = read(output, "stiff")
+    reached = [key for key in ratios if key.endswith(": sum / minimum")]
+    assert len(reached) == 18, ratios
+    for key in reached:
+        assert 1 - 1e-9 < ratios[key] <= 1.001, (key, ratios)
+    assert measured["quads-aspect1 100: sum at the start / minimum"] == 1, measured
+    # With ten rows the first has an aspect ratio of 608: an IMR of 304 in 8 cells, besides those at the ends.
+    assert measured["quads-aspect1000 100: sum at the start / minimum"] > 8 * 304**2 / 100, measured
+
+
 def main(build: Path, output: Path) -> int:
     subprocess.run(["cmake", "--build", str(build), "--target", "benchmarks"], check=True)
     script = Path(__file__).with_name("run.py")
@@ -83,6 +94,7 @@ def main(build: Path, output: Path) -> int:
     check_optimization(output)
     check_deformation(output)
     check_reconnection(output)
+    check_stiff(output)
     return 0
 
 
