@@ -1,35 +1,78 @@
-"""check_help.py DOCUMENTATION QCH: ParaView's help of the plugin has every page and picture, as they are now.
+"""check_help.py DOCUMENTATION HELP QCH XML...: ParaView's help of the plugin has our pages, as they are now.
 
-The .qch file is an SQLite data base; a file's data are compressed, after four bytes with their length.
+The .qch file is an SQLite data base; a file's data are compressed, after four bytes with their length. ParaView's
+button ? opens the page group.name.html of a proxy: each proxy of the XML files has one, made from a page in
+DOCUMENTATION, with every property. HELP is the directory of the made pages. No page of the help has a dead link, and each is in the
+table of contents.
 """
 
+import re
 import sqlite3
 import sys
 import zlib
 from pathlib import Path
 
-KINDS = (".html", ".css", ".png")
 QUERY = "SELECT Name, Data FROM FileNameTable JOIN FileDataTable ON Id = FileId WHERE Data IS NOT NULL"
 CONTENTS = "SELECT Data FROM ContentsTable"
+LINK = re.compile(r'(?:href|src)="([^"]+)"')
+SECTIONS = ("<b>Purpose.</b>", "<img ", "<!-- test: pvpython -->", "<!-- properties: ")  # of the page of a proxy
+WIDEST = 860  # pixels of a picture: a page is at most 900 wide
 
 
-def main(pages: Path, help_file: Path) -> int:
+def width(png: bytes) -> int:
+    return int.from_bytes(png[16:20], "big")
+
+
+def dead_links(name: str, text: str, files: dict):
+    for link in LINK.findall(text):
+        target, _, anchor = link.partition("#")
+        if re.match("[a-z]+:", link):
+            continue
+        if target and target not in files:
+            yield f"{name}: {link} leads nowhere"
+        elif anchor and f'name="{anchor}"' not in files[target or name].decode():
+            yield f"{name}: {link} has no such anchor"
+
+
+def proxy_complaints(proxies: dict, files: dict):
+    for name, proxy in proxies.items():
+        text = files.get(f"{name}.html", b"").decode()
+        missing = [section for section in SECTIONS if section not in text]
+        if missing:
+            yield f"the page of {name} has no {' '.join(missing)}"
+        for item in filter(is_listed, proxy):
+            if f"<td>{label_of(item)}" not in text and f", {label_of(item)}" not in text:
+                yield f"the page of {name} lacks the property {label_of(item)}"
+
+
+def main(documentation: Path, made: Path, help_file: Path, xmls: list) -> int:
     base = sqlite3.connect(help_file.as_uri() + "?mode=ro", uri=True)
-    found = {name: zlib.decompress(data[4:]) for name, data in base.execute(QUERY)}
-    wanted = [path for path in pages.iterdir() if path.suffix in KINDS]
-    wrong = 0
-    for path in sorted(wanted):
-        if found.get(path.name) != path.read_bytes():
-            print(f"{path.name} is {'another one' if path.name in found else 'missing'} in {help_file}")
-            wrong += 1
+    files = {name: zlib.decompress(data[4:]) for name, data in base.execute(QUERY)}
+    proxies = read_proxies(xmls)
+    expected = {path.name: path.read_bytes() for path in made.iterdir()}
+    wrong = [f"{name} is not in {help_file}" for name in expected if files.get(name) != expected[name]]
+    wrong += [f"{name} is not ours" for name in files if name not in expected]
+    wrong += proxy_complaints(proxies, files)
+    pages = {name: data.decode() for name, data in files.items() if name.endswith(".html")}
+    for name, text in pages.items():
+        wrong += dead_links(name, text, files)
     contents = b"".join(row[0] for row in base.execute(CONTENTS))
-    for page in (path for path in wanted if path.suffix == ".html"):
-        if page.name.encode("utf-16-be") not in contents:
-            print(f"{page.name} is not in the table of contents, toc.xml")
-            wrong += 1
-    print(f"{len(wanted)} files, {len(found)} in the help, {wrong} wrong")
-    return 1 if wrong or not wanted else 0
+    listed = {name for name in pages if name.encode("utf-16-be") in contents}
+    same = {name: {other for other in pages if pages[other] == text} for name, text in pages.items()}
+    wrong += [f"{name} is not in the table of contents, toc.xml" for name in pages if not same[name] & listed]
+    references = re.findall('ref="([^"]+)"', (documentation / "toc.xml").read_text())
+    wrong += [f"toc.xml: there is no {name}" for name in references if name not in files]
+    wrong += [f"{name} is too wide" for name, data in files.items() if name.endswith(".png") and width(data) > WIDEST]
+    titles = {re.search("<title>(.*)</title>", path.read_text())[1] for path in documentation.glob("*.html")}
+    wrong += [f"{name} is none of our pages" for name, text in pages.items()
+              if (found := re.search("<title>(.*)</title>", text)) is None or found[1] not in titles]  # fmt: skip
+    print("\n".join(wrong + [f"{len(proxies)} proxies, {len(files)} files in the help, {len(wrong)} wrong"]))
+    return 1 if wrong or not proxies else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()))
+    paths = [Path(argument).resolve() for argument in sys.argv[1:]]
+    sys.path.insert(0, str(paths[0]))
+    from property_table import is_listed, label_of, read_proxies  # noqa: E402
+
+    sys.exit(main(paths[0], paths[1], paths[2], paths[3:]))

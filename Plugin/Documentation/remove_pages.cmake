@@ -1,0 +1,5 @@
+# cmake -DDIRECTORY=... -P remove_pages.cmake: removes the pages and pictures in DIRECTORY.
+file(GLOB pages "${DIRECTORY}/*.html" "${DIRECTORY}/*.css" "${DIRECTORY}/*.png")
+if (pages)
+  file(REMOVE ${pages})
+endif ()

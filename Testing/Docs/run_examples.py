@@ -1,0 +1,81 @@
+"""run_examples.py KIND DOCUMENTATION WORK [--write]: runs the examples of the help pages and compares what they print.
+
+KIND is pvpython or python3, and so is the interpreter that runs this. An example is a <pre> after the comment
+<!-- test: KIND -->; the <pre> after "Output:" has what it prints. Numbers may differ by TOLERANCE. --write puts what is
+printed in the pages. Each example runs in WORK, which has the sample meshes in Data.
+"""
+
+import contextlib
+import html
+import io
+import os
+import re
+import shutil
+import sys
+import traceback
+from pathlib import Path
+
+EXAMPLE = re.compile(
+    r"<!-- test: (?P<kind>\w+) -->\n<pre>\n(?P<code>.*?)</pre>"
+    r"(?P<between>\n<p>Output:</p>\n<pre>\n)?(?P<output>.*?</pre>)?",
+    re.DOTALL,
+)
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+TOLERANCE = 0.01  # relative
+
+
+def same(printed: str, expected: str) -> bool:
+    """The same text with nearly the same numbers; whole numbers are the same."""
+    if NUMBER.sub("#", printed.strip()) != NUMBER.sub("#", expected.strip()):
+        return False
+    pairs = zip(NUMBER.findall(printed), NUMBER.findall(expected))
+    return all(a == b or ("." in a and abs(float(a) - float(b)) <= TOLERANCE * abs(float(b))) for a, b in pairs)
+
+
+def run(code: str, name: str) -> str:
+    """What the code prints."""
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        exec(compile(code, name, "exec"), {})  # pylint: disable=exec-used
+    return out.getvalue()
+
+
+def run_page(page: Path, kind: str, write: bool) -> tuple:
+    """(examples, wrong ones) of a page."""
+    text = page.read_text(encoding="utf-8")
+    count, wrong, pieces, end = 0, 0, [], 0
+    for match in EXAMPLE.finditer(text):
+        if match["kind"] != kind:
+            continue
+        count += 1
+        try:
+            printed = run(html.unescape(match["code"]), page.name)
+        except Exception:  # the other examples run, too
+            traceback.print_exc()
+            wrong += 1
+            continue
+        expected = html.unescape((match["output"] or "").replace("</pre>", "")) if match["between"] else ""
+        if not same(printed, expected):
+            wrong += not write
+            print(f"{page.name} prints\n{printed}instead of\n{expected}", flush=True)
+        if match["between"]:
+            pieces += [text[end : match.start("output")], html.escape(printed, quote=False), "</pre>"]
+            end = match.end("output")
+    if write:
+        page.write_text("".join(pieces) + text[end:], encoding="utf-8")
+    return count, wrong
+
+
+def main(kind: str, pages: Path, work: Path, write: bool) -> int:
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    (work / "Data").symlink_to(pages.parents[1] / "Data")
+    os.chdir(work)
+    results = [run_page(page, kind, write) for page in sorted(pages.glob("*.html"))]
+    count, wrong = (sum(column) for column in zip(*results))
+    print(f"{count} examples for {kind}, {wrong} wrong")
+    return 1 if wrong or not count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve(), "--write" in sys.argv))
