@@ -1,0 +1,421 @@
+"""pvpython make_pictures.py PLUGIN [NAME...]: draws the pictures of the help pages, NAME.png, or those named.
+
+Each function below draws the picture of the page of its name; what it returns is saved.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+from paraview import servermanager, simple  # noqa: E402
+from small_png import read, write  # noqa: E402
+
+DATA = HERE.parents[1] / "Data"
+WIDE, HEIGHT = 720, 300  # pixels
+FINE_WIDE, FINE_HEIGHT = 600, 190  # of meshes with many edges
+CELLS, POINTS = 1, 0
+FLAT, LIT = (1, 0), (0.6, 0.5)  # ambient and diffuse light
+DARK = [0.25, 0.25, 0.25]
+PALE_BLUE = [0.62, 0.72, 0.82]
+OBLIQUE = ([0.9, -2, 1.0], [0, 0, 1])  # direction to the camera, and up
+
+
+def sample(name: str):
+    return simple.OpenDataFile(str(DATA / name))
+
+
+def output(source, port: int):
+    return simple.OutputPort(source, port)
+
+
+def new_view(camera=None):
+    view = simple.CreateView("RenderView")
+    view.OrientationAxesVisibility = view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    view.CameraParallelProjection = 1
+    view.CenterAxesVisibility = 0
+    if camera:
+        view.CameraPosition, view.CameraViewUp = camera
+        view.CameraFocalPoint = [0, 0, 0]
+    return view
+
+
+def draw(source, view, array=None, where=CELLS, light=FLAT, edges=True, colour=None, opacity=1.0):
+    """Shows the source; with an array in its colours, else in one colour."""
+    display = simple.Show(source, view)
+    display.Representation = "Surface With Edges" if edges else "Surface"
+    display.EdgeColor = DARK
+    display.Ambient, display.Diffuse = light
+    display.Opacity = opacity
+    if array:
+        display.SetScalarColoring(array, where)
+    else:
+        display.ColorArrayName = [None, ""]
+        display.AmbientColor = display.DiffuseColor = colour or PALE_BLUE
+    return display
+
+
+def fit(view, zoom=1.0):
+    simple.ResetCamera(view)
+    view.CameraParallelScale /= zoom
+    return view
+
+
+def fit_plane(view, source, ratio):
+    """The camera sees the planar source in a view of this ratio of width and height."""
+    simple.ResetCamera(view)
+    left, right, low, high, *_ = source.GetDataInformation().GetBounds()
+    view.CameraParallelScale = 0.53 * max(high - low, (right - left) / ratio)
+    return view
+
+
+def side_by_side(*views, size=(WIDE, HEIGHT)):
+    """The views from left to right in one layout."""
+    layout = simple.CreateLayout("Pictures")
+    place = 0
+    for number, view in enumerate(views):
+        simple.AssignViewToLayout(view=view, layout=layout, hint=place)
+        left = len(views) - number
+        if left > 1:
+            place = layout.SplitHorizontal(place, 1 / left) + 1
+    return layout, size
+
+
+def values(source, array, low, high, preset="Cool to Warm"):
+    """Colours of an array between two values."""
+    table = simple.GetColorTransferFunction(array)
+    table.ApplyPreset(preset, True)
+    table.RescaleTransferFunction(low, high)
+
+
+def element_quality():
+    quality = simple.ElementQuality(Input=sample("bracket-tangled.vtu"))
+    outside, inside = new_view(OBLIQUE), new_view(OBLIQUE)
+    draw(output(quality, 0), outside, "imr", light=LIT)
+    draw(simple.ExtractSurface(Input=output(quality, 0)), inside, edges=False, opacity=0.15, light=LIT)
+    draw(output(quality, 7), inside, "imr", light=LIT)
+    return side_by_side(fit(outside, 1.2), fit(inside, 1.2))
+
+
+def before_and_after(before, after, array="imr", zoom=1.7):
+    views = [new_view(), new_view()]
+    for mesh, view in zip((before, after), views):
+        draw(mesh, view, array)
+        fit(view, zoom)
+    return side_by_side(*views, size=(FINE_WIDE, FINE_HEIGHT))
+
+
+def optimize_mesh():
+    plate = sample("plate.vtu")
+    better = simple.OptimizeMesh(Input=plate)
+    return before_and_after(simple.ElementQuality(Input=plate), output(better, 0))
+
+
+def improve_mesh():
+    """The tetrahedra with a dihedral angle below 25 degrees."""
+    bracket = sample("bracket.vtu")
+    quality = simple.ElementQuality(Input=bracket, Metrics=["Minimum angle"])
+    better = simple.ImproveMesh(Input=bracket, Preset="Aggressive")
+    views = []
+    for mesh in (quality, better):
+        bad = simple.Threshold(Input=output(mesh, 0), Scalars=["CELLS", "min_angle"])
+        bad.ThresholdMethod, bad.LowerThreshold = "Below Lower Threshold", 25
+        bad.UpdatePipeline()
+        view = new_view(OBLIQUE)
+        draw(simple.ExtractSurface(Input=bracket), view, edges=False, opacity=0.15, light=LIT)
+        if bad.GetDataInformation().GetNumberOfCells():
+            draw(bad, view, "min_angle", light=LIT)
+        views.append(fit(view, 1.2))
+    return side_by_side(*views)
+
+
+def improve_mesh_plane():
+    """Triangles, coloured by their smallest angles; the points of the first were moved at random."""
+    worse = simple.PerturbMesh(Input=sample("wrench.msh"), Percentage=100, Fraction=0.95)
+    quality = simple.ElementQuality(Input=worse, Metrics=["Minimum angle"])
+    better = simple.ImproveMesh(Input=worse, Preset="Aggressive")
+    views = [new_view(), new_view()]
+    for mesh, view in zip((quality, better), views):
+        draw(output(mesh, 0), view, "min_angle")
+        fit(view, 1.7)
+    values("min_angle", "CELLS", 0, 60)
+    return side_by_side(*views, size=(WIDE, 2 * FINE_HEIGHT))
+
+
+def untangle_mesh():
+    bracket = sample("bracket-tangled.vtu")
+    views = []
+    for mesh in (bracket, output(simple.UntangleMesh(Input=bracket), 0)):
+        quality = simple.ElementQuality(Input=mesh)
+        inverted = simple.Threshold(Input=output(quality, 0), Scalars=["CELLS", "Validity"])
+        inverted.ThresholdMethod, inverted.LowerThreshold = "Below Lower Threshold", -1
+        inverted.UpdatePipeline()
+        view = new_view(OBLIQUE)
+        draw(simple.ExtractSurface(Input=mesh), view, edges=False, opacity=0.2, light=LIT)
+        if inverted.GetDataInformation().GetNumberOfCells():
+            draw(inverted, view, "imr", light=LIT)
+        views.append(fit(view, 1.2))
+    return side_by_side(*views)
+
+
+def warp_mesh():
+    plate = sample("plate.vtu")
+    turned = simple.WarpMesh(Input=plate, TransformKind="Rotation", Angle=60)
+    left, right = new_view(), new_view()
+    draw(plate, left, colour=[1, 1, 1])
+    draw(output(turned, 0), right, "TMP shape")
+    return side_by_side(fit(left, 1.7), fit(right, 1.7), size=(FINE_WIDE, FINE_HEIGHT))
+
+
+def perturb_mesh():
+    plate = sample("plate.vtu")
+    worse = simple.PerturbMesh(Input=plate, TangledFraction=0.01)
+    quality = simple.ElementQuality(Input=worse)
+    layout = before_and_after(simple.ElementQuality(Input=plate), output(quality, 0))
+    inverted = simple.Threshold(Input=output(quality, 0), Scalars=["CELLS", "Validity"])
+    inverted.ThresholdMethod, inverted.LowerThreshold = "Below Lower Threshold", -1
+    draw(inverted, simple.GetActiveView(), "imr").Position = [0, 0, 0.1]  # they lie below others
+    return layout
+
+
+def compare_meshes():
+    plate = sample("plate.vtu")
+    changes = simple.CompareMeshes(Input=plate, Other=simple.OptimizeMesh(Input=plate))
+    view = new_view()
+    draw(output(changes, 0), view, "Change")
+    values(changes, "Change", -1, 1)
+    simple.GetColorTransferFunction("Change").InvertTransferFunction()
+    return side_by_side(fit(view, 1.3), size=(WIDE // 2, HEIGHT))
+
+
+def metric_field():
+    field = simple.MetricField(Metrics=["Inverse mean ratio"], Bounds=[-1, 2, 0.02, 2, 0, 0], Dimensions=[301, 199, 1])
+    lines = simple.Contour(Input=field, ContourBy=["POINTS", "imr"], Isosurfaces=[1.05, 1.2, 1.5, 2, 3, 5, 8])
+    base = simple.Line(Point1=[0, 0, 0], Point2=[1, 0, 0])
+    view = new_view()
+    draw(field, view, "imr", POINTS, edges=False)
+    values(field, "imr", 1, 8, "Viridis (matplotlib)")
+    simple.GetColorTransferFunction("imr").InvertTransferFunction()
+    for source, width in ((lines, 1), (base, 4)):
+        display = draw(source, view, edges=False, colour=[0, 0, 0])
+        display.LineWidth, display.Position = width, [0, 0, 0.01]
+    return side_by_side(fit(view, 1.3), size=(420, HEIGHT))
+
+
+def mesh_domain():
+    names = ("Wrench", "Hinge", "Barrier (2D)", "Cylinder in a Channel", "Moving Gate", "Bore (3D)")
+    views = []
+    for name in names:
+        solid = "3D" in name
+        view = new_view(OBLIQUE if solid else None)
+        domain = simple.MeshDomain(Domain=name, NumberOfCells=3000 if solid else 700)
+        draw(output(domain, 0), view, light=LIT if solid else FLAT)
+        views.append(fit(view, 1) if solid else fit_plane(view, domain, 4 / 3))
+    size = (660, 165)
+    return side_by_side(*views[:3], size=size), side_by_side(*views[3:], size=size)
+
+
+def small_edge(outline) -> float:
+    """A tenth of the outline's width."""
+    outline.UpdatePipeline()
+    low, high = outline.GetDataInformation().GetBounds()[:2]
+    return (high - low) / 10
+
+
+def triangle_mesher():
+    outline = sample("plate.poly")
+    mesh = simple.TriangleMesher(Input=outline, MinimumAngle=25, Size=small_edge(outline))
+    left, right = new_view(), new_view()
+    draw(outline, left, edges=False, colour=[0, 0, 0]).LineWidth = 2
+    draw(output(mesh, 0), right)
+    return side_by_side(fit(left, 1.3), fit(right, 1.3))
+
+
+def tetgen_mesher():
+    mesh = simple.TetGenMesher(Input=sample("cube.smesh"), Volume=0.002)
+    cut = simple.Clip(Input=output(mesh, 0), ClipType="Plane", Crinkleclip=1)
+    cut.ClipType.Origin, cut.ClipType.Normal = [0.5, 0.5, 0.5], [-0.4, -1, 0.3]
+    cut.Invert = 0
+    view = new_view(([0.9, -2, 1.0], [0, 0, 1]))
+    cut.ClipType.Normal = [0, 1, 0]
+    draw(cut, view, light=LIT)
+    return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
+
+
+def solve_pde():
+    solved = simple.SolvePDE(Input=sample("plate.vtu"))
+    view = new_view()
+    draw(output(solved, 0), view, "Solution", POINTS, edges=False)
+    return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
+
+
+def condition_estimator():
+    condition = simple.ConditionEstimator(Input=sample("bracket.vtu"))
+    bad = simple.Threshold(Input=output(condition, 0), Scalars=["CELLS", "Excess"])
+    bad.ThresholdMethod, bad.UpperThreshold = "Above Upper Threshold", 1
+    view = new_view(OBLIQUE)
+    draw(simple.ExtractSurface(Input=output(condition, 0)), view, edges=False, opacity=0.15, light=LIT)
+    draw(bad, view, "Excess", light=LIT)
+    return side_by_side(fit(view, 1.2), size=(420, HEIGHT))
+
+
+def solver_study():
+    study = simple.SolverStudy(Input=sample("bracket.vtu"))
+    study.UpdatePipeline()
+    view = simple.CreateView("XYBarChartView")
+    display = simple.Show(output(study, 1), view)
+    display.SeriesVisibility = ["Total time (s)"]
+    display.UseIndexForXAxis = 1
+    view.LeftAxisTitle, view.BottomAxisTitle, view.ShowLegend = "Total time (s)", "Combination", 0
+    return side_by_side(view, size=(WIDE // 2, HEIGHT))
+
+
+def peridynamic_condition():
+    square = simple.MeshDomain(Domain="Square with Interaction Layer, Structured", ElementSize=0.05)
+    condition = simple.PeridynamicCondition(Input=output(square, 0), Solve=1)
+    left, right = new_view(), new_view()
+    draw(output(square, 0), left, "Reference")
+    values(square, "Reference", 0.5, 3, "Grayscale")
+    simple.GetColorTransferFunction("Reference").InvertTransferFunction()
+    condition.UpdatePipeline()
+    draw(output(condition, 0), right, "Solution", POINTS, edges=False)
+    return side_by_side(fit(left, 1.3), fit(right, 1.3))
+
+
+def interaction_layer():
+    outline = sample("plate.poly")
+    edge = small_edge(outline)
+    mesh = simple.TriangleMesher(Input=outline, MinimumAngle=25, Size=edge)
+    layer = simple.InteractionLayer(Input=output(mesh, 0), Width=1.5 * edge)
+    view = new_view()
+    draw(layer, view, "Reference")
+    values(layer, "Reference", 0.5, 3, "Grayscale")
+    simple.GetColorTransferFunction("Reference").InvertTransferFunction()
+    return side_by_side(fit(view, 1.3), size=(420, HEIGHT))
+
+
+def horizon_neighbors():
+    square = simple.MeshDomain(Domain="Rectangle, Structured", NumberOfCells=400)
+    near = simple.HorizonNeighbors(Input=output(square, 0), Center=[1.03, 0.52, 0], Horizon=0.2)
+    view = new_view()
+    draw(output(square, 0), view, colour=[1, 1, 1])
+    draw(output(near, 0), view, "Case").Position = [0, 0, 0.01]
+    values(near, "Case", 0, 3)
+    circle = draw(output(near, 1), view, edges=False, colour=[0, 0, 0])
+    circle.LineWidth, circle.Position = 3, [0, 0, 0.02]
+    return side_by_side(fit(view, 2.2), size=(420, HEIGHT))
+
+
+def show_image(reader, view):
+    display = simple.Show(reader, view)
+    display.Representation = "Slice"
+    display.MapScalars = 0
+    return display
+
+
+def silhouette_to_mesh():
+    fish = sample("fish.png")
+    mesh = simple.SilhouettetoMesh(Input=fish, Spacing=12)
+    left, right = new_view(), new_view()
+    show_image(fish, left)
+    draw(output(mesh, 0), right)
+    return side_by_side(fit(left, 1.3), fit(right, 1.3))
+
+
+def match_shape():
+    fish, bent = sample("fish.png"), sample("fish-bent.png")
+    mesh = simple.SilhouettetoMesh(Input=fish, Spacing=12)
+    found = simple.MatchShape(Input=output(mesh, 0), Target=bent, Locations="Points on the outline")
+    left, right = new_view(), new_view()
+    for image, triangles, array, view in ((fish, mesh, None, left), (bent, found, "Deformation", right)):
+        show_image(image, view).Position = [0, 0, -1]
+        draw(output(triangles, 0), view, array, opacity=0.8)
+        fit(view, 1.3)
+    return side_by_side(left, right)
+
+
+def shape_retrieval():
+    """Above each silhouette, below its best match."""
+    images = simple.SilhouetteSetReader(FileName=str(DATA / "silhouettes.csv"))
+    ranking = simple.ShapeRetrieval(Input=images, BestMatches=1)
+    table = servermanager.Fetch(ranking, idx=1)
+    names = [[table.GetColumnByName(key).GetValue(row) for row in range(table.GetNumberOfRows())]
+             for key in ("Query", "Match")]
+    return tuple(side_by_side(*map(picture_of, row), size=(WIDE, HEIGHT // 2)) for row in names)
+
+
+def picture_of(name):
+    view = new_view()
+    show_image(sample(f"{name}.png"), view)
+    return fit(view, 1.3)
+
+
+def silhouette_list():
+    lines = (DATA / "silhouettes.csv").read_text().splitlines()[1:]
+    return side_by_side(*(picture_of(line.split(",")[0].removesuffix(".png")) for line in lines), size=(WIDE, 180))
+
+
+def gmsh_files():
+    view = new_view(OBLIQUE)
+    part = sample("part.msh")
+    part.UpdatePipeline()
+    draw(part, view, "Reference", light=LIT)
+    values(part, "Reference", *part.CellData["Reference"].GetRange())
+    return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
+
+
+def medit_files():
+    view = new_view(OBLIQUE)
+    draw(simple.Shrink(Input=sample("zoo.mesh"), ShrinkFactor=0.9), view, light=LIT)
+    return side_by_side(fit(view, 1.3), size=(420, HEIGHT))
+
+
+def off_files():
+    view = new_view(OBLIQUE)
+    display = draw(sample("house.off"), view, "Color")
+    display.MapScalars = 0
+    return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
+
+
+def tetgen_files():
+    view = new_view(OBLIQUE)
+    draw(simple.Shrink(Input=sample("cube.1.node"), ShrinkFactor=0.8), view, light=LIT)
+    return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
+
+
+PICTURES = (
+    element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
+    compare_meshes, metric_field, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator, solver_study, peridynamic_condition,
+    interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list,
+    gmsh_files, medit_files, off_files, tetgen_files,
+)  # fmt: skip
+
+
+def save(pictures, path: Path) -> None:
+    """Saves one layout, or several one below the other."""
+    import numpy
+
+    rows = pictures if isinstance(pictures[0], tuple) else (pictures,)
+    with tempfile.TemporaryDirectory() as folder:
+        images = []
+        for layout, size in rows:
+            name = Path(folder) / "picture.png"
+            simple.SaveScreenshot(str(name), layout, ImageResolution=list(size), SeparatorWidth=0)
+            images.append(read(name))
+    write(numpy.concatenate(images), path)
+    print(path.name, path.stat().st_size)
+
+
+def main(plugin: str, names: list) -> None:
+    simple.LoadPlugin(plugin, ns=vars(simple))
+    for picture in PICTURES:
+        if not names or picture.__name__ in names:
+            save(picture(), HERE / f"{picture.__name__}.png")
+            simple.ResetSession()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2:])
