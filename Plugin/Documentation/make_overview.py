@@ -11,7 +11,7 @@ from paraview import simple
 HERE = Path(__file__).resolve().parent
 DATA = HERE.parents[1] / "Data"
 PICTURE = HERE / "overview.png"
-SIZE = [760, 320]
+SIZE = [660, 290]
 CELLS = 1  # vtkDataObject::CELL
 FLAT, LIT = (1, 0), (0.65, 0.45)  # ambient and diffuse light
 SHADES = 16  # of 256

@@ -19,7 +19,7 @@ from property_table import find_files, read_proxies, table_of
 HERE = Path(__file__).resolve().parent
 PLACE = re.compile(r"(<!-- properties: (\S+) -->\n)(.*?)(<!-- end of properties -->)", re.DOTALL)
 LINK = re.compile(r'(href=")([\w.]+\.html)')
-COPIED = (".css", ".png")
+STYLE = '<link rel="stylesheet" href="style.css">'
 
 
 def proxies_of(text: str) -> list:
@@ -61,18 +61,22 @@ def check(proxies: dict, pages: list, write: bool) -> int:
 
 
 def make_help(output: Path, proxies: dict, pages: list) -> int:
-    """Pages named after their proxies, with links to these names, and the pictures."""
+    """Pages named after their proxies, with links to these names, and the pictures.
+
+    ParaView's help does not read style sheets: the style is in the pages.
+    """
+    style = (HERE / "style.css").read_text(encoding="utf-8")
     shutil.rmtree(output, ignore_errors=True)
     output.mkdir(parents=True)
     texts = {page.name: with_tables(page.read_text(encoding="utf-8"), proxies, page) for page in pages}
     names = {page: [f"{proxy}.html" for proxy in proxies_of(text)] or [page] for page, text in texts.items()}
     for page, text in texts.items():
         linked = LINK.sub(lambda match: match[1] + names.get(match[2], [match[2]])[0], text)
+        linked = linked.replace(STYLE, f"<style>\n{style}</style>")
         for name in names[page]:
             (output / name).write_text(linked, encoding="utf-8")
-    for path in HERE.iterdir():
-        if path.suffix in COPIED:
-            shutil.copyfile(path, output / path.name)
+    for path in HERE.glob("*.png"):
+        shutil.copyfile(path, output / path.name)
     return 0
 
 
