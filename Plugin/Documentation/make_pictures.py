@@ -1,6 +1,6 @@
 """pvpython make_pictures.py PLUGIN [NAME...]: draws the pictures of the help pages, NAME.png, or those named.
 
-Each function below draws the picture of the page of its name; what it returns is saved.
+Each function below draws the picture of its name, mostly that of the page of this name; what it returns is saved.
 """
 
 import sys
@@ -191,7 +191,7 @@ def compare_meshes():
     return side_by_side(fit(view, 1.3), size=(WIDE // 2, HEIGHT))
 
 
-def metric_field():
+def field_of_metric():
     field = simple.MetricField(Metrics=["Inverse mean ratio"], Bounds=[-1, 2, 0.02, 2, 0, 0], Dimensions=[301, 199, 1])
     lines = simple.Contour(Input=field, ContourBy=["POINTS", "imr"], Isosurfaces=[1.05, 1.2, 1.5, 2, 3, 5, 8])
     base = simple.Line(Point1=[0, 0, 0], Point2=[1, 0, 0])
@@ -388,7 +388,7 @@ def tetgen_files():
 
 PICTURES = (
     element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
-    compare_meshes, metric_field, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator, solver_study, peridynamic_condition,
+    compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator, solver_study, peridynamic_condition,
     interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list,
     gmsh_files, medit_files, off_files, tetgen_files,
 )  # fmt: skip
