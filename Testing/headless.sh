@@ -2,21 +2,12 @@
 # Runs a command on a virtual screen of its own. The server picks a free number itself, so that several
 # can start at once; and it does not reset when its last client leaves (-noreset), so that a program that
 # closes its only window and opens another is not turned away. xvfb-run -a has both weaknesses.
-# With TAUTLINE_SCREENSHOTS, a directory, the screen is in a file that TAUTLINE_SCREEN names: Testing/Gui/screenshots.py
-# saves pictures of it. TAUTLINE_SCREEN_SIZE: width x height, default 1280x1024.
 # usage: headless.sh COMMAND [ARGUMENT...]
 set -u
 number=$(mktemp)
-screen=()
-frame=
-if [ -n "${TAUTLINE_SCREENSHOTS:-}" ]; then
-  frame=$(mktemp -d)
-  screen=(-fbdir "$frame")
-  export TAUTLINE_SCREEN="$frame/Xvfb_screen0"
-fi
-Xvfb -displayfd 3 -screen 0 "${TAUTLINE_SCREEN_SIZE:-1280x1024}x24" "${screen[@]}" -noreset -nolisten tcp 3>"$number" 2>/dev/null &
+Xvfb -displayfd 3 -screen 0 1280x1024x24 -noreset -nolisten tcp 3>"$number" 2>/dev/null &
 server=$!
-trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null; rm -rf "$number" ${frame:+"$frame"}' EXIT
+trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null; rm -f "$number"' EXIT
 for _ in $(seq 200); do
   [ -s "$number" ] && break
   sleep 0.05

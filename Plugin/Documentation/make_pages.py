@@ -19,6 +19,7 @@ from property_table import find_files, read_proxies, table_of
 HERE = Path(__file__).resolve().parent
 PLACE = re.compile(r"(<!-- properties: (\S+) -->\n)(.*?)(<!-- end of properties -->)", re.DOTALL)
 LINK = re.compile(r'(href=")([\w.]+\.html)')
+IN_TREE = re.compile(r'<a href="\.\./\.\./([^"]+)">[^<]*</a>')  # files that the help does not have
 STYLE = '<link rel="stylesheet" href="style.css">'
 
 
@@ -72,6 +73,7 @@ def make_help(output: Path, proxies: dict, pages: list) -> int:
     names = {page: [f"{proxy}.html" for proxy in proxies_of(text)] or [page] for page, text in texts.items()}
     for page, text in texts.items():
         linked = LINK.sub(lambda match: match[1] + names.get(match[2], [match[2]])[0], text)
+        linked = IN_TREE.sub(r"<code>\1</code>", linked)
         linked = linked.replace(STYLE, f"<style>\n{style}</style>")
         for name in names[page]:
             (output / name).write_text(linked, encoding="utf-8")

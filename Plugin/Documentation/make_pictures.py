@@ -388,9 +388,9 @@ def tetgen_files():
 
 PICTURES = (
     element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
-    compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator, solver_study, peridynamic_condition,
-    interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list,
-    gmsh_files, medit_files, off_files, tetgen_files,
+    compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator,
+    solver_study, peridynamic_condition, interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape,
+    shape_retrieval, silhouette_list, gmsh_files, medit_files, off_files, tetgen_files,
 )  # fmt: skip
 
 

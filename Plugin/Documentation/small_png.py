@@ -48,3 +48,19 @@ def read(path: Path) -> np.ndarray:
     image = reader.GetOutput()
     columns, rows, _ = image.GetDimensions()
     return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(rows, columns, -1)[::-1]
+
+
+def shrink(image: np.ndarray, width: int) -> np.ndarray:
+    """The image with fewer columns and the same proportions: each new pixel is the mean of the area it covers."""
+    result = image[..., :3].astype(float)
+    height = round(image.shape[0] * width / image.shape[1])
+    for axis, size in ((0, height), (1, width)):
+        old = result.shape[axis]
+        sums = np.insert(np.cumsum(result, axis=axis), 0, 0, axis=axis)
+        places = np.linspace(0, old, size + 1)
+        below = np.minimum(places.astype(int), old - 1)
+        shape = [-1 if i == axis else 1 for i in range(3)]
+        part = (places - below).reshape(shape)
+        at = np.take(sums, below, axis) * (1 - part) + np.take(sums, below + 1, axis) * part
+        result = np.diff(at, axis=axis) * size / old
+    return np.clip(np.round(result), 0, 255).astype(np.uint8)

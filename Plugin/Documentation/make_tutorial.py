@@ -1,0 +1,175 @@
+"""pvpython make_tutorial.py PLUGIN [--write]: tests the steps of the tutorial; --write makes pictures and states.
+
+Each step is a function that makes what tutorial.html describes, checks its numbers, and returns the view to show.
+The pictures are tutorial_N.png; the states of the views are saved beside the sample meshes, tutorial_N.pvsm. Names of
+files in the states are relative: ParaView finds them with "Search files under specified directory".
+"""
+
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+from make_pictures import LIT, OBLIQUE, draw, fit, new_view, output, save, side_by_side  # noqa: E402
+from paraview import servermanager, simple  # noqa: E402
+from small_state import shortened  # noqa: E402
+
+DATA = HERE.parents[1] / "Data"
+ELEMENTS, INVERTED = 8140, 41  # of the sample, as in Data/README.md
+STATES = (2, 4, 5, 6, 8, 9)
+ONE = (440, 280)  # size of a picture with one view
+INSIDE = 0.15  # opacity of a mesh that one looks into
+
+made = {}  # what the steps made, by name
+
+
+def summary(source, name="Summary") -> str:
+    source.UpdatePipeline()
+    source.UpdatePropertyInformation()
+    return getattr(source, name)
+
+
+def number_of(source, array, is_bad) -> int:
+    values = servermanager.Fetch(source).GetCellData().GetArray(array)
+    return sum(is_bad(values.GetValue(cell)) for cell in range(values.GetNumberOfTuples()))
+
+
+def view_inside(mesh, inside, array):
+    """The mesh translucent around what lies inside."""
+    view = new_view(OBLIQUE)
+    draw(mesh, view, edges=False, opacity=INSIDE, light=LIT)
+    inside.UpdatePipeline()
+    if inside.GetDataInformation().GetNumberOfCells():
+        draw(inside, view, array, light=LIT)
+    return fit(view, 1.2)
+
+
+def open_mesh():
+    made["mesh"] = simple.OpenDataFile(str(DATA / "bracket-tangled.vtu"))
+    view = new_view(OBLIQUE)
+    draw(made["mesh"], view, light=LIT)
+    assert made["mesh"].GetDataInformation().GetNumberOfCells() == ELEMENTS
+    return [fit(view, 1.2)]
+
+
+def find():
+    quality = made["quality"] = simple.ElementQuality(Input=made["mesh"])
+    assert f"{INVERTED} inverted" in summary(quality)
+    assert number_of(quality, "Validity", lambda validity: validity == -1) == INVERTED
+    return [view_inside(output(quality, 0), output(quality, 7), "imr")]
+
+
+def understand():
+    quality = made["quality"]
+    inverted = simple.Threshold(Input=output(quality, 0), Scalars=["CELLS", "Validity"])
+    inverted.ThresholdMethod, inverted.LowerThreshold = "Below Lower Threshold", -1
+    inverted.UpdatePipeline()
+    assert inverted.GetDataInformation().GetNumberOfCells() == INVERTED
+    histogram = servermanager.Fetch(quality, idx=5)
+    counts = histogram.GetColumnByName("imr count")
+    total = sum(counts.GetValue(row) for row in range(counts.GetNumberOfTuples()))
+    assert total == ELEMENTS - INVERTED, total  # inverted ones are counted apart
+    return [view_inside(output(quality, 0), inverted, "imr")]
+
+
+def untangle():
+    made["valid"] = simple.UntangleMesh(Input=made["mesh"])
+    assert summary(made["valid"]).startswith(f"All elements are valid; {INVERTED} were not.")
+    checked = simple.ElementQuality(Input=output(made["valid"], 0))
+    assert "0 inverted" in summary(checked)
+    return [view_inside(output(checked, 0), output(checked, 7), "imr")]
+
+
+def optimize():
+    made["better"] = simple.OptimizeMesh(Input=output(made["valid"], 0), Preset="Worst element")
+    found = re.search(r"worst ([\d.e+]+) to ([\d.e+]+)\.\s", summary(made["better"]) + "\n")
+    before, after = map(float, found.groups())
+    assert after < before / 2, made["better"].Summary
+    checked = simple.ElementQuality(Input=output(made["better"], 0))
+    assert "0 inverted" in summary(checked)
+    return [view_inside(output(checked, 0), output(checked, 7), "imr")]
+
+
+def compare():
+    changes = simple.CompareMeshes(Input=output(made["valid"], 0), Other=output(made["better"], 0))
+    words = re.search(r"(\d+) better, (\d+) worse", summary(changes))
+    assert int(words[1]) > int(words[2]), changes.Summary
+    views = []
+    for mesh in (made["valid"], made["better"]):
+        cut = simple.Clip(Input=simple.ElementQuality(Input=output(mesh, 0)), ClipType="Plane", Crinkleclip=1, Invert=0)
+        cut.UpdatePipeline()
+        bounds = made["mesh"].GetDataInformation().GetBounds()
+        cut.ClipType.Origin = [(bounds[i] + bounds[i + 1]) / 2 for i in (0, 2, 4)]
+        cut.ClipType.Normal = [0, 1, 0]
+        view = new_view(OBLIQUE)
+        draw(cut, view, "imr", light=LIT)
+        views.append(fit(view, 1.2))
+    return views
+
+
+def report():
+    """The tables that a report contains: a row for each metric, before and after."""
+    table = servermanager.Fetch(made["better"], idx=2)
+    names = [table.GetColumnName(column) for column in range(table.GetNumberOfColumns())]
+    before, after = (table.GetColumnByName(name).GetValue(0) for name in ("MeanBefore", "MeanAfter"))
+    assert after < before, names
+    return []
+
+
+def warp():
+    plate = simple.OpenDataFile(str(DATA / "plate.vtu"))
+    turned = simple.WarpMesh(Input=plate, TransformKind="Rotation", Angle=60)
+    summary(turned)
+    assert turned.Inverted == 0
+    view = new_view()
+    draw(output(turned, 0), view, "TMP shape")
+    return [fit(view, 1.5)]
+
+
+def condition():
+    estimate = simple.ConditionEstimator(Input=simple.OpenDataFile(str(DATA / "bracket.vtu")))
+    assert "4 of 8140 elements have 90 % of the largest eigenvalue" in summary(estimate)
+    bad = simple.Threshold(Input=output(estimate, 0), Scalars=["CELLS", "Excess"])
+    bad.ThresholdMethod, bad.UpperThreshold = "Above Upper Threshold", 1
+    return [view_inside(output(estimate, 0), bad, "Excess")]
+
+
+def automate():
+    """The script that tutorial.html shows."""
+    text = (HERE / "tutorial.html").read_text(encoding="utf-8")
+    assert "<!-- test: pvpython -->" in text  # Testing/Docs/run_examples.py runs it
+    return []
+
+
+STEPS = (open_mesh, find, understand, untangle, optimize, compare, report, warp, condition, automate)
+
+
+def save_state(number: int) -> None:
+    """The state without the place of this checkout."""
+    with tempfile.TemporaryDirectory() as folder:
+        name = Path(folder) / "state.pvsm"
+        simple.SaveState(str(name))
+        text = shortened(name.read_text(encoding="utf-8").replace(f"{DATA}/", ""))
+    assert str(HERE.parents[1]) not in text
+    (DATA / f"tutorial_{number}.pvsm").write_text(text, encoding="utf-8")
+
+
+def main(plugin: str, write: bool) -> None:
+    simple.LoadPlugin(plugin, ns=vars(simple))
+    for number, step in enumerate(STEPS, 1):
+        views = step()
+        print(f"step {number}, {step.__name__}: passed", flush=True)
+        if not (write and views):
+            continue
+        save(side_by_side(*views, size=ONE if len(views) == 1 else (660, 280)), HERE / f"tutorial_{number}.png")
+        if number in STATES:
+            save_state(number)
+        for view in views:
+            simple.Delete(view)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], "--write" in sys.argv)
