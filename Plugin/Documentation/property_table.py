@@ -1,7 +1,6 @@
 """The table of a proxy's properties as HTML, from the XML of ParaView's server manager.
 
-A table has the properties in the order of the XML, with the titles of the panel's groups. Properties that differ in a
-number only, such as Metric 1 and Metric 2, share a row.
+A table has the properties in the order of the XML, with the titles of the panel's groups.
 """
 
 import html
@@ -11,7 +10,7 @@ from pathlib import Path
 
 GROUPS = ("filters", "sources", "writers")  # those that users meet; readers are sources
 METRIC = "Inverse mean ratio"  # the first entry of a list of metrics
-COLUMNS = "<tr><th>Property</th><th>Default</th><th>Description</th></tr>"
+COLUMNS = '<tr><th width="22%">Property</th><th width="16%">Default</th><th width="62%">Description</th></tr>'
 BULLET = re.compile(r"^[*-] ", re.MULTILINE)
 VTK_TYPES = {"vtkCompositeDataSet": None, "vtkSelection": "a selection"}  # None: stated otherwise
 
@@ -142,29 +141,17 @@ def is_listed(item) -> bool:
     return not item.get("information_only") or item.find("Documentation") is not None
 
 
-def merged(rows: list) -> list:
-    """Rows that follow a like one but for a number are merged with it."""
-    result = {}
-    for key, (label, default, text) in rows:
-        stem = re.sub(r"\d+", "#", key)
-        alike = (stem, re.sub(r"\d+", "#", label), re.sub(r"Metric \d", "Metric #", text))
-        found = result.setdefault(alike if stem != key else key, [[], [], text])
-        found[0].append(label)
-        found[1].append(default)
-    return [(", ".join(labels), "; ".join(dict.fromkeys(defaults)), text) for labels, defaults, text in result.values()]
-
-
 def table_of(proxy) -> str:
     """The HTML table of a proxy's properties, by the groups of its panel."""
     titles = {part.get("name"): group.get("label") for group in proxy.iter("PropertyGroup") for part in group}
     sections = {}
     for item in filter(is_listed, proxy):
         section = sections.setdefault(titles.get(item.get("name")), [])
-        section.append((item.get("name"), row_of(item, proxy)))
-    lines = ["<table>", COLUMNS]
+        section.append(row_of(item, proxy))
+    lines = ['<table width="100%">', COLUMNS]
     for title, rows in sections.items():
         lines += [f'<tr><th colspan="3">{html.escape(title)}</th></tr>'] if title else []
-        for label, default, text in merged(rows):
+        for label, default, text in rows:
             lines.append(f"<tr><td>{label}</td><td>{default}</td>\n<td>{text}</td></tr>")
     return "\n".join(lines + ["</table>"])
 

@@ -6,6 +6,7 @@ DOCUMENTATION, with every property. HELP is the directory of the made pages. No 
 each is in the table of contents.
 """
 
+import html
 import re
 import sqlite3
 import sys
@@ -41,7 +42,7 @@ def proxy_complaints(proxies: dict, files: dict):
         if missing:
             yield f"the page of {name} has no {' '.join(missing)}"
         for item in filter(is_listed, proxy):
-            if f"<td>{label_of(item)}" not in text and f", {label_of(item)}" not in text:
+            if f"<td>{html.escape(label_of(item))}" not in text:
                 yield f"the page of {name} lacks the property {label_of(item)}"
 
 
