@@ -39,14 +39,17 @@ def posterized(image: np.ndarray) -> np.ndarray:
 
 
 def strip(files: list) -> np.ndarray:
-    """The frames in rows, from left to right."""
-    frames = [shrink(window(read(file)), WIDTH) for file in files]
-    height = max(frame.shape[0] for frame in frames)
-    rows = -(-len(frames) // COLUMNS)
-    result = np.full((rows * (height + GAP) - GAP, WIDE, 3), 255, np.uint8)
+    """The frames in rows, from left to right, and the last one below them, large."""
+    windows = [window(read(file)) for file in files]
+    last = shrink(windows.pop(), WIDE)
+    frames = [shrink(image, WIDTH) for image in windows]
+    height = max((frame.shape[0] for frame in frames), default=0) + GAP
+    begin = -(-len(frames) // COLUMNS) * height
+    result = np.full((begin + last.shape[0], WIDE, 3), 255, np.uint8)
     for number, frame in enumerate(frames):
-        top, left = number // COLUMNS * (height + GAP), number % COLUMNS * (WIDTH + GAP)
+        top, left = number // COLUMNS * height, number % COLUMNS * (WIDTH + GAP)
         result[top : top + frame.shape[0], left : left + WIDTH] = frame
+    result[begin:] = last
     return posterized(result)
 
 
