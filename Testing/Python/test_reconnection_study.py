@@ -2,7 +2,7 @@
 
 from checks import OUT
 from study_checks import Studies
-from tautline.studies import reconnection
+from tautline.studies import _common, _verdicts, reconnection
 
 studies = Studies(OUT / "studies_reconnection")
 TABLES = {domain: len(reconnection.STEPS) for domain in reconnection.DOMAINS} | {"refinement": len(reconnection.PLANAR)}
@@ -35,18 +35,22 @@ def test_numbers():
             assert row[reconnection.ITERATIONS] >= 5, row
 
 
+def holds(state, *arguments) -> list:
+    """The verdicts of a function that states findings."""
+    report = _common.Report("reconnection", "verdicts", studies.directory)
+    state(report, *arguments)
+    return [verdict == _verdicts.HOLDS for _, _, verdict, _ in report.findings]
+
+
 def test_verdicts():
-    """Each verdict holds for the numbers of the study, and does not for numbers that contradict it."""
+    """Slivers cost; each verdict holds for good numbers, and does not for numbers that contradict it."""
+    state = reconnection.domain_findings
     for domain in reconnection.DOMAINS:
-        rows = rows_of(domain)
-        found = [v[1] for v in reconnection.verdicts(domain, rows)]
-        assert found == [r["holds"] == "yes" for r in studies.rows("reconnection", "findings")
-                         if r["source"] == domain]
-        assert found[:3] == [True] * 3, reconnection.verdicts(domain, rows)
+        assert holds(state, domain, rows_of(domain))[:3] == [True] * 3, rows_of(domain)
     good = {name: [10.0, 20.0, 2.0, 50.0, 5.0, 9.0] for name in reconnection.STEPS}
     good["with slivers"] = [10.0, 0.1, 90.0, 5e3, 500.0, 90.0]
     good["best shape (points move)"][reconnection.ANGLE] = 5.0
-    assert all(v[1] for v in reconnection.verdicts("any", good))
+    assert holds(state, "any", good) == [True] * 5
     wrong = (("remove slivers", reconnection.CONDITION, 6e3, 0),
              ("remove slivers", reconnection.PRECONDITIONED, 501, 1),
              ("remove slivers", reconnection.ITERATIONS, 90, 2), ("aggressive", reconnection.ITERATIONS, 10, 3),
@@ -54,11 +58,10 @@ def test_verdicts():
     for name, column, value, index in wrong:
         bad = {key: list(row) for key, row in good.items()}
         bad[name][column] = value
-        assert [v[1] for v in reconnection.verdicts("any", bad)][index] is False, (name, column)
-    fine = {"a": [29.0, 100.0, 35.0, 100.0]}
-    assert reconnection.refinement_verdict(fine)[1]
+        assert not holds(state, "any", bad)[index], (name, column)
+    assert holds(reconnection.refinement_findings, {"a": [29.0, 100.0, 35.0, 100.0]}) == [True]
     for row in ([36.0, 100.0, 35.0, 100.0], [29.0, 99.0, 35.0, 100.0]):
-        assert not reconnection.refinement_verdict({"a": row})[1]
+        assert holds(reconnection.refinement_findings, {"a": row}) == [False]
 
 
 if __name__ == "__main__":

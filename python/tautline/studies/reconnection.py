@@ -43,32 +43,35 @@ def figures(mesh: vtkDataSet, threads: int) -> list[float]:
             found.preconditioned_condition, float(solved.iterations)]
 
 
-def verdicts(domain: str, rows: Rows) -> list[tuple[str, bool, str]]:
-    """Sentence, whether it holds and its figures, for each finding on a domain; rows are those of `figures`."""
+def domain_findings(report: Report, domain: str, rows: Rows) -> None:
+    """The findings on a domain; rows are those of `figures`."""
+
     def text(column: int) -> str:
         return ", ".join(f"{name} {row[column]:.5g}" for name, row in rows.items())
 
+    def finding(sentence: str, holds: bool, column: int) -> None:
+        report.finding(domain, sentence, holds, text(column))
+
     start, repaired, best = rows["with slivers"], rows["remove slivers"], rows["aggressive"]
-    return [
-        ("Removing slivers makes the condition number of the matrix smaller",
-         repaired[CONDITION] < start[CONDITION], text(CONDITION)),
-        ("... and that with Jacobi's preconditioner", repaired[PRECONDITIONED] < start[PRECONDITIONED],
-         text(PRECONDITIONED)),
-        ("CG needs fewer iterations without slivers", repaired[ITERATIONS] < start[ITERATIONS], text(ITERATIONS)),
-        ("The preset aggressive needs no more iterations than removing slivers",
-         best[ITERATIONS] <= repaired[ITERATIONS], text(ITERATIONS)),
-        ("Moving points alone leaves a smaller smallest angle than the preset aggressive",
-         rows["best shape (points move)"][ANGLE] < best[ANGLE], text(ANGLE)),
-    ]
+    finding("Removing slivers makes the condition number of the matrix smaller",
+            repaired[CONDITION] < start[CONDITION], CONDITION)
+    finding("... and that with Jacobi's preconditioner",
+            repaired[PRECONDITIONED] < start[PRECONDITIONED], PRECONDITIONED)
+    finding("CG needs fewer iterations without slivers", repaired[ITERATIONS] < start[ITERATIONS], ITERATIONS)
+    finding("The preset aggressive needs no more iterations than removing slivers",
+            best[ITERATIONS] <= repaired[ITERATIONS], ITERATIONS)
+    finding("Moving points alone leaves a smaller smallest angle than the preset aggressive",
+            rows["best shape (points move)"][ANGLE] < best[ANGLE], ANGLE)
 
 
-def refinement_verdict(rows: Rows) -> tuple[str, bool, str]:
+def refinement_findings(report: Report, rows: Rows) -> None:
     """Whether the improved meshes have at least the smallest angle of Delaunay refinement; rows: its angle, the number
     of its points, our angle and points."""
     holds = all(ours >= theirs and points <= count for theirs, count, ours, points in rows.values())
     shown = ", ".join(f"{name} {ours:.4g} with {points:.0f} points (refinement {theirs:.4g} with {count:.0f})"
                       for name, (theirs, count, ours, points) in rows.items())
-    return "The smallest angle is at least that of Delaunay refinement with as many points", holds, shown
+    report.finding("plane", "The smallest angle is at least that of Delaunay refinement with as many points", holds,
+                   shown)
 
 
 def plate(cells: int) -> vtkDataSet:
@@ -111,7 +114,7 @@ def against_refinement(cells: int, threads: int) -> Rows:
 
 def main(arguments: list[str]) -> int:
     given = parser("reconnection", __doc__, CELLS).parse_args(arguments)
-    report = Report("reconnection", "What slivers cost a solver", given.out)
+    report = Report("reconnection", "What slivers cost a solver", given.out, given.small)
     cells = given.cells or (SMALL_CELLS if given.small else CELLS)
     report.text(
         f"Meshes of the domains, all inner points moved at random by up to {PERTURBED:g} of their distance to "
@@ -123,12 +126,10 @@ def main(arguments: list[str]) -> int:
         poor = tautline.perturb(tautline.domain(domain, cells), PERTURBED, 100.0).mesh
         rows = {label: figures(step(poor, given.threads), given.threads) for label, step in STEPS.items()}
         report.table(domain, domain, ["mesh", *COLUMNS], [[label, *row] for label, row in rows.items()])
-        for sentence, holds, shown in verdicts(domain, rows):
-            report.finding(domain, sentence, holds, shown)
+        domain_findings(report, domain, rows)
     rows = against_refinement(cells, given.threads)
     report.table("refinement", "Triangles: smallest angle of Delaunay refinement and after Improve Mesh",
                  ["domain", "refinement", "points", "improved", "points improved"],
                  [[name, *row] for name, row in rows.items()])
-    sentence, holds, shown = refinement_verdict(rows)
-    report.finding("plane", sentence, holds, shown)
+    refinement_findings(report, rows)
     return report.finish("Findings")
