@@ -96,7 +96,8 @@ def test_shell():
 
 def test_errors():
     refused("no metric", tl.report, DATA / "plate.vtu", metrics="no such")
-    refused("cannot be written", tl.report, DATA / "plate.vtu", Path("/no-such-folder/report.html"))
+    for mesh in (DATA / "plate.vtu", OUT / "no-such-mesh.vtu"):  # the name is checked first
+        refused("cannot be written", tl.report, mesh, Path("/no-such-folder/report.html"))
 
 
 run_tests(globals())

@@ -8,7 +8,7 @@ from typing import Any
 
 from . import _commands
 from ._errors import interruptible
-from ._files import replace_text
+from ._files import check_stream_or_target, replace_text
 from ._html import html_report
 from ._io import Mesh
 from ._metrics import Metrics
@@ -50,6 +50,8 @@ def report(
     >>> better = tautline.optimize("part.vtu")
     >>> tautline.report(better, "report.html", before="part.vtu", criteria="fem")
     """
+    if file is not None:
+        check_stream_or_target(file)
     options = {"criteria": criteria, "histogram_bins": histogram_bins, "time_limit": time_limit, "threads": threads}
     first = None if before is None else measure(before, metrics, **options)
     measured = measure(mesh, metrics, **options)
