@@ -84,7 +84,7 @@ def side_by_side(*views, size=(WIDE, HEIGHT)):
     return layout, size
 
 
-def values(source, array, low, high, preset="Cool to Warm"):
+def values(array, low, high, preset="Cool to Warm"):
     """Colours of an array between two values."""
     table = simple.GetColorTransferFunction(array)
     table.ApplyPreset(preset, True)
@@ -140,9 +140,8 @@ def improve_mesh_plane():
     views = [new_view(), new_view()]
     for mesh, view in zip((quality, better), views):
         draw(output(mesh, 0), view, "min_angle")
-        fit(view, 1.7)
-    values("min_angle", 0, 60)
-    return side_by_side(*views, size=(WIDE, 2 * FINE_HEIGHT))
+        fit(view, 3.4)
+    return side_by_side(*views, size=(FINE_WIDE, FINE_HEIGHT))
 
 
 def untangle_mesh():
@@ -186,7 +185,7 @@ def compare_meshes():
     changes = simple.CompareMeshes(Input=plate, Other=simple.OptimizeMesh(Input=plate))
     view = new_view()
     draw(output(changes, 0), view, "Change")
-    values(changes, "Change", -1, 1)
+    values("Change", -1, 1)
     simple.GetColorTransferFunction("Change").InvertTransferFunction()
     return side_by_side(fit(view, 1.3), size=(WIDE // 2, HEIGHT))
 
@@ -197,7 +196,7 @@ def field_of_metric():
     base = simple.Line(Point1=[0, 0, 0], Point2=[1, 0, 0])
     view = new_view()
     draw(field, view, "imr", POINTS, edges=False)
-    values(field, "imr", 1, 8, "Viridis (matplotlib)")
+    values("imr", 1, 8, "Viridis (matplotlib)")
     simple.GetColorTransferFunction("imr").InvertTransferFunction()
     for source, width in ((lines, 1), (base, 4)):
         display = draw(source, view, edges=False, colour=[0, 0, 0])
@@ -278,7 +277,7 @@ def peridynamic_condition():
     condition = simple.PeridynamicCondition(Input=output(square, 0), Solve=1)
     left, right = new_view(), new_view()
     draw(output(square, 0), left, "Reference")
-    values(square, "Reference", 0.5, 3, "Grayscale")
+    values("Reference", 0.5, 3, "Grayscale")
     simple.GetColorTransferFunction("Reference").InvertTransferFunction()
     condition.UpdatePipeline()
     draw(output(condition, 0), right, "Solution", POINTS, edges=False)
@@ -292,7 +291,7 @@ def interaction_layer():
     layer = simple.InteractionLayer(Input=output(mesh, 0), Width=1.5 * edge)
     view = new_view()
     draw(layer, view, "Reference")
-    values(layer, "Reference", 0.5, 3, "Grayscale")
+    values("Reference", 0.5, 3, "Grayscale")
     simple.GetColorTransferFunction("Reference").InvertTransferFunction()
     return side_by_side(fit(view, 1.3), size=(420, HEIGHT))
 
@@ -303,7 +302,7 @@ def horizon_neighbors():
     view = new_view()
     draw(output(square, 0), view, colour=[1, 1, 1])
     draw(output(near, 0), view, "Case").Position = [0, 0, 0.01]
-    values(near, "Case", 0, 3)
+    values("Case", 0, 3)
     circle = draw(output(near, 1), view, edges=False, colour=[0, 0, 0])
     circle.LineWidth, circle.Position = 3, [0, 0, 0.02]
     return side_by_side(fit(view, 2.2), size=(420, HEIGHT))
@@ -363,7 +362,7 @@ def gmsh_files():
     part = sample("part.msh")
     part.UpdatePipeline()
     draw(part, view, "Reference", light=LIT)
-    values(part, "Reference", *part.CellData["Reference"].GetRange())
+    values("Reference", *part.CellData["Reference"].GetRange())
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
