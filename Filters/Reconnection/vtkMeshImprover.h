@@ -157,7 +157,7 @@ public:
 
   ///@{
   /// With FLAT: facets whose normals differ by at most so many degrees, 0 to 1, are coplanar. The
-  /// default is 1e-8.
+  /// default is 0.01.
   vtkTautlineSetRangeMacro(FlatTolerance, double, 0.0, 1.0);
   vtkGetMacro(FlatTolerance, double);
   ///@}
@@ -317,7 +317,7 @@ private:
   bool Compound = true;
   double TargetAngle = 0.0;
   int Boundary = FIXED;
-  double FlatTolerance = 1e-8;
+  double FlatTolerance = 0.01;
   double SmallestCount = 0.9;
   double LargestCount = 1.1;
   double FeatureAngle = 40.0;

@@ -68,7 +68,7 @@ def improve(
     target_angle: float | None = None,
     smallest_count: float = 0.9,
     largest_count: float = 1.1,
-    flat_tolerance: float = 1e-8,
+    flat_tolerance: float = 0.01,
     feature_angle: float = 40.0,
     surface_angle: float = 20.0,
     surface_distance: float = 5e-3,
@@ -210,8 +210,8 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--preset", choices=PRESETS, default="remove slivers")
     for name in _OPERATIONS:
         parser.add_argument(f"--no-{name}", action="store_false", dest=name, help="with --preset custom")
-    parser.add_argument("--flat-tolerance", type=float, metavar="DEGREES", default=1e-8,
-                        help="up to which facets are coplanar, with --boundary flat (default: 1e-8)")  # fmt: skip
+    parser.add_argument("--flat-tolerance", type=float, metavar="DEGREES", default=0.01,
+                        help="up to which facets are coplanar, with --boundary flat (default: 0.01)")  # fmt: skip
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
     parser.add_argument("--target-angle", type=float, metavar="DEGREES",
                         help="(dihedral) angle to be reached by all (default: that of the preset)")  # fmt: skip

@@ -13,7 +13,7 @@ constexpr std::size_t MaxInsertions = 4;
 constexpr int Rounds = 4, RoundSteps = 2;
 /// After these, the worst tetrahedron is repaired if its quality is at least this fraction of the
 /// quality before the change.
-constexpr double Repairable = 0.85;
+constexpr double Repairable = 0.5;
 }
 
 /// Moves the vertices of the affected tetrahedra; true as soon as all of these are above a quality.

@@ -78,8 +78,10 @@ void CavityOperations::grow(Insertion& insertion)
       if (f.quality == Unknown)
       {
         const TriangleVertices v = this->Mesh.face(f.tet, f.face);
-        f.quality =
-          roundedQuality(p, this->Mesh.point(v[0]), this->Mesh.point(v[1]), this->Mesh.point(v[2]));
+        f.quality = this->isOpened(f, insertion)
+          ? Opened
+          : roundedQuality(
+              p, this->Mesh.point(v[0]), this->Mesh.point(v[1]), this->Mesh.point(v[2]));
       }
       worst = !worst || f.quality < worst->quality ? &f : worst;
     }

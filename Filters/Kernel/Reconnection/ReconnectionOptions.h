@@ -85,8 +85,9 @@ struct ReconnectionOptions
    */
   double targetAngle = 33.4;
   ReconnectionBoundary boundary = ReconnectionBoundary::Fixed;
-  /// With Flat: facets whose normals differ by at most so many degrees are coplanar; 0 to 1.
-  double flatTolerance = 1e-8;
+  /// With Flat: facets whose normals differ by at most so many degrees are coplanar; 0 to 1. The
+  /// default allows for coordinates in single precision, or with six decimals in a file.
+  double flatTolerance = 0.01;
   /// One flag per point, nonzero = it stays where it is and is not removed; null: none besides
   /// those of the boundary.
   const unsigned char* fixed = nullptr;

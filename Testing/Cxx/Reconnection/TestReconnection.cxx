@@ -283,6 +283,35 @@ void testRegions()
   }
 }
 
+/// Points are inserted on straight edges and in flat parts where facets are too long.
+void testDividedBoundary()
+{
+  constexpr double length = 6.0;
+  MeshData data = blockMesh(CellType::Tetrahedron, 1, 1, 1);
+  data.transform([](const Vec3& p) { return Vec3{ length * p[0], p[1], p[2] }; });
+  ReconnectionOptions options;
+  options.largestCount = 100.0;
+  const ReconnectionResult fixed = reconnect(data, options);
+  options.boundary = ReconnectionBoundary::Flat;
+  const ReconnectionResult flat = reconnect(data, options);
+  checkResult(data, flat);
+  checkOrigins(data, flat);
+  // Facets of 6 by 1 with the boundary fixed; a facet of length l and height 1 has (mean ratio)^1.5
+  // 2 sqrt(3) l / (2 + 2 l^2), here at most 0.281.
+  TAUTLINE_CHECK(fixed.history.back().worstQuality < 0.281);
+  TAUTLINE_CHECK(flat.history.back().worstQuality > 0.5);
+  TAUTLINE_CHECK(flat.history.back().smallestAngle > 30.0);
+  Index onEdges = 0;
+  for (const PointInterpolation& place : flat.interpolations)
+  {
+    const double* p = &flat.points[3 * place.point];
+    const auto outer = [](double x, double end) { return x < 1e-12 || x > end - 1e-12; };
+    const int planes = outer(p[0], length) + outer(p[1], 1.0) + outer(p[2], 1.0);
+    onEdges += planes == 2;
+  }
+  TAUTLINE_CHECK(onEdges >= 4 * 2);
+}
+
 /// Points of the boundary of a block stay on its faces, edges and corners.
 void testFlat()
 {
@@ -646,6 +675,7 @@ int TestReconnection(int, char*[])
   testCount();
   testScales();
   testRegions();
+  testDividedBoundary();
   testFlat();
   testLimits();
   testObstacles();
