@@ -35,7 +35,7 @@ constexpr const char* FilterName = "Improve Mesh"; // in the menu
 using Reasons = std::array<const char*, 6>;
 constexpr Reasons obstacles = { "it is not below the target",
   "no operation improves it, or a limit ended the run",
-  "the facets that it has on the boundary or between regions allow no better one",
+  "a facet that it has on the boundary or between regions allows no better one",
   "it has a fixed point", "it has a point between regions", "it has a point on the boundary" };
 
 /// What would help, in the same order.
@@ -133,6 +133,8 @@ void addRemaining(tautline::TableRows& rows, const std::vector<tautline::Index>&
     rows.add("X", improved.centers[cell][0]);
     rows.add("Y", improved.centers[cell][1]);
     rows.add("Z", improved.centers[cell][2]);
+    rows.add("Quality", result.qualities[cell]);
+    rows.add("Quality bound", result.bounds[cell]);
     rows.addText("Reason", words.obstacles[result.obstacles[cell]]);
   }
 }
@@ -289,6 +291,7 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
   options.contract = this->Contract;
   options.insert = this->Insert;
   options.compound = this->Compound;
+  options.objective = static_cast<tautline::ReconnectionObjective>(this->Objective);
   options.boundary = static_cast<tautline::ReconnectionBoundary>(this->Boundary);
   options.flatTolerance = this->FlatTolerance;
   options.smallestCount = this->SmallestCount;
@@ -333,11 +336,12 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
     options.sizes = sizes.data();
     return tautline::improveConnectivity(mesh.mesh(), options);
   }
-  if (this->Size != ANY_LENGTH || this->ThenBestShape || this->CellTransfer != COPY)
+  if (this->Size != ANY_LENGTH || this->ThenBestShape || this->CellTransfer != COPY ||
+    this->Objective != ANGLES_AND_SHAPE)
   {
-    throw tautline::Error("Target lengths of edges, Then Best Shape and conservative cell data are "
-                          "for tetrahedra: switch them off for triangles. Optimize Mesh improves "
-                          "the mean shape of triangles.");
+    throw tautline::Error("Objective, target lengths of edges, Then Best Shape and conservative "
+                          "cell data are for tetrahedra: leave them at their defaults for "
+                          "triangles. Optimize Mesh improves the mean shape of triangles.");
   }
   tautline::TriangleOptions options;
   prepare(options);
@@ -449,6 +453,7 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Insert: " << this->Insert << "\n";
   os << indent << "Compound: " << this->Compound << "\n";
   os << indent << "TargetAngle: " << this->TargetAngle << "\n";
+  os << indent << "Objective: " << this->Objective << "\n";
   os << indent << "Boundary: " << this->Boundary << "\n";
   os << indent << "FlatTolerance: " << this->FlatTolerance << "\n";
   os << indent << "SmallestCount: " << this->SmallestCount << "\n";

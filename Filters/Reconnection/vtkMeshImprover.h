@@ -43,8 +43,10 @@
  *
  * @par Output port 2 `Remaining`:
  * A vtkTable of the elements that are still below the target, the worst first: `Cell` (id in the
- * output), `Smallest angle`, `imr`, `X`, `Y`, `Z` (the centroid), `Reason`; of composite data sets
- * also `Block`.
+ * output), `Smallest angle`, `imr`, `X`, `Y`, `Z` (the centroid), `Quality` (see Objective; of
+ * triangles the sine of the smallest angle), `Quality bound` (what the facets, or the angles
+ * between edges, on the boundary and between regions allow), `Reason`; of composite data sets also
+ * `Block`.
  *
  * @par Several processes:
  * The mesh is to be on the first process; else an error.
@@ -138,6 +140,22 @@ public:
    */
   vtkTautlineSetRangeMacro(TargetAngle, double, 0.0, 60.0);
   vtkGetMacro(TargetAngle, double);
+  ///@}
+
+  enum Objectives
+  {
+    ANGLES_AND_SHAPE = 0,
+    ANGLES = 1,
+    SHAPE = 2
+  };
+  ///@{
+  /**
+   * What the worst tetrahedra are improved for: ANGLES_AND_SHAPE, the default, the smaller of the
+   * sines of the dihedral angles and (mean ratio)^(3/2); ANGLES the sines alone (larger smallest
+   * angles, longer tetrahedra); SHAPE (mean ratio)^(3/2) alone. Triangles: refused.
+   */
+  vtkTautlineSetRangeMacro(Objective, int, ANGLES_AND_SHAPE, SHAPE);
+  vtkGetMacro(Objective, int);
   ///@}
 
   enum Boundaries
@@ -316,6 +334,7 @@ private:
   bool Insert = true;
   bool Compound = true;
   double TargetAngle = 0.0;
+  int Objective = ANGLES_AND_SHAPE;
   int Boundary = FIXED;
   double FlatTolerance = 0.01;
   double SmallestCount = 0.9;

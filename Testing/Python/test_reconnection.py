@@ -76,6 +76,26 @@ def test_data():
     assert "it has a fixed point" in still.remaining["reason"]
 
 
+def test_objective():
+    """Each objective gives its own quality; what remains is within the bound of its facets."""
+    mesh = slivers()
+    extremes = {}
+    for objective in ("angles and shape", "angles", "shape"):
+        result = tl.improve(mesh, "aggressive", objective=objective, target_angle=50)
+        largest = tl.quality(result, ["max_angle"]).values["max_angle"]
+        sine = np.sin(np.radians(np.minimum(result.min_angle, 180 - largest)))
+        shape = result.imr**-1.5
+        quality = {"angles": sine, "shape": shape}.get(objective, np.minimum(sine, shape))
+        remaining = result.remaining
+        assert np.allclose(remaining["quality"], quality[remaining["cell"]], rtol=1e-6)
+        assert (remaining["quality_bound"] >= remaining["quality"]).all() and remaining["quality_bound"].max() <= 1
+        facets = np.char.startswith(remaining["reason"], "a facet that it has")
+        at_bound = remaining["quality_bound"] <= 1.002 * remaining["quality"]
+        assert (facets == at_bound).all(), objective
+        extremes[objective] = sine.min(), shape.min()
+    assert extremes["angles"][0] > extremes["angles and shape"][0] and extremes["shape"][1] > extremes["angles"][1]
+
+
 def test_cell_transfer():
     """Averages keep the integral of real cell arrays and constants; integers are copied. The mean improves."""
     mesh = slivers()
@@ -239,6 +259,7 @@ def test_refused():
     for text, options in (
         ("preset is 'best'", {"preset": "best"}),
         ("boundary is 'x'", {"boundary": "x"}),
+        ("objective is 'x'", {"objective": "x"}),
         ("target_angle is 61", {"target_angle": 61}),
         ("cell_transfer is 'x'", {"cell_transfer": "x"}),
         ("smallest_count is 2", {"smallest_count": 2}),
@@ -294,7 +315,11 @@ def test_command():
     text = run("improve", flat, "-o", mesh, "--preset", "aggressive", "--feature-angle", "30", "--surface-angle", "10",
                "--surface-distance", "0.01")
     assert "Triangles: " in text and (points(tl.read(mesh)) == points(tl.improve(flat, "aggressive").mesh)).all()
-    refused("for tetrahedra: switch them off", tl.improve, flat, then_best_shape=True)
+    refused("for tetrahedra: leave them at their defaults", tl.improve, flat, then_best_shape=True)
+    refused("Objective", tl.improve, flat, objective="angles")
+    run("improve", source, "-o", mesh, "--objective", "angles", "--target-angle", "40", "--preset", "aggressive")
+    angles = tl.improve(source, "aggressive", objective="angles", target_angle=40)
+    assert (points(tl.read(mesh)) == points(angles.mesh)).all()
     run("improve", source, "-o", mesh, "--edge-length", "0.25", "--preset", "aggressive", "--edge-factor", "1.2")
     sized = tl.improve(source, "aggressive", edge_length=0.25, edge_factor=1.2)
     assert (points(tl.read(mesh)) == points(sized.mesh)).all()

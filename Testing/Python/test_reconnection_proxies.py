@@ -37,7 +37,7 @@ for preset in ("Swap only", "Swap and smooth", "Aggressive"):
     assert best.CellData["min_angle"].GetRange()[0] >= best.SmallestAngleBefore, preset
 best.Preset, best.Smooth, best.Insert, best.Contract, best.Compound = "Custom", 0, 0, 0, 0
 best.TargetAngle, best.Boundary, best.FlatTolerance = 20, "Slide in flat parts", 1e-6
-best.SmallestCount, best.LargestCount = 0.8, 1.3
+best.SmallestCount, best.LargestCount, best.Objective = 0.8, 1.3, "Shape"
 best.FeatureAngle, best.SurfaceAngle, best.SurfaceDistance = 30, 15, 0.01
 best.RegionArray = ["CELLS", "region"]
 best.UpdatePipeline()

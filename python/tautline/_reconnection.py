@@ -18,6 +18,7 @@ from ._io import Mesh, as_mesh
 #: In the filter's numbering.
 PRESETS = ("custom", "remove slivers", "swap only", "swap and smooth", "aggressive")
 BOUNDARIES = ("fixed", "flat")
+OBJECTIVES = ("angles and shape", "angles", "shape")
 CELL_TRANSFERS = ("copy", "conservative")
 _FIXED, _REGIONS, _SIZES = 0, 1, 2  # input arrays of vtkMeshImprover
 _MAX_ANGLE = 60.0
@@ -36,8 +37,9 @@ class ImproveResult:
     #: (of triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite data
     #: also block.
     history: dict[str, Any]
-    #: The elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, reason; of
-    #: composite data also block. Empty if there are none.
+    #: The elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, quality (of
+    #: the objective; of triangles the sine of the smallest angle), quality_bound (what facets or angles on the boundary
+    #: and between regions allow), reason; of composite data also block. Empty if there are none.
     remaining: dict[str, Any]
     #: Per cell the cell of the input that it has its data from, m.
     original_cell: np.ndarray
@@ -65,6 +67,7 @@ def improve(
     preset: str = "remove slivers",
     *,
     boundary: str = "fixed",
+    objective: str = "angles and shape",
     target_angle: float | None = None,
     smallest_count: float = 0.9,
     largest_count: float = 1.1,
@@ -95,6 +98,9 @@ def improve(
         inserted or removed), "aggressive" (every operation everywhere) or "custom" (the operations given).
     boundary: "fixed" (same points and facets) or "flat" (points slide in flat parts and along straight edges, facets
         there change; the shape stays).
+    objective: of tetrahedra, what the worst are improved for: "angles and shape" (the smaller of the sines of the
+        dihedral angles and (mean ratio)^(3/2)), "angles" (the sines alone: larger smallest angles, longer tetrahedra)
+        or "shape" ((mean ratio)^(3/2) alone).
     target_angle: (dihedral) angle in degrees, at most 60, that every element should reach; None or 0: that of the
         preset, 15 for "remove slivers" and 33.4 (triangles: 40) for the others.
     smallest_count, largest_count: bounds of the number of elements as multiples of that of the input. Both 1: no
@@ -135,6 +141,7 @@ def improve(
         raise Error(f"{', '.join(operations)}: operations are chosen with preset='custom' only")
     set_options(filter_, operations, _OPERATIONS)
     filter_.SetBoundary(pick("boundary", boundary, BOUNDARIES))
+    filter_.SetObjective(pick("objective", objective, OBJECTIVES))
     if target_angle is not None:
         filter_.SetTargetAngle(within("target_angle", target_angle, 0, _MAX_ANGLE))
     filter_.SetSmallestCount(within("smallest_count", smallest_count, 0, 1))
@@ -190,7 +197,7 @@ def _set_size(filter_: Any, inputs: InputArrays, edge_length: float | str | Sequ
 def _named(table: Any) -> dict[str, Any]:
     """The columns of a table by names of Python; ids and counts are integers."""
     renamed = {"Time (s)": "seconds"}
-    real = ("seconds", "smallest_angle", "largest_angle", "worst_imr", "imr", "x", "y", "z")
+    real = ("seconds", "smallest_angle", "largest_angle", "worst_imr", "imr", "x", "y", "z", "quality", "quality_bound")
     names = {name: name.removeprefix("N ").lower().replace(" ", "_") for name in columns(table)} | renamed
     result = {names[name]: column for name, column in columns(table).items()}
     return {
@@ -213,6 +220,8 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--flat-tolerance", type=float, metavar="DEGREES", default=0.01,
                         help="up to which facets are coplanar, with --boundary flat (default: 0.01)")  # fmt: skip
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
+    parser.add_argument("--objective", choices=OBJECTIVES, default=OBJECTIVES[0],
+                        help="what the worst tetrahedra are improved for")  # fmt: skip
     parser.add_argument("--target-angle", type=float, metavar="DEGREES",
                         help="(dihedral) angle to be reached by all (default: that of the preset)")  # fmt: skip
     parser.add_argument("--feature-angle", type=float, metavar="DEGREES", default=40.0,
@@ -246,7 +255,7 @@ def _length_or_name(text: str) -> float | str:
 def _run_improve(arguments: argparse.Namespace) -> None:
     names = ("preset", "boundary", "target_angle", "regions", "smallest_count", "largest_count")
     names += ("edge_length", "edge_factor", "then_best_shape", "cell_transfer", "flat_tolerance", "fixed")
-    names += ("feature_angle", "surface_angle", "surface_distance")
+    names += ("objective", "feature_angle", "surface_angle", "surface_distance")
     names += ("time_limit", "threads", "merge_coincident_points")
     left_out = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
     result = improve(arguments.mesh, **_commands.given(arguments, names), **left_out)

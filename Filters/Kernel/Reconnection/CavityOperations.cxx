@@ -138,6 +138,7 @@ bool CavityOperations::loadStar(PointId v, StarSmoothing& star)
 {
   this->Mesh.star(v, this->Star);
   star.clear();
+  star.weights = this->Mesh.weights();
   if (this->Star.size() > StarSmoothing::MaxFaces)
   {
     return false;

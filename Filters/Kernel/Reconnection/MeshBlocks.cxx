@@ -231,6 +231,7 @@ TetrahedronArrays MeshBlock::extract(
   const TetrahedronMesh& whole, const std::vector<std::uint8_t>& blocks)
 {
   TetrahedronArrays arrays;
+  arrays.weights = whole.weights();
   std::vector<std::int32_t> locals(this->Own.back() - this->Own.front() + 1, NoId);
   for (std::size_t k = 0; k < this->Own.size(); ++k)
   {

@@ -80,8 +80,8 @@ void CavityOperations::grow(Insertion& insertion)
         const TriangleVertices v = this->Mesh.face(f.tet, f.face);
         f.quality = this->isOpened(f, insertion)
           ? Opened
-          : roundedQuality(
-              p, this->Mesh.point(v[0]), this->Mesh.point(v[1]), this->Mesh.point(v[2]));
+          : roundedQuality(p, this->Mesh.point(v[0]), this->Mesh.point(v[1]),
+              this->Mesh.point(v[2]), this->Mesh.weights());
       }
       worst = !worst || f.quality < worst->quality ? &f : worst;
     }
@@ -128,6 +128,7 @@ bool CavityOperations::startInsertion(
       this->addToCavity(t);
     }
     this->Smoothing.clear();
+    this->Smoothing.weights = this->Mesh.weights();
     bool whole = true;
     for (const CavityFace& f : this->CavityFaces)
     {

@@ -2,6 +2,7 @@
 
 #include "BoundaryFreedom.h"
 #include "MeshBlocks.h"
+#include "Obstacles.h"
 #include "ReconnectionOutput.h"
 #include "Schedule.h"
 #include "tautline/Core/Interruption.h"
@@ -54,9 +55,18 @@ constexpr PointId MeanInterval = 256;
 /// Wall time between two calls of the observer during a pass.
 constexpr double ObserverSeconds = 0.1;
 
+/// So much one of the sine and the mean ratio counts where the other is the objective.
+constexpr double IgnoredWeight = 1e3;
+
 double radians(double degrees)
 {
   return degrees * (Pi / 180.0);
+}
+
+QualityWeights weightsOf(ReconnectionObjective objective)
+{
+  return { objective == ReconnectionObjective::Shape ? IgnoredWeight : 1.0,
+    objective == ReconnectionObjective::Angles ? IgnoredWeight : 1.0 };
 }
 
 /// Sets the worst values of the record; only tetrahedra that may be worse than those before are
@@ -87,9 +97,12 @@ void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord
       largest = std::max(largest, angle);
     }
     meanRatio = std::min(meanRatio, measure(x(0), x(1), x(2), x(3)).meanRatio);
-    // All angles are between asin(q) and 180 degrees minus it, the mean ratio's power is above q.
-    sufficient = std::max({ meanRatio, std::sin(radians(std::min(smallest, 90.0))),
-      std::sin(radians(std::max(largest, 90.0))) });
+    // With weights 1, all angles are between asin(q) and 180 degrees minus it, and the mean ratio's
+    // power is above q.
+    const QualityWeights& w = mesh.weights();
+    sufficient =
+      std::max({ w.meanRatio * meanRatio, w.sine * std::sin(radians(std::min(smallest, 90.0))),
+        w.sine * std::sin(radians(std::max(largest, 90.0))) });
   }
   record.tetrahedra = mesh.size();
   record.worstQuality = quality;
@@ -204,7 +217,7 @@ public:
   }
 
   void run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics);
-  void findObstacles(const std::vector<char>& fixedPoints) const;
+  const Schedule& schedule() const { return this->Passes; }
 
 private:
   bool record(int pass, double progress);
@@ -274,7 +287,8 @@ void Run::setFloor(const ReconnectionRecord& record)
   floor.smallestAngle = record.smallestAngle;
   floor.meanRatio = std::pow(record.worstInverseMeanRatio, -1.5);
   const double sine = record.smallestAngle < 90.0 ? std::sin(radians(record.smallestAngle)) : 1.0;
-  floor.sufficient = std::max(sine, floor.meanRatio);
+  const QualityWeights& weights = this->Mesh.weights();
+  floor.sufficient = std::max(weights.sine * sine, weights.meanRatio * floor.meanRatio);
 }
 
 void Run::setBounds()
@@ -299,6 +313,7 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   this->Operations.flatTolerance = std::max(
     std::sin(radians(this->Options.flatTolerance)), 4.0 * std::numeric_limits<double>::epsilon());
   this->setBounds();
+  this->Mesh.setWeights(weightsOf(this->Options.objective));
   this->Result.reason = StopReason::NoProgress;
   const bool started = this->record(0, 0.0);
   this->setFloor(this->Result.history.front());
@@ -512,61 +527,6 @@ bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels)
   this->Passes.starts = starts;
   return true;
 }
-
-/// Gives the reason for each tetrahedron below the target, and the bounds of the walls.
-void Run::findObstacles(const std::vector<char>& fixedPoints) const
-{
-  const double target = std::sin(radians(this->Options.targetAngle));
-  std::vector<char> atSurface(this->Mesh.pointSlots(), 0), atInterface(atSurface);
-  double forcedMeanRatio = 1.0;
-  for (TetId t = 0; t < this->Mesh.slots(); ++t)
-  {
-    pollInterruption(static_cast<Index>(t));
-    if (!this->Mesh.alive(t))
-    {
-      continue;
-    }
-    for (int i = 0; i < 4; ++i)
-    {
-      if (this->Mesh.isWall(t, i))
-      {
-        const bool outer = this->Mesh.tet(t).neighbors[i] == NoId;
-        for (PointId v : this->Mesh.face(t, i))
-        {
-          (outer ? atSurface : atInterface)[v] = 1;
-        }
-        forcedMeanRatio = std::min(forcedMeanRatio, this->Passes.facetBound(t, i));
-      }
-    }
-    this->Result.forcedQuality = std::min(this->Result.forcedQuality, this->Passes.bound(t));
-  }
-  this->Result.forcedInverseMeanRatio = std::pow(forcedMeanRatio, -2.0 / 3.0);
-  for (TetId t = 0; t < this->Mesh.slots(); ++t)
-  {
-    pollInterruption(static_cast<Index>(t));
-    if (!this->Mesh.alive(t))
-    {
-      continue;
-    }
-    const TetVertices& v = this->Mesh.tet(t).vertices;
-    const auto any = [&](const std::vector<char>& flags)
-    {
-      return std::any_of(v.begin(), v.end(),
-        [&](PointId p) { return p < static_cast<PointId>(flags.size()) && flags[p]; });
-    };
-    using Obstacle = ReconnectionObstacle;
-    Obstacle obstacle = Obstacle::None;
-    if (this->Mesh.quality(t) < target)
-    {
-      obstacle = this->Passes.isAtBound(t) ? Obstacle::Facets
-        : any(fixedPoints)                 ? Obstacle::FixedPoints
-        : any(atInterface)                 ? Obstacle::Interface
-        : any(atSurface)                   ? Obstacle::Surface
-                                           : Obstacle::Limit;
-    }
-    this->Result.obstacles.push_back(static_cast<signed char>(obstacle));
-  }
-}
 }
 
 //------------------------------------------------------------------------------
@@ -612,7 +572,7 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   if (changing.size() > 0)
   {
     run.run(freedoms, edgeMetrics(input, options));
-    run.findObstacles(fixedPoints);
+    findObstacles(changing, run.schedule(), options, fixedPoints, result);
   }
   convertOutput(mesh, input, changing, locator, result);
   if (options.overlaps)

@@ -9,11 +9,11 @@
  * contraction of edges, insertion of points into optimized cavities (B. M. Klingner and J. R.
  * Shewchuk, "Aggressive tetrahedral mesh improvement", IMR 2007), and motion of points.
  *
- * The quality of a tetrahedron is min(smallest sine of its dihedral angles, (mean ratio)^(3/2)). An
- * operation is accepted if the qualities of the tetrahedra it affects, in increasing order, become
- * larger lexicographically. So the worst quality never falls; nor does the smallest dihedral angle
- * of the mesh, and the largest inverse mean ratio never rises. All tetrahedra stay positive by an
- * exact predicate.
+ * The quality of a tetrahedron is min(smallest sine of its dihedral angles, (mean ratio)^(3/2)), or
+ * one of both (ReconnectionObjective). An operation is accepted if the qualities of the tetrahedra
+ * it affects, in increasing order, become larger lexicographically. So the worst quality never
+ * falls; nor does the smallest dihedral angle of the mesh, and the largest inverse mean ratio never
+ * rises. All tetrahedra stay positive by an exact predicate.
  *
  * Example: every operation, surface kept.
  *

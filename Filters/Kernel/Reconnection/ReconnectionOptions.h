@@ -34,6 +34,14 @@ enum class ReconnectionBoundary : int
   Flat = 1
 };
 
+/// What the worst tetrahedra are improved for. The numbers are stable.
+enum class ReconnectionObjective : int
+{
+  AnglesAndShape = 0, ///< the smaller of the sines of the dihedral angles and (mean ratio)^(3/2)
+  Angles = 1,         ///< the sines alone: larger smallest angles, longer tetrahedra
+  Shape = 2           ///< (mean ratio)^(3/2) alone
+};
+
 /// One line of the history; pass 0 is the input.
 struct ReconnectionRecord
 {
@@ -43,7 +51,7 @@ struct ReconnectionRecord
   double smallestAngle = 0;         ///< smallest dihedral angle in degrees
   double largestAngle = 0;          ///< largest dihedral angle in degrees
   double worstInverseMeanRatio = 0; ///< the largest inverse mean ratio
-  double worstQuality = 0;          ///< the smallest quality, see improveConnectivity()
+  double worstQuality = 0;          ///< the smallest quality, see ReconnectionObjective
   Index belowTarget = 0;            ///< tetrahedra whose quality is below that of the target
   /// Accepted operations since the start.
   Index edgeRemovals = 0, faceRemovals = 0, boundarySwaps = 0, contractions = 0, insertions = 0;
@@ -84,6 +92,7 @@ struct ReconnectionOptions
    * Flat, 38 to 39 is in reach, at some ten times the cost.
    */
   double targetAngle = 33.4;
+  ReconnectionObjective objective = ReconnectionObjective::AnglesAndShape;
   ReconnectionBoundary boundary = ReconnectionBoundary::Fixed;
   /// With Flat: facets whose normals differ by at most so many degrees are coplanar; 0 to 1. The
   /// default allows for coordinates in single precision, or with six decimals in a file.

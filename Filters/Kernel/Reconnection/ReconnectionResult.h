@@ -17,7 +17,7 @@ enum class ReconnectionObstacle : signed char
 {
   None = 0,        ///< it is not below the target
   Limit = 1,       ///< a limit or an abort ended the run, or no operation improves it
-  Facets = 2,      ///< the facets it has on the boundary or an interface allow no better one
+  Facets = 2,      ///< a facet it has on the boundary or an interface allows no better one
   FixedPoints = 3, ///< it has a fixed point (and is not one of the former)
   Interface = 4,   ///< it has a point on an interface between regions
   Surface = 5      ///< it has a point on the boundary
@@ -79,6 +79,11 @@ struct ReconnectionResult
   /// With ReconnectionOptions::overlaps, else empty.
   CellOverlaps overlaps;
   std::vector<signed char> obstacles; ///< a ReconnectionObstacle per cell of the output
+  /// Per cell of the output its quality (of triangles the sine of the smallest angle), and an upper
+  /// bound for it: the best of a tetrahedron on any one of its facets on the boundary and on
+  /// interfaces, or what the angles between edges that are kept allow. 1 where it is not below the
+  /// target.
+  std::vector<double> qualities, bounds;
   std::vector<ReconnectionRecord> history;
   StopReason reason = StopReason::NoProgress;  ///< or Reduction (target), TimeLimit, Aborted
   Index pointsInPlanes = 0, pointsOnLines = 0; ///< points of the boundary that may slide

@@ -1,5 +1,7 @@
 #include "Schedule.h"
 
+#include "FacetBound.h"
+
 namespace tautline
 {
 namespace
@@ -10,16 +12,9 @@ constexpr Index ProceedInterval = 64;
 constexpr double AtBound = 1e-3;
 }
 
-double Schedule::facetBound(TetId t, int i) const
-{
-  const TriangleVertices f = this->Mesh.face(t, i);
-  const Vec3 &a = this->Mesh.point(f[0]), &b = this->Mesh.point(f[1]), &c = this->Mesh.point(f[2]);
-  const double sum = dot(b - a, b - a) + dot(c - b, c - b) + dot(a - c, a - c);
-  return 2.0 * std::sqrt(3.0) * norm(cross(b - a, c - a)) / sum;
-}
-
 double Schedule::bound(TetId t) const
 {
+  const QualityWeights& weights = this->Mesh.weights();
   double result = 1.0;
   Vec3 normals[4];
   int walls = 0;
@@ -29,10 +24,11 @@ double Schedule::bound(TetId t) const
     {
       continue;
     }
-    result = std::min(result, this->facetBound(t, i));
     const TriangleVertices f = this->Mesh.face(t, i);
-    const Vec3& a = this->Mesh.point(f[0]);
-    const Vec3 n = cross(this->Mesh.point(f[1]) - a, this->Mesh.point(f[2]) - a);
+    const Vec3 &a = this->Mesh.point(f[0]), &b = this->Mesh.point(f[1]),
+               &c = this->Mesh.point(f[2]);
+    result = std::min(result, weights.meanRatio * facetMeanRatio(a, b, c));
+    const Vec3 n = cross(b - a, c - a);
     normals[walls++] = (1.0 / norm(n)) * n;
   }
   // Two walls at one edge: the angle between them stays, or is divided.
@@ -42,7 +38,7 @@ double Schedule::bound(TetId t) const
     {
       if (dot(normals[i], normals[j]) < 0.0)
       {
-        result = std::min(result, norm(cross(normals[i], normals[j])));
+        result = std::min(result, weights.sine * norm(cross(normals[i], normals[j])));
       }
     }
   }

@@ -54,9 +54,8 @@ public:
   /// Whether the last pass ended for PassOptions::maxFailures.
   bool exhausted() const { return this->Exhausted; }
 
-  /// The largest (mean ratio)^(3/2) of a tetrahedron on a face: its apex is over the centre.
-  double facetBound(TetId t, int i) const;
-  /// The largest quality a tetrahedron can have for the walls it has: its facets stay.
+  /// An upper bound of the quality a tetrahedron can have for the walls it has: their mean ratios
+  /// and the angles between them.
   double bound(TetId t) const;
   bool isAtBound(TetId t) const;
 

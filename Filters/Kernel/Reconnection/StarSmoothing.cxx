@@ -48,6 +48,8 @@ double StarSmoothing::evaluate(const Vec3& p)
   double smallest = 1.0;
   const int n = this->Size;
   const double px = p[0], py = p[1], pz = p[2];
+  const double sineWeight = this->weights.sine,
+               ratioFactor = this->weights.meanRatio * MeanRatioFactor;
 #pragma omp simd reduction(min : smallest)
   for (int i = 0; i < n; ++i)
   {
@@ -72,8 +74,8 @@ double StarSmoothing::evaluate(const Vec3& p)
     s = std::min(s, this->Edges[0][i] * a2 * b2);
     s = std::min(s, this->Edges[1][i] * b2 * c2);
     s = std::min(s, this->Edges[2][i] * c2 * a2);
-    const double factor = std::min(
-      std::sqrt(s / std::max(a2 * b2 * c2 * o2, 1e-300)), MeanRatioFactor / (sum * std::sqrt(sum)));
+    const double factor = std::min(sineWeight * std::sqrt(s / std::max(a2 * b2 * c2 * o2, 1e-300)),
+      ratioFactor / (sum * std::sqrt(sum)));
     const double q = d * factor;
     this->Values[i] = q;
     smallest = std::min(smallest, q);
@@ -116,13 +118,15 @@ void StarSmoothing::linearize(const Vec3& p, double below)
         this->G[this->Functions++] = (value * unit) * logGradient;
       }
     };
-    add(MeanRatioFactor * d / (sum * std::sqrt(sum)), gd + (3.0 / sum) * (u + v + w));
-    add(d * std::sqrt(u2 / (b2 * c2)), gd - (1.0 / u2) * u - gb - gc);
-    add(d * std::sqrt(v2 / (c2 * a2)), gd - (1.0 / v2) * v - gc - ga);
-    add(d * std::sqrt(w2 / (a2 * b2)), gd - (1.0 / w2) * w - ga - gb);
-    add(d * std::sqrt(this->Edges[0][i] / (c2 * o2)), gd - gc);
-    add(d * std::sqrt(this->Edges[1][i] / (a2 * o2)), gd - ga);
-    add(d * std::sqrt(this->Edges[2][i] / (b2 * o2)), gd - gb);
+    const double ds = this->weights.sine * d;
+    add(this->weights.meanRatio * MeanRatioFactor * d / (sum * std::sqrt(sum)),
+      gd + (3.0 / sum) * (u + v + w));
+    add(ds * std::sqrt(u2 / (b2 * c2)), gd - (1.0 / u2) * u - gb - gc);
+    add(ds * std::sqrt(v2 / (c2 * a2)), gd - (1.0 / v2) * v - gc - ga);
+    add(ds * std::sqrt(w2 / (a2 * b2)), gd - (1.0 / w2) * w - ga - gb);
+    add(ds * std::sqrt(this->Edges[0][i] / (c2 * o2)), gd - gc);
+    add(ds * std::sqrt(this->Edges[1][i] / (a2 * o2)), gd - ga);
+    add(ds * std::sqrt(this->Edges[2][i] / (b2 * o2)), gd - gb);
   }
 }
 

@@ -44,6 +44,7 @@ public:
 
   /// A step is tried if it is predicted to gain this.
   double leastGain = 5e-4;
+  QualityWeights weights;
 
   void clear() { this->Size = 0; }
   int size() const { return this->Size; }

@@ -16,6 +16,7 @@ double CavityOperations::triangulate(const EdgeRing& ring, double above)
   const int n = ring.vertices;
   const auto& r = ring.ring;
   const Vec3 &a = this->Mesh.point(ring.a), &b = this->Mesh.point(ring.b);
+  const QualityWeights& weights = this->Mesh.weights();
   for (int i = 0; i + 1 < n; ++i)
   {
     this->Best[i][i + 1] = 1.0;
@@ -36,8 +37,8 @@ double CavityOperations::triangulate(const EdgeRing& ring, double above)
         }
         const Vec3 &x = this->Mesh.point(r[i]), &y = this->Mesh.point(r[k]),
                    &z = this->Mesh.point(r[j]);
-        q = std::min(q, roundedQuality(x, y, z, b));
-        q = q > best ? std::min(q, roundedQuality(y, x, z, a)) : q;
+        q = std::min(q, roundedQuality(x, y, z, b, weights));
+        q = q > best ? std::min(q, roundedQuality(y, x, z, a, weights)) : q;
         if (q > best)
         {
           best = q;

@@ -64,6 +64,7 @@ TetrahedronMesh::TetrahedronMesh(TetrahedronArrays arrays)
   , Points(std::move(arrays.points))
   , PointTet(Points.size(), NoId)
   , InputPoints(arrays.inputPoints)
+  , Weights(arrays.weights)
 {
   for (TetId t = this->slots() - 1; t >= 0; --t) // the next to be used is the first
   {
@@ -96,6 +97,7 @@ TetrahedronArrays TetrahedronMesh::release()
   arrays.origin = std::move(this->Origin);
   arrays.points = std::move(this->Points);
   arrays.inputPoints = this->InputPoints;
+  arrays.weights = this->Weights;
   return arrays;
 }
 
@@ -317,6 +319,18 @@ void TetrahedronMesh::movePoint(
   {
     this->Quality[tets[i]] =
       qualities ? qualities[i] : this->computeQuality(this->Tets[tets[i]].vertices);
+  }
+}
+
+void TetrahedronMesh::setWeights(const QualityWeights& weights)
+{
+  this->Weights = weights;
+  for (TetId t = 0; t < this->slots(); ++t)
+  {
+    if (this->alive(t))
+    {
+      this->Quality[t] = this->computeExactQuality(this->Tets[t].vertices);
+    }
   }
 }
 

@@ -97,6 +97,7 @@ struct TetrahedronArrays
   std::vector<TetId> origin;
   std::vector<Vec3> points;
   PointId inputPoints = 0; ///< the first points are the input's: their ids are not used again
+  QualityWeights weights;
 };
 
 class TAUTLINE_KERNEL_EXPORT TetrahedronMesh
@@ -147,13 +148,16 @@ public:
   double computeQuality(const TetVertices& v) const
   {
     const std::vector<Vec3>& x = this->Points;
-    return roundedQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
+    return roundedQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]], this->Weights);
   }
   double computeExactQuality(const TetVertices& v) const
   {
     const std::vector<Vec3>& x = this->Points;
-    return exactQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
+    return exactQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]], this->Weights);
   }
+  /// Of all qualities; setting them computes these anew.
+  const QualityWeights& weights() const { return this->Weights; }
+  void setWeights(const QualityWeights& weights);
 
   /// The tetrahedra with vertex v that are connected with tetOf(v) through faces, walls included.
   void star(PointId v, std::vector<TetId>& tets);
@@ -226,6 +230,7 @@ private:
   Index Alive = 0;
   PointId InputPoints = 0;
   Index NonManifoldFaces = 0;
+  QualityWeights Weights;
   // Of replace(), kept to save allocations.
   FaceTable Faces;
   std::vector<std::array<std::int32_t, 4>> Links;

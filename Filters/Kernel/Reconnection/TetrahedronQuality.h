@@ -6,7 +6,7 @@
  * tetrahedron, at most 0 for one that is degenerate or inverted. With d = 6 V, an edge of length l
  * between faces with normals m and n (twice their areas long), and S the sum of the six squared
  * edges: sine = d l / (|m| |n|), (mean ratio)^(3/2) = 12 sqrt(3) d / S^(3/2). The sine alone
- * accepts flat shapes, the mean ratio alone small angles.
+ * accepts flat shapes, the mean ratio alone small angles. Weights shift the balance.
  */
 #ifndef tautline_TetrahedronQuality_h
 #define tautline_TetrahedronQuality_h
@@ -25,13 +25,23 @@ constexpr double MeanRatioFactor = 20.784609690826528;
 /// differences and products changes q by some 1e-15.
 constexpr double CertainQuality = 1e-9;
 
+/// Factors of what the quality is the smaller of: q = min(sine * the smallest sine, meanRatio *
+/// (mean ratio)^(3/2)). A large one leaves the other alone.
+struct QualityWeights
+{
+  double sine = 1, meanRatio = 1;
+};
+
 /// What the quality is the smaller of, and the sign of the volume.
 struct TetrahedronMeasures
 {
   double determinant = 0; ///< 6 V, as rounded
   double sine = 0;        ///< smallest sine of a dihedral angle; negative if inverted
   double meanRatio = 0;   ///< (mean ratio)^(3/2)
-  double quality() const { return std::min(this->sine, this->meanRatio); }
+  double quality(const QualityWeights& w = {}) const
+  {
+    return std::min(w.sine * this->sine, w.meanRatio * this->meanRatio);
+  }
 };
 
 inline TetrahedronMeasures measure(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
@@ -60,15 +70,17 @@ inline TetrahedronMeasures measure(const Vec3& p, const Vec3& a, const Vec3& b, 
 }
 
 /// The quality, as computed in doubles.
-inline double roundedQuality(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+inline double roundedQuality(
+  const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const QualityWeights& weights = {})
 {
-  return measure(p, a, b, c).quality();
+  return measure(p, a, b, c).quality(weights);
 }
 
 /// The quality; positive exactly if the volume is, by the exact predicate.
-inline double exactQuality(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+inline double exactQuality(
+  const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const QualityWeights& weights = {})
 {
-  const double q = roundedQuality(p, a, b, c);
+  const double q = roundedQuality(p, a, b, c, weights);
   if (q > CertainQuality)
   {
     return q;

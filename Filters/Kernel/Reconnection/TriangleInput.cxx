@@ -339,6 +339,9 @@ void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoint
                                                                 : Obstacle::Limit;
     }
     result.obstacles.push_back(static_cast<signed char>(obstacle));
+    result.qualities.push_back(mesh.quality(t));
+    result.bounds.push_back(
+      obstacle == Obstacle::None ? 1.0 : std::max(bounds[t], mesh.quality(t)));
   }
 }
 }

@@ -1,0 +1,117 @@
+#include "Obstacles.h"
+
+#include "FacetBound.h"
+#include "tautline/Core/Interruption.h"
+
+namespace tautline
+{
+namespace
+{
+/// A tetrahedron this close to its bound is at it: the bounds of facets are about as accurate.
+constexpr double AtBound = 2e-3;
+
+/// Where the points of the walls are, and what all walls force.
+struct Walls
+{
+  std::vector<char> atSurface, atInterface; ///< one flag per point
+  double meanRatio = 1, quality = 1;
+};
+
+Walls findWalls(const TetrahedronMesh& mesh, const Schedule& schedule)
+{
+  Walls walls;
+  walls.atSurface.assign(mesh.pointSlots(), 0);
+  walls.atInterface = walls.atSurface;
+  StarSmoothing smoothing;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    pollInterruption(static_cast<Index>(t));
+    for (int i = 0; i < 4 && mesh.alive(t); ++i)
+    {
+      if (!mesh.isWall(t, i))
+      {
+        continue;
+      }
+      const TriangleVertices f = mesh.face(t, i);
+      const bool outer = mesh.tet(t).neighbors[i] == NoId;
+      for (PointId v : f)
+      {
+        (outer ? walls.atSurface : walls.atInterface)[v] = 1;
+      }
+      const Vec3 &a = mesh.point(f[0]), &b = mesh.point(f[1]), &c = mesh.point(f[2]);
+      const double meanRatio = facetMeanRatio(a, b, c);
+      walls.meanRatio = std::min(walls.meanRatio, meanRatio);
+      // Only a facet on which the tetrahedron is that bad can force more.
+      if (mesh.quality(t) < walls.quality)
+      {
+        walls.quality = std::min(walls.quality, facetQuality(a, b, c, mesh.weights(), smoothing));
+      }
+    }
+    if (mesh.alive(t))
+    {
+      walls.quality = std::min(walls.quality, schedule.bound(t));
+    }
+  }
+  return walls;
+}
+
+/// The bound of a tetrahedron for each of its walls, and for all of them.
+double boundOf(
+  const TetrahedronMesh& mesh, const Schedule& schedule, TetId t, StarSmoothing& smoothing)
+{
+  double bound = schedule.bound(t);
+  for (int i = 0; i < 4; ++i)
+  {
+    if (mesh.isWall(t, i))
+    {
+      const TriangleVertices f = mesh.face(t, i);
+      bound = std::min(bound,
+        facetQuality(
+          mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), mesh.weights(), smoothing));
+    }
+  }
+  return std::max(bound, mesh.quality(t));
+}
+}
+
+void findObstacles(const TetrahedronMesh& mesh, const Schedule& schedule,
+  const ReconnectionOptions& options, const std::vector<char>& fixedPoints,
+  ReconnectionResult& result)
+{
+  const double target = std::sin(options.targetAngle * (Pi / 180.0));
+  const Walls walls = findWalls(mesh, schedule);
+  result.forcedQuality = walls.quality;
+  result.forcedInverseMeanRatio = std::pow(walls.meanRatio, -2.0 / 3.0);
+  StarSmoothing smoothing;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    pollInterruption(static_cast<Index>(t));
+    if (!mesh.alive(t))
+    {
+      continue;
+    }
+    const TetVertices& v = mesh.tet(t).vertices;
+    const auto any = [&](const std::vector<char>& flags)
+    {
+      return std::any_of(v.begin(), v.end(),
+        [&](PointId p) { return p < static_cast<PointId>(flags.size()) && flags[p]; });
+    };
+    using Obstacle = ReconnectionObstacle;
+    Obstacle obstacle = Obstacle::None;
+    const double quality = mesh.quality(t);
+    double bound = 1.0;
+    if (quality < target)
+    {
+      bound = boundOf(mesh, schedule, t, smoothing);
+      obstacle = bound <= quality * (1.0 + AtBound) ? Obstacle::Facets
+        : any(fixedPoints)                          ? Obstacle::FixedPoints
+        : any(walls.atInterface)                    ? Obstacle::Interface
+        : any(walls.atSurface)                      ? Obstacle::Surface
+                                                    : Obstacle::Limit;
+    }
+    result.obstacles.push_back(static_cast<signed char>(obstacle));
+    result.qualities.push_back(quality);
+    result.bounds.push_back(bound);
+  }
+}
+}

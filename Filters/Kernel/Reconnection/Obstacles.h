@@ -1,0 +1,22 @@
+/**
+ * @file Obstacles.h
+ * @brief Why tetrahedra are still below the target, and what the walls force. Internal: not
+ * installed.
+ */
+#ifndef tautline_Obstacles_h
+#define tautline_Obstacles_h
+
+#include "ReconnectionResult.h"
+#include "Schedule.h"
+
+namespace tautline
+{
+/**
+ * @brief Sets the obstacles, qualities and bounds of the result, and what the walls force.
+ * @param fixedPoints one flag per point of the input
+ */
+void findObstacles(const TetrahedronMesh& mesh, const Schedule& schedule,
+  const ReconnectionOptions& options, const std::vector<char>& fixedPoints,
+  ReconnectionResult& result);
+}
+#endif

@@ -1,0 +1,198 @@
+// What improveConnectivity() improves (objectives), what the boundary allows, and memory.
+
+#include "Reconnecting.h"
+
+#include "tautline/Core/Memory.h"
+#include "tautline/Reconnection/FacetBound.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+using namespace tautline;
+
+namespace
+{
+/// The best quality over places at random, then nearer and nearer to the best so far.
+double searchFacet(const Vec3& a, const Vec3& b, const Vec3& c, const QualityWeights& weights)
+{
+  Random random(7);
+  const Vec3 centroid = (1.0 / 3.0) * (a + b + c);
+  Vec3 best = centroid;
+  double value = 0.0, radius = 1.5 * std::max({ norm(b - a), norm(c - b), norm(a - c) });
+  for (int round = 0; round < 24; ++round, radius *= 0.7)
+  {
+    const Vec3 center = best;
+    for (int i = 0; i < (round == 0 ? 60000 : 3000); ++i)
+    {
+      const Vec3 p = center + random.vector(-radius, radius);
+      const double q = roundedQuality(p, a, b, c, weights);
+      best = q > value ? p : best;
+      value = std::max(value, q);
+    }
+  }
+  return value;
+}
+
+void testFacetQuality()
+{
+  StarSmoothing smoothing;
+  const Vec3 a = { 0, 0, 0 };
+  const Vec3 corners[][2] = { { { 1, 0, 0 }, { 0.5, 0.866, 0 } }, { { 1, 0, 0 }, { 0.1, 0.2, 0 } },
+    { { 2, 0, 1 }, { 0, 0.3, 0 } }, { { 2.19, 0, 0 }, { -0.7, 0.3, 0 } } };
+  for (const auto& corner : corners)
+  {
+    const Vec3 &b = corner[0], &c = corner[1];
+    for (const QualityWeights& weights :
+      { QualityWeights{ 1, 1 }, QualityWeights{ 1, 3 }, QualityWeights{ 1, 1e3 } })
+    {
+      const double bound = facetQuality(a, b, c, weights, smoothing);
+      const double found = searchFacet(a, b, c, weights);
+      TAUTLINE_CHECK(bound > found * (1.0 - 1e-3));
+      TAUTLINE_CHECK(weights.meanRatio > 3.0 || bound < found * (1.0 + 1e-3));
+    }
+    const double meanRatio = facetMeanRatio(a, b, c);
+    TAUTLINE_CHECK_RELATIVE(meanRatio, searchFacet(a, b, c, { 1e3, 1 }), 1e-4);
+    TAUTLINE_CHECK_RELATIVE(
+      facetQuality(a, b, c, { 1e3, 1 }, smoothing), std::min(meanRatio, 1.0), 3e-3);
+  }
+  // An equilateral triangle allows the regular tetrahedron; a degenerate one allows nothing.
+  const Vec3 b = { 1, 0, 0 }, c = { 0.5, std::sqrt(0.75), 0 };
+  TAUTLINE_CHECK_RELATIVE(facetMeanRatio(a, b, c), 1.0, 1e-14);
+  TAUTLINE_CHECK_RELATIVE(facetQuality(a, b, c, {}, smoothing), std::sqrt(8.0) / 3.0, 1e-3);
+  TAUTLINE_CHECK_EQUAL(facetQuality(a, b, b, {}, smoothing), 0.0);
+}
+
+/// Six tetrahedra round one point, between a triangle and the points above and below it.
+MeshData bipyramid()
+{
+  MeshData data;
+  const Vec3 points[] = { { 1, 0, 0 }, { -0.5, 0.9, 0 }, { -0.6, -0.8, 0.1 }, { 0.1, 0, 3 },
+    { 0, 0.1, -1 }, { 0.1, 0.1, 0.2 } };
+  for (const Vec3& p : points)
+  {
+    data.addPoint(p);
+  }
+  for (Index i = 0; i < 3; ++i)
+  {
+    const Index j = (i + 1) % 3;
+    data.addCell(CellType::Tetrahedron, std::vector<Index>{ i, j, 5, 3 });
+    data.addCell(CellType::Tetrahedron, std::vector<Index>{ j, i, 5, 4 });
+  }
+  return data;
+}
+
+/// The point goes where each objective is largest: each is best in its own figure.
+void testObjectives()
+{
+  const MeshData data = bipyramid();
+  ReconnectionOptions options;
+  options.swap = options.insert = options.contract = options.compound = false;
+  options.targetAngle = 60.0;
+  const auto run = [&](ReconnectionObjective objective)
+  {
+    options.objective = objective;
+    const ReconnectionResult result = reconnect(data, options);
+    checkResult(data, result);
+    return result.history.back();
+  };
+  const ReconnectionRecord both = run(ReconnectionObjective::AnglesAndShape);
+  const ReconnectionRecord angles = run(ReconnectionObjective::Angles);
+  const ReconnectionRecord shape = run(ReconnectionObjective::Shape);
+  const auto sine = [](const ReconnectionRecord& r)
+  { return std::sin(std::min(r.smallestAngle, 180.0 - r.largestAngle) * (Pi / 180.0)); };
+  const auto meanRatio = [](const ReconnectionRecord& r)
+  { return std::pow(r.worstInverseMeanRatio, -1.5); };
+  TAUTLINE_CHECK_RELATIVE(both.worstQuality, std::min(sine(both), meanRatio(both)), 1e-9);
+  TAUTLINE_CHECK_RELATIVE(angles.worstQuality, sine(angles), 1e-9);
+  TAUTLINE_CHECK_RELATIVE(shape.worstQuality, meanRatio(shape), 1e-9);
+  TAUTLINE_CHECK(sine(angles) > 1.01 * sine(both));
+  TAUTLINE_CHECK(meanRatio(angles) < 0.98 * meanRatio(both));
+  TAUTLINE_CHECK(meanRatio(shape) >= meanRatio(both) * (1.0 - 1e-3));
+}
+
+/// What remains below the target is within its bound, and the reason Facets says that it is at it.
+void testBounds()
+{
+  const MeshData data = bipyramid();
+  ReconnectionOptions options;
+  options.targetAngle = 60.0;
+  const ReconnectionResult result = reconnect(data, options);
+  const std::size_t count = result.obstacles.size();
+  TAUTLINE_CHECK(result.bounds.size() == count && result.qualities.size() == count);
+  double worst = 1.0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const auto obstacle = static_cast<ReconnectionObstacle>(result.obstacles[i]);
+    const double quality = result.qualities[i], bound = result.bounds[i];
+    worst = std::min(worst, quality);
+    TAUTLINE_CHECK(quality <= bound && bound <= 1.0);
+    TAUTLINE_CHECK(bound == 1.0 || obstacle != ReconnectionObstacle::None);
+    TAUTLINE_CHECK_EQUAL(obstacle == ReconnectionObstacle::Facets, bound <= quality * 1.002);
+  }
+  TAUTLINE_CHECK_EQUAL(worst, result.history.back().worstQuality);
+  // The bound of the mesh is that of the worst facet.
+  StarSmoothing smoothing;
+  double least = 1.0;
+  for (Index i = 0; i < 3; ++i)
+  {
+    for (Index apex : { 3, 4 })
+    {
+      least = std::min(least,
+        facetQuality(data.point(i), data.point((i + 1) % 3), data.point(apex), {}, smoothing));
+    }
+  }
+  TAUTLINE_CHECK_RELATIVE(result.forcedQuality, least, 1e-9);
+  TAUTLINE_CHECK(worst <= least * 1.002);
+  // A tetrahedron alone is at its bound: the angle between two of its facets.
+  const MeshData one = singleCell(
+    CellType::Tetrahedron, { { 0, 0, 0 }, { 1, 0, 0 }, { 0.3, 1, 0 }, { 0.4, 0.4, 0.05 } });
+  options.objective = ReconnectionObjective::Angles;
+  const ReconnectionResult alone = reconnect(one, options);
+  TAUTLINE_CHECK_EQUAL(
+    static_cast<int>(alone.obstacles[0]), static_cast<int>(ReconnectionObstacle::Facets));
+  TAUTLINE_CHECK_EQUAL(alone.bounds[0], alone.qualities[0]);
+}
+
+/// In a child process, whose limit may be set: the error names the memory and a remedy.
+void testMemory()
+{
+  const MeshData data = sliverBlock(30, 3, 0.2);
+  const Mesh mesh(data.view());
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    constexpr double few = 3e7; // 162,000 tetrahedra take 40 MB
+    limitMemory(few);
+    int code = 1;
+    try
+    {
+      improveConnectivity(mesh, ReconnectionOptions());
+    }
+    catch (const MemoryError& error)
+    {
+      const std::string text = error.what();
+      code = text.find("reconnection of this mesh takes about") != std::string::npos &&
+          text.find("take a smaller mesh") != std::string::npos
+        ? 0
+        : 2;
+    }
+    catch (...)
+    {
+      code = 3;
+    }
+    _exit(code);
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  TAUTLINE_CHECK_EQUAL(status, 0);
+}
+}
+
+int TestReconnectionBounds(int, char*[])
+{
+  testFacetQuality();
+  testObjectives();
+  testBounds();
+  testMemory();
+  return exitCode();
+}
