@@ -5,7 +5,10 @@ from study_checks import Studies
 from tautline.studies import _common, _verdicts, reconnection
 
 studies = Studies(OUT / "studies_reconnection")
-TABLES = {domain: len(reconnection.STEPS) for domain in reconnection.DOMAINS} | {"refinement": len(reconnection.PLANAR)}
+TABLES = {domain: len(reconnection.STEPS) for domain in reconnection.DOMAINS} | {
+    "refinement": len(reconnection.PLANAR),
+    "reach": len(reconnection.TARGETS) * (len(reconnection.SOLIDS) + 1),
+}
 
 
 def run_all():
@@ -13,7 +16,7 @@ def run_all():
     assert "Findings: " in printed
     text = (studies.directory / "reconnection" / "reconnection.txt").read_text(encoding="utf-8")
     assert text in printed
-    studies.check("reconnection", 5 * len(reconnection.DOMAINS) + 1, (), TABLES)
+    studies.check("reconnection", 5 * len(reconnection.DOMAINS) + 3, (), TABLES)
 
 
 def rows_of(domain: str) -> dict[str, list[float]]:
@@ -42,6 +45,19 @@ def holds(state, *arguments) -> list:
     return [verdict == _verdicts.HOLDS for _, _, verdict, _ in report.findings]
 
 
+def test_reach():
+    """Where the boundary slides, all domains reach the angle; the verdicts follow from the numbers."""
+    rows = {row["mesh"]: [float(x) for x in list(row.values())[1:]] for row in studies.rows("reconnection", "reach")}
+    assert holds(reconnection.reach_findings, rows) == [True, True], rows
+    for name, row in rows.items():
+        assert 0.89 * row[0] <= row[1] <= 1.11 * row[0] and row[2] < 12, (name, row)
+        assert row[4] > (15 if "Delaunay" in name else 25), (name, row)
+    for column, value, wrong in ((4, 35.0, 1), (4, 0.0, 0), (5, 1e3, 0)):
+        bad = {key: list(row) for key, row in rows.items()}
+        bad["bore, flat"][column] = value
+        assert not holds(reconnection.reach_findings, bad)[wrong]
+
+
 def test_verdicts():
     """Slivers cost; each verdict holds for good numbers, and does not for numbers that contradict it."""
     state = reconnection.domain_findings
@@ -67,4 +83,5 @@ def test_verdicts():
 if __name__ == "__main__":
     run_all()
     test_numbers()
+    test_reach()
     test_verdicts()

@@ -1,4 +1,4 @@
-"""What slivers cost a solver, and what Improve Mesh gives back: condition numbers and iterations before and after."""
+"""What slivers cost a solver, what Improve Mesh gives back, and how far it comes on the domains."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Callable
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPolyData
+from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 import tautline
 
@@ -27,6 +28,13 @@ STEPS: dict[str, Callable[[vtkDataSet, int], vtkDataSet]] = {
 #: The domains of the condition numbers; those of the comparison with Delaunay refinement.
 DOMAINS = ("disk3d", "wrench")
 PLANAR = ("plate", "wrench", "hinge")
+#: Domains of tetrahedra, the targets in degrees with the boundary fixed and sliding, and the angle that a sliding one
+#: reaches.
+SOLIDS = ("disk3d", "barrier3d", "bore", "sphere", "box-in-box")
+TARGETS = {"fixed": 33.4, "flat": 38.8}
+REACHED = 36.0
+#: A sphere meshed without the quality option of TetGen.
+BALL_POINTS, BALL_VOLUME = 24, 1e-3
 #: A square plate with a round hole, meshed with a larger smallest angle than the domains.
 SIDE, RADIUS, AROUND, PLATE_ANGLE = 2.0, 0.4, 64, 33.0
 Rows = dict[str, list[float]]
@@ -112,6 +120,47 @@ def against_refinement(cells: int, threads: int) -> Rows:
     return rows
 
 
+def delaunay_ball() -> vtkDataSet:
+    """A constrained Delaunay mesh of a sphere of facets, with slivers: only the volume of its elements is bounded."""
+    sphere = vtkSphereSource()
+    sphere.SetThetaResolution(BALL_POINTS)
+    sphere.SetPhiResolution(BALL_POINTS)
+    sphere.Update()
+    mesher = tautline.vtkTetGenMesher()
+    mesher.SetInputData(sphere.GetOutput())
+    mesher.SetRadiusEdgeRatio(0.0)
+    mesher.SetMinimumDihedralAngle(0.0)
+    mesher.SetVolume(BALL_VOLUME)
+    mesher.Update()
+    return mesher.GetOutput()
+
+
+def reach(cells: int, threads: int) -> Rows:
+    """Per mesh and boundary: elements before and after, angle and worst imr before and after, degrees of the smallest
+    bound of what remains (90: nothing remains)."""
+    meshes = {name: tautline.perturb(tautline.domain(name, cells), PERTURBED, 100.0).mesh for name in SOLIDS}
+    meshes["ball, Delaunay"] = delaunay_ball()
+    rows = {}
+    for name, mesh in meshes.items():
+        for boundary, target in TARGETS.items():
+            found = tautline.improve(mesh, "aggressive", boundary=boundary, target_angle=target, threads=threads)
+            bound = min(found.remaining["quality_bound"]) if found.remaining else 1.0
+            rows[f"{name}, {boundary}"] = [float(found.elements_before), float(found.elements),
+                                           found.smallest_angle_before, found.worst_before, found.smallest_angle,
+                                           found.worst, float(np.degrees(np.arcsin(bound)))]
+    return rows
+
+
+def reach_findings(report: Report, rows: Rows) -> None:
+    """Whether all are improved, and the domains reach the angle where the boundary slides; rows: those of `reach`."""
+    shown = ", ".join(f"{name} {row[4]:.4g} degrees, {row[5]:.4g}" for name, row in rows.items())
+    sliding = [row[4] for name, row in rows.items() if name.split(", ")[0] in SOLIDS and name.endswith("flat")]
+    report.finding("solids", "Smallest angle and worst inverse mean ratio improve on all meshes",
+                   all(row[4] > row[2] and row[5] < row[3] for row in rows.values()), shown)
+    report.finding("solids", "With a sliding boundary, the smallest angle of the domains is at least "
+                   f"{REACHED:g} degrees", min(sliding) >= REACHED, ", ".join(f"{angle:.4g}" for angle in sliding))
+
+
 def main(arguments: list[str]) -> int:
     given = parser("reconnection", __doc__, CELLS).parse_args(arguments)
     report = Report("reconnection", "What slivers cost a solver", given.out, given.small)
@@ -132,4 +181,9 @@ def main(arguments: list[str]) -> int:
                  ["domain", "refinement", "points", "improved", "points improved"],
                  [[name, *row] for name, row in rows.items()])
     refinement_findings(report, rows)
+    rows = reach(cells, given.threads)
+    report.table("reach", "Tetrahedra: smallest angle and worst inverse mean ratio before and after",
+                 ["mesh", "elements", "elements after", "angle", "imr", "angle after", "imr after", "bound"],
+                 [[name, *row] for name, row in rows.items()])
+    reach_findings(report, rows)
     return report.finish("Findings")
