@@ -336,12 +336,10 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
     options.sizes = sizes.data();
     return tautline::improveConnectivity(mesh.mesh(), options);
   }
-  if (this->Size != ANY_LENGTH || this->ThenBestShape || this->CellTransfer != COPY ||
-    this->Objective != ANGLES_AND_SHAPE)
+  if (this->Size != ANY_LENGTH || this->CellTransfer != COPY || this->Objective != ANGLES_AND_SHAPE)
   {
-    throw tautline::Error("Objective, target lengths of edges, Then Best Shape and conservative "
-                          "cell data are for tetrahedra: leave them at their defaults for "
-                          "triangles. Optimize Mesh improves the mean shape of triangles.");
+    throw tautline::Error("Objective, target lengths of edges and conservative cell data are for "
+                          "tetrahedra: leave them at their defaults for triangles.");
   }
   tautline::TriangleOptions options;
   prepare(options);

@@ -315,7 +315,10 @@ def test_command():
     text = run("improve", flat, "-o", mesh, "--preset", "aggressive", "--feature-angle", "30", "--surface-angle", "10",
                "--surface-distance", "0.01")
     assert "Triangles: " in text and (points(tl.read(mesh)) == points(tl.improve(flat, "aggressive").mesh)).all()
-    refused("for tetrahedra: leave them at their defaults", tl.improve, flat, then_best_shape=True)
+    refused("for tetrahedra: leave them at their defaults", tl.improve, flat, cell_transfer="conservative")
+    shaped, plain = (tl.improve(flat, "aggressive", then_best_shape=yes) for yes in (True, False))
+    assert shaped.smallest_angle >= plain.smallest_angle and shaped.worst <= plain.worst
+    assert shaped.imr.mean() < 1 + 0.95 * (plain.imr.mean() - 1), (shaped.imr.mean(), plain.imr.mean())
     refused("Objective", tl.improve, flat, objective="angles")
     run("improve", source, "-o", mesh, "--objective", "angles", "--target-angle", "40", "--preset", "aggressive")
     angles = tl.improve(source, "aggressive", objective="angles", target_angle=40)

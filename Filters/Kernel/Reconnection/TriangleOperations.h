@@ -46,6 +46,9 @@ public:
   bool flip(TriId t, int i);
   /// Moves a point to where the smallest quality of its star is largest.
   bool smooth(VertexId v, int steps);
+  /// Moves a point so that the sum of the inverse mean ratios around decreases, and no quality falls
+  /// below the least. @return the decrease
+  double improveMean(VertexId v, double leastQuality);
   /// Moves vertex i into vertex j, then flips and moves around.
   bool contract(TriId t, int i, int j);
   /// Inserts a point at one of several places in or near the triangle, then flips and moves around.
@@ -67,6 +70,7 @@ private:
   bool improves();
   bool isBetterFlip(TriId t, int i);
   bool applyMotion(VertexId v, int steps);
+  double sumAround(double leastQuality) const;
   void tidy();
   bool mayDivide(TriId t, int i) const;
   VertexId divide(TriId t, int i);

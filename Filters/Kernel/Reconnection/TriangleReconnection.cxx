@@ -20,6 +20,11 @@ constexpr double RepetitionGain = 1e-3;
 constexpr double FirstGain = 1e-3, FineGain = 1e-4;
 /// Steps of a point, each time.
 constexpr int Steps = 3;
+/// Sweeps for the mean end when one decreases the sum by less than this part, or after so many.
+constexpr double LeastMeanDecrease = 2e-5;
+constexpr int MaxMeanSweeps = 60;
+/// Points between two looks at the clock in these.
+constexpr VertexId MeanInterval = 256;
 /// Angle of the preset RemoveSlivers; that of the others is the default of the options.
 constexpr double SliverAngle = 15.0;
 /// Wall time between two calls of the observer during a pass, and attempts between two checks.
@@ -136,6 +141,7 @@ private:
   bool record(int pass, double progress);
   bool proceed();
   bool runPass(const TrianglePass& pass);
+  bool improveMean();
   bool improve(TriId t, const TrianglePass& pass);
   void pushChanged(double target);
   bool isWaiting(const Entry& entry);
@@ -294,6 +300,33 @@ bool TriangleRun::runPass(const TrianglePass& pass)
   return true;
 }
 
+/// Moves all points in turn for the mean, the worst being held; false if stopped.
+bool TriangleRun::improveMean()
+{
+  const ReconnectionRecord before = this->Result.history.back();
+  this->Operations.leastMeanRatio = 1.0 / before.worstInverseMeanRatio;
+  bool stopped = false;
+  for (int sweep = 0; sweep < MaxMeanSweeps && !stopped; ++sweep)
+  {
+    double decrease = 0.0;
+    for (VertexId v = 0; v < this->Mesh.pointSlots() && !stopped; ++v)
+    {
+      stopped = v % MeanInterval == 0 && !this->proceed();
+      decrease += stopped ? 0.0 : this->Operations.improveMean(v, before.worstQuality);
+    }
+    if (decrease < LeastMeanDecrease * static_cast<double>(this->Mesh.size()))
+    {
+      break;
+    }
+  }
+  if (!this->record(before.pass + 1, 1.0) && !stopped)
+  {
+    stopped = true;
+    this->Result.reason = StopReason::Aborted;
+  }
+  return !stopped;
+}
+
 void TriangleRun::prepare(const std::vector<PointFreedom>& freedoms)
 {
   TriangleOperations& operations = this->Operations;
@@ -337,6 +370,7 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
       passes.push_back(passes[i]);
     }
   }
+  stopped = stopped || (this->Options.improveMean && !this->improveMean());
   if (!stopped && this->Result.history.back().belowTarget == 0)
   {
     this->Result.reason = StopReason::Reduction;

@@ -2,6 +2,8 @@
 
 #include "Triangulating.h"
 
+#include <numeric>
+
 using namespace tautline;
 
 namespace
@@ -314,6 +316,47 @@ void testFlat()
   TAUTLINE_CHECK(result.history.back().smallestAngle >= 40.0 && kept >= 39.0);
 }
 
+/// Then best shape: the mean becomes better, the worst does not become worse, the shape stays.
+void testMean()
+{
+  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  {
+    const MeshData data = sliverSheet(12);
+    TriangleOptions options = triangleOptions(Preset::Aggressive);
+    options.boundary = boundary;
+    const ReconnectionResult plain = reconnect(data, options);
+    options.improveMean = true;
+    const ReconnectionResult result = reconnect(data, options);
+    checkTriangles(data, result);
+    const MeshData output = trianglesOf(result);
+    TAUTLINE_CHECK(result.triangles == plain.triangles);
+    TAUTLINE_CHECK_RELATIVE(areaOf(output), areaOf(data), 1e-13);
+    const ReconnectionRecord &last = result.history.back(), &before = plain.history.back();
+    TAUTLINE_CHECK(last.smallestAngle >= before.smallestAngle * (1.0 - 1e-12));
+    TAUTLINE_CHECK(last.worstInverseMeanRatio <= before.worstInverseMeanRatio * (1.0 + 1e-12));
+    TAUTLINE_CHECK(last.moves > before.moves);
+    const auto mean = [](const MeshData& mesh)
+    {
+      const std::vector<double> imr = valuesOf(mesh, Metric::InverseMeanRatio);
+      return std::accumulate(imr.begin(), imr.end(), 0.0) / static_cast<double>(imr.size());
+    };
+    TAUTLINE_CHECK(mean(output) < 1.0 + 0.9 * (mean(trianglesOf(plain)) - 1.0));
+    // One point within a hexagon goes to its centre, the regular triangles.
+    MeshData hexagon;
+    for (int i = 0; i < 6; ++i)
+    {
+      const double turn = Pi / 3.0 * i;
+      hexagon.addPoint({ std::cos(turn), std::sin(turn), 0.0 });
+      hexagon.addCell(CellType::Triangle, std::vector<Index>{ i, (i + 1) % 6, 6 });
+    }
+    hexagon.addPoint({ 0.3, 0.2, 0.0 });
+    options.swap = options.smooth = options.insert = options.contract = options.compound = false;
+    const ReconnectionResult moved = reconnect(hexagon, options);
+    TAUTLINE_CHECK(norm(trianglesOf(moved).point(6)) < 1e-2);
+    TAUTLINE_CHECK_NEAR(moved.history.back().worstInverseMeanRatio, 1.0, 1e-2);
+  }
+}
+
 void testCount()
 {
   const MeshData data = sliverSheet(14, 11);
@@ -445,6 +488,7 @@ int TestTriangleReconnection(int, char*[])
   testInvariance();
   testRegions();
   testFlat();
+  testMean();
   testCount();
   testKept();
   testForced();

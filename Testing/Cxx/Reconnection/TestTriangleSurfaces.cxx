@@ -149,6 +149,39 @@ void testSphere()
   }
 }
 
+/// Then best shape on the sphere: points stay on the facets, the mean improves, the worst is held.
+void testMean()
+{
+  const MeshData data = slid(sphereSurface(CellType::Triangle, 7), 3, 0.45, true);
+  TriangleOptions options = triangleOptions(Preset::Aggressive);
+  options.featureAngle = 180.0;
+  const ReconnectionResult plain = reconnect(data, options);
+  options.improveMean = true;
+  const ReconnectionResult result = reconnect(data, options);
+  const MeshData output = trianglesOf(result);
+  checkTriangles(data, result);
+  TAUTLINE_CHECK(isClosed(output));
+  double farthest = 0.0;
+  for (Index i = 0; i < output.numberOfPoints(); ++i)
+  {
+    farthest = std::max(farthest, distanceFrom(data, output.point(i)));
+  }
+  TAUTLINE_CHECK(farthest < 1e-12);
+  const auto excess = [](const ReconnectionResult& r)
+  {
+    double sum = 0.0;
+    for (double imr : valuesOf(trianglesOf(r), Metric::InverseMeanRatio))
+    {
+      sum += imr - 1.0;
+    }
+    return sum;
+  };
+  TAUTLINE_CHECK(excess(result) < 0.9 * excess(plain));
+  const ReconnectionRecord &last = result.history.back(), &before = plain.history.back();
+  TAUTLINE_CHECK(last.smallestAngle >= before.smallestAngle * (1.0 - 1e-12));
+  TAUTLINE_CHECK(last.worstInverseMeanRatio <= before.worstInverseMeanRatio * (1.0 + 1e-12));
+}
+
 /// A cube keeps its edges and corners; its faces are flat, so that area and volume stay.
 void testCube()
 {
@@ -412,6 +445,7 @@ void testScales()
 int TestTriangleSurfaces(int, char*[])
 {
   testSphere();
+  testMean();
   testCube();
   testCylinder();
   testFold();
