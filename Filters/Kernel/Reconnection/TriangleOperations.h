@@ -46,8 +46,8 @@ public:
   bool flip(TriId t, int i);
   /// Moves a point to where the smallest quality of its star is largest.
   bool smooth(VertexId v, int steps);
-  /// Moves a point so that the sum of the inverse mean ratios around decreases, and no quality falls
-  /// below the least. @return the decrease
+  /// Moves a point so that the sum of the inverse mean ratios around decreases, and no quality
+  /// falls below the least. @return the decrease
   double improveMean(VertexId v, double leastQuality);
   /// Moves vertex i into vertex j, then flips and moves around.
   bool contract(TriId t, int i, int j);
