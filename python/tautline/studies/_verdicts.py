@@ -57,8 +57,12 @@ class Times:
         high = self.worst / max(other.best, math.ulp(0.0)) * (1 + TIME_MARGIN)
         return low, high
 
+    def __add__(self, other: Times) -> Times:
+        """The times of both works: the fastest and the slowest runs together."""
+        return Times((self.best + other.best, self.worst + other.worst))
+
     def __str__(self) -> str:
-        spread = f" to {self.worst:.3g}" if len(self.runs) > 1 else ""
+        spread = f" to {self.worst:.3g}" if self.worst > self.best else ""
         return f"{self.best:.3g}{spread} s"
 
 

@@ -1,11 +1,12 @@
-"""Solvers and preconditioners on meshes smoothed by four metrics: Tables 2.8, 2.10 and 2.11."""
+"""Solvers and preconditioners on meshes smoothed by four metrics, total times: Tables 2.8, 2.10 and 2.11."""
 
 from __future__ import annotations
 
-from ._common import Report
+from ._common import Report, Run
 from ._solver_tables import BY_METRIC, METRICS
 from ._solvers import AMG, DOMAINS, FULL, ILU, LABELS, NEAR_NULL_SPACE, PDES, TITLES
-from ._solvers import Solve, bars, fastest, initial_mesh, options, size_of, smoothed, solve, table, times_of, within
+from ._solvers import Solve, bars, fastest, initial_mesh, options, size_of, smoothing, solve, table, times_of, within
+from ._totals import sensitivity_findings, total_findings, total_table
 from ._verdicts import Verdict, all_of, any_of, faster, slowest
 
 TABLES = {"poisson": "2.8", "elliptic": "2.10", "elasticity": "2.11"}
@@ -28,18 +29,25 @@ def main(arguments: list[str]) -> int:
         "addition to Table 2.5, elasticity is solved by multigrid with the rigid body modes: "
         + ", ".join(f"{n} {LABELS[n]}" for n in NEAR_NULL_SPACE) + "."
     )
+    runs: dict[str, dict[str, Run]] = {}
     for pde in given.pde or PDES:
         for domain in given.domain or DOMAINS:
             mesh = initial_mesh(domain, size)
+            if domain not in runs:  # the same for all problems
+                runs[domain] = {m: smoothing(mesh, m, given.threads, given.repeats) for m in METRICS}
+            smooth = {m: run.times() for m, run in runs[domain].items()}
             numbers = [*given.combinations, *(NEAR_NULL_SPACE if pde == "elasticity" else ())]
-            rows = {m: solve(smoothed(mesh, m, given.threads), pde, given, combinations=numbers) for m in METRICS}
+            rows = {m: solve(run.mesh, pde, given, combinations=numbers) for m, run in runs[domain].items()}
             theirs = BY_METRIC[pde, domain]
             title = f"Table {TABLES[pde]}, {TITLES[pde]}, {domain}, {mesh.GetNumberOfPoints():,} vertices"
             table(report, f"{pde}_{domain}", title, rows, theirs, "metric")
             bars(report, f"{pde}_{domain}", title,
                  {m: {n: s.seconds for n, s in row.items() if s.converged} for m, row in rows.items()},
                  "seconds", logarithmic=True)
+            total_table(report, pde, domain, rows, smooth)
             findings(report, pde, domain, rows, theirs, same_size=size == FULL)
+            total_findings(report, pde, domain, rows, smooth)
+            sensitivity_findings(report, pde, domain, rows)
     return report.finish()
 
 

@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+import math
+
+from vtkmodules.vtkCommonDataModel import vtkDataSet
+
+import tautline
+
 from ._common import Report
-from ._solvers import AMG, DOMAINS, LABELS, PDES, SIZES, TITLES
+from ._solvers import AMG, DOMAINS, LABELS, PDES, PRECONDITIONERS, SIZES, TITLES
 from ._solvers import bars, initial_mesh, options, order, size_of, smoothed, solve
+from ._verdicts import constant
 
 FIGURES = {"poisson": ("2.5", "2.6"), "elliptic": ("2.8", "2.9"), "elasticity": ("2.11", "2.12")}
 SMALL_SIZES = (500, 1_000, 2_000)
 ONE_LEVEL_ORDER, MULTIGRID_ORDER = 0.5, 0.1
 NEAR = 0.15
 JACOBI_GMRES = 2
+EIGENVALUES_OF = "poisson"
+ONE_LEVEL = ("Jacobi", "SSOR", "ILU(0)")
+EIGENVALUE_ERROR = 1e-4  # relative, of the eigenvalues
+#: Largest eigenvalues are constant within this part; a smallest one decreases rapidly from this order in N on.
+CONSTANT, RAPID = 0.1, -0.5
+LEAST = 1e-300  # a smallest eigenvalue that is not positive counts as this
 JACOBI_GMRES_ORDER = {"poisson": 0.8, "elliptic": 0.63, "elasticity": 0.8}
 
 
@@ -27,10 +40,14 @@ def main(arguments: list[str]) -> int:
     for pde in given.pde or PDES:
         orders = {}
         for domain in given.domain or DOMAINS:
-            found = {}
+            found, extremes = {}, {}
             for size in sizes:
                 mesh = smoothed(initial_mesh(domain, size), "imr", given.threads)
                 found[mesh.GetNumberOfPoints()] = solve(mesh, pde, given)
+                if pde == EIGENVALUES_OF:
+                    extremes[mesh.GetNumberOfPoints()] = eigenvalues(mesh, given.threads)
+            if extremes:
+                eigenvalue_findings(report, domain, extremes)
             solved = [n for n in given.combinations if all(row[n].converged for row in found.values())]
             rows = [[f"{n} {LABELS[n]}", *(row[n].iterations for row in found.values()),
                      *(row[n].seconds for row in found.values())] for n in solved]
@@ -48,6 +65,34 @@ def main(arguments: list[str]) -> int:
             bars(report, f"figure_{figure.replace('.', '_')}", f"{TITLES[pde]}, {what}", series, "s")
         findings(report, pde, {d: orders[d, "iterations"] for d in given.domain or DOMAINS})
     return report.finish()
+
+
+def eigenvalues(mesh: vtkDataSet, threads: int) -> dict[str, tuple[float, float]]:
+    """The largest and the smallest eigenvalue of P^-1 A of Poisson's equation by preconditioner."""
+    found = {}
+    for name, option in zip(PRECONDITIONERS, ("jacobi", "ssor", "ilu", "amg")):
+        row = tautline.condition(mesh, preconditioner=option, tolerance=EIGENVALUE_ERROR, shares=False,
+                                 threads=threads).spectrum[-1]
+        found[name] = row["largest"], row["smallest"]
+    return found
+
+
+def eigenvalue_findings(report: Report, domain: str, extremes: dict[int, dict[str, tuple[float, float]]]) -> None:
+    """The eigenvalues of P^-1 A as the number of vertices N grows: section 2.7.3.2, Experiment 3."""
+    sizes = list(extremes)
+    rows = [[name, *(extremes[n][name][k] for k in (0, 1) for n in sizes)] for name in PRECONDITIONERS]
+    headings = [f"{what}, {n:,}" for what in ("largest", "smallest") for n in sizes]
+    report.table(f"eigenvalues_{domain}", f"Eigenvalues of P^-1 A, Poisson's equation, {domain}",
+                 ["preconditioner", *headings], rows)
+    where = f"2.7.3.2, {domain}"
+    largest = {name: [extremes[n][name][0] for n in sizes] for name in ONE_LEVEL}
+    report.finding(where, f"The largest eigenvalue of P^-1 A stays constant as N increases (within {CONSTANT:.0%})",
+                   all(min(v) > 0 and constant(v, CONSTANT) for v in largest.values()),
+                   "; ".join(f"{name} {min(v):.3g} to {max(v):.3g}" for name, v in largest.items()))
+    orders = {name: order(sizes, [max(extremes[n][name][1], LEAST) for n in sizes]) for name in ONE_LEVEL}
+    report.finding(where, "The smallest eigenvalue of P^-1 A decreases rapidly as N increases (order below "
+                   f"{RAPID:g})", all(math.isfinite(s) and s < RAPID for s in orders.values()),
+                   "order in N: " + ", ".join(f"{name} {s:.2f}" for name, s in orders.items()))
 
 
 def findings(report: Report, pde: str, orders: dict[str, dict[int, float]]) -> None:

@@ -47,6 +47,12 @@ def larger(one: tuple[float, float, float], other: tuple[float, float, float]) -
     return True if one[1] > other[2] else False if one[2] < other[1] else None
 
 
+def means(grown: dict[int, tuple[float, float, float]]) -> dict[str, tuple[float, ...]]:
+    """The mean PI and its range by preconditioner, of the combinations that converged on every mesh."""
+    solved = {name: [grown[n] for n in group if n in grown] for name, group in GROUPS.items()}
+    return {name: tuple(sum(v) / len(values) for v in zip(*values)) for name, values in solved.items() if values}
+
+
 def main(arguments: list[str]) -> int:
     given = options("solver_perturbation", __doc__).parse_args(arguments)
     size = size_of(given)
@@ -73,6 +79,7 @@ def main(arguments: list[str]) -> int:
             bars(report, f"pi_{pde}_{domain}", f"{TITLES[pde]}, {domain}", {"PI": {n: g[0] for n, g in grown.items()}},
                  "percentage increase / 100")
             findings(report, pde, domain, rows, grown)
+            ranking_findings(report, pde, domain, grown)
     return report.finish()
 
 
@@ -91,9 +98,7 @@ def findings(report: Report, pde: str, domain: str, rows: dict, grown: dict[int,
                        any_of(all_of(larger(g, other) for other in others) for g in jacobi),
                        f"largest PI: {LABELS[most]} {grown[most][0]:.2f}")
     if pde == "elasticity" and grown:
-        # A combination that failed on some mesh has no PI.
-        solved = {name: [grown[n] for n in group if n in grown] for name, group in GROUPS.items()}
-        mean = {name: tuple(sum(v) / len(values) for v in zip(*values)) for name, values in solved.items() if values}
+        mean = means(grown)
         report.finding(where, "AMG is less affected by perturbation than the other preconditioners",
                        all_of(larger(other, mean["AMG"]) for name, other in mean.items() if name != "AMG")
                        if "AMG" in mean else False,
@@ -103,3 +108,27 @@ def findings(report: Report, pde: str, domain: str, rows: dict, grown: dict[int,
         report.finding(where, "The iterations of AMG do not change with perturbation (by at most 1)",
                        all(max(c) - min(c) <= 1 for c in counts.values()),
                        "; ".join(f"{LABELS[n]} {c}" for n, c in counts.items()))
+
+
+def ranking_findings(report: Report, pde: str, domain: str, grown: dict[int, tuple[float, float, float]]) -> None:
+    """The rankings of robustness of section 2.7.3, by PI; a combination that failed on some mesh has none."""
+    where = f"2.7.3, {domain}, {pde}"
+    if pde == "poisson":
+        mean = means(grown)
+        order = (("ILU(0)", "SSOR"), ("ILU(0)", "AMG"), ("SSOR", "Jacobi"), ("AMG", "Jacobi"))
+        known = all(a in mean and b in mean for a, b in order)
+        report.finding(where, "Robustness ranks ILU(0) > SSOR, AMG > Jacobi",
+                       all_of(larger(mean[b], mean[a]) for a, b in order) if known else None,
+                       "mean PI: " + (", ".join(f"{k} {v[0]:.2f}" for k, v in mean.items()) or "none converged on all"))
+        return
+    robust = (SSOR[0], SSOR[2]) if pde == "elliptic" else (AMG[1],)
+    least = [grown[n] for n in robust if n in grown]
+    others = {n: g for n, g in grown.items() if n not in robust}
+    if len(least) < len(robust) or not others:
+        return
+    names = " and ".join(LABELS[n] for n in robust)
+    best = min(grown, key=lambda n: grown[n][0])
+    report.finding(where, f"The most robust against perturbation: {names}",
+                   all_of(larger(g, one) for g in others.values() for one in least),
+                   ", ".join(f"{LABELS[n]} {grown[n][0]:.2f}" for n in robust)
+                   + f"; smallest PI: {LABELS[best]} {grown[best][0]:.2f}")
