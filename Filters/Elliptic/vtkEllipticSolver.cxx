@@ -4,10 +4,15 @@
 #include "EllipticOutput.h"
 #include "TableRows.h"
 
+#include "tautline/Elliptic/TimeStepping.h"
+
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -17,7 +22,10 @@ vtkStandardNewMacro(vtkEllipticSolver);
 
 namespace
 {
-constexpr int HistoryPort = 1;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+constexpr int MeshPort = 0, HistoryPort = 1, NumberOfPorts = 2;
+constexpr int InitialArray = 5, VelocityArray = 6;
 constexpr double ReportInterval = 0.05; // of progress, in seconds
 
 /// How far a Krylov method is, by the digits it has gained.
@@ -97,9 +105,195 @@ tautline::SolverOptions vtkEllipticSolver::GetSolverOptions() const
 }
 
 //------------------------------------------------------------------------------
-void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-  const tautline::Processes&, tautline::TableRows& table)
+std::vector<double> vtkEllipticSolver::Times() const
 {
+  std::vector<double> times;
+  for (int i = 0; i <= this->NumberOfTimeSteps; ++i)
+  {
+    times.push_back(i * this->TimeStep);
+  }
+  return times;
+}
+
+//------------------------------------------------------------------------------
+int vtkEllipticSolver::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  const bool usable = std::isfinite(this->TimeStep) && this->TimeStep > 0;
+  for (int port = 0; this->TimeScheme != STATIONARY && usable && port < NumberOfPorts; ++port)
+  {
+    const std::vector<double> times = this->Times();
+    const double range[2] = { times.front(), times.back() };
+    vtkInformation* info = outputVector->GetInformationObject(port);
+    info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkEllipticSolver::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  // The time requested is that of the equation, which has no meaning upstream.
+  for (int port = 0; this->TimeScheme != STATIONARY && port < NumberOfPorts; ++port)
+  {
+    for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      inputVector[port]->GetInformationObject(i)->Remove(Pipeline::UPDATE_TIME_STEP());
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkEllipticSolver::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (this->TimeScheme == STATIONARY)
+  {
+    this->Series.clear();
+    return this->Superclass::RequestData(request, inputVector, outputVector);
+  }
+  vtkMTimeType latest = this->GetMTime();
+  for (int port = 0; port < NumberOfPorts; ++port)
+  {
+    vtkDataObject* data = vtkDataObject::GetData(inputVector[port]);
+    latest = std::max(latest, data ? data->GetMTime() : 0);
+  }
+  if (this->SeriesTime.GetMTime() < latest)
+  {
+    this->Series.clear();
+  }
+  vtkInformation* info = outputVector->GetInformationObject(MeshPort);
+  this->RequestedTime = info->Has(Pipeline::UPDATE_TIME_STEP())
+    ? info->Get(Pipeline::UPDATE_TIME_STEP())
+    : this->NumberOfTimeSteps * this->TimeStep;
+  const int succeeded = this->Superclass::RequestData(request, inputVector, outputVector);
+  if (!succeeded)
+  {
+    this->Series.clear();
+    return 0;
+  }
+  this->SeriesTime.Modified();
+  vtkDataObject::GetData(outputVector, MeshPort)
+    ->GetInformation()
+    ->Set(vtkDataObject::DATA_TIME_STEP(), this->RequestedTime);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkEllipticSolver::StartValues(const tautline::PointFunction& function,
+  const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
+  const tautline::Processes& processes)
+{
+  std::vector<double> start;
+  processes.together(
+    [&]()
+    {
+      if (mesh.input->GetNumberOfPoints() > 0) // a process may have none
+      {
+        const int components = this->Equation == ELASTICITY ? 3 : 1;
+        start = tautline::unknownsOf(
+          input.system(), tautline::valuesAt(function, this, mesh.input, components));
+      }
+    });
+  return start;
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
+  tautline::LocalMesh& mesh, const tautline::Processes& processes, tautline::TableRows& table)
+{
+  const tautline::EllipticSystem& system = input.system();
+  if (this->Series.size() <= static_cast<std::size_t>(mesh.number))
+  {
+    this->Series.resize(mesh.number + 1);
+  }
+  std::shared_ptr<tautline::TimeSeries>& series = this->Series[mesh.number];
+  if (!series)
+  {
+    const auto function = [&](const char* what, int kind, double value, const double* vector,
+                            int array, const std::string& expression)
+    {
+      const tautline::Vec3 constant = this->Equation == ELASTICITY
+        ? tautline::Vec3{ vector[0], vector[1], vector[2] }
+        : tautline::Vec3{ value, 0, 0 };
+      return tautline::PointFunction{ what, kind, constant, array, expression };
+    };
+    const std::vector<double> start =
+      this->StartValues(function("initial solution", this->InitialType, this->InitialValue,
+                          this->InitialDisplacement, InitialArray, this->InitialExpression),
+        input, mesh, processes);
+    const std::vector<double> velocity = this->TimeScheme == NEWMARK
+      ? this->StartValues(function("initial velocity", this->VelocityType, this->VelocityValue,
+                            this->VelocityVector, VelocityArray, this->VelocityExpression),
+          input, mesh, processes)
+      : std::vector<double>();
+    tautline::TimeOptions time;
+    time.scheme = static_cast<tautline::TimeScheme>(this->TimeScheme);
+    time.step = this->TimeStep;
+    time.steps = this->NumberOfTimeSteps;
+    time.mass = static_cast<tautline::MassMatrix>(this->MassMatrix);
+    time.density = this->Density;
+    time.rigidBodyModes = this->RigidBodyModes;
+    tautline::SolverOptions options = this->GetSolverOptions();
+    options.observer = [&](int step, double)
+    { return this->Report(mesh, static_cast<double>(step) / this->NumberOfTimeSteps); };
+    options.cancelled = this->Cancelled();
+    series = std::make_shared<tautline::TimeSeries>(
+      tautline::integrate(system, time, start, velocity, options));
+  }
+
+  // The last step at or before the time requested.
+  const double slack = 1e-9 * this->TimeStep;
+  const auto after =
+    std::upper_bound(series->times.begin(), series->times.end(), this->RequestedTime + slack);
+  const std::ptrdiff_t shown = std::max<std::ptrdiff_t>(after - series->times.begin() - 1, 0);
+  const tautline::Index outside =
+    this->AddSolution(system.fields(series->values[shown]), mesh.output);
+  for (std::size_t i = 0; i < series->solves.size(); ++i)
+  {
+    table.begin(mesh.name);
+    table.add("Time", static_cast<double>(i + 1) * this->TimeStep);
+    table.add("N iterations", series->solves[i].iterations);
+    table.add("N residual", std::isfinite(series->residuals[i]) ? series->residuals[i] : 0.0);
+  }
+
+  const std::size_t steps = series->times.size() - 1;
+  const bool complete = steps == static_cast<std::size_t>(this->NumberOfTimeSteps);
+  this->Converged = this->Converged && complete;
+  this->Reason = tautline::sentence(tautline::describe(series->reason));
+  this->Iterations += series->iterations;
+  this->SetupSeconds += series->setupSeconds;
+  this->SolveSeconds += series->solveSeconds;
+  std::ostringstream text;
+  text << steps << " of " << this->NumberOfTimeSteps << " time steps of " << this->TimeStep
+       << "; time " << series->times[shown] << " is shown. " << this->Reason << "\n"
+       << system.unknowns() << " unknowns, " << series->iterations << " iterations in all.";
+  text.precision(3);
+  text << "\nSeconds: assembly " << system.assembleSeconds() << ", set-up " << series->setupSeconds
+       << ", solve " << series->solveSeconds << ".";
+  if (outside > 0)
+  {
+    text << "\n" << outside << " points are in no element; their solution is 0.";
+  }
+  this->Describe(mesh, text.str());
+  if (!complete)
+  {
+    this->Warn();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
+  const tautline::Processes& processes, tautline::TableRows& table)
+{
+  if (this->TimeScheme != STATIONARY)
+  {
+    this->ComputeSteps(input, mesh, processes, table);
+    return;
+  }
   const tautline::EllipticSystem& system = input.system();
   tautline::SolverOptions options = this->GetSolverOptions();
   double first = 0.0;
@@ -162,6 +356,13 @@ void vtkEllipticSolver::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Preconditioner: " << this->Preconditioner << "\n";
   os << indent << "RigidBodyModes: " << this->RigidBodyModes << "\n";
   os << indent << "FastMultigrid: " << this->FastMultigrid << "\n";
+  os << indent << "TimeScheme: " << this->TimeScheme << "\n";
+  os << indent << "TimeStep: " << this->TimeStep << "\n";
+  os << indent << "NumberOfTimeSteps: " << this->NumberOfTimeSteps << "\n";
+  os << indent << "MassMatrix: " << this->MassMatrix << "\n";
+  os << indent << "Density: " << this->Density << "\n";
+  os << indent << "InitialType: " << this->InitialType << "\n";
+  os << indent << "VelocityType: " << this->VelocityType << "\n";
   os << indent << "SolutionName: " << this->SolutionName << "\n";
   os << indent << "ComputeGradient: " << this->ComputeGradient << "\n";
 }

@@ -1,6 +1,6 @@
 /**
  * @class vtkEllipticSolver
- * @brief Solves an elliptic partial differential equation on a mesh.
+ * @brief Solves an elliptic partial differential equation on a mesh, or a heat or wave equation.
  *
  * The problem and the inputs are those of vtkEllipticAlgorithm. The linear system is solved by a
  * Krylov method with a preconditioner, dissertation sections 2.5 and 2.6, or directly.
@@ -13,6 +13,13 @@
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the start): `Log10 residual`, relative to the first,
  * and `N residual`, its norm as the method measures it; of composite data sets also `Block`.
+ *
+ * With a TimeScheme other than STATIONARY the filter solves the heat equation rho u_t + L u = f or
+ * the wave equation rho u_tt + L u = f, where L u = f is the stationary equation: NumberOfTimeSteps
+ * of length TimeStep from the initial values, which are the time steps of the pipeline. f and the
+ * given values do not depend on time. The output is that of the time requested, at first of the
+ * last one; the table then has a row per step: `Time`, `N iterations`, `N residual`, the norm of the
+ * last one. All steps are computed once and kept: 8 bytes per unknown and step.
  *
  * A solve that does not converge is a warning with its reason; the solution is then the best there
  * was. Whatever the method reports, it has converged only if norm of b - A x is at most 1000 times
@@ -35,12 +42,18 @@
 
 #include "vtkKrylovAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
+#include "vtkTimeStamp.h"        // for SeriesTime
+
+#include <memory> // for Series
+#include <vector> // for Series
 
 class vtkDataSet;
 
 namespace tautline
 {
 struct EllipticSolution;
+struct PointFunction;
+struct TimeSeries;
 }
 
 class TAUTLINEELLIPTIC_EXPORT vtkEllipticSolver : public vtkKrylovAlgorithm
@@ -117,6 +130,82 @@ public:
   vtkBooleanMacro(ComputeGradient, bool);
   ///@}
 
+  /// Numbers of the schemes; those of tautline::TimeScheme.
+  enum TimeSchemes
+  {
+    STATIONARY = 0,
+    BACKWARD_EULER = 1,
+    BDF2 = 2,
+    CRANK_NICOLSON = 3,
+    NEWMARK = 4
+  };
+  ///@{
+  /**
+   * STATIONARY (the default): no time. Of the heat equation: BACKWARD_EULER (order 1), BDF2 (order
+   * 2) and CRANK_NICOLSON (order 2, does not damp the finest oscillations). Of the wave equation:
+   * NEWMARK, with constant average acceleration (order 2, keeps the energy).
+   */
+  vtkTautlineSetRangeMacro(TimeScheme, int, STATIONARY, NEWMARK);
+  vtkGetMacro(TimeScheme, int);
+  ///@}
+
+  ///@{
+  /// Length of the steps in time, above 0. The default is 0.01.
+  vtkSetMacro(TimeStep, double);
+  vtkGetMacro(TimeStep, double);
+  ///@}
+
+  ///@{
+  /// Number of steps in time, at least 1. The default is 100.
+  vtkTautlineSetRangeMacro(NumberOfTimeSteps, int, 1, VTK_INT_MAX);
+  vtkGetMacro(NumberOfTimeSteps, int);
+  ///@}
+
+  /// Numbers of the mass matrices; those of tautline::MassMatrix.
+  enum MassMatrices
+  {
+    CONSISTENT = 0,
+    LUMPED = 1
+  };
+  ///@{
+  /// The mass matrix: CONSISTENT (the default), or LUMPED, diagonal.
+  vtkTautlineSetRangeMacro(MassMatrix, int, CONSISTENT, LUMPED);
+  vtkGetMacro(MassMatrix, int);
+  ///@}
+
+  ///@{
+  /// rho, the factor of the time derivative, above 0. The default is 1.
+  vtkSetMacro(Density, double);
+  vtkGetMacro(Density, double);
+  ///@}
+
+  ///@{
+  /**
+   * The solution at time 0: CONSTANT (the default), ARRAY (array 5) or EXPRESSION. Fixed points have
+   * their given values from the start on.
+   */
+  vtkTautlineSetRangeMacro(InitialType, int, CONSTANT, EXPRESSION);
+  vtkGetMacro(InitialType, int);
+  vtkSetMacro(InitialValue, double);
+  vtkGetMacro(InitialValue, double);
+  vtkSetVector3Macro(InitialDisplacement, double);
+  vtkGetVector3Macro(InitialDisplacement, double);
+  vtkSetMacro(InitialExpression, std::string);
+  vtkGetMacro(InitialExpression, std::string);
+  ///@}
+
+  ///@{
+  /// The time derivative of the solution at time 0, of NEWMARK: as the initial solution; array 6.
+  vtkTautlineSetRangeMacro(VelocityType, int, CONSTANT, EXPRESSION);
+  vtkGetMacro(VelocityType, int);
+  vtkSetMacro(VelocityValue, double);
+  vtkGetMacro(VelocityValue, double);
+  vtkSetVector3Macro(VelocityVector, double);
+  vtkGetVector3Macro(VelocityVector, double);
+  vtkSetMacro(VelocityExpression, std::string);
+  vtkGetMacro(VelocityExpression, std::string);
+  ///@}
+
   /// The output other than the mesh.
   vtkTable* GetHistory();
 
@@ -136,6 +225,12 @@ protected:
   vtkEllipticSolver();
   ~vtkEllipticSolver() override;
 
+  int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
   void Reset() override;
   void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
     const tautline::Processes& processes, tautline::TableRows& table) override;
@@ -145,6 +240,15 @@ private:
   void operator=(const vtkEllipticSolver&) = delete;
 
   tautline::SolverOptions GetSolverOptions() const;
+  /// Computes all time steps of a mesh, unless they are known, and shows the requested one.
+  void ComputeSteps(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
+    const tautline::Processes& processes, tautline::TableRows& table);
+  /// The unknowns at time 0, or their derivatives.
+  std::vector<double> StartValues(const tautline::PointFunction& function,
+    const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
+    const tautline::Processes& processes);
+  /// The times of the steps.
+  std::vector<double> Times() const;
   /// Adds the arrays. @return the number of points in no element
   vtkIdType AddSolution(const tautline::EllipticSolution& solution, vtkDataSet* output) const;
 
@@ -154,6 +258,22 @@ private:
   bool FastMultigrid = true;
   std::string SolutionName;
   bool ComputeGradient = true;
+  int TimeScheme = STATIONARY;
+  double TimeStep = 0.01;
+  int NumberOfTimeSteps = 100;
+  int MassMatrix = CONSISTENT;
+  double Density = 1.0;
+  int InitialType = CONSTANT;
+  double InitialValue = 0.0;
+  double InitialDisplacement[3] = { 0.0, 0.0, 0.0 };
+  std::string InitialExpression;
+  int VelocityType = CONSTANT;
+  double VelocityValue = 0.0;
+  double VelocityVector[3] = { 0.0, 0.0, 0.0 };
+  std::string VelocityExpression;
+  double RequestedTime = 0.0;
+  std::vector<std::shared_ptr<tautline::TimeSeries>> Series; ///< by the number of the mesh
+  vtkTimeStamp SeriesTime;                                   ///< of Series
   bool Converged = false;
   std::string Reason;
   int Iterations = 0;

@@ -125,8 +125,8 @@ def time_findings(report: Report, times: dict[tuple[str, str], dict[int, Times]]
     for discretization in ("dissertation", "exact"):
         one, other = (times[basis, discretization][finest] for basis in PRINTED)
         report.finding("4.5, times", f"The linear basis takes longer than the constant one ({discretization} "
-                       "discretization, finest mesh)", faster(one, other), f"constant {one}, linear {other}")  # fmt: skip
-    grown = {key: [b.best / max(a.best, math.ulp(0.0)) for a, b in zip(row.values(), list(row.values())[1:])]
+                       "discretization, finest mesh)", faster(one, other), f"constant {one}, linear {other}")
+    grown = {key: [b.best / max(a.best, math.ulp(0.0)) for a, b in zip(row.values(), [*row.values()][1:])]
              for key, row in times.items()}  # fmt: skip
     least = {key: min(v) for key, v in grown.items()}
     report.finding("4.5, times", "Halving h multiplies the time by 10 or more", all(v >= 10 for v in least.values()),
