@@ -85,6 +85,7 @@ void vtkEllipticSolver::Reset()
   this->Converged = true;
   this->Reason.clear();
   this->Iterations = 0;
+  this->ComputedTimeSteps = this->TimeScheme == STATIONARY ? 0 : this->NumberOfTimeSteps;
   this->SetupSeconds = this->SolveSeconds = 0.0;
 }
 
@@ -117,14 +118,26 @@ std::vector<double> vtkEllipticSolver::Times() const
 
 //------------------------------------------------------------------------------
 int vtkEllipticSolver::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   const bool usable = std::isfinite(this->TimeStep) && this->TimeStep > 0;
-  for (int port = 0; this->TimeScheme != STATIONARY && usable && port < NumberOfPorts; ++port)
+  const bool ours = this->TimeScheme != STATIONARY && usable;
+  const bool theirs = inputVector[MeshPort]->GetNumberOfInformationObjects() > 0 &&
+    inputVector[MeshPort]->GetInformationObject(0)->Has(Pipeline::TIME_STEPS());
+  for (int port = 0; port < NumberOfPorts; ++port)
   {
+    vtkInformation* info = outputVector->GetInformationObject(port);
+    if (!ours)
+    {
+      if (!theirs) // those of an earlier scheme
+      {
+        info->Remove(Pipeline::TIME_STEPS());
+        info->Remove(Pipeline::TIME_RANGE());
+      }
+      continue;
+    }
     const std::vector<double> times = this->Times();
     const double range[2] = { times.front(), times.back() };
-    vtkInformation* info = outputVector->GetInformationObject(port);
     info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
     info->Set(Pipeline::TIME_RANGE(), range, 2);
   }
@@ -263,6 +276,7 @@ void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
   const std::size_t steps = series->times.size() - 1;
   const bool complete = steps == static_cast<std::size_t>(this->NumberOfTimeSteps);
   this->Converged = this->Converged && complete;
+  this->ComputedTimeSteps = std::min(this->ComputedTimeSteps, static_cast<int>(steps));
   this->Reason = tautline::sentence(tautline::describe(series->reason));
   this->Iterations += series->iterations;
   this->SetupSeconds += series->setupSeconds;

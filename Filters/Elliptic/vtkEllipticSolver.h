@@ -217,6 +217,8 @@ public:
   bool GetConverged() const { return this->Converged; }
   const char* GetReason() const { return this->Reason.c_str(); }
   int GetIterations() const { return this->Iterations; }
+  /// Time steps that were computed, of all blocks: fewer than asked for where one did not converge.
+  int GetComputedTimeSteps() const { return this->ComputedTimeSteps; }
   double GetSetupSeconds() const { return this->SetupSeconds; }
   double GetSolveSeconds() const { return this->SolveSeconds; }
   ///@}
@@ -277,6 +279,7 @@ private:
   bool Converged = false;
   std::string Reason;
   int Iterations = 0;
+  int ComputedTimeSteps = 0;
   double SetupSeconds = 0.0;
   double SolveSeconds = 0.0;
 };

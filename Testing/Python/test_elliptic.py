@@ -66,6 +66,45 @@ def test_elasticity():
     assert vtk_to_numpy(soft.mesh.GetCellData().GetArray("VonMises")).max() > 1
 
 
+def test_time_steps():
+    """Heat and wave equations: eigenmodes in closed form, all solutions, histories, what is refused."""
+    n, steps, dt = 8, 5, 0.02
+    x, y = np.meshgrid(np.linspace(0, 1, n + 1), np.linspace(0, 1, n + 1))
+    corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    cells = np.stack([corner, corner + 1, corner + n + 2, corner, corner + n + 2, corner + n + 1], 1).reshape(-1, 3)
+    mesh = tl.from_arrays(np.column_stack([x.ravel(), y.ravel()]), {"triangle": cells})
+    mode = (np.sin(np.pi * x) * np.sin(np.pi * y)).ravel()
+    value = 8 * n**2 * np.sin(np.pi / (2 * n)) ** 2  # of the lumped mass matrix
+    common = dict(source=0.0, time_step=dt, time_steps=steps, mass="lumped", relative_tolerance=1e-10, series=True)
+    z = value * dt
+    factors = {"backward euler": 1 / (1 + z), "crank-nicolson": (1 - z / 2) / (1 + z / 2)}
+    for scheme, factor in factors.items():
+        for initial in ("sin(3.14159265358979*x)*sin(3.14159265358979*y)", mode):
+            found = tl.solve(mesh, time_scheme=scheme, initial=initial, **common)
+            assert found.converged and np.allclose(found.times, dt * np.arange(steps + 1))
+            assert np.abs(found.series - np.outer(factor ** np.arange(steps + 1), mode)).max() < 1e-7, scheme
+            assert np.array_equal(found.solution, found.series[-1])
+            assert len(found.history["time"]) == steps and found.history["iterations"].sum() == found.iterations
+    wave = tl.solve(mesh, time_scheme="newmark", velocity=mode, **common)
+    frequency = 2 * np.arctan(np.sqrt(value) * dt / 2) / dt
+    amplitude = np.sin(frequency * wave.times) / np.sqrt(value)
+    assert np.abs(wave.series - np.outer(amplitude, mode)).max() < 1e-7
+    still = tl.solve(mesh, relative_tolerance=1e-10)
+    assert still.times is None and still.series is None
+    late = tl.solve(mesh, time_scheme="bdf2", time_step=0.5, time_steps=10, relative_tolerance=1e-10)
+    assert np.abs(late.solution - still.solution).max() < 1e-6 and late.series is None
+    elastic = tl.solve(mesh, "elasticity", time_scheme="newmark", source=0, fixed="x < 0.01", initial="0.1*x*iHat",
+                       time_steps=3, series=True)
+    assert elastic.series.shape == (4, len(mode), 3) and abs(elastic.series[0, :, 0].max() - 0.1) < 1e-12
+    short = tl.solve(mesh, time_scheme="backward euler", initial=mode**3, preconditioner="none", maximum_iterations=1,
+                     relative_tolerance=1e-12, series=True)
+    assert not short.converged and len(short.times) == len(short.series) == 1
+    refused("above 0", tl.solve, mesh, time_scheme="bdf2", time_step=0)
+    refused("density", tl.solve, mesh, time_scheme="bdf2", density=-1)
+    refused("time_scheme", tl.solve, mesh, time_scheme="rk4")
+    refused("time_steps", tl.solve, mesh, time_scheme="bdf2", time_steps=0)
+
+
 def test_condition():
     mesh = square(12)
     result = tl.condition(mesh, preconditioner="jacobi")

@@ -40,6 +40,20 @@ elastic = update(SolvePDE(Input=plate, Equation="Linear Elasticity", BodyForce=[
 assert elastic.PointData["Displacement"].GetNumberOfComponents() == 3
 assert elastic.CellData["Stress"].GetNumberOfComponents() == 6 and elastic.CellData["VonMises"].GetRange()[0] >= 0
 
+# The heat equation from 1 inside: the time controls have its steps; an earlier time is warmer.
+heat = SolvePDE(Input=plate, SourceValue=0, TimeScheme="Heat: BDF2", TimeStep=0.05, NumberOfTimeSteps=4, InitialValue=1)
+update(heat)
+assert len(heat.TimestepValues) == 5 and abs(heat.TimestepValues[-1] - 0.2) < 1e-12, heat.TimestepValues
+warmest = []
+for moment in heat.TimestepValues:
+    heat.UpdatePipeline(moment)
+    warmest.append(heat.PointData["Solution"].GetRange()[1])
+assert warmest[0] == 1 and all(b < a + 1e-6 for a, b in zip(warmest, warmest[1:])) and warmest[-1] < 0.99, warmest
+assert servermanager.Fetch(heat, idx=1).GetNumberOfRows() == 4
+heat.TimeScheme = "Stationary"
+heat.UpdatePipelineInformation()
+assert not heat.TimestepValues, heat.TimestepValues
+
 # A wrong expression: an error, an empty output; then right again.
 solved.SourceExpression = "x*"
 update(solved)

@@ -1,10 +1,19 @@
 """The studies `figures` and `peridynamics_local` in the small size, and the report of `study all`."""
 
+import base64
+import contextlib
+import csv
+import io
 import math
+import re
+from html import escape
+from pathlib import Path
 
-from checks import OUT, run_tests
-from study_checks import Studies
-from tautline.studies import _intersections, figures, peridynamics_local
+import tautline as tl
+from checks import DATA, OUT, run_tests
+from study_checks import Studies, refused_command
+from tautline import __main__ as command_line
+from tautline.studies import _intersections, _inventory, _page, figures, names, peridynamics_local, toy
 
 studies = Studies(OUT / "studies_report")
 PICTURES = ("figure_2_1", "figure_2_2", "figure_3_1", "figure_3_3", "figure_3_12", "figure_4_2", "figure_4_4",
@@ -74,11 +83,76 @@ def stated():
 
 def test_contours():
     """The position of the best value is that of the equilateral triangle, whichever side of the base it is on."""
-    import tautline as tl
-
     field = tl.metric_field(("imr",), vertices=figures.BASE_2_1, bounds=(-2, 0, -0.5, 1.5), dimensions=(81, 81))
     value, x, y = figures.best_position(field, (-2, 0, -0.5, 1.5), "imr")
     assert abs(value - 1) < 1e-3 and abs(x - math.sqrt(3) / 2) < 0.03 and abs(y - 0.5) < 0.03
+
+
+def test_references():
+    """The tables and figures that sources of findings name."""
+    for text, expected in (
+        ("Table 2.8, wrench", {"Table 2.8"}), ("Figures 2.2, 3.3", {"Figure 2.2", "Figure 3.3"}),
+        ("Tables 2.9 and 2.12, Figure 4.7 (a)", {"Table 2.9", "Table 2.12", "Figure 4.7"}),
+        ("Figures 4.24 to 4.26", {"Figure 4.24", "Figure 4.25", "Figure 4.26"}), ("2.7.3", set()),
+    ):
+        assert _page.references(text) == expected, text
+    assert all(entry.study in names() for entry in _inventory.ENTRIES)
+    assert len({entry.name for entry in _inventory.ENTRIES}) == len(_inventory.ENTRIES)
+
+
+def run_report(folder: Path, *options: str) -> tuple[int, str]:
+    """The exit code of `study all` and its report."""
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        code = command_line.main(["study", "all", "--small", "--out", str(folder), *options])
+    return code, (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_report():
+    """The report of two studies: findings, tables, pictures, links; a study that fails is part of it."""
+    code, page = run_report(OUT / "all", "--studies", "toy", "peridynamics_local")
+    assert code == 0
+    for study in ("toy", "peridynamics_local"):
+        folder = OUT / "all" / study
+        found = studies_in(folder)
+        assert found and all(escape(sentence) in page for sentence in found), study
+        assert page.count("data:image/png") == len(list((OUT / "all").glob("*/*.png"))) > 0
+    assert "Condition number by 1/h" in page
+    targets = set(re.findall(r" id='([^']+)'", page))
+    links = set(re.findall(r"href='#([^']+)'", page))
+    assert {"figure-3-2"} <= targets and {link for link in links if link not in targets} <= {
+        _page._anchor(entry.name) for entry in _inventory.ENTRIES if entry.study not in ("toy", "peridynamics_local")}
+    picture = base64.b64decode(re.search(r"base64,([^']+)'", page).group(1))
+    assert picture.startswith(b"\x89PNG")
+
+    before = toy.main
+    toy.main = broken
+    try:
+        code, page = run_report(OUT / "all", "--studies", "toy")
+        assert code == 1 and "the reason &lt;why&gt;" in page
+    finally:
+        toy.main = before
+    code, page = run_report(OUT / "all", "--studies", "peridynamics_local", "--reuse")
+    assert code == 0 and "peridynamics_local" in page
+    refused_command("there is no study 'nothing'", "study", "all", "--studies", "nothing", "--out", str(OUT / "none"))
+
+
+def broken(_):
+    raise tl.Error("the reason <why>")
+
+
+def studies_in(folder: Path) -> list[str]:
+    """The sentences of the findings of a study that ran."""
+    with open(folder / "findings.csv", encoding="utf-8", newline="") as stream:
+        return [row["finding"] for row in csv.DictReader(stream)]
+
+
+def test_documentation():
+    """The report of the small size in the documentation is of these studies, and is small."""
+    page = (DATA.parent / "Plugin" / "Documentation" / "studies.html").read_text(encoding="utf-8")
+    assert len(page) < 1_000_000 and all(f">{entry.name}</a>" in page for entry in _inventory.ENTRIES)
+    for study in ("figures", "peridynamics_local"):
+        missing = [s for s in studies_in(studies.directory / study) if escape(s) not in page]
+        assert not missing, f"study all --small --width 420 makes Plugin/Documentation/studies.html anew: {missing}"
 
 
 run_tests(globals())

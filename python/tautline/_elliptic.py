@@ -11,7 +11,7 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
-from ._arguments import check_options, pick, set_threads, set_time_limit, within
+from ._arguments import check_options, number, pick, set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, cell_array, columns, has_array, point_array, table_rows
 from ._errors import Error, checked, interruptible, run, watch
 from ._io import Mesh, as_mesh
@@ -21,11 +21,13 @@ PDES = ("poisson", "elliptic", "elasticity")
 SOLVERS = ("cg", "gmres", "minres", "bicgstab", "direct")
 PRECONDITIONERS = ("jacobi", "ssor", "ilu", "amg", "icc", "gamg", "none")
 PLANES = ("strain", "stress")
+TIME_SCHEMES = ("stationary", "backward euler", "bdf2", "crank-nicolson", "newmark")
+MASSES = ("consistent", "lumped")
 METHODS = ("automatic", "ritz", "accurate")
 
 _MAX_ITERATIONS = 2**31 - 1
 _TABLE_2_5 = 16  # the first combinations of solver and preconditioner are those of the dissertation's Table 2.5
-_FIXED, _SOURCE, _GIVEN, _TENSOR, _STIFFNESS = range(5)  # input arrays of vtkEllipticAlgorithm
+_FIXED, _SOURCE, _GIVEN, _TENSOR, _STIFFNESS, _INITIAL, _VELOCITY = range(7)  # input arrays of vtkEllipticSolver
 _CONSTANT, _ARRAY, _EXPRESSION = range(3)  # its types of functions
 _WHOLE, _PART, _CHOSEN = range(3)  # its fixed parts of the boundary
 _STUDY_COLUMNS = {
@@ -59,8 +61,12 @@ class SolveResult:
     solution: np.ndarray
     #: Per cell the gradient, m x 3; of elasticity the stress, m x 6 (xx yy zz xy yz xz). Empty if not computed.
     gradient: np.ndarray
-    #: Per iteration (0 is the start): `residual`, the norm that the method uses, and `log10_residual`, relative to the
-    #: first one. Of composite data also `block`.
+    #: The times of the steps and the solution at each of them, (steps + 1) x n or x n x 3; None of stationary problems,
+    #: and the solutions also unless asked for.
+    times: np.ndarray | None
+    series: np.ndarray | None
+    #: With time steps, per step `time`, `iterations`, `residual`. Else per iteration (0 is the start) `residual`, the
+    #: norm that the method uses, and `log10_residual`, relative to the first one. Of composite data also `block`.
     history: dict[str, Any]
     #: Whether the method converged, and the stopping criterion that ended it.
     converged: bool
@@ -132,9 +138,17 @@ def solve(
     fast_multigrid: bool = True,
     solution_name: str = "",
     gradient: bool = True,
+    time_scheme: str = "stationary",
+    time_step: float = 0.01,
+    time_steps: int = 100,
+    mass: str = "consistent",
+    density: float = 1.0,
+    initial: Function = 0.0,
+    velocity: Function = 0.0,
+    series: bool = False,
     **problem: Any,
 ) -> SolveResult:
-    """Solve an elliptic partial differential equation on a mesh by linear finite elements.
+    """Solve an elliptic partial differential equation on a mesh by linear finite elements, or a heat or wave equation.
 
     mesh: triangles, quadrilaterals, tetrahedra, hexahedra, wedges or pyramids: a vtkDataSet, a composite data set, a
         file name or (points, cells). It is not changed.
@@ -150,6 +164,14 @@ def solve(
         defaults.
     solution_name: name of the point array of the solution; "" is `Solution`, or `Displacement` of elasticity.
     gradient: whether to compute the gradient or the stress of the cells.
+    time_scheme: "stationary", L u = f; of the heat equation, density u_t + L u = f: "backward euler" (order 1), "bdf2",
+        "crank-nicolson" (order 2); of the wave equation, density u_tt + L u = f: "newmark" (constant average
+        acceleration, order 2). The source and the given solution do not depend on time.
+    time_step: length of a time step, above 0. time_steps: number of them, at least 1.
+    mass: the mass matrix, "consistent" or "lumped" (the sums of its rows on the diagonal).
+    density: above 0.
+    initial, velocity: the solution at time 0, and its time derivative there ("newmark"): see source.
+    series: whether the result has the solution at all times; the mesh has that of the last one.
 
     problem: further options, the same for solve(), condition() and solver_study():
         source: f, by default 1 (elasticity: (1, 0, 0)).
@@ -187,14 +209,28 @@ def solve(
     filter_.SetFastMultigrid(bool(fast_multigrid))
     filter_.SetSolutionName(solution_name)
     filter_.SetComputeGradient(bool(gradient))
-    output = _execute(solve, filter_, mesh, pde, problem)
+    scheme = pick("time_scheme", time_scheme, TIME_SCHEMES)
+    filter_.SetTimeScheme(scheme)
+    filter_.SetTimeStep(number("time_step", time_step))
+    filter_.SetNumberOfTimeSteps(int(within("time_steps", time_steps, 1, _MAX_ITERATIONS)))
+    filter_.SetMassMatrix(pick("mass", mass, MASSES))
+    filter_.SetDensity(number("density", density))
+    start = {"initial": initial, "velocity": velocity} if scheme else {}
+    output = _execute(solve, filter_, mesh, pde, problem, start)
     fields = "Stress" if elastic else "Gradient"
     history = columns(filter_.GetHistory())
-    names = {"Log10 residual": "log10_residual", "N residual": "residual", "Block": "block"}
+    names = {"Log10 residual": "log10_residual", "N residual": "residual", "Block": "block", "Time": "time",
+             "N iterations": "iterations"}  # fmt: skip
+    times = np.arange(int(time_steps) + 1) * float(time_step) if scheme else None
+    name = solution_name or ("Displacement" if elastic else "Solution")
+    if times is not None:
+        times = times[: filter_.GetComputedTimeSteps() + 1]  # fewer if one did not converge
     return SolveResult(
         mesh=output,
-        solution=point_array(output, solution_name or ("Displacement" if elastic else "Solution")),
+        solution=point_array(output, name),
         gradient=cell_array(output, fields) if gradient else np.zeros(0),
+        times=times,
+        series=_series(filter_, name, times) if series and times is not None else None,
         history={names[name]: values for name, values in history.items()},
         converged=bool(filter_.GetConverged()),
         reason=filter_.GetReason(),
@@ -336,14 +372,21 @@ _FILTER_ARGUMENTS = 3
 
 
 def _execute(
-    function: Callable[..., Any], filter_: Any, mesh: Mesh, pde: str, problem: dict[str, Any]
-) -> vtkDataObject:
-    """Set the problem, run the filter of a function; returns its first output without the arrays given as numbers."""
+    function: Callable[..., Any], filter_: Any, mesh: Mesh, pde: str, problem: dict[str, Any],
+    start: dict[str, Function] | None = None,
+) -> vtkDataObject:  # fmt: skip
+    """Set the problem, run the filter of a function; returns its first output without the arrays given as numbers.
+
+    start: functions at time 0 by name.
+    """
     messages = watch(filter_)
     inputs = InputArrays(filter_, as_mesh(mesh))
     own = [p.name for p in signature(function).parameters.values() if p.kind is not p.VAR_KEYWORD]
     check_options(problem, [*own, *list(signature(_set_problem).parameters)[_FILTER_ARGUMENTS:]])
     _set_problem(filter_, inputs, pde, **problem)
+    set_function = _set_vector_function if pde == "elasticity" else _set_scalar_function
+    for name, value in (start or {}).items():
+        set_function(filter_, inputs, name, value, {"initial": _INITIAL, "velocity": _VELOCITY}[name])
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_, messages)
     return inputs.remove_from(filter_.GetOutputDataObject(0))
@@ -409,7 +452,8 @@ def _set_scalar_function(filter_: Any, inputs: InputArrays, name: str, value: Fu
 
 
 #: The setters of constant vectors.
-_VECTOR_SETTERS = {"source": "SetBodyForce", "given": "SetGivenDisplacement"}
+_VECTOR_SETTERS = {"source": "SetBodyForce", "given": "SetGivenDisplacement", "initial": "SetInitialDisplacement",
+                   "velocity": "SetVelocityVector"}  # fmt: skip
 
 
 def _set_vector_function(filter_: Any, inputs: InputArrays, name: str, value: Function, index: int) -> None:
@@ -435,6 +479,15 @@ def _set_variable_function(filter_: Any, inputs: InputArrays, name: str, value: 
         inputs.use(index, value, name, POINTS)
 
 
+def _series(filter_: Any, name: str, times: np.ndarray) -> np.ndarray:
+    """The solution at all times; the output is then that of the last one."""
+    found = []
+    for step in times:
+        filter_.UpdateTimeStep(float(step))
+        found.append(point_array(filter_.GetOutputDataObject(0), name).copy())
+    return np.array(found)
+
+
 def _rows(table: Any, names: dict[str, str]) -> list[dict[str, Any]]:
     """The rows of a table as dicts of Python numbers and texts; columns are renamed by `names`, or to lower case."""
     data = {names.get(name, name.lower()): values for name, values in columns(table).items()}
@@ -455,6 +508,15 @@ def add_commands(commands: Any) -> None:
                       help="relative, of the preconditioned residual (default: 1e-5)")  # fmt: skip
     made.add_argument("--iterations", type=int, default=10000, dest="maximum_iterations", help="(default: 10000)")
     made.add_argument("--restart", type=int, default=30, help="m of GMRES(m) (default: 30)")
+    made.add_argument("--time-scheme", choices=TIME_SCHEMES, default="stationary",
+                      help="of the heat equation, or newmark of the wave equation (default: stationary)")  # fmt: skip
+    made.add_argument("--time-step", type=float, default=0.01, help="length of a time step (default: 0.01)")
+    made.add_argument("--time-steps", type=int, default=100, metavar="N", help="number of time steps (default: 100)")
+    made.add_argument("--mass", choices=MASSES, default="consistent", help="the mass matrix (default: consistent)")
+    made.add_argument("--density", type=float, default=1.0, help="factor of the time derivative (default: 1)")
+    made.add_argument("--initial", type=_function, default=0.0, metavar="U", help="the solution at time 0 (default: 0)")
+    made.add_argument("--velocity", type=_function, default=0.0, metavar="V",
+                      help="its time derivative there, of newmark (default: 0)")  # fmt: skip
 
     made = _add_problem(commands, "condition", _run_condition,
                         "estimate the condition number of a linear system, and the share of each element")  # fmt: skip
@@ -519,7 +581,8 @@ def _call(function: Callable[..., Any], arguments: argparse.Namespace, *names: s
 
 
 def _run_solve(arguments: argparse.Namespace) -> int:
-    names = ("solver", "preconditioner", "relative_tolerance", "maximum_iterations", "restart")
+    names = ("solver", "preconditioner", "relative_tolerance", "maximum_iterations", "restart", "time_scheme",
+             "time_step", "time_steps", "mass", "density", "initial", "velocity")  # fmt: skip
     result = _call(solve, arguments, *names)
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))

@@ -6,18 +6,23 @@ from typing import NamedTuple
 
 
 class Entry(NamedTuple):
-    """A table or figure: its caption in short, the study that has it, and its pictures and tables (patterns of files)."""
+    """A table or figure: its caption in short, its study, patterns of its files, and sections.
+
+    The files are pictures and tables; findings of the study on the sections belong to it, too.
+    """
 
     name: str
     caption: str
     study: str
     files: tuple[str, ...] = ()
+    sections: tuple[str, ...] = ()
 
 
 def _entries(text: str) -> list[Entry]:
-    """Rows of name | caption | study | patterns."""
+    """Rows of name | caption | study | patterns | sections."""
     rows = [[part.strip() for part in line.split("|")] for line in text.strip().split("\n")]
-    return [Entry(row[0], row[1], row[2], tuple(row[3].split())) for row in rows]
+    return [Entry(row[0], row[1], row[2], tuple(row[3].split()), tuple(row[4].split() if len(row) > 4 else ()))
+            for row in rows]
 
 
 ENTRIES = _entries("""
@@ -70,38 +75,38 @@ Figure 4.8 | aspect ratio | figures | figure_4_8
 Table 4.1 | condition numbers, constant basis, p = 1 | peridynamics_tables | peridynamics_tables
 Table 4.2 | condition numbers, linear basis, p = 1 | peridynamics_tables | peridynamics_tables
 Table 4.3 | condition numbers, linear basis, p = 2.5 | peridynamics_tables | peridynamics_tables
-Figure 4.9 | by horizon and aspect ratio, constant basis | peridynamics_horizon | *_constant_p1
-Figure 4.10 | by delta^-2, constant basis | peridynamics_horizon | *_constant_p1_inverse
-Figure 4.11 | by horizon and element size, constant basis | peridynamics_horizon | *_constant_p1
-Figure 4.12 | by delta^-2 and element size, constant basis | peridynamics_horizon | *_constant_p1_inverse
-Figure 4.13 | by horizon and aspect ratio, linear basis | peridynamics_horizon | *_linear_p1
-Figure 4.14 | by delta^-2, linear basis | peridynamics_horizon | *_linear_p1_inverse
-Figure 4.15 | by horizon and element size, linear basis | peridynamics_horizon | *_linear_p1
-Figure 4.16 | by delta^-2 and element size, linear basis | peridynamics_horizon | *_linear_p1_inverse
-Figure 4.17 | by horizon and aspect ratio, p = 2.5 | peridynamics_horizon | *_linear_p2.5
-Figure 4.18 | by horizon and element size, p = 2.5 | peridynamics_horizon | *_linear_p2.5 *_h *_ratio
+Figure 4.9 | by horizon and aspect ratio, constant basis | peridynamics_horizon | *_constant_p1 | 4.5.1
+Figure 4.10 | by delta^-2, constant basis | peridynamics_horizon | *_constant_p1_inverse | 4.5.1
+Figure 4.11 | by horizon and element size, constant basis | peridynamics_horizon | *_constant_p1 | 4.5.1
+Figure 4.12 | by delta^-2 and element size, constant basis | peridynamics_horizon | *_constant_p1_inverse | 4.5.1
+Figure 4.13 | by horizon and aspect ratio, linear basis | peridynamics_horizon | *_linear_p1 | 4.5.2
+Figure 4.14 | by delta^-2, linear basis | peridynamics_horizon | *_linear_p1_inverse | 4.5.2
+Figure 4.15 | by horizon and element size, linear basis | peridynamics_horizon | *_linear_p1 | 4.5.2
+Figure 4.16 | by delta^-2 and element size, linear basis | peridynamics_horizon | *_linear_p1_inverse | 4.5.2
+Figure 4.17 | by horizon and aspect ratio, p = 2.5 | peridynamics_horizon | *_linear_p2.5 | 4.5.3
+Figure 4.18 | by horizon and element size, p = 2.5 | peridynamics_horizon | *_linear_p2.5 *_h *_ratio | 4.5.3
 Figure 4.19 | by the exponent of the kernel | peridynamics_kernel | peridynamics_kernel
 Figure 4.20 | rectangle with a sinking top | rectangle_warp | *
 Figure 4.22 | the same, anisotropic | rectangle_warp | *
-Figure 4.24 | cylinder | deformation | strip_cylinder
-Figure 4.25 | quality, cylinder | deformation | quality
-Figure 4.26 | inverted elements, cylinder | deformation | inverted
-Figure 4.27 | bar | deformation | strip_bar
-Figure 4.28 | quality, bar | deformation | quality
-Figure 4.29 | inverted elements, bar | deformation | inverted
-Figure 4.30 | gate | deformation | strip_gate
-Figure 4.31 | quality, gate | deformation | quality
-Figure 4.32 | inverted elements, gate | deformation | inverted
-Figure 4.33 | cylinder, diagonal | deformation | strip_cylinder-diagonal
-Figure 4.34 | quality, cylinder, diagonal | deformation | quality
-Figure 4.35 | bending bar | deformation | strip_bending-bar
-Figure 4.36 | quality, bending bar | deformation | quality
+Figure 4.24 | cylinder | deformation | strip_cylinder | 4.10.1
+Figure 4.25 | quality, cylinder | deformation | quality | 4.10.1
+Figure 4.26 | inverted elements, cylinder | deformation | inverted | 4.10.1
+Figure 4.27 | bar | deformation | strip_bar | 4.10.2
+Figure 4.28 | quality, bar | deformation | quality | 4.10.2
+Figure 4.29 | inverted elements, bar | deformation | inverted | 4.10.2
+Figure 4.30 | gate | deformation | strip_gate | 4.10.3
+Figure 4.31 | quality, gate | deformation | quality | 4.10.3
+Figure 4.32 | inverted elements, gate | deformation | inverted | 4.10.3
+Figure 4.33 | cylinder, diagonal | deformation | strip_cylinder-diagonal | 4.10.4
+Figure 4.34 | quality, cylinder, diagonal | deformation | quality | 4.10.4
+Figure 4.35 | bending bar | deformation | strip_bending-bar | 4.10.5
+Figure 4.36 | quality, bending bar | deformation | quality | 4.10.5
 Figure 4.37 | sphere | figures | figure_4_37_a
-Figure 4.38 | quality, sphere | deformation | quality
-Figure 4.39 | inverted elements, sphere | deformation | inverted strip_sphere
+Figure 4.38 | quality, sphere | deformation | quality | 4.10.6
+Figure 4.39 | inverted elements, sphere | deformation | inverted strip_sphere | 4.10.6
 Figure 5.1 | overview of shape matching | figures | figure_5_1
 Figure 5.2 | largest distance from the center of mass | figures | figure_5_2
-Table 5.1 | recognition rates | shapes | table_5_1
+Table 5.1 | recognition rates | shapes | table_5_1 | 5.3
 Figure 5.3 | a poor and an improved match | shapes | *5_3*
 Figure 5.4 | samples of the silhouettes | figures | figure_5_4
 Figure 5.5 | good matches | shapes | *5_5*
@@ -109,22 +114,28 @@ Figure 5.6 | poor matches | shapes | *5_6*
 Figure 5.7 | detected meshes | shapes | *5_7*
 """)
 
-#: Section, subject, and where it is: filter in ParaView, function, studies.
-SECTIONS = tuple(tuple(part.strip() for part in line.split("|")) for line in """
-2.2 | elliptic equations by finite elements | Solve PDE, solve() | mesh_independence
-2.3, 3.2.1 | metrics | Element Quality, Metric Field; quality(), metric_field() | figures
-2.4 | smoothing | Optimize Mesh; optimize() | smoothing_times
-2.5, 2.6 | solvers and preconditioners | Solve PDE, Solver Study; solve(), solver_study() | solver_restart, solver_metrics
-2.7.2 | perturbation | Perturb Mesh; perturb() | solver_perturbation
-2.7.3 | best combinations, coefficients, problem size | Solver Study; solver_study() | solver_metrics, solver_coefficients, solver_orders
-3.2.2, 3.3 | scalarizations, conjugate gradients | Optimize Mesh; optimize() | toy
-3.4.1, 3.4.2 | shape and size, interpolation | Optimize Mesh; optimize() | shape_size, shape_interpolation
-3.4.3, 3.4.4 | untangling | Untangle Mesh, Optimize Mesh; untangle(), optimize() | shape_untangling, shape_size_untangling
-3.5 | warped meshes, condition numbers | Warp Mesh, Condition Estimator; warp(), condition() | hydrocephalus, bore, conditioning
-4.2 to 4.5 | nonlocal models | Peridynamic Condition, Interaction Layer; peridynamics(), interaction_layer() | peridynamics_tables, peridynamics_horizon, peridynamics_kernel, peridynamics_local
-4.7 to 4.9 | FEMWARP and the hybrid algorithm | Warp Mesh; warp() | rectangle_warp
-4.10 | six moving domains | Mesh Domain, Warp Mesh; domain(), warp() | deformation, deformation_methods
-5.2 | shape matching | Silhouette to Mesh, Match Shape; silhouette(), match() | figures
-5.3 | retrieval | Shape Retrieval; retrieval() | shapes
-- | beyond the dissertation | Improve Mesh, Warp Mesh; improve(), warp() | reconnection, box_rotation
-""".strip().split("\n"))
+#: Section, subject, where it is in ParaView and Python, studies.
+SECTIONS = (
+    ("2.2", "elliptic equations by finite elements", "Solve PDE; solve()", "mesh_independence"),
+    ("2.3, 3.2.1", "metrics", "Element Quality, Metric Field; quality(), metric_field()", "figures"),
+    ("2.4", "smoothing", "Optimize Mesh; optimize()", "smoothing_times"),
+    ("2.5, 2.6", "solvers, preconditioners", "Solve PDE, Solver Study; solve(), solver_study()",
+     "solver_restart, solver_metrics"),
+    ("2.7.2", "perturbation", "Perturb Mesh; perturb()", "solver_perturbation"),
+    ("2.7.3", "best combinations, coefficients, problem size", "Solver Study; solver_study()",
+     "solver_metrics, solver_coefficients, solver_orders"),
+    ("3.2.2, 3.3", "scalarizations, conjugate gradients", "Optimize Mesh; optimize()", "toy"),
+    ("3.4.1, 3.4.2", "shape and size, interpolation", "Optimize Mesh; optimize()", "shape_size, shape_interpolation"),
+    ("3.4.3, 3.4.4", "untangling", "Untangle Mesh, Optimize Mesh; untangle(), optimize()",
+     "shape_untangling, shape_size_untangling"),
+    ("3.5", "warped meshes, condition numbers", "Warp Mesh, Condition Estimator; warp(), condition()",
+     "hydrocephalus, bore, conditioning"),
+    ("4.2 to 4.5", "nonlocal models", "Peridynamic Condition, Interaction Layer; peridynamics(), interaction_layer()",
+     "peridynamics_tables, peridynamics_horizon, peridynamics_kernel, peridynamics_local"),
+    ("4.7 to 4.9", "FEMWARP and the hybrid algorithm", "Warp Mesh; warp()", "rectangle_warp"),
+    ("4.10", "six moving domains", "Mesh Domain, Warp Mesh; domain(), warp()", "deformation, deformation_methods"),
+    ("5.2", "shape matching", "Silhouette to Mesh, Match Shape; silhouette(), match()", "figures"),
+    ("5.3", "retrieval", "Shape Retrieval; retrieval()", "shapes"),
+    ("2.8", "time-dependent problems", "Solve PDE with a Time Scheme; solve()", "time_stepping"),
+    ("-", "beyond the dissertation", "Improve Mesh, Warp Mesh; improve(), warp()", "reconnection, box_rotation"),
+)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import base64
-import io
 import re
+import struct
+import zlib
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from html import escape
@@ -18,12 +19,13 @@ from ._inventory import ENTRIES, SECTIONS, Entry
 from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL
 
 _CLASSES = {HOLDS: "yes", DOES_NOT_HOLD: "no", NOT_DECIDED: "open", TOO_SMALL: "open"}
-#: Shades of a channel in pictures; more take more space and show no more.
-_SHADES = 8
+#: Shades of a channel in pictures, so that their colors are at most 256.
+_SHADES = 6
 _STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #202020 }
-table { border-collapse: collapse; margin: 0.5em 0 } td, th { border: 1px solid #ccc; padding: 2px 8px; text-align: left;
-  vertical-align: top } pre { overflow-x: auto; font-size: 12px; background: #f6f6f6; padding: 6px }
+table { border-collapse: collapse; margin: 0.5em 0 }
+td, th { border: 1px solid #ccc; padding: 2px 8px; text-align: left; vertical-align: top }
+pre { overflow-x: auto; font-size: 12px; background: #f6f6f6; padding: 6px }
 img { max-width: 100%; display: block; margin: 0.5em 0 } h3 { margin: 1.5em 0 0.3em }
 .yes { color: #106010 } .no { color: #a01010 } .open { color: #705000 } .small { color: #606060; font-size: 13px }
 """
@@ -71,13 +73,13 @@ def references(text: str) -> set[str]:
 def _introduction(studies: dict[str, Study], small: bool) -> str:
     verdicts = [row["verdict"] for study in studies.values() for row in study.findings]
     counts = ", ".join(f"{verdicts.count(word)} {word}" for word in _CLASSES if word in verdicts)
-    text = (f"<p>{len(studies)} studies, {len(verdicts)} findings: {counts}. Of each table and figure: our numbers with "
-            "the dissertation's in brackets or in columns of their own, what the dissertation states with our verdict, "
-            "and our pictures. Times are CPU seconds; differences within their noise are not decided.</p>")
+    text = (f"<p>{len(studies)} studies, {len(verdicts)} findings: {counts}. Of each table and figure: our numbers "
+            "with the dissertation's in brackets or in columns of their own, what the dissertation states with our "
+            "verdict, and our pictures. Times are CPU seconds; differences within their noise are not decided.</p>")
     if small:
-        text += ("<p><b>This is the small size</b>: meshes of some thousand cells, which show the layout and decide only "
-                 "what does not depend on size. <code>python3 -m tautline study all --out DIR</code> runs the studies in "
-                 "full, which takes hours.</p>")
+        text += ("<p><b>This is the small size</b>: meshes of some thousand cells, which show the layout and decide "
+                 "only what does not depend on size. <code>python3 -m tautline study all --out DIR</code> runs the "
+                 "studies in full, which takes hours.</p>")
     failed = [f"<li>{escape(s.name)}: {escape(s.error)}</li>" for s in studies.values() if s.error]
     return text + (f"<p>Failed:</p><ul>{''.join(failed)}</ul>" if failed else "")
 
@@ -89,8 +91,8 @@ def _overview(studies: dict[str, Study]) -> str:
         words = _words(_findings_of(entry, studies)) if study else "not run"
         rows.append(f"<tr><td><a href='#{_anchor(entry.name)}'>{entry.name}</a></td><td>{escape(entry.caption)}</td>"
                     f"<td>{entry.study}</td><td>{words}</td></tr>")
-    return ("<h2>Overview</h2><table><tr><th>in the dissertation</th><th>content</th><th>study</th><th>findings</th></tr>"
-            + "".join(rows) + "</table>")
+    return ("<h2>Overview</h2><table><tr><th>in the dissertation</th><th>content</th><th>study</th>"
+            "<th>findings</th></tr>" + "".join(rows) + "</table>")
 
 
 def _words(rows: Iterable[dict[str, str]]) -> str:
@@ -104,8 +106,10 @@ def _anchor(name: str) -> str:
 
 
 def _findings_of(entry: Entry, studies: dict[str, Study]) -> list[dict[str, str]]:
-    """The findings about a table or figure, of any study."""
-    return [row for study in studies.values() for row in study.findings if entry.name in references(row["source"])]
+    """The findings about a table or figure, of any study, and those of its own study on its section."""
+    return [row for study in studies.values() for row in study.findings
+            if entry.name in references(row["source"])
+            or (study.name == entry.study and set(entry.sections) & set(re.split(r"[, ]+", row["source"])))]
 
 
 def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: dict[Path, str], width: int) -> str:
@@ -128,8 +132,8 @@ def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: d
 
 def _rest(study: Study, shown: set[str], pictures: dict[Path, str], width: int) -> str:
     """What a study has beyond tables and figures."""
-    named = {entry.name for entry in ENTRIES}
-    findings = [row for row in study.findings if not references(row["source"]) & named]
+    there = [row for entry in ENTRIES for row in _findings_of(entry, {study.name: study})]
+    findings = [row for row in study.findings if row not in there]
     texts = [text for file, text in _tables(study.folder, study.name) if file not in shown]
     images = [_picture(path, width) for path in sorted(study.folder.glob("*.png")) if path not in pictures]
     if not (findings or texts or images or study.error):
@@ -165,10 +169,26 @@ def _picture(path: Path, width: int) -> str:
     step = max(1, -(-image.shape[1] // width))
     rows, columns = (n // step * step for n in image.shape[:2])
     image = image[:rows, :columns].reshape(rows // step, step, columns // step, step, 3).mean(axis=(1, 3))
-    image = np.round(image * (_SHADES - 1)) / (_SHADES - 1)
-    stream = io.BytesIO()
-    pyplot.imsave(stream, image, format="png")
-    return f"<img alt='{escape(path.stem)}' src='data:image/png;base64,{base64.b64encode(stream.getvalue()).decode()}'>"
+    shades = np.round(image * (_SHADES - 1)).astype(int)
+    data = base64.b64encode(_png(shades @ [_SHADES * _SHADES, _SHADES, 1])).decode()
+    return f"<img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'>"
+
+
+def _png(codes: np.ndarray) -> bytes:
+    """A PNG file of an image [row, column] of colors, (red * _SHADES + green) * _SHADES + blue, with a palette."""
+    colors, indices = np.unique(codes, return_inverse=True)
+    rows = indices.reshape(codes.shape).astype(np.uint8)
+    rows = np.concatenate([np.zeros((len(rows), 1), np.uint8), rows], axis=1)  # filter 0 before each row
+    step = 255 // (_SHADES - 1)
+    palette = b"".join(bytes(int(c) // power % _SHADES * step for power in (_SHADES * _SHADES, _SHADES, 1))
+                       for c in colors)
+    header = struct.pack(">IIBBBBB", codes.shape[1], codes.shape[0], 8, 3, 0, 0, 0)
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    return b"".join([b"\x89PNG\r\n\x1a\n", chunk(b"IHDR", header), chunk(b"PLTE", palette),
+                     chunk(b"IDAT", zlib.compress(rows.tobytes(), 9)), chunk(b"IEND", b"")])
 
 
 def _sections() -> str:

@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import csv
 import io
+import os
 import sys
 import time
 from importlib import import_module
@@ -13,7 +14,6 @@ from pathlib import Path
 
 from .._errors import Error
 from .._files import make_folder, replace_text
-from ._inventory import ENTRIES
 from ._page import Study, page
 
 #: Pixels, of the pictures in the report.
@@ -58,6 +58,8 @@ def result(name: str, given: argparse.Namespace) -> Study:
     if given.reuse and (folder / "findings.csv").is_file():
         return Study(name, text, folder, findings(folder))
     options = ["--out", str(folder)] + (["--small"] if given.small else [])
+    if name == "shapes" and sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        options.append("--no-pictures")  # they are rendered
     if given.data and name in ("figures", "shapes"):
         options += ["--data", given.data]
     print(f"{name} ...", file=sys.stderr, flush=True)
@@ -78,6 +80,3 @@ def findings(folder: Path) -> list[dict[str, str]]:
     words = {"yes": "holds", "no": "does not hold"}
     return [{"source": row["source"], "finding": row["finding"], "figures": row.get("figures", ""),
              "verdict": row["verdict"] if "verdict" in row else words[row["holds"]]} for row in rows]
-
-
-__all__ = ["ENTRIES", "main"]
