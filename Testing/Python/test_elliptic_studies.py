@@ -6,7 +6,8 @@ import numpy as np
 import tautline as tl
 from checks import OUT
 from study_checks import Studies
-from tautline.studies import _solver_tables, _solvers, _verdicts, smoothing_times, solver_orders, solver_perturbation
+from tautline.studies import _solver_tables, _solvers, _verdicts, smoothing_times, solution_error, solver_orders
+from tautline.studies import solver_perturbation
 from wrong_data import verdicts
 
 studies = Studies(OUT / "studies_elliptic")
@@ -19,6 +20,8 @@ STUDIES = {
     "solver_restart": ([], 2, ("figure_2_3",), {"iterations": 5, "seconds": 5}),
     "solver_orders": (["--pde", "poisson"], 7, ("figure_2_5", "figure_2_6"),
                       {"poisson_wrench": 16, "poisson_orders_iterations": 16, "eigenvalues_wrench": 4}),
+    "time_stepping": ([], 12, (), {"orders": 4, "seconds": 8}),
+    "solution_error": ([], 33, (), {"orders_smooth": 2, "metrics_corner": 5, "solvers_smooth": 14}),
     "solver_coefficients": ([], 8, (), {"wrench_0": 16, "wrench_5": 16}),
     "mesh_independence": (["--domain", "wrench"], 4, (), {"angles_wrench": 3, "poisson_wrench_size": 1}),
     "conditioning": ([], 9, (), {"table_3_8": 5, "table_3_9": 6, "table_3_10": 6}),
@@ -159,6 +162,31 @@ def test_conditioning():
             assert iterations < 3 + 0.5 * math.sqrt(condition) * math.log(2 / 1e-7), row
 
 
+def test_time_stepping():
+    """Orders in time are those of the schemes; each combination solves all equations."""
+    for row in studies.rows("time_stepping", "orders"):
+        expected = 1 if row["scheme"] == "backward euler" else 2
+        assert abs(float(row["order"]) - expected) < 0.1, row
+        coarse, fine = float(row["20 steps"]), float(row["80 steps"])
+        assert coarse / fine > (3.5 if expected == 1 else 14), row
+    for row in studies.rows("time_stepping", "iterations"):
+        if row["combination"] != "direct":
+            assert float(row["heat, 100 steps"]) >= 100 and float(row["wave, 100 steps"]) >= 100, row
+
+
+def test_solution_error():
+    """Errors decrease by the orders of linear elements; the quadrature is exact for polynomials of degree 5."""
+    for name, (_, h1) in (("smooth", (2, 1)), ("corner", (4 / 3, 2 / 3))):
+        coarse, fine = studies.rows("solution_error", f"orders_{name}")
+        assert abs(math.log2(float(coarse["H1"]) / float(fine["H1"])) - h1) < 0.15, name
+        assert float(coarse["L2"]) / float(fine["L2"]) > 2, name
+    assert abs(sum(weight for _, weight in solution_error.RULE) - 1) < 1e-14
+    value = sum(weight * point[0] ** 3 * point[1] ** 2 for point, weight in solution_error.RULE)
+    assert abs(value - 2 * 6 * 2 / math.factorial(7)) < 1e-14  # a! b! 2 / (a + b + 2)!
+    for sentence in ("reduces", "CG with AMG"):
+        assert any(sentence in row["finding"] for row in studies.rows("solution_error", "findings"))
+
+
 def test_arguments():
     assert _solvers.vertices("500K") == 500_000 and _solvers.vertices("1234") == 1234
     sizes, values = np.array([10.0, 100.0, 1000.0]), np.array([2.0, 20.0, 200.0])
@@ -174,5 +202,5 @@ def test_arguments():
 
 if __name__ == "__main__":
     run_all()
-    for test in (test_tables, test_metrics, test_conditioning, test_arguments):
+    for test in (test_tables, test_metrics, test_conditioning, test_time_stepping, test_solution_error, test_arguments):
         test()

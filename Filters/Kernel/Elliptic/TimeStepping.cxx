@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tautline
 {
@@ -13,6 +14,7 @@ namespace
 {
 using Vector = std::vector<double>;
 
+constexpr double RoundingError = std::numeric_limits<double>::epsilon();
 constexpr double NewmarkBeta = 0.25, NewmarkGamma = 0.5;
 
 /// alpha A + beta M; both have the pattern of A.
@@ -84,6 +86,7 @@ private:
   std::unique_ptr<StepMatrix> Current;
   double Alpha = 0.0, Beta = 0.0; // of Current
   Vector Velocity, Acceleration;
+  double Scale = 0.0; // the largest residual so far; what is below its rounding error is 0
   TimeSeries Series;
 };
 
@@ -136,7 +139,13 @@ bool Integrator::solve(StepMatrix& matrix, const Vector& b, Vector& x, bool coun
     // At least a little, so that the solver itself reports the limit.
     matrix.Solver->options().maximumSeconds = std::max(limit - this->Watch.seconds(), 1e-3 * limit);
   }
+  matrix.Solver->options().absoluteTolerance =
+    std::max(this->Options.absoluteTolerance, RoundingError * this->Scale);
   LinearSolution solved = matrix.Solver->solve(b.data(), x.data());
+  for (const double residual : solved.residuals)
+  {
+    this->Scale = std::isfinite(residual) ? std::max(this->Scale, residual) : this->Scale;
+  }
   this->Series.setupSeconds += solved.setupSeconds;
   this->Series.solveSeconds += solved.solveSeconds;
   this->Series.iterations += solved.iterations;

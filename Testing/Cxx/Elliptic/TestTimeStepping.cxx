@@ -318,6 +318,30 @@ void testElasticWaves()
   }
 }
 
+/// A solution that decays below the smallest number goes on being solved, by all methods.
+void testDecay()
+{
+  const MeshData data = unitSquare(CellType::Triangle, 6);
+  const Mesh mesh(data.view());
+  const EllipticSystem system(mesh, withoutSource());
+  const std::vector<double> start = mode(system);
+  TimeOptions time;
+  time.scheme = TimeScheme::Bdf2;
+  time.step = 2.0;
+  time.steps = 400;
+  for (const KrylovMethod method : { KrylovMethod::ConjugateGradient, KrylovMethod::MINRES,
+         KrylovMethod::GMRES, KrylovMethod::BiCGStab, KrylovMethod::Direct })
+  {
+    Context context(nameOf(method));
+    SolverOptions options;
+    options.method = method;
+    options.preconditioner = Preconditioner::Jacobi;
+    const TimeSeries series = integrate(system, time, start, start, options);
+    TAUTLINE_CHECK(converged(series.reason) && series.values.size() == 401);
+    TAUTLINE_CHECK(difference(series.values.back(), start, 0.0) < 1e-12);
+  }
+}
+
 void testRefused()
 {
   const MeshData data = unitSquare(CellType::Triangle, 4);
@@ -373,6 +397,7 @@ int TestTimeStepping(int, char*[])
   testSpace();
   testStationary();
   testElasticWaves();
+  testDecay();
   testRefused();
   return exitCode();
 }

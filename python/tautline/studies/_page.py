@@ -72,8 +72,8 @@ def references(text: str) -> set[str]:
 
 def _introduction(studies: dict[str, Study], small: bool) -> str:
     verdicts = [row["verdict"] for study in studies.values() for row in study.findings]
-    counts = ", ".join(f"{verdicts.count(word)} {word}" for word in _CLASSES if word in verdicts)
-    text = (f"<p>{len(studies)} studies, {len(verdicts)} findings: {counts}. Of each table and figure: our numbers "
+    counts = ", ".join(f"{word}: {verdicts.count(word)}" for word in _CLASSES if word in verdicts)
+    text = (f"<p>{len(studies)} studies, {len(verdicts)} findings ({counts}). Of each table and figure: our numbers "
             "with the dissertation's in brackets or in columns of their own, what the dissertation states with our "
             "verdict, and our pictures. Times are CPU seconds; differences within their noise are not decided.</p>")
     if small:
@@ -97,7 +97,7 @@ def _overview(studies: dict[str, Study]) -> str:
 
 def _words(rows: Iterable[dict[str, str]]) -> str:
     verdicts = [row["verdict"] for row in rows]
-    return ", ".join(f"<span class='{_CLASSES[word]}'>{verdicts.count(word)} {word}</span>"
+    return ", ".join(f"<span class='{_CLASSES[word]}'>{word}: {verdicts.count(word)}</span>"
                      for word in _CLASSES if word in verdicts) or "-"
 
 

@@ -29,7 +29,7 @@ COMBINATIONS = (("cg", "jacobi"), ("cg", "ssor"), ("cg", "icc"), ("cg", "amg"), 
                 ("bicgstab", "ilu"), ("direct", "none"))
 CG_AMG, DIRECT = "cg + amg", "direct"
 #: Equation by name: scheme, time step as a part of the domain's size (of its square for the heat equation).
-EQUATIONS = {"heat": ("bdf2", 1e-3), "wave": ("newmark", 1e-2)}
+EQUATIONS = {"heat": ("bdf2", 1e-5), "wave": ("newmark", 1e-2)}
 FEW, MANY = 1, 100  # steps
 BULGE = "exp(-20*((x-{x:g})^2+(y-{y:g})^2)/{square:g})"
 
