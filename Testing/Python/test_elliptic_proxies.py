@@ -41,9 +41,9 @@ assert elastic.PointData["Displacement"].GetNumberOfComponents() == 3
 assert elastic.CellData["Stress"].GetNumberOfComponents() == 6 and elastic.CellData["VonMises"].GetRange()[0] >= 0
 
 # The heat equation from 1 inside: the time controls have its steps; an earlier time is warmer.
-heat = SolvePDE(Input=plate, SourceValue=0, TimeScheme="Heat: BDF2", TimeStep=0.05, NumberOfTimeSteps=4, InitialValue=1)
+heat = SolvePDE(Input=plate, SourceValue=0, TimeScheme="Heat: BDF2", TimeStep=1, NumberOfTimeSteps=4, InitialValue=1)
 update(heat)
-assert len(heat.TimestepValues) == 5 and abs(heat.TimestepValues[-1] - 0.2) < 1e-12, heat.TimestepValues
+assert len(heat.TimestepValues) == 5 and heat.TimestepValues[-1] == 4, heat.TimestepValues
 warmest = []
 for moment in heat.TimestepValues:
     heat.UpdatePipeline(moment)

@@ -93,6 +93,12 @@ def stated(calls):
             for function, arguments, named in calls if function.__name__ == "findings"]
 
 
+def alike(calls):
+    """The calls on errors of the solution with the same error of all metrics."""
+    return [(function, (name, dict.fromkeys(found, (1.0, 1.0))), named)
+            for function, (name, found, *_), named in calls if function.__name__ == "metric_findings"]
+
+
 def same(calls):
     """The calls on mesh independence with solutions and angles that are the same on all meshes."""
     made = []
@@ -121,7 +127,7 @@ def solved(number, seconds, iterations):
 
 
 OTHERS = {"solver_metrics": dissertation, "solver_perturbation": dissertation, "solver_orders": stated,
-          "mesh_independence": same,
+          "mesh_independence": same, "solution_error": alike,
           "conditioning": printed}
 
 

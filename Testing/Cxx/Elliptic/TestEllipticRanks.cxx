@@ -1,11 +1,12 @@
-// Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms and
-// the study of solvers are those of the whole mesh in one process; what one rank rejects all
+// Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms, steps
+// in time and the study of solvers are those of the whole mesh in one process; what one rank rejects all
 // reject. Runs on any number of ranks.
 #include "Blocks.h"
 #include "Check.h"
 
 #include "tautline/Elliptic/ErrorNorms.h"
 #include "tautline/Elliptic/SolverStudy.h"
+#include "tautline/Elliptic/TimeStepping.h"
 
 #include <mpi.h>
 
@@ -126,6 +127,32 @@ void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool l
     {
       TAUTLINE_CHECK_NEAR(
         solution.values[given * i + k], expected.values[given * share.points[i] + k], 1e-9);
+    }
+  }
+  // The same steps in time; the values that are fixed serve as a start.
+  for (const TimeScheme scheme :
+    { TimeScheme::Bdf2, TimeScheme::CrankNicolson, TimeScheme::Newmark })
+  {
+    TimeOptions time;
+    time.scheme = scheme;
+    time.step = 0.1;
+    time.steps = 4;
+    time.mass = scheme == TimeScheme::Bdf2 ? MassMatrix::Lumped : MassMatrix::Consistent;
+    const std::vector<double> start = unknownsOf(alone, values);
+    const std::vector<double> myStart = unknownsOf(together, myValues);
+    const TimeSeries there = integrate(alone, time, start, start, options);
+    const TimeSeries here = integrate(together, time, myStart, myStart, options);
+    TAUTLINE_CHECK(converged(there.reason) && converged(here.reason));
+    TAUTLINE_CHECK_EQUAL(here.values.size(), there.values.size());
+    const EllipticSolution last = together.fields(here.values.back());
+    const EllipticSolution known = alone.fields(there.values.back());
+    for (std::size_t i = 0; i < share.points.size(); ++i)
+    {
+      for (int k = 0; k < given; ++k)
+      {
+        TAUTLINE_CHECK_NEAR(
+          last.values[given * i + k], known.values[given * share.points[i] + k], 1e-8);
+      }
     }
   }
   const int size = given == 1 ? 3 : 6;
