@@ -18,8 +18,8 @@
  * the wave equation rho u_tt + L u = f, where L u = f is the stationary equation: NumberOfTimeSteps
  * of length TimeStep from the initial values, which are the time steps of the pipeline. f and the
  * given values do not depend on time. The output is that of the time requested, at first of the
- * last one; the table then has a row per step: `Time`, `N iterations`, `N residual`, the norm of the
- * last one. All steps are computed once and kept: 8 bytes per unknown and step.
+ * last one; the table then has a row per step: `Time`, `N iterations` and `N residual`, the norm of
+ * the last one. All steps are computed once and kept: 8 bytes per unknown and step.
  *
  * A solve that does not converge is a warning with its reason; the solution is then the best there
  * was. Whatever the method reports, it has converged only if norm of b - A x is at most 1000 times
@@ -181,8 +181,8 @@ public:
 
   ///@{
   /**
-   * The solution at time 0: CONSTANT (the default), ARRAY (array 5) or EXPRESSION. Fixed points have
-   * their given values from the start on.
+   * The solution at time 0: CONSTANT (the default), ARRAY (array 5) or EXPRESSION. Fixed points
+   * have their given values from the start on.
    */
   vtkTautlineSetRangeMacro(InitialType, int, CONSTANT, EXPRESSION);
   vtkGetMacro(InitialType, int);

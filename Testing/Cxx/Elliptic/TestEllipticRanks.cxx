@@ -1,6 +1,6 @@
-// Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms, steps
-// in time and the study of solvers are those of the whole mesh in one process; what one rank rejects all
-// reject. Runs on any number of ranks.
+// Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms,
+// steps in time and the study of solvers are those of the whole mesh in one process; what one rank
+// rejects all reject. Runs on any number of ranks.
 #include "Blocks.h"
 #include "Check.h"
 
