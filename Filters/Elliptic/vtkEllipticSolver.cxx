@@ -65,6 +65,24 @@ std::string summaryOf(const tautline::LinearSolution& solved,
   }
   return text.str();
 }
+
+/// @param time the one that is shown. @param outside the number of points in no element
+std::string summaryOf(const tautline::TimeSeries& series, double time, int steps, double step,
+  const tautline::EllipticSystem& system, tautline::Index outside)
+{
+  std::ostringstream text;
+  text << series.times.size() - 1 << " of " << steps << " time steps of " << step << "; time "
+       << time << " is shown. " << tautline::sentence(tautline::describe(series.reason)) << "\n"
+       << system.unknowns() << " unknowns, " << series.iterations << " iterations in all.";
+  text.precision(3);
+  text << "\nSeconds: assembly " << system.assembleSeconds() << ", set-up " << series.setupSeconds
+       << ", solve " << series.solveSeconds << ".";
+  if (outside > 0)
+  {
+    text << "\n" << outside << " points are in no element; their solution is 0.";
+  }
+  return text.str();
+}
 }
 
 //------------------------------------------------------------------------------
@@ -250,6 +268,7 @@ void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
     time.mass = static_cast<tautline::MassMatrix>(this->MassMatrix);
     time.density = this->Density;
     time.rigidBodyModes = this->RigidBodyModes;
+    processes.together([&]() { tautline::requireSeriesMemory(system, time); });
     tautline::SolverOptions options = this->GetSolverOptions();
     options.observer = [&](int step, double)
     { return this->Report(mesh, static_cast<double>(step) / this->NumberOfTimeSteps); };
@@ -281,18 +300,9 @@ void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
   this->Iterations += series->iterations;
   this->SetupSeconds += series->setupSeconds;
   this->SolveSeconds += series->solveSeconds;
-  std::ostringstream text;
-  text << steps << " of " << this->NumberOfTimeSteps << " time steps of " << this->TimeStep
-       << "; time " << series->times[shown] << " is shown. " << this->Reason << "\n"
-       << system.unknowns() << " unknowns, " << series->iterations << " iterations in all.";
-  text.precision(3);
-  text << "\nSeconds: assembly " << system.assembleSeconds() << ", set-up " << series->setupSeconds
-       << ", solve " << series->solveSeconds << ".";
-  if (outside > 0)
-  {
-    text << "\n" << outside << " points are in no element; their solution is 0.";
-  }
-  this->Describe(mesh, text.str());
+  this->Describe(mesh,
+    summaryOf(
+      *series, series->times[shown], this->NumberOfTimeSteps, this->TimeStep, system, outside));
   if (!complete)
   {
     this->Warn();

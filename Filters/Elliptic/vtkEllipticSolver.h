@@ -156,8 +156,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of steps in time, at least 1. The default is 100.
-  vtkTautlineSetRangeMacro(NumberOfTimeSteps, int, 1, VTK_INT_MAX);
+  /// Number of steps in time, 1 to 1,000,000. The default is 100.
+  vtkTautlineSetRangeMacro(NumberOfTimeSteps, int, 1, 1000000);
   vtkGetMacro(NumberOfTimeSteps, int);
   ///@}
 

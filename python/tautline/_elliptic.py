@@ -26,6 +26,7 @@ MASSES = ("consistent", "lumped")
 METHODS = ("automatic", "ritz", "accurate")
 
 _MAX_ITERATIONS = 2**31 - 1
+_MAX_TIME_STEPS = 1_000_000
 _TABLE_2_5 = 16  # the first combinations of solver and preconditioner are those of the dissertation's Table 2.5
 _FIXED, _SOURCE, _GIVEN, _TENSOR, _STIFFNESS, _INITIAL, _VELOCITY = range(7)  # input arrays of vtkEllipticSolver
 _CONSTANT, _ARRAY, _EXPRESSION = range(3)  # its types of functions
@@ -167,7 +168,7 @@ def solve(
     time_scheme: "stationary", L u = f; of the heat equation, density u_t + L u = f: "backward euler" (order 1), "bdf2",
         "crank-nicolson" (order 2); of the wave equation, density u_tt + L u = f: "newmark" (constant average
         acceleration, order 2). The source and the given solution do not depend on time.
-    time_step: length of a time step, above 0. time_steps: number of them, at least 1.
+    time_step: length of a time step, above 0. time_steps: number of them, 1 to 1,000,000.
     mass: the mass matrix, "consistent" or "lumped" (the sums of its rows on the diagonal).
     density: above 0.
     initial, velocity: the solution at time 0, and its time derivative there ("newmark"): see source.
@@ -212,7 +213,7 @@ def solve(
     scheme = pick("time_scheme", time_scheme, TIME_SCHEMES)
     filter_.SetTimeScheme(scheme)
     filter_.SetTimeStep(number("time_step", time_step))
-    filter_.SetNumberOfTimeSteps(int(within("time_steps", time_steps, 1, _MAX_ITERATIONS)))
+    filter_.SetNumberOfTimeSteps(int(within("time_steps", time_steps, 1, _MAX_TIME_STEPS)))
     filter_.SetMassMatrix(pick("mass", mass, MASSES))
     filter_.SetDensity(number("density", density))
     start = {"initial": initial, "velocity": velocity} if scheme else {}

@@ -1,6 +1,7 @@
 #include "TimeStepping.h"
 
 #include "FiniteElements.h"
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
@@ -396,11 +397,22 @@ std::vector<double> unknownsOf(const EllipticSystem& system, const std::vector<d
 }
 
 //------------------------------------------------------------------------------
+void requireSeriesMemory(const EllipticSystem& system, const TimeOptions& time)
+{
+  requireMemory(sizeof(double) * static_cast<double>(system.matrix().size) * (time.steps + 1.0),
+    "the solution at all time steps", "take fewer time steps or a coarser mesh");
+}
+
+//------------------------------------------------------------------------------
 TimeSeries integrate(const EllipticSystem& system, const TimeOptions& time,
   const std::vector<double>& start, const std::vector<double>& velocity,
   const SolverOptions& options)
 {
   requireOptions(system, time, start, velocity);
+  if (!system.part().communicator)
+  {
+    requireSeriesMemory(system, time);
+  }
   return Integrator(system, time, options).run(start, velocity);
 }
 }

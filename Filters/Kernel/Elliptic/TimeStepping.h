@@ -78,8 +78,13 @@ TAUTLINE_SOLVERS_EXPORT SparseMatrix massMatrix(const EllipticSystem& system, Ma
 TAUTLINE_SOLVERS_EXPORT std::vector<double> unknownsOf(
   const EllipticSystem& system, const std::vector<double>& pointValues);
 
+/// Throws MemoryError if there is no memory for the solution at all steps on this rank.
+TAUTLINE_SOLVERS_EXPORT void requireSeriesMemory(
+  const EllipticSystem& system, const TimeOptions& time);
+
 /**
- * @brief Integrates in time. Collective.
+ * @brief Integrates in time. Collective. Of one rank it calls requireSeriesMemory(); several ranks
+ * call that before, and agree on what to do.
  *
  * @param start the unknowns at time 0
  * @param velocity their derivatives at time 0: of Newmark

@@ -368,6 +368,16 @@ void testRefused()
   wrong[0] = std::nan("");
   TAUTLINE_CHECK_THROWS(integrate(system, time, wrong, rest, {}), "not finite");
 
+  // 160,000 unknowns and 100,000,000 steps: 116 TiB.
+  const MeshData fine = unitSquare(CellType::Triangle, 400);
+  const Mesh fineMesh(fine.view());
+  const EllipticSystem large(fineMesh, withoutSource());
+  const std::vector<double> zero(large.matrix().size, 0.0);
+  time.scheme = TimeScheme::BackwardEuler;
+  time.steps = 100000000;
+  TAUTLINE_CHECK_THROWS(integrate(large, time, zero, zero, {}), "fewer time steps");
+  time.steps = 3;
+
   // A solver that fails ends the integration; the observer ends it, too.
   SolverOptions few = exactly();
   few.maximumIterations = 1;
