@@ -93,6 +93,14 @@ public:
                                              : found->second * static_cast<double>(chunks);
   }
 
+  /// Whether a loop need not be measured: what its chunks take is known, and workers would not help.
+  /// On a crowded machine measuring costs time: when a thread asks for its computing time, Linux
+  /// ends its time slice if that is used up, not only at the next tick.
+  bool measuredEnough(ChunkWork::Function function) const
+  {
+    return this->Crowded && this->ChunkSeconds.count(function) > 0;
+  }
+
   /// Whether workers are worth their start in such a loop.
   static bool brief(double expected)
   {
@@ -407,6 +415,11 @@ bool runChunks(Index chunks, int threads, ChunkWork work, const Proceed& proceed
   if (experience.inviteWorkers(expected))
   {
     Workers::instance().invite(static_cast<int>(most - 1), loop);
+  }
+  else if (experience.measuredEnough(work.function()))
+  {
+    loop->lead(proceed);
+    return loop->join();
   }
   const double before = threadSeconds();
   const Index run = loop->lead(proceed);
