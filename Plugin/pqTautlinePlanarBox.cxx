@@ -20,7 +20,7 @@
 
 #include <QTimer>
 
-#include <algorithm>
+#include <utility>
 
 namespace
 {
@@ -93,13 +93,6 @@ void pqTautlinePlanarBox::adapt()
   {
     return;
   }
-  constexpr double thickness = 0.1; // of the longer side
-  const double half = thickness / 2 * std::max(bounds[1] - bounds[0], bounds[3] - bounds[2]);
-  bounds[4] -= half;
-  bounds[5] += half;
-  vtkSMProxy* drawn = widget->widgetProxy();
-  vtkSMPropertyHelper(drawn, "PlaceWidget").Set(bounds, 6);
-  drawn->UpdateVTKObjects();
   moveByLeftButton(widget->widgetProxy()->GetWidget());
   for (const auto& [name, value] : Kept)
   {

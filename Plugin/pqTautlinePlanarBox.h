@@ -2,11 +2,11 @@
  * @class pqTautlinePlanarBox
  * @brief Keeps the interactive box of a planar mesh in its plane.
  *
- * ParaView's box of a planar mesh is flat: the left button takes the handle of a face that lies in
- * the mesh, and makes the mesh as flat as its box, a scale of 0. For a mesh in a plane z = constant
- * the box gets a thickness here, the left button moves it (with Shift it takes the handles), and
- * translation and scale along z and rotation about x and y stay as they are without a motion; their
- * fields are grey.
+ * In ParaView's box the left button takes the handle of a face that lies in the mesh, and makes the
+ * mesh as flat as its box, a scale of 0. For a mesh in a plane z = constant the left button moves
+ * the box here (with Shift it takes the handles), and translation and scale along z and rotation
+ * about x and y stay as they are without a motion; their fields are grey. The box is placed, with
+ * a thickness, by pqTautlineMovingBoundary.
  *
  * The hint `<PropertyWidgetDecorator type="tautline_planar_box"/>` of the property with the
  * transform selects it. The proxy has the property Input.

@@ -74,7 +74,8 @@ public:
    */
   const char* GetSummary() const { return this->Summary.c_str(); }
 
-  /// Checks the inputs before RequestData() is called.
+  /// Checks the inputs before RequestData() is called; a failure is reported once, see
+  /// tautline::processInScope().
   vtkTypeBool ProcessRequest(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
@@ -144,7 +145,7 @@ protected:
   static std::string FailureOf(const char* memoryRemedy, const std::function<void()>& work);
 
   /// Reports a failure as Attempt() does. @return 0
-  int Fail(vtkInformationVector* outputVector, const std::string& message);
+  virtual int Fail(vtkInformationVector* outputVector, const std::string& message);
 
   /// Reports progress, 0 to 1. @return false if the execution is to be aborted
   bool Proceed(double fraction);

@@ -308,6 +308,50 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
 }
 
 //------------------------------------------------------------------------------
+PointFlags WarpSession::movingPoints(
+  const InputBlock& block, vtkDataObject* target, vtkDataObject* selected)
+{
+  auto* input = vtkPointSet::SafeDownCast(block.input);
+  if (!input)
+  {
+    MovableMesh refused(block.input, this->settings.options.threads, false); // throws the remedy
+  }
+  RestingMesh& rest = this->Blocks[block.number].rest;
+  rest.take(input, this->settings.options.threads, this->settings.mergePoints);
+  WarpTask task;
+  const auto moveAlongX = [&task](const PointFlags& moved)
+  {
+    task.displacement.assign(3 * moved.size(), 0.0);
+    for (std::size_t i = 0; i < moved.size(); ++i)
+    {
+      task.displacement[3 * i] = moved[i];
+    }
+  };
+  switch (this->settings.motion)
+  {
+    case MotionSource::Displacement:
+      this->moveByArray(block, rest, task);
+      break;
+    case MotionSource::Target:
+      this->moveToTarget(block, rest, target, this->movedPart(block, rest, selected), task);
+      break;
+    case MotionSource::Transform: // which may not have been chosen yet
+      moveAlongX(this->movedPart(block, rest, selected));
+      break;
+    case MotionSource::TimeSteps:
+      moveAlongX(rest.boundary);
+      break;
+  }
+  this->prescribe(block, rest, task);
+  PointFlags moving(rest.boundary.size());
+  for (std::size_t i = 0; i < moving.size(); ++i)
+  {
+    moving[i] = norm3(&task.displacement[3 * i]) > 0;
+  }
+  return moving;
+}
+
+//------------------------------------------------------------------------------
 void WarpSession::forgetFrom(int block)
 {
   this->Blocks.erase(this->Blocks.lower_bound(block), this->Blocks.end());
@@ -329,12 +373,8 @@ WarpTask WarpSession::task(const InputBlock& block, const RestingMesh& rest, vtk
   switch (set.motion)
   {
     case MotionSource::Displacement:
-    {
-      vtkDataArray* array = displacementArray(set.arrays, block.input);
-      requireEqualValues(array, rest.mesh->representative(), "displacements");
-      task.displacement = displacementsOf(array, rest.boundary);
+      this->moveByArray(block, rest, task);
       break;
-    }
     case MotionSource::TimeSteps:
       this->moveOverTime(block, rest, task);
       break;
@@ -390,6 +430,15 @@ void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, Wa
       std::fill_n(&task.displacement[3 * i], 3, 0.0);
     }
   }
+}
+
+//------------------------------------------------------------------------------
+void WarpSession::moveByArray(
+  const InputBlock& block, const RestingMesh& rest, WarpTask& task) const
+{
+  vtkDataArray* array = displacementArray(this->settings.arrays, block.input);
+  requireEqualValues(array, rest.mesh->representative(), "displacements");
+  task.displacement = displacementsOf(array, rest.boundary);
 }
 
 //------------------------------------------------------------------------------

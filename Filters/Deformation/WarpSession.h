@@ -140,6 +140,13 @@ public:
   /// Does what this time step needs of a data set; warps it if it is the one requested.
   void visit(const InputBlock& block, vtkDataObject* target, vtkDataObject* selected,
     TableRows& history, TableRows& statistics, WarpTotals& totals);
+  /**
+   * @brief The points of a data set's boundary that are to move, whatever the amount; of a motion
+   * over time all of the boundary. One flag per point; warps nothing. Throws Error as visit() does.
+   */
+  PointFlags movingPoints(const InputBlock& block, vtkDataObject* target, vtkDataObject* selected);
+  /// The mesh of a data set after movingPoints().
+  const RestingMesh& restingMesh(int block) const { return this->Blocks.at(block).rest; }
   /// Drops the data sets from a number on.
   void forgetFrom(int block);
   /// Drops all data, after an error.
@@ -148,6 +155,7 @@ public:
 private:
   WarpTask task(const InputBlock& block, const RestingMesh& rest, vtkDataObject* target,
     vtkDataObject* selected) const;
+  void moveByArray(const InputBlock& block, const RestingMesh& rest, WarpTask& task) const;
   void moveOverTime(const InputBlock& block, const RestingMesh& rest, WarpTask& task) const;
   PointFlags movedPart(
     const InputBlock& block, const RestingMesh& rest, vtkDataObject* selected) const;

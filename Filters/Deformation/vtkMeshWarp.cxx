@@ -202,6 +202,12 @@ tautline::WarpSettings vtkMeshWarp::GetSettings()
 }
 
 //------------------------------------------------------------------------------
+bool vtkMeshWarp::PlaysMotion() const
+{
+  return this->Animation && this->Motion != TIME_STEPS && this->Session->times.empty();
+}
+
+//------------------------------------------------------------------------------
 int vtkMeshWarp::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -213,9 +219,16 @@ int vtkMeshWarp::RequestInformation(
     steps.insert(more.begin(), more.end());
   }
   this->Session->times.assign(steps.begin(), steps.end());
-  for (int port = 0; !steps.empty() && port < NumberOfOutputPorts; ++port)
+  std::vector<double> times = this->Session->times;
+  if (this->PlaysMotion())
   {
-    const std::vector<double>& times = this->Session->times;
+    for (int i = 0; i <= this->AnimationSteps; ++i)
+    {
+      times.push_back(static_cast<double>(i) / this->AnimationSteps);
+    }
+  }
+  for (int port = 0; !times.empty() && port < NumberOfOutputPorts; ++port)
+  {
     const double range[2] = { times.front(), times.back() };
     vtkInformation* info = outputVector->GetInformationObject(port);
     info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
@@ -273,6 +286,10 @@ int vtkMeshWarp::RequestData(
   vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
   vtkDataObject* target = vtkDataObject::GetData(inputVector[TargetPort]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
+  vtkInformation* requested = outputVector->GetInformationObject(MeshPort);
+  const bool plays = this->PlaysMotion() && requested->Has(Pipeline::UPDATE_TIME_STEP());
+  const double time = plays ? requested->Get(Pipeline::UPDATE_TIME_STEP()) : 1.0;
+  session.settings.amount *= std::clamp(time, 0.0, 1.0);
   tautline::TableRows history, statistics;
   tautline::WarpTotals totals;
   this->ClearNumbers();
@@ -309,10 +326,10 @@ int vtkMeshWarp::RequestData(
     session.looping = false;
     request->Remove(Pipeline::CONTINUE_EXECUTING());
   }
-  if (session.sequence())
+  if (session.sequence() || plays)
   {
     output->GetInformation()->Set(
-      vtkDataObject::DATA_TIME_STEP(), session.times[session.requested]);
+      vtkDataObject::DATA_TIME_STEP(), plays ? time : session.times[session.requested]);
   }
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
@@ -352,6 +369,8 @@ void vtkMeshWarp::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Motion: " << this->Motion << "\n";
   os << indent << "Amount: " << this->Amount << "\n";
+  os << indent << "Animation: " << this->Animation << "\n";
+  os << indent << "AnimationSteps: " << this->AnimationSteps << "\n";
   os << indent << "Correspondence: " << this->Correspondence << "\n";
   os << indent << "MovedPart: " << this->MovedPart << "\n";
   os << indent << "TransformKind: " << this->TransformKind << "\n";

@@ -122,6 +122,20 @@ public:
   vtkGetMacro(Amount, double);
   ///@}
 
+  ///@{
+  /**
+   * Give the way as time steps, from time 0, the mesh at rest, to time 1, the Amount, so that
+   * ParaView's animation plays the motion; AnimationSteps is the number of steps, 1 to 100,000.
+   * Without a request for a time, the output is that of time 1. Input or target with time steps of
+   * their own keep these, and the Amount is that of all times. The defaults are off and 20.
+   */
+  vtkSetMacro(Animation, bool);
+  vtkGetMacro(Animation, bool);
+  vtkBooleanMacro(Animation, bool);
+  vtkTautlineSetRangeMacro(AnimationSteps, int, 1, 100000);
+  vtkGetMacro(AnimationSteps, int);
+  ///@}
+
   enum Correspondences
   {
     AUTOMATIC_MATCH = 0, ///< the first below that fits; point ids if an array is named
@@ -423,15 +437,21 @@ protected:
     vtkInformationVector* outputVector) override;
   void ClearResult() override;
 
+  tautline::WarpSettings GetSettings();
+  tautline::WarpSession& GetSession() { return *this->Session; }
+
 private:
   vtkMeshWarp(const vtkMeshWarp&) = delete;
   void operator=(const vtkMeshWarp&) = delete;
 
-  tautline::WarpSettings GetSettings();
   void ClearNumbers();
+  /// Whether the time of a request is a fraction of the way.
+  bool PlaysMotion() const;
 
   int Motion = TRANSFORM;
   double Amount = 1.0;
+  bool Animation = false;
+  int AnimationSteps = 20;
   int Correspondence = AUTOMATIC_MATCH;
   std::string TargetIds;
   int MovedPart = AUTOMATIC_PART;

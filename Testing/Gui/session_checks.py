@@ -17,6 +17,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposite face, of their height
 WORST_PORT = 4  # of Element Quality
 TURN = 20  # degrees
+QUERY, RIGHT, WRONG = (120, 120, 120), (0, 150, 60), (215, 25, 30)  # frames on the sheet of Shape Retrieval
 ALL_FIXED = 2  # of the array Obstacle: all points of the element are fixed
 
 
@@ -182,6 +183,12 @@ def open_clovers():
 
 
 @check
+def open_silhouettes():
+    data = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
+    simple.SetActiveSource(simple.SilhouetteSetReader(FileName=os.path.join(data, "silhouettes.csv")))
+
+
+@check
 def side_by_side():
     """Two linked views of the mesh before and after, with the same colours, one legend, and the worst values."""
     views = [view for view in simple.GetViews() if view.GetXMLName() == "RenderView"][-2:]
@@ -203,6 +210,35 @@ def side_by_side():
     assert numpy.allclose(views[1].CameraPosition, views[0].CameraPosition), views[1].CameraPosition[:]
     worst = [vtk_to_numpy(servermanager.Fetch(one).GetCellData().GetArray("imr")).max() for one in (before, after)]
     assert worst[1] < worst[0], worst
+
+
+@check
+def match_side_by_side():
+    """On the left the source mesh over the source, on the right the found mesh over the target."""
+    matcher = find("MatchShape")
+    left, right = [view for view in simple.GetViews() if view.GetXMLName() == "RenderView"][-2:]
+    mesh = find_named("Source")
+    assert mesh.Input == matcher.Input
+    for view, shown, hidden in ((left, (mesh, matcher.Input), matcher), (right, (matcher, matcher.Target), mesh)):
+        sources = [one.Input for one in view.Representations if hasattr(one, "Input") and one.Visibility]
+        assert all(one in sources for one in shown) and hidden not in sources, sources
+    triangles_of = [servermanager.Fetch(one).GetNumberOfCells() for one in (mesh, matcher)]
+    assert triangles_of[0] == triangles_of[1] > 0, triangles_of
+
+
+@check
+def sheet_shown():
+    """The sheet of pictures is drawn in its own colours: 4 queries, each with 3 matches, of which one can be right."""
+    retrieval = find("ShapeRetrieval")
+    port = simple.OutputPort(retrieval, 4)
+    shown = simple.GetDisplayProperties(port)
+    assert (shown.Visibility, shown.Representation, shown.MapScalars) == (1, "Slice", 0), shown.Representation
+    pixels = vtk_to_numpy(servermanager.Fetch(retrieval, idx=4).GetPointData().GetArray("Sheet"))
+    frames = [int((pixels == color).all(axis=1).sum()) for color in (QUERY, RIGHT, WRONG)]
+    table = servermanager.Fetch(retrieval, idx=1)
+    right = vtk_to_numpy(table.GetColumnByName("Correct")).sum()
+    frame = frames[0] / 4
+    assert frames == [4 * frame, right * frame, (12 - right) * frame] and 0 < right < 12, (frames, right)
 
 
 def legends(view):
@@ -253,14 +289,14 @@ def obstacles():
     assert "3 elements" in untangler.Summary, untangler.Summary
 
 
-@check
-def turned_hole():
-    """The points of the hole are turned by 20 degrees about its center; no triangle is inverted."""
-    warp = find("MeshWarp")
-    before, after = (
-        vtk_to_numpy(servermanager.Fetch(one).GetPoints().GetData())[:, :2].astype(float) @ [1, 1j]
-        for one in (warp.Input, warp)
-    )
+def planar_points(source):
+    """The points as complex numbers."""
+    return vtk_to_numpy(servermanager.Fetch(source).GetPoints().GetData())[:, :2].astype(float) @ [1, 1j]
+
+
+def hole_of(warp):
+    """Numbers of the points of the hole, and of those on the outside, of the input of a planar mesh."""
+    before = planar_points(warp.Input)
     # The boundary is the edges of one element; the outside is the bounding rectangle.
     mesh = servermanager.Fetch(warp.Input)
     edges = {}
@@ -272,7 +308,71 @@ def turned_hole():
     ends = [f(part(before)) for part in (numpy.real, numpy.imag) for f in (numpy.min, numpy.max)]
     outside = numpy.isin(before.real, ends[:2]) | numpy.isin(before.imag, ends[2:])
     hole = boundary[~outside[boundary]]
-    assert len(hole) > 10 and numpy.array_equal(before[outside], after[outside])
+    assert len(hole) > 10
+    return hole, outside
+
+
+def hidden_representations(kind):
+    """What is drawn in the view, but is not in the pipeline browser."""
+    shown = simple.GetActiveView().GetProperty("HiddenRepresentations")
+    return [shown[i] for i in range(len(shown)) if shown[i].GetXMLName() == kind]
+
+
+@check
+def hole_highlighted():
+    """The edges of the hole are drawn, and the box is around them."""
+    warp = find("MeshWarp")
+    hole, _ = hole_of(warp)
+    (shown,) = hidden_representations("GeometryRepresentation")
+    drawn = servermanager.Fetch(shown.Input)
+    points = vtk_to_numpy(drawn.GetPoints().GetData())[:, :2].astype(float) @ [1, 1j]
+    assert drawn.GetNumberOfLines() == len(hole) == len(points), (drawn.GetNumberOfLines(), len(hole))
+    assert numpy.allclose(numpy.sort_complex(points), numpy.sort_complex(planar_points(warp.Input)[hole]), atol=1e-9)
+    (box,) = hidden_representations("BoxWidgetRepresentation")
+    assert numpy.allclose(list(box.PlaceWidget)[:4], drawn.GetBounds()[:4], atol=1e-9), box.PlaceWidget
+    assert box.PlaceWidget[4] < 0 < box.PlaceWidget[5], box.PlaceWidget
+
+
+@check
+def nothing_highlighted():
+    assert not hidden_representations("GeometryRepresentation")
+
+
+SEEN = []  # time and points of the hole, of each frame that was played
+
+
+@check
+def watch_frames():
+    """Keeps what each frame of the animation shows."""
+    warp, scene = find("MeshWarp"), simple.GetAnimationScene()
+    hole, _ = hole_of(warp)
+
+    def frame(*_):
+        mesh = servermanager.Fetch(warp)
+        points = vtk_to_numpy(mesh.GetPoints().GetData())[:, :2].astype(float) @ [1, 1j]
+        SEEN.append((scene.AnimationTime, points[hole]))
+
+    scene.SMProxy.GetClientSideObject().AddObserver("AnimationCueTickEvent", frame)
+
+
+@check
+def played():
+    """The hole turned from frame to frame, by 20 degrees in all."""
+    times = [time for time, _ in SEEN]
+    assert sorted(set(times)) == list(find("MeshWarp").TimestepValues) and len(set(times)) == 21, times
+    before = planar_points(find("MeshWarp").Input)[hole_of(find("MeshWarp"))[0]]
+    for time, points in SEEN:
+        turn = numpy.exp(1j * numpy.radians(TURN * time))
+        assert numpy.allclose(points - points.mean(), turn * (before - before.mean()), atol=1e-6), time
+
+
+@check
+def turned_hole():
+    """The points of the hole are turned by 20 degrees about its center; no triangle is inverted."""
+    warp = find("MeshWarp")
+    hole, outside = hole_of(warp)
+    before, after = planar_points(warp.Input), planar_points(warp)
+    assert numpy.array_equal(before[outside], after[outside])
     turn = numpy.exp(1j * numpy.radians(TURN))
     assert numpy.allclose(after[hole] - after[hole].mean(), turn * (before[hole] - before[hole].mean()), atol=1e-6)
     assert "all 1913 elements are valid" in warp.Summary, warp.Summary

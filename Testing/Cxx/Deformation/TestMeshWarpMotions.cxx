@@ -5,8 +5,10 @@
 #include "tautline/Deformation/PointMotion.h"
 
 #include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTransform.h"
 
 using namespace tautline;
@@ -380,11 +382,62 @@ void testBoundaryParts()
     TAUTLINE_CHECK_EQUAL(wrong, 0);
   }
 }
+
+/// The time steps of an animation are fractions of the way; without a request for a time it is gone to the end.
+void testAnimation()
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  const Index n = 5;
+  const MeshData data = holedBlock(CellType::Triangle, n);
+  const std::vector<int> parts = partsOf(data, n);
+  vtkNew<vtkMeshWarp> filter;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(data));
+  filter->SetMethod(vtkMeshWarp::FEMWARP);
+  filter->SetTransformKind(vtkMeshWarp::ROTATION);
+  filter->SetAngle(40);
+  filter->SetAmount(0.5);
+  filter->UpdateInformation();
+  TAUTLINE_CHECK(!filter->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
+  filter->SetAnimation(true);
+  filter->SetAnimationSteps(4);
+  filter->UpdateInformation();
+  vtkInformation* info = filter->GetOutputInformation(0);
+  TAUTLINE_CHECK_EQUAL(info->Length(Pipeline::TIME_STEPS()), 5);
+  for (int i = 0; i <= 4; ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(info->Get(Pipeline::TIME_STEPS())[i], 0.25 * i);
+  }
+  const auto check = [&](double degrees)
+  {
+    const double s = std::sin(degrees * Pi / 180), t = std::cos(degrees * Pi / 180);
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      const Vec3 d = data.point(i) - Vec3{ 2.5, 2.5, 0 };
+      const Vec3 turned = { 2.5 + t * d[0] - s * d[1], 2.5 + s * d[0] + t * d[1], 0 };
+      TAUTLINE_CHECK(parts[i] != 2 || norm(pointOf(meshOf(filter), i) - turned) < 1e-13);
+    }
+  };
+  filter->Update();
+  check(20);
+  for (double time : { 0.25, 0.0, 1.0, 0.75 })
+  {
+    filter->UpdateTimeStep(time);
+    check(20 * time);
+    TAUTLINE_CHECK_EQUAL(
+      meshOf(filter)->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
+    TAUTLINE_CHECK_NEAR(value(filter->GetStatistics(), "Amount"), 0.5 * time, 1e-15);
+    // The matrices are those of the first execution; at rest none are needed.
+    TAUTLINE_CHECK_EQUAL(filter->GetReused(), time > 0 ? 1 : 0);
+  }
+  TAUTLINE_CHECK(messages.empty());
+}
 }
 
 //------------------------------------------------------------------------------
 int TestMeshWarpMotions(int, char*[])
 {
+  testAnimation();
   testPaths();
   testBending();
   testSteps();

@@ -17,6 +17,7 @@
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
 #include "vtkMeshWarp.h"
+#include "vtkMovingBoundary.h"
 #include "vtkOffWriter.h"
 #include "vtkPeridynamicStiffness.h"
 #include "vtkShapeMatcher.h"
@@ -396,6 +397,9 @@ void addFilters(std::vector<HostileFilter>& list)
       return filter;
     },
     triangles, 1, false);
+  add(
+    "Deformation", "vtkMovingBoundary", "", [] { return made<vtkMovingBoundary>(); }, triangles, 0,
+    false);
   add(
     "Elliptic", "vtkEllipticSolver", "", [] { return elliptic<vtkEllipticSolver>(); }, triangles, 0,
     true, 1);

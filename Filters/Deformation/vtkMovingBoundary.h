@@ -1,0 +1,59 @@
+/**
+ * @class vtkMovingBoundary
+ * @brief Shows which part of a mesh's boundary vtkMeshWarp would move, without warping it.
+ *
+ * Takes the inputs and properties of vtkMeshWarp. What moves does not depend on the Amount, nor on
+ * the transform, which may not have been chosen yet. Of a motion over time it is the whole
+ * boundary.
+ *
+ * @par Output port 0:
+ * A vtkPolyData at rest: the edges (planar meshes) or faces (volumes) of the boundary of which all
+ * points move, and a vertex for each point that is in none of them. Of all blocks together. It is
+ * empty where vtkMeshWarp would end with an error, for instance because no array has been chosen
+ * yet: the summary has the message then, and no error is reported.
+ *
+ * The other outputs are empty tables.
+ *
+ * @par Example:
+ * @code
+ * vtkNew<vtkMovingBoundary> boundary;
+ * boundary->SetInputData(mesh);
+ * boundary->SetMovedPart(vtkMeshWarp::INNER_BOUNDARIES);
+ * boundary->Update();
+ * double bounds[6];
+ * vtkPolyData::SafeDownCast(boundary->GetOutputDataObject(0))->GetBounds(bounds);
+ * @endcode
+ *
+ * @sa vtkMeshWarp
+ */
+
+#ifndef vtkMovingBoundary_h
+#define vtkMovingBoundary_h
+
+#include "TautlineDeformationModule.h" // for export macro
+
+#include "vtkMeshWarp.h"
+
+class TAUTLINEDEFORMATION_EXPORT vtkMovingBoundary : public vtkMeshWarp
+{
+public:
+  static vtkMovingBoundary* New();
+  vtkTypeMacro(vtkMovingBoundary, vtkMeshWarp);
+
+protected:
+  vtkMovingBoundary();
+  ~vtkMovingBoundary() override;
+
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  /// No error: the summary has the message.
+  int Fail(vtkInformationVector* outputVector, const std::string& message) override;
+
+private:
+  vtkMovingBoundary(const vtkMovingBoundary&) = delete;
+  void operator=(const vtkMovingBoundary&) = delete;
+};
+
+#endif
