@@ -1,5 +1,6 @@
 #include "ExecutionScope.h"
 
+#include "MenuNames.h"
 #include "vtkInterruption.h"
 
 #include "tautline/Core/Interruption.h"
@@ -7,6 +8,8 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
+#include "vtkErrorCode.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
@@ -19,6 +22,32 @@ namespace tautline
 namespace
 {
 PollHook hookOfProcess = nullptr;
+
+/// The setter of the error code, which is protected.
+struct ErrorCode : public vtkAlgorithm
+{
+  static void set(vtkAlgorithm* algorithm, unsigned long code)
+  {
+    (algorithm->*(&ErrorCode::SetErrorCode))(code);
+  }
+};
+
+/// Asks for no part of the images among the outputs, which are empty: for one that does not have
+/// the part that is asked for, the executive executes again.
+void askForNothing(vtkInformationVector* outputs)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkInformation* info = outputs->GetInformationObject(port);
+    if (vtkImageData::SafeDownCast(vtkDataObject::GetData(info)))
+    {
+      info->Set(Pipeline::WHOLE_EXTENT(), nothing, 6);
+      info->Set(Pipeline::UPDATE_EXTENT(), nothing, 6);
+    }
+  }
+}
 
 bool isAlone()
 {
@@ -56,15 +85,36 @@ void pollAlgorithm(vtkAlgorithm* algorithm, const ExecutionLimits& limits, const
 int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits, vtkInformation* request,
   vtkInformationVector* outputs, const std::function<int()>& work)
 {
-  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || !isAlone())
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
     return work();
+  }
+  const auto reportOnce = [algorithm, outputs, &work]
+  {
+    ErrorCode::set(algorithm, vtkErrorCode::NoError);
+    if (!algorithm->GetProgressText())
+    {
+      algorithm->SetProgressText(menuName(algorithm->GetClassName()));
+    }
+    if (!work())
+    {
+      if (algorithm->GetErrorCode() == vtkErrorCode::NoError)
+      {
+        ErrorCode::set(algorithm, vtkErrorCode::UserError);
+      }
+      askForNothing(outputs);
+    }
+    return 1;
+  };
+  if (!isAlone())
+  {
+    return reportOnce();
   }
   try
   {
     const Stopwatch time;
     const PollScope scope([&] { pollAlgorithm(algorithm, limits, time); });
-    return work();
+    return reportOnce();
   }
   catch (const Interrupted&)
   {

@@ -32,7 +32,14 @@ struct ExecutionLimits
  * or the computation is interrupted, all outputs are emptied, AbortExecute is set and the result is
  * 1, as of filters of VTK. vtkInterruption::PollEvent is invoked with each poll. With several
  * processes neither holds: one that ends alone would leave the others waiting.
- * @return what work() returns
+ *
+ * Where work() fails it has reported an error, and emptied the outputs. If the executive were to
+ * see the failure, it would report it a second time and, as the outputs would not be up to date,
+ * execute the algorithm once more for each of them, to fail again. So it does not: of a request for
+ * data the result is 1, and the error code of the algorithm is vtkErrorCode::UserError (or another
+ * one that work() sets); NoError after a success. The algorithm executes again after the next
+ * change of its inputs or properties.
+ * @return what work() returns; of a request for data 1
  */
 TAUTLINECORE_EXPORT int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits,
   vtkInformation* request, vtkInformationVector* outputs, const std::function<int()>& work);

@@ -124,7 +124,7 @@ std::vector<double> takeSizes(vtkPointSet* input, vtkDataArray* sizes)
 void vtkTetGenMesher::Generate(
   vtkPointSet* input, vtkUnstructuredGrid* output, vtkPolyData* boundary)
 {
-  this->SetProgressText("TetGen");
+  this->SetProgressText("TetGen Mesher");
   this->UpdateProgress(0.05);
   tautline::SolidOptions options;
   options.radiusEdgeRatio = this->RadiusEdgeRatio;

@@ -1,0 +1,51 @@
+#include "MenuNames.h"
+
+#include <cstring>
+
+namespace tautline
+{
+namespace
+{
+struct MenuName
+{
+  const char* className;
+  const char* name;
+};
+
+constexpr MenuName Names[] = {
+  { "vtkConditionEstimator", "Condition Estimator" },
+  { "vtkDomainSource", "Mesh Domain" },
+  { "vtkElementQuality", "Element Quality" },
+  { "vtkEllipticSolver", "Solve PDE" },
+  { "vtkHorizonNeighbors", "Horizon Neighbors" },
+  { "vtkInteractionLayer", "Interaction Layer" },
+  { "vtkMeshComparison", "Compare Meshes" },
+  { "vtkMeshImprover", "Improve Mesh" },
+  { "vtkMeshOptimizer", "Optimize Mesh" },
+  { "vtkMeshPerturbation", "Perturb Mesh" },
+  { "vtkMeshUntangler", "Untangle Mesh" },
+  { "vtkMeshWarp", "Warp Mesh" },
+  { "vtkMetricField", "Metric Field" },
+  { "vtkPeridynamicStiffness", "Peridynamic Condition" },
+  { "vtkShapeMatcher", "Match Shape" },
+  { "vtkShapeRetrieval", "Shape Retrieval" },
+  { "vtkSilhouetteMesher", "Silhouette to Mesh" },
+  { "vtkSolverStudy", "Solver Study" },
+  { "vtkTetGenMesher", "TetGen Mesher" },
+  { "vtkTriangleMesher", "Triangle Mesher" },
+};
+}
+
+//------------------------------------------------------------------------------
+const char* menuName(const char* className)
+{
+  for (const MenuName& each : Names)
+  {
+    if (std::strcmp(each.className, className) == 0)
+    {
+      return each.name;
+    }
+  }
+  return nullptr;
+}
+}
