@@ -9,11 +9,13 @@
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
 
+#include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkNew.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
+#include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -32,6 +34,7 @@
 namespace
 {
 constexpr int MeshPort = 0;
+constexpr const char* SheetPort = "Sheet"; // of Shape Retrieval
 constexpr double MeshOpacity = 0.6;
 constexpr double Behind = 1e-3; // distance of the image from the mesh, of its size
 
@@ -49,6 +52,14 @@ pqOutputPort* imageOf(pqPipelineFilter* filter)
   const QList<pqOutputPort*> ports =
     input.isEmpty() ? QList<pqOutputPort*>() : filter->getInputs(input);
   return ports.isEmpty() ? nullptr : ports.front();
+}
+
+/// Draws the colours of a picture as they are.
+void showColors(vtkSMProxy* picture)
+{
+  vtkSMPropertyHelper(picture, "Representation").Set("Slice");
+  vtkSMPropertyHelper(picture, "MapScalars", true).Set(0);
+  picture->UpdateVTKObjects();
 }
 
 /// Bytes are drawn as they are, grey values or colours; other `pixels` by a colour map.
@@ -103,6 +114,16 @@ void pqTautlinePictures::arrange(pqDataRepresentation* mesh)
   auto* view = qobject_cast<pqRenderView*>(mesh->getView());
   auto* filter = qobject_cast<pqPipelineFilter*>(mesh->getInput());
   pqOutputPort* port = mesh->getOutputPortFromInput();
+  if (view && port->getPortName() == SheetPort)
+  {
+    showColors(mesh->getProxy());
+    vtkSMPVRepresentationProxy::SetScalarColoring(
+      mesh->getProxy(), SheetPort, vtkDataObject::POINT);
+    vtkSMPVRepresentationProxy::SetScalarBarVisibility(
+      mesh->getProxy(), view->getViewProxy(), false);
+    view->resetDisplay();
+    return;
+  }
   if (!view || !filter || port->getPortNumber() != MeshPort)
   {
     return;

@@ -4,8 +4,8 @@
  *
  * When the output of Match Shape or Silhouette to Mesh is shown for the first time, its image is
  * shown, too, in the grey values or colours of its pixels and a little behind the mesh, which is
- * translucent. Only the displays are changed, not the data. The plugin starts the object in the
- * GUI.
+ * translucent. The sheet of Shape Retrieval is shown in its colours, without a legend. Only the
+ * displays are changed, not the data. The plugin starts the object in the GUI.
  */
 
 #ifndef pqTautlinePictures_h

@@ -1,6 +1,7 @@
 #include "vtkShapeRetrieval.h"
 
 #include "Processes.h"
+#include "RetrievalSheet.h"
 #include "ShapeAdapter.h"
 #include "tautline/Shapes/ShapeRetrieval.h"
 
@@ -18,6 +19,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
@@ -29,10 +31,13 @@ vtkStandardNewMacro(vtkShapeRetrieval);
 
 namespace
 {
+constexpr int SheetPort = 4;
+
 struct ShapeSet
 {
   std::vector<std::string> names, labels;
   std::vector<tautline::Silhouette> shapes;
+  std::vector<tautline::Thumbnail> pictures;
   std::vector<std::string> classes;     ///< in order of their first shape
   std::vector<tautline::Index> numbers; ///< of the class of each shape
 };
@@ -63,6 +68,7 @@ ShapeSet takeShapes(vtkMultiBlockDataSet* input, tautline::Foreground foreground
       tautline::SilhouetteOptions options;
       options.foreground = foreground;
       set.shapes.push_back(tautline::traceSilhouette(image.view(), options));
+      set.pictures.push_back(tautline::RetrievalSheet::thumbnail(image.view()));
     }
     catch (const tautline::Error& error)
     {
@@ -168,12 +174,29 @@ void fillTables(const ShapeSet& set, const tautline::Retrieval& result, vtkTable
     }
   }
 }
+
+void drawSheet(
+  const ShapeSet& set, const tautline::Retrieval& result, int size, vtkImageData* sheet)
+{
+  using Sheet = tautline::RetrievalSheet;
+  const auto best = static_cast<tautline::Index>(result.recognition.hitsAt.size());
+  std::vector<std::vector<Sheet::Match>> matches(result.count);
+  for (tautline::Index s = 0; s < result.count; ++s)
+  {
+    for (tautline::Index k = 0; k < std::min<tautline::Index>(best, Sheet::Shown); ++k)
+    {
+      const tautline::Index t = result.ranking[s * (result.count - 1) + k];
+      matches[s].push_back({ t, set.numbers[s] == set.numbers[t] });
+    }
+  }
+  Sheet::draw(set.pictures, matches, size, sheet);
+}
 }
 
 //------------------------------------------------------------------------------
 vtkShapeRetrieval::vtkShapeRetrieval()
 {
-  this->SetNumberOfOutputPorts(4);
+  this->SetNumberOfOutputPorts(SheetPort + 1);
 }
 
 //------------------------------------------------------------------------------
@@ -186,9 +209,20 @@ int vtkShapeRetrieval::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkShapeRetrieval::FillOutputPortInformation(int, vtkInformation* info)
+int vtkShapeRetrieval::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == SheetPort ? "vtkImageData" : "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkShapeRetrieval::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  const int extent[6] = { 0, this->SheetSize - 1, 0, this->SheetSize - 1, 0, 0 };
+  vtkInformation* info = outputVector->GetInformationObject(SheetPort);
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_UNSIGNED_CHAR, 3);
   return 1;
 }
 
@@ -234,6 +268,7 @@ int vtkShapeRetrieval::RequestData(
       fillTables(set, result, vtkTable::GetData(outputVector, 0),
         vtkTable::GetData(outputVector, 1), vtkTable::GetData(outputVector, 2),
         vtkTable::GetData(outputVector, 3));
+      drawSheet(set, result, this->SheetSize, vtkImageData::GetData(outputVector, SheetPort));
       this->RecognitionRate = 100.0 * result.recognition.rate;
       std::ostringstream text;
       text << result.count << " shapes of " << set.classes.size()
@@ -262,4 +297,5 @@ void vtkShapeRetrieval::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Symmetric: " << this->Symmetric << "\n";
   os << indent << "BestMatches: " << this->BestMatches << "\n";
+  os << indent << "SheetSize: " << this->SheetSize << "\n";
 }

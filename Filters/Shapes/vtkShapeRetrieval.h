@@ -8,7 +8,7 @@
  * the name of the shape, its field array `Label` (string or number) the class. Without labels the
  * class is the name up to its first digit.
  *
- * @par Outputs, vtkTable:
+ * @par Output ports 0 to 3, vtkTable:
  * Port 0, Distances: `Name`, `Label` and a column per shape with the distance to it; -1 where the
  * run ended before. Port 1, Ranking: a row for each of the best matches of each query: `Query`,
  * `QueryLabel`, `Rank`, `Match`, `MatchLabel`, `Distance`, `Correct`. Port 2, Statistics: a row per
@@ -16,6 +16,10 @@
  * of the queries; the field array `RecognitionRate` (percent of all) is also GetRecognitionRate().
  * Port 3, Confusion: `Label` and a column per class: the percentage of the best matches of a
  * class's shapes that are of each class.
+ *
+ * @par Output port 4, vtkImageData:
+ * Sheet: a square picture (colours, the array `Sheet`) with a row for each query, in a grey frame,
+ * and its best matches, at most 10, in a green frame if they are of its class, in a red one if not.
  *
  * The recognition rate is the number of best matches of the query's own class, as a fraction of
  * those possible (dissertation section 5.3); the query itself does not count.
@@ -88,6 +92,14 @@ public:
 
   ///@{
   /**
+   * Width and height of the sheet of pictures, pixels, 64 to 20,000. The default is 1200.
+   */
+  vtkTautlineSetRangeMacro(SheetSize, int, 64, 20000);
+  vtkGetMacro(SheetSize, int);
+  ///@}
+
+  ///@{
+  /**
    * Results of the last run: the rate in percent, and what was found, in words.
    */
   vtkGetMacro(RecognitionRate, double);
@@ -99,6 +111,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   void ClearResult() override;
 
@@ -110,6 +123,7 @@ private:
   double Spacing = 25.0;
   bool Symmetric = false;
   int BestMatches = 10;
+  int SheetSize = 1200;
   double RecognitionRate = 0.0;
 };
 

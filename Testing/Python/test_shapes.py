@@ -7,8 +7,10 @@ import tautline as tl
 from checks import OUT, refused, run_tests, shell
 from study_checks import Studies
 from tautline.studies import _silhouettes, shapes
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from wrong_data import verdicts
 
+GREY, GREEN, RED = (120, 120, 120), (0, 150, 60), (215, 25, 30)  # frames on the sheet of pictures
 OUTPUT = OUT / "shapes"
 OUTPUT.mkdir(parents=True, exist_ok=True)
 
@@ -78,6 +80,12 @@ def test_retrieval():
     hits = sum(found.labels[t] == found.labels[q] for q in range(12) for t in found.ranking[q, :2])
     assert np.isclose(found.rate, 100 * hits / 24) and found.correct_at.sum() == hits
     assert np.allclose(found.confusion.sum(axis=1), 100)
+    # As many frames on the sheet as right and wrong matches.
+    frames = [(found.sheet == color).all(axis=2).sum() for color in (GREY, GREEN, RED)]
+    assert found.sheet.shape == (1200, 1200, 3) and found.sheet.dtype == np.uint8
+    assert frames[0] > 0 and frames == [frames[0], frames[0] * hits / 12, frames[0] * (24 - hits) / 12], frames
+    assert tl.retrieval(images, labels, best=2, sheet_size=300).sheet.shape == (300, 300, 3)
+    refused("SheetSize", tl.retrieval, images, labels, sheet_size=0)
     refused("labels for", tl.retrieval, images, labels[:3])
     refused("setting", tl.retrieval, images, labels, setting="best")
 
@@ -96,8 +104,13 @@ def test_commands():
     assert (OUTPUT / "bean.vtu").is_file()
     told = run("match", folder / "2.png", folder / "3.png", "--locations", "contour", "-o", "found.vtu")
     assert "Energy" in told and (OUTPUT / "found.vtu").is_file()
-    told = run("retrieval", folder.parent, "--best", 1, "--csv", "best.csv")
+    told = run("retrieval", folder.parent, "--best", 1, "--csv", "best.csv", "--sheet", "sheet.png")
     assert "6 shapes of 3 classes" in told, told
+    expected = tl.retrieval(folder.parent, best=1).sheet
+    written = tl._shapes.as_image(OUTPUT / "sheet.png")
+    pixels = vtk_to_numpy(written.GetPointData().GetScalars()).reshape(expected.shape)
+    assert np.array_equal(pixels[::-1], expected)
+    assert "no directory" in run("retrieval", folder.parent, "--sheet", "nowhere/sheet.png", code=1)
     rows = list(csv.DictReader(open(OUTPUT / "best.csv")))
     assert len(rows) == 6 and rows[0]["QueryLabel"] == "disc"
     assert "no such file" in run("match", "a.png", "b.png", code=1)

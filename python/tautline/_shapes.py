@@ -20,12 +20,13 @@ from vtkmodules.vtkCommonDataModel import (
     vtkTable,
     vtkUnstructuredGrid,
 )
+from vtkmodules.vtkIOImage import vtkPNGWriter
 
 from . import _commands, _vtk
 from ._arguments import check_options, number, pick, set_time_limit
 from ._arrays import cell_array, columns, point_array, table_rows
 from ._errors import Error, interruptible, run, watch
-from ._files import check_input, file_name
+from ._files import check_input, check_target, file_name, replace_bytes
 
 FOREGROUNDS = ("automatic", "bright", "dark")
 LOCATIONS = ("grid", "near grid", "contour")
@@ -243,8 +244,22 @@ class RetrievalResult:
     confusion: np.ndarray
     #: The filter's tables by name: Distances, Ranking, Statistics, Confusion.
     tables: dict[str, vtkTable]
+    #: A picture of each query, in a grey frame, with its best matches (at most 10), in a green frame if they are of its
+    #: class, in a red one if not: size x size x 3 bytes, the top row first. save_sheet() writes it.
+    sheet: np.ndarray
     #: The result in words.
     summary: str
+
+    def save_sheet(self, file: str | PathLike) -> None:
+        """Write the sheet of pictures as a PNG file. Raises Error if it cannot be written."""
+        image = vtkImageData()
+        image.SetDimensions(self.sheet.shape[1], self.sheet.shape[0], 1)
+        image.GetPointData().SetScalars(numpy_to_vtk(self.sheet[::-1].reshape(-1, 3), deep=True))
+        writer = vtkPNGWriter()
+        writer.WriteToMemoryOn()
+        writer.SetInputData(image)
+        writer.Write()
+        replace_bytes(file, vtk_to_numpy(writer.GetResult()).tobytes())
 
 
 @interruptible
@@ -279,6 +294,7 @@ def retrieval(
     spacing: float = 25.0,
     symmetric: bool = False,
     best: int = 10,
+    sheet_size: int = 1200,
     locations: str = "grid",
     grid: tuple[int, int] = (30, 30),
     reflection: str = "forbidden",
@@ -294,6 +310,7 @@ def retrieval(
     spacing: see match().
     symmetric: whether the distance is the sum of both directions.
     best: number of matches per query that count, at least 1.
+    sheet_size: width and height of the sheet of pictures, pixels, 64 to 20,000.
     locations, grid, reflection, foreground, options: see match().
 
     Raises Error for wrong arguments, and for images without a shape (with its name).
@@ -307,6 +324,7 @@ def retrieval(
     found.SetSpacing(number("spacing", spacing))
     found.SetSymmetric(bool(symmetric))
     found.SetBestMatches(int(number("best", best)))
+    found.SetSheetSize(int(number("sheet_size", sheet_size)))
     _configure(found, locations, grid, reflection, foreground, options)
     found.SetInputDataObject(0, _as_set(shapes, labels))
     run(found, messages)
@@ -326,8 +344,15 @@ def retrieval(
         classes=classes,
         confusion=np.array([_numbers(tables["Confusion"], i + 1) for i in range(len(classes))]).T,
         tables=tables,
+        sheet=_sheet(found.GetOutputDataObject(len(tables))),
         summary=found.GetSummary(),
     )
+
+
+def _sheet(image: vtkImageData) -> np.ndarray:
+    columns_, rows, _ = image.GetDimensions()
+    pixels = image.GetPointData().GetScalars()
+    return vtk_to_numpy(pixels).reshape(rows, columns_, 3)[::-1].copy() if pixels else np.empty((0, 0, 3), np.uint8)
 
 
 def _as_set(shapes: Any, labels: Iterable[Any] | None) -> vtkMultiBlockDataSet:
@@ -421,6 +446,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--setting", choices=SETTINGS, default="highest")
     parser.add_argument("--best", type=int, default=10, help="number of matches per query that count (default: 10)")
     parser.add_argument("--csv", metavar="FILE", help="write the best matches of each shape")
+    parser.add_argument("--sheet", metavar="FILE.png", help="write a picture of the shapes with their best matches")
     _commands.add_time_limit(parser)
 
 
@@ -443,7 +469,11 @@ def _run_match(arguments: argparse.Namespace) -> None:
 
 
 def _run_retrieval(arguments: argparse.Namespace) -> None:
+    if arguments.sheet:
+        check_target(arguments.sheet)
     result = retrieval(arguments.shapes, **_commands.given(arguments, ("setting", "best", "time_limit", "threads")))
     print(result.summary)
     print("right at rank " + ", ".join(f"{k}: {n}" for k, n in enumerate(result.correct_at, 1)))
     _commands.save(result, arguments, table_rows(columns(result.tables["Ranking"])))
+    if arguments.sheet:
+        result.save_sheet(arguments.sheet)

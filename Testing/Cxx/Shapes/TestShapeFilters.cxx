@@ -251,6 +251,49 @@ void writeImage(const std::filesystem::path& file, const Picture& picture)
   writer->Write();
 }
 
+/// The frames on the sheet are as many as the ranking has right and wrong matches; the first query is at the top left.
+void checkSheet(vtkShapeRetrieval* retrieval)
+{
+  const int size = 700, queries = 6;
+  retrieval->SetBestMatches(3); // two of them can be right
+  retrieval->SetSheetSize(size);
+  retrieval->Update();
+  auto* sheet = vtkImageData::SafeDownCast(retrieval->GetOutputDataObject(4));
+  TAUTLINE_CHECK_EQUAL(sheet->GetDimensions()[0], size);
+  TAUTLINE_CHECK_EQUAL(sheet->GetDimensions()[1], size);
+  auto* pixels = vtkUnsignedCharArray::SafeDownCast(sheet->GetPointData()->GetArray("Sheet"));
+  std::map<std::array<int, 3>, vtkIdType> count;
+  vtkIdType firstFrame = -1;
+  for (vtkIdType i = 0; i < pixels->GetNumberOfTuples(); ++i)
+  {
+    const vtkIdType fromTop =
+      (size - 1 - i / size) * size + i % size; // the lowest row is stored first
+    const unsigned char* p = pixels->GetPointer(3 * fromTop);
+    const std::array<int, 3> color = { p[0], p[1], p[2] };
+    ++count[color];
+    if (firstFrame < 0 && color == std::array<int, 3>{ 120, 120, 120 })
+    {
+      firstFrame = i;
+    }
+  }
+  const std::array<int, 3> grey = { 120, 120, 120 };
+  const vtkIdType frame = count[grey] / queries;
+  TAUTLINE_CHECK(frame > 0 && count[grey] % queries == 0);
+  auto* ranking = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(1));
+  vtkIdType right = 0;
+  for (vtkIdType row = 0; row < ranking->GetNumberOfRows(); ++row)
+  {
+    right += ranking->GetValueByName(row, "Correct").ToInt();
+  }
+  TAUTLINE_CHECK(right > 0 && right < 3 * queries);
+  const std::array<int, 3> green = { 0, 150, 60 }, red = { 215, 25, 30 };
+  TAUTLINE_CHECK_EQUAL(count[green], right * frame);
+  TAUTLINE_CHECK_EQUAL(count[red], (3 * queries - right) * frame);
+  // At the top left: less than a tenth of the sheet from each side.
+  TAUTLINE_CHECK(firstFrame / size < size / 10 && firstFrame % size < size / 10);
+  retrieval->SetBestMatches(2);
+}
+
 void testRetrieval(const std::string& output)
 {
   namespace fs = std::filesystem;
@@ -291,6 +334,7 @@ void testRetrieval(const std::string& output)
   auto* confusion = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(3));
   TAUTLINE_CHECK_NEAR(confusion->GetValueByName(0, "lobed").ToDouble(), 100.0, 1e-9);
   TAUTLINE_CHECK_NEAR(confusion->GetValueByName(0, "round").ToDouble(), 0.0, 1e-9);
+  checkSheet(retrieval);
   // A folder needs no list: classes from the names.
   reader->SetFileName((folder / "images").string().c_str());
   retrieval->Update();
