@@ -23,7 +23,9 @@
 #include "vtkSMSourceProxy.h"
 #include "vtkSMViewLayoutProxy.h"
 #include "vtkSMViewProxy.h"
+#include "vtkSmartPointer.h"
 #include "vtkTable.h"
+#include "vtkType.h"
 #include "vtkVariant.h"
 
 #include <QList>
@@ -95,6 +97,25 @@ void hideLegendLater(vtkSMProxy* shown, pqView* view)
     });
 }
 
+/// Shows a text at the top of a view.
+void addText(const QString& shown, pqPipelineSource* of, pqView* view)
+{
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
+  pqPipelineSource* text = builder->createSource("sources", "TextSource", of->getServer());
+  text->rename(of->getSMName() + ", text");
+  vtkSMPropertyHelper(text->getProxy(), "Text").Set(shown.toUtf8().data());
+  text->getProxy()->UpdateVTKObjects();
+  text->setModifiedState(pqProxy::UNMODIFIED);
+  if (vtkSMProxy* drawn = controller->Show(text->getSourceProxy(), 0, view->getViewProxy()))
+  {
+    constexpr int upperCenter = 4; // of the property WindowLocation
+    vtkSMPropertyHelper(drawn, "WindowLocation", true).Set(upperCenter);
+    vtkSMPropertyHelper(drawn, "FontSize", true).Set(FontSize);
+    drawn->UpdateVTKObjects();
+  }
+}
+
 /// Shows the mesh, and a text at the top.
 void fill(pqPipelineSource* quality, pqView* view, bool legend)
 {
@@ -114,19 +135,7 @@ void fill(pqPipelineSource* quality, pqView* view, bool legend)
       hideLegendLater(shown, view);
     }
   }
-  pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
-  pqPipelineSource* text = builder->createSource("sources", "TextSource", quality->getServer());
-  text->rename(quality->getSMName() + ", text");
-  vtkSMPropertyHelper(text->getProxy(), "Text").Set(describe(quality).toUtf8().data());
-  text->getProxy()->UpdateVTKObjects();
-  text->setModifiedState(pqProxy::UNMODIFIED);
-  if (vtkSMProxy* drawn = controller->Show(text->getSourceProxy(), 0, viewProxy))
-  {
-    constexpr int upperCenter = 4; // of the property WindowLocation
-    vtkSMPropertyHelper(drawn, "WindowLocation", true).Set(upperCenter);
-    vtkSMPropertyHelper(drawn, "FontSize", true).Set(FontSize);
-    drawn->UpdateVTKObjects();
-  }
+  addText(describe(quality), quality, view);
 }
 
 /// The direction of view of another view, if it is one of meshes.
@@ -142,6 +151,61 @@ void takeCamera(pqView* view, pqView* other)
     }
     view->getProxy()->UpdateVTKObjects();
   }
+}
+
+/// Whether the filter finds a shape of one image in another one.
+bool isMatch(pqPipelineSource* filter)
+{
+  return filter->getProxy()->GetXMLName() == std::string("MatchShape");
+}
+
+/// What Match Shape has found: the source mesh or, of an image, the one that it makes.
+pqPipelineSource* meshOfSource(pqPipelineSource* match)
+{
+  pqOutputPort* source = inputOf(match);
+  if (source->getDataInformation()->GetDataSetType() != VTK_IMAGE_DATA)
+  {
+    return source->getSource();
+  }
+  pqPipelineSource* mesh = pqApplicationCore::instance()->getObjectBuilder()->createFilter(
+    "filters", "SilhouetteToMesh", source->getSource(), source->getPortNumber());
+  if (mesh)
+  {
+    mesh->rename("Source");
+    for (const char* name : { "Spacing", "Foreground" })
+    {
+      vtkSMPropertyHelper(mesh->getProxy(), name)
+        .Set(vtkSMPropertyHelper(match->getProxy(), name).GetAsDouble());
+    }
+    mesh->getProxy()->UpdateVTKObjects();
+    mesh->updatePipeline();
+    mesh->setModifiedState(pqProxy::UNMODIFIED);
+  }
+  return mesh;
+}
+
+/// Two views beside each other in a new layout; null where they cannot be made.
+std::array<pqView*, 2> splitLayout(pqServer* server)
+{
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  vtkSmartPointer<vtkSMProxy> made;
+  made.TakeReference(server->proxyManager()->NewProxy("misc", "ViewLayout"));
+  auto* layout = vtkSMViewLayoutProxy::SafeDownCast(made);
+  std::array<pqView*, 2> views{};
+  if (!layout)
+  {
+    return views;
+  }
+  controller->InitializeProxy(layout);
+  controller->RegisterLayoutProxy(layout);
+  const int left = layout->SplitHorizontal(0, Half);
+  pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
+  for (std::size_t i = 0; i < views.size(); ++i)
+  {
+    views[i] = builder->createView(pqRenderView::renderViewType(), server);
+    layout->AssignView(left + static_cast<int>(i), views[i]->getViewProxy());
+  }
+  return views;
 }
 
 } // anonymous namespace
@@ -162,37 +226,40 @@ QString showSideBySide(pqPipelineSource* filter)
   {
     return "Apply the filter first: there is no mesh before and after it.";
   }
-  pqApplicationCore* core = pqApplicationCore::instance();
-  pqObjectBuilder* builder = core->getObjectBuilder();
-  pqServer* server = filter->getServer();
+  const bool match = isMatch(filter);
   const QPointer<pqView> seen = pqActiveObjects::instance().activeView();
-  const std::array<pqPipelineSource*, 2> measured = { measure(inputOf(filter), "Before"),
-    measure(filter->getOutputPort(MeshPort), "After") };
-  if (!measured[0] || !measured[1])
+  const std::array<pqPipelineSource*, 2> shown = match
+    ? std::array<pqPipelineSource*, 2>{ meshOfSource(filter), filter }
+    : std::array<pqPipelineSource*, 2>{ measure(inputOf(filter), "Before"),
+        measure(filter->getOutputPort(MeshPort), "After") };
+  if (!shown[0] || !shown[1])
   {
     return "The meshes cannot be measured.";
   }
-  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
-  vtkSMSessionProxyManager* manager = server->proxyManager();
-  vtkSmartPointer<vtkSMProxy> made;
-  made.TakeReference(manager->NewProxy("misc", "ViewLayout"));
-  auto* layout = vtkSMViewLayoutProxy::SafeDownCast(made);
-  if (!layout)
+  const std::array<pqView*, 2> views = splitLayout(filter->getServer());
+  if (!views[0] || !views[1])
   {
     return "A layout cannot be made.";
   }
-  controller->InitializeProxy(layout);
-  controller->RegisterLayoutProxy(layout);
-  const int left = layout->SplitHorizontal(0, Half);
-  std::array<pqView*, 2> views{};
   for (std::size_t i = 0; i < views.size(); ++i)
   {
-    views[i] = builder->createView(pqRenderView::renderViewType(), server);
-    layout->AssignView(left + static_cast<int>(i), views[i]->getViewProxy());
-    fill(measured[i], views[i], i == 1);
+    if (match)
+    {
+      // pqTautlinePictures adds the image behind the mesh.
+      vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+      controller->Show(shown[i]->getSourceProxy(), MeshPort, views[i]->getViewProxy());
+      addText(i == 0 ? "source" : "target", shown[i], views[i]);
+    }
+    else
+    {
+      fill(shown[i], views[i], i == 1);
+    }
   }
-  core->getLinksModel()->addCameraLink(
-    filter->getSMName() + ", before and after", views[0]->getProxy(), views[1]->getProxy());
+  if (!match) // the images may differ in size
+  {
+    pqApplicationCore::instance()->getLinksModel()->addCameraLink(
+      filter->getSMName() + ", before and after", views[0]->getProxy(), views[1]->getProxy());
+  }
   for (pqView* view : views)
   {
     takeCamera(view, seen);

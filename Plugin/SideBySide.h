@@ -22,6 +22,7 @@ bool changesMesh(pqPipelineSource* filter);
  *
  * Both are measured by Element Quality, with its default metric. Inverted elements inside are
  * visible.
+ * Of Match Shape: on the left the source mesh, on the right what was found, each over its image.
  * The colours mean the same in both views, and the legend is in the right one; the cameras are
  * linked. A text in each view has the worst value and the number of inverted elements. The filter
  * stays the active source.

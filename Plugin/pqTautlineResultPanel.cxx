@@ -63,7 +63,8 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   this->Compare->setObjectName("SideBySide");
   this->Compare->setText("Side by Side");
   this->Compare->setToolTip("Show the quality of the mesh before and after in two views beside "
-                            "each other, with one legend and linked cameras.");
+                            "each other, with one legend and linked cameras; of Match Shape, "
+                            "source and target.");
   this->Note->setObjectName("Note");
   this->Note->setWordWrap(true);
   this->Note->hide();
