@@ -18,6 +18,7 @@ PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposi
 WORST_PORT = 4  # of Element Quality
 TURN = 20  # degrees
 QUERY, RIGHT, WRONG = (120, 120, 120), (0, 150, 60), (215, 25, 30)  # frames on the sheet of Shape Retrieval
+WORST = (18.1, 3.82)  # of the bracket untangled, and optimized: inverse mean ratio
 ALL_FIXED = 2  # of the array Obstacle: all points of the element are fixed
 
 
@@ -209,7 +210,7 @@ def side_by_side():
     simple.ResetCamera(views[0])
     assert numpy.allclose(views[1].CameraPosition, views[0].CameraPosition), views[1].CameraPosition[:]
     worst = [vtk_to_numpy(servermanager.Fetch(one).GetCellData().GetArray("imr")).max() for one in (before, after)]
-    assert worst[1] < worst[0], worst
+    assert numpy.allclose(worst, WORST, rtol=0.01), worst
 
 
 @check

@@ -383,7 +383,8 @@ void testBoundaryParts()
   }
 }
 
-/// The time steps of an animation are fractions of the way; without a request for a time it is gone to the end.
+/// The time steps of an animation are fractions of the way; without a request for a time it is gone
+/// to the end.
 void testAnimation()
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;

@@ -1,5 +1,6 @@
-// The part of the boundary that Warp Mesh moves, shown before it moves: edges or faces of the hole, parts of blocks, what
-// is chosen by arrays, by displacements, by a target; what Warp Mesh would refuse.
+// The part of the boundary that Warp Mesh moves, shown before it moves: edges or faces of the hole,
+// parts of blocks, what is chosen by arrays, by displacements, by a target; what Warp Mesh would
+// refuse.
 #include "WarpingMeshes.h"
 
 #include "vtkMovingBoundary.h"

@@ -251,7 +251,8 @@ void writeImage(const std::filesystem::path& file, const Picture& picture)
   writer->Write();
 }
 
-/// The frames on the sheet are as many as the ranking has right and wrong matches; the first query is at the top left.
+/// The frames on the sheet are as many as the ranking has right and wrong matches; the first query
+/// is at the top left.
 void checkSheet(vtkShapeRetrieval* retrieval)
 {
   const int size = 700, queries = 6;
