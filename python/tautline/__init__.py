@@ -11,6 +11,10 @@ The compiled VTK classes (vtkElementQuality, ...) are attributes of the package,
 `python3 -m tautline --help` shows the same functions as commands of the shell.
 """
 
+from . import _build
+
+_build.check()  # before the first compiled module
+
 from . import _vtk
 from ._comparison import CompareResult, compare
 from ._errors import Aborted, Error
@@ -20,6 +24,8 @@ from ._metric_field import MetricFieldResult, metric_field
 from ._metrics import load_metrics, metrics, register_metric, unregister_metric
 from ._quality import QualityResult, criteria, quality
 from ._report import report
+
+__version__ = _build.VERSION
 
 globals().update(_vtk.CLASSES)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 from importlib import import_module
+from pathlib import Path
 
-from . import _vtk
+from . import _build, _vtk
 from ._commands import check_outputs
 from ._errors import Error
 
@@ -15,11 +16,17 @@ from ._errors import Error
 _INTERRUPTED = 130
 
 
+def _program() -> str:
+    """The name of the command as it was called."""
+    return "tautline" if sys.argv and Path(sys.argv[0]).name == "tautline" else "python3 -m tautline"
+
+
 def _parser() -> argparse.ArgumentParser:
     """The commands of every capability that was built, and of the studies."""
     parser = argparse.ArgumentParser(
-        prog="python3 -m tautline", description="Measure, repair, deform and match meshes, and solve equations on them."
+        prog=_program(), description="Measure, repair, deform and match meshes, and solve equations on them."
     )
+    parser.add_argument("--version", action="version", version=f"tautline {_build.VERSION}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for capability in filter(_vtk.available, _vtk.CAPABILITIES):
         import_module(f".{capability}", __package__).add_commands(commands)

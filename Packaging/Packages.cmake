@@ -1,0 +1,90 @@
+# Packages for Debian, made by ./run package (cpack -G DEB): libtautline, python3-tautline, paraview-tautline,
+# libtautline-dev and tautline-doc, one for each install component.
+install(DIRECTORY Data/ DESTINATION "${CMAKE_INSTALL_DATADIR}/tautline/samples" COMPONENT doc
+  PATTERN "*.py" EXCLUDE)
+install(DIRECTORY Examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc)
+install(FILES CHANGELOG.md SECURITY.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME tautline)
+set(CPACK_PACKAGE_VENDOR "Tautline developers")
+set(CPACK_PACKAGE_CONTACT "Tautline developers <tautline@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_OUTPUT_FILE_PREFIX "${CMAKE_BINARY_DIR}/packages")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_COMPONENTS_ALL runtime python plugin development doc)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(version "${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}")
+set(library "libtautline (= ${version})")
+# The classes of ParaView's VTK keep their binary interface only within one version of the package, which Debian's
+# revisions do not change: 5.11.0+dfsg-1 and -2 are the same, 5.11.1 is not.
+set(paraview)
+set(python_paraview python3-vtk9)
+if (TAUTLINE_USE_PARAVIEW)
+  execute_process(COMMAND dpkg-query -W "-f=\${source:Upstream-Version}" paraview
+    OUTPUT_VARIABLE upstream ERROR_QUIET)
+  if (upstream)
+    set(paraview "paraview (>= ${upstream}), paraview (<< ${upstream}.)")
+    set(python_paraview "python3-paraview (>= ${upstream}), python3-paraview (<< ${upstream}.)")
+  endif ()
+endif ()
+
+# What find_package(ParaView) looks for, of the release this is built on.
+set(headers)
+file(STRINGS /etc/os-release release REGEX "^(ID|VERSION_CODENAME)=")
+string(REGEX REPLACE ".*VERSION_CODENAME=([a-z]+).*" "\\1" codename "${release}")
+string(REGEX REPLACE "(^|.*;)ID=([a-z]+).*" "\\2" system "${release}")
+set(requirements "${CMAKE_CURRENT_LIST_DIR}/requirements/${system}-${codename}")
+if (EXISTS "${requirements}")
+  file(STRINGS "${requirements}" lines REGEX "^headers: ")
+  list(TRANSFORM lines REPLACE "^headers: " "")
+  string(REPLACE ";" " " headers "${lines}")
+  string(REPLACE " " ", " headers "${headers}")
+endif ()
+
+# tautline_package(COMPONENT NAME SUMMARY TEXT DEPENDS): a package of one install component.
+function (tautline_package component name summary text depends)
+  string(TOUPPER "${component}" upper)
+  set("CPACK_DEBIAN_${upper}_PACKAGE_NAME" "${name}" PARENT_SCOPE)
+  set("CPACK_DEBIAN_${upper}_DESCRIPTION" "${summary}\n${text}" PARENT_SCOPE)
+  string(REGEX REPLACE "(^, |, $)" "" depends "${depends}")
+  set("CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS" "${depends}" PARENT_SCOPE)
+  install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/${name}" COMPONENT "${component}"
+    RENAME copyright)
+endfunction ()
+tautline_package(runtime libtautline "measures, repairs, deforms and matches meshes - libraries"
+  "C++ libraries: the numerics, which need no VTK, and modules for the VTK of ParaView." "${paraview}")
+tautline_package(python python3-tautline "measures, repairs, deforms and matches meshes - Python and shell"
+  "The Python package tautline and the command tautline." "${library}, ${python_paraview}, python3-numpy")
+tautline_package(plugin paraview-tautline "measures, repairs, deforms and matches meshes - plugin for ParaView"
+  "Filters, sources, readers, writers and panels. ParaView loads the plugin when it starts." "${library}, ${paraview}")
+tautline_package(development libtautline-dev "measures, repairs, deforms and matches meshes - development files"
+  "Headers and CMake files, for find_package(Tautline)." "${library}, paraview-dev, ${headers}")
+tautline_package(doc tautline-doc "measures, repairs, deforms and matches meshes - documentation"
+  "Help pages, tutorial, sample meshes and example scripts." "")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "tautline-doc")
+set(CPACK_DEBIAN_PLUGIN_PACKAGE_RECOMMENDS "tautline-doc, python3-tautline")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
+set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DOC_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/triggers")
+
+# ParaView reads paraview.conf beside its program, a list of files that name plugins. Debian's ParaView has none.
+if (TAUTLINE_USE_PARAVIEW AND TAUTLINE_AUTOLOAD)
+  file(RELATIVE_PATH plugins "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/tautline.plugins.xml")
+  file(WRITE "${CMAKE_BINARY_DIR}/Packaging/paraview.conf" "${plugins}\n")
+  install(FILES "${CMAKE_BINARY_DIR}/Packaging/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT plugin)
+endif ()
+include(CPack)

@@ -1,0 +1,92 @@
+"""The version stands in one place; a Python that cannot use the compiled modules gets one sentence; the command works.
+
+test_build.py VERSION COMMAND MANUAL: the project's version, the command tautline, the directory of its manual.
+"""
+
+import gzip
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import tautline
+from checks import OUT
+from tautline import _build, _vtk
+from tautline.__main__ import _parser
+
+VERSION, COMMAND, MANUAL = sys.argv[1], sys.argv[2], Path(sys.argv[3])
+PACKAGE = Path(tautline.__file__).parent
+COMPLETE = """source {file}; COMP_WORDS=(tautline {words}); COMP_CWORD={last}; _tautline; echo "${{COMPREPLY[*]}}" """
+
+
+def run(*command: str, **environment: str) -> subprocess.CompletedProcess:
+    return subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, **environment))
+
+
+def check_version() -> None:
+    assert tautline.__version__ == VERSION != "", tautline.__version__
+    for command in ([COMMAND], [sys.executable, "-m", "tautline"]):
+        done = run(*command, "--version")
+        assert (done.returncode, done.stdout) == (0, f"tautline {VERSION}\n"), done
+
+
+def check_sentences() -> None:
+    """What each kind of wrong Python is told; the right one is told nothing."""
+    build = json.loads((PACKAGE / "build.json").read_text())
+    assert _build.problem(build) == ""
+    assert _build.problem({}).startswith("these are the sources")
+    assert "built for Python 2.1" in _build.problem(dict(build, python="2.1"))
+    assert "built with VTK 1.2.3" in _build.problem(dict(build, vtk="1.2.3"))
+    assert f"use {sys.executable} or pvpython" in _build.problem(dict(build, vtk="1.2.3"))
+
+
+def copy_for_another_python() -> Path:
+    """The package with the record of a build for another Python."""
+    package = OUT / "another" / "tautline"
+    package.mkdir(parents=True, exist_ok=True)
+    for source in [*PACKAGE.glob("*.py"), *PACKAGE.glob("*.so")]:
+        (package / source.name).unlink(missing_ok=True)
+        (package / source.name).symlink_to(source)
+    build = json.loads((PACKAGE / "build.json").read_text())
+    (package / "build.json").write_text(json.dumps(dict(build, python="2.1")))
+    return package
+
+
+def check_wrong_python() -> None:
+    """One line on standard error from the command, an ImportError with the same sentence from import."""
+    path = str(copy_for_another_python().parent)
+    done = run(sys.executable, "-m", "tautline", "metrics", PYTHONPATH=path)
+    assert done.returncode == 1 and done.stdout == "", done
+    assert re.fullmatch(r"tautline: .*built for Python 2\.1.*\n", done.stderr), done.stderr
+    done = run(sys.executable, "-c", "import tautline", PYTHONPATH=path)
+    assert "ImportError: tautline was built for Python 2.1" in done.stderr, done.stderr
+
+
+def check_python_without_vtk() -> None:
+    code = "import sys; sys.path.append(sys.argv[1]); sys.argv[0] = '-m'; import tautline"
+    done = run(sys.executable, "-I", "-S", "-c", code, str(PACKAGE.parent))
+    assert done.returncode == 1 and re.fullmatch(r"tautline: .* has no VTK: use .*\n", done.stderr), done.stderr
+
+
+def check_manual() -> None:
+    """Every command is in the manual page and every option in the completion."""
+    page = gzip.decompress((MANUAL / "tautline.1.gz").read_bytes()).decode()
+    assert f'"tautline {VERSION}"' in page.replace("\\", ""), page[:100]
+    names = {name for action in _parser()._actions if action.choices for name in action.choices}
+    assert names and {line[4:].replace("\\", "") for line in page.splitlines() if line.startswith(".SS ")} == names
+    file = MANUAL / "tautline.bash"
+    for words, expected in (("unt", "untangle"), ("warp --rot", "--rotate"), ("field --cell tet", "tetrahedron")):
+        complete = COMPLETE.format(file=file, words=words, last=len(words.split()))
+        assert run("bash", "-c", complete).stdout.split() == [expected], words
+    assert set(run("bash", "-c", COMPLETE.format(file=file, words="''", last=1)).stdout.split()) >= names
+
+
+if __name__ == "__main__":
+    assert _vtk.MODULES
+    check_version()
+    check_sentences()
+    check_wrong_python()
+    check_python_without_vtk()
+    check_manual()
