@@ -13,8 +13,6 @@ sys.argv = ["tautline"]  # the name in the usage lines
 from tautline import __version__  # noqa: E402
 from tautline.__main__ import _parser  # noqa: E402
 
-FILE_SUFFIXES = "vtk|vtu|vtp|vti|msh|mesh|off|node|ele|poly|smesh|png|csv|json|html|toml"
-
 HEAD = r""".TH TAUTLINE 1 "" "tautline {version}" "User Commands"
 .SH NAME
 tautline \- measure, repair, deform and match meshes, and solve equations on them
@@ -38,13 +36,15 @@ Libraries with further metrics to load, separated by colons.
 .BR paraview (1)
 """
 
-COMPLETION = r"""# Completion of the command tautline in bash.
+COMPLETION = r"""# shellcheck shell=bash disable=SC2207
+# Completion of the command tautline in bash.
 _tautline()
 {
+  local IFS=$'\n' # between the words to choose from, so that names of files may have spaces
   local current="${COMP_WORDS[COMP_CWORD]}" previous="${COMP_WORDS[COMP_CWORD - 1]}" options=""
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "@COMMANDS@" -- "$current")
+    COMPREPLY=($(IFS=' ' compgen -W "@COMMANDS@" -- "$current"))
     return
   fi
   case "${COMP_WORDS[1]} $previous" in
@@ -54,11 +54,11 @@ _tautline()
 @OPTIONS@
   esac
   if [[ $current == -* ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current")
+    COMPREPLY=($(IFS=' ' compgen -W "$options" -- "$current"))
     return
   fi
   compopt -o filenames 2>/dev/null
-  mapfile -t COMPREPLY < <(compgen -d -- "$current"; compgen -f -X '!*.@(@SUFFIXES@)' -- "$current")
+  COMPREPLY=($(compgen -f -- "$current"))
 }
 complete -F _tautline tautline
 """
@@ -102,7 +102,7 @@ def manual(commands: dict) -> str:
 
 
 def completion(commands: dict) -> str:
-    """Commands, options of each, values of options with choices, else files of the known suffixes."""
+    """Commands, options of each, values of options with choices, else files."""
     options, choices = [], []
     for name, (parser, _) in commands.items():
         options.append(f"  {name}) options=\"{' '.join(o for a in parser._actions for o in a.option_strings)}\" ;;")
@@ -110,10 +110,10 @@ def completion(commands: dict) -> str:
             if action.choices and action.option_strings and all(" " not in str(value) for value in action.choices):
                 patterns = "|".join(f'"{name} {option}"' for option in action.option_strings)
                 words = " ".join(map(str, action.choices))
-                choices.append(f'  {patterns}) mapfile -t COMPREPLY < <(compgen -W "{words}" -- "$current"); return ;;')
+                choose = f"""COMPREPLY=($(IFS=' ' compgen -W "{words}" -- "$current"))"""
+                choices.append(f"  {patterns}) {choose}; return ;;")
     made = COMPLETION.replace("@COMMANDS@", " ".join([*commands, "--help", "--version"]))
-    made = made.replace("@OPTIONS@", "\n".join(options)).replace("@CHOICES@", "\n".join(choices or ["  :) ;;"]))
-    return made.replace("@SUFFIXES@", FILE_SUFFIXES)
+    return made.replace("@OPTIONS@", "\n".join(options)).replace("@CHOICES@", "\n".join(choices or ["  :) ;;"]))
 
 
 def main(output: Path) -> None:

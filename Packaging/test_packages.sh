@@ -12,9 +12,15 @@ root="${TAUTLINE_CHROOT:-}"
 if [[ -z $root ]]; then
   command -v debootstrap >/dev/null || fail "no debootstrap: apt-get install debootstrap"
   root="$(mktemp -d)"
-  trap 'rm -rf --one-file-system "$root"' EXIT
+  trap "rm -rf --one-file-system $root" EXIT
   echo "--- a bare $suite in $root"
   debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$root.log" 2>&1 || fail "debootstrap failed: $root.log"
+fi
+# Programs expect /proc; where it cannot be mounted, they are tried without.
+if mount -t proc proc "$root/proc" 2>/dev/null; then
+  remove="$(trap -p EXIT | sed "s/^trap -- '//; s/' EXIT$//")"
+  # shellcheck disable=SC2064 # of now
+  trap "umount '$root/proc'; $remove" EXIT
 fi
 # A shell in the chroot, of a user's environment: nothing of this machine is inherited.
 inside() { chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
@@ -24,6 +30,7 @@ files() { (cd "$root" && find usr etc opt -not -path '*/__pycache__*' | sort); }
 
 inside 'apt-get update -q; apt-get install -y -q --no-install-recommends xvfb xauth libgl1-mesa-dri man-db g++ cmake ninja-build' \
   >"$root/apt.log" 2>&1 || fail "apt-get: $root/apt.log"
+inside "apt-get purge -y -q ${names[*]}" >>"$root/apt.log" 2>&1 || true # of an earlier test in this chroot
 mkdir -p "$root/packages" "$root/consumers"
 cp "$packages"/*.deb "$root/packages"
 cp -r "$source"/Testing/Install/*_consumer "$root/consumers"

@@ -1,4 +1,7 @@
-"""pvpython open_states.py PLUGIN DATA: opens every state file of the samples elsewhere, and checks what it shows."""
+"""pvpython open_states.py PLUGIN DATA [STATES]: opens every state file elsewhere, and checks what it shows.
+
+The state files are those in DATA, or those in any directory of STATES, of which each has the states of one version.
+"""
 
 import os
 import sys
@@ -41,9 +44,9 @@ def complaints(state: Path, data: Path):
     simple.ResetSession()
 
 
-def main(plugin: str, data: Path) -> bool:
-    simple.LoadPlugin(plugin, ns=vars(simple))
-    states = sorted(data.glob("*.pvsm"))
+def main(plugin: Path, data: Path, folder_of_states: Path) -> bool:
+    simple.LoadPlugin(str(plugin), ns=vars(simple))
+    states = sorted(folder_of_states.rglob("*.pvsm"))
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)  # the names of files in the states are relative
         wrong = [f"{state.name} {complaint}" for state in states for complaint in complaints(state, data)]
@@ -53,5 +56,5 @@ def main(plugin: str, data: Path) -> bool:
 
 
 if __name__ == "__main__":
-    if not main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()):
+    if not main(*(Path(argument).resolve() for argument in (sys.argv[1:] + sys.argv[2:3])[:3])):
         sys.exit(1)

@@ -1,8 +1,8 @@
-"""test_readme.py SOURCE BUILD WORK PVPYTHON...: runs every example of README.md as a reader would.
+"""test_readme.py SOURCE BUILD WORK PVPYTHON...: runs every example of README.md and Documents.
 
 A comment before each block of code says how: <!-- test: sh -->, python3, pvpython (PVPYTHON and its arguments run
 it), file NAME (saves it), install (runs it with this build tree), prefix (runs it and then checks that what it sets
-exists), skip. Blocks run one after the other in one directory, which has the sample meshes in Data.
+exists), skip. The blocks of a page run one after the other in one directory, which has the sample meshes in Data.
 """
 
 import os
@@ -12,8 +12,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+NOISE = 8  # of a colour, 0 to 255
+FILLED = 0.2  # of the middle of a picture, at least
 BLOCK = re.compile(
-    r"^(?:<!-- test: (?P<how>[^>]+?) -->\n)?```(?P<language>\w*)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL
+    r"^(?:<!-- test: (?P<how>[^>]+?) -->\n)?```(?P<language>[\w{}]*)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL
 )
 WRONG = re.compile(r"Traceback|ERR\||ERROR")  # pvpython does not fail when a filter does
 PATHS = '"$PYTHONPATH/tautline" "$PV_PLUGIN_PATH"/Tautline "$CMAKE_PREFIX_PATH"/include'
@@ -28,24 +33,37 @@ def run(command: list, work: Path, environment: dict) -> None:
         sys.exit(f"this example does not work (exit code {done.returncode})")
 
 
+def check_whole(picture: Path) -> None:
+    """What is drawn lies within the picture and fills it: no drawn pixel on its border, some in its middle half."""
+    reader = vtkPNGReader()
+    reader.SetFileName(str(picture))
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1).astype(int)
+    drawn = abs(pixels - pixels[-1, 0]).max(axis=2) > NOISE
+    middle = drawn[height // 4 : 3 * height // 4, width // 4 : 3 * width // 4]
+    if drawn[:, 0].any() or drawn[0].any() or drawn[-1].any() or middle.mean() < FILLED:
+        sys.exit(f"{picture.name} does not show the whole mesh: {middle.mean():.2f} of its middle is drawn")
+
+
 def environment_of(build: Path, home: Path) -> dict:
     """What ./run env sets; python3 is the interpreter of this script."""
     environment = dict(os.environ, CMAKE_PREFIX_PATH=str(build), HOME=str(home))
-    environment["PATH"] = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    environment["PATH"] = f"{build / 'bin'}:{Path(sys.executable).parent}:{os.environ['PATH']}"
     environment["PYTHONPATH"] = str(build / "lib/python3/dist-packages")
     environment["PV_PLUGIN_PATH"] = str(next(build.glob("lib*/**/plugins"), ""))
     return environment
 
 
-def main(source: Path, build: Path, work: Path, pvpython: list) -> None:
-    shutil.rmtree(work, ignore_errors=True)
-    work.mkdir(parents=True)
-    (work / "Data").symlink_to(source / "Data")
+def run_page(page: Path, build: Path, work: Path, pvpython: list) -> int:
+    """Run the examples of a page; returns their number."""
     environment = environment_of(build, work)
     ran = 0
-    for block in BLOCK.finditer((source / "README.md").read_text(encoding="utf-8")):
+    for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
         how, code = block["how"], block["code"]
-        print(f"--- {how}\n{code}", flush=True)
+        if how is None and block["language"] in ("", "{toctree}", "{include}"):  # no example
+            continue
+        print(f"--- {page.name}: {how}\n{code}", flush=True)
         if how is None:
             sys.exit('this block has no comment "test: ..." before it')
         kind, _, name = how.partition(" ")
@@ -60,9 +78,21 @@ def main(source: Path, build: Path, work: Path, pvpython: list) -> None:
         interpreters = {"python3": [sys.executable], "pvpython": pvpython}
         run([*interpreters.get(kind, ["bash", "-eu"]), str(script)], work, environment)
         ran += 1
-    print(f"{ran} examples work")
-    if not ran:
-        sys.exit("README.md has no example")
+    return ran
+
+
+def main(source: Path, build: Path, work: Path, pvpython: list) -> None:
+    shutil.rmtree(work, ignore_errors=True)
+    for page in (source / "README.md", *sorted((source / "Documents").glob("*.md"))):
+        directory = work / page.stem
+        directory.mkdir(parents=True)
+        (directory / "Data").symlink_to(source / "Data")
+        ran = run_page(page, build, directory, pvpython)
+        print(f"{page.name}: {ran} examples work")
+        if page.name == "README.md" and not ran:
+            sys.exit("README.md has no example")
+        if (directory / "bracket.png").exists():
+            check_whole(directory / "bracket.png")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,17 @@
+"""Sphinx's settings for the site: ./run docs."""
+
+import os
+
+project = "Tautline"
+author = "Tautline developers"
+copyright = "2026, Tautline developers"  # noqa: A001
+release = version = os.environ["TAUTLINE_VERSION"]
+extensions = ["myst_parser"]
+html_theme = "sphinx_rtd_theme"
+html_show_sourcelink = False
+html_copy_source = False
+html_theme_options = {"navigation_depth": 2, "collapse_navigation": False}
+html_extra_path = ["extra"]  # the help pages
+myst_heading_anchors = 3
+suppress_warnings = ["myst.header", "myst.xref_missing"]
+highlight_language = "none"

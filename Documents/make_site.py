@@ -1,0 +1,158 @@
+"""make_site.py SOURCE WORK OUTPUT VERSION: makes the site of all documents with Sphinx, and checks its links.
+
+The pages are README.md, Documents, CONTRIBUTING.md, CHANGELOG.md, SECURITY.md and the help pages of the plugin, which are
+taken as they are. Links between them are those of the repository; in the site they lead to the pages made of these files.
+"""
+
+import html
+import inspect
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from urllib.parse import unquote
+
+HELP = "Plugin/Documentation"
+#: Files outside Documents, and the names of their pages.
+PAGES = {
+    "README.md": "index",
+    "CONTRIBUTING.md": "contributing",
+    "CHANGELOG.md": "changes",
+    "SECURITY.md": "security",
+    "Packaging/requirements.md": "requirements",
+}
+LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
+COMMENT = re.compile(r"^<!--.*?-->\n", re.MULTILINE)
+REFERENCE = re.compile(r'(?:href|src)="([^"]+)"')
+ANCHOR = re.compile(r'(?:id|name)="([^"]+)"')
+WIDTH = 80  # of a signature in one line
+OUTSIDE = re.compile(r"[a-z]+:|//")
+
+
+class Site:
+    """The tree of Markdown that Sphinx reads."""
+
+    def __init__(self, source: Path, work: Path):
+        self.source, self.work = source, work
+        shutil.rmtree(work, ignore_errors=True)
+        (work / "extra").mkdir(parents=True)
+        for directory in (HELP, "Data"):
+            names = shutil.ignore_patterns("*.py", "*.in", "toc.xml", "*.cmake")
+            shutil.copytree(source / directory, work / "extra" / directory, ignore=names)
+
+    def target(self, page: Path, link: str) -> str:
+        """Where a link of a file leads in the site; pictures are relative to the repository, too."""
+        path, mark, anchor = link.partition("#")
+        if OUTSIDE.match(link) or not path:
+            return link
+        name = Path(os.path.relpath(page.parent / path, self.source)).as_posix()
+        if name in PAGES:
+            return f"{PAGES[name]}.html{mark}{anchor}"
+        if name.startswith("Documents/") and name.endswith(".md"):
+            return f"{Path(name).stem}.html{mark}{anchor}"
+        if name.startswith((HELP, "Data/")):
+            return f"{name}{mark}{anchor}"
+        return ""  # a file of the sources, which the site does not have
+
+    def add(self, page: Path, name: str) -> None:
+        """A page of the site, with its links as raw HTML so that they are taken as they are."""
+
+        def fill(match) -> str:
+            target = self.target(page, match[2])
+            text = match[1][1:-2] if match[1].startswith("[") else match[1][2:-2]
+            if match[1].startswith("!"):
+                return f'<img src="{target}" alt="{html.escape(text)}">'
+            return f'<a href="{target}">{text}</a>' if target else f"`{text}`"
+
+        text = COMMENT.sub("", page.read_text(encoding="utf-8"))
+        parts = re.split(r"(^```.*?^```$)", text, flags=re.MULTILINE | re.DOTALL)
+        parts[::2] = [LINK.sub(fill, part) for part in parts[::2]]
+        (self.work / f"{name}.md").write_text("".join(parts), encoding="utf-8")
+
+    def add_all(self) -> None:
+        for page in (self.source / "Documents").glob("*.md"):
+            self.add(page, page.stem)
+        for name, page in PAGES.items():
+            self.add(self.source / name, page if page != "index" else "readme")
+        toctrees = (self.work / "index.md").read_text(encoding="utf-8").split("```{toctree}", 1)[1]
+        readme = (self.work / "readme.md").read_text(encoding="utf-8")
+        (self.work / "index.md").write_text(f"{readme}\n```{{toctree}}{toctrees}", encoding="utf-8")
+        (self.work / "readme.md").unlink()
+        (self.work / "python.md").write_text(python_page(), encoding="utf-8")
+        (self.work / "tutorial.md").write_text(help_page("Tutorial", "tutorial.html", "index.html", "jobs.html"))
+        (self.work / "gallery.md").write_text(gallery_page(self.source), encoding="utf-8")
+        shutil.copyfile(self.source / "Documents/conf.py", self.work / "conf.py")
+
+
+def signature_of(name: str, value) -> str:
+    """As in a call, an argument a line where there are many."""
+    try:
+        signature = str(inspect.signature(value))
+    except ValueError:  # a class made of C
+        return name
+    if len(signature) <= WIDTH:
+        return name + signature
+    return name + re.sub(r"(^\(|, (?=\w+: |\*))", lambda match: f"{match[0].strip()}\n    ", signature)
+
+
+def python_page() -> str:
+    """Every public function and class of results of the package, with its docstring as it is."""
+    import tautline
+
+    parts = [f"# Python\n\n```text\n{inspect.getdoc(tautline)}\n```\n"]
+    for name, value in sorted(vars(tautline).items()):
+        if callable(value) and not name.startswith(("_", "vtk")):
+            text = inspect.getdoc(value) or ""
+            parts.append(f"## {name}\n\n```python\n{signature_of(name, value)}\n```\n\n```text\n{text}\n```\n")
+    return "\n".join(parts)
+
+
+def help_page(title: str, *pages: str) -> str:
+    links = "\n".join(f'- <a href="{HELP}/{page}">{Path(page).stem}</a>' for page in pages)
+    return f"# {title}\n\nThe pages of ParaView's help:\n\n{links}\n"
+
+
+def gallery_page(source: Path) -> str:
+    """The examples: title and text of the docstring, and the script. A test runs each of them."""
+    parts = ["# Gallery\n\nEvery example is a script in `Examples`; a test runs all of them.\n"]
+    for script in sorted((source / "Examples").glob("[0-9]*.py")):
+        text = script.read_text(encoding="utf-8")
+        title, _, rest = text.split('"""')[1].partition("\n")
+        code = text.split('"""', 2)[2].strip()
+        parts.append(f"## {title.rstrip('.')}\n\n{rest.strip()}\n\n`Examples/{script.name}`\n\n```python\n{code}\n```\n")
+    return "\n".join(parts)
+
+
+def dead_links(output: Path):
+    """Links of every page that lead to no file or no anchor of the site."""
+    texts = {page: page.read_text(encoding="utf-8", errors="replace") for page in output.rglob("*.html")}
+    anchors = {page: set(ANCHOR.findall(text)) for page, text in texts.items()}
+    for page, text in texts.items():
+        for link in REFERENCE.findall(text):
+            target, _, anchor = unquote(html.unescape(link)).partition("#")
+            path = (page.parent / target.split("?")[0]).resolve() if target else page
+            if OUTSIDE.match(link) or target.startswith("../../"):  # from the help to the sources
+                continue
+            if not path.exists():
+                yield f"{page.relative_to(output)}: {link} leads nowhere"
+            elif anchor and path in anchors and anchor not in anchors[path]:
+                yield f"{page.relative_to(output)}: {link} has no such anchor"
+
+
+def main(source: Path, work: Path, output: Path, version: str) -> int:
+    Site(source, work).add_all()
+    shutil.rmtree(output, ignore_errors=True)
+    environment = dict(os.environ, TAUTLINE_VERSION=version)
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(work), str(output)]
+    if subprocess.run(command, env=environment).returncode:
+        return 1
+    wrong = list(dead_links(output))
+    pages = len(list(output.rglob("*.html")))
+    print("\n".join([*wrong, f"{pages} pages, {len(wrong)} dead links: {output / 'index.html'}"]))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*(Path(argument).resolve() for argument in sys.argv[1:4]), sys.argv[4]))
