@@ -84,6 +84,8 @@ class Site:
         (self.work / "tutorial.md").write_text(help_page("Tutorial", "tutorial.html", "index.html", "jobs.html"))
         (self.work / "gallery.md").write_text(gallery_page(self.source), encoding="utf-8")
         shutil.copyfile(self.source / "Documents/conf.py", self.work / "conf.py")
+        (self.work / "static").mkdir()
+        shutil.copyfile(self.source / "Documents/style.css", self.work / "static/style.css")
 
 
 def signature_of(name: str, value) -> str:

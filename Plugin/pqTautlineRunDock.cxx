@@ -1,6 +1,7 @@
 #include "pqTautlineRunDock.h"
 
 #include "ProxyKind.h"
+#include "QtCompatibility.h"
 #include "RunControl.h"
 #include "RunPlot.h"
 #include "StopWindow.h"
@@ -25,7 +26,6 @@
 #include <QRegularExpression>
 #include <QToolButton>
 #include <QVBoxLayout>
-#include <QX11Info>
 
 #include <cstring>
 
@@ -55,7 +55,7 @@ bool isIterative(const QString& filter)
 /// Shows what was drawn, though no event is processed.
 void flush()
 {
-  if (xcb_connection_t* display = QX11Info::connection())
+  if (xcb_connection_t* display = tautline::xcbConnection())
   {
     xcb_flush(display);
   }

@@ -1,9 +1,10 @@
 #include "MeshFileAdapter.h"
 
+#include "VtkCompatibility.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
-#include "vtkCellTypes.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
@@ -229,7 +230,7 @@ void addCells(vtkDataSet* input, MeshFile& mesh)
     {
       keep.push_back(!ghost);
     }
-    input->GetCellPoints(cell, size, ids, scratch);
+    cellPoints(input, cell, size, ids, scratch);
     const int type = input->GetCellType(cell);
     if (!ghost && !addCell(mesh, type, size, ids))
     {
@@ -241,8 +242,7 @@ void addCells(vtkDataSet* input, MeshFile& mesh)
     std::string list;
     for (const auto& [type, count] : unknown)
     {
-      list += (list.empty() ? "" : ", ") + std::to_string(count) + " " +
-        vtkCellTypes::GetClassNameFromTypeId(type);
+      list += (list.empty() ? "" : ", ") + std::to_string(count) + " " + cellClassName(type);
     }
     throw Error("cells that cannot be written: " + list +
       "; run Tetrahedralize (or, on surfaces, Triangulate) first");

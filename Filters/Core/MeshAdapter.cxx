@@ -1,10 +1,10 @@
 #include "MeshAdapter.h"
 
+#include "VtkCompatibility.h"
 #include "tautline/Mesh/CellOrder.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkCellTypes.h"
 #include "vtkDataArrayRange.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
@@ -253,9 +253,9 @@ bool plainArrays(vtkCellArray* cells, const Index*& offsets, const Index*& conne
   {
     return false;
   }
-  offsets = reinterpret_cast<const Index*>(cells->GetOffsetsArray64()->GetPointer(0));
-  connectivity = reinterpret_cast<const Index*>(cells->GetConnectivityArray64()->GetPointer(0));
-  return true;
+  offsets = reinterpret_cast<const Index*>(plainOffsets(cells));
+  connectivity = reinterpret_cast<const Index*>(plainConnectivity(cells));
+  return offsets && connectivity;
 }
 
 /// Types whose local numbering or generality differs from the kernel's, and what they become.
@@ -297,7 +297,7 @@ void MeshAdapter::takeCells(vtkDataSet* input)
   // An unstructured grid without pixels, voxels and polygons is taken as it is.
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(input))
   {
-    vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+    vtkUnsignedCharArray* types = cellTypesOf(grid);
     const unsigned char* type = types ? types->GetPointer(0) : nullptr;
     const bool plain = type &&
       std::none_of(type, type + count,
@@ -416,8 +416,7 @@ std::string MeshAdapter::notice() const
     text += "Not measured:";
     for (const auto& entry : counts)
     {
-      text += " " + std::to_string(entry.second) + " " +
-        vtkCellTypes::GetClassNameFromTypeId(entry.first) + ",";
+      text += " " + std::to_string(entry.second) + " " + cellClassName(entry.first) + ",";
     }
     text.back() = '.';
     // ParaView's Triangulate takes poly data only; Tetrahedralize takes all data sets.
@@ -547,7 +546,7 @@ void flipCells(vtkDataSet* data, const std::vector<unsigned char>& flags)
   if (grid)
   {
     auto types = vtkSmartPointer<vtkUnsignedCharArray>::New();
-    types->DeepCopy(grid->GetCellTypesArray());
+    types->DeepCopy(cellTypesOf(grid));
     grid->SetCells(types, cells);
   }
   else

@@ -1,13 +1,13 @@
 #include "ValidateInput.h"
 
 #include "Blocks.h"
+#include "VtkCompatibility.h"
 #include "tautline/Mesh/ArrayChecks.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
-#include "vtkCellTypes.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
@@ -63,7 +63,7 @@ CellSizes makeCellSizes()
   // Types that no program writes any more, or whose size is not fixed, may list anything.
   for (int type = VTK_EMPTY_CELL; type < VTK_NUMBER_OF_CELL_TYPES; ++type)
   {
-    const bool exists = std::string(vtkCellTypes::GetClassNameFromTypeId(type)) != "UnknownClass";
+    const bool exists = std::string(cellClassName(type)) != "UnknownClass";
     sizes.points[static_cast<std::size_t>(type)] =
       exists ? CellSizes::atLeast(0) : CellSizes::Unknown;
   }
@@ -236,7 +236,7 @@ std::string cellProblemOf(vtkCellArray* cells, const CellRules& rules)
       return cellName(wrong) + " has the type " + std::to_string(type) +
         ", which does not exist. " + CheckSource;
     }
-    const std::string name = rules.types ? vtkCellTypes::GetClassNameFromTypeId(type) : rules.name;
+    const std::string name = rules.types ? cellClassName(type) : rules.name;
     return cellName(wrong) + " is not a proper " + name + ": it lists " +
       std::to_string(offsets[wrong + 1] - offsets[wrong]) + " points. " + CheckSource;
   }
@@ -270,7 +270,7 @@ std::string cellProblem(vtkCellArray* cells, const CellRules& rules)
 /// Ids of the faces of polyhedra, as a cell array or as a stream.
 std::string polyhedronProblem(vtkUnstructuredGrid* grid, int threads)
 {
-  vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+  vtkUnsignedCharArray* types = cellTypesOf(grid);
   const Index cells = grid->GetNumberOfCells();
   const unsigned char* type = types ? types->GetPointer(0) : nullptr;
   if (!type || std::find(type, type + cells, VTK_POLYHEDRON) == type + cells)
@@ -338,7 +338,7 @@ std::string polyhedronProblem(vtkUnstructuredGrid* grid, int threads)
 std::string gridProblem(vtkUnstructuredGrid* grid, int threads)
 {
   const Index cells = grid->GetNumberOfCells();
-  vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+  vtkUnsignedCharArray* types = cellTypesOf(grid);
   const Index given = types ? types->GetNumberOfValues() : 0;
   if (given != cells)
   {

@@ -1,11 +1,11 @@
 #include "ReconnectableMesh.h"
 
 #include "PointMerge.h"
+#include "VtkCompatibility.h"
 
 #include "tautline/Core/Interruption.h"
 #include "vtkCell.h"
 #include "vtkCellType.h"
-#include "vtkCellTypes.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkGenericCell.h"
@@ -61,9 +61,7 @@ std::string pluralOf(int type)
     { VTK_PYRAMID, "pyramids" }, { VTK_POLYHEDRON, "polyhedra" },
     { VTK_QUADRATIC_TETRA, "quadratic tetrahedra" } };
   const auto found = names.find(type);
-  return found != names.end()
-    ? found->second
-    : std::string("cells of type ") + vtkCellTypes::GetClassNameFromTypeId(type);
+  return found != names.end() ? found->second : std::string("cells of type ") + cellClassName(type);
 }
 
 /// "8 hexahedra and 3 wedges"

@@ -1,6 +1,7 @@
 #include "WarpPointwise.h"
 
 #include "WarpBatches.h"
+#include "tautline/Core/EigenCompatibility.h"
 #include "tautline/Core/LineSearch.h"
 #include "tautline/Core/UnionFind.h"
 
@@ -242,6 +243,13 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
   solution.setZero(right.rows(), right.cols());
   for (Eigen::Index k = 0; k < right.cols(); ++k)
   {
+    // Eigen 5 ends at an absolute tolerance, too: the right side is scaled to length 1.
+    const double length = right.col(k).norm();
+    if (!(length > 0.0))
+    {
+      continue;
+    }
+    const Eigen::VectorXd b = right.col(k) / length;
     Eigen::VectorXd x = Eigen::VectorXd::Zero(right.rows());
     int runs = 0;
     do
@@ -256,11 +264,12 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
           std::to_string(tolerance) + "; raise the tolerance or choose another method");
       }
       const Eigen::VectorXd start = x;
-      x = solver.solveWithGuess(right.col(k), start);
+      restartAlike();
+      x = solver.solveWithGuess(b, start);
       // The method updates its residual step by step; another run begins with the real one.
-    } while (solver.info() != Eigen::Success ||
-      !((right.col(k) - matrix * x).norm() <= ResidualFactor * tolerance * right.col(k).norm()));
-    solution.col(k) = x;
+    } while (
+      solver.info() != Eigen::Success || !((b - matrix * x).norm() <= ResidualFactor * tolerance));
+    solution.col(k) = length * x;
   }
   return true;
 }

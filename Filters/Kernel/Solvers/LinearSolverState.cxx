@@ -46,10 +46,10 @@ SolveReason translate(KSPConvergedReason reason, bool direct)
   switch (reason)
   {
     case KSP_CONVERGED_RTOL:
-    case KSP_CONVERGED_RTOL_NORMAL:
+    case ConvergedRelativeNormal:
       return SolveReason::RelativeTolerance;
     case KSP_CONVERGED_ATOL:
-    case KSP_CONVERGED_ATOL_NORMAL:
+    case ConvergedAbsoluteNormal:
       return SolveReason::AbsoluteTolerance;
     case KSP_CONVERGED_HAPPY_BREAKDOWN:
       return SolveReason::Exact;
@@ -68,12 +68,12 @@ SolveReason translate(KSPConvergedReason reason, bool direct)
       return SolveReason::NotANumber;
     case KSP_DIVERGED_PC_FAILED:
       return SolveReason::PreconditionerFailed;
+    case KSP_CONVERGED_ITS: // of a method of the PETSc options without a test, or a factorization
+      return direct ? SolveReason::Exact : SolveReason::OtherConvergence;
+    // Other positive reasons end a step within a region of trust; the system is not solved.
     default:
-      break;
+      return SolveReason::OtherFailure;
   }
-  return reason < 0 ? SolveReason::OtherFailure
-    : direct        ? SolveReason::Exact
-                    : SolveReason::OtherConvergence;
 }
 
 /// Why a preconditioner could not be set up.
@@ -143,7 +143,7 @@ LinearSolverState::~LinearSolverState()
 {
   if (this->DestroyTest && petscUsable() && this->Generation == petscGeneration())
   {
-    this->DestroyTest(this->TestContext);
+    destroyContext(this->DestroyTest, this->TestContext);
   }
 }
 
@@ -176,6 +176,8 @@ void LinearSolverState::configure()
   {
     petsc(KSPGMRESSetRestart(this->Solver, this->Options.restart));
   }
+  petsc(
+    liftMinresRadius(this->Solver)); // of other methods, too: the PETSc options may choose MINRES
   // ILU and ICC work on one rank; on several they become the solvers of the blocks.
   const bool parallel = this->Objects.ranks() > 1;
   switch (direct ? Preconditioner::None : this->Options.preconditioner)

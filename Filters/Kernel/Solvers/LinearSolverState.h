@@ -5,6 +5,7 @@
 #ifndef tautline_LinearSolverState_h
 #define tautline_LinearSolverState_h
 
+#include "PetscCompatibility.h"
 #include "PetscObjects.h"
 #include "Residual.h"
 #include "SolverOptions.h"
@@ -45,7 +46,7 @@ struct LinearSolverState
   // The convergence test that PETSc or its options chose; Tautline's calls it first.
   PetscErrorCode (*Test)(KSP, PetscInt, PetscReal, KSPConvergedReason*, void*) = nullptr;
   void* TestContext = nullptr;
-  PetscErrorCode (*DestroyTest)(void*) = nullptr;
+  ContextDestructor DestroyTest = nullptr;
 
   // Of the current set-up or solve.
   WatchedWork* Work = nullptr; // calls back to the thread that waits; null: this one does all

@@ -1,0 +1,17 @@
+"""Compare two meshes.
+
+Which elements became worse? The difference is a cell array, to be coloured. On the shell: tautline compare first.vtu
+second.vtu --csv changes.csv
+"""
+
+import sys
+from pathlib import Path
+
+import tautline as tl
+
+data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
+worse = tl.perturb(data / "bracket.vtu", fraction=0.4, seed=1)
+result = tl.compare(data / "bracket.vtu", worse)
+print(result.summary)
+tl.write(result, "after.vtu")
+assert result.difference["imr"].max() > 0

@@ -1,0 +1,18 @@
+"""A report to send.
+
+One HTML file with pictures, histograms and tables, before and after. It needs no display. On the shell: tautline report
+after.vtu --before before.vtu --out report.html
+"""
+
+import sys
+from pathlib import Path
+
+import tautline as tl
+
+data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
+tangled = data / "bracket-tangled.vtu"
+tl.write(tl.optimize(tangled), "after.vtu")
+tl.report("after.vtu", "report.html", before=tangled)
+text = Path("report.html").read_text(encoding="utf-8")
+print("report.html has", len(text), "characters")
+assert "<svg" in text or "<img" in text

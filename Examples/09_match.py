@@ -1,0 +1,17 @@
+"""Find a fish in a picture.
+
+The shape of one fish, triangulated, is deformed to match the picture of another. On the shell: tautline match fish.png
+fish-bent.png --locations contour --spacing 12 -o after.vtu
+"""
+
+import sys
+from pathlib import Path
+
+import tautline as tl
+
+data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
+fish = tl.silhouette(data / "fish.png", spacing=12)
+found = tl.match(fish, data / "fish-bent.png", locations="contour")
+print(found.summary)
+tl.write(found, "after.vtu")
+assert found.mesh.GetNumberOfCells() == fish.mesh.GetNumberOfCells()

@@ -1,0 +1,83 @@
+/**
+ * @file VtkCompatibility.h
+ * @brief What differs between VTK 9.1 and 9.6, in one place. Not a public header.
+ */
+#ifndef tautline_VtkCompatibility_h
+#define tautline_VtkCompatibility_h
+
+#include "vtkCellArray.h"
+#include "vtkDataSet.h"
+#include "vtkIdList.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkVersionMacros.h"
+
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+#include "vtkCellTypeUtilities.h"
+#else
+#include "vtkCellTypes.h"
+#endif
+
+namespace tautline
+{
+/// The name of VTK's class of a type of cells; "UnknownClass" for numbers without one.
+inline const char* cellClassName(int type)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  return vtkCellTypeUtilities::GetClassNameFromTypeId(type);
+#else
+  return vtkCellTypes::GetClassNameFromTypeId(type);
+#endif
+}
+
+/// The points of a cell; `list` may hold them. VTK 9.1 always copies them.
+inline void cellPoints(
+  vtkDataSet* mesh, vtkIdType cell, vtkIdType& count, const vtkIdType*& points, vtkIdList* list)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
+  mesh->GetCellPoints(cell, count, points, list);
+#else
+  mesh->GetCellPoints(cell, list);
+  count = list->GetNumberOfIds();
+  points = list->GetPointer(0);
+#endif
+}
+
+/// The types of the cells, one byte each. The successor in 9.6 may return an array that is computed.
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+#endif
+inline vtkUnsignedCharArray* cellTypesOf(vtkUnstructuredGrid* grid)
+{
+  return grid->GetCellTypesArray();
+}
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+/// The offsets of cells that are stored in 64 bits; null where VTK 9.6 computes them.
+inline const vtkTypeInt64* plainOffsets(vtkCellArray* cells)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  auto* array = cells->GetOffsetsAOSArray64();
+#else
+  auto* array = cells->GetOffsetsArray64();
+#endif
+  return array ? array->GetPointer(0) : nullptr;
+}
+
+/// The points of cells that are stored in 64 bits; null where they are not a plain array.
+inline const vtkTypeInt64* plainConnectivity(vtkCellArray* cells)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  auto* array = cells->GetConnectivityAOSArray64();
+#else
+  auto* array = cells->GetConnectivityArray64();
+#endif
+  return array ? array->GetPointer(0) : nullptr;
+}
+} // namespace tautline
+
+#endif

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# test_platform.sh SOURCE_TREE SUITE LOG [MIRROR]: builds and tests the committed files in a bare chroot of a Debian release.
+# The last line that it prints is a row of a table: suite, ParaView, compiler, packages, build, tests. Needs root,
+# debootstrap, the network, and about 7 GB in TMPDIR.
+set -uo pipefail
+source="$1" suite="$2" log="$3" mirror="${4:-http://deb.debian.org/debian}"
+fail() { echo "test_platform.sh: $*; see $log" >&2; row; exit 1; }
+paraview="-" compiler="-" packages="no" build="no" tests="-"
+row() { printf '| Debian %s | %s | %s | %s | %s | %s |\n' "$suite" "$paraview" "$compiler" "$packages" "$build" "$tests"; }
+((EUID == 0)) || fail "a chroot needs root"
+command -v debootstrap >/dev/null || fail "no debootstrap: apt-get install debootstrap"
+
+root="$(mktemp -d)"
+mounted=()
+cleanup() {
+  for directory in "${mounted[@]}"; do umount "$directory"; done
+  rm -rf --one-file-system "$root"
+}
+trap cleanup EXIT
+debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$log" 2>&1 || fail "debootstrap"
+if mount -t proc proc "$root/proc" 2>>"$log"; then mounted=("$root/proc"); fi
+# Nothing of this machine's environment, but the cache of the compiler where there is one.
+inside() {
+  chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive CI=true \
+    PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin bash -c "$1"
+}
+mkdir -p "$root/tautline"
+git -C "$source" archive HEAD | tar -x -C "$root/tautline" || fail "git archive"
+# The tests of style look at a checkout, too.
+inside 'apt-get update -q && apt-get install -y -q --no-install-recommends ca-certificates git' >>"$log" 2>&1 || fail "apt-get"
+inside 'cd /tautline && ./run build' >>"$log" 2>&1 && build=yes
+paraview="$(inside "dpkg-query -W -f='\${source:Upstream-Version}' paraview" 2>>"$log" || echo -)"
+compiler="$(inside 'c++ -dumpfullversion' 2>>"$log" || echo -)"
+[[ $paraview == - ]] || packages=yes
+[[ $build == yes ]] || fail "the build"
+inside 'cd /tautline && ./run test' >>"$log" 2>&1
+tests="$(sed -n 's/^\([0-9]*% tests passed, [0-9]* tests failed out of [0-9]*\).*/\1/p' "$log" | tail -n 1)"
+row
+[[ $tests == 100%* ]]
