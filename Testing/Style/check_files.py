@@ -10,6 +10,7 @@ DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "pyth
 CODE = {".h", ".cxx", ".py", ".cmake", ".in", ".sh"}
 TEXT = CODE | {".xml", ".md", ".qrc", ".svg", ".txt", ".module", ".plugin"}
 MAX_LINES = 700
+LICENCE = b"SPDX-License-Identifier"  # a line that does not count
 MAX_COLUMNS = {".h": 100, ".cxx": 100, ".py": 120}  # clang-format leaves comments and texts as they are
 
 
@@ -37,8 +38,9 @@ def complaints(path: Path):
     for number, line in enumerate(lines, 1):
         if columns and len(line.decode()) > columns:
             yield f"has {len(line.decode())} columns in line {number}, {columns} are allowed"
-    if len(lines) - 1 > MAX_LINES and path.suffix in CODE:
-        yield f"has {len(lines) - 1} lines, {MAX_LINES} are allowed"
+    count = sum(LICENCE not in line for line in lines) - 1
+    if count > MAX_LINES and path.suffix in CODE:
+        yield f"has {count} lines, {MAX_LINES} are allowed"
 
 
 def badly_formatted(paths) -> int:

@@ -10,7 +10,7 @@ from pathlib import Path
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
 DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", "Packaging", "Examples",
                "Documents", ".ci")  # fmt: skip
-COMMENTS = {".h": "// {}", ".cxx": "// {}", ".py": "# {}", ".cmake": "# {}", ".sh": "# {}", ".module": "# {}"}
+COMMENTS = {".h": "// {}", ".cxx": "// {}", ".py": "# {}", ".cmake": "# {}", ".sh": "# {}"}
 NAMES = {"CMakeLists.txt": "# {}", "run": "# {}"}
 FIRST_LINES = 2  # among which it is looked for
 
