@@ -24,12 +24,15 @@ def rows():
     worst = better.statistics["imr"]
     yield ("Optimize Mesh, the same", "worst inverse mean ratio", f"{worst['worst_before']:.1f}",
            f"{worst['worst_after']:.1f}", f"{worst['worst_after'] / worst['worst_before']:.2f}")  # fmt: skip
-    first, last = (tl.solve(mesh, source="1", solver="cg", preconditioner="jacobi").iterations for mesh in (valid, better))
+    first, last = (
+        tl.solve(mesh, source="1", solver="cg", preconditioner="jacobi").iterations for mesh in (valid, better)
+    )
     yield "Solve PDE on it", "iterations of CG", f"{first}", f"{last}", f"{last / first:.2f}"
     best = tl.improve(better)
     yield ("Improve Mesh, the same", "smallest dihedral angle", f"{best.smallest_angle_before:.1f}°",
            f"{best.smallest_angle:.1f}°", f"{best.smallest_angle / best.smallest_angle_before:.2f}")  # fmt: skip
-    plain, hybrid = (tl.warp(DATA / "plate.vtu", transform=TURN, method=method) for method in ("femwarp", "hybrid"))
+    plate = DATA / "plate.vtu"
+    plain, hybrid = (tl.warp(plate, transform=TURN, method=method) for method in ("femwarp", "hybrid"))
     yield ("Warp Mesh, hole turned by 120°", "inverted: FEMWARP, hybrid", f"{plain.inverted}", f"{hybrid.inverted}", "0")
 
 

@@ -1,7 +1,8 @@
 """make_site.py SOURCE WORK OUTPUT VERSION: makes the site of all documents with Sphinx, and checks its links.
 
-The pages are README.md, Documents, CONTRIBUTING.md, CHANGELOG.md, SECURITY.md and the help pages of the plugin, which are
-taken as they are. Links between them are those of the repository; in the site they lead to the pages made of these files.
+The pages are README.md, Documents, CONTRIBUTING.md, CHANGELOG.md, SECURITY.md and the help pages of the plugin, which
+are taken as they are. Links between them are those of the repository; in the site they lead to the pages made of these
+files.
 """
 
 import html
@@ -123,7 +124,8 @@ def gallery_page(source: Path) -> str:
         text = script.read_text(encoding="utf-8")
         title, _, rest = text.split('"""')[1].partition("\n")
         code = text.split('"""', 2)[2].strip()
-        parts.append(f"## {title.rstrip('.')}\n\n{rest.strip()}\n\n`Examples/{script.name}`\n\n```python\n{code}\n```\n")
+        head = f"## {title.rstrip('.')}\n\n{rest.strip()}\n\n`Examples/{script.name}`"
+        parts.append(f"{head}\n\n```python\n{code}\n```\n")
     return "\n".join(parts)
 
 

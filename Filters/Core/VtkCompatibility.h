@@ -44,7 +44,7 @@ inline void cellPoints(
 #endif
 }
 
-/// The types of the cells, one byte each. The successor in 9.6 may return an array that is computed.
+/// The types of the cells, one byte each. The successor in 9.6 may return a computed array.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeprecated-declarations"
