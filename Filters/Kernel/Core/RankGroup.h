@@ -1,0 +1,137 @@
+/**
+ * @file RankGroup.h
+ * @brief The ranks that work on one mesh, as the kernel sees them: MPI processes, threads of a
+ * test, or this process alone.
+ */
+#ifndef tautline_RankGroup_h
+#define tautline_RankGroup_h
+
+#include "Types.h"
+
+#include <cstring>
+#include <functional>
+#include <type_traits>
+#include <vector>
+
+namespace tautline
+{
+using Bytes = std::vector<char>;
+
+/// A message to or from a rank.
+struct RankMessage
+{
+  int rank = 0;
+  Bytes bytes;
+};
+
+/**
+ * @class tautline::RankGroup
+ * @brief Communication between ranks. All methods but rank() and size() are collective: every rank
+ * calls them in the same order. Implementations write start(), finish() and allGather().
+ */
+class TAUTLINE_KERNEL_EXPORT RankGroup
+{
+public:
+  virtual ~RankGroup();
+
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
+
+  /**
+   * @brief Starts to send and to receive, and returns at once. No second start() before finish().
+   * @param sent kept unchanged by the caller until finish(); at most one message per rank
+   * @param received of the size that each message has, at most one per rank; filled by finish()
+   */
+  virtual void start(
+    const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) = 0;
+  /// Waits for what was started.
+  virtual void finish() = 0;
+  /// The bytes of every rank, on every rank.
+  virtual std::vector<Bytes> allGather(const Bytes& own) = 0;
+
+  /// Sends bytes to each rank (sent[r], also to itself) and returns those of each rank.
+  std::vector<Bytes> exchange(const std::vector<Bytes>& sent);
+  /// The same with lists of items.
+  template <class Item>
+  std::vector<std::vector<Item>> exchangeItems(const std::vector<std::vector<Item>>& sent);
+  /// The items of every rank, on every rank.
+  template <class Item>
+  std::vector<std::vector<Item>> gatherItems(const std::vector<Item>& own);
+
+  Index sum(Index value);
+  Index maximum(Index value);
+  double maximum(double value);
+  bool any(bool value) { return this->maximum(static_cast<Index>(value)) > 0; }
+  /// The sum of the values of all ranks and of all lists, rounded once: it depends neither on the
+  /// order of the values nor on the ranks they are on. Values that are not finite give NaN.
+  double orderlessSum(const std::vector<double>& values);
+
+  /**
+   * @brief Does work that does not communicate. What it throws on any rank is thrown on all, as
+   * Error, with the message of the lowest rank that has one, so that none waits for another.
+   */
+  void together(const std::function<void()>& work);
+};
+
+/// This process alone.
+class TAUTLINE_KERNEL_EXPORT SingleRank : public RankGroup
+{
+public:
+  int rank() const override { return 0; }
+  int size() const override { return 1; }
+  void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override;
+  void finish() override {}
+  std::vector<Bytes> allGather(const Bytes& own) override { return { own }; }
+};
+
+template <class Item>
+Bytes bytesOf(const std::vector<Item>& items)
+{
+  static_assert(std::is_trivially_copyable<Item>::value, "Items are sent as bytes.");
+  Bytes bytes(items.size() * sizeof(Item));
+  if (!items.empty())
+  {
+    std::memcpy(bytes.data(), items.data(), bytes.size());
+  }
+  return bytes;
+}
+
+template <class Item>
+std::vector<Item> itemsOf(const Bytes& bytes)
+{
+  std::vector<Item> items(bytes.size() / sizeof(Item));
+  if (!items.empty())
+  {
+    std::memcpy(items.data(), bytes.data(), items.size() * sizeof(Item));
+  }
+  return items;
+}
+
+template <class Item>
+std::vector<std::vector<Item>> RankGroup::exchangeItems(const std::vector<std::vector<Item>>& sent)
+{
+  std::vector<Bytes> bytes;
+  for (const std::vector<Item>& items : sent)
+  {
+    bytes.push_back(bytesOf(items));
+  }
+  std::vector<std::vector<Item>> received;
+  for (const Bytes& one : this->exchange(bytes))
+  {
+    received.push_back(itemsOf<Item>(one));
+  }
+  return received;
+}
+
+template <class Item>
+std::vector<std::vector<Item>> RankGroup::gatherItems(const std::vector<Item>& own)
+{
+  std::vector<std::vector<Item>> all;
+  for (const Bytes& one : this->allGather(bytesOf(own)))
+  {
+    all.push_back(itemsOf<Item>(one));
+  }
+  return all;
+}
+}
+#endif
