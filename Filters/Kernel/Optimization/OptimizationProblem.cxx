@@ -159,7 +159,7 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
 
 //------------------------------------------------------------------------------
 OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options,
-  std::vector<double>& points, const Stopwatch& clock)
+  std::vector<double>& points, const Stopwatch& clock, const SimplexFrame* frame)
   : TheMesh(mesh)
   , Options(options)
   , Points(points)
@@ -187,7 +187,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
     }
   }
   this->Simplices =
-    std::make_unique<SimplexMesh>(*this->Moving, options.fixed, targets, options.threads);
+    std::make_unique<SimplexMesh>(*this->Moving, options.fixed, targets, options.threads, frame);
   if (options.model)
   {
     for (const SurfacePart& part : options.model->parts)
@@ -249,6 +249,30 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   if (!this->AllFast && std::any_of(this->Weights.begin(), this->Weights.end(), weighted))
   {
     this->Terms.assign(this->Terms.size(), LocalTerm()); // weights of cells differ by objective
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> OptimizationProblem::closedForms() const
+{
+  std::vector<unsigned char> flags;
+  for (const LocalTerm& term : this->Terms)
+  {
+    flags.push_back(term.shapePower > 0 || term.sizeSquared > 0);
+  }
+  return flags;
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::keepClosedForms(const std::vector<unsigned char>& flags)
+{
+  for (std::size_t i = 0; i < this->Terms.size(); ++i)
+  {
+    if (!flags[i])
+    {
+      this->Terms[i] = LocalTerm();
+      this->AllFast = false;
+    }
   }
 }
 

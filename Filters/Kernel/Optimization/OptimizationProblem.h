@@ -22,16 +22,23 @@ public:
   /**
    * @param points where the optimization starts; moved in place
    * @param clock started with the run; the time limit counts from there
+   * @param frame see SimplexMesh
    * The options have been checked, see checkOptions().
    */
   OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points,
-    const Stopwatch& clock);
+    const Stopwatch& clock, const SimplexFrame* frame = nullptr);
 
   const Mesh& moving() const { return *this->Moving; }
   SimplexMesh& simplices() { return *this->Simplices; }
   /// The facets of the surface that points are kept on, or null.
   const SurfaceProjection* surface() const { return this->Surface.get(); }
   std::size_t objectives() const { return this->Resolved.size(); }
+  /// The objectives with their templates, and weights of 0 for the cells that are left out.
+  const std::vector<Objective>& resolved() const { return this->Resolved; }
+  /// Per objective: whether it is evaluated in closed form.
+  std::vector<unsigned char> closedForms() const;
+  /// Evaluates those with a flag of 0 by their metrics, as some other part of the mesh needs it.
+  void keepClosedForms(const std::vector<unsigned char>& flags);
   const Scalarizer& scalarizer() const { return *this->TheScalarizer; }
   Scalarizer& scalarizer() { return *this->TheScalarizer; }
   /// The objective sums, made on first use.

@@ -8,6 +8,7 @@
 #include "Minimize.h"
 #include "OptionChecks.h"
 #include "QualityGuard.h"
+#include "SweepControl.h"
 #include "ValidityGuard.h"
 #include "tautline/Untangling/Untangle.h"
 
@@ -19,99 +20,6 @@ namespace tautline
 {
 namespace
 {
-/// Sums of element values differ in the last digits from sums of patches; so much is no loss.
-constexpr double roundingOfSums = 1e-12;
-
-/// The stopping criteria.
-class StoppingTest
-{
-public:
-  StoppingTest(const OptimizationProblem& problem)
-    : Problem(problem)
-    , Stop(problem.options().stopping)
-  {
-  }
-
-  /// Whether the last record of the history is one to stop at.
-  bool ends(const std::vector<IterationRecord>& history, StopReason& reason) const
-  {
-    const IterationRecord& now = history.back();
-    const double lowered = history.front().objective - now.objective;
-    if (this->Stop.allValid && now.inverted == 0)
-    {
-      reason = StopReason::AllValid;
-    }
-    else if (this->Stop.reduction < 1 && history.size() > 1 &&
-      lowered >= this->Stop.reduction * this->possibleReduction(history))
-    {
-      reason = StopReason::Reduction;
-    }
-    else if (this->Stop.twoDigits && history.size() > 1 && this->sameDigits(history))
-    {
-      reason = StopReason::TwoDigits;
-    }
-    else if (now.iteration >= this->Stop.maximumIterations)
-    {
-      reason = StopReason::IterationLimit;
-    }
-    else if (this->Problem.outOfTime())
-    {
-      reason = StopReason::TimeLimit;
-    }
-    else
-    {
-      return false;
-    }
-    return true;
-  }
-
-  double progress(const IterationRecord& record) const
-  {
-    const double byCount =
-      static_cast<double>(record.iteration) / std::max(1, this->Stop.maximumIterations);
-    const double byTime =
-      this->Stop.maximumSeconds > 0 ? record.seconds / this->Stop.maximumSeconds : 0.0;
-    return std::min(1.0, std::max(byCount, byTime));
-  }
-
-private:
-  /// To the best known objective, or to the limit of a geometric series of the last decreases.
-  double possibleReduction(const std::vector<IterationRecord>& history) const
-  {
-    if (std::isfinite(this->Stop.bestKnown))
-    {
-      return history.front().objective - this->Stop.bestKnown;
-    }
-    const std::size_t n = history.size();
-    if (n < 3)
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-    const double last = history[n - 2].objective - history[n - 1].objective;
-    const double before = history[n - 3].objective - history[n - 2].objective;
-    constexpr double slowest = 0.9; // a ratio above this gives no estimate of the limit
-    const double ratio = before > 0 ? std::clamp(last / before, 0.0, slowest) : 0.0;
-    return history.front().objective - history.back().objective + last * ratio / (1.0 - ratio);
-  }
-
-  static bool sameDigits(const std::vector<IterationRecord>& history)
-  {
-    constexpr double hundredths = 100;
-    const std::vector<double>&now = history.back().mean, &before = history[history.size() - 2].mean;
-    for (std::size_t i = 0; i < now.size(); ++i)
-    {
-      if (std::round(hundredths * now[i]) != std::round(hundredths * before[i]))
-      {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  const OptimizationProblem& Problem;
-  const StoppingCriteria& Stop;
-};
-
 /// Adds a record to the history and calls the observer; false if that stops the run.
 bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result,
   const IterationRecord& record)
@@ -128,69 +36,6 @@ bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeRes
     std::copy(problem.points().begin(), problem.points().end(), p);
   };
   return observer({ result.history.back(), watch.progress(record), points });
-}
-
-//------------------------------------------------------------------------------
-/// What sweeps have gained so far, and what is to be expected of further ones.
-class SweepGains
-{
-public:
-  void add(double gain) { this->Gains.push_back(gain); }
-
-  /// The objective's distance from its minimum if the gains go on as a geometric series; at least
-  /// the last gain.
-  double remaining() const
-  {
-    const double ratio = std::min(this->ratio(), slowest);
-    return this->Gains.back() * std::max(1.0, ratio / (1.0 - ratio));
-  }
-
-  /// Whether sweeps converge so slowly that a global method is worth its start.
-  bool stiff(double objective) const
-  {
-    constexpr double slow = 0.6;     // isotropic meshes have ratios below a half
-    constexpr double worthIt = 0.01; // of the objective, that is still to be gained
-    return this->Gains.size() >= trial && this->ratio() > slow &&
-      this->remaining() > worthIt * objective;
-  }
-
-private:
-  static constexpr std::size_t trial = 7;  // sweeps before they are judged
-  static constexpr std::size_t window = 3; // sweeps that a ratio is the mean of
-  static constexpr double slowest = 0.99;  // ratio that gives an estimate
-
-  /// Of a gain to the one before; 0 where there are too few, or none.
-  double ratio() const
-  {
-    const std::size_t n = this->Gains.size();
-    return n > window && this->Gains[n - 1 - window] > 0 && this->Gains[n - 1] > 0
-      ? std::cbrt(this->Gains[n - 1] / this->Gains[n - 1 - window])
-      : 0.0;
-  }
-
-  std::vector<double> Gains;
-};
-
-/// Whether the sweeps have converged, and why; `all`: it visited every vertex.
-bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,
-  double firstGradient, double lowered, double remaining, double size, StopReason& reason)
-{
-  if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient)
-  {
-    reason = StopReason::GradientNorm;
-    return true;
-  }
-  if (remaining <= stop.relativeChange * size)
-  {
-    reason = StopReason::RelativeChange;
-    return true;
-  }
-  if (lowered == 0)
-  {
-    reason = StopReason::NoProgress;
-    return true;
-  }
-  return false;
 }
 
 //------------------------------------------------------------------------------
@@ -499,7 +344,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
 {
   OptimizationProblem problem(mesh, options, result.points, clock);
   result.freeVertices = problem.simplices().freeVertices();
-  const StoppingTest watch(problem);
+  const StoppingTest watch(options.stopping, [&problem] { return problem.outOfTime(); });
   const bool again = !result.history.empty();
   IterationRecord first = problem.record(again ? result.history.back().iteration : 0);
   problem.start(first);

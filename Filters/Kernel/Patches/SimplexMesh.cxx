@@ -131,8 +131,8 @@ std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed)
 }
 
 //------------------------------------------------------------------------------
-SimplexMesh::SimplexMesh(
-  const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads)
+SimplexMesh::SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets,
+  int threads, const SimplexFrame* frame)
   : Dim(dimensionOf(mesh))
   , Surface(mesh.dimension() == Dimension::Surface)
   , Mirrored(mesh.mirrored() && mesh.dimension() != Dimension::Surface)
@@ -148,20 +148,21 @@ SimplexMesh::SimplexMesh(
     this->Frame = { mesh.frame()[0], mesh.frame()[1], mesh.normal() };
   }
   const std::vector<char> free = freePoints(mesh, fixed);
-  this->number(mesh, free);
+  this->number(mesh, free, frame);
   std::vector<std::int32_t> vertexOf(mesh.view().numberOfPoints, -1);
   for (std::int32_t v = 0; v < this->vertices(); ++v)
   {
     vertexOf[this->Point[v]] = v;
   }
-  this->cut(mesh, vertexOf, targets);
+  this->cut(mesh, vertexOf, targets, frame);
   this->load(mesh.view().points, threads);
   this->findPatches();
   this->findBlocks(mesh, vertexOf);
 }
 
 //------------------------------------------------------------------------------
-void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free)
+void SimplexMesh::number(
+  const Mesh& mesh, const std::vector<char>& free, const SimplexFrame* frame)
 {
   const MeshView& view = mesh.view();
   std::vector<char> used(view.numberOfPoints, 0);
@@ -199,6 +200,8 @@ void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free)
   {
     return;
   }
+  low = frame ? frame->low : low;
+  high = frame ? frame->high : high;
   constexpr double cells = 65535.0;
   double extent = 0;
   for (int c = 0; c < 3; ++c)

@@ -38,6 +38,17 @@ struct VertexBlocks
   std::vector<std::int32_t> colourStarts; ///< into byColour, and its end
 };
 
+/// What the coordinates and the order of the vertices follow from, the same for all parts of a mesh
+/// that is spread over ranks.
+struct SimplexFrame
+{
+  Vec3 low = { 0, 0, 0 }, high = { 0, 0, 0 }; ///< bounds of the whole mesh
+  double scale = 1;                           ///< a power of two near the mean edge
+};
+
+/// The power of two next to a length, so that scaling does not round; 1 if it is not a length.
+double powerOfTwo(double length);
+
 class TAUTLINE_KERNEL_EXPORT SimplexMesh
 {
 public:
@@ -48,8 +59,10 @@ public:
    *
    * Vertices of cells that are no elements (lines, polygons, cells of another dimension) and
    * non-finite points are fixed, too; simplices with non-finite points are left out.
+   * @param frame of the whole mesh, if this is a part of one; null: from the mesh
    */
-  SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads);
+  SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads,
+    const SimplexFrame* frame = nullptr);
 
   int dimension() const { return this->Dim; }
   /// 2D cells in space, whose vertices keep all three coordinates.
@@ -105,8 +118,9 @@ public:
   void store(const double* coordinates, double* points, int threads) const;
 
 private:
-  void number(const Mesh& mesh, const std::vector<char>& free);
-  void cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets);
+  void number(const Mesh& mesh, const std::vector<char>& free, const SimplexFrame* frame);
+  void cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets,
+    const SimplexFrame* frame);
   void findPatches();
   template <class Visit>
   void forEachPatchCorner(const Visit& visit);

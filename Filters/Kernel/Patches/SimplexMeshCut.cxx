@@ -87,12 +87,6 @@ void visitSimplices(
   }
 }
 
-/// The power of two next to a length, so that scaling does not round; 1 if it is not a length.
-double powerOfTwo(double length)
-{
-  return length > 0 && std::isfinite(length) ? std::exp2(std::round(std::log2(length))) : 1.0;
-}
-
 /// The targets of the corners of the ideal cells, and where those of each type begin.
 std::vector<TargetSimplex> idealShapes(
   const Mesh& mesh, int dimension, std::vector<int>& firstShape)
@@ -115,8 +109,14 @@ std::vector<TargetSimplex> idealShapes(
 }
 
 //------------------------------------------------------------------------------
-void SimplexMesh::cut(
-  const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets)
+double powerOfTwo(double length)
+{
+  return length > 0 && std::isfinite(length) ? std::exp2(std::round(std::log2(length))) : 1.0;
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf,
+  const Targets* targets, const SimplexFrame* frame)
 {
   const MeshView& view = mesh.view();
   const int corners = this->Dim + 1;
@@ -147,7 +147,8 @@ void SimplexMesh::cut(
       "The mesh has more elements than the optimizers take (about 500 million): split it.");
   }
   this->Simplices = static_cast<std::int32_t>(total);
-  this->Scale = powerOfTwo(total > 0 ? lengths / static_cast<double>((total + 15) / 16) : 1.0);
+  this->Scale = frame ? frame->scale
+                      : powerOfTwo(total > 0 ? lengths / static_cast<double>((total + 15) / 16) : 1.0);
 
   // The shapes of ideal corners are few; one for all simplices needs no index.
   std::vector<int> firstShape(NumberOfCellTypes, 0);

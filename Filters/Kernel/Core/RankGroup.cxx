@@ -1,0 +1,161 @@
+#include "RankGroup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// Sums of integers of this width do not overflow, see orderlessSum().
+__extension__ typedef __int128 Wide;
+
+/// Bits of a value in units of the largest: before the point and behind it.
+constexpr int highBits = 60, lowBits = 32;
+
+constexpr const char* elsewhere = "Another rank has rejected its part of the data.";
+}
+
+//------------------------------------------------------------------------------
+RankGroup::~RankGroup() = default;
+
+//------------------------------------------------------------------------------
+std::vector<Bytes> RankGroup::exchange(const std::vector<Bytes>& sent)
+{
+  std::vector<Index> lengths;
+  for (const Bytes& bytes : sent)
+  {
+    lengths.push_back(static_cast<Index>(bytes.size()));
+  }
+  const std::vector<std::vector<Index>> all = this->gatherItems(lengths);
+  const int own = this->rank();
+  std::vector<RankMessage> out, in;
+  for (int r = 0; r < this->size(); ++r)
+  {
+    if (r != own && !sent[r].empty())
+    {
+      out.push_back({ r, sent[r] });
+    }
+    if (r != own && all[r][own] > 0)
+    {
+      in.push_back({ r, Bytes(static_cast<std::size_t>(all[r][own])) });
+    }
+  }
+  this->start(out, in);
+  this->finish();
+  std::vector<Bytes> received(sent.size());
+  received[own] = sent[own];
+  for (RankMessage& message : in)
+  {
+    received[message.rank] = std::move(message.bytes);
+  }
+  return received;
+}
+
+//------------------------------------------------------------------------------
+Index RankGroup::sum(Index value)
+{
+  Index total = 0;
+  for (const auto& one : this->gatherItems(std::vector<Index>{ value }))
+  {
+    total += one[0];
+  }
+  return total;
+}
+
+Index RankGroup::maximum(Index value)
+{
+  for (const auto& one : this->gatherItems(std::vector<Index>{ value }))
+  {
+    value = std::max(value, one[0]);
+  }
+  return value;
+}
+
+double RankGroup::maximum(double value)
+{
+  for (const auto& one : this->gatherItems(std::vector<double>{ value }))
+  {
+    value = std::max(value, one[0]);
+  }
+  return value;
+}
+
+//------------------------------------------------------------------------------
+double RankGroup::orderlessSum(const std::vector<double>& values)
+{
+  bool finite = true;
+  double largest = 0;
+  for (const double value : values)
+  {
+    finite = finite && std::isfinite(value);
+    largest = std::max(largest, std::abs(value));
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  largest = this->maximum(finite ? largest : infinity);
+  if (!std::isfinite(largest))
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (largest == 0)
+  {
+    return 0.0;
+  }
+  // Integers are added without rounding.
+  const int exponent = highBits - 1 - std::ilogb(largest);
+  Wide total = 0;
+  for (const double value : values)
+  {
+    const double scaled = std::ldexp(value, exponent), high = std::rint(scaled);
+    const Wide wide = static_cast<Wide>(static_cast<std::int64_t>(high)) << lowBits;
+    total += wide + static_cast<std::int64_t>(std::rint(std::ldexp(scaled - high, lowBits)));
+  }
+  Wide sum = 0;
+  for (const auto& one : this->gatherItems(std::vector<Wide>{ total }))
+  {
+    sum += one[0];
+  }
+  return static_cast<double>(std::ldexp(static_cast<long double>(sum), -lowBits - exponent));
+}
+
+//------------------------------------------------------------------------------
+void RankGroup::together(const std::function<void()>& work)
+{
+  std::string message;
+  try
+  {
+    work();
+  }
+  catch (const std::bad_alloc&)
+  {
+    message = "There is not enough memory: take more processes or a coarser mesh.";
+  }
+  catch (const std::exception& error)
+  {
+    message = error.what();
+    message = message.empty() ? elsewhere : message;
+  }
+  const std::vector<Bytes> all = this->allGather(Bytes(message.begin(), message.end()));
+  const auto first =
+    std::find_if(all.begin(), all.end(), [](const Bytes& text) { return !text.empty(); });
+  if (first != all.end())
+  {
+    const bool everywhere = std::all_of(
+      all.begin(), all.end(), [&](const Bytes& text) { return text == *first; });
+    const std::string where = everywhere || this->size() == 1
+      ? ""
+      : "In process " + std::to_string(first - all.begin()) + ": ";
+    throw Error(where + std::string(first->begin(), first->end()));
+  }
+}
+
+//------------------------------------------------------------------------------
+void SingleRank::start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received)
+{
+  if (!sent.empty() || !received.empty())
+  {
+    throw Error("A single rank has no other to send to.");
+  }
+}
+}

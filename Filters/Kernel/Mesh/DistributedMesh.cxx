@@ -1,0 +1,650 @@
+#include "DistributedMesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+namespace tautline
+{
+namespace
+{
+constexpr int samplesPerRank = 64;  ///< keys that the ranges of the numbering are chosen from
+constexpr int mortonBits = 21;      ///< per direction
+constexpr double mortonCells = 2097151.0; ///< 2 ^ mortonBits - 1
+
+/// A bijection of 64 bits without visible order (the finalizer of splitmix64).
+std::uint64_t mixed(std::uint64_t x)
+{
+  x += 0x9E3779B97F4A7C15u;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+
+/// Spreads the lower 21 bits so that two zeros follow each.
+std::uint64_t spreadBits(std::uint64_t x)
+{
+  x &= 0x1fffffu;
+  x = (x | (x << 32)) & 0x001f00000000ffffu;
+  x = (x | (x << 16)) & 0x001f0000ff0000ffu;
+  x = (x | (x << 8)) & 0x100f00f00f00f00fu;
+  x = (x | (x << 4)) & 0x10c30c30c30c30c3u;
+  return (x | (x << 2)) & 0x1249249249249249u;
+}
+
+/// Whether a cell of the view takes part.
+bool takesPart(const MeshView& view, Index cell)
+{
+  return cornerType(view.cellTypes[cell]) != CellType::Unsupported;
+}
+
+/// A point as it is sent to the ranks that need it.
+struct SentPoint
+{
+  Index number;
+  double x[3];
+  Index owner;
+};
+
+struct IdAndPlace
+{
+  Index id;
+  double x[3];
+};
+
+/// Throws Error, on all ranks, where an id is at two places.
+void checkIds(RankGroup& group, const std::vector<IdAndPlace>& own)
+{
+  std::vector<std::vector<IdAndPlace>> sent(group.size());
+  for (const IdAndPlace& item : own)
+  {
+    sent[mixed(static_cast<std::uint64_t>(item.id)) % sent.size()].push_back(item);
+  }
+  std::vector<IdAndPlace> all;
+  for (const auto& list : group.exchangeItems(sent))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  group.together(
+    [&]
+    {
+      std::sort(all.begin(), all.end(),
+        [](const IdAndPlace& a, const IdAndPlace& b) { return a.id < b.id; });
+      for (std::size_t i = 1; i < all.size(); ++i)
+      {
+        if (all[i].id == all[i - 1].id && !std::equal(all[i].x, all[i].x + 3, all[i - 1].x))
+        {
+          throw Error("The global point id " + std::to_string(all[i].id) +
+            " is at two places: run Generate Global Ids again.");
+        }
+      }
+    });
+}
+}
+
+/// What points are sorted by, and where they are from.
+struct DistributedMesh::PointKey
+{
+  std::uint64_t curve;
+  double x[3];
+  Index id;
+  Index source;    ///< the point of the piece
+  Index rank;      ///< of the piece
+  Index withCell;  ///< whether a cell that is no ghost has it there
+
+  auto place() const { return std::tie(this->curve, this->x[0], this->x[1], this->x[2], this->id); }
+};
+
+//------------------------------------------------------------------------------
+DistributedMesh::DistributedMesh(RankGroup& group, const MeshPiece& piece)
+  : Group(&group)
+{
+  std::vector<char> used;
+  group.together(
+    [&]
+    {
+      const Mesh checked(piece.view); // throws for arrays that are out of range
+      used.assign(piece.view.numberOfPoints, 0);
+      for (Index cell = 0; cell < piece.view.numberOfCells; ++cell)
+      {
+        const char mark = piece.ghosts && piece.ghosts[cell] ? 1 : 3;
+        for (Index n = piece.view.offsets[cell];
+             takesPart(piece.view, cell) && n < piece.view.offsets[cell + 1]; ++n)
+        {
+          used[piece.view.connectivity[n]] |= mark;
+        }
+      }
+      for (Index p = 0; p < piece.view.numberOfPoints; ++p)
+      {
+        const double* x = piece.view.points + 3 * p;
+        if (used[p] && !(std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])))
+        {
+          throw Error("Point " + std::to_string(p) +
+            " has a coordinate that is not finite: remove its cells first, by Threshold or Clean "
+            "to Grid.");
+        }
+        if (used[p] && piece.globalIds && piece.globalIds[p] < 0)
+        {
+          throw Error("The global id of point " + std::to_string(p) +
+            " is negative: run Generate Global Ids again.");
+        }
+      }
+    });
+  this->numberPoints(piece, used);
+  this->takeCells(piece, used);
+  this->connect();
+}
+
+//------------------------------------------------------------------------------
+void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& used)
+{
+  RankGroup& group = *this->Group;
+  const Index n = piece.view.numberOfPoints;
+  const bool here = std::any_of(used.begin(), used.end(), [](char u) { return u != 0; });
+  const bool withIds = group.any(here && piece.globalIds),
+             without = group.any(here && !piece.globalIds);
+  if (withIds && without)
+  {
+    throw Error("Some processes have global point ids and others have none: run Generate Global "
+                "Ids.");
+  }
+  // Bounds.
+  const double infinity = std::numeric_limits<double>::infinity();
+  std::vector<double> box = { infinity, infinity, infinity, -infinity, -infinity, -infinity };
+  for (Index p = 0; p < n; ++p)
+  {
+    for (int c = 0; c < 3 && used[p]; ++c)
+    {
+      box[c] = std::min(box[c], piece.view.points[3 * p + c]);
+      box[3 + c] = std::max(box[3 + c], piece.view.points[3 * p + c]);
+    }
+  }
+  for (const auto& other : group.gatherItems(std::vector<double>(box)))
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      box[c] = std::min(box[c], other[c]);
+      box[3 + c] = std::max(box[3 + c], other[3 + c]);
+    }
+  }
+  double extent = 0;
+  for (int c = 0; c < 3 && box[0] <= box[3]; ++c)
+  {
+    this->Bounds[c] = box[c];
+    this->Bounds[3 + c] = box[3 + c];
+    extent = std::max(extent, box[3 + c] - box[c]);
+  }
+  const double perLength = extent > 0 && std::isfinite(extent) ? mortonCells / extent : 0.0;
+
+  // Ranges of keys, one for each rank.
+  std::vector<PointKey> keys;
+  std::vector<IdAndPlace> ids;
+  for (Index p = 0; p < n; ++p)
+  {
+    if (!used[p])
+    {
+      continue;
+    }
+    PointKey key = { 0, { 0, 0, 0 }, withIds ? piece.globalIds[p] : 0, p, group.rank(),
+      used[p] > 1 };
+    for (int c = 0; c < 3; ++c)
+    {
+      key.x[c] = piece.view.points[3 * p + c] + 0.0; // -0 becomes 0
+      key.curve |=
+        spreadBits(static_cast<std::uint64_t>(perLength * (key.x[c] - this->Bounds[c]))) << c;
+    }
+    keys.push_back(key);
+    if (withIds)
+    {
+      ids.push_back({ key.id, { key.x[0], key.x[1], key.x[2] } });
+    }
+  }
+  if (withIds)
+  {
+    checkIds(group, ids);
+  }
+  const auto before = [](const PointKey& a, const PointKey& b) { return a.place() < b.place(); };
+  std::sort(keys.begin(), keys.end(), before);
+  std::vector<PointKey> samples;
+  for (std::size_t i = 0; i < samplesPerRank && !keys.empty(); ++i)
+  {
+    samples.push_back(keys[i * keys.size() / samplesPerRank]);
+  }
+  std::vector<PointKey> all;
+  for (const auto& list : group.gatherItems(samples))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end(), before);
+  std::vector<PointKey> limits;
+  for (int r = 1; r < group.size() && !all.empty(); ++r)
+  {
+    limits.push_back(all[r * all.size() / group.size()]);
+  }
+  std::vector<std::vector<PointKey>> sent(group.size());
+  for (const PointKey& key : keys)
+  {
+    sent[std::upper_bound(limits.begin(), limits.end(), key, before) - limits.begin()].push_back(
+      key);
+  }
+  const std::vector<std::vector<PointKey>> received = group.exchangeItems(sent);
+
+  // The numbers of a range, and the owner: of the ranks with a cell one by a hash.
+  std::vector<PointKey> range;
+  for (const auto& list : received)
+  {
+    range.insert(range.end(), list.begin(), list.end());
+  }
+  std::sort(range.begin(), range.end(),
+    [&](const PointKey& a, const PointKey& b)
+    { return std::make_tuple(a.place(), a.rank, a.source) < std::make_tuple(b.place(), b.rank, b.source); });
+  Index count = 0;
+  for (std::size_t i = 0; i < range.size(); ++i)
+  {
+    count += i == 0 || before(range[i - 1], range[i]);
+  }
+  Index first = 0;
+  const auto counts = group.gatherItems(std::vector<Index>{ count });
+  for (int r = 0; r < group.size(); ++r)
+  {
+    first += r < group.rank() ? counts[r][0] : 0;
+    this->GlobalPoints += counts[r][0];
+  }
+  struct Reply
+  {
+    Index source, number, owner;
+  };
+  std::vector<std::vector<Reply>> replies(group.size());
+  for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end, ++first)
+  {
+    Index owner = range[begin].rank;
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    for (end = begin; end < range.size() && !before(range[begin], range[end]); ++end)
+    {
+      const std::uint64_t hash = mixed(mixed(static_cast<std::uint64_t>(first)) +
+        static_cast<std::uint64_t>(range[end].rank));
+      if (range[end].withCell && hash < least)
+      {
+        least = hash;
+        owner = range[end].rank;
+      }
+    }
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      replies[range[i].rank].push_back({ range[i].source, first, owner });
+    }
+  }
+  this->PieceNumbers.assign(n, -1);
+  this->PieceOwners.assign(n, -1);
+  for (const auto& list : group.exchangeItems(replies))
+  {
+    for (const Reply& reply : list)
+    {
+      this->PieceNumbers[reply.source] = reply.number;
+      this->PieceOwners[reply.source] = static_cast<int>(reply.owner);
+    }
+  }
+}
+
+namespace
+{
+/// A cell as it came, with the sorted numbers of its points as the key of the order.
+struct TakenCell
+{
+  unsigned char type;
+  int rank;
+  std::vector<Index> numbers, sorted;
+
+  auto key() const { return std::tie(this->sorted, this->type, this->numbers); }
+};
+
+void readCells(const std::vector<Index>& list, int rank, std::vector<TakenCell>& cells)
+{
+  for (std::size_t i = 0; i < list.size();)
+  {
+    TakenCell cell;
+    cell.type = static_cast<unsigned char>(list[i]);
+    cell.rank = rank;
+    const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 2, end = begin + list[i + 1];
+    cell.numbers.assign(begin, end);
+    cell.sorted = cell.numbers;
+    std::sort(cell.sorted.begin(), cell.sorted.end());
+    i += 2 + cell.numbers.size();
+    cells.push_back(std::move(cell));
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>& used)
+{
+  RankGroup& group = *this->Group;
+  const MeshView& view = piece.view;
+  std::vector<std::vector<Index>> sentCells(group.size());
+  std::vector<std::vector<SentPoint>> sentPoints(group.size());
+  std::vector<std::vector<Index>> needed(group.size()); // points of the piece, per rank
+  std::vector<int> ranks;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    if ((piece.ghosts && piece.ghosts[cell]) || !takesPart(view, cell))
+    {
+      continue;
+    }
+    const Index begin = view.offsets[cell], end = view.offsets[cell + 1];
+    ranks.clear();
+    for (Index n = begin; n < end; ++n)
+    {
+      ranks.push_back(this->PieceOwners[view.connectivity[n]]);
+    }
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+    for (const int rank : ranks)
+    {
+      sentCells[rank].push_back(view.cellTypes[cell]);
+      sentCells[rank].push_back(end - begin);
+      for (Index n = begin; n < end; ++n)
+      {
+        sentCells[rank].push_back(this->PieceNumbers[view.connectivity[n]]);
+        needed[rank].push_back(view.connectivity[n]);
+      }
+    }
+  }
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (used[p])
+    {
+      needed[group.rank()].push_back(p);
+    }
+  }
+  for (int rank = 0; rank < group.size(); ++rank)
+  {
+    std::sort(needed[rank].begin(), needed[rank].end());
+    needed[rank].erase(
+      std::unique(needed[rank].begin(), needed[rank].end()), needed[rank].end());
+    for (const Index p : needed[rank])
+    {
+      SentPoint point = { this->PieceNumbers[p], { 0, 0, 0 }, this->PieceOwners[p] };
+      std::copy_n(view.points + 3 * p, 3, point.x);
+      sentPoints[rank].push_back(point);
+    }
+  }
+  std::vector<SentPoint> points;
+  for (const auto& list : group.exchangeItems(sentPoints))
+  {
+    points.insert(points.end(), list.begin(), list.end());
+  }
+  std::vector<TakenCell> cells;
+  const auto lists = group.exchangeItems(sentCells);
+  group.together(
+    [&]
+    {
+      for (int rank = 0; rank < group.size(); ++rank)
+      {
+        readCells(lists[rank], rank, cells);
+      }
+      std::sort(cells.begin(), cells.end(),
+        [](const TakenCell& a, const TakenCell& b) { return a.key() < b.key(); });
+      for (std::size_t i = 1; i < cells.size(); ++i)
+      {
+        if (cells[i].rank != cells[i - 1].rank && cells[i].sorted == cells[i - 1].sorted &&
+          cells[i].type == cells[i - 1].type)
+        {
+          throw Error("Processes " + std::to_string(std::min(cells[i].rank, cells[i - 1].rank)) +
+            " and " + std::to_string(std::max(cells[i].rank, cells[i - 1].rank)) +
+            " have the same cell, and neither marks it as a ghost: give each cell to one process, "
+            "or mark copies in the array vtkGhostType.");
+        }
+      }
+    });
+
+  std::sort(points.begin(), points.end(),
+    [](const SentPoint& a, const SentPoint& b) { return a.number < b.number; });
+  for (const SentPoint& point : points)
+  {
+    if (this->Numbers.empty() || this->Numbers.back() != point.number)
+    {
+      this->Numbers.push_back(point.number);
+      this->Owners.push_back(static_cast<int>(point.owner));
+      this->Points.insert(this->Points.end(), point.x, point.x + 3);
+    }
+  }
+  const auto local = [&](Index number)
+  {
+    return static_cast<Index>(
+      std::lower_bound(this->Numbers.begin(), this->Numbers.end(), number) -
+      this->Numbers.begin());
+  };
+  this->LocalOfPiece.assign(view.numberOfPoints, -1);
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    this->LocalOfPiece[p] = used[p] ? local(this->PieceNumbers[p]) : -1;
+  }
+  this->Offsets.assign(1, 0);
+  Index own = 0;
+  for (const TakenCell& cell : cells)
+  {
+    this->CellTypes.push_back(cell.type);
+    for (const Index number : cell.numbers)
+    {
+      this->Connectivity.push_back(local(number));
+    }
+    this->Offsets.push_back(static_cast<Index>(this->Connectivity.size()));
+    this->OwnedCells.push_back(this->owned(local(cell.sorted.front())));
+    own += this->OwnedCells.back();
+  }
+  this->GlobalCells = group.sum(own);
+  this->View.numberOfPoints = this->localPoints();
+  this->View.points = this->Points.data();
+  this->View.numberOfCells = static_cast<Index>(this->CellTypes.size());
+  this->View.cellTypes = this->CellTypes.data();
+  this->View.offsets = this->Offsets.data();
+  this->View.connectivity = this->Connectivity.data();
+}
+
+//------------------------------------------------------------------------------
+/// The lists of points that are sent to and received from each rank.
+void DistributedMesh::connect()
+{
+  RankGroup& group = *this->Group;
+  std::vector<std::vector<Index>> wanted(group.size());
+  std::vector<std::vector<std::int32_t>> received(group.size());
+  for (Index p = 0; p < this->localPoints(); ++p)
+  {
+    if (!this->owned(p))
+    {
+      wanted[this->Owners[p]].push_back(this->Numbers[p]);
+      received[this->Owners[p]].push_back(static_cast<std::int32_t>(p));
+    }
+  }
+  const auto asked = group.exchangeItems(wanted);
+  for (int rank = 0; rank < group.size(); ++rank)
+  {
+    Subset::Neighbour neighbour = { rank, {}, std::move(received[rank]) };
+    for (const Index number : asked[rank])
+    {
+      neighbour.sent.push_back(static_cast<std::int32_t>(
+        std::lower_bound(this->Numbers.begin(), this->Numbers.end(), number) -
+        this->Numbers.begin()));
+    }
+    if (!neighbour.sent.empty() || !neighbour.received.empty())
+    {
+      this->Halo.push_back(std::move(neighbour));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+Index DistributedMesh::haloPoints() const
+{
+  Index count = 0;
+  for (const Subset::Neighbour& neighbour : this->Halo)
+  {
+    count += static_cast<Index>(neighbour.received.size());
+  }
+  return count;
+}
+
+namespace
+{
+template <class Value>
+void exchangeValues(RankGroup& group,
+  const std::vector<DistributedMesh::Subset::Neighbour>& neighbours, Value* values, int components,
+  bool toOwners)
+{
+  std::vector<RankMessage> sent, received;
+  const auto size = static_cast<std::size_t>(components) * sizeof(Value);
+  const auto listOf = [&](const DistributedMesh::Subset::Neighbour& n, bool sends) -> const auto&
+  { return sends != toOwners ? n.sent : n.received; };
+  for (const auto& neighbour : neighbours)
+  {
+    const auto& out = listOf(neighbour, true);
+    const auto& in = listOf(neighbour, false);
+    if (!out.empty())
+    {
+      sent.push_back({ neighbour.rank, Bytes(size * out.size()) });
+      for (std::size_t i = 0; i < out.size(); ++i)
+      {
+        std::memcpy(sent.back().bytes.data() + i * size,
+          values + static_cast<std::size_t>(components) * out[i], size);
+      }
+    }
+    if (!in.empty())
+    {
+      received.push_back({ neighbour.rank, Bytes(size * in.size()) });
+    }
+  }
+  group.start(sent, received);
+  group.finish();
+  auto message = received.begin();
+  for (const auto& neighbour : neighbours)
+  {
+    const auto& in = listOf(neighbour, false);
+    for (std::size_t i = 0; i < in.size(); ++i)
+    {
+      Value* to = values + static_cast<std::size_t>(components) * in[i];
+      std::vector<Value> got(components);
+      std::memcpy(got.data(), message->bytes.data() + i * size, size);
+      for (int c = 0; c < components; ++c)
+      {
+        to[c] = toOwners && !(got[c] != Value()) ? to[c] : got[c];
+      }
+    }
+    message += !in.empty();
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void DistributedMesh::exchange(double* values, int components) const
+{
+  exchangeValues(*this->Group, this->Halo, values, components, false);
+}
+
+void DistributedMesh::exchange(unsigned char* flags) const
+{
+  exchangeValues(*this->Group, this->Halo, flags, 1, false);
+}
+
+void DistributedMesh::exchange(const Subset& subset, double* values, int components) const
+{
+  exchangeValues(*this->Group, subset.neighbours, values, components, false);
+}
+
+void DistributedMesh::either(unsigned char* flags) const
+{
+  exchangeValues(*this->Group, this->Halo, flags, 1, true);
+  this->exchange(flags);
+}
+
+//------------------------------------------------------------------------------
+DistributedMesh::Subset DistributedMesh::subset(const std::vector<unsigned char>& flags) const
+{
+  std::vector<unsigned char> agreed = flags;
+  this->exchange(agreed.data());
+  Subset subset;
+  for (const Subset::Neighbour& neighbour : this->Halo)
+  {
+    Subset::Neighbour part = { neighbour.rank, {}, {} };
+    const auto flagged = [&](std::int32_t p) { return agreed[p] != 0; };
+    std::copy_if(neighbour.sent.begin(), neighbour.sent.end(), std::back_inserter(part.sent),
+      flagged);
+    std::copy_if(neighbour.received.begin(), neighbour.received.end(),
+      std::back_inserter(part.received), flagged);
+    if (!part.sent.empty() || !part.received.empty())
+    {
+      subset.neighbours.push_back(std::move(part));
+    }
+  }
+  return subset;
+}
+
+//------------------------------------------------------------------------------
+std::vector<int> DistributedMesh::independentSets(const std::vector<unsigned char>& wanted) const
+{
+  std::vector<unsigned char> agreed = wanted;
+  this->exchange(agreed.data());
+  const Index n = this->localPoints();
+  // Neighbours of the own points, with a hash above theirs: they choose first.
+  const auto hashOf = [&](Index p) { return mixed(static_cast<std::uint64_t>(this->Numbers[p])); };
+  std::vector<std::vector<std::int32_t>> before(n);
+  for (Index cell = 0; cell < this->View.numberOfCells; ++cell)
+  {
+    for (Index i = this->Offsets[cell]; i < this->Offsets[cell + 1]; ++i)
+    {
+      const Index p = this->Connectivity[i];
+      for (Index k = this->Offsets[cell]; k < this->Offsets[cell + 1]; ++k)
+      {
+        const Index q = this->Connectivity[k];
+        if (p != q && agreed[p] && agreed[q] && this->owned(p) && hashOf(q) > hashOf(p))
+        {
+          before[p].push_back(static_cast<std::int32_t>(q));
+        }
+      }
+    }
+  }
+  std::vector<Index> left;
+  for (Index p = 0; p < n; ++p)
+  {
+    if (agreed[p] && this->owned(p))
+    {
+      left.push_back(p);
+      std::sort(before[p].begin(), before[p].end());
+      before[p].erase(std::unique(before[p].begin(), before[p].end()), before[p].end());
+    }
+  }
+  std::sort(left.begin(), left.end(), [&](Index a, Index b) { return hashOf(a) > hashOf(b); });
+  constexpr double none = -1;
+  std::vector<double> set(n, none);
+  std::vector<char> taken;
+  while (this->Group->any(!left.empty()))
+  {
+    std::vector<Index> later;
+    for (const Index p : left)
+    {
+      taken.assign(before[p].size() + 1, 0);
+      bool ready = true;
+      for (const std::int32_t q : before[p])
+      {
+        ready = ready && set[q] >= 0;
+        if (set[q] >= 0 && set[q] < static_cast<double>(taken.size()))
+        {
+          taken[static_cast<std::size_t>(set[q])] = 1;
+        }
+      }
+      if (ready)
+      {
+        set[p] = static_cast<double>(std::find(taken.begin(), taken.end(), 0) - taken.begin());
+      }
+      else
+      {
+        later.push_back(p);
+      }
+    }
+    left.swap(later);
+    this->exchange(set.data(), 1);
+  }
+  return { set.begin(), set.end() };
+}
+}

@@ -1,0 +1,796 @@
+#include "OptimizeOnRanks.h"
+
+#include "OptionChecks.h"
+#include "QualityGuard.h"
+#include "RankSweep.h"
+#include "SweepControl.h"
+#include "ValidityGuard.h"
+#include "tautline/Mesh/BoundaryPoints.h"
+#include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Untangling/UntangleOnRanks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+bool isInvalid(signed char validity)
+{
+  return validity == Inverted || validity == Degenerate;
+}
+
+/// What an element of value q adds to an objective.
+double termOf(const Objective& objective, double q)
+{
+  switch (objective.objectiveTemplate)
+  {
+    case ObjectiveTemplate::SumOfSquares:
+      return q * q;
+    case ObjectiveTemplate::SumOfSquaredReciprocals:
+      return 1.0 / (q * q);
+    case ObjectiveTemplate::SumOfReciprocals:
+      return 1.0 / q;
+    default:
+      return metricInfo(objective.metric).direction == Direction::LargerIsBetter ? -q : q;
+  }
+}
+
+/// The bounds of points and the scale of edges of the whole mesh.
+SimplexFrame frameOf(const DistributedMesh& mesh, const std::vector<double>& points)
+{
+  RankGroup& group = mesh.group();
+  SimplexFrame frame;
+  for (int c = 0; c < 3; ++c)
+  {
+    double low = infinity, high = -infinity;
+    for (Index p = 0; p < mesh.localPoints(); ++p)
+    {
+      low = std::min(low, points[3 * p + c]);
+      high = std::max(high, points[3 * p + c]);
+    }
+    frame.low[c] = -group.maximum(-low);
+    frame.high[c] = group.maximum(high);
+  }
+  std::vector<double> lengths;
+  const MeshView& view = mesh.view();
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const Index* node = view.connectivity + view.offsets[cell];
+    if (mesh.ownedCells()[cell])
+    {
+      const double* a = &points[3 * node[0]];
+      const double* b = &points[3 * node[1]];
+      lengths.push_back(norm({ b[0] - a[0], b[1] - a[1], b[2] - a[2] }));
+    }
+  }
+  frame.scale = powerOfTwo(group.orderlessSum(lengths) /
+    static_cast<double>(std::max<Index>(1, mesh.globalCells())));
+  return frame;
+}
+
+Mesh movedMesh(
+  const DistributedMesh& mesh, bool mirrored, const std::vector<double>& points, int threads)
+{
+  MeshView view = mesh.view();
+  view.points = points.data();
+  Mesh moved(view, threads);
+  moved.setMirrored(mirrored);
+  return moved;
+}
+
+/**
+ * @class OptimizationOnRanks
+ * @brief The state of a run: the local problem, and sums over the whole mesh.
+ */
+class OptimizationOnRanks
+{
+public:
+  OptimizationOnRanks(DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options);
+  OptimizeResult run();
+
+private:
+  void agree();
+  void untangle();
+  bool stage();
+  void makeProblem();
+  StopReason sweep(bool& repaired);
+  IterationRecord record(int iteration);
+  void addObjective(std::size_t i, const std::vector<signed char>& validity, IterationRecord& record);
+  bool report(const IterationRecord& record);
+  bool outOfTime() const { return this->Group.any(this->Clock.reached(this->Options.stopping.maximumSeconds)); }
+  void store();
+  void load(const std::vector<double>& points);
+  Index restoreInside(const std::vector<double>& before);
+  Index restoreWorst();
+  void keepInput(const IterationRecord& first);
+  double judge(const std::vector<double>& points, std::vector<double>& values,
+    std::vector<signed char>& validity) const;
+  std::vector<std::string> names() const;
+
+  DistributedMesh& TheMesh;
+  RankGroup& Group;
+  bool Mirrored;
+  OptimizeOptions Options;
+  Stopwatch Clock;
+  std::unique_ptr<Mesh> Start; ///< null on a rank without cells
+  std::vector<double> Points;
+  std::unique_ptr<OptimizationProblem> Problem; ///< the same
+  std::vector<Objective> Resolved;
+  std::vector<int> Sets;
+  std::unique_ptr<Scalarizer> TheScalarizer;
+  std::vector<signed char> Levels; ///< see ValidityLevel; empty without elements that have an inside
+  StoppingTest Watch;
+  OptimizeResult Result;
+  // The worst element of the input.
+  Objective Judged;
+  bool HoldsWorst = false, ValidInput = false;
+  double Worst = 0;
+};
+
+//------------------------------------------------------------------------------
+OptimizationOnRanks::OptimizationOnRanks(
+  DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options)
+  : TheMesh(mesh)
+  , Group(mesh.group())
+  , Mirrored(mirrored)
+  , Options(options)
+  , Points(mesh.points())
+  , Watch(options.stopping, [this] { return this->outOfTime(); })
+{
+  this->Group.together(
+    [&]
+    {
+      requireLocalOptions(options);
+      requireOrdinaryScale(mesh.view(), "Optimization");
+      if (mesh.view().numberOfCells > 0)
+      {
+        this->Start = std::make_unique<Mesh>(mesh.view(), options.threads);
+        this->Start->setMirrored(mirrored);
+        checkOptions(*this->Start, options);
+      }
+    });
+  this->agree();
+}
+
+//------------------------------------------------------------------------------
+/// Throws Error if the parts are not of one dimension and, if planar, in one plane.
+void OptimizationOnRanks::agree()
+{
+  const auto own = static_cast<Index>(this->Start ? this->Start->dimension() : Dimension::None);
+  const Index highest = this->Group.maximum(own);
+  const bool differ = this->Group.any(this->Start && own != highest);
+  const auto& box = this->TheMesh.bounds();
+  const bool planar = highest == static_cast<Index>(Dimension::Planar) && !differ &&
+    (box[0] == box[3] || box[1] == box[4] || box[2] == box[5]);
+  if (highest == static_cast<Index>(Dimension::None) ||
+    (highest == static_cast<Index>(Dimension::Volume) && !differ) || planar)
+  {
+    return;
+  }
+  throw Error("A mesh on several processes, or in the reproducible order, is a volume mesh or lies "
+              "in a plane at right angles to an axis, and this one does not: gather it on one "
+              "process, in ParaView by Aggregate Dataset, with Reproducible Order off.");
+}
+
+//------------------------------------------------------------------------------
+/// The local part of the problem from Points on, in the frame of the whole mesh.
+void OptimizationOnRanks::makeProblem()
+{
+  const SimplexFrame frame = frameOf(this->TheMesh, this->Points);
+  std::vector<unsigned char> closed;
+  this->Group.together(
+    [&]
+    {
+      this->Problem.reset();
+      if (this->Start)
+      {
+        this->Problem = std::make_unique<OptimizationProblem>(
+          *this->Start, this->Options, this->Points, this->Clock, &frame);
+        closed = this->Problem->closedForms();
+        const bool weighted = std::any_of(this->Problem->resolved().begin(),
+          this->Problem->resolved().end(), [](const Objective& o) { return o.elementWeights; });
+        closed.push_back(!weighted);
+      }
+    });
+  // An objective is in closed form on all ranks or on none.
+  std::vector<unsigned char> agreed(this->Options.objectives.size() + 1, 1);
+  for (const auto& list : this->Group.gatherItems(closed))
+  {
+    for (std::size_t i = 0; i < list.size(); ++i)
+    {
+      agreed[i] = agreed[i] && list[i];
+    }
+  }
+  const bool allFast = std::all_of(agreed.begin(), agreed.end() - 1, [](char f) { return f; });
+  if (!allFast && !agreed.back())
+  {
+    agreed.assign(agreed.size(), 0); // weights of cells differ by objective
+  }
+  std::vector<unsigned char> free(this->TheMesh.localPoints(), 0);
+  if (this->Problem)
+  {
+    this->Problem->keepClosedForms(agreed);
+    this->Resolved = this->Problem->resolved();
+    for (std::int32_t v = 0; v < this->Problem->simplices().freeVertices(); ++v)
+    {
+      free[this->Problem->simplices().point(v)] = 1;
+    }
+  }
+  this->Sets = this->TheMesh.independentSets(free);
+  Index count = 0;
+  for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
+  {
+    count += free[p] && this->TheMesh.owned(p);
+  }
+  this->Result.freeVertices = this->Group.sum(count);
+  this->Levels.clear();
+  const auto inside = [](const CellBlock& block) { return hasInside(block.type); };
+  if (this->Problem && !this->Options.allowInversion &&
+    std::any_of(this->Start->blocks().begin(), this->Start->blocks().end(), inside))
+  {
+    findValidityLevels(this->Problem->moving(), this->Options.threads, this->Levels);
+  }
+}
+
+//------------------------------------------------------------------------------
+void OptimizationOnRanks::addObjective(
+  std::size_t i, const std::vector<signed char>& validity, IterationRecord& record)
+{
+  std::vector<double> terms, values;
+  double worst = -infinity;
+  const MetricInfo& info = metricInfo(this->Options.objectives[i].metric);
+  const bool larger = info.direction == Direction::LargerIsBetter;
+  this->Group.together(
+    [&]
+    {
+      if (!this->Problem)
+      {
+        return;
+      }
+      const Objective& objective = this->Resolved[i];
+      const Mesh& mesh = this->Problem->moving();
+      std::vector<double> q(mesh.view().numberOfCells);
+      evaluateMetric(mesh, objective.metric, objective.evaluation, q.data());
+      for (const CellBlock& block : mesh.blocks())
+      {
+        for (Index k = 0; info.definedOn(block.type) && k < block.count; ++k)
+        {
+          const Index cell = block.cell(k);
+          const double weight = objective.elementWeights ? objective.elementWeights[cell] : 1.0;
+          if (!this->TheMesh.ownedCells()[cell])
+          {
+            continue;
+          }
+          const bool fault = info.barrier && validity[cell] != Valid && weight > 0 &&
+            cornerValidity(mesh, cell) != Valid;
+          if (weight > 0)
+          {
+            terms.push_back(fault ? infinity : weight * termOf(objective, q[cell]));
+          }
+          if (validity[cell] == Valid)
+          {
+            values.push_back(q[cell]);
+            worst = std::max(worst, larger ? -q[cell] : q[cell]);
+          }
+        }
+      }
+    });
+  const double sum = this->Group.orderlessSum(terms);
+  record.objectives.push_back(std::isnan(sum) ? infinity : sum);
+  const Index count = this->Group.sum(static_cast<Index>(values.size()));
+  const double total = this->Group.orderlessSum(values);
+  worst = this->Group.maximum(worst);
+  record.mean.push_back(count > 0 ? total / static_cast<double>(count) : 0.0);
+  record.worst.push_back(count == 0 ? 0.0 : larger ? -worst : worst);
+}
+
+//------------------------------------------------------------------------------
+IterationRecord OptimizationOnRanks::record(int iteration)
+{
+  IterationRecord record;
+  record.iteration = iteration;
+  std::vector<signed char> validity;
+  Index invalid = 0;
+  this->Group.together(
+    [&]
+    {
+      validity.resize(this->TheMesh.view().numberOfCells);
+      if (this->Problem)
+      {
+        this->Problem->moving().classifyCells(validity.data(), this->Options.threads);
+      }
+      for (std::size_t cell = 0; cell < validity.size(); ++cell)
+      {
+        invalid += this->TheMesh.ownedCells()[cell] && isInvalid(validity[cell]);
+      }
+    });
+  record.inverted = this->Group.sum(invalid);
+  for (std::size_t i = 0; i < this->Options.objectives.size(); ++i)
+  {
+    this->addObjective(i, validity, record);
+  }
+  record.objective = this->TheScalarizer && record.objectives.size() > 1
+    ? this->TheScalarizer->value(record.objectives)
+    : record.objectives[0];
+  record.seconds = this->Clock.seconds();
+  return record;
+}
+
+//------------------------------------------------------------------------------
+/// Adds a record to the history and calls the observers; false if one stops the run.
+bool OptimizationOnRanks::report(const IterationRecord& record)
+{
+  this->Result.history.push_back(record);
+  bool proceed = true;
+  const auto points = [&](double* to) { std::copy(this->Points.begin(), this->Points.end(), to); };
+  this->Group.together(
+    [&]
+    {
+      proceed = !this->Options.observer ||
+        this->Options.observer({ record, this->Watch.progress(record), points });
+    });
+  return !this->Group.any(!proceed);
+}
+
+//------------------------------------------------------------------------------
+void OptimizationOnRanks::store()
+{
+  if (this->Problem)
+  {
+    this->Problem->store();
+  }
+  this->TheMesh.exchange(this->Points.data(), 3);
+}
+
+void OptimizationOnRanks::load(const std::vector<double>& points)
+{
+  this->Points = points;
+  if (this->Problem)
+  {
+    this->Problem->restart(std::vector<double>(points));
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Lets the points of elements that became less valid between their corners go back.
+Index OptimizationOnRanks::restoreInside(const std::vector<double>& before)
+{
+  if (!this->Group.any(!this->Levels.empty()))
+  {
+    return 0;
+  }
+  constexpr int maxRounds = 20; // then all points go back
+  const MeshView& view = this->TheMesh.view();
+  std::vector<signed char> levels;
+  Index restored = 0;
+  for (int round = 0; round <= maxRounds; ++round)
+  {
+    std::vector<unsigned char> back(this->TheMesh.localPoints(), round == maxRounds);
+    bool worse = false;
+    if (!this->Levels.empty())
+    {
+      findValidityLevels(this->Problem->moving(), this->Options.threads, levels);
+      for (std::size_t cell = 0; cell < levels.size(); ++cell)
+      {
+        const bool less = levels[cell] < this->Levels[cell];
+        worse = worse || less;
+        for (Index n = view.offsets[cell]; less && n < view.offsets[cell + 1]; ++n)
+        {
+          back[view.connectivity[n]] = 1;
+        }
+      }
+    }
+    if (!this->Group.any(worse))
+    {
+      break;
+    }
+    this->TheMesh.exchange(back.data());
+    std::vector<double> points = this->Points;
+    for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
+    {
+      if (back[p])
+      {
+        std::copy_n(&before[3 * p], 3, &points[3 * p]);
+        ++restored;
+      }
+    }
+    this->load(points);
+  }
+  this->Levels.swap(levels);
+  return restored;
+}
+
+//------------------------------------------------------------------------------
+/// Sweeps to convergence; see optimizeLocally() in Optimize.cxx.
+StopReason OptimizationOnRanks::sweep(bool& repaired)
+{
+  RankSweeper sweeper(this->TheMesh, this->Problem.get(), this->Sets, this->Options.threads);
+  std::vector<double> best = this->Points;
+  StopReason reason = StopReason::NoProgress;
+  double firstGradient = 0;
+  bool all = true;
+  SweepGains gains;
+  for (int iteration = this->Result.history.back().iteration + 1;; ++iteration)
+  {
+    if (this->Watch.ends(this->Result.history, reason))
+    {
+      return reason;
+    }
+    const IterationRecord before = this->Result.history.back();
+    const SweepResult swept = sweeper.sweep(*this->TheScalarizer, before.objectives);
+    this->store();
+    this->restoreInside(best);
+    IterationRecord now = this->record(iteration);
+    now.gradientNorm = swept.gradientNorm;
+    now.moving = swept.moved;
+    const double lowered = before.objective - now.objective;
+    const double size = std::abs(now.objective);
+    if (!(std::isfinite(size) && lowered >= -roundingOfSums * size))
+    {
+      this->load(best);
+      return StopReason::NoProgress;
+    }
+    best = this->Points;
+    firstGradient = firstGradient > 0 ? firstGradient : swept.gradientNorm;
+    if (!this->report(now))
+    {
+      return StopReason::Aborted;
+    }
+    const bool some = this->Group.any(this->Problem && this->Problem->someRepaired());
+    if (some && !this->Watch.ends(this->Result.history, reason))
+    {
+      repaired = true;
+      return StopReason::NoProgress;
+    }
+    gains.add(lowered);
+    if (!converged(this->Options.stopping, swept, all, firstGradient, lowered, gains.remaining(),
+          size, reason))
+    {
+      all = swept.moved == 0;
+    }
+    else if (!all)
+    {
+      all = true;
+    }
+    else if (!this->TheScalarizer->next(this->Result.history.back().objectives))
+    {
+      return reason;
+    }
+    if (all)
+    {
+      sweeper.wakeAll();
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The metric that judges elements and the validity, of the local cells; the worst of the whole
+/// mesh, which is larger the worse.
+double OptimizationOnRanks::judge(const std::vector<double>& points, std::vector<double>& values,
+  std::vector<signed char>& validity) const
+{
+  double worst = -infinity;
+  this->Group.together(
+    [&]
+    {
+      values.assign(this->TheMesh.view().numberOfCells, -infinity);
+      validity.assign(values.size(), Valid);
+      if (!this->Start)
+      {
+        return;
+      }
+      const Mesh moved = movedMesh(this->TheMesh, this->Mirrored, points, this->Options.threads);
+      moved.classifyCells(validity.data(), this->Options.threads);
+      std::vector<double> q(values.size());
+      evaluateMetric(moved, this->Judged.metric, this->Judged.evaluation, q.data());
+      const MetricInfo& info = metricInfo(this->Judged.metric);
+      for (const CellBlock& block : moved.blocks())
+      {
+        for (Index i = 0; info.definedOn(block.type) && i < block.count; ++i)
+        {
+          const Index cell = block.cell(i);
+          values[cell] = info.direction == Direction::LargerIsBetter ? -q[cell] : q[cell];
+          worst = std::max(worst, values[cell]);
+        }
+      }
+    });
+  return this->Group.maximum(worst);
+}
+
+//------------------------------------------------------------------------------
+/// Puts points back to where they were in the input, about the elements that are invalid or worse
+/// than all of the input, until there is none.
+Index OptimizationOnRanks::restoreWorst()
+{
+  constexpr double rounding = 1e-9;
+  constexpr int maxRounds = 20; // then all points go back
+  const MeshView& view = this->TheMesh.view();
+  std::vector<unsigned char> restored(this->TheMesh.localPoints(), 0);
+  for (int round = 0; this->ValidInput; ++round)
+  {
+    std::vector<double> values;
+    std::vector<signed char> validity;
+    this->judge(this->Points, values, validity);
+    std::vector<unsigned char> back = restored;
+    const double limit = this->Worst + rounding * std::abs(this->Worst);
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    {
+      const bool offends = validity[cell] != Valid ||
+        (this->HoldsWorst && !(values[cell] <= limit)) || round >= maxRounds;
+      for (Index n = view.offsets[cell]; offends && n < view.offsets[cell + 1]; ++n)
+      {
+        back[view.connectivity[n]] = 1;
+      }
+    }
+    this->TheMesh.exchange(back.data());
+    if (!this->Group.any(back != restored))
+    {
+      break;
+    }
+    restored = back;
+    std::vector<double> points = this->Points;
+    for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
+    {
+      if (restored[p])
+      {
+        std::copy_n(&this->TheMesh.points()[3 * p], 3, &points[3 * p]);
+      }
+    }
+    this->load(points);
+  }
+  Index count = 0;
+  for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
+  {
+    count += restored[p] && this->TheMesh.owned(p);
+  }
+  return this->Group.sum(count);
+}
+
+//------------------------------------------------------------------------------
+/// Goes back to the input if its objective is smaller.
+void OptimizationOnRanks::keepInput(const IterationRecord& first)
+{
+  IterationRecord now = this->record(this->Result.history.back().iteration);
+  const double allowed = first.objective + roundingOfSums * std::abs(first.objective);
+  if (!this->ValidInput || now.objective <= allowed)
+  {
+    return;
+  }
+  this->load(this->TheMesh.points());
+  now = this->record(now.iteration);
+  this->Result.history.back() = now;
+  if (this->Result.reason != StopReason::Aborted && this->Result.reason != StopReason::TimeLimit)
+  {
+    this->Result.reason = StopReason::NoProgress;
+  }
+  this->Result.unchanged = true;
+  this->Result.restored = 0;
+}
+
+//------------------------------------------------------------------------------
+/// Optimizes from Points on; whether there is more to do, with elements that have become valid.
+bool OptimizationOnRanks::stage()
+{
+  this->makeProblem();
+  const bool again = !this->Result.history.empty();
+  this->TheScalarizer.reset();
+  IterationRecord first = this->record(again ? this->Result.history.back().iteration : 0);
+  std::vector<double> weights;
+  for (const Objective& objective : this->Options.objectives)
+  {
+    weights.push_back(objective.weight);
+  }
+  this->TheScalarizer =
+    std::make_unique<Scalarizer>(this->Options.scalarization, weights, first.objectives);
+  first.objective = first.objectives.size() > 1 ? this->TheScalarizer->value(first.objectives)
+                                                : first.objectives[0];
+  if (again)
+  {
+    this->Result.history.back().objective = first.objective;
+    this->Result.history.back().objectives = first.objectives;
+  }
+  else if (!this->report(first))
+  {
+    this->Result.reason = StopReason::Aborted;
+    return false;
+  }
+  if (this->Result.freeVertices == 0)
+  {
+    this->Result.reason = StopReason::NoFreeVertices;
+    return false;
+  }
+  bool repaired = false;
+  this->Result.reason = this->sweep(repaired);
+  if (!repaired)
+  {
+    this->Result.restored = this->restoreWorst();
+    if (this->Result.restored > 0)
+    {
+      this->report(this->record(this->Result.history.back().iteration + 1));
+    }
+    this->keepInput(first);
+  }
+  return repaired;
+}
+
+//------------------------------------------------------------------------------
+void OptimizationOnRanks::untangle()
+{
+  const auto& objectives = this->Options.objectives;
+  if (this->Result.invertedBefore == 0 ||
+    std::any_of(objectives.begin(), objectives.end(), canUntangle))
+  {
+    return;
+  }
+  if (!this->Options.untangleFirst)
+  {
+    throw Error(std::to_string(this->Result.invertedBefore) +
+      " elements are inverted or degenerate, and no objective repairs them: untangle first, or add "
+      "the untangling metric.");
+  }
+  UntangleOptions options;
+  options.fixed = this->Options.fixed;
+  options.threads = this->Options.threads;
+  if (this->Options.stopping.maximumSeconds > 0)
+  {
+    options.maximumSeconds = std::max(std::numeric_limits<double>::min(),
+      this->Options.stopping.maximumSeconds - this->Clock.seconds());
+  }
+  this->Points = untangleOnRanks(this->TheMesh, this->Mirrored, options).result.points;
+  this->Result.untangled = true;
+}
+
+//------------------------------------------------------------------------------
+OptimizeResult OptimizationOnRanks::run()
+{
+  this->Result.points = this->Points;
+  if (this->TheMesh.globalCells() == 0)
+  {
+    this->Result.reason = StopReason::NoFreeVertices;
+    return this->Result;
+  }
+  const int threads = this->Options.threads;
+  this->Result.invertedBefore =
+    countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
+  this->Judged = this->Options.objectives[0];
+  const Metric metric = this->Options.worstMetric.value_or(this->Judged.metric);
+  if (metric != this->Judged.metric)
+  {
+    this->Judged = Objective();
+    this->Judged.metric = metric;
+  }
+  this->Judged.evaluation.threads = threads;
+  std::vector<double> values;
+  std::vector<signed char> validity;
+  this->Worst = this->judge(this->Points, values, validity);
+  this->ValidInput = !this->Options.allowInversion && this->Result.invertedBefore == 0;
+  this->HoldsWorst = this->Options.holdWorst && std::isfinite(this->Worst) &&
+    metricInfo(metric).direction != Direction::Neutral;
+  this->untangle();
+  const Index invalid = countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
+  while (this->stage())
+  {
+  }
+  this->TheMesh.exchange(this->Points.data(), 3);
+  this->Result.points = this->Points;
+  this->Result.iterations = this->Result.history.back().iteration;
+  this->Result.invertedAfter =
+    countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
+  if (this->Result.invertedAfter > invalid && !this->Options.allowInversion)
+  {
+    throw Error("Optimization would invert " + std::to_string(this->Result.invertedAfter - invalid) +
+      " elements: the coordinates are of too different magnitudes. Remove points that are far from "
+      "all others.");
+  }
+  return this->Result;
+}
+
+constexpr const char* gatherFirst =
+  " need the whole mesh on one process: gather it, in ParaView by Aggregate Dataset, with "
+  "Reproducible Order off; or ";
+}
+
+//------------------------------------------------------------------------------
+void requireLocalOptions(const OptimizeOptions& options)
+{
+  if (isGlobal(options.optimizer))
+  {
+    throw Error("Optimizers that move all points at once" + std::string(gatherFirst) +
+      "choose Automatic or Local Newton.");
+  }
+  if (options.model || options.slideSurface)
+  {
+    throw Error("Points that slide on curved surfaces, features and geometries" +
+      std::string(gatherFirst) + "choose the Boundary Fixed, Sliding or Free.");
+  }
+  if (options.improveWorst > 0)
+  {
+    throw Error("Steps that improve the worst element" + std::string(gatherFirst) +
+      "set Improve Worst to 0, or choose the preset Best Shape.");
+  }
+  bool untangles = false;
+  for (const Objective& objective : options.objectives)
+  {
+    untangles = untangles || objective.metric == Metric::UntangleBeta;
+    if (objective.evaluation.targets || objective.elementWeights)
+    {
+      throw Error("Targets and weights of elements" + std::string(gatherFirst) +
+        "optimize without them.");
+    }
+    if (objective.objectiveTemplate == ObjectiveTemplate::PowerMean ||
+      objective.objectiveTemplate == ObjectiveTemplate::Maximum)
+    {
+      throw Error("The templates p-Mean and Maximum" + std::string(gatherFirst) +
+        "choose a sum.");
+    }
+  }
+  if (untangles && options.objectives.size() > 1 && options.rescaleUntangling)
+  {
+    throw Error("Rescaled untangling objectives" + std::string(gatherFirst) +
+      "switch Rescale Untangling off.");
+  }
+  if (!options.fixed)
+  {
+    throw Error("The fixed points of a mesh on several ranks must be given, see rankBoundary().");
+  }
+}
+
+//------------------------------------------------------------------------------
+OptimizeResult optimizeOnRanks(
+  DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options)
+{
+  // The owner's flags count.
+  std::vector<unsigned char> fixed;
+  OptimizeOptions agreed = options;
+  if (options.fixed)
+  {
+    fixed.assign(options.fixed, options.fixed + mesh.localPoints());
+    agreed.fixed = fixed.data();
+  }
+  mesh.exchange(fixed.data());
+  return OptimizationOnRanks(mesh, mirrored, agreed).run();
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> rankBoundary(const DistributedMesh& mesh)
+{
+  std::vector<unsigned char> flags(mesh.localPoints(), 0);
+  mesh.group().together(
+    [&]
+    {
+      if (mesh.view().numberOfCells > 0)
+      {
+        const std::vector<char> boundary = boundaryPoints(Mesh(mesh.view()));
+        std::copy(boundary.begin(), boundary.end(), flags.begin());
+      }
+    });
+  mesh.exchange(flags.data());
+  return flags;
+}
+
+//------------------------------------------------------------------------------
+Index countInvalidOnRanks(
+  const DistributedMesh& mesh, bool mirrored, const std::vector<double>& points, int threads)
+{
+  Index count = 0;
+  mesh.group().together(
+    [&]
+    {
+      std::vector<signed char> validity(mesh.view().numberOfCells);
+      if (!validity.empty())
+      {
+        movedMesh(mesh, mirrored, points, threads).classifyCells(validity.data(), threads);
+      }
+      for (std::size_t cell = 0; cell < validity.size(); ++cell)
+      {
+        count += mesh.ownedCells()[cell] && isInvalid(validity[cell]);
+      }
+    });
+  return mesh.group().sum(count);
+}
+}
