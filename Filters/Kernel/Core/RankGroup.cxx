@@ -141,8 +141,8 @@ void RankGroup::together(const std::function<void()>& work)
     std::find_if(all.begin(), all.end(), [](const Bytes& text) { return !text.empty(); });
   if (first != all.end())
   {
-    const bool everywhere = std::all_of(
-      all.begin(), all.end(), [&](const Bytes& text) { return text == *first; });
+    const bool everywhere =
+      std::all_of(all.begin(), all.end(), [&](const Bytes& text) { return text == *first; });
     const std::string where = everywhere || this->size() == 1
       ? ""
       : "In process " + std::to_string(first - all.begin()) + ": ";

@@ -42,8 +42,7 @@ public:
    * @param sent kept unchanged by the caller until finish(); at most one message per rank
    * @param received of the size that each message has, at most one per rank; filled by finish()
    */
-  virtual void start(
-    const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) = 0;
+  virtual void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) = 0;
   /// Waits for what was started.
   virtual void finish() = 0;
   /// The bytes of every rank, on every rank.

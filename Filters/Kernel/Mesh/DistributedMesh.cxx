@@ -10,8 +10,8 @@ namespace tautline
 {
 namespace
 {
-constexpr int samplesPerRank = 64;  ///< keys that the ranges of the numbering are chosen from
-constexpr int mortonBits = 21;      ///< per direction
+constexpr int samplesPerRank = 64;        ///< keys that the ranges of the numbering are chosen from
+constexpr int mortonBits = 21;            ///< per direction
 constexpr double mortonCells = 2097151.0; ///< 2 ^ mortonBits - 1
 
 /// A bijection of 64 bits without visible order (the finalizer of splitmix64).
@@ -90,9 +90,9 @@ struct DistributedMesh::PointKey
   std::uint64_t curve;
   double x[3];
   Index id;
-  Index source;    ///< the point of the piece
-  Index rank;      ///< of the piece
-  Index withCell;  ///< whether a cell that is no ghost has it there
+  Index source;   ///< the point of the piece
+  Index rank;     ///< of the piece
+  Index withCell; ///< whether a cell that is no ghost has it there
 
   auto place() const { return std::tie(this->curve, this->x[0], this->x[1], this->x[2], this->id); }
 };
@@ -192,8 +192,8 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
     for (int c = 0; c < 3; ++c)
     {
       key.x[c] = piece.view.points[3 * p + c] + 0.0; // -0 becomes 0
-      key.curve |=
-        spreadBits(static_cast<std::uint64_t>(perLength * (key.x[c] - this->Bounds[c]))) << c;
+      key.curve |= spreadBits(static_cast<std::uint64_t>(perLength * (key.x[c] - this->Bounds[c])))
+        << c;
     }
     keys.push_back(key);
     if (withIds)
@@ -239,7 +239,10 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
   }
   std::sort(range.begin(), range.end(),
     [&](const PointKey& a, const PointKey& b)
-    { return std::make_tuple(a.place(), a.rank, a.source) < std::make_tuple(b.place(), b.rank, b.source); });
+    {
+      return std::make_tuple(a.place(), a.rank, a.source) <
+        std::make_tuple(b.place(), b.rank, b.source);
+    });
   Index count = 0;
   for (std::size_t i = 0; i < range.size(); ++i)
   {
@@ -263,8 +266,8 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     for (end = begin; end < range.size() && !before(range[begin], range[end]); ++end)
     {
-      const std::uint64_t hash = mixed(mixed(static_cast<std::uint64_t>(first)) +
-        static_cast<std::uint64_t>(range[end].rank));
+      const std::uint64_t hash = mixed(
+        mixed(static_cast<std::uint64_t>(first)) + static_cast<std::uint64_t>(range[end].rank));
       if (range[end].withCell && hash < least)
       {
         least = hash;
@@ -361,8 +364,7 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
   for (int rank = 0; rank < group.size(); ++rank)
   {
     std::sort(needed[rank].begin(), needed[rank].end());
-    needed[rank].erase(
-      std::unique(needed[rank].begin(), needed[rank].end()), needed[rank].end());
+    needed[rank].erase(std::unique(needed[rank].begin(), needed[rank].end()), needed[rank].end());
     for (const Index p : needed[rank])
     {
       SentPoint point = { this->PieceNumbers[p], { 0, 0, 0 }, this->PieceOwners[p] };
@@ -413,8 +415,7 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
   const auto local = [&](Index number)
   {
     return static_cast<Index>(
-      std::lower_bound(this->Numbers.begin(), this->Numbers.end(), number) -
-      this->Numbers.begin());
+      std::lower_bound(this->Numbers.begin(), this->Numbers.end(), number) - this->Numbers.begin());
   };
   this->LocalOfPiece.assign(view.numberOfPoints, -1);
   for (Index p = 0; p < view.numberOfPoints; ++p)
@@ -496,7 +497,9 @@ void exchangeValues(RankGroup& group,
   std::vector<RankMessage> sent, received;
   const auto size = static_cast<std::size_t>(components) * sizeof(Value);
   const auto listOf = [&](const DistributedMesh::Subset::Neighbour& n, bool sends) -> const auto&
-  { return sends != toOwners ? n.sent : n.received; };
+  {
+    return sends != toOwners ? n.sent : n.received;
+  };
   for (const auto& neighbour : neighbours)
   {
     const auto& out = listOf(neighbour, true);
@@ -568,8 +571,8 @@ DistributedMesh::Subset DistributedMesh::subset(const std::vector<unsigned char>
   {
     Subset::Neighbour part = { neighbour.rank, {}, {} };
     const auto flagged = [&](std::int32_t p) { return agreed[p] != 0; };
-    std::copy_if(neighbour.sent.begin(), neighbour.sent.end(), std::back_inserter(part.sent),
-      flagged);
+    std::copy_if(
+      neighbour.sent.begin(), neighbour.sent.end(), std::back_inserter(part.sent), flagged);
     std::copy_if(neighbour.received.begin(), neighbour.received.end(),
       std::back_inserter(part.received), flagged);
     if (!part.sent.empty() || !part.received.empty())

@@ -7,6 +7,7 @@
 #include "ValidityGuard.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Mesh/JacobianBounds.h"
 #include "tautline/Untangling/UntangleOnRanks.h"
 
 #include <algorithm>
@@ -68,8 +69,8 @@ SimplexFrame frameOf(const DistributedMesh& mesh, const std::vector<double>& poi
       lengths.push_back(norm({ b[0] - a[0], b[1] - a[1], b[2] - a[2] }));
     }
   }
-  frame.scale = powerOfTwo(group.orderlessSum(lengths) /
-    static_cast<double>(std::max<Index>(1, mesh.globalCells())));
+  frame.scale = powerOfTwo(
+    group.orderlessSum(lengths) / static_cast<double>(std::max<Index>(1, mesh.globalCells())));
   return frame;
 }
 
@@ -100,9 +101,13 @@ private:
   void makeProblem();
   StopReason sweep(bool& repaired);
   IterationRecord record(int iteration);
-  void addObjective(std::size_t i, const std::vector<signed char>& validity, IterationRecord& record);
+  void addObjective(
+    std::size_t i, const std::vector<signed char>& validity, IterationRecord& record);
   bool report(const IterationRecord& record);
-  bool outOfTime() const { return this->Group.any(this->Clock.reached(this->Options.stopping.maximumSeconds)); }
+  bool outOfTime() const
+  {
+    return this->Group.any(this->Clock.reached(this->Options.stopping.maximumSeconds));
+  }
   void store();
   void load(const std::vector<double>& points);
   Index restoreInside(const std::vector<double>& before);
@@ -123,7 +128,8 @@ private:
   std::vector<Objective> Resolved;
   std::vector<int> Sets;
   std::unique_ptr<Scalarizer> TheScalarizer;
-  std::vector<signed char> Levels; ///< see ValidityLevel; empty without elements that have an inside
+  std::vector<signed char>
+    Levels; ///< see ValidityLevel; empty without elements that have an inside
   StoppingTest Watch;
   OptimizeResult Result;
   // The worst element of the input.
@@ -142,6 +148,8 @@ OptimizationOnRanks::OptimizationOnRanks(
   , Points(mesh.points())
   , Watch(options.stopping, [this] { return this->outOfTime(); })
 {
+  // To the checks, what is at the edge of this part only is not on the boundary.
+  const std::vector<unsigned char> boundary = rankBoundary(mesh);
   this->Group.together(
     [&]
     {
@@ -151,7 +159,12 @@ OptimizationOnRanks::OptimizationOnRanks(
       {
         this->Start = std::make_unique<Mesh>(mesh.view(), options.threads);
         this->Start->setMirrored(mirrored);
-        checkOptions(*this->Start, options);
+        std::vector<unsigned char> held(boundary.size());
+        std::transform(boundary.begin(), boundary.end(), options.fixed, held.begin(),
+          [](unsigned char on, unsigned char fixed) { return !on || fixed; });
+        OptimizeOptions checked = options;
+        checked.fixed = held.data();
+        checkOptions(*this->Start, checked);
       }
     });
   this->agree();
@@ -340,20 +353,29 @@ bool OptimizationOnRanks::report(const IterationRecord& record)
 //------------------------------------------------------------------------------
 void OptimizationOnRanks::store()
 {
-  if (this->Problem)
-  {
-    this->Problem->store();
-  }
+  this->Group.together(
+    [&]
+    {
+      if (this->Problem)
+      {
+        this->Problem->store();
+      }
+    });
   this->TheMesh.exchange(this->Points.data(), 3);
 }
 
 void OptimizationOnRanks::load(const std::vector<double>& points)
 {
-  this->Points = points;
-  if (this->Problem)
-  {
-    this->Problem->restart(std::vector<double>(points));
-  }
+  this->Group.together(
+    [&]
+    {
+      const std::vector<double> to = points;
+      this->Points = to;
+      if (this->Problem)
+      {
+        this->Problem->restart(to);
+      }
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -372,19 +394,23 @@ Index OptimizationOnRanks::restoreInside(const std::vector<double>& before)
   {
     std::vector<unsigned char> back(this->TheMesh.localPoints(), round == maxRounds);
     bool worse = false;
-    if (!this->Levels.empty())
-    {
-      findValidityLevels(this->Problem->moving(), this->Options.threads, levels);
-      for (std::size_t cell = 0; cell < levels.size(); ++cell)
+    this->Group.together(
+      [&]
       {
-        const bool less = levels[cell] < this->Levels[cell];
-        worse = worse || less;
-        for (Index n = view.offsets[cell]; less && n < view.offsets[cell + 1]; ++n)
+        if (!this->Levels.empty())
         {
-          back[view.connectivity[n]] = 1;
+          findValidityLevels(this->Problem->moving(), this->Options.threads, levels);
         }
-      }
-    }
+        for (std::size_t cell = 0; cell < this->Levels.size(); ++cell)
+        {
+          const bool less = levels[cell] < this->Levels[cell];
+          worse = worse || less;
+          for (Index n = view.offsets[cell]; less && n < view.offsets[cell + 1]; ++n)
+          {
+            back[view.connectivity[n]] = 1;
+          }
+        }
+      });
     if (!this->Group.any(worse))
     {
       break;
@@ -683,7 +709,8 @@ OptimizeResult OptimizationOnRanks::run()
     countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
   if (this->Result.invertedAfter > invalid && !this->Options.allowInversion)
   {
-    throw Error("Optimization would invert " + std::to_string(this->Result.invertedAfter - invalid) +
+    throw Error("Optimization would invert " +
+      std::to_string(this->Result.invertedAfter - invalid) +
       " elements: the coordinates are of too different magnitudes. Remove points that are far from "
       "all others.");
   }
@@ -719,14 +746,13 @@ void requireLocalOptions(const OptimizeOptions& options)
     untangles = untangles || objective.metric == Metric::UntangleBeta;
     if (objective.evaluation.targets || objective.elementWeights)
     {
-      throw Error("Targets and weights of elements" + std::string(gatherFirst) +
-        "optimize without them.");
+      throw Error(
+        "Targets and weights of elements" + std::string(gatherFirst) + "optimize without them.");
     }
     if (objective.objectiveTemplate == ObjectiveTemplate::PowerMean ||
       objective.objectiveTemplate == ObjectiveTemplate::Maximum)
     {
-      throw Error("The templates p-Mean and Maximum" + std::string(gatherFirst) +
-        "choose a sum.");
+      throw Error("The templates p-Mean and Maximum" + std::string(gatherFirst) + "choose a sum.");
     }
   }
   if (untangles && options.objectives.size() > 1 && options.rescaleUntangling)
@@ -734,24 +760,29 @@ void requireLocalOptions(const OptimizeOptions& options)
     throw Error("Rescaled untangling objectives" + std::string(gatherFirst) +
       "switch Rescale Untangling off.");
   }
-  if (!options.fixed)
-  {
-    throw Error("The fixed points of a mesh on several ranks must be given, see rankBoundary().");
-  }
 }
 
 //------------------------------------------------------------------------------
-OptimizeResult optimizeOnRanks(
-  DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options)
+OptimizeResult optimizeOnRanks(DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options)
 {
+  mesh.group().together(
+    [&]
+    {
+      if (!options.fixed && mesh.localPoints() > 0)
+      {
+        throw Error(
+          "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
+      }
+    });
   // The owner's flags count.
   std::vector<unsigned char> fixed;
   OptimizeOptions agreed = options;
   if (options.fixed)
   {
     fixed.assign(options.fixed, options.fixed + mesh.localPoints());
-    agreed.fixed = fixed.data();
   }
+  fixed.reserve(1); // not null, which would be the boundary
+  agreed.fixed = fixed.data();
   mesh.exchange(fixed.data());
   return OptimizationOnRanks(mesh, mirrored, agreed).run();
 }

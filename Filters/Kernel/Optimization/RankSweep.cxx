@@ -90,7 +90,8 @@ struct RankSweeper::Implementation : RankSweeper::Base
     this->Next[v] = 1;
     const std::int32_t* ids = this->Simplices.patchVertices();
     const std::size_t end = static_cast<std::size_t>(Dim) * this->Simplices.patchStart(v + 1);
-    for (std::size_t i = static_cast<std::size_t>(Dim) * this->Simplices.patchStart(v); i < end; ++i)
+    for (std::size_t i = static_cast<std::size_t>(Dim) * this->Simplices.patchStart(v); i < end;
+         ++i)
     {
       if (ids[i] < this->Simplices.freeVertices())
       {
@@ -107,15 +108,16 @@ private:
 };
 
 //------------------------------------------------------------------------------
-RankSweeper::RankSweeper(const DistributedMesh& mesh, OptimizationProblem* problem,
-  std::vector<int> sets, int threads)
+RankSweeper::RankSweeper(
+  const DistributedMesh& mesh, OptimizationProblem* problem, std::vector<int> sets, int threads)
   : TheMesh(mesh)
   , Problem(problem)
   , Sets(std::move(sets))
 {
   RankGroup& group = mesh.group();
   const Index points = mesh.localPoints();
-  const int highest = this->Sets.empty() ? -1 : *std::max_element(this->Sets.begin(), this->Sets.end());
+  const int highest =
+    this->Sets.empty() ? -1 : *std::max_element(this->Sets.begin(), this->Sets.end());
   const auto numberOfSets = static_cast<int>(group.maximum(static_cast<Index>(highest))) + 1;
   group.together(
     [&]
@@ -242,8 +244,8 @@ SweepResult RankSweeper::sweep(const Scalarizer& scalarizer, const std::vector<d
     this->exchangeSet(static_cast<int>(set));
     for (std::size_t k = 0; n > 1 && k < n; ++k)
     {
-      total[k] += group.orderlessSum(
-        this->Impl && !failure ? this->Impl->Changes[k] : std::vector<double>());
+      total[k] +=
+        group.orderlessSum(this->Impl && !failure ? this->Impl->Changes[k] : std::vector<double>());
     }
   }
   group.together(

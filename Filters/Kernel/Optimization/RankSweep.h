@@ -26,8 +26,8 @@ public:
    * without cells
    * @param sets per local point the number of its set, or -1 for a point that is fixed
    */
-  RankSweeper(const DistributedMesh& mesh, OptimizationProblem* problem, std::vector<int> sets,
-    int threads);
+  RankSweeper(
+    const DistributedMesh& mesh, OptimizationProblem* problem, std::vector<int> sets, int threads);
   ~RankSweeper();
 
   /// One sweep of the whole mesh. `values` are the objectives before it; see LocalSweeper.

@@ -161,8 +161,7 @@ SimplexMesh::SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Tar
 }
 
 //------------------------------------------------------------------------------
-void SimplexMesh::number(
-  const Mesh& mesh, const std::vector<char>& free, const SimplexFrame* frame)
+void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free, const SimplexFrame* frame)
 {
   const MeshView& view = mesh.view();
   std::vector<char> used(view.numberOfPoints, 0);

@@ -147,8 +147,9 @@ void SimplexMesh::cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexO
       "The mesh has more elements than the optimizers take (about 500 million): split it.");
   }
   this->Simplices = static_cast<std::int32_t>(total);
-  this->Scale = frame ? frame->scale
-                      : powerOfTwo(total > 0 ? lengths / static_cast<double>((total + 15) / 16) : 1.0);
+  this->Scale = frame
+    ? frame->scale
+    : powerOfTwo(total > 0 ? lengths / static_cast<double>((total + 15) / 16) : 1.0);
 
   // The shapes of ideal corners are few; one for all simplices needs no index.
   std::vector<int> firstShape(NumberOfCellTypes, 0);

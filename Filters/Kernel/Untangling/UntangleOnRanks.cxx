@@ -1,0 +1,561 @@
+#include "UntangleOnRanks.h"
+
+#include "Untangle.h"
+#include "tautline/Core/Memory.h"
+#include "tautline/Core/Stopwatch.h"
+#include "tautline/Core/UnionFind.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace tautline
+{
+namespace
+{
+/// Widths of the rings about the invalid elements, in cells; then comes the whole mesh.
+constexpr int widths[] = { 4, 12 };
+/// Bytes per cell of untangle() with its mesh, measured on tetrahedra and rounded up.
+constexpr double bytesPerCell = 1500;
+
+bool isInvalid(signed char validity)
+{
+  return validity == Inverted || validity == Degenerate;
+}
+
+struct RegionPoint
+{
+  Index number;
+  double x[3];
+  Index free;
+};
+
+struct RegionCell
+{
+  std::vector<Index> sorted, numbers;
+  unsigned char type;
+
+  auto key() const { return std::tie(this->sorted, this->type, this->numbers); }
+};
+
+/// The cells about invalid elements, of the whole mesh and in its order.
+struct Region
+{
+  std::vector<RegionPoint> points; ///< in the order of their numbers
+  std::vector<RegionCell> cells;
+
+  Index find(Index number) const
+  {
+    const auto at = std::lower_bound(this->points.begin(), this->points.end(), number,
+      [](const RegionPoint& p, Index n) { return p.number < n; });
+    return at - this->points.begin();
+  }
+};
+
+/// A connected part of a region as a mesh of its own.
+struct Part
+{
+  std::vector<Index> pointOf; ///< of the region, per point
+  std::vector<Index> cellOf;  ///< of the region, per cell
+  std::vector<double> x;
+  std::vector<unsigned char> types, fixed;
+  std::vector<Index> offsets = { 0 }, connectivity;
+
+  MeshView view() const
+  {
+    MeshView view;
+    view.numberOfPoints = static_cast<Index>(this->pointOf.size());
+    view.points = this->x.data();
+    view.numberOfCells = static_cast<Index>(this->types.size());
+    view.cellTypes = this->types.data();
+    view.offsets = this->offsets.data();
+    view.connectivity = this->connectivity.data();
+    return view;
+  }
+};
+
+Part makePart(const Region& region, std::vector<Index> cells)
+{
+  Part part;
+  part.cellOf = std::move(cells);
+  for (const Index cell : part.cellOf)
+  {
+    for (const Index number : region.cells[cell].numbers)
+    {
+      part.pointOf.push_back(region.find(number));
+    }
+  }
+  std::sort(part.pointOf.begin(), part.pointOf.end());
+  part.pointOf.erase(std::unique(part.pointOf.begin(), part.pointOf.end()), part.pointOf.end());
+  for (const Index p : part.pointOf)
+  {
+    part.x.insert(part.x.end(), region.points[p].x, region.points[p].x + 3);
+    part.fixed.push_back(!region.points[p].free);
+  }
+  for (const Index cell : part.cellOf)
+  {
+    part.types.push_back(region.cells[cell].type);
+    for (const Index number : region.cells[cell].numbers)
+    {
+      const auto at =
+        std::lower_bound(part.pointOf.begin(), part.pointOf.end(), region.find(number));
+      part.connectivity.push_back(at - part.pointOf.begin());
+    }
+    part.offsets.push_back(static_cast<Index>(part.connectivity.size()));
+  }
+  return part;
+}
+
+/// The parts of a region that its free points connect; cells without one are a part each.
+std::vector<std::vector<Index>> connectedParts(const Region& region)
+{
+  UnionFind sets(static_cast<Index>(region.points.size()));
+  std::vector<Index> leader;
+  for (const RegionCell& cell : region.cells)
+  {
+    Index first = -1;
+    for (const Index number : cell.numbers)
+    {
+      const Index p = region.find(number);
+      if (region.points[p].free)
+      {
+        first = first < 0 ? p : first;
+        sets.join(first, p);
+      }
+    }
+    leader.push_back(first);
+  }
+  std::map<Index, std::vector<Index>> parts;
+  for (std::size_t cell = 0; cell < leader.size(); ++cell)
+  {
+    if (leader[cell] >= 0)
+    {
+      parts[sets.find(leader[cell])].push_back(static_cast<Index>(cell));
+    }
+  }
+  std::vector<std::vector<Index>> result;
+  for (auto& part : parts)
+  {
+    result.push_back(std::move(part.second));
+  }
+  return result;
+}
+
+/**
+ * @class RankUntangler
+ * @brief The state of a run.
+ */
+class RankUntangler
+{
+public:
+  RankUntangler(DistributedMesh& mesh, bool mirrored, const UntangleOptions& options);
+  RankUntangleResult run();
+
+private:
+  Index examine();
+  void untangleWithin(int width);
+  Region gather(int width);
+  void solve(const Region& region, int width);
+  void take(const std::vector<RegionPoint>& moved);
+  void listRemaining();
+  bool report();
+  bool outOfTime() { return this->Group.any(this->Clock.reached(this->Options.maximumSeconds)); }
+
+  DistributedMesh& TheMesh;
+  RankGroup& Group;
+  bool Mirrored;
+  const UntangleOptions& Options;
+  Stopwatch Clock;
+  std::vector<unsigned char> Fixed;
+  std::vector<double> Points;
+  std::vector<signed char> Validity; ///< of the local cells
+  std::map<std::vector<Index>, Obstacle> Obstacles;
+  double Objective = 0;
+  int Iterations = 0;
+  bool Stopped = false;
+  RankUntangleResult Result;
+};
+
+//------------------------------------------------------------------------------
+RankUntangler::RankUntangler(DistributedMesh& mesh, bool mirrored, const UntangleOptions& options)
+  : TheMesh(mesh)
+  , Group(mesh.group())
+  , Mirrored(mirrored)
+  , Options(options)
+  , Fixed(options.fixed, options.fixed + mesh.localPoints())
+  , Points(mesh.points())
+{
+  mesh.exchange(this->Fixed.data());
+}
+
+//------------------------------------------------------------------------------
+/// Validity of the local cells; the number of invalid cells of the whole mesh.
+Index RankUntangler::examine()
+{
+  const MeshView& local = this->TheMesh.view();
+  Index count = 0;
+  this->Group.together(
+    [&]
+    {
+      this->Validity.assign(local.numberOfCells, Valid);
+      if (local.numberOfCells > 0)
+      {
+        MeshView view = local;
+        view.points = this->Points.data();
+        Mesh moved(view, this->Options.threads);
+        moved.setMirrored(this->Mirrored);
+        moved.classifyCells(this->Validity.data(), this->Options.threads);
+      }
+      for (Index cell = 0; cell < local.numberOfCells; ++cell)
+      {
+        count += this->TheMesh.ownedCells()[cell] && isInvalid(this->Validity[cell]);
+      }
+    });
+  return this->Group.sum(count);
+}
+
+//------------------------------------------------------------------------------
+/// The cells with a point within `width` cells of an invalid one that can be repaired; all cells if
+/// width is negative. All ranks get it.
+Region RankUntangler::gather(int width)
+{
+  const MeshView& view = this->TheMesh.view();
+  std::vector<unsigned char> near(this->TheMesh.localPoints(), width < 0);
+  const auto mark = [&](auto wanted)
+  {
+    std::vector<unsigned char> next = near;
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    {
+      const Index* begin = view.connectivity + view.offsets[cell];
+      const Index* end = view.connectivity + view.offsets[cell + 1];
+      if (wanted(cell, begin, end))
+      {
+        std::for_each(begin, end, [&](Index p) { next[p] = 1; });
+      }
+    }
+    near.swap(next);
+    this->TheMesh.exchange(near.data());
+  };
+  mark(
+    [&](Index cell, const Index* begin, const Index* end)
+    {
+      return isInvalid(this->Validity[cell]) &&
+        std::any_of(begin, end, [&](Index p) { return !this->Fixed[p]; });
+    });
+  for (int ring = 0; ring < width; ++ring)
+  {
+    mark([&](Index, const Index* begin, const Index* end)
+      { return std::any_of(begin, end, [&](Index p) { return near[p] != 0; }); });
+  }
+  std::vector<RegionPoint> points;
+  std::vector<Index> cells;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const Index* begin = view.connectivity + view.offsets[cell];
+    const Index* end = view.connectivity + view.offsets[cell + 1];
+    if (!this->TheMesh.ownedCells()[cell] ||
+      !std::any_of(begin, end, [&](Index p) { return near[p] && !this->Fixed[p]; }))
+    {
+      continue;
+    }
+    cells.push_back(view.cellTypes[cell]);
+    cells.push_back(end - begin);
+    for (const Index* p = begin; p != end; ++p)
+    {
+      cells.push_back(this->TheMesh.numbers()[*p]);
+      RegionPoint point = { cells.back(), { 0, 0, 0 }, near[*p] && !this->Fixed[*p] };
+      std::copy_n(&this->Points[3 * *p], 3, point.x);
+      points.push_back(point);
+    }
+  }
+  const auto byNumber = [](const RegionPoint& a, const RegionPoint& b)
+  { return a.number < b.number; };
+  const auto same = [](const RegionPoint& a, const RegionPoint& b) { return a.number == b.number; };
+  const auto unify = [&](std::vector<RegionPoint>& list)
+  {
+    std::sort(list.begin(), list.end(), byNumber);
+    list.erase(std::unique(list.begin(), list.end(), same), list.end());
+  };
+  unify(points);
+  Region region;
+  for (const auto& list : this->Group.gatherItems(points))
+  {
+    region.points.insert(region.points.end(), list.begin(), list.end());
+  }
+  unify(region.points);
+  for (const auto& list : this->Group.gatherItems(cells))
+  {
+    for (std::size_t i = 0; i < list.size();)
+    {
+      RegionCell cell;
+      cell.type = static_cast<unsigned char>(list[i]);
+      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 2;
+      cell.numbers.assign(begin, begin + list[i + 1]);
+      cell.sorted = cell.numbers;
+      std::sort(cell.sorted.begin(), cell.sorted.end());
+      i += 2 + cell.numbers.size();
+      region.cells.push_back(std::move(cell));
+    }
+  }
+  std::sort(region.cells.begin(), region.cells.end(),
+    [](const RegionCell& a, const RegionCell& b) { return a.key() < b.key(); });
+  return region;
+}
+
+//------------------------------------------------------------------------------
+/// Untangles the parts of a region, each on one rank.
+void RankUntangler::solve(const Region& region, int width)
+{
+  std::vector<RegionPoint> moved;
+  std::vector<Index> obstacles; // of elements: the obstacle, how many points, their numbers
+  std::vector<double> objectives;
+  int iterations = 0;
+  this->Group.together(
+    [&]
+    {
+      const std::vector<std::vector<Index>> parts = connectedParts(region);
+      for (std::size_t i = this->Group.rank(); i < parts.size(); i += this->Group.size())
+      {
+        const Part part = makePart(region, parts[i]);
+        Mesh mesh(part.view(), this->Options.threads);
+        mesh.setMirrored(this->Mirrored);
+        UntangleOptions options;
+        options.method = this->Options.method;
+        options.effort = this->Options.effort;
+        options.fixed = part.fixed.data();
+        options.threads = this->Options.threads;
+        if (this->Options.maximumSeconds > 0)
+        {
+          options.maximumSeconds = std::max(std::numeric_limits<double>::min(),
+            this->Options.maximumSeconds - this->Clock.seconds());
+        }
+        const UntangleResult result = tautline::untangle(mesh, options);
+        iterations = std::max(iterations, static_cast<int>(result.history.size()));
+        objectives.push_back(result.history.empty() ? 0.0 : result.history.back().objective);
+        for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+        {
+          RegionPoint point = region.points[part.pointOf[p]];
+          if (!std::equal(point.x, point.x + 3, &result.points[3 * p]))
+          {
+            std::copy_n(&result.points[3 * p], 3, point.x);
+            moved.push_back(point);
+          }
+        }
+        for (std::size_t cell = 0; cell < part.cellOf.size(); ++cell)
+        {
+          if (result.obstacles[cell] != static_cast<signed char>(Obstacle::None))
+          {
+            const std::vector<Index>& sorted = region.cells[part.cellOf[cell]].sorted;
+            obstacles.push_back(result.obstacles[cell]);
+            obstacles.push_back(static_cast<Index>(sorted.size()));
+            obstacles.insert(obstacles.end(), sorted.begin(), sorted.end());
+          }
+        }
+      }
+    });
+  this->Objective = this->Group.orderlessSum(objectives);
+  this->Iterations += static_cast<int>(this->Group.maximum(static_cast<Index>(iterations)));
+  for (const auto& list : this->Group.gatherItems(moved))
+  {
+    this->take(list);
+  }
+  for (const auto& list : this->Group.gatherItems(obstacles))
+  {
+    for (std::size_t i = 0; i < list.size(); i += 2 + static_cast<std::size_t>(list[i + 1]))
+    {
+      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 2;
+      // Points around a region that is not the whole mesh are held, but not fixed.
+      const bool known = width < 0 || list[i] == static_cast<Index>(Obstacle::FixedElement);
+      this->Obstacles[{ begin, begin + list[i + 1] }] =
+        known ? static_cast<Obstacle>(list[i]) : Obstacle::Unknown;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void RankUntangler::take(const std::vector<RegionPoint>& moved)
+{
+  const std::vector<Index>& numbers = this->TheMesh.numbers();
+  for (const RegionPoint& point : moved)
+  {
+    const auto at = std::lower_bound(numbers.begin(), numbers.end(), point.number);
+    if (at != numbers.end() && *at == point.number)
+    {
+      std::copy_n(point.x, 3, &this->Points[3 * (at - numbers.begin())]);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Adds a record; false if an observer stops the run.
+bool RankUntangler::report()
+{
+  IterationRecord record;
+  record.iteration = static_cast<int>(this->Result.result.history.size());
+  record.seconds = this->Clock.seconds();
+  record.objective = this->Objective;
+  record.inverted = this->Result.result.invertedAfter;
+  this->Result.result.history.push_back(record);
+  constexpr double stages = 3.0;
+  const auto points = [&](double* to) { std::copy(this->Points.begin(), this->Points.end(), to); };
+  bool proceed = true;
+  this->Group.together(
+    [&]
+    {
+      proceed = !this->Options.observer ||
+        this->Options.observer({ record, std::min(1.0, record.iteration / stages), points });
+    });
+  return !this->Group.any(!proceed);
+}
+
+//------------------------------------------------------------------------------
+void RankUntangler::untangleWithin(int width)
+{
+  UntangleResult& result = this->Result.result;
+  if (width < 0)
+  {
+    this->Group.together(
+      [&]
+      {
+        requireMemory(bytesPerCell * static_cast<double>(this->TheMesh.globalCells()),
+          "untangling the whole mesh on a process, where what is about the invalid elements is not "
+          "enough,",
+          "choose the Effort Local");
+      });
+  }
+  const Index before = result.invertedAfter;
+  const std::vector<double> kept = this->Points;
+  const std::vector<signed char> validity = this->Validity;
+  const Region region = this->gather(width);
+  this->solve(region, width);
+  result.invertedAfter = this->examine();
+  if (result.invertedAfter > before)
+  {
+    this->Points = kept;
+    this->Validity = validity;
+    result.invertedAfter = before;
+  }
+  if (!this->report())
+  {
+    result.reason = StopReason::Aborted;
+    this->Stopped = true;
+  }
+  else if (result.invertedAfter > 0 && this->outOfTime())
+  {
+    result.reason = StopReason::TimeLimit;
+    this->Stopped = true;
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The invalid elements of the whole mesh with their obstacles.
+void RankUntangler::listRemaining()
+{
+  const MeshView& view = this->TheMesh.view();
+  std::vector<Index> lists; // the obstacle, the type, how many points, their numbers
+  std::vector<Vec3> centers;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    if (!this->TheMesh.ownedCells()[cell] || !isInvalid(this->Validity[cell]))
+    {
+      continue;
+    }
+    std::vector<Index> sorted;
+    bool allFixed = true;
+    Vec3 center = { 0, 0, 0 };
+    const Index begin = view.offsets[cell], end = view.offsets[cell + 1];
+    for (Index n = begin; n < end; ++n)
+    {
+      const Index p = view.connectivity[n];
+      sorted.push_back(this->TheMesh.numbers()[p]);
+      allFixed = allFixed && this->Fixed[p];
+      const double share = 1.0 / static_cast<double>(end - begin);
+      center +=
+        share * Vec3{ this->Points[3 * p], this->Points[3 * p + 1], this->Points[3 * p + 2] };
+    }
+    std::sort(sorted.begin(), sorted.end());
+    const auto found = this->Obstacles.find(sorted);
+    const Obstacle obstacle = allFixed ? Obstacle::FixedElement
+      : found == this->Obstacles.end() ? Obstacle::Unknown
+                                       : found->second;
+    lists.insert(lists.end(),
+      { static_cast<Index>(obstacle), static_cast<Index>(view.cellTypes[cell]), end - begin });
+    lists.insert(lists.end(), sorted.begin(), sorted.end());
+    centers.push_back(center);
+  }
+  const auto allCenters = this->Group.gatherItems(centers);
+  const auto allLists = this->Group.gatherItems(lists);
+  for (std::size_t rank = 0; rank < allLists.size(); ++rank)
+  {
+    const std::vector<Index>& list = allLists[rank];
+    for (std::size_t i = 0, k = 0; i < list.size(); i += 3 + list[i + 2], ++k)
+    {
+      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 3;
+      const auto obstacle = static_cast<Obstacle>(list[i]);
+      this->Result.remaining[{ begin, begin + list[i + 2] }] = { obstacle,
+        static_cast<unsigned char>(list[i + 1]), allCenters[rank][k] };
+    }
+  }
+  for (const auto& element : this->Result.remaining)
+  {
+    this->Result.result.impossible += element.second.obstacle == Obstacle::FixedElement ||
+      element.second.obstacle == Obstacle::FixedNeighbours;
+  }
+}
+
+//------------------------------------------------------------------------------
+RankUntangleResult RankUntangler::run()
+{
+  UntangleResult& result = this->Result.result;
+  result.points = this->Points;
+  result.invertedBefore = result.invertedAfter = this->examine();
+  Index free = 0;
+  for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
+  {
+    free += this->TheMesh.owned(p) && !this->Fixed[p];
+  }
+  free = this->Group.sum(free);
+  if (result.invertedBefore > 0 && free > 0)
+  {
+    const bool whole = this->Options.method == UntangleMethod::Simultaneous;
+    result.reason = StopReason::NoProgress;
+    for (const int width : widths)
+    {
+      if (!whole && !this->Stopped && result.invertedAfter > 0)
+      {
+        this->untangleWithin(width);
+      }
+    }
+    if (!this->Stopped && result.invertedAfter > 0 &&
+      (whole || this->Options.effort != Effort::Local))
+    {
+      this->untangleWithin(-1);
+    }
+    this->TheMesh.exchange(this->Points.data(), 3);
+    result.points = this->Points;
+  }
+  else
+  {
+    result.reason = result.invertedBefore == 0 ? StopReason::AllValid : StopReason::NoFreeVertices;
+  }
+  result.reason = result.invertedAfter == 0 ? StopReason::AllValid : result.reason;
+  this->listRemaining();
+  return this->Result;
+}
+}
+
+//------------------------------------------------------------------------------
+RankUntangleResult untangleOnRanks(
+  DistributedMesh& mesh, bool mirrored, const UntangleOptions& options)
+{
+  mesh.group().together(
+    [&]
+    {
+      if (!options.fixed && mesh.localPoints() > 0)
+      {
+        throw Error(
+          "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
+      }
+    });
+  return RankUntangler(mesh, mirrored, options).run();
+}
+}

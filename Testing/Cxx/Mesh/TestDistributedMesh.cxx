@@ -1,0 +1,275 @@
+// A mesh on ranks: numbers, owners, halos and sets are those of the mesh, however it is cut.
+#include "Blocks.h"
+#include "Check.h"
+#include "ThreadRanks.h"
+#include "tautline/Mesh/DistributedMesh.h"
+
+#include <numeric>
+#include <set>
+
+using namespace tautline;
+
+namespace
+{
+MeshData jittered(CellType type, Index n)
+{
+  MeshData data = blockMesh(type, n, n, n - 1);
+  Random random(3);
+  data.transform([&](const Vec3& p) { return p + random.vector(-0.1, 0.1); });
+  return data;
+}
+
+/// Of each point of the whole mesh: its number and its set.
+struct Layout
+{
+  std::vector<Index> numbers;
+  std::vector<int> sets;
+
+  bool operator==(const Layout& other) const
+  {
+    return this->numbers == other.numbers && this->sets == other.sets;
+  }
+};
+
+/// Checks what one rank has, and notes the layout.
+void checkRank(RankGroup& group, const MeshData& whole, const RankPart& part, bool ids,
+  const std::vector<unsigned char>& free, std::mutex& mutex, Layout& layout, Index& owned)
+{
+  MeshPiece piece = { part.data.view(), ids ? part.pointOf.data() : nullptr, part.ghosts.data() };
+  DistributedMesh mesh(group, piece);
+  const std::vector<Index>& numbers = mesh.numbers();
+  TAUTLINE_CHECK_EQUAL(mesh.globalPoints(), whole.numberOfPoints());
+  TAUTLINE_CHECK_EQUAL(mesh.globalCells(), whole.numberOfCells());
+  // Values that follow from the number: only the owner sets them.
+  std::vector<double> values(2 * mesh.localPoints(), -1);
+  std::vector<unsigned char> one(mesh.localPoints(), 0), wanted(mesh.localPoints(), 0);
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    if (mesh.owned(p))
+    {
+      values[2 * p] = static_cast<double>(numbers[p]);
+      values[2 * p + 1] = static_cast<double>(group.rank());
+    }
+  }
+  mesh.exchange(values.data(), 2);
+  bool arrived = true;
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    arrived = arrived && values[2 * p] == static_cast<double>(numbers[p]) &&
+      values[2 * p + 1] == mesh.owners()[p];
+  }
+  TAUTLINE_CHECK(arrived);
+  // A flag set anywhere is seen everywhere.
+  for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+  {
+    const Index local = mesh.localOfPiece()[p];
+    one[local] = part.pointOf[p] % 5 == 0;
+    wanted[local] = free[part.pointOf[p]];
+  }
+  mesh.either(one.data());
+  mesh.either(wanted.data());
+  const std::vector<int> sets = mesh.independentSets(wanted);
+  const std::lock_guard<std::mutex> lock(mutex);
+  for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+  {
+    const Index local = mesh.localOfPiece()[p], point = part.pointOf[p];
+    TAUTLINE_CHECK_EQUAL(one[local] != 0, point % 5 == 0);
+    TAUTLINE_CHECK(layout.numbers[point] < 0 || layout.numbers[point] == numbers[local]);
+    layout.numbers[point] = numbers[local];
+    if (mesh.owned(local))
+    {
+      layout.sets[point] = sets[local];
+    }
+  }
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    owned += mesh.owned(p);
+  }
+  // All cells about own points are here.
+  std::map<Index, Index> cellsAt;
+  for (const Index node : mesh.view().numberOfCells > 0
+      ? std::vector<Index>(mesh.view().connectivity,
+          mesh.view().connectivity + mesh.view().offsets[mesh.view().numberOfCells])
+      : std::vector<Index>())
+  {
+    ++cellsAt[node];
+  }
+  for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+  {
+    const Index local = mesh.localOfPiece()[p];
+    if (mesh.owned(local))
+    {
+      const auto count =
+        std::count(whole.connectivity.begin(), whole.connectivity.end(), part.pointOf[p]);
+      TAUTLINE_CHECK_EQUAL(cellsAt[local], static_cast<Index>(count));
+    }
+  }
+}
+
+Layout layoutOf(const MeshData& whole, Cut cut, int ranks, bool ids, bool ghosts)
+{
+  const auto rankOf = cutBy(whole, cut, ranks);
+  Layout layout;
+  layout.numbers.assign(whole.numberOfPoints(), -1);
+  layout.sets.assign(whole.numberOfPoints(), -2);
+  std::vector<unsigned char> free(whole.numberOfPoints(), 0);
+  for (Index p = 0; p < whole.numberOfPoints(); ++p)
+  {
+    free[p] = p % 7 != 0;
+  }
+  std::mutex mutex;
+  Index owned = 0;
+  onRanks(ranks,
+    [&](RankGroup& group)
+    {
+      const RankPart part = partOf(whole, group.rank(), rankOf, ghosts);
+      checkRank(group, whole, part, ids, free, mutex, layout, owned);
+    });
+  TAUTLINE_CHECK_EQUAL(owned, whole.numberOfPoints());
+  // No two points of a set share a cell.
+  for (Index cell = 0; cell < whole.numberOfCells(); ++cell)
+  {
+    std::set<int> seen;
+    for (Index n = whole.offsets[cell]; n < whole.offsets[cell + 1]; ++n)
+    {
+      const Index p = whole.connectivity[n];
+      TAUTLINE_CHECK_EQUAL(layout.sets[p] >= 0, free[p] != 0);
+      TAUTLINE_CHECK(!free[p] || seen.insert(layout.sets[p]).second);
+    }
+  }
+  return layout;
+}
+
+void testLayout(CellType type)
+{
+  const MeshData whole = jittered(type, 4);
+  const Layout serial = layoutOf(whole, Cut::FirstOnly, 1, false, false);
+  std::vector<Index> all = serial.numbers;
+  std::sort(all.begin(), all.end());
+  std::vector<Index> expected(all.size());
+  std::iota(expected.begin(), expected.end(), Index(0));
+  TAUTLINE_CHECK(all == expected);
+  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
+  {
+    for (const int ranks : { 2, 3, 5 })
+    {
+      for (const bool ids : { false, true })
+      {
+        for (const bool ghosts : { false, true })
+        {
+          const Context context("cut " + std::to_string(static_cast<int>(cut)) + ", " +
+            std::to_string(ranks) + " ranks, ids " + std::to_string(ids) + ", ghosts " +
+            std::to_string(ghosts));
+          TAUTLINE_CHECK(layoutOf(whole, cut, ranks, ids, ghosts) == serial);
+        }
+      }
+    }
+  }
+}
+
+/// Calls construct(rank's piece) on ranks; the message of the error on each.
+template <class Change>
+std::vector<std::string> messagesOf(int ranks, const Change& change)
+{
+  const MeshData whole = jittered(CellType::Tetrahedron, 3);
+  const auto rankOf = cutBy(whole, Cut::Random, ranks);
+  std::vector<std::string> messages(ranks);
+  onRanks(ranks,
+    [&](RankGroup& group)
+    {
+      RankPart part = partOf(whole, group.rank(), rankOf, true);
+      MeshPiece piece = { part.data.view(), part.pointOf.data(), part.ghosts.data() };
+      change(group.rank(), part, piece);
+      try
+      {
+        const DistributedMesh mesh(group, piece);
+      }
+      catch (const Error& error)
+      {
+        messages[group.rank()] = error.what();
+      }
+    });
+  return messages;
+}
+
+/// An error on one rank is one on all.
+void testErrors()
+{
+  const auto all = [](const std::vector<std::string>& messages, const char* text)
+  {
+    for (const std::string& message : messages)
+    {
+      TAUTLINE_CHECK(message.find(text) != std::string::npos);
+    }
+  };
+  all(messagesOf(3,
+        [](int rank, RankPart& part, MeshPiece&)
+        {
+          if (rank == 1)
+          {
+            part.data.points[3] = HUGE_VAL;
+          }
+        }),
+    "In process 1: Point 1 has a coordinate that is not finite");
+  all(messagesOf(3,
+        [](int rank, RankPart& part, MeshPiece&)
+        {
+          if (rank == 2)
+          {
+            part.pointOf[0] = part.pointOf[1];
+          }
+        }),
+    "is at two places");
+  all(messagesOf(3,
+        [](int rank, RankPart&, MeshPiece& piece)
+        { piece.globalIds = rank == 0 ? nullptr : piece.globalIds; }),
+    "Some processes have global point ids");
+  all(messagesOf(2, [](int, RankPart&, MeshPiece& piece) { piece.ghosts = nullptr; }),
+    "neither marks it as a ghost");
+}
+
+/// The exact sum, in any order and on any ranks.
+void testSum()
+{
+  Random random(11);
+  std::vector<double> values;
+  for (int i = 0; i < 1000; ++i)
+  {
+    values.push_back(random.uniform(-1, 1) * std::pow(10.0, random.uniform(-8, 8)));
+  }
+  SingleRank single;
+  const double expected = single.orderlessSum(values);
+  long double sum = 0;
+  for (const double value : values)
+  {
+    sum += value;
+  }
+  TAUTLINE_CHECK(std::abs(expected - static_cast<double>(sum)) <= 1e-15 * 1e8);
+  for (const int ranks : { 2, 4 })
+  {
+    onRanks(ranks,
+      [&](RankGroup& group)
+      {
+        std::vector<double> own;
+        for (std::size_t i = group.rank(); i < values.size(); i += ranks)
+        {
+          own.insert(own.begin(), values[i]);
+        }
+        TAUTLINE_CHECK_EQUAL(group.orderlessSum(own), expected);
+      });
+  }
+  TAUTLINE_CHECK(std::isnan(single.orderlessSum({ 1.0, HUGE_VAL })));
+  TAUTLINE_CHECK_EQUAL(single.orderlessSum({}), 0.0);
+  TAUTLINE_CHECK_EQUAL(single.orderlessSum({ 0x1p-1000, 0x1p-1000 }), 0x1p-999);
+}
+}
+
+//------------------------------------------------------------------------------
+int TestDistributedMesh(int, char*[])
+{
+  testSum();
+  testLayout(CellType::Tetrahedron);
+  testLayout(CellType::Hexahedron);
+  testErrors();
+  return exitCode();
+}

@@ -1,0 +1,297 @@
+// Optimization and untangling on ranks: the points do not depend on how the mesh is cut, and are as
+// good as those of one process in its own order.
+#include "Blocks.h"
+#include "Check.h"
+#include "ThreadRanks.h"
+#include "tautline/Mesh/BoundaryShape.h"
+#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Untangling/Untangle.h"
+#include "tautline/Untangling/UntangleOnRanks.h"
+
+using namespace tautline;
+
+namespace
+{
+/// Points of the whole mesh, and what is the same on all ranks.
+struct Run
+{
+  std::vector<double> points;
+  OptimizeResult result;
+  std::size_t remaining = 0;
+};
+
+enum class Constraint
+{
+  FixedBoundary,
+  Sliding,
+  Limits,
+  Untangle ///< untangleOnRanks()
+};
+
+Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOptions& given,
+  Constraint constraint, double limit)
+{
+  const auto rankOf = cutBy(whole, cut, ranks);
+  Run run;
+  run.points = whole.points;
+  std::mutex mutex;
+  onRanks(ranks,
+    [&](RankGroup& group)
+    {
+      const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
+      DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
+      OptimizeOptions options = given;
+      std::vector<unsigned char> fixed = rankBoundary(mesh);
+      BoundaryShape shape;
+      std::vector<double> limits(mesh.localPoints(), limit);
+      if (constraint == Constraint::Sliding && mesh.view().numberOfCells > 0)
+      {
+        shape = boundaryShape(Mesh(mesh.view()), 1.0);
+        fixed = shape.fixed;
+        options.slidePlanes = shape.planes.data();
+        options.slideLines = shape.lines.data();
+      }
+      options.limits = constraint == Constraint::Limits ? limits.data() : nullptr;
+      options.fixed = fixed.data();
+      options.threads = 1 + group.rank() % 2;
+      OptimizeResult result;
+      std::size_t remaining = 0;
+      if (constraint == Constraint::Untangle)
+      {
+        UntangleOptions untangling;
+        untangling.fixed = fixed.data();
+        const RankUntangleResult untangled = untangleOnRanks(mesh, false, untangling);
+        result.points = untangled.result.points;
+        result.history = untangled.result.history;
+        result.reason = untangled.result.reason;
+        result.invertedBefore = untangled.result.invertedBefore;
+        result.invertedAfter = untangled.result.invertedAfter;
+        remaining = untangled.remaining.size();
+      }
+      else
+      {
+        result = optimizeOnRanks(mesh, false, options);
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+      {
+        std::copy_n(
+          &result.points[3 * mesh.localOfPiece()[p]], 3, &run.points[3 * part.pointOf[p]]);
+      }
+      run.remaining = remaining;
+      run.result = result;
+    });
+  return run;
+}
+
+double farthest(const std::vector<double>& a, const std::vector<double>& b)
+{
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+  }
+  return largest;
+}
+
+/// Runs on 1 to 4 ranks and compares; returns the run on one.
+Run testCuts(const char* name, const MeshData& whole, const OptimizeOptions& options,
+  Constraint constraint = Constraint::FixedBoundary, double limit = 0)
+{
+  const Context context(name);
+  const Run one = runOn(whole, Cut::FirstOnly, 1, options, constraint, limit);
+  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
+  {
+    for (const int ranks : { 2, 3, 4 })
+    {
+      const Context inner(
+        "cut " + std::to_string(static_cast<int>(cut)) + ", " + std::to_string(ranks) + " ranks");
+      const Run run = runOn(whole, cut, ranks, options, constraint, limit);
+      TAUTLINE_CHECK(farthest(run.points, one.points) <= 1e-10);
+      TAUTLINE_CHECK_EQUAL(run.result.history.size(), one.result.history.size());
+      TAUTLINE_CHECK_EQUAL(
+        run.result.history.back().objective, one.result.history.back().objective);
+      TAUTLINE_CHECK_EQUAL(run.result.history.back().moving, one.result.history.back().moving);
+      TAUTLINE_CHECK_EQUAL(
+        static_cast<int>(run.result.reason), static_cast<int>(one.result.reason));
+      TAUTLINE_CHECK_EQUAL(run.result.freeVertices, one.result.freeVertices);
+      TAUTLINE_CHECK_EQUAL(run.result.invertedAfter, one.result.invertedAfter);
+      TAUTLINE_CHECK_EQUAL(run.result.restored, one.result.restored);
+      TAUTLINE_CHECK_EQUAL(run.remaining, one.remaining);
+    }
+  }
+  return one;
+}
+
+/// The same problem in the order of one process: the objective agrees to 1e-6, validity is equal.
+void testOrders(
+  const char* name, const MeshData& whole, OptimizeOptions options, bool slides = false)
+{
+  const Context context(name);
+  options.optimizer = Optimizer::LocalNewton;
+  options.stopping.relativeChange = 1e-9;
+  options.stopping.maximumIterations = 1000;
+  const Run run =
+    testCuts(name, whole, options, slides ? Constraint::Sliding : Constraint::FixedBoundary);
+  const Mesh mesh(whole.view());
+  BoundaryShape shape;
+  if (slides)
+  {
+    shape = boundaryShape(mesh, 1.0);
+    options.fixed = shape.fixed.data();
+    options.slidePlanes = shape.planes.data();
+    options.slideLines = shape.lines.data();
+  }
+  const OptimizeResult usual = optimize(mesh, options);
+  const double now = run.result.history.back().objective, then = usual.history.back().objective;
+  TAUTLINE_CHECK(now < run.result.history.front().objective);
+  TAUTLINE_CHECK(std::abs(now - then) <= 1e-6 * std::abs(then));
+  TAUTLINE_CHECK(std::abs(run.result.history.front().objective - usual.history.front().objective) <=
+    1e-12 * std::abs(then));
+  TAUTLINE_CHECK_EQUAL(run.result.invertedAfter, usual.invertedAfter);
+  TAUTLINE_CHECK_EQUAL(run.result.freeVertices, usual.freeVertices);
+  std::cout << name << ": " << run.result.iterations << " and " << usual.iterations
+            << " sweeps, objectives differ by " << now / then - 1 << ", points by "
+            << farthest(run.points, usual.points) << "\n";
+}
+
+MeshData jittered(CellType type, Index n, double amplitude)
+{
+  // Points of the boundary stay.
+  const bool flat = topology(type).dimension == 2;
+  MeshData data = blockMesh(type, n, n, flat ? 0 : n);
+  Random random(5);
+  const auto side = static_cast<double>(n);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      Vec3 d = random.vector(-amplitude, amplitude);
+      for (int c = 0; c < 3; ++c)
+      {
+        d[c] = p[c] == 0 || p[c] == side ? 0.0 : d[c];
+      }
+      return p + d;
+    });
+  return data;
+}
+
+OptimizeOptions with(std::vector<Metric> metrics)
+{
+  OptimizeOptions options;
+  options.objectives.clear();
+  for (const Metric metric : metrics)
+  {
+    options.objectives.emplace_back();
+    options.objectives.back().metric = metric;
+  }
+  return options;
+}
+
+/// Throws on one rank: an error on all.
+void testFailure()
+{
+  const MeshData whole = jittered(CellType::Tetrahedron, 4, 0.2);
+  const auto rankOf = cutBy(whole, Cut::Slabs, 3);
+  int errors = 0;
+  std::mutex mutex;
+  onRanks(3,
+    [&](RankGroup& group)
+    {
+      const RankPart part = partOf(whole, group.rank(), rankOf);
+      DistributedMesh mesh(group, { part.data.view(), nullptr, nullptr });
+      const std::vector<unsigned char> fixed = rankBoundary(mesh);
+      OptimizeOptions options;
+      options.fixed = fixed.data();
+      options.observer = [&](const IterationState& state)
+      {
+        if (group.rank() == 1 && state.record.iteration == 2)
+        {
+          throw Error("The observer has failed.");
+        }
+        return true;
+      };
+      try
+      {
+        optimizeOnRanks(mesh, false, options);
+      }
+      catch (const Error& error)
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        errors += std::string(error.what()) == "In process 1: The observer has failed.";
+      }
+    });
+  TAUTLINE_CHECK_EQUAL(errors, 3);
+}
+
+void testRefusals()
+{
+  const MeshData whole = jittered(CellType::Tetrahedron, 2, 0.1);
+  SingleRank group;
+  DistributedMesh mesh(group, { whole.view(), nullptr, nullptr });
+  const std::vector<unsigned char> fixed = rankBoundary(mesh);
+  OptimizeOptions options;
+  options.fixed = fixed.data();
+  const auto message = [&](const OptimizeOptions& wrong) -> std::string
+  {
+    try
+    {
+      optimizeOnRanks(mesh, false, wrong);
+    }
+    catch (const Error& error)
+    {
+      return error.what();
+    }
+    return "";
+  };
+  TAUTLINE_CHECK_EQUAL(message(options), "");
+  OptimizeOptions global = options;
+  global.optimizer = Optimizer::LimitedMemoryBFGS;
+  TAUTLINE_CHECK(message(global).find("choose Automatic or Local Newton") != std::string::npos);
+  OptimizeOptions worst = options;
+  worst.improveWorst = 0.1;
+  TAUTLINE_CHECK(message(worst).find("Improve Worst") != std::string::npos);
+  OptimizeOptions mean = options;
+  mean.objectives[0].objectiveTemplate = ObjectiveTemplate::PowerMean;
+  TAUTLINE_CHECK(message(mean).find("p-Mean") != std::string::npos);
+}
+}
+
+//------------------------------------------------------------------------------
+int TestOptimizeOnRanks(int, char*[])
+{
+  const MeshData tets = jittered(CellType::Tetrahedron, 5, 0.2);
+  const MeshData hexes = jittered(CellType::Hexahedron, 5, 0.2);
+  const MeshData triangles = jittered(CellType::Triangle, 9, 0.25);
+  testOrders("tetrahedra", tets, with({ Metric::InverseMeanRatio }));
+  testOrders("hexahedra", hexes, with({ Metric::InverseMeanRatio }));
+  testOrders("triangles", triangles, with({ Metric::InverseMeanRatio }));
+  testOrders("tetrahedra that slide", tets, with({ Metric::InverseMeanRatio }), true);
+  OptimizeOptions product = with({ Metric::InverseMeanRatio, Metric::Size });
+  product.scalarization.method = Scalarization::ObjectiveProduct;
+  testCuts("two objectives", tets, product);
+  testCuts("conjugate gradients", tets,
+    []
+    {
+      OptimizeOptions options = with({ Metric::InverseMeanRatio });
+      options.optimizer = Optimizer::LocalConjugateGradient;
+      return options;
+    }());
+  constexpr double limit = 0.02;
+  const Run limited =
+    testCuts("limits", tets, with({ Metric::InverseMeanRatio }), Constraint::Limits, limit);
+  const double way = farthest(limited.points, tets.points);
+  TAUTLINE_CHECK(way > 0.5 * limit && way <= limit * (1 + 1e-12));
+  const MeshData tangled = jittered(CellType::Tetrahedron, 6, 0.45);
+  const Run untangled = testCuts("untangle", tangled, {}, Constraint::Untangle);
+  TAUTLINE_CHECK(untangled.result.invertedBefore > 0);
+  const UntangleResult usual = untangle(Mesh(tangled.view()), {});
+  TAUTLINE_CHECK_EQUAL(untangled.result.invertedAfter, usual.invertedAfter);
+  TAUTLINE_CHECK_EQUAL(static_cast<Index>(untangled.remaining), usual.invertedAfter);
+  const Run both = testCuts("untangle first", tangled, with({ Metric::InverseMeanRatio }));
+  TAUTLINE_CHECK_EQUAL(both.result.invertedAfter, usual.invertedAfter);
+  std::cout << "untangled " << untangled.result.invertedBefore << " elements, "
+            << usual.invertedAfter << " remain\n";
+  testFailure();
+  testRefusals();
+  return exitCode();
+}
