@@ -46,6 +46,51 @@ Measurement measure(const Mesh& mesh, double unit, const MeasuredMetric& what,
   return result;
 }
 
+/// The same of the whole mesh, of which each process measures its piece.
+Measurement measureOnRanks(RankGroup& group, const Mesh& mesh, int dimension,
+  const MeasuredMetric& what, const signed char* validity, const unsigned char* skip,
+  double* values)
+{
+  const MetricInfo& info = metricInfo(what.metric);
+  const MeshView& view = mesh.view();
+  std::vector<double> own;
+  std::vector<WorstElement> worstOfOwn;
+  Measurement result;
+  group.together(
+    [&]
+    {
+      if (view.numberOfCells > 0)
+      {
+        evaluateMetric(mesh, what.metric, what.options, values);
+        const CellValues data = { view.numberOfCells, values, validity, view.cellTypes, skip };
+        own = measuredValues(info, data);
+        worstOfOwn = worstElements(info, data);
+        result.counts = countValidity(validity, skip, view.numberOfCells);
+      }
+    });
+  std::vector<double> measured;
+  for (const auto& list : group.gatherItems(own))
+  {
+    measured.insert(measured.end(), list.begin(), list.end());
+  }
+  std::vector<WorstElement> worst;
+  for (const auto& list : group.gatherItems(worstOfOwn))
+  {
+    worst.insert(worst.end(), list.begin(), list.end());
+  }
+  for (Index* count : { &result.counts.inverted, &result.counts.degenerate })
+  {
+    *count = group.sum(*count);
+  }
+  // Sums in an order that does not depend on the processes.
+  std::sort(measured.begin(), measured.end());
+  std::sort(worst.begin(), worst.end(),
+    [&](const WorstElement& a, const WorstElement& b) { return isWorse(info, a, b); });
+  result.statistics = summarize(info, dimension, measured, false);
+  result.worst = worstValue(info, result.statistics, worst);
+  return result;
+}
+
 vtkSmartPointer<vtkDoubleArray> addCellArray(vtkDataSet* output, const std::string& name)
 {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
@@ -67,6 +112,22 @@ void addStatistics(TableRows& rows, const std::string& ending, const Measurement
   rows.add("OutsideAcceptable" + ending, static_cast<double>(s.outsideAcceptable));
   rows.add("Inverted" + ending, static_cast<double>(m.counts.inverted));
   rows.add("Degenerate" + ending, static_cast<double>(m.counts.degenerate));
+}
+}
+
+namespace
+{
+void addRow(const MeasuredMetric& what, const std::string& block, const Measurement& before,
+  const Measurement& after, TableRows& rows, std::ostream& text)
+{
+  rows.begin(block);
+  rows.addText("Metric", what.name);
+  rows.addText("Label", metricInfo(what.metric).label);
+  addStatistics(rows, "Before", before);
+  addStatistics(rows, "After", after);
+  text << "\n"
+       << metricInfo(what.metric).label << ": mean " << before.statistics.mean << " to "
+       << after.statistics.mean << ", worst " << before.worst << " to " << after.worst << ".";
 }
 }
 
@@ -127,17 +188,39 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
       mesh.skipped(), addCellArray(output, what.name + "_before")->GetPointer(0));
     const Measurement after = measure(moved, unit, what, validity->GetPointer(0), mesh.skipped(),
       addCellArray(output, what.name)->GetPointer(0));
-    rows.begin(block);
-    rows.addText("Metric", what.name);
-    rows.addText("Label", metricInfo(what.metric).label);
-    addStatistics(rows, "Before", before);
-    addStatistics(rows, "After", after);
-    text << "\n"
-         << metricInfo(what.metric).label << ": mean " << before.statistics.mean << " to "
-         << after.statistics.mean << ", worst " << before.worst << " to " << after.worst << ".";
+    addRow(what, block, before, after, rows, text);
   }
   output->GetCellData()->AddArray(validity);
   // Without active point scalars, views colour by the metric.
+  output->GetPointData()->SetActiveScalars(nullptr);
+  output->GetCellData()->SetActiveScalars(metrics.front().name.c_str());
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::string addBeforeAfterOnRanks(RankGroup& group, const RankMesh& mesh,
+  const std::vector<double>& points, const std::vector<MeasuredMetric>& metrics, int threads,
+  vtkDataSet* output, TableRows& rows)
+{
+  const MeshView& view = mesh.piece();
+  const std::vector<double> start(view.points, view.points + 3 * view.numberOfPoints);
+  const Mesh input = mesh.movedPiece(start), moved = mesh.movedPiece(points);
+  const std::vector<signed char> before = mesh.validityAt(start);
+  vtkNew<vtkSignedCharArray> validity;
+  validity->SetName("Validity");
+  validity->SetNumberOfValues(view.numberOfCells);
+  moved.classifyCells(validity->GetPointer(0), threads);
+  std::ostringstream text;
+  const int dimension = mesh.volume() ? 3 : 2;
+  for (const MeasuredMetric& what : metrics)
+  {
+    const Measurement then = measureOnRanks(group, input, dimension, what, before.data(),
+      mesh.skipped().data(), addCellArray(output, what.name + "_before")->GetPointer(0));
+    const Measurement now = measureOnRanks(group, moved, dimension, what, validity->GetPointer(0),
+      mesh.skipped().data(), addCellArray(output, what.name)->GetPointer(0));
+    addRow(what, "", then, now, rows, text);
+  }
+  output->GetCellData()->AddArray(validity);
   output->GetPointData()->SetActiveScalars(nullptr);
   output->GetCellData()->SetActiveScalars(metrics.front().name.c_str());
   return text.str();

@@ -6,6 +6,7 @@
 #define tautline_BeforeAfter_h
 
 #include "MovableMesh.h"
+#include "RankMesh.h"
 #include "TableRows.h"
 #include "tautline/Objectives/Objective.h"
 
@@ -36,6 +37,15 @@ std::vector<std::string> objectiveNames(const std::vector<Objective>& objectives
  */
 std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& points,
   const std::vector<MeasuredMetric>& metrics, int threads, const std::string& block,
+  vtkDataSet* output, TableRows& rows);
+
+/**
+ * @brief The same of a mesh on several processes: arrays of the piece, numbers of the whole mesh,
+ * the same on all. Collective.
+ * @param points of the piece
+ */
+std::string addBeforeAfterOnRanks(RankGroup& group, const RankMesh& mesh,
+  const std::vector<double>& points, const std::vector<MeasuredMetric>& metrics, int threads,
   vtkDataSet* output, TableRows& rows);
 }
 #endif

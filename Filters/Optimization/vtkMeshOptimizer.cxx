@@ -4,6 +4,7 @@
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
 #include "Processes.h"
+#include "RankMesh.h"
 
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
@@ -406,9 +407,16 @@ int vtkMeshOptimizer::RequestData(
     this->Attempt(outputVector, "optimize the mesh in parts, or reduce Animation Memory",
       [&]
       {
+        vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
+        if (tautline::isOnSeveralProcesses(input) || this->ReproducibleOrder)
+        {
+          this->OptimizeOnRanks(
+            inputVector, vtkDataObject::GetData(outputVector, MeshPort), history, statistics);
+          return;
+        }
         tautline::OptimizerSettings settings = this->GetSettings();
         settings.geometry = geometry;
-        tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), FilterName);
+        tautline::requireFirstProcess(input, FilterName);
         this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
           this->Boundary != FIXED,
           [&](const tautline::InputBlock& block)
@@ -605,6 +613,7 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ImproveWorst: " << this->ImproveWorst << "\n";
   os << indent << "WorstMetric: " << this->WorstMetric << "\n";
   os << indent << "HoldWorst: " << this->HoldWorst << "\n";
+  os << indent << "ReproducibleOrder: " << this->ReproducibleOrder << "\n";
   os << indent << "Animation: " << this->Animation << "\n";
   os << indent << "AnimationMemory: " << this->AnimationMemory << "\n";
 }

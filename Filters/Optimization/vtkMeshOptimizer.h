@@ -507,6 +507,17 @@ public:
 
   ///@{
   /**
+   * Whether one process, too, works in the order that does not depend on how a mesh is spread over
+   * processes, which several processes always use: the points are then the same on any number of
+   * them. In this order only local optimizers work; AUTOMATIC is LOCAL_NEWTON. Off.
+   */
+  vtkSetMacro(ReproducibleOrder, bool);
+  vtkGetMacro(ReproducibleOrder, bool);
+  vtkBooleanMacro(ReproducibleOrder, bool);
+  ///@}
+
+  ///@{
+  /**
    * Give the iterations as time steps: time t is the mesh after iteration t (those of untangling
    * come first), so that ParaView's animation plays the optimization. Without a request for a time,
    * the output is the result. The time of the input is then its default one. Off.
@@ -573,6 +584,8 @@ private:
   void Optimize(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
     tautline::TableRows& statistics);
+  void OptimizeOnRanks(vtkInformationVector** inputVector, vtkDataObject* output,
+    tautline::TableRows& history, tautline::TableRows& statistics);
   void Report();
 
   std::vector<tautline::ObjectiveRow> Rows;
@@ -612,6 +625,7 @@ private:
   double ImproveWorst = 0.0;
   int WorstMetric = -1;
   bool HoldWorst = true;
+  bool ReproducibleOrder = false;
   bool Animation = false;
   double AnimationMemory = 1000.0;
 

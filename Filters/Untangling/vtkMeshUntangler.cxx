@@ -3,8 +3,11 @@
 #include "Blocks.h"
 #include "IterationHistory.h"
 #include "MovableMesh.h"
+#include "ProcessGroup.h"
 #include "Processes.h"
+#include "RankMesh.h"
 #include "tautline/Untangling/Untangle.h"
+#include "tautline/Untangling/UntangleOnRanks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -13,6 +16,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkSelection.h"
 #include "vtkSignedCharArray.h"
 #include "vtkTable.h"
 
@@ -98,6 +102,38 @@ std::string verdict(
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+/// The same of a mesh on several processes, whose elements have no ids.
+std::string verdict(const tautline::RankUntangleResult& untangled)
+{
+  std::ostringstream text;
+  if (untangled.remaining.empty())
+  {
+    text << "All elements are valid; " << untangled.result.invertedBefore << " were not.";
+    return text.str();
+  }
+  text << untangled.remaining.size() << " elements are not valid, " << untangled.result.impossible
+       << " of them because of fixed points; " << untangled.result.invertedBefore
+       << " were inverted or degenerate before.";
+  int listed = 0;
+  for (const auto& [numbers, element] : untangled.remaining)
+  {
+    if (++listed > ListedElements)
+    {
+      text << "\n... and " << untangled.remaining.size() - ListedElements
+           << " more: select the cells where the array Obstacle is not 0.";
+      break;
+    }
+    const tautline::Vec3& at = element.center;
+    text << "\nElement at (" << at[0] << ", " << at[1] << ", " << at[2]
+         << "): " << reasons[static_cast<std::size_t>(element.obstacle)] << ".";
+  }
+  return text.str();
+}
+}
+
+//------------------------------------------------------------------------------
 vtkMeshUntangler::vtkMeshUntangler()
 {
   this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { SelectionPort });
@@ -115,8 +151,15 @@ int vtkMeshUntangler::RequestData(
   return this->Attempt(outputVector, "untangle the mesh in parts",
     [&]
     {
-      tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[MeshPort]), FilterName);
+      vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
       tautline::TableRows history;
+      if (tautline::isOnSeveralProcesses(input) || this->ReproducibleOrder)
+      {
+        this->UntangleOnRanks(inputVector, vtkDataObject::GetData(outputVector, MeshPort), history);
+        history.fill(vtkTable::GetData(outputVector, HistoryPort));
+        return;
+      }
+      tautline::requireFirstProcess(input, FilterName);
       this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, !this->FixBoundary,
         [&](const tautline::InputBlock& block) { this->Untangle(block, history); });
       this->AddToSummary(this->GetBlockNotice());
@@ -199,10 +242,78 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
 }
 
 //------------------------------------------------------------------------------
+void vtkMeshUntangler::UntangleOnRanks(
+  vtkInformationVector** inputVector, vtkDataObject* output, tautline::TableRows& history)
+{
+  const auto group = tautline::makeProcessGroup();
+  vtkDataObject* data = vtkDataObject::GetData(inputVector[MeshPort]);
+  tautline::RankMesh mesh(
+    *group, tautline::requirePiece(data), this->Threads, this->MergeCoincidentPoints);
+  output->ShallowCopy(data);
+  auto* input = vtkDataSet::SafeDownCast(data);
+  group->together(
+    [&]
+    {
+      if (input->GetNumberOfPoints() > 0)
+      {
+        mesh.fix(tautline::chosenArray(this, FixedArray, input, "of fixed points"), false);
+        mesh.fixSelected(data, vtkSelection::GetData(inputVector[SelectionPort]));
+      }
+    });
+  const std::vector<unsigned char> fixed = mesh.fixed(this->FixBoundary);
+  tautline::UntangleOptions options;
+  options.method = static_cast<tautline::UntangleMethod>(this->Method);
+  options.effort = static_cast<tautline::Effort>(this->Effort);
+  options.maximumSeconds = this->GetRemainingSeconds();
+  options.fixed = fixed.data();
+  options.threads = this->Threads;
+  options.observer = [&](const tautline::IterationState& state)
+  {
+    this->HaveBest();
+    return this->Proceed(state.progress);
+  };
+  const tautline::RankUntangleResult untangled =
+    tautline::untangleOnRanks(mesh.mesh(), mesh.mirrored(), options);
+  const tautline::UntangleResult& result = untangled.result;
+  const std::string note = mesh.move(vtkPointSet::SafeDownCast(output), result.points);
+  const std::vector<signed char> validity = mesh.validityAt(mesh.ofPiece(result.points));
+  std::vector<signed char> obstacles(validity.size(), 0);
+  for (std::size_t cell = 0; cell < validity.size(); ++cell)
+  {
+    const auto found = untangled.remaining.find(mesh.numbersOf(static_cast<tautline::Index>(cell)));
+    obstacles[cell] =
+      found == untangled.remaining.end() ? 0 : static_cast<signed char>(found->second.obstacle);
+  }
+  auto* set = vtkDataSet::SafeDownCast(output);
+  addFlags(set, "Validity", validity);
+  addFlags(set, "Obstacle", obstacles);
+  set->GetPointData()->SetActiveScalars(nullptr);
+  set->GetCellData()->SetActiveScalars("Validity");
+  this->Reason = tautline::describe(result.reason);
+  this->InvertedBefore = result.invertedBefore;
+  this->InvertedAfter = result.invertedAfter;
+  this->Impossible = result.impossible;
+  this->NotValid = static_cast<vtkIdType>(untangled.remaining.size());
+  this->AddToSummary(verdict(untangled));
+  this->AddToSummary(note);
+  this->AddToSummary(mesh.notice());
+  if (group->rank() > 0)
+  {
+    return; // the table and the warning are those of the first process
+  }
+  tautline::addHistory(history, result.history, {}, "");
+  if (this->NotValid > 0)
+  {
+    vtkWarningMacro(<< this->Summary);
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkMeshUntangler::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Method: " << this->Method << "\n";
   os << indent << "Effort: " << this->Effort << "\n";
   os << indent << "FixBoundary: " << this->FixBoundary << "\n";
+  os << indent << "ReproducibleOrder: " << this->ReproducibleOrder << "\n";
 }

@@ -103,6 +103,17 @@ public:
 
   ///@{
   /**
+   * Whether one process, too, works in the order that does not depend on how a mesh is spread over
+   * processes, which several processes always use: the points are then the same on any number of
+   * them. Off.
+   */
+  vtkSetMacro(ReproducibleOrder, bool);
+  vtkGetMacro(ReproducibleOrder, bool);
+  vtkBooleanMacro(ReproducibleOrder, bool);
+  ///@}
+
+  ///@{
+  /**
    * The result of the last execution; numbers are of all blocks together. Inverted elements include
    * degenerate ones; infeasible (`Impossible`) are those with an Obstacle of 2 or 3.
    */
@@ -126,9 +137,13 @@ private:
 
   void Untangle(const tautline::InputBlock& block, tautline::TableRows& history);
 
+  void UntangleOnRanks(
+    vtkInformationVector** inputVector, vtkDataObject* output, tautline::TableRows& history);
+
   int Method = AUTOMATIC;
   int Effort = NORMAL;
   bool FixBoundary = true;
+  bool ReproducibleOrder = false;
   std::string Reason;
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;

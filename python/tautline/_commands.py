@@ -93,6 +93,11 @@ def save(mesh: Any, arguments: argparse.Namespace, rows: list[dict[str, Any]] | 
         save_text(arguments.csv, csv_text(rows or []))
 
 
+def add_reproducible_order(parser: argparse.ArgumentParser) -> None:
+    """Add --reproducible-order."""
+    parser.add_argument("--reproducible-order", action="store_true", help="as several processes work, see the help page")
+
+
 def add_moving_points(parser: argparse.ArgumentParser) -> None:
     """Add what the commands share that move points."""
     parser.add_argument("mesh", metavar="FILE")

@@ -136,6 +136,7 @@ def optimize(
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    reproducible_order: bool = False,
     **options: Any,
 ) -> OptimizeResult:
     """Move the points of a mesh so that its elements become better.
@@ -187,6 +188,8 @@ def optimize(
     threads: number of threads; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
         of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
+    reproducible_order: work in the order that does not depend on how a mesh is spread over processes, as several of
+        them always do; only local optimizers work in it.
     options: properties of vtkMeshOptimizer. Stopping: maximum_iterations (300), gradient_norm (1e-6), relative_change
         (1e-5), two_digits (False), reduction (1: off), best_known (None: estimated), stop_when_valid (False).
         Scalarization: c (0: automatic), exponent (1), tolerance (0.01), utopia (one number per objective). Metrics:
@@ -221,6 +224,7 @@ def optimize(
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
+    filter_.SetReproducibleOrder(bool(reproducible_order))
     if _is_number(size):
         size = np.full(inputs.mesh.GetNumberOfCells(), size)
     if _is_number(limits):
@@ -357,6 +361,7 @@ def add_commands(commands: Any) -> None:
     """Add `optimize` to the subparsers of the command line."""
     parser = _commands.add_command(commands, "optimize", _run_optimize, "move points so that elements become better")
     _commands.add_moving_points(parser)
+    _commands.add_reproducible_order(parser)
     parser.add_argument("--preset", choices=PRESETS[1:], help="without --objective, the default is best shape")
     parser.add_argument("--objective", action="append", type=_objective, metavar="NAME[,KEY=VALUE...]",
                         help="a metric, optionally with template=, weight= and target=; may be repeated")  # fmt: skip
@@ -402,7 +407,7 @@ def _run_optimize(arguments: argparse.Namespace) -> None:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
              "boundary", "flat_angle", "worst_metric", "hold_worst", "feature_angle", "keep_features", "smooth_surface",
              "show_features", "feature_kinds", "regions", "geometry", "time_limit", "threads",
-             "merge_coincident_points")  # fmt: skip
+             "merge_coincident_points", "reproducible_order")  # fmt: skip
     result = optimize(arguments.mesh, arguments.objective, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))

@@ -57,6 +57,7 @@ def untangle(
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    reproducible_order: bool = False,
 ) -> UntangleResult:
     """Make the elements of a mesh valid by moving its points; the number of inverted elements never grows.
 
@@ -70,6 +71,8 @@ def untangle(
     threads: number of threads; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
         of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
+    reproducible_order: work in the order that does not depend on how a mesh is spread over processes, as several of
+        them always do.
 
     Raises Error for wrong arguments and for meshes that the filter refuses. Elements that remain inverted are not an
     error: see inverted, obstacle and summary of the result.
@@ -85,6 +88,7 @@ def untangle(
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
+    filter_.SetReproducibleOrder(bool(reproducible_order))
     inputs.use(_FIXED, fixed, "fixed", POINTS)
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_)
@@ -111,11 +115,13 @@ def add_commands(commands: Any) -> None:
     parser = _commands.add_command(commands, "untangle", _run_untangle, "move points so that elements become valid")
     _commands.add_moving_points(parser)
     parser.add_argument("--effort", choices=EFFORTS, default="normal")
+    _commands.add_reproducible_order(parser)
     parser.add_argument("--method", choices=METHODS, default="automatic", help="simultaneous: Escobar et al. 2003")
 
 
 def _run_untangle(arguments: argparse.Namespace) -> int:
     names = ("effort", "method", "fixed", "time_limit", "threads", "merge_coincident_points")
+    names += ("reproducible_order",)
     result = untangle(arguments.mesh, **_commands.given(arguments, names))
     print(result.summary)
     _commands.save(result, arguments, table_rows(result.history))

@@ -7,9 +7,7 @@
 #include "vtkInteractionLayer.h"
 #include "vtkMeshComparison.h"
 #include "vtkMeshImprover.h"
-#include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
-#include "vtkMeshUntangler.h"
 #include "vtkPeridynamicStiffness.h"
 #include "vtkShapeMatcher.h"
 #include "vtkShapeRetrieval.h"
@@ -191,8 +189,6 @@ int TestFilterRanks(int argc, char* argv[])
   vtkMultiProcessController::SetGlobalController(controller);
   const int rank = controller->GetLocalProcessId();
   const auto one = [](auto* filter, vtkDataObject* data) { filter->SetInputDataObject(0, data); };
-  testFilter<vtkMeshOptimizer>("Optimize Mesh", rank, one);
-  testFilter<vtkMeshUntangler>("Untangle Mesh", rank, one);
   testFilter<vtkMeshImprover>("Improve Mesh", rank, one, cube);
   testFilter<vtkMeshPerturbation>("Perturb Mesh", rank, one);
   testFilter<vtkInteractionLayer>("Interaction Layer", rank, one);

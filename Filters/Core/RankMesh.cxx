@@ -1,0 +1,337 @@
+#include "RankMesh.h"
+
+#include "Blocks.h"
+#include "MovableMesh.h"
+#include "Processes.h"
+#include "tautline/Optimization/OptimizeOnRanks.h"
+
+#include "vtkCellData.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkSelection.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+int dimensionOf(unsigned char cellType)
+{
+  const CellType type = cornerType(cellType);
+  return type == CellType::Unsupported ? 0 : topology(type).dimension;
+}
+
+/// The elements of a piece: cells of the dimension of the mesh.
+struct Elements
+{
+  std::vector<unsigned char> types, ghosts;
+  std::vector<Index> offsets = { 0 }, connectivity;
+};
+}
+
+//------------------------------------------------------------------------------
+bool isOnSeveralProcesses(vtkDataObject* input)
+{
+  if (vtkCompositeDataSet::SafeDownCast(input))
+  {
+    return false;
+  }
+  const Processes processes;
+  const bool elsewhere =
+    processes.rank() > 0 && input && input->GetNumberOfElements(vtkDataObject::CELL) > 0;
+  return processes.maximum(static_cast<Index>(elsewhere)) > 0;
+}
+
+//------------------------------------------------------------------------------
+vtkDataSet* requirePiece(vtkDataObject* input)
+{
+  auto* piece = vtkDataSet::SafeDownCast(input);
+  if (!piece)
+  {
+    throw Error("The reproducible order is that of one mesh, and the input has blocks: run Merge "
+                "Blocks first, or switch Reproducible Order off.");
+  }
+  return piece;
+}
+
+//------------------------------------------------------------------------------
+RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergePoints)
+  : Group(group)
+  , Input(vtkPointSet::SafeDownCast(input))
+  , Threads(threads)
+{
+  Elements elements;
+  std::vector<Index> ids;
+  group.together(
+    [&]
+    {
+      if (!this->Input && input->GetNumberOfPoints() > 0)
+      {
+        throw Error(std::string("The points of ") + input->GetClassName() +
+          " are implicit and cannot move: run Image Data to Point Set or Rectilinear Data to Point "
+          "Set first, which give them coordinates.");
+      }
+      this->Adapter = std::make_unique<MeshAdapter>(input, threads);
+      if (this->Adapter->mesh().higherOrderCells() > 0)
+      {
+        throw Error("The mesh has " + std::to_string(this->Adapter->mesh().higherOrderCells()) +
+          " cells of quadratic or higher order, whose midpoints would stay behind: run Tessellate "
+          "first.");
+      }
+      for (Index cell = 0; cell < this->piece().numberOfCells; ++cell)
+      {
+        this->Dimension = std::max(this->Dimension, dimensionOf(this->piece().cellTypes[cell]));
+      }
+    });
+  this->Dimension = static_cast<int>(group.maximum(static_cast<Index>(this->Dimension)));
+  group.together(
+    [&]
+    {
+      const MeshView& view = this->piece();
+      this->Held.assign(view.numberOfPoints, 0);
+      this->Marked.assign(view.numberOfPoints, 0);
+      this->Skip.assign(view.numberOfCells, 0);
+      for (Index cell = 0; cell < view.numberOfCells; ++cell)
+      {
+        const bool ghost = this->Adapter->ghostCells() && this->Adapter->ghostCells()[cell];
+        const auto begin = view.connectivity + view.offsets[cell],
+                   end = view.connectivity + view.offsets[cell + 1];
+        const int dimension = dimensionOf(view.cellTypes[cell]);
+        this->Skip[cell] = ghost || dimension < this->Dimension;
+        if (dimension == this->Dimension && dimension > 0)
+        {
+          elements.types.push_back(view.cellTypes[cell]);
+          elements.ghosts.push_back(ghost);
+          elements.connectivity.insert(elements.connectivity.end(), begin, end);
+          elements.offsets.push_back(static_cast<Index>(elements.connectivity.size()));
+        }
+        for (auto p = begin; dimension < this->Dimension && p != end; ++p)
+        {
+          this->Held[*p] = 1;
+        }
+      }
+      vtkDataArray* given = input->GetPointData()->GetGlobalIds();
+      for (Index p = 0; !mergePoints && p < view.numberOfPoints; ++p)
+      {
+        ids.push_back(given ? static_cast<Index>(given->GetComponent(p, 0)) : p);
+      }
+      if (!mergePoints && !given && group.size() > 1 && view.numberOfPoints > 0)
+      {
+        throw Error("With Merge Coincident Points off, points of different processes are one by "
+                    "their global ids, and there are none: run Generate Global Ids first.");
+      }
+    });
+  MeshView view = this->piece();
+  view.numberOfCells = static_cast<Index>(elements.types.size());
+  view.cellTypes = elements.types.data();
+  view.offsets = elements.offsets.data();
+  view.connectivity = elements.connectivity.data();
+  this->TheMesh = std::make_unique<DistributedMesh>(
+    group, MeshPiece{ view, mergePoints ? nullptr : ids.data(), elements.ghosts.data() });
+  this->checkOrder();
+}
+
+//------------------------------------------------------------------------------
+/// Whether the cells list their points in one order, and which.
+void RankMesh::checkOrder()
+{
+  const MeshView& view = this->TheMesh->view();
+  Index balance = 0, disagreeing = 0;
+  this->Group.together(
+    [&]
+    {
+      if (view.numberOfCells == 0)
+      {
+        return;
+      }
+      const Mesh mesh(view, this->Threads);
+      std::vector<signed char> validity(view.numberOfCells);
+      mesh.classifyCells(validity.data(), this->Threads);
+      for (Index cell = 0; cell < view.numberOfCells; ++cell)
+      {
+        const Index sign = validity[cell] == Valid ? 1 : validity[cell] == Inverted ? -1 : 0;
+        balance += this->TheMesh->ownedCells()[cell] ? sign : 0;
+      }
+      disagreeing = mesh.orientation(validity.data()).disagreeing;
+    });
+  this->Mirrored = this->Group.sum(balance) < 0;
+  disagreeing = this->Group.sum(disagreeing);
+  if (disagreeing > 0)
+  {
+    throw Error("Neighbouring cells list their points in opposite orders: gather the mesh on one "
+                "process, in ParaView by Aggregate Dataset, with Reproducible Order off, or let "
+                "Element Quality reorder the cells (Reorient) first.");
+  }
+}
+
+//------------------------------------------------------------------------------
+void RankMesh::fix(vtkDataArray* array, bool ofCells)
+{
+  const MeshView& view = this->piece();
+  for (Index cell = 0; array && ofCells && cell < view.numberOfCells; ++cell)
+  {
+    for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
+    {
+      this->Marked[view.connectivity[n]] |= array->GetComponent(cell, 0) != 0;
+    }
+  }
+  for (Index p = 0; array && !ofCells && p < view.numberOfPoints; ++p)
+  {
+    this->Marked[p] |= array->GetComponent(p, 0) != 0;
+  }
+}
+
+//------------------------------------------------------------------------------
+void RankMesh::fixSelected(vtkDataObject* input, vtkSelection* selection)
+{
+  const vtkSmartPointer<vtkDataObject> marked = markSelected(input, selection);
+  if (auto* selected = vtkDataSet::SafeDownCast(marked))
+  {
+    this->fix(selected->GetCellData()->GetArray(SelectedArray), true);
+    this->fix(selected->GetPointData()->GetArray(SelectedArray), false);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> RankMesh::fixed(bool boundary)
+{
+  const DistributedMesh& mesh = *this->TheMesh;
+  std::vector<unsigned char> marked(mesh.localPoints(), 0), held = marked;
+  for (std::size_t p = 0; p < this->Marked.size(); ++p)
+  {
+    const Index local = mesh.localOfPiece()[p];
+    if (local >= 0)
+    {
+      marked[local] |= this->Marked[p];
+      held[local] |= this->Held[p];
+    }
+  }
+  mesh.either(marked.data());
+  mesh.either(held.data());
+  const std::vector<unsigned char> on = rankBoundary(mesh);
+  for (std::size_t p = 0; p < marked.size(); ++p)
+  {
+    marked[p] |= (held[p] && !(this->volume() && on[p])) || (boundary && on[p]);
+  }
+  return marked;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> RankMesh::leastOf(const std::vector<double>& ofPiece, double none) const
+{
+  // The owner may have a point from another piece: the least by way of all processes.
+  const DistributedMesh& mesh = *this->TheMesh;
+  struct Value
+  {
+    Index number;
+    double value;
+  };
+  std::vector<std::vector<Value>> sent(this->Group.size());
+  for (std::size_t p = 0; p < ofPiece.size(); ++p)
+  {
+    const Index local = mesh.localOfPiece()[p];
+    if (local >= 0)
+    {
+      sent[mesh.owners()[local]].push_back({ mesh.numbers()[local], ofPiece[p] });
+    }
+  }
+  std::vector<double> values(mesh.localPoints(), none);
+  for (const auto& list : this->Group.exchangeItems(sent))
+  {
+    for (const Value& value : list)
+    {
+      const auto at = std::lower_bound(mesh.numbers().begin(), mesh.numbers().end(), value.number);
+      double& to = values[at - mesh.numbers().begin()];
+      to = std::min(to, value.value);
+    }
+  }
+  mesh.exchange(values.data(), 1);
+  return values;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> RankMesh::ofPiece(const std::vector<double>& local) const
+{
+  const MeshView& view = this->piece();
+  std::vector<double> points(view.points, view.points + 3 * view.numberOfPoints);
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    const Index from = this->TheMesh->localOfPiece()[p];
+    if (from >= 0)
+    {
+      std::copy_n(&local[3 * from], 3, &points[3 * p]);
+    }
+  }
+  return points;
+}
+
+//------------------------------------------------------------------------------
+Mesh RankMesh::movedPiece(const std::vector<double>& points) const
+{
+  MeshView view = this->piece();
+  view.points = points.data();
+  Mesh mesh(view, this->Threads);
+  mesh.setMirrored(this->Mirrored);
+  return mesh;
+}
+
+//------------------------------------------------------------------------------
+std::vector<signed char> RankMesh::validityAt(const std::vector<double>& points) const
+{
+  std::vector<signed char> validity(this->piece().numberOfCells);
+  this->movedPiece(points).classifyCells(validity.data(), this->Threads);
+  return validity;
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> RankMesh::numbersOf(Index cell) const
+{
+  const MeshView& view = this->piece();
+  std::vector<Index> numbers;
+  for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
+  {
+    const Index local = this->TheMesh->localOfPiece()[view.connectivity[n]];
+    numbers.push_back(local < 0 ? -1 : this->TheMesh->numbers()[local]);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+//------------------------------------------------------------------------------
+std::string RankMesh::move(vtkPointSet* output, const std::vector<double>& local) const
+{
+  std::vector<double> points;
+  vtkPoints* like = this->Input ? this->Input->GetPoints() : nullptr;
+  Index lost = 0;
+  this->Group.together(
+    [&]
+    {
+      points = this->ofPiece(local);
+      if (like && like->GetDataType() == VTK_FLOAT)
+      {
+        std::vector<double> rounded(points.size());
+        std::transform(points.begin(), points.end(), rounded.begin(),
+          [](double x) { return static_cast<double>(static_cast<float>(x)); });
+        const auto before = this->validityAt(points), after = this->validityAt(rounded);
+        lost =
+          std::inner_product(before.begin(), before.end(), after.begin(), Index(0), std::plus<>(),
+            [](signed char a, signed char b) { return Index(a == Valid && b != Valid); });
+      }
+    });
+  lost = this->Group.sum(lost);
+  if (output)
+  {
+    output->SetPoints(makePoints(points, lost > 0 ? nullptr : like));
+    addDisplacement(output, this->piece().points, points);
+  }
+  return lost == 0 ? ""
+                   : "The points are given in double precision: in single precision " +
+      std::to_string(lost) + " valid elements would not be valid.";
+}
+}

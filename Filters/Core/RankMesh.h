@@ -1,0 +1,103 @@
+/**
+ * @file RankMesh.h
+ * @brief A data set in pieces on several processes as one mesh whose points can move.
+ */
+#ifndef tautline_RankMesh_h
+#define tautline_RankMesh_h
+
+#include "TautlineCoreModule.h" // for export macro
+
+#include "MeshAdapter.h"
+#include "tautline/Mesh/DistributedMesh.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataObject;
+class vtkDataSet;
+class vtkPointSet;
+class vtkSelection;
+
+namespace tautline
+{
+/**
+ * @brief Whether a filter is to take the mesh as one of several processes: any but the first has
+ * cells, and it is not composite data, whose blocks may be on different processes. Collective, but
+ * for composite data.
+ */
+TAUTLINECORE_EXPORT bool isOnSeveralProcesses(vtkDataObject* input);
+
+/// The data set of a mesh on several processes, or in the reproducible order. Throws Error for
+/// composite data, with the remedy.
+TAUTLINECORE_EXPORT vtkDataSet* requirePiece(vtkDataObject* input);
+
+/**
+ * @class tautline::RankMesh
+ * @brief The counterpart of MovableMesh for a data set that each process has a piece of. All methods
+ * are collective but for const accessors.
+ *
+ * Cells marked as ghosts are copies. Points with the same coordinates are one, or, with
+ * mergePoints off, those with the same global id. Cells of lower dimension than the others, and
+ * those of unsupported types, hold their points, but on the boundary of a volume.
+ */
+class TAUTLINECORE_EXPORT RankMesh
+{
+public:
+  /**
+   * @brief Throws Error on all processes if a piece is malformed, has no explicit points or
+   * quadratic cells, or if neighbouring cells list their points in opposite orders.
+   */
+  RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergePoints);
+
+  DistributedMesh& mesh() { return *this->TheMesh; }
+  const DistributedMesh& mesh() const { return *this->TheMesh; }
+  /// Whether the mesh is reversed throughout, see Mesh::setMirrored().
+  bool mirrored() const { return this->Mirrored; }
+  bool volume() const { return this->Dimension == 3; }
+  /// The piece as it is given, with all cells.
+  const MeshView& piece() const { return this->Adapter->inputView(); }
+  /// One flag per cell of the piece: ghosts, and cells of lower dimension; they do not count.
+  const std::vector<unsigned char>& skipped() const { return this->Skip; }
+  /// Remarks for the user on this piece, or "".
+  std::string notice() const { return this->Adapter->notice(); }
+
+  /// Marks points of the piece with a value other than 0, or of cells with one; null: none. Not
+  /// collective.
+  void fix(vtkDataArray* array, bool ofCells);
+  /// Marks what a selection holds of the piece; null: nothing. Not collective, as fix().
+  void fixSelected(vtkDataObject* input, vtkSelection* selection);
+  /// Per local point: marked on any process, or held.
+  std::vector<unsigned char> fixed(bool boundary);
+  /// Values per point of the piece as those of the local points: of points that are one the least.
+  std::vector<double> leastOf(const std::vector<double>& ofPiece, double none) const;
+
+  /// Coordinates of the piece's points, from those of local points; those without a cell stay.
+  std::vector<double> ofPiece(const std::vector<double>& local) const;
+  /// The mesh of the piece with these points.
+  Mesh movedPiece(const std::vector<double>& points) const;
+  std::vector<signed char> validityAt(const std::vector<double>& points) const;
+  /// The numbers of the points of a cell of the piece, in increasing order.
+  std::vector<Index> numbersOf(Index cell) const;
+  /**
+   * @brief Gives the output new points, in the precision of the input unless a valid cell would not
+   * be valid in it, and the point array `Displacement`.
+   * @return a sentence if single precision did not do, else ""
+   */
+  std::string move(vtkPointSet* output, const std::vector<double>& local) const;
+
+private:
+  void checkOrder();
+
+  RankGroup& Group;
+  vtkPointSet* Input = nullptr;
+  int Threads;
+  int Dimension = 0;
+  bool Mirrored = false;
+  std::unique_ptr<MeshAdapter> Adapter;
+  std::unique_ptr<DistributedMesh> TheMesh;
+  std::vector<unsigned char> Skip, Held, Marked; // per cell, point and point of the piece
+};
+}
+#endif
