@@ -35,8 +35,8 @@ TAUTLINECORE_EXPORT vtkDataSet* requirePiece(vtkDataObject* input);
 
 /**
  * @class tautline::RankMesh
- * @brief The counterpart of MovableMesh for a data set that each process has a piece of. All methods
- * are collective but for const accessors.
+ * @brief The counterpart of MovableMesh for a data set that each process has a piece of. All
+ * methods are collective but for const accessors.
  *
  * Cells marked as ghosts are copies. Points with the same coordinates are one, or, with
  * mergePoints off, those with the same global id. Cells of lower dimension than the others, and

@@ -95,7 +95,7 @@ def save(mesh: Any, arguments: argparse.Namespace, rows: list[dict[str, Any]] | 
 
 def add_reproducible_order(parser: argparse.ArgumentParser) -> None:
     """Add --reproducible-order."""
-    parser.add_argument("--reproducible-order", action="store_true", help="as several processes work, see the help page")
+    parser.add_argument("--reproducible-order", action="store_true", help="work as several processes do")
 
 
 def add_moving_points(parser: argparse.ArgumentParser) -> None:

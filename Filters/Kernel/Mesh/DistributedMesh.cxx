@@ -95,6 +95,8 @@ struct DistributedMesh::PointKey
   Index withCell; ///< whether a cell that is no ghost has it there
 
   auto place() const { return std::tie(this->curve, this->x[0], this->x[1], this->x[2], this->id); }
+  /// By the place alone: keys of one point are equal.
+  bool operator<(const PointKey& other) const { return this->place() < other.place(); }
 };
 
 //------------------------------------------------------------------------------
@@ -138,19 +140,11 @@ DistributedMesh::DistributedMesh(RankGroup& group, const MeshPiece& piece)
 }
 
 //------------------------------------------------------------------------------
-void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& used)
+/// The bounds of the points of all ranks.
+void DistributedMesh::findBounds(const MeshPiece& piece, const std::vector<char>& used)
 {
   RankGroup& group = *this->Group;
   const Index n = piece.view.numberOfPoints;
-  const bool here = std::any_of(used.begin(), used.end(), [](char u) { return u != 0; });
-  const bool withIds = group.any(here && piece.globalIds),
-             without = group.any(here && !piece.globalIds);
-  if (withIds && without)
-  {
-    throw Error("Some processes have global point ids and others have none: run Generate Global "
-                "Ids.");
-  }
-  // Bounds.
   const double infinity = std::numeric_limits<double>::infinity();
   std::vector<double> box = { infinity, infinity, infinity, -infinity, -infinity, -infinity };
   for (Index p = 0; p < n; ++p)
@@ -169,16 +163,36 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
       box[3 + c] = std::max(box[3 + c], other[3 + c]);
     }
   }
-  double extent = 0;
   for (int c = 0; c < 3 && box[0] <= box[3]; ++c)
   {
     this->Bounds[c] = box[c];
     this->Bounds[3 + c] = box[3 + c];
-    extent = std::max(extent, box[3 + c] - box[c]);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The keys of the points that cells have, sorted.
+std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
+  const MeshPiece& piece, const std::vector<char>& used)
+{
+  RankGroup& group = *this->Group;
+  const Index n = piece.view.numberOfPoints;
+  const bool here = std::any_of(used.begin(), used.end(), [](char u) { return u != 0; });
+  const bool withIds = group.any(here && piece.globalIds),
+             without = group.any(here && !piece.globalIds);
+  if (withIds && without)
+  {
+    throw Error("Some processes have global point ids and others have none: run Generate Global "
+                "Ids.");
+  }
+  this->findBounds(piece, used);
+  double extent = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    extent = std::max(extent, this->Bounds[3 + c] - this->Bounds[c]);
   }
   const double perLength = extent > 0 && std::isfinite(extent) ? mortonCells / extent : 0.0;
 
-  // Ranges of keys, one for each rank.
   std::vector<PointKey> keys;
   std::vector<IdAndPlace> ids;
   for (Index p = 0; p < n; ++p)
@@ -205,8 +219,16 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
   {
     checkIds(group, ids);
   }
-  const auto before = [](const PointKey& a, const PointKey& b) { return a.place() < b.place(); };
-  std::sort(keys.begin(), keys.end(), before);
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+//------------------------------------------------------------------------------
+/// Sends keys to ranks so that each gets a range of them, and returns this rank's, sorted.
+std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
+  const std::vector<PointKey>& keys) const
+{
+  RankGroup& group = *this->Group;
   std::vector<PointKey> samples;
   for (std::size_t i = 0; i < samplesPerRank && !keys.empty(); ++i)
   {
@@ -217,7 +239,7 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
   {
     all.insert(all.end(), list.begin(), list.end());
   }
-  std::sort(all.begin(), all.end(), before);
+  std::sort(all.begin(), all.end());
   std::vector<PointKey> limits;
   for (int r = 1; r < group.size() && !all.empty(); ++r)
   {
@@ -226,12 +248,9 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
   std::vector<std::vector<PointKey>> sent(group.size());
   for (const PointKey& key : keys)
   {
-    sent[std::upper_bound(limits.begin(), limits.end(), key, before) - limits.begin()].push_back(
-      key);
+    sent[std::upper_bound(limits.begin(), limits.end(), key) - limits.begin()].push_back(key);
   }
   const std::vector<std::vector<PointKey>> received = group.exchangeItems(sent);
-
-  // The numbers of a range, and the owner: of the ranks with a cell one by a hash.
   std::vector<PointKey> range;
   for (const auto& list : received)
   {
@@ -243,10 +262,19 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
       return std::make_tuple(a.place(), a.rank, a.source) <
         std::make_tuple(b.place(), b.rank, b.source);
     });
+  return range;
+}
+
+//------------------------------------------------------------------------------
+/// The numbers of the points, and the owners: of the ranks with a cell there one by a hash.
+void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<char>& used)
+{
+  RankGroup& group = *this->Group;
+  const std::vector<PointKey> range = this->distribute(this->makeKeys(piece, used));
   Index count = 0;
   for (std::size_t i = 0; i < range.size(); ++i)
   {
-    count += i == 0 || before(range[i - 1], range[i]);
+    count += i == 0 || range[i - 1] < range[i];
   }
   Index first = 0;
   const auto counts = group.gatherItems(std::vector<Index>{ count });
@@ -264,7 +292,7 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
   {
     Index owner = range[begin].rank;
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
-    for (end = begin; end < range.size() && !before(range[begin], range[end]); ++end)
+    for (end = begin; end < range.size() && !(range[begin] < range[end]); ++end)
     {
       const std::uint64_t hash = mixed(
         mixed(static_cast<std::uint64_t>(first)) + static_cast<std::uint64_t>(range[end].rank));
@@ -279,8 +307,8 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, std::vector<char>& us
       replies[range[i].rank].push_back({ range[i].source, first, owner });
     }
   }
-  this->PieceNumbers.assign(n, -1);
-  this->PieceOwners.assign(n, -1);
+  this->PieceNumbers.assign(piece.view.numberOfPoints, -1);
+  this->PieceOwners.assign(piece.view.numberOfPoints, -1);
   for (const auto& list : group.exchangeItems(replies))
   {
     for (const Reply& reply : list)

@@ -78,9 +78,7 @@ public:
   /// local point, packed once per neighbour.
   void exchange(double* values, int components) const;
   void exchange(unsigned char* flags) const;
-  /**
-   * @brief The same of one set of points, see Subset. What it returns is needed by startExchange().
-   */
+  /// Which points of a set are sent to and received from each rank.
   struct Subset
   {
     struct Neighbour
@@ -90,7 +88,7 @@ public:
     };
     std::vector<Neighbour> neighbours;
   };
-  /// The part of the exchange of points with nonzero flags (one per local point; the owner's count).
+  /// The part of the exchange of points with nonzero flags: one per local point, the owner's count.
   Subset subset(const std::vector<unsigned char>& flags) const;
   void exchange(const Subset& subset, double* values, int components) const;
   /// Sends flags of local points to their owners, where nonzero ones stay, and back to all.
@@ -106,7 +104,10 @@ public:
 
 private:
   struct PointKey;
-  void numberPoints(const MeshPiece& piece, std::vector<char>& used);
+  void findBounds(const MeshPiece& piece, const std::vector<char>& used);
+  std::vector<PointKey> makeKeys(const MeshPiece& piece, const std::vector<char>& used);
+  void numberPoints(const MeshPiece& piece, const std::vector<char>& used);
+  std::vector<PointKey> distribute(const std::vector<PointKey>& keys) const;
   void takeCells(const MeshPiece& piece, const std::vector<char>& used);
   void connect();
 

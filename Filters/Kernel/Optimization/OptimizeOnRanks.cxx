@@ -1,9 +1,8 @@
 #include "OptimizeOnRanks.h"
 
+#include "OptimizationOnRanks.h"
 #include "OptionChecks.h"
-#include "QualityGuard.h"
 #include "RankSweep.h"
-#include "SweepControl.h"
 #include "ValidityGuard.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
@@ -18,8 +17,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 bool isInvalid(signed char validity)
 {
   return validity == Inverted || validity == Degenerate;
@@ -74,69 +71,7 @@ SimplexFrame frameOf(const DistributedMesh& mesh, const std::vector<double>& poi
   return frame;
 }
 
-Mesh movedMesh(
-  const DistributedMesh& mesh, bool mirrored, const std::vector<double>& points, int threads)
-{
-  MeshView view = mesh.view();
-  view.points = points.data();
-  Mesh moved(view, threads);
-  moved.setMirrored(mirrored);
-  return moved;
 }
-
-/**
- * @class OptimizationOnRanks
- * @brief The state of a run: the local problem, and sums over the whole mesh.
- */
-class OptimizationOnRanks
-{
-public:
-  OptimizationOnRanks(DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options);
-  OptimizeResult run();
-
-private:
-  void agree();
-  void untangle();
-  bool stage();
-  void makeProblem();
-  StopReason sweep(bool& repaired);
-  IterationRecord record(int iteration);
-  void addObjective(
-    std::size_t i, const std::vector<signed char>& validity, IterationRecord& record);
-  bool report(const IterationRecord& record);
-  bool outOfTime() const
-  {
-    return this->Group.any(this->Clock.reached(this->Options.stopping.maximumSeconds));
-  }
-  void store();
-  void load(const std::vector<double>& points);
-  Index restoreInside(const std::vector<double>& before);
-  Index restoreWorst();
-  void keepInput(const IterationRecord& first);
-  double judge(const std::vector<double>& points, std::vector<double>& values,
-    std::vector<signed char>& validity) const;
-  std::vector<std::string> names() const;
-
-  DistributedMesh& TheMesh;
-  RankGroup& Group;
-  bool Mirrored;
-  OptimizeOptions Options;
-  Stopwatch Clock;
-  std::unique_ptr<Mesh> Start; ///< null on a rank without cells
-  std::vector<double> Points;
-  std::unique_ptr<OptimizationProblem> Problem; ///< the same
-  std::vector<Objective> Resolved;
-  std::vector<int> Sets;
-  std::unique_ptr<Scalarizer> TheScalarizer;
-  std::vector<signed char>
-    Levels; ///< see ValidityLevel; empty without elements that have an inside
-  StoppingTest Watch;
-  OptimizeResult Result;
-  // The worst element of the input.
-  Objective Judged;
-  bool HoldsWorst = false, ValidInput = false;
-  double Worst = 0;
-};
 
 //------------------------------------------------------------------------------
 OptimizationOnRanks::OptimizationOnRanks(
@@ -379,59 +314,6 @@ void OptimizationOnRanks::load(const std::vector<double>& points)
 }
 
 //------------------------------------------------------------------------------
-/// Lets the points of elements that became less valid between their corners go back.
-Index OptimizationOnRanks::restoreInside(const std::vector<double>& before)
-{
-  if (!this->Group.any(!this->Levels.empty()))
-  {
-    return 0;
-  }
-  constexpr int maxRounds = 20; // then all points go back
-  const MeshView& view = this->TheMesh.view();
-  std::vector<signed char> levels;
-  Index restored = 0;
-  for (int round = 0; round <= maxRounds; ++round)
-  {
-    std::vector<unsigned char> back(this->TheMesh.localPoints(), round == maxRounds);
-    bool worse = false;
-    this->Group.together(
-      [&]
-      {
-        if (!this->Levels.empty())
-        {
-          findValidityLevels(this->Problem->moving(), this->Options.threads, levels);
-        }
-        for (std::size_t cell = 0; cell < this->Levels.size(); ++cell)
-        {
-          const bool less = levels[cell] < this->Levels[cell];
-          worse = worse || less;
-          for (Index n = view.offsets[cell]; less && n < view.offsets[cell + 1]; ++n)
-          {
-            back[view.connectivity[n]] = 1;
-          }
-        }
-      });
-    if (!this->Group.any(worse))
-    {
-      break;
-    }
-    this->TheMesh.exchange(back.data());
-    std::vector<double> points = this->Points;
-    for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
-    {
-      if (back[p])
-      {
-        std::copy_n(&before[3 * p], 3, &points[3 * p]);
-        ++restored;
-      }
-    }
-    this->load(points);
-  }
-  this->Levels.swap(levels);
-  return restored;
-}
-
-//------------------------------------------------------------------------------
 /// Sweeps to convergence; see optimizeLocally() in Optimize.cxx.
 StopReason OptimizationOnRanks::sweep(bool& repaired)
 {
@@ -492,110 +374,6 @@ StopReason OptimizationOnRanks::sweep(bool& repaired)
       sweeper.wakeAll();
     }
   }
-}
-
-//------------------------------------------------------------------------------
-/// The metric that judges elements and the validity, of the local cells; the worst of the whole
-/// mesh, which is larger the worse.
-double OptimizationOnRanks::judge(const std::vector<double>& points, std::vector<double>& values,
-  std::vector<signed char>& validity) const
-{
-  double worst = -infinity;
-  this->Group.together(
-    [&]
-    {
-      values.assign(this->TheMesh.view().numberOfCells, -infinity);
-      validity.assign(values.size(), Valid);
-      if (!this->Start)
-      {
-        return;
-      }
-      const Mesh moved = movedMesh(this->TheMesh, this->Mirrored, points, this->Options.threads);
-      moved.classifyCells(validity.data(), this->Options.threads);
-      std::vector<double> q(values.size());
-      evaluateMetric(moved, this->Judged.metric, this->Judged.evaluation, q.data());
-      const MetricInfo& info = metricInfo(this->Judged.metric);
-      for (const CellBlock& block : moved.blocks())
-      {
-        for (Index i = 0; info.definedOn(block.type) && i < block.count; ++i)
-        {
-          const Index cell = block.cell(i);
-          values[cell] = info.direction == Direction::LargerIsBetter ? -q[cell] : q[cell];
-          worst = std::max(worst, values[cell]);
-        }
-      }
-    });
-  return this->Group.maximum(worst);
-}
-
-//------------------------------------------------------------------------------
-/// Puts points back to where they were in the input, about the elements that are invalid or worse
-/// than all of the input, until there is none.
-Index OptimizationOnRanks::restoreWorst()
-{
-  constexpr double rounding = 1e-9;
-  constexpr int maxRounds = 20; // then all points go back
-  const MeshView& view = this->TheMesh.view();
-  std::vector<unsigned char> restored(this->TheMesh.localPoints(), 0);
-  for (int round = 0; this->ValidInput; ++round)
-  {
-    std::vector<double> values;
-    std::vector<signed char> validity;
-    this->judge(this->Points, values, validity);
-    std::vector<unsigned char> back = restored;
-    const double limit = this->Worst + rounding * std::abs(this->Worst);
-    for (Index cell = 0; cell < view.numberOfCells; ++cell)
-    {
-      const bool offends = validity[cell] != Valid ||
-        (this->HoldsWorst && !(values[cell] <= limit)) || round >= maxRounds;
-      for (Index n = view.offsets[cell]; offends && n < view.offsets[cell + 1]; ++n)
-      {
-        back[view.connectivity[n]] = 1;
-      }
-    }
-    this->TheMesh.exchange(back.data());
-    if (!this->Group.any(back != restored))
-    {
-      break;
-    }
-    restored = back;
-    std::vector<double> points = this->Points;
-    for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
-    {
-      if (restored[p])
-      {
-        std::copy_n(&this->TheMesh.points()[3 * p], 3, &points[3 * p]);
-      }
-    }
-    this->load(points);
-  }
-  Index count = 0;
-  for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
-  {
-    count += restored[p] && this->TheMesh.owned(p);
-  }
-  return this->Group.sum(count);
-}
-
-//------------------------------------------------------------------------------
-/// Goes back to the input if its objective is smaller.
-void OptimizationOnRanks::keepInput(const IterationRecord& first)
-{
-  IterationRecord now = this->record(this->Result.history.back().iteration);
-  const double allowed = first.objective + roundingOfSums * std::abs(first.objective);
-  if (!this->ValidInput || now.objective <= allowed)
-  {
-    return;
-  }
-  this->load(this->TheMesh.points());
-  now = this->record(now.iteration);
-  this->Result.history.back() = now;
-  if (this->Result.reason != StopReason::Aborted && this->Result.reason != StopReason::TimeLimit)
-  {
-    this->Result.reason = StopReason::NoProgress;
-  }
-  this->Result.unchanged = true;
-  this->Result.restored = 0;
 }
 
 //------------------------------------------------------------------------------
@@ -717,6 +495,8 @@ OptimizeResult OptimizationOnRanks::run()
   return this->Result;
 }
 
+namespace
+{
 constexpr const char* gatherFirst =
   " need the whole mesh on one process: gather it, in ParaView by Aggregate Dataset, with "
   "Reproducible Order off; or ";

@@ -13,8 +13,8 @@ namespace tautline
 {
 /**
  * @brief Throws Error for options that need the whole mesh in one place, by name and with the
- * remedy: global optimizers, the templates p-mean and maximum, targets, element weights, points that
- * slide on curved surfaces, rescaling of untangling objectives, improvement of the worst element.
+ * remedy: global optimizers, the templates p-mean and maximum, targets, element weights, points
+ * that slide on curved surfaces, rescaling of untangling objectives, improvement of the worst element.
  */
 TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
 
@@ -24,7 +24,8 @@ TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
  *
  * The optimizer Automatic stays with the sweeps. Elements that are invalid and that no objective
  * repairs are untangled first (untangleOnRanks()); those that stay invalid are left out. Unless
- * allowInversion, the result of the whole mesh is never worse than the input, as that of optimize().
+ * allowInversion, the result of the whole mesh is never worse than the input, as that of
+ * optimize().
  * @param mesh planar meshes at right angles to an axis, and volume meshes; all cells of one
  * dimension. Its points are where the optimization starts; not changed.
  * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks

@@ -34,8 +34,8 @@ struct RankUntangleResult
  * @brief Untangles. The cells within some rings of the invalid elements are gathered, in the order
  * of their global numbers; their connected parts are untangled by untangle(), each on one rank,
  * with the points around held. Where elements stay invalid, wider rings follow, and, but for
- * Effort::Local, the whole mesh, if it fits into the memory of a rank. UntangleMethod::Simultaneous,
- * which moves all points, takes the whole mesh. Collective.
+ * Effort::Local, the whole mesh, if it fits into the memory of a rank. The method
+ * UntangleMethod::Simultaneous, which moves all points, takes the whole mesh. Collective.
  * @param mesh volume meshes and planar ones; its points are where it starts; not changed
  * @param mirrored see Mesh::setMirrored(); the same on all ranks
  * @param options fixed: of local points, the owner's flag counts; not null. The observer is called

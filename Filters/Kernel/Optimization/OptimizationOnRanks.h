@@ -1,0 +1,85 @@
+/**
+ * @file OptimizationOnRanks.h
+ * @brief The state of an optimization of a mesh on several ranks. Internal: not installed.
+ */
+#ifndef tautline_OptimizationOnRanks_h
+#define tautline_OptimizationOnRanks_h
+
+#include "OptimizationProblem.h"
+#include "OptimizeOnRanks.h"
+#include "SweepControl.h"
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace tautline
+{
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The local part with other points.
+inline Mesh movedMesh(
+  const DistributedMesh& mesh, bool mirrored, const std::vector<double>& points, int threads)
+{
+  MeshView view = mesh.view();
+  view.points = points.data();
+  Mesh moved(view, threads);
+  moved.setMirrored(mirrored);
+  return moved;
+}
+
+/**
+ * @class tautline::OptimizationOnRanks
+ * @brief The state of a run: the local problem, and sums over the whole mesh.
+ */
+class OptimizationOnRanks
+{
+public:
+  OptimizationOnRanks(DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options);
+  OptimizeResult run();
+
+private:
+  void agree();
+  void untangle();
+  bool stage();
+  void makeProblem();
+  StopReason sweep(bool& repaired);
+  IterationRecord record(int iteration);
+  void addObjective(
+    std::size_t i, const std::vector<signed char>& validity, IterationRecord& record);
+  bool report(const IterationRecord& record);
+  bool outOfTime() const
+  {
+    return this->Group.any(this->Clock.reached(this->Options.stopping.maximumSeconds));
+  }
+  void store();
+  void load(const std::vector<double>& points);
+  Index restoreInside(const std::vector<double>& before);
+  Index restoreWorst();
+  void keepInput(const IterationRecord& first);
+  double judge(const std::vector<double>& points, std::vector<double>& values,
+    std::vector<signed char>& validity) const;
+  std::vector<std::string> names() const;
+
+  DistributedMesh& TheMesh;
+  RankGroup& Group;
+  bool Mirrored;
+  OptimizeOptions Options;
+  Stopwatch Clock;
+  std::unique_ptr<Mesh> Start; ///< null on a rank without cells
+  std::vector<double> Points;
+  std::unique_ptr<OptimizationProblem> Problem; ///< the same
+  std::vector<Objective> Resolved;
+  std::vector<int> Sets;
+  std::unique_ptr<Scalarizer> TheScalarizer;
+  std::vector<signed char>
+    Levels; ///< see ValidityLevel; empty without elements that have an inside
+  StoppingTest Watch;
+  OptimizeResult Result;
+  // The worst element of the input.
+  Objective Judged;
+  bool HoldsWorst = false, ValidInput = false;
+  double Worst = 0;
+};
+}
+#endif
