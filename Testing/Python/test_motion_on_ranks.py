@@ -1,4 +1,4 @@
-"""test_motion_on_ranks.py PVBATCH: pvbatch on 1 to 4 MPI ranks moves points to the same places; skipped without mpirun."""
+"""test_motion_on_ranks.py PVBATCH: on 1 to 4 MPI ranks points move to the same places; skipped without mpirun."""
 
 import json
 import os

@@ -6,8 +6,9 @@
 #define tautline_OptimizationOnRanks_h
 
 #include "OptimizationProblem.h"
-#include "OptimizeOnRanks.h"
+#include "Optimize.h"
 #include "SweepControl.h"
+#include "tautline/Mesh/DistributedMesh.h"
 
 #include <limits>
 #include <memory>

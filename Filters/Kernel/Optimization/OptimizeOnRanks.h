@@ -14,7 +14,8 @@ namespace tautline
 /**
  * @brief Throws Error for options that need the whole mesh in one place, by name and with the
  * remedy: global optimizers, the templates p-mean and maximum, targets, element weights, points
- * that slide on curved surfaces, rescaling of untangling objectives, improvement of the worst element.
+ * that slide on curved surfaces, rescaling of untangling objectives, improvement of the worst
+ * element.
  */
 TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
 
