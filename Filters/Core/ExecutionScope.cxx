@@ -1,6 +1,7 @@
 #include "ExecutionScope.h"
 
 #include "MenuNames.h"
+#include "Processes.h"
 #include "vtkInterruption.h"
 
 #include "tautline/Core/Interruption.h"
@@ -12,7 +13,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMultiProcessController.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <sstream>
@@ -47,12 +47,6 @@ void askForNothing(vtkInformationVector* outputs)
       info->Set(Pipeline::UPDATE_EXTENT(), nothing, 6);
     }
   }
-}
-
-bool isAlone()
-{
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  return !controller || controller->GetNumberOfProcesses() <= 1;
 }
 
 void pollAlgorithm(vtkAlgorithm* algorithm, const ExecutionLimits& limits, const Stopwatch& time)
@@ -106,7 +100,7 @@ int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits, vtkIn
     }
     return 1;
   };
-  if (!isAlone())
+  if (severalProcesses())
   {
     return reportOnce();
   }

@@ -24,19 +24,34 @@ namespace
 constexpr const char* Vague =
   "Another rank"; // how the kernel's errors begin that another rank explains
 
-/// Null if there is only one process.
-vtkMultiProcessController* manyProcesses()
-{
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  return controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr;
+int ofOneProcess = 0; // how many OneProcess there are
 }
+
+//------------------------------------------------------------------------------
+OneProcess::OneProcess()
+{
+  ++ofOneProcess;
+}
+
+//------------------------------------------------------------------------------
+OneProcess::~OneProcess()
+{
+  --ofOneProcess;
+}
+
+//------------------------------------------------------------------------------
+vtkMultiProcessController* severalProcesses()
+{
+  vtkMultiProcessController* controller =
+    ofOneProcess > 0 ? nullptr : vtkMultiProcessController::GetGlobalController();
+  return controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr;
 }
 
 //------------------------------------------------------------------------------
 Processes::Processes()
 {
-  this->Controller = vtkMultiProcessController::GetGlobalController();
-  if (!this->Controller || this->Controller->GetNumberOfProcesses() < 2)
+  this->Controller = severalProcesses();
+  if (!this->Controller)
   {
     return;
   }
@@ -148,7 +163,7 @@ void Processes::together(const std::function<void()>& work) const
 int minimumOverProcesses(int own)
 {
   int minimum = own;
-  if (vtkMultiProcessController* controller = manyProcesses())
+  if (vtkMultiProcessController* controller = severalProcesses())
   {
     controller->AllReduce(&own, &minimum, 1, vtkCommunicator::MIN_OP);
   }
@@ -158,7 +173,7 @@ int minimumOverProcesses(int own)
 //------------------------------------------------------------------------------
 std::string firstProblem(const std::string& own)
 {
-  vtkMultiProcessController* controller = manyProcesses();
+  vtkMultiProcessController* controller = severalProcesses();
   if (!controller)
   {
     return own;
@@ -180,7 +195,7 @@ std::string firstProblem(const std::string& own)
 //------------------------------------------------------------------------------
 void requireOneProcess(vtkDataObject* input)
 {
-  vtkMultiProcessController* controller = manyProcesses();
+  vtkMultiProcessController* controller = severalProcesses();
   if (!controller)
   {
     return;
@@ -235,7 +250,7 @@ Index cellsOf(vtkDataObject* input)
 //------------------------------------------------------------------------------
 void requireFirstProcess(vtkDataObject* input, const char* filter)
 {
-  vtkMultiProcessController* controller = manyProcesses();
+  vtkMultiProcessController* controller = severalProcesses();
   if (!controller)
   {
     return;
@@ -260,7 +275,7 @@ void requireFirstProcess(vtkAlgorithm* filter, int port, vtkDataObject* input, c
     requireFirstProcess(input, name);
     return;
   }
-  vtkMultiProcessController* controller = manyProcesses();
+  vtkMultiProcessController* controller = severalProcesses();
   if (controller && controller->GetLocalProcessId() > 0 && cellsOf(input) > 0)
   {
     refuseProcesses(name, "others than the first");

@@ -58,6 +58,23 @@ private:
   Communicator Comm = nullptr;
 };
 
+/**
+ * @class tautline::OneProcess
+ * @brief As long as one exists, this process counts as the only one: nothing here communicates, and
+ * executions end at their limits. For work that one process does for all, which wait for it.
+ */
+class TAUTLINECORE_EXPORT OneProcess
+{
+public:
+  OneProcess();
+  ~OneProcess();
+  OneProcess(const OneProcess&) = delete;
+  OneProcess& operator=(const OneProcess&) = delete;
+};
+
+/// The global controller; null if there is one process only, or an OneProcess.
+TAUTLINECORE_EXPORT vtkMultiProcessController* severalProcesses();
+
 /// The minimum over all processes. Collective; MPI is not needed.
 TAUTLINECORE_EXPORT int minimumOverProcesses(int own);
 

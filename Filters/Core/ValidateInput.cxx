@@ -1,6 +1,7 @@
 #include "ValidateInput.h"
 
 #include "Blocks.h"
+#include "Processes.h"
 #include "VtkCompatibility.h"
 #include "tautline/Mesh/ArrayChecks.h"
 
@@ -568,7 +569,7 @@ std::string emptyInput(vtkDataObject* data, const char* needed)
       ofPoints += leaf->GetNumberOfPoints();
       some = true;
     });
-  auto* controller = vtkMultiProcessController::GetGlobalController();
+  auto* controller = severalProcesses();
   const bool composite = vtkCompositeDataSet::SafeDownCast(data) != nullptr;
   if ((!some && !composite) || count > 0 || (controller && controller->GetLocalProcessId() > 0))
   {

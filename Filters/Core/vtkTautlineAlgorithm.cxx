@@ -1,13 +1,17 @@
 #include "vtkTautlineAlgorithm.h"
 
 #include "ExecutionScope.h"
+#include "GatheredExecution.h"
 #include "Processes.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 
+#include "vtkAlgorithmOutput.h"
 #include "vtkDataObject.h"
 #include "vtkDataObjectTypes.h"
+#include "vtkErrorCode.h"
+#include "vtkExecutive.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkSelection.h"
@@ -148,7 +152,9 @@ int vtkTautlineAlgorithm::ExecuteData(
   const std::string failure = vtkTautlineAlgorithm::FailureOf(
     "divide the mesh", [&] { problem = this->FindInputProblem(inputs); });
   problem = failure.empty() ? problem : failure;
-  if (this->ExecutesOnAllProcesses())
+  const bool together =
+    this->ExecutesOnAllProcesses() || tautline::isGathered(this, this->GetGatheredResult());
+  if (together)
   {
     problem = tautline::firstProblem(problem);
   }
@@ -160,7 +166,7 @@ int vtkTautlineAlgorithm::ExecuteData(
     return this->Fail(outputs, problem);
   }
   std::string empty = tautline::emptyInput(input);
-  if (this->ExecutesOnAllProcesses())
+  if (together)
   {
     // The first process may have no part of a mesh.
     const bool here = input->GetNumberOfElements(vtkDataObject::CELL) == 0;
@@ -171,13 +177,97 @@ int vtkTautlineAlgorithm::ExecuteData(
   {
     vtkWarningMacro(<< notice);
   }
-  const int executed = this->Superclass::ProcessRequest(request, inputs, outputs);
+  const int executed = tautline::isGathered(this, this->GetGatheredResult())
+    ? this->ExecuteGathered(request, inputs, outputs)
+    : this->Superclass::ProcessRequest(request, inputs, outputs);
   if (executed && !empty.empty())
   {
     this->Summary = empty;
     this->Warn(empty);
   }
   return executed;
+}
+
+//------------------------------------------------------------------------------
+int vtkTautlineAlgorithm::ExecuteGathered(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tautline::GatheredRules rules;
+  rules.result = this->GetGatheredResult();
+  rules.base = this->GetGatheredBase();
+  rules.exchange = [this](tautline::ResultStream& stream) { this->ExchangeResult(stream); };
+  // On the first process, which is alone meanwhile.
+  const auto execute = [&]
+  {
+    const tautline::ExecutionLimits limits = { this->GetExecutionSeconds(),
+      [this] { return this->KeepsBest(); } };
+    return tautline::processInScope(this, limits, request, outputs,
+      [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
+  };
+  const int executed = tautline::executeGathered(this, request, inputs, outputs, rules, execute);
+  if (!executed)
+  {
+    this->ClearResult();
+  }
+  return executed;
+}
+
+//------------------------------------------------------------------------------
+int vtkTautlineAlgorithm::ModifyRequest(vtkInformation* request, int when)
+{
+  const bool update = when == vtkExecutive::BeforeForward &&
+    request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) && this->GetNumberOfInputPorts() > 0 &&
+    tautline::severalProcesses() &&
+    (this->ExecutesOnAllProcesses() || this->GetGatheredResult() != tautline::GatheredResult::None);
+  return update ? this->UpdateInputs(request) : this->Superclass::ModifyRequest(request, when);
+}
+
+//------------------------------------------------------------------------------
+int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
+{
+  const int port = request->Get(vtkExecutive::FROM_OUTPUT_PORT());
+  bool failed = false;
+  vtkMTimeType time = 0;
+  for (int i = 0; i < this->GetNumberOfInputPorts(); ++i)
+  {
+    for (int k = 0; k < this->GetNumberOfInputConnections(i); ++k)
+    {
+      vtkExecutive* upstream = this->GetInputExecutive(i, k);
+      request->Set(vtkExecutive::FROM_OUTPUT_PORT(), this->GetInputConnection(i, k)->GetIndex());
+      failed = !upstream->ProcessRequest(
+                 request, upstream->GetInputInformation(), upstream->GetOutputInformation()) ||
+        failed;
+      // A filter of Tautline that fails says so in this way only, see processInScope().
+      failed = failed || upstream->GetAlgorithm()->GetErrorCode() == vtkErrorCode::UserError;
+      auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(upstream);
+      time = std::max(time, pipeline ? pipeline->GetPipelineMTime() : 0);
+    }
+  }
+  request->Set(vtkExecutive::FROM_OUTPUT_PORT(), port);
+  // What has failed once is taken for up to date, with empty outputs.
+  failed = failed || (this->FailedInputs > 0 && this->FailedInputs == time);
+  this->FailedInputs = failed ? time : 0;
+  const std::string problem = tautline::firstProblem(failed
+      ? "An input could not be computed, see the error of the filter or reader before this one."
+      : "");
+  if (!problem.empty())
+  {
+    this->ClearResult();
+    this->Fail(this->GetExecutive()->GetOutputInformation(), problem);
+  }
+  return problem.empty() ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkTautlineAlgorithm::GetGatheredResult() const
+{
+  return tautline::GatheredResult::None;
+}
+
+//------------------------------------------------------------------------------
+void vtkTautlineAlgorithm::ExchangeResult(tautline::ResultStream& stream)
+{
+  stream(this->Summary);
 }
 
 //------------------------------------------------------------------------------

@@ -53,6 +53,12 @@
 
 class vtkTable;
 
+namespace tautline
+{
+enum class GatheredResult;
+class ResultStream;
+}
+
 class TAUTLINECORE_EXPORT vtkTautlineAlgorithm : public vtkDataObjectAlgorithm
 {
 public:
@@ -73,6 +79,12 @@ public:
    * "" before the first execution and after a failed one.
    */
   const char* GetSummary() const { return this->Summary.c_str(); }
+
+  /**
+   * Updates the inputs on several processes: if one cannot be computed on any of them, it is an
+   * error on all, which do not wait for each other.
+   */
+  int ModifyRequest(vtkInformation* request, int when) override;
 
   /// Checks the inputs before RequestData() is called; a failure is reported once, see
   /// tautline::processInScope().
@@ -107,6 +119,20 @@ protected:
    * per block, and the processes may have different numbers of these.)
    */
   virtual bool ExecutesOnAllProcesses();
+
+  /**
+   * How the processes of a parallel server execute the filter: None, the default, on each of them;
+   * else the first one has the whole mesh meanwhile and sends the results to the others
+   * (GatheredExecution.h).
+   */
+  virtual tautline::GatheredResult GetGatheredResult() const;
+
+  /// The input port whose mesh the output has. Default: 0.
+  virtual int GetGatheredBase() const { return 0; }
+
+  /// Writes or reads the members that hold results, so that all processes have those of the first.
+  /// Override it and call that of the superclass, which exchanges the summary.
+  virtual void ExchangeResult(tautline::ResultStream& stream);
 
   /// Seconds for an execution; 0, the default, is no limit.
   virtual double GetExecutionSeconds() const;
@@ -184,7 +210,12 @@ private:
   int ExecuteData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
+  int ExecuteGathered(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
+  int UpdateInputs(vtkInformation* request);
+
   std::vector<int> SelectionPorts;
+  vtkMTimeType FailedInputs = 0; ///< the time of inputs that could not be computed, or 0
   std::chrono::steady_clock::time_point Start; ///< of the execution
   bool Best = false;                           ///< whether HaveBest() was called in this execution
 };

@@ -1,6 +1,6 @@
 #include "vtkMeshWarp.h"
 
-#include "Processes.h"
+#include "GatheredExecution.h"
 #include "WarpSession.h"
 
 #include "vtkDemandDrivenPipeline.h"
@@ -304,13 +304,11 @@ int vtkMeshWarp::RequestData(
         { session.visit(block, target, moved, history, statistics, totals); });
       session.forgetFrom(this->GetNumberOfBlocks());
     });
-  // Processes fail together: those that did would execute again alone, and wait for the others.
-  if (tautline::minimumOverProcesses(failure.empty()) == 0)
+  if (!failure.empty())
   {
     request->Remove(Pipeline::CONTINUE_EXECUTING());
     session.clear();
-    return this->Fail(outputVector,
-      failure.empty() ? "Another process could not warp its data set, see its error." : failure);
+    return this->Fail(outputVector, failure);
   }
   session.begun = session.sequence();
   // Time steps before the one requested, which the result needs: again, with the next of them.
@@ -361,6 +359,20 @@ void vtkMeshWarp::ClearNumbers()
   this->InvertedAfterWarp = this->Inverted = this->Impossible = 0;
   this->WorstShape = 0.0;
   this->Reused = 0;
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkMeshWarp::GetGatheredResult() const
+{
+  return tautline::GatheredResult::SameMesh;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshWarp::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->InvertedAfterWarp, this->Inverted, this->Impossible, this->WorstShape, this->Reused,
+    this->Session->looping, this->Session->begun, this->Session->current);
 }
 
 //------------------------------------------------------------------------------

@@ -435,6 +435,8 @@ protected:
   bool KeepsBest() const override { return true; }
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  tautline::GatheredResult GetGatheredResult() const override;
+  void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 
   tautline::WarpSettings GetSettings();

@@ -1,6 +1,6 @@
 #include "vtkBoundaryMesher.h"
 
-#include "ExecutionScope.h"
+#include "GatheredExecution.h"
 #include "Processes.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
@@ -40,7 +40,8 @@ int vtkBoundaryMesher::FillOutputPortInformation(int port, vtkInformation* info)
 vtkTypeBool vtkBoundaryMesher::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return tautline::processInScope(this, { this->TimeLimit, nullptr }, request, outputs,
+  return tautline::processGathered(this, { this->TimeLimit, nullptr },
+    tautline::GatheredResult::OnFirst, { true, 0 }, request, inputs, outputs,
     [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 

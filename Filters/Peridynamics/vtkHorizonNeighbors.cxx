@@ -1,8 +1,7 @@
 #include "vtkHorizonNeighbors.h"
 
-#include "ExecutionScope.h"
+#include "GatheredExecution.h"
 #include "HorizonInput.h"
-#include "Processes.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
@@ -186,7 +185,8 @@ int vtkHorizonNeighbors::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkHorizonNeighbors::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return tautline::processInScope(this, {}, request, outputs,
+  return tautline::processGathered(this, {}, tautline::GatheredResult::OnFirst, { true, 0 },
+    request, inputs, outputs,
     [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 
@@ -199,7 +199,6 @@ int vtkHorizonNeighbors::RequestData(
   vtkPolyData* pieces = vtkPolyData::GetData(outputVector, 2);
   try
   {
-    tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[0]), "Horizon Neighbors");
     tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true });
     const vtkSmartPointer<vtkDataSet> input =
       tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));

@@ -1,8 +1,7 @@
 #include "vtkInteractionLayer.h"
 
 #include "HorizonInput.h"
-#include "Processes.h"
-#include "ExecutionScope.h"
+#include "GatheredExecution.h"
 #include "ValidateInput.h"
 
 #include "tautline/Core/Memory.h"
@@ -68,7 +67,8 @@ int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkInteractionLayer::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return tautline::processInScope(this, { this->TimeLimit, nullptr }, request, outputs,
+  return tautline::processGathered(this, { this->TimeLimit, nullptr },
+    tautline::GatheredResult::NewMesh, { true, this->Threads }, request, inputs, outputs,
     [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 
@@ -79,7 +79,6 @@ int vtkInteractionLayer::RequestData(
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
   try
   {
-    tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[0]), "Interaction Layer");
     tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true, this->Threads });
     const vtkSmartPointer<vtkDataSet> input =
       tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));

@@ -3,7 +3,7 @@
 #include "HorizonInput.h"
 #include "PeridynamicOutput.h"
 #include "PointMerge.h"
-#include "Processes.h"
+#include "GatheredExecution.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -161,7 +161,6 @@ int vtkPeridynamicStiffness::RequestData(
   return this->Attempt(outputVector, "choose a smaller horizon or a coarser mesh",
     [&]
     {
-      tautline::requireFirstProcess(given, "Peridynamic Condition");
       const vtkSmartPointer<vtkDataSet> input = tautline::wholeMesh(given);
       output->ShallowCopy(input);
       if (input->GetNumberOfCells() > 0)
@@ -352,6 +351,19 @@ void vtkPeridynamicStiffness::Report(
     text << "\nThe interaction layer is too thin by " << system.layerDeficit << ".";
   }
   this->Summary = text.str();
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkPeridynamicStiffness::GetGatheredResult() const
+{
+  return tautline::GatheredResult::SameMesh;
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->Condition, this->SmallestEigenvalue, this->LargestEigenvalue);
 }
 
 //------------------------------------------------------------------------------

@@ -328,6 +328,8 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   bool NeedsFinitePoints(int port) const override;
+  tautline::GatheredResult GetGatheredResult() const override;
+  void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 
 private:

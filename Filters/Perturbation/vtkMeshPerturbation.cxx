@@ -5,7 +5,7 @@
 #include "MeshAdapter.h"
 #include "MovableMesh.h"
 #include "PointMerge.h"
-#include "Processes.h"
+#include "GatheredExecution.h"
 #include "tautline/Perturbation/Perturb.h"
 
 #include "vtkDataArray.h"
@@ -72,7 +72,6 @@ int vtkMeshPerturbation::RequestData(
   return this->Attempt(outputVector, "perturb the mesh in parts",
     [&]
     {
-      tautline::requireFirstProcess(input, "Perturb Mesh");
       const std::string seams = this->MergeCoincidentPoints
         ? tautline::describeBlockSeams(input, this->Threads)
         : std::string();
@@ -185,6 +184,20 @@ void vtkMeshPerturbation::Report(const tautline::Perturbation& result)
        << "Inverted elements: " << result.invertedBefore << " before, " << result.invertedAfter
        << " after, of " << result.elements << "." << (result.stopped ? "\nStopped early." : "");
   this->Summary = text.str();
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkMeshPerturbation::GetGatheredResult() const
+{
+  return tautline::GatheredResult::SameMesh;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshPerturbation::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->NumberOfMovablePoints, this->NumberOfMovedPoints, this->InvertedBefore,
+    this->InvertedAfter, this->TangledFractionReached, this->LargestDisplacement);
 }
 
 //------------------------------------------------------------------------------

@@ -150,6 +150,8 @@ protected:
   ~vtkMeshPerturbation() override;
 
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  tautline::GatheredResult GetGatheredResult() const override;
+  void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 
 private:

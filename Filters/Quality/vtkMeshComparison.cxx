@@ -1,8 +1,8 @@
 #include "vtkMeshComparison.h"
 
+#include "GatheredExecution.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
-#include "Processes.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Mesh/CellOrder.h"
 #include "tautline/Quality/Compare.h"
@@ -146,11 +146,16 @@ int vtkMeshComparison::RequestData(
   return this->Attempt(outputVector, "choose fewer metrics or compare the mesh in parts",
     [&]
     {
-      tautline::requireFirstProcess(vtkDataObject::GetData(inputVector[1]), "Compare Meshes");
       this->CompareBlocks(vtkDataObject::GetData(inputVector[0]),
         vtkDataObject::GetData(inputVector[1]), vtkDataObject::GetData(outputVector, 0), totals);
       this->Tabulate(totals, vtkDataObject::GetData(outputVector, 1));
     });
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkMeshComparison::GetGatheredResult() const
+{
+  return tautline::GatheredResult::SameMesh;
 }
 
 //------------------------------------------------------------------------------

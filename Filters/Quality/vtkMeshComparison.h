@@ -83,6 +83,9 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  tautline::GatheredResult GetGatheredResult() const override;
+  /// The output is the second mesh.
+  int GetGatheredBase() const override { return 1; }
 
 private:
   vtkMeshComparison(const vtkMeshComparison&) = delete;

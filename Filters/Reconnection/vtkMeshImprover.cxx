@@ -3,7 +3,7 @@
 #include "BlockSeams.h"
 #include "Blocks.h"
 #include "ImprovedMesh.h"
-#include "Processes.h"
+#include "GatheredExecution.h"
 #include "ReconnectableMesh.h"
 #include "TableRows.h"
 #include "tautline/Reconnection/TriangleReconnection.h"
@@ -237,7 +237,6 @@ int vtkMeshImprover::RequestData(
     [&]
     {
       vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-      tautline::requireFirstProcess(input, FilterName);
       this->CheckSeams(input);
       const auto fixed =
         tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
@@ -438,6 +437,20 @@ void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result)
   this->ElementsBefore += first.tetrahedra;
   this->ElementsAfter += last.tetrahedra;
   this->Reason = reasonText(result.reason);
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkMeshImprover::GetGatheredResult() const
+{
+  return tautline::GatheredResult::NewMesh;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->Reason, this->ElementsBefore, this->ElementsAfter, this->SmallestAngleBefore,
+    this->SmallestAngleAfter, this->WorstBefore, this->WorstAfter, this->Remaining);
 }
 
 //------------------------------------------------------------------------------

@@ -303,6 +303,8 @@ protected:
 
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  tautline::GatheredResult GetGatheredResult() const override;
+  void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
   bool KeepsBest() const override { return true; }
 

@@ -1,5 +1,6 @@
 #include "vtkShapeMatcher.h"
 
+#include "GatheredExecution.h"
 #include "Processes.h"
 #include "ShapeAdapter.h"
 #include "TableRows.h"
@@ -272,6 +273,19 @@ void vtkShapeMatcher::ClearResult()
   this->Energy = this->CentreDistance = 0.0;
   this->Rank = 0;
   this->Exact = false;
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkShapeMatcher::GetGatheredResult() const
+{
+  return tautline::GatheredResult::OnFirst;
+}
+
+//------------------------------------------------------------------------------
+void vtkShapeMatcher::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->Energy, this->Rank, this->CentreDistance, this->Exact);
 }
 
 //------------------------------------------------------------------------------

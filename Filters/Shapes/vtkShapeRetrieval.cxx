@@ -1,6 +1,6 @@
 #include "vtkShapeRetrieval.h"
 
-#include "Processes.h"
+#include "GatheredExecution.h"
 #include "RetrievalSheet.h"
 #include "ShapeAdapter.h"
 #include "tautline/Shapes/ShapeRetrieval.h"
@@ -238,11 +238,9 @@ int vtkShapeRetrieval::RequestData(
       "Shapes are compared with each other: a multiblock data set of images is needed. Read a "
       "folder of images, or run Group Datasets.");
   }
-  const bool alone = this->Attempt(outputVector, "run ParaView with one process",
-    [&] { tautline::requireFirstProcess(input, "Shape Retrieval"); });
-  if (!alone || input->GetNumberOfBlocks() == 0)
+  if (input->GetNumberOfBlocks() == 0)
   {
-    return alone ? 1 : 0;
+    return 1;
   }
   return this->Attempt(outputVector, "choose fewer shapes, or a larger spacing",
     [&]
@@ -287,6 +285,19 @@ void vtkShapeRetrieval::ClearResult()
 {
   this->Superclass::ClearResult();
   this->RecognitionRate = 0.0;
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkShapeRetrieval::GetGatheredResult() const
+{
+  return tautline::GatheredResult::OnFirst;
+}
+
+//------------------------------------------------------------------------------
+void vtkShapeRetrieval::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->RecognitionRate);
 }
 
 //------------------------------------------------------------------------------

@@ -113,6 +113,8 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  tautline::GatheredResult GetGatheredResult() const override;
+  void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 
 private:

@@ -2,7 +2,7 @@
 
 #include "Processes.h"
 #include "ShapeAdapter.h"
-#include "ExecutionScope.h"
+#include "GatheredExecution.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
 
@@ -115,7 +115,8 @@ int vtkSilhouetteMesher::FillOutputPortInformation(int port, vtkInformation* inf
 vtkTypeBool vtkSilhouetteMesher::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return tautline::processInScope(this, { this->TimeLimit, nullptr }, request, outputs,
+  return tautline::processGathered(this, { this->TimeLimit, nullptr },
+    tautline::GatheredResult::OnFirst, {}, request, inputs, outputs,
     [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 

@@ -7,11 +7,14 @@ as JSON.
 import json
 import os
 import sys
+from pathlib import Path
 
 import numpy as np
 from paraview import servermanager, simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+sys.path.insert(0, str(Path(__file__).parent))
+from parallel_tools import columns, parts, update  # noqa: E402
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 
@@ -75,46 +78,10 @@ def cube(n=8, ghosts=0, ids=0):
     )
 
 
-def update(filter_):
-    filter_.UpdatePipeline()
-    filter_.UpdatePropertyInformation()
-    return filter_
-
-
-# Runs on every rank: writes points and arrays of its part to a file.
-DUMP = """
-import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
-
-data = self.GetInputDataObject(0, 0)
-arrays = {{"points": np.zeros((0, 3))}}
-if data.GetNumberOfPoints() > 0:
-    # an image has no array of points
-    image = data.IsA("vtkImageData")
-    arrays["points"] = (
-        np.array([data.GetPoint(i) for i in range(data.GetNumberOfPoints())])
-        if image
-        else vtk_to_numpy(data.GetPoints().GetData())
-    )
-    for fields in (data.GetPointData(), data.GetCellData()):
-        for k in range(fields.GetNumberOfArrays()):
-            arrays[fields.GetArrayName(k)] = vtk_to_numpy(fields.GetArray(k))
-np.savez("{file}." + str(vtkMultiProcessController.GetGlobalController().GetLocalProcessId()), **arrays)
-"""
-
-
-def parts(filter_):
-    """The arrays of each rank that has a part."""
-    simple.ProgrammableFilter(filter_, Script=DUMP.format(file=sys.argv[1])).UpdatePipeline()
-    found = (np.load(f"{sys.argv[1]}.{rank}.npz") for rank in range(RANKS))
-    return [arrays for arrays in found if len(arrays["points"])]
-
-
 def field(filter_, name):
     """The values at all points of the cube, in an order that does not depend on the ranks, which must agree."""
     shared = {}
-    for arrays in parts(filter_):
+    for arrays in parts(filter_, sys.argv[1]):
         for point, value in zip(np.round(arrays["points"] * 1e6).astype(np.int64).tolist(), arrays[name].tolist()):
             assert shared.setdefault(tuple(point), value) == value, f"{name} differs between ranks at {point}"
     return [value for _, value in sorted(shared.items())]
@@ -123,22 +90,10 @@ def field(filter_, name):
 def total(filter_, name):
     """The sum of a cell array over the cells that are not ghosts."""
     found = []  # no sum() of Python here: ParaView's scripts replace it by a collective one
-    for arrays in parts(filter_):
+    for arrays in parts(filter_, sys.argv[1]):
         own = arrays["vtkGhostType"] == 0 if "vtkGhostType" in arrays else slice(None)
         found.append(arrays[name][own].sum())
     return np.sum(found).item()
-
-
-def columns(table):
-    """The columns of a table by name, as lists."""
-    found = (table.GetColumn(i) for i in range(table.GetNumberOfColumns()))
-    return {
-        column.GetName(): [
-            value.ToString() if column.IsA("vtkStringArray") else value.ToDouble()
-            for value in map(column.GetVariantValue, range(column.GetNumberOfValues()))
-        ]
-        for column in found
-    }
 
 
 for ghosts, ids in ((0, 0), (1, 0), (0, 1), (1, 1)):
@@ -150,7 +105,7 @@ for ghosts, ids in ((0, 0), (1, 0), (0, 1), (1, 1)):
     update(solved)
     results[f"poisson {ghosts} {ids}"] = field(solved, "Solution")
     results[f"unknowns {ghosts} {ids}"] = solved.Unknowns
-    gradients = [np.linalg.norm(arrays["Gradient"], axis=1).min() for arrays in parts(solved)]
+    gradients = [np.linalg.norm(arrays["Gradient"], axis=1).min() for arrays in parts(solved, sys.argv[1])]
     results[f"flattest {ghosts} {ids}"] = np.min(gradients).item()  # ghost cells have their gradients, too
 elastic = SolvePDE(
     cube(ghosts=1), Equation="Linear Elasticity", BodyForce=[0, 0, -1], Preconditioner="GAMG",
@@ -183,7 +138,7 @@ image = update(
 for name in ("mean_ratio", "condition_number", "Validity"):
     results[f"metric field {name}"] = field(image, name)
 domain = update(MeshDomain(Domain="Square with Interaction Layer, Structured", ElementSize=0.1, LayerWidth=0.2))
-results["domain points"] = [arrays["points"].ravel().tolist() for arrays in parts(domain)]
+results["domain points"] = [arrays["points"].ravel().tolist() for arrays in parts(domain, sys.argv[1])]
 results["domain cells"] = domain.GetDataInformation().GetNumberOfCells()
 
 # Tables of the whole mesh, whichever rank has a cell: the worst cells are known by their centres.

@@ -1,0 +1,672 @@
+#include "GatheredExecution.h"
+
+#include "Blocks.h"
+#include "MeshGroups.h"
+#include "PieceResults.h"
+#include "Processes.h"
+#include "ValidateInput.h"
+#include "WholeMesh.h"
+#include "tautline/Core/Memory.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataObjectTypes.h"
+#include "vtkDataSet.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkSignedCharArray.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tautline
+{
+namespace
+{
+constexpr int DataTag = 27410;
+constexpr double Copies = 3.0; // of the mesh: as it is received, put together, and the result
+constexpr double BytesPerKibibyte = 1024.0;
+constexpr char MemoryRemedy[] =
+  "run the first process on a machine with more memory, or divide the mesh";
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+using Rebuilt = vtkSmartPointer<vtkDataSet>;
+
+std::string markName(int port)
+{
+  return "Tautline selected by input " + std::to_string(port);
+}
+
+//------------------------------------------------------------------------------
+/// The mesh on an input port: the pieces of this process and, on the first, the whole.
+struct PortMesh
+{
+  int port = 0;
+  vtkDataObject* data = nullptr;
+  int groups = 0;
+  std::vector<GroupedPiece> pieces;
+  std::vector<vtkSmartPointer<vtkDataSet>> sent; ///< the pieces with what is selected of them
+
+  // On the first process:
+  GatheredMesh gathered;
+  vtkSmartPointer<vtkDataObject> structure, whole;
+};
+
+//------------------------------------------------------------------------------
+/// Sets the data objects of ports for a while.
+class ReplacedData
+{
+public:
+  ~ReplacedData()
+  {
+    for (const auto& [info, data] : this->Before)
+    {
+      info->Set(vtkDataObject::DATA_OBJECT(), data);
+    }
+  }
+
+  void replace(vtkInformation* info, vtkDataObject* data)
+  {
+    this->Before.emplace_back(info, info->Get(vtkDataObject::DATA_OBJECT()));
+    info->Set(vtkDataObject::DATA_OBJECT(), data);
+  }
+
+private:
+  std::vector<std::pair<vtkInformation*, vtkSmartPointer<vtkDataObject>>> Before;
+};
+
+//------------------------------------------------------------------------------
+/// Keeps the first error event of an algorithm, which others do not get.
+class CaughtError
+{
+public:
+  explicit CaughtError(vtkAlgorithm* algorithm)
+    : Algorithm(algorithm)
+  {
+    constexpr float first = 1.0F;
+    this->Observer->SetCallback(
+      [](vtkObject*, unsigned long, void* client, void* text)
+      {
+        auto& message = *static_cast<std::string*>(client);
+        message = message.empty() && text ? static_cast<const char*>(text) : message;
+      });
+    this->Observer->SetClientData(&this->Message);
+    this->Observer->SetAbortFlagOnExecute(1);
+    this->Tag = algorithm->AddObserver(vtkCommand::ErrorEvent, this->Observer, first);
+  }
+  ~CaughtError() { this->Algorithm->RemoveObserver(this->Tag); }
+
+  /// Without what vtkErrorMacro() writes before and after it.
+  std::string text() const
+  {
+    constexpr char before[] = "): ";
+    const std::size_t at = this->Message.find(before);
+    std::string text =
+      at == std::string::npos ? this->Message : this->Message.substr(at + sizeof(before) - 1);
+    text.erase(text.find_last_not_of("\n ") + 1);
+    return text;
+  }
+
+private:
+  vtkAlgorithm* Algorithm;
+  vtkNew<vtkCallbackCommand> Observer;
+  std::string Message;
+  unsigned long Tag = 0;
+};
+
+//------------------------------------------------------------------------------
+/// Marks of a piece as an array, zeros where nothing is selected.
+void addMarks(vtkDataSetAttributes* marked, vtkIdType count, int port, vtkDataSetAttributes* result)
+{
+  vtkNew<vtkSignedCharArray> marks;
+  marks->SetName(markName(port).c_str());
+  marks->SetNumberOfTuples(count);
+  vtkDataArray* given = marked ? marked->GetArray(SelectedArray) : nullptr;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    marks->SetValue(i, static_cast<signed char>(given && given->GetComponent(i, 0) > 0));
+  }
+  result->AddArray(marks);
+}
+
+/// A selection of what has marks.
+vtkSmartPointer<vtkSelection> selectionOf(vtkDataObject* whole, int port)
+{
+  auto selection = vtkSmartPointer<vtkSelection>::New();
+  const bool composite = vtkCompositeDataSet::SafeDownCast(whole) != nullptr;
+  forEachLeaf(whole,
+    [&](unsigned int index, vtkDataSet* leaf)
+    {
+      for (const int field : { int(vtkSelectionNode::POINT), int(vtkSelectionNode::CELL) })
+      {
+        vtkDataSetAttributes* data = field == vtkSelectionNode::POINT
+          ? static_cast<vtkDataSetAttributes*>(leaf->GetPointData())
+          : leaf->GetCellData();
+        vtkDataArray* marks = data->GetArray(markName(port).c_str());
+        vtkNew<vtkIdTypeArray> ids;
+        for (vtkIdType i = 0; marks && i < marks->GetNumberOfTuples(); ++i)
+        {
+          if (marks->GetComponent(i, 0) > 0)
+          {
+            ids->InsertNextValue(i);
+          }
+        }
+        if (ids->GetNumberOfTuples() == 0)
+        {
+          continue;
+        }
+        vtkNew<vtkSelectionNode> node;
+        node->SetContentType(vtkSelectionNode::INDICES);
+        node->SetFieldType(field);
+        node->SetSelectionList(ids);
+        if (composite)
+        {
+          node->GetProperties()->Set(vtkSelectionNode::COMPOSITE_INDEX(), static_cast<int>(index));
+        }
+        selection->AddNode(node);
+      }
+    });
+  return selection;
+}
+
+//------------------------------------------------------------------------------
+class GatheredExecution
+{
+public:
+  GatheredExecution(vtkAlgorithm* algorithm, vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs, const GatheredRules& rules)
+    : Algorithm(algorithm)
+    , Request(request)
+    , Inputs(inputs)
+    , Outputs(outputs)
+    , Rules(rules)
+    , Controller(severalProcesses())
+    , Rank(this->Controller->GetLocalProcessId())
+    , Count(this->Controller->GetNumberOfProcesses())
+  {
+  }
+
+  int run(const std::function<int()>& execute);
+
+private:
+  void listInputs();
+  void addSelections();
+  std::string announce();
+  void exchangeStructures();
+  void gather();
+  void gatherPiece(PortMesh& mesh, int process, const PieceSize& size, std::size_t& own);
+  void assembleAll();
+  void execute(const std::function<int()>& execute);
+  void prepareOutputs(ReplacedData& replaced);
+  bool shareOutcome();
+  void distribute();
+  int fail(const std::string& message);
+  void emptyOutputs();
+  std::string attempt(const std::function<void()>& work);
+
+  vtkAlgorithm* Algorithm;
+  vtkInformation* Request;
+  vtkInformationVector** Inputs;
+  vtkInformationVector* Outputs;
+  const GatheredRules& Rules;
+  vtkMultiProcessController* Controller;
+  int Rank, Count;
+
+  std::vector<PortMesh> Meshes; ///< that of port 0 first
+  std::vector<int> SelectionPorts;
+  std::vector<std::vector<PieceSize>> Announced; ///< on the first process: by process
+
+  // The outcome.
+  int Result = 1;
+  bool Aborted = false, Continuing = false;
+  std::string Failure;
+  std::vector<vtkSmartPointer<vtkDataObject>> Results; ///< of the ports, on the first process
+};
+
+//------------------------------------------------------------------------------
+std::string GatheredExecution::attempt(const std::function<void()>& work)
+{
+  try
+  {
+    work();
+  }
+  catch (const std::exception& error)
+  {
+    return errorText(error, MemoryRemedy);
+  }
+  return "";
+}
+
+//------------------------------------------------------------------------------
+void GatheredExecution::emptyOutputs()
+{
+  for (int port = 0; port < this->Outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* output = vtkDataObject::GetData(this->Outputs, port))
+    {
+      output->Initialize();
+    }
+  }
+  this->Request->Remove(Pipeline::CONTINUE_EXECUTING());
+}
+
+//------------------------------------------------------------------------------
+int GatheredExecution::fail(const std::string& message)
+{
+  vtkErrorWithObjectMacro(this->Algorithm, << message);
+  this->emptyOutputs();
+  return 0;
+}
+
+//------------------------------------------------------------------------------
+/// The meshes and selections of the ports, as this process has them.
+void GatheredExecution::listInputs()
+{
+  for (int port = 0; port < this->Algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    vtkDataObject* data = this->Inputs[port]->GetNumberOfInformationObjects() > 0
+      ? vtkDataObject::GetData(this->Inputs[port], 0)
+      : nullptr;
+    if (vtkSelection::SafeDownCast(data))
+    {
+      this->SelectionPorts.push_back(port);
+    }
+    else if (vtkDataSet::SafeDownCast(data) || vtkCompositeDataSet::SafeDownCast(data))
+    {
+      this->Meshes.emplace_back();
+      PortMesh& mesh = this->Meshes.back();
+      mesh.port = port;
+      mesh.data = data;
+      mesh.pieces = listPieces(data, mesh.groups);
+      for (const GroupedPiece& piece : mesh.pieces)
+      {
+        mesh.sent.push_back(vtkSmartPointer<vtkDataSet>::Take(piece.data->NewInstance()));
+        mesh.sent.back()->ShallowCopy(piece.data);
+      }
+    }
+  }
+  this->addSelections();
+}
+
+//------------------------------------------------------------------------------
+/// What is selected of the mesh on port 0, as arrays of its pieces.
+void GatheredExecution::addSelections()
+{
+  for (const int port : this->SelectionPorts)
+  {
+    PortMesh& mesh = this->Meshes.front();
+    const auto marked =
+      markSelected(mesh.data, vtkSelection::GetData(this->Inputs[port]->GetInformationObject(0)));
+    int groups = 0;
+    const auto marks = marked ? listPieces(marked, groups) : std::vector<GroupedPiece>();
+    for (std::size_t i = 0; i < mesh.sent.size(); ++i)
+    {
+      vtkDataSet* piece = mesh.sent[i];
+      vtkDataSet* mark = marks.size() == mesh.sent.size() ? marks[i].data : nullptr;
+      addMarks(mark ? mark->GetPointData() : nullptr, piece->GetNumberOfPoints(), port,
+        piece->GetPointData());
+      addMarks(mark ? mark->GetCellData() : nullptr, piece->GetNumberOfCells(), port,
+        piece->GetCellData());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Sends the sizes of the pieces to the first process. @return what it finds wrong
+std::string GatheredExecution::announce()
+{
+  vtkMultiProcessStream own;
+  own << static_cast<int>(this->Meshes.size());
+  for (const PortMesh& mesh : this->Meshes)
+  {
+    own << mesh.groups << static_cast<int>(mesh.pieces.size());
+    for (std::size_t i = 0; i < mesh.pieces.size(); ++i)
+    {
+      own << mesh.pieces[i].group << std::string(mesh.sent[i]->GetClassName())
+          << static_cast<vtkTypeInt64>(mesh.sent[i]->GetNumberOfPoints())
+          << static_cast<double>(mesh.sent[i]->GetActualMemorySize());
+    }
+  }
+  std::vector<vtkMultiProcessStream> all;
+  this->Controller->Gather(own, all, FirstProcess);
+  if (this->Rank != FirstProcess)
+  {
+    return "";
+  }
+  double kibibytes = 0.0;
+  for (int process = 0; process < this->Count; ++process)
+  {
+    vtkMultiProcessStream& stream = all[static_cast<std::size_t>(process)];
+    int meshes = 0;
+    stream >> meshes;
+    this->Announced.emplace_back();
+    for (int m = 0; m < meshes; ++m)
+    {
+      int groups = 0, pieces = 0;
+      stream >> groups >> pieces;
+      for (int i = 0; i < pieces; ++i)
+      {
+        PieceSize size;
+        vtkTypeInt64 points = 0;
+        double memory = 0.0;
+        stream >> size.group >> size.type >> points >> memory;
+        size.mesh = m;
+        size.points = points;
+        kibibytes += memory;
+        this->Announced.back().push_back(size);
+      }
+    }
+  }
+  return this->attempt(
+    [&]
+    {
+      requireMemory(
+        Copies * BytesPerKibibyte * kibibytes, "the whole mesh on the first process", MemoryRemedy);
+    });
+}
+
+//------------------------------------------------------------------------------
+/// The structure of composite data is that of a process that has most meshes.
+void GatheredExecution::exchangeStructures()
+{
+  for (PortMesh& mesh : this->Meshes)
+  {
+    int most = 0, sender = 0;
+    this->Controller->AllReduce(&mesh.groups, &most, 1, vtkCommunicator::MAX_OP);
+    const int candidate = mesh.groups == most ? this->Rank : this->Count;
+    this->Controller->AllReduce(&candidate, &sender, 1, vtkCommunicator::MIN_OP);
+    const auto nothing = [](int, vtkDataSet*) { return Rebuilt(); };
+    if (this->Rank == FirstProcess)
+    {
+      mesh.structure = sender == FirstProcess
+        ? vtkSmartPointer<vtkDataObject>(mesh.data)
+        : vtkSmartPointer<vtkDataObject>::Take(
+            this->Controller->ReceiveDataObject(sender, DataTag));
+    }
+    else if (this->Rank == sender)
+    {
+      this->Controller->Send(rebuild(mesh.data, false, nothing), FirstProcess, DataTag);
+    }
+    mesh.groups = most;
+  }
+}
+
+//------------------------------------------------------------------------------
+void GatheredExecution::gather()
+{
+  for (PortMesh& mesh : this->Meshes)
+  {
+    if (this->Rank != FirstProcess)
+    {
+      for (const auto& piece : mesh.sent)
+      {
+        if (piece->GetNumberOfPoints() > 0)
+        {
+          this->Controller->Send(piece.Get(), FirstProcess, DataTag);
+        }
+      }
+      continue;
+    }
+    std::size_t own = 0;
+    mesh.gathered.groups.resize(static_cast<std::size_t>(mesh.groups));
+    for (int process = 0; process < this->Count; ++process)
+    {
+      for (const PieceSize& size : this->Announced[static_cast<std::size_t>(process)])
+      {
+        if (&mesh == &this->Meshes[static_cast<std::size_t>(size.mesh)])
+        {
+          this->gatherPiece(mesh, process, size, own);
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void GatheredExecution::gatherPiece(
+  PortMesh& mesh, int process, const PieceSize& size, std::size_t& own)
+{
+  vtkSmartPointer<vtkDataObject> data;
+  if (process == FirstProcess)
+  {
+    data = mesh.sent[own++];
+  }
+  else if (size.points > 0)
+  {
+    data.TakeReference(this->Controller->ReceiveDataObject(process, DataTag));
+  }
+  else
+  {
+    data.TakeReference(vtkDataObjectTypes::NewDataObject(size.type.c_str()));
+  }
+  GatheredGroup& group = mesh.gathered.groups[static_cast<std::size_t>(size.group)];
+  group.pieces.push_back(vtkDataSet::SafeDownCast(data));
+  group.processes.push_back(process);
+}
+
+//------------------------------------------------------------------------------
+/// On the first process: puts the pieces together.
+void GatheredExecution::assembleAll()
+{
+  const auto& first = this->Meshes.front().gathered.groups;
+  for (PortMesh& mesh : this->Meshes)
+  {
+    for (std::size_t g = 0; g < mesh.gathered.groups.size(); ++g)
+    {
+      GatheredGroup& group = mesh.gathered.groups[g];
+      const std::vector<vtkDataSet*> pieces(group.pieces.begin(), group.pieces.end());
+      const bool alike =
+        &mesh != &this->Meshes.front() && g < first.size() && matches(pieces, first[g].whole);
+      group.whole = assemble(pieces, alike ? &first[g].whole : nullptr);
+    }
+    mesh.whole = rebuild(mesh.structure, true,
+      [&mesh](int number, vtkDataSet*)
+      {
+        const GatheredGroup& group = mesh.gathered.groups[static_cast<std::size_t>(number)];
+        return group.pieces.empty() ? Rebuilt() : group.whole.mesh;
+      });
+  }
+}
+
+//------------------------------------------------------------------------------
+/// New data objects for the outputs, of the classes that the filter chooses for the whole mesh.
+void GatheredExecution::prepareOutputs(ReplacedData& replaced)
+{
+  for (int port = 0; port < this->Outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkInformation* info = this->Outputs->GetInformationObject(port);
+    replaced.replace(
+      info, vtkSmartPointer<vtkDataObject>::Take(vtkDataObject::GetData(info)->NewInstance()));
+  }
+  vtkNew<vtkInformation> request;
+  request->Set(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT());
+  this->Algorithm->ProcessRequest(request, this->Inputs, this->Outputs);
+}
+
+//------------------------------------------------------------------------------
+/// On the first process: executes the filter, as if it were alone.
+void GatheredExecution::execute(const std::function<int()>& execute)
+{
+  const OneProcess alone;
+  this->Failure = this->attempt([this] { this->assembleAll(); });
+  if (!this->Failure.empty())
+  {
+    return;
+  }
+  ReplacedData replaced;
+  for (PortMesh& mesh : this->Meshes)
+  {
+    replaced.replace(this->Inputs[mesh.port]->GetInformationObject(0), mesh.whole);
+  }
+  for (const int port : this->SelectionPorts)
+  {
+    replaced.replace(
+      this->Inputs[port]->GetInformationObject(0), selectionOf(this->Meshes.front().whole, port));
+  }
+  this->prepareOutputs(replaced);
+  const CaughtError error(this->Algorithm);
+  this->Failure = this->attempt([&] { this->Result = execute(); });
+  this->Failure = this->Failure.empty() ? error.text() : this->Failure;
+  if (this->Result == 0 && this->Failure.empty())
+  {
+    this->Failure = "The filter has failed on the first process.";
+  }
+  this->Aborted = this->Algorithm->GetAbortExecute() != 0;
+  this->Continuing = this->Request->Has(Pipeline::CONTINUE_EXECUTING()) != 0;
+  for (int port = 0; port < this->Outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    this->Results.emplace_back(vtkDataObject::GetData(this->Outputs, port));
+  }
+}
+
+//------------------------------------------------------------------------------
+/// All processes get what became of the execution. @return whether there are results
+bool GatheredExecution::shareOutcome()
+{
+  this->Failure = shareText(this->Controller, this->Failure);
+  vtkMultiProcessStream stream;
+  const bool writes = this->Rank == FirstProcess;
+  for (const bool now : { writes, !writes })
+  {
+    if (now)
+    {
+      ResultStream results(stream, writes);
+      results(this->Result, this->Aborted, this->Continuing);
+      if (this->Failure.empty() && this->Rules.exchange)
+      {
+        this->Rules.exchange(results);
+      }
+    }
+    if (now == writes)
+    {
+      this->Controller->Broadcast(stream, FirstProcess);
+    }
+  }
+  if (this->Continuing)
+  {
+    this->Request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
+  }
+  else
+  {
+    this->Request->Remove(Pipeline::CONTINUE_EXECUTING());
+  }
+  return this->Failure.empty();
+}
+
+//------------------------------------------------------------------------------
+/// Sends the results to the pieces.
+void GatheredExecution::distribute()
+{
+  const auto base = std::find_if(this->Meshes.begin(), this->Meshes.end(),
+    [this](const PortMesh& mesh) { return mesh.port == this->Rules.base; });
+  PortMesh& mesh = base != this->Meshes.end() ? *base : this->Meshes.front();
+  vtkDataObject* output = vtkDataObject::GetData(this->Outputs, 0);
+  vtkDataObject* result = this->Rank == FirstProcess ? this->Results.front().Get() : nullptr;
+  const PieceResults results(this->Controller, mesh.data, mesh.pieces, mesh.gathered);
+  results.distribute(this->Rules.result, result, output);
+  for (std::size_t port = 1; port < this->Results.size(); ++port)
+  {
+    vtkDataObject::GetData(this->Outputs, static_cast<int>(port))->ShallowCopy(this->Results[port]);
+  }
+  for (int port = 1;
+       this->Rank != FirstProcess && port < this->Outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkDataObject::GetData(this->Outputs, port)->Initialize();
+  }
+}
+
+//------------------------------------------------------------------------------
+int GatheredExecution::run(const std::function<int()>& execute)
+{
+  std::string problem = firstProblem(this->attempt([this] { this->listInputs(); }));
+  problem = problem.empty() ? shareText(this->Controller, this->announce()) : problem;
+  if (!problem.empty())
+  {
+    return this->fail(problem);
+  }
+  this->exchangeStructures();
+  this->gather();
+  if (this->Rank == FirstProcess)
+  {
+    this->execute(execute);
+  }
+  if (!this->shareOutcome())
+  {
+    return this->fail(this->Failure);
+  }
+  if (this->Aborted)
+  {
+    this->Algorithm->SetAbortExecute(1);
+  }
+  problem = firstProblem(this->attempt([this] { this->distribute(); }));
+  return problem.empty() ? this->Result : this->fail(problem);
+}
+}
+
+//------------------------------------------------------------------------------
+bool isGathered(vtkAlgorithm* algorithm, GatheredResult result)
+{
+  if (result == GatheredResult::None || !severalProcesses() ||
+    algorithm->GetNumberOfInputPorts() == 0)
+  {
+    return false;
+  }
+  // VTK calls a filter that takes data sets only once per block, and each process as often as it
+  // has some.
+  vtkInformation* port = algorithm->GetInputPortInformation(0);
+  const char* first = port->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
+  const std::string type = first ? first : "";
+  const bool takesBlocks = type == "vtkCompositeDataSet" || type == "vtkMultiBlockDataSet";
+  return takesBlocks || !vtkCompositeDataSet::SafeDownCast(algorithm->GetInputDataObject(0, 0));
+}
+
+//------------------------------------------------------------------------------
+int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, GatheredResult result,
+  const InputRules& rules, vtkInformation* request, vtkInformationVector** inputs,
+  vtkInformationVector* outputs, const std::function<int()>& work)
+{
+  const auto execute = [&] { return processInScope(algorithm, limits, request, outputs, work); };
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || !isGathered(algorithm, result))
+  {
+    return execute();
+  }
+  std::string problem;
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts() && problem.empty(); ++port)
+  {
+    vtkDataObject* data = vtkDataObject::GetData(inputs[port], 0);
+    problem = data ? inputProblem(data, rules) : "";
+  }
+  problem = firstProblem(problem);
+  if (problem.empty())
+  {
+    return executeGathered(algorithm, request, inputs, outputs, { result, 0, nullptr }, execute);
+  }
+  vtkErrorWithObjectMacro(algorithm, << problem);
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkDataObject::GetData(outputs, port)->Initialize();
+  }
+  return 0;
+}
+
+//------------------------------------------------------------------------------
+int executeGathered(vtkAlgorithm* algorithm, vtkInformation* request, vtkInformationVector** inputs,
+  vtkInformationVector* outputs, const GatheredRules& rules, const std::function<int()>& execute)
+{
+  return GatheredExecution(algorithm, request, inputs, outputs, rules).run(execute);
+}
+}

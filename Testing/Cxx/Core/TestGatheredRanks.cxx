@@ -1,0 +1,431 @@
+// Filters that gather their mesh on the first process: pieces of it on several processes, in blocks,
+// in partitions, on another process than the first; what is selected of them; results, summary and
+// numbers on all processes; errors on all. TestWholeMesh and Python-parallel-filters compare values.
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "vtkHorizonNeighbors.h"
+#include "vtkInteractionLayer.h"
+#include "vtkMeshComparison.h"
+#include "vtkMeshImprover.h"
+#include "vtkMeshPerturbation.h"
+#include "vtkMeshWarp.h"
+#include "vtkPeridynamicStiffness.h"
+#include "vtkShapeMatcher.h"
+#include "vtkShapeRetrieval.h"
+#include "vtkSilhouetteMesher.h"
+#ifdef TAUTLINE_MESHING
+#include "vtkTetGenMesher.h"
+#include "vtkTriangleMesher.h"
+#endif
+
+#include "vtkCleanPolyData.h"
+#include "vtkCubeSource.h"
+#include "vtkDataSet.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkMPIController.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPolyData.h"
+#include "vtkRegularPolygonSource.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkTable.h"
+
+#include <cmath>
+
+using namespace tautline;
+
+namespace
+{
+vtkMultiProcessController* controller()
+{
+  return vtkMultiProcessController::GetGlobalController();
+}
+int rank()
+{
+  return controller()->GetLocalProcessId();
+}
+int ranks()
+{
+  return controller()->GetNumberOfProcesses();
+}
+
+vtkIdType sum(vtkIdType own)
+{
+  vtkIdType all = 0;
+  controller()->AllReduce(&own, &all, 1, vtkCommunicator::SUM_OP);
+  return all;
+}
+
+MeshData square()
+{
+  MeshData data = blockMesh(CellType::Triangle, 6, 6, 0);
+  data.transform([](Vec3 p) { return (1.0 / 6) * p; });
+  return data;
+}
+
+MeshData cube()
+{
+  return blockMesh(CellType::Tetrahedron, 2, 2, 2);
+}
+
+/// Every so-many-th cell, with the points of these.
+vtkSmartPointer<vtkUnstructuredGrid> part(const MeshData& whole, Index number, Index count)
+{
+  MeshData data;
+  std::vector<Index> numbers(whole.points.size() / 3, -1);
+  for (Index cell = number; cell < whole.numberOfCells(); cell += count)
+  {
+    std::vector<Index> nodes;
+    for (Index k = whole.offsets[cell]; k < whole.offsets[cell + 1]; ++k)
+    {
+      Index& id = numbers[whole.connectivity[k]];
+      if (id < 0)
+      {
+        id = static_cast<Index>(data.points.size() / 3);
+        const auto from = whole.points.begin() + 3 * whole.connectivity[k];
+        data.points.insert(data.points.end(), from, from + 3);
+      }
+      nodes.push_back(id);
+    }
+    data.addCell(static_cast<int>(whole.types[cell]), nodes);
+  }
+  return toGrid(data);
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> nothing()
+{
+  return vtkSmartPointer<vtkUnstructuredGrid>::New();
+}
+
+/// Over all processes.
+vtkIdType cellsOf(vtkAlgorithm* filter)
+{
+  return sum(filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL));
+}
+
+/// The pieces of all processes make the same as the whole on the first or the second process.
+/// @param stays whether the result stays on the first process
+template <class Filter, class Input>
+void testFilter(const char* name, const MeshData& whole, bool stays, const Input& input)
+{
+  const Context context(name);
+  vtkNew<Filter> filter;
+  Messages messages(filter);
+  vtkIdType expected = 0;
+  for (const int owner : { 0, 1 })
+  {
+    input(filter.Get(), rank() == owner ? part(whole, 0, 1) : nothing());
+    filter->Update();
+    TAUTLINE_CHECK(messages.empty());
+    const vtkIdType cells = cellsOf(filter);
+    expected = owner == 0 ? cells : expected;
+    TAUTLINE_CHECK(cells > 0);
+    TAUTLINE_CHECK_EQUAL(cells, expected);
+    const vtkIdType own = filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL);
+    TAUTLINE_CHECK_EQUAL(own, rank() == (stays ? 0 : owner) ? cells : 0);
+  }
+  input(filter.Get(), part(whole, rank(), ranks()));
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(cellsOf(filter), expected);
+  // Several pieces on each process, some empty.
+  vtkNew<vtkPartitionedDataSet> parts;
+  for (int i = 0; i < 3; ++i)
+  {
+    parts->SetPartition(static_cast<unsigned int>(i),
+      i == 1 ? nothing() : part(whole, 2 * rank() + i / 2, 2 * ranks()));
+  }
+  input(filter.Get(), parts.Get());
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(cellsOf(filter), expected);
+  // One piece is corrupt: all say so.
+  auto wrong = part(whole, rank(), ranks());
+  if (rank() == 1)
+  {
+    wrong->GetPoints()->SetPoint(0, NAN, 0, 0);
+    vtkNew<vtkIdTypeArray> nodes;
+    wrong->GetCells()->GetConnectivityArray()->SetComponent(0, 0, 1000);
+  }
+  input(filter.Get(), wrong.Get());
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("In process 1"));
+  TAUTLINE_CHECK_EQUAL(cellsOf(filter), 0);
+  messages.clear();
+  input(filter.Get(), part(whole, rank(), ranks()));
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(cellsOf(filter), expected);
+}
+
+void testMeshes()
+{
+  const auto one = [](auto* filter, vtkDataObject* data) { filter->SetInputDataObject(0, data); };
+  const auto warp = [](vtkMeshWarp* filter, vtkDataObject* data)
+  {
+    filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
+    filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
+    filter->SetInputDataObject(0, data);
+  };
+  testFilter<vtkMeshWarp>("Warp Mesh", square(), false, warp);
+  testFilter<vtkMeshPerturbation>("Perturb Mesh", square(), false, one);
+  testFilter<vtkMeshImprover>("Improve Mesh", cube(), false, one);
+  testFilter<vtkInteractionLayer>("Interaction Layer", square(), false, one);
+  testFilter<vtkHorizonNeighbors>("Horizon Neighbors", square(), true,
+    [](vtkHorizonNeighbors* filter, vtkDataObject* data)
+    {
+      filter->SetCenter(0.5, 0.5, 0);
+      filter->SetInputDataObject(0, data);
+    });
+  testFilter<vtkPeridynamicStiffness>("Peridynamic Condition", square(), false,
+    [](vtkPeridynamicStiffness* filter, vtkDataObject* data)
+    {
+      filter->SetConstrained(false);
+      filter->SetInputDataObject(0, data);
+    });
+  testFilter<vtkMeshComparison>("Compare Meshes", square(), false,
+    [](vtkMeshComparison* filter, vtkDataObject* data)
+    {
+      filter->SetInputDataObject(0, data);
+      filter->SetInputDataObject(1, data);
+    });
+}
+
+/// Summary and numbers are the same on all processes, the table is on the first one.
+void testNumbers()
+{
+  const Context context("numbers");
+  vtkNew<vtkMeshPerturbation> filter;
+  filter->SetInputData(part(square(), rank(), ranks()));
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 25);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("of 25 movable") != std::string::npos);
+  vtkNew<vtkMeshImprover> improver;
+  improver->SetInputData(part(cube(), rank(), ranks()));
+  improver->Update();
+  TAUTLINE_CHECK(improver->GetWorstBefore() > 1);
+  TAUTLINE_CHECK_EQUAL(improver->GetHistory()->GetNumberOfRows() > 0, rank() == 0);
+  // An error of the whole mesh is one on all processes.
+  vtkNew<vtkMeshImprover> refused;
+  Messages messages(refused);
+  refused->SetInputData(part(blockMesh(CellType::Hexahedron, 2, 2, 2), rank(), ranks()));
+  refused->Update();
+  TAUTLINE_CHECK(!messages.empty() && std::string(refused->GetSummary()).empty());
+  TAUTLINE_CHECK_EQUAL(cellsOf(refused), 0);
+}
+
+/// Blocks: how many a process has differs.
+void testBlocks()
+{
+  const Context context("blocks");
+  vtkNew<vtkMeshPerturbation> filter;
+  Messages messages(filter);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  MeshData far = square();
+  far.transform([](Vec3 p) { return p + Vec3{ 3, 0, 0 }; });
+  blocks->SetBlock(0, part(square(), rank(), ranks()));
+  if (rank() == 1)
+  {
+    blocks->SetBlock(2, part(far, 0, 1));
+  }
+  filter->SetInputData(blocks);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 50);
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(sum(output->GetBlock(0)->GetNumberOfElements(vtkDataObject::CELL)), 72);
+  TAUTLINE_CHECK_EQUAL(output->GetNumberOfBlocks(), rank() == 1 ? 3U : 1U);
+  TAUTLINE_CHECK(rank() != 1 ||
+    vtkDataSet::SafeDownCast(output->GetBlock(2))->GetPointData()->GetArray("Displacement"));
+}
+
+/// What a process selects of its piece is selected of the mesh.
+void testSelection()
+{
+  const Context context("selection");
+  vtkNew<vtkMeshWarp> filter;
+  Messages messages(filter);
+  auto mesh = part(square(), rank(), ranks());
+  vtkNew<vtkIdTypeArray> ids;
+  vtkIdType chosen = 0;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    if (mesh->GetPoint(i)[0] == 0 && rank() == 1)
+    {
+      ids->InsertNextValue(i);
+      ++chosen;
+    }
+  }
+  vtkNew<vtkSelectionNode> node;
+  node->SetContentType(vtkSelectionNode::INDICES);
+  node->SetFieldType(vtkSelectionNode::POINT);
+  node->SetSelectionList(ids);
+  vtkNew<vtkSelection> selection;
+  selection->AddNode(node);
+  filter->SetInputData(mesh);
+  filter->SetInputDataObject(2, selection);
+  filter->SetMovedPart(vtkMeshWarp::SELECTION);
+  filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
+  filter->SetTranslation(-0.1, 0, 0);
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  // Exactly the points chosen on process 1 are moved as far, wherever they are.
+  auto* result = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(result->GetNumberOfPoints(), mesh->GetNumberOfPoints());
+  TAUTLINE_CHECK(!result->GetPointData()->GetArray("Tautline selected by input 2"));
+  vtkIdType moved = 0;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    moved += mesh->GetPoint(i)[0] == 0 && std::abs(result->GetPoint(i)[0] + 0.1) < 1e-12;
+  }
+  TAUTLINE_CHECK(rank() != 1 || (chosen > 0 && moved == chosen));
+}
+
+/// A white disc on black.
+vtkSmartPointer<vtkImageData> disc(double radius)
+{
+  constexpr int side = 24;
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(side, side, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  for (int y = 0; y < side; ++y)
+  {
+    for (int x = 0; x < side; ++x)
+    {
+      const double distance = std::hypot(x - 0.5 * side, y - 0.4 * side);
+      image->SetScalarComponentFromDouble(x, y, 0, 0, distance < radius ? 255 : 0);
+    }
+  }
+  return image;
+}
+
+/// The upper or lower half of an image on two processes, the whole on others.
+vtkSmartPointer<vtkImageData> half(vtkImageData* image)
+{
+  vtkNew<vtkImageData> copy;
+  copy->DeepCopy(image);
+  int extent[6];
+  image->GetExtent(extent);
+  constexpr int middle = 11;
+  extent[rank() == 0 ? 3 : 2] = rank() < 2 ? middle : extent[rank() == 0 ? 3 : 2];
+  copy->Crop(extent);
+  return copy;
+}
+
+template <class Filter, class Input>
+void testOtherFilter(const char* name, const Input& input)
+{
+  const Context context(name);
+  vtkIdType sizes[2] = { 0, 0 };
+  for (const bool everywhere : { true, false })
+  {
+    vtkNew<Filter> filter;
+    Messages messages(filter);
+    input(filter.Get(), everywhere);
+    filter->Update();
+    TAUTLINE_CHECK(messages.empty());
+    vtkDataObject* output = filter->GetOutputDataObject(0);
+    const vtkIdType size = output->GetNumberOfElements(vtkDataObject::CELL) +
+      output->GetNumberOfElements(vtkDataObject::ROW);
+    TAUTLINE_CHECK_EQUAL(size > 0, rank() == 0);
+    sizes[everywhere] = size;
+  }
+  TAUTLINE_CHECK_EQUAL(sizes[0], sizes[1]);
+}
+
+void testShapes()
+{
+  const auto image = [](bool everywhere, double radius)
+  {
+    return everywhere ? half(disc(radius))
+      : rank() == 0   ? disc(radius)
+                      : vtkSmartPointer<vtkImageData>::New();
+  };
+  testOtherFilter<vtkSilhouetteMesher>("Silhouette to Mesh",
+    [&](vtkSilhouetteMesher* filter, bool everywhere)
+    { filter->SetInputData(image(everywhere, 8)); });
+  testOtherFilter<vtkShapeMatcher>("Match Shape",
+    [&](vtkShapeMatcher* filter, bool everywhere)
+    {
+      filter->SetInputDataObject(0, image(everywhere, 8));
+      filter->SetInputDataObject(1, image(everywhere, 9));
+    });
+  testOtherFilter<vtkShapeRetrieval>("Shape Retrieval",
+    [&](vtkShapeRetrieval* filter, bool everywhere)
+    {
+      vtkNew<vtkMultiBlockDataSet> blocks;
+      for (unsigned int i = 0; (everywhere || rank() == 0) && i < 3; ++i)
+      {
+        blocks->SetBlock(i, disc(7 + i));
+      }
+      filter->SetInputDataObject(0, blocks);
+    });
+}
+
+#ifdef TAUTLINE_MESHING
+void testMeshers()
+{
+  const auto sides = [](bool everywhere)
+  {
+    vtkNew<vtkCubeSource> source;
+    vtkNew<vtkCleanPolyData> clean;
+    clean->SetInputConnection(source->GetOutputPort());
+    clean->Update();
+    vtkPolyData* cube = clean->GetOutput();
+    vtkNew<vtkPolyData> own;
+    own->SetPoints(cube->GetPoints());
+    own->Allocate(6);
+    for (vtkIdType i = 0; i < 6; ++i)
+    {
+      if (everywhere ? i % ranks() == rank() : rank() == 0)
+      {
+        vtkNew<vtkIdList> nodes;
+        cube->GetCellPoints(i, nodes);
+        own->InsertNextCell(cube->GetCellType(i), nodes);
+      }
+    }
+    return own->GetNumberOfCells() > 0 ? vtkSmartPointer<vtkPolyData>(own)
+                                       : vtkSmartPointer<vtkPolyData>::New();
+  };
+  testOtherFilter<vtkTetGenMesher>("TetGen Mesher",
+    [&](vtkTetGenMesher* filter, bool everywhere) { filter->SetInputData(sides(everywhere)); });
+  const auto triangle = [](bool everywhere)
+  {
+    vtkNew<vtkRegularPolygonSource> source;
+    source->SetNumberOfSides(3);
+    source->GeneratePolygonOff();
+    source->Update();
+    return rank() == (everywhere ? 1 : 0) ? vtkSmartPointer<vtkPolyData>(source->GetOutput())
+                                          : vtkSmartPointer<vtkPolyData>::New();
+  };
+  testOtherFilter<vtkTriangleMesher>("Triangle Mesher",
+    [&](vtkTriangleMesher* filter, bool everywhere)
+    { filter->SetInputData(triangle(everywhere)); });
+}
+#endif
+}
+
+//------------------------------------------------------------------------------
+int TestGatheredRanks(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> mpi;
+  mpi->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(mpi);
+  if (ranks() > 1)
+  {
+    testMeshes();
+    testNumbers();
+    testBlocks();
+    testSelection();
+    testShapes();
+#ifdef TAUTLINE_MESHING
+    testMeshers();
+#endif
+  }
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  mpi->Finalize();
+  return exitCode();
+}

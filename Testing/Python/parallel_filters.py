@@ -1,0 +1,208 @@
+"""parallel_filters.py FILE: for pvbatch on any number of MPI ranks, see test_parallel_filters.py.
+
+Every filter that gathers its mesh, on a mesh in pieces, cut in several ways; the results go to FILE as JSON.
+"""
+
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+from paraview import servermanager, simple
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+sys.path.insert(0, str(Path(__file__).parent))
+from parallel_tools import columns, parts, update  # noqa: E402
+
+simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
+RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
+WARP_ANGLE, WARP_STEPS = 30, 2
+results = {}
+
+# Runs on every rank: its part of a jittered cube of tetrahedra, or of a square of triangles. The points are in the order
+# of their coordinates and the cells in that of their points, as meshes without global ids are put together.
+PIECES = """
+import itertools
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkCellArray
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+D, N, CUT, GHOSTS, IDS = {dimension}, {n}, "{cut}", {ghosts}, {ids}
+controller = vtkMultiProcessController.GetGlobalController()
+rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
+takers = ranks - 1 if ranks > 3 else ranks  # of more than three, the last has nothing
+axes = np.meshgrid(*[np.arange(N + 1)] * D, indexing="ij")
+lattice = np.stack([a.ravel() for a in axes], -1)
+x = np.zeros((len(lattice), 3))
+x[:, :D] = lattice / N
+inner = ((lattice > 0) & (lattice < N)).all(axis=1)
+rng = np.random.default_rng(1)
+x[:, :D] += 0.3 / N * inner[:, None] * (rng.random((len(lattice), D)) - 0.5)
+steps = [(N + 1) ** (D - 1 - a) for a in range(D)]
+first = np.array([np.dot(c, steps) for c in itertools.product(range(N), repeat=D)])
+blocks = []
+for order in itertools.permutations(range(D)):
+    corners = list(itertools.accumulate((steps[a] for a in order), initial=first))
+    if np.linalg.det(np.eye(D)[list(order)]) < 0:
+        corners[1], corners[2] = corners[2], corners[1]
+    blocks.append(np.stack(corners, -1))
+cells = np.concatenate(blocks)
+order = np.lexsort(x.T[::-1])
+place = np.empty(len(order), dtype=np.int64)
+place[order] = np.arange(len(order))
+x, cells = x[order], place[cells]
+cells = cells[np.lexsort(np.sort(cells, axis=1).T[::-1])]
+
+center = x[cells].mean(axis=1)
+owner = np.zeros(len(cells), dtype=int)
+if CUT == "slabs":
+    owner = np.minimum((center[:, 1] * takers).astype(int), takers - 1)
+elif CUT == "tree":  # halves along the longest extent
+    def split(chosen, low, high):
+        if high - low > 1:
+            axis = np.ptp(center[chosen], axis=0).argmax()
+            middle = (low + high) // 2
+            chosen = chosen[np.argsort(center[chosen, axis], kind="stable")]
+            at = len(chosen) * (middle - low) // (high - low)
+            split(chosen[:at], low, middle)
+            split(chosen[at:], middle, high)
+        else:
+            owner[chosen] = low
+    split(np.arange(len(cells)), 0, takers)
+else:
+    owner = np.random.default_rng(2).integers(0, takers, len(cells))
+
+own = owner == rank
+kept = own.copy()
+if GHOSTS and ranks > 1:
+    touched = np.zeros(len(x), dtype=bool)
+    touched[cells[own].ravel()] = True
+    kept |= touched[cells].any(axis=1)
+if kept.any():
+    grid = output.VTKObject
+    used, local = np.unique(cells[kept], return_inverse=True)
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(x[used], deep=True))
+    grid.SetPoints(points)
+    array = vtkCellArray()
+    offsets = np.arange(0, local.size + 1, D + 1, dtype=np.int64)
+    array.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True),
+                  numpy_to_vtkIdTypeArray(local.astype(np.int64).ravel(), deep=True))
+    grid.SetCells(VTK_TETRA if D == 3 else VTK_TRIANGLE, array)
+    def add(data, name, values):
+        values = numpy_to_vtk(values, deep=True)
+        values.SetName(name)
+        data.AddArray(values)
+    add(grid.GetPointData(), "number", used.astype(float))
+    add(grid.GetPointData(), "stay", (x[used, 0] < 0.3).astype(float))
+    add(grid.GetPointData(), "push", np.stack([0.1 * x[used, 1], 0 * used, 0 * used], -1))
+    add(grid.GetCellData(), "cell number", np.flatnonzero(kept).astype(float))
+    if GHOSTS and ranks > 1:
+        add(grid.GetCellData(), "vtkGhostType", (~own[kept]).astype(np.uint8))
+    if IDS:
+        for data, ids in ((grid.GetPointData(), used), (grid.GetCellData(), np.flatnonzero(kept))):
+            ids = numpy_to_vtkIdTypeArray(ids.astype(np.int64), deep=True)
+            ids.SetName("ids")
+            data.SetGlobalIds(ids)
+"""
+
+
+def mesh(cut, ghosts=0, ids=0, dimension=3, n=3):
+    script = PIECES.format(cut=cut, ghosts=ghosts, ids=ids, dimension=dimension, n=n)
+    return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=script)
+
+
+def values(filter_, names, key="number"):
+    """Arrays in the order of the whole mesh; ranks that share a point or cell must agree."""
+    found = {}
+    for arrays in parts(filter_, sys.argv[1]):
+        rows = np.concatenate([np.reshape(arrays[name], (len(arrays[key]), -1)) for name in names], axis=1)
+        for number, row in zip(arrays[key].tolist(), rows.tolist()):
+            assert found.setdefault(number, row) == row, (names, number, row, found[number])
+    return [row for _, row in sorted(found.items())]
+
+
+def table(filter_, port):
+    """The columns of numbers, without times."""
+    found = columns(servermanager.Fetch(filter_, idx=port))
+    plain = {name: column for name, column in found.items() if "(s)" not in name and "Seconds" not in name}
+    return {name: column for name, column in plain.items() if column and not isinstance(column[0], str)}
+
+
+def motions(name, cut, **options):
+    source = mesh(cut, **options)
+    warped = update(WarpMesh(source, TransformKind="Rotation", Angle=WARP_ANGLE, Method="FEMWARP", AutomaticSolver=0))
+    results[f"warp {name}"] = values(warped, ["points", "Displacement"])
+    results[f"warp table {name}"] = table(warped, 2)
+    pushed = update(WarpMesh(source, Motion="Displacement array", Displacement=["POINTS", "push"], Method="Hybrid"))
+    results[f"hybrid {name}"] = [values(pushed, ["points"]), pushed.Summary.splitlines()[0]]
+    moved = update(PerturbMesh(source, Percentage=80, Fraction=0.7, TangledFraction=0.02, FixedPoints=["POINTS", "stay"]))
+    results[f"perturb {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
+    compared = update(CompareMeshes(Before=source, After=moved, Metrics=["Mean ratio"]))
+    arrays = ["Validity_after", "mean_ratio_difference", "Change"]
+    results[f"compare {name}"] = [values(compared, arrays, "cell number"), table(compared, 1), compared.Summary]
+    improved = update(ImproveMesh(moved, Preset="Aggressive"))
+    cells = np.concatenate([arrays["smallest"] for arrays in parts(quality_of(improved), sys.argv[1])])
+    results[f"improve {name}"] = [sorted(cells.tolist()), table(improved, 1), improved.WorstAfter, improved.Summary]
+
+
+def quality_of(filter_):
+    return simple.Calculator(
+        ElementQuality(filter_, Metrics=["Mean ratio"]), AttributeType="Cell Data", ResultArrayName="smallest",
+        Function="mean_ratio",
+    )  # fmt: skip
+
+
+def nonlocal_models(name, cut, **options):
+    source = mesh(cut, dimension=2, n=8, **options)
+    layer = update(InteractionLayer(source, Width=0.3))
+    results[f"layer {name}"] = [layer.GetDataInformation().GetNumberOfCells(), *layer.GetDataInformation().GetBounds()]
+    condition = update(PeridynamicCondition(layer, Horizon=0.25, Solve=1))
+    results[f"condition {name}"] = [condition.Condition, *condition.PointData["Solution"].GetRange()]
+    bare = update(PeridynamicCondition(source, Horizon=0.25, Constrained=0))
+    results[f"rows {name}"] = [values(bare, ["RowSum", "Neighbors"]), table(bare, 1)["Rows"]]
+    horizon = update(HorizonNeighbors(source, Center=[0.5, 0.45, 0], Horizon=0.3))
+    arrays = [found for found in parts(horizon, sys.argv[1])]
+    results[f"horizon {name}"] = [sorted(found["Area"].tolist()) for found in arrays]
+
+
+def failures():
+    """An error on one rank is an error on all, none waits, and the next execution works."""
+    source = mesh("slabs")
+    far = simple.ProgrammableFilter(source, Script=BREAK)
+    for filter_ in (PerturbMesh(far), WarpMesh(far), ImproveMesh(far), PeridynamicCondition(far)):
+        update(filter_)
+        results[f"refused {filter_.GetXMLName()}"] = filter_.GetDataInformation().GetNumberOfCells()
+    # The filter before fails, on one rank only.
+    failing = SolvePDE(source, SourceType="Expression", SourceExpression="1/(y - 1)")
+    after = update(PerturbMesh(failing))
+    results["upstream"] = [update(after).GetDataInformation().GetNumberOfCells(), after.Summary]
+
+
+# The last rank with cells has one with a point that does not exist.
+BREAK = """
+import numpy as np
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+from vtkmodules.util.numpy_support import vtk_to_numpy
+controller = vtkMultiProcessController.GetGlobalController()
+ranks = controller.GetNumberOfProcesses()
+grid = output.VTKObject
+grid.DeepCopy(inputs[0].VTKObject)
+if controller.GetLocalProcessId() == (ranks - 2 if ranks > 3 else ranks - 1):
+    vtk_to_numpy(grid.GetCells().GetConnectivityArray())[0] = 100000
+"""
+
+for case, given in {
+    "slabs": {"cut": "slabs", "ghosts": 1, "ids": 1},
+    "tree": {"cut": "tree", "ghosts": 0, "ids": 0},
+    "random": {"cut": "random", "ghosts": 1, "ids": 0},
+}.items():
+    motions(case, **given)
+    nonlocal_models(case, **given)
+failures()
+results["ranks"] = RANKS
+with open(sys.argv[1], "w", encoding="utf-8") as out:
+    json.dump(results, out)

@@ -1,0 +1,76 @@
+"""test_parallel_filters.py PVBATCH: on 2, 3 and 4 MPI ranks the filters find what they find on one; skipped without mpirun.
+
+A mesh is cut into slabs, by a k-d tree and at random, with and without ghost cells and global ids.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+MPIRUN = shutil.which("mpirun")
+if not MPIRUN:
+    print("there is no mpirun")
+    sys.exit(77)
+HERE, OUT = Path(__file__).parent, Path(os.environ["TAUTLINE_TEST_DIR"])
+# As root, too, and wherever processes may not read each other's memory.
+ENVIRONMENT = dict(
+    os.environ, OMPI_MCA_btl_vader_single_copy_mechanism="none", OMPI_MCA_mpi_yield_when_idle="1", OMP_NUM_THREADS="1"
+)
+CLOSE = 1e-9
+SECONDS = 200
+CASES = ("slabs", "tree", "random")
+
+
+def run(ranks: int) -> dict:
+    file = OUT / f"parallel_filters_{ranks}.json"
+    file.unlink(missing_ok=True)
+    command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "-np", str(ranks), sys.argv[1]]
+    done = subprocess.run([*command, str(HERE / "parallel_filters.py"), str(file)], env=ENVIRONMENT, timeout=SECONDS,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
+    assert file.exists(), done.stdout
+    # Each rank reports the defect of one of them, by each of four filters, and the failure of the filter before.
+    assert done.stdout.count("In process") >= 4 * ranks or ranks == 1, done.stdout
+    assert done.stdout.count("An input could not be computed") >= ranks or ranks == 1, done.stdout
+    return json.loads(file.read_text())
+
+
+def compare(found, expected, where: str) -> None:
+    """Numbers and what contains them within a tolerance, texts exactly."""
+    if isinstance(expected, dict):
+        assert found.keys() == expected.keys(), (where, found.keys(), expected.keys())
+        for key, value in expected.items():
+            compare(found[key], value, f"{where}, {key}")
+    elif isinstance(expected, str):
+        assert found == expected, (where, found, expected)
+    elif isinstance(expected, list) and any(isinstance(value, (str, dict, list)) for value in expected):
+        assert len(found) == len(expected), (where, len(found), len(expected))
+        for k, (a, b) in enumerate(zip(found, expected)):
+            compare(a, b, f"{where} {k}")
+    else:
+        a, b = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
+        assert a.shape == b.shape and np.allclose(a, b, rtol=CLOSE, atol=CLOSE), (where, found, expected)
+
+
+one = run(1)
+for case in CASES:
+    # Something has happened: points move, elements become inverted, cells change.
+    assert np.abs(np.asarray(one[f"warp {case}"])[:, 3:]).max() > 0.1 and len(one[f"warp {case}"]) == 64
+    assert np.ptp(np.asarray(one[f"perturb {case}"][0])[:, 3:]) > 0.01 and "Inverted elements" in one[f"perturb {case}"][1]
+    assert len(one[f"compare {case}"][0]) == 162 and np.ptp(np.asarray(one[f"compare {case}"][0])[:, 2]) > 0
+    assert len(one[f"improve {case}"][0]) != 162 or one[f"improve {case}"][2] > 1
+    assert one[f"condition {case}"][0] > 1 and len(one[f"rows {case}"][0]) == 81
+    assert len(one[f"horizon {case}"][0]) > 20
+for ranks in (2, 3, 4):
+    found = run(ranks)
+    assert found.pop("ranks") == ranks
+    assert all(found[key] == 0 for key in found if key.startswith("refused"))
+    assert found.pop("upstream") == [0, ""], found
+    assert found.keys() == one.keys() - {"ranks", "upstream"}
+    for key, value in found.items():
+        compare(value, one[key], f"{ranks} ranks, {key}")
+    print(ranks, "ranks:", found["condition tree"], found["improve random"][3].splitlines()[0])
