@@ -143,6 +143,24 @@ void addMarks(vtkDataSetAttributes* marked, vtkIdType count, int port, vtkDataSe
   result->AddArray(marks);
 }
 
+/// A point is selected if it is in any piece.
+void uniteMarks(const std::vector<vtkDataSet*>& pieces, const WholeMesh& whole, int port)
+{
+  const std::string name = markName(port);
+  vtkDataArray* all = whole.mesh->GetPointData()->GetArray(name.c_str());
+  for (std::size_t i = 0; all && i < pieces.size(); ++i)
+  {
+    vtkDataArray* own = pieces[i]->GetPointData()->GetArray(name.c_str());
+    for (std::size_t k = 0; own && k < whole.pieces[i].points.size(); ++k)
+    {
+      if (own->GetComponent(static_cast<vtkIdType>(k), 0) > 0)
+      {
+        all->SetComponent(whole.pieces[i].points[k], 0, 1.0);
+      }
+    }
+  }
+}
+
 /// A selection of what has marks.
 vtkSmartPointer<vtkSelection> selectionOf(vtkDataObject* whole, int port)
 {
@@ -472,6 +490,10 @@ void GatheredExecution::assembleAll()
       const bool alike =
         &mesh != &this->Meshes.front() && g < first.size() && matches(pieces, first[g].whole);
       group.whole = assemble(pieces, alike ? &first[g].whole : nullptr);
+      for (const int port : this->SelectionPorts)
+      {
+        uniteMarks(pieces, group.whole, port);
+      }
     }
     mesh.whole = rebuild(mesh.structure, true,
       [&mesh](int number, vtkDataSet*)

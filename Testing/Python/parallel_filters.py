@@ -141,7 +141,7 @@ def motions(name, cut, **options):
     results[f"hybrid {name}"] = [values(pushed, ["points"]), pushed.Summary.splitlines()[0]]
     moved = update(PerturbMesh(source, Percentage=80, Fraction=0.7, TangledFraction=0.02, FixedPoints=["POINTS", "stay"]))
     results[f"perturb {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
-    compared = update(CompareMeshes(Before=source, After=moved, Metrics=["Mean ratio"]))
+    compared = update(CompareMeshes(Input=source, Other=moved, Metrics=["Mean ratio"]))
     arrays = ["Validity_after", "mean_ratio_difference", "Change"]
     results[f"compare {name}"] = [values(compared, arrays, "cell number"), table(compared, 1), compared.Summary]
     improved = update(ImproveMesh(moved, Preset="Aggressive"))
