@@ -4,6 +4,7 @@
 #include "MeshGroups.h"
 #include "PieceResults.h"
 #include "Processes.h"
+#include "SelectionMarks.h"
 #include "ValidateInput.h"
 #include "WholeMesh.h"
 #include "tautline/Core/Memory.h"
@@ -12,23 +13,19 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
 #include "vtkCommand.h"
-#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkDataSet.h"
 #include "vtkDemandDrivenPipeline.h"
-#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSelection.h"
-#include "vtkSelectionNode.h"
-#include "vtkSignedCharArray.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <utility>
@@ -45,11 +42,6 @@ constexpr char MemoryRemedy[] =
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using Rebuilt = vtkSmartPointer<vtkDataSet>;
-
-std::string markName(int port)
-{
-  return "Tautline selected by input " + std::to_string(port);
-}
 
 //------------------------------------------------------------------------------
 /// The mesh on an input port: the pieces of this process and, on the first, the whole.
@@ -129,76 +121,40 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// Marks of a piece as an array, zeros where nothing is selected.
-void addMarks(vtkDataSetAttributes* marked, vtkIdType count, int port, vtkDataSetAttributes* result)
+/// An image with the extent that was announced, 0 where it has no pixels; other data as they are.
+vtkSmartPointer<vtkDataObject> enlarged(vtkDataObject* data, vtkInformation* info)
 {
-  vtkNew<vtkSignedCharArray> marks;
-  marks->SetName(markName(port).c_str());
-  marks->SetNumberOfTuples(count);
-  vtkDataArray* given = marked ? marked->GetArray(SelectedArray) : nullptr;
-  for (vtkIdType i = 0; i < count; ++i)
+  auto* image = vtkImageData::SafeDownCast(data);
+  if (!image || !info->Has(Pipeline::WHOLE_EXTENT()))
   {
-    marks->SetValue(i, static_cast<signed char>(given && given->GetComponent(i, 0) > 0));
+    return data;
   }
-  result->AddArray(marks);
-}
-
-/// A point is selected if it is in any piece.
-void uniteMarks(const std::vector<vtkDataSet*>& pieces, const WholeMesh& whole, int port)
-{
-  const std::string name = markName(port);
-  vtkDataArray* all = whole.mesh->GetPointData()->GetArray(name.c_str());
-  for (std::size_t i = 0; all && i < pieces.size(); ++i)
+  int extent[6], own[6];
+  info->Get(Pipeline::WHOLE_EXTENT(), extent);
+  image->GetExtent(own);
+  vtkDataArray* pixels = image->GetPointData()->GetScalars();
+  if (std::equal(extent, extent + 6, own) || !pixels)
   {
-    vtkDataArray* own = pieces[i]->GetPointData()->GetArray(name.c_str());
-    for (std::size_t k = 0; own && k < whole.pieces[i].points.size(); ++k)
+    return data;
+  }
+  auto larger = vtkSmartPointer<vtkImageData>::New();
+  larger->CopyStructure(image);
+  larger->SetExtent(extent);
+  larger->AllocateScalars(pixels->GetDataType(), pixels->GetNumberOfComponents());
+  vtkDataArray* all = larger->GetPointData()->GetScalars();
+  all->SetName(pixels->GetName());
+  all->Fill(0.0);
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    double place[3];
+    image->GetPoint(i, place);
+    const vtkIdType at = larger->FindPoint(place);
+    if (at >= 0)
     {
-      if (own->GetComponent(static_cast<vtkIdType>(k), 0) > 0)
-      {
-        all->SetComponent(whole.pieces[i].points[k], 0, 1.0);
-      }
+      all->SetTuple(at, i, pixels);
     }
   }
-}
-
-/// A selection of what has marks.
-vtkSmartPointer<vtkSelection> selectionOf(vtkDataObject* whole, int port)
-{
-  auto selection = vtkSmartPointer<vtkSelection>::New();
-  const bool composite = vtkCompositeDataSet::SafeDownCast(whole) != nullptr;
-  forEachLeaf(whole,
-    [&](unsigned int index, vtkDataSet* leaf)
-    {
-      for (const int field : { int(vtkSelectionNode::POINT), int(vtkSelectionNode::CELL) })
-      {
-        vtkDataSetAttributes* data = field == vtkSelectionNode::POINT
-          ? static_cast<vtkDataSetAttributes*>(leaf->GetPointData())
-          : leaf->GetCellData();
-        vtkDataArray* marks = data->GetArray(markName(port).c_str());
-        vtkNew<vtkIdTypeArray> ids;
-        for (vtkIdType i = 0; marks && i < marks->GetNumberOfTuples(); ++i)
-        {
-          if (marks->GetComponent(i, 0) > 0)
-          {
-            ids->InsertNextValue(i);
-          }
-        }
-        if (ids->GetNumberOfTuples() == 0)
-        {
-          continue;
-        }
-        vtkNew<vtkSelectionNode> node;
-        node->SetContentType(vtkSelectionNode::INDICES);
-        node->SetFieldType(field);
-        node->SetSelectionList(ids);
-        if (composite)
-        {
-          node->GetProperties()->Set(vtkSelectionNode::COMPOSITE_INDEX(), static_cast<int>(index));
-        }
-        selection->AddNode(node);
-      }
-    });
-  return selection;
+  return larger;
 }
 
 //------------------------------------------------------------------------------
@@ -274,10 +230,7 @@ void GatheredExecution::emptyOutputs()
 {
   for (int port = 0; port < this->Outputs->GetNumberOfInformationObjects(); ++port)
   {
-    if (vtkDataObject* output = vtkDataObject::GetData(this->Outputs, port))
-    {
-      output->Initialize();
-    }
+    emptyOutput(this->Outputs->GetInformationObject(port));
   }
   this->Request->Remove(Pipeline::CONTINUE_EXECUTING());
 }
@@ -602,12 +555,13 @@ void GatheredExecution::distribute()
   results.distribute(this->Rules.result, result, output);
   for (std::size_t port = 1; port < this->Results.size(); ++port)
   {
-    vtkDataObject::GetData(this->Outputs, static_cast<int>(port))->ShallowCopy(this->Results[port]);
+    vtkInformation* info = this->Outputs->GetInformationObject(static_cast<int>(port));
+    vtkDataObject::GetData(info)->ShallowCopy(enlarged(this->Results[port], info));
   }
   for (int port = 1;
        this->Rank != FirstProcess && port < this->Outputs->GetNumberOfInformationObjects(); ++port)
   {
-    vtkDataObject::GetData(this->Outputs, port)->Initialize();
+    emptyOutput(this->Outputs->GetInformationObject(port));
   }
 }
 
@@ -680,9 +634,27 @@ int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, Gath
   vtkErrorWithObjectMacro(algorithm, << problem);
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
-    vtkDataObject::GetData(outputs, port)->Initialize();
+    emptyOutput(outputs->GetInformationObject(port));
   }
   return 0;
+}
+
+//------------------------------------------------------------------------------
+void emptyOutput(vtkInformation* info)
+{
+  vtkDataObject* output = vtkDataObject::GetData(info);
+  if (!output)
+  {
+    return;
+  }
+  output->Initialize();
+  auto* image = vtkImageData::SafeDownCast(output);
+  if (image && severalProcesses() && info->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    int extent[6];
+    info->Get(Pipeline::WHOLE_EXTENT(), extent);
+    image->SetExtent(extent);
+  }
 }
 
 //------------------------------------------------------------------------------

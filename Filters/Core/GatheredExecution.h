@@ -106,6 +106,10 @@ TAUTLINECORE_EXPORT int executeGathered(vtkAlgorithm* algorithm, vtkInformation*
   vtkInformationVector** inputs, vtkInformationVector* outputs, const GatheredRules& rules,
   const std::function<int()>& execute);
 
+/// Empties an output. With several processes an image has the announced extent, as the pipeline
+/// executes a process again, alone, whose image has not.
+TAUTLINECORE_EXPORT void emptyOutput(vtkInformation* info);
+
 /**
  * @brief ProcessRequest() of a filter that does not derive from vtkTautlineAlgorithm:
  * processInScope(), on several processes within executeGathered() after the inputs are checked.

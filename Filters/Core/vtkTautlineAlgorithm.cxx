@@ -368,10 +368,7 @@ int vtkTautlineAlgorithm::Fail(vtkInformationVector* outputVector, const std::st
   vtkErrorMacro(<< message);
   for (int port = 0; port < outputVector->GetNumberOfInformationObjects(); ++port)
   {
-    if (vtkDataObject* output = vtkDataObject::GetData(outputVector, port))
-    {
-      output->Initialize();
-    }
+    tautline::emptyOutput(outputVector->GetInformationObject(port));
   }
   this->Summary.clear();
   return 0;

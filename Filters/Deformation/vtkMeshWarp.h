@@ -52,9 +52,8 @@
  * options of the method are the same: animating Amount, or a target over time, computes them once.
  *
  * @par Several processes:
- * A mesh spread over processes is refused, as the boundary of a part is not that of the mesh:
- * gather it on one process first (in ParaView, by Aggregate Dataset). Blocks may be on different
- * processes. Points of ghost cells stay.
+ * The first process has the whole mesh while it computes and sends the results to the pieces. Ghost
+ * cells count as copies; on one process, their points stay.
  *
  * @par Example:
  * @code

@@ -8,7 +8,7 @@
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane. The data sets of composite data are one mesh, whose cells
- * `CellId` counts through. A mesh on several processes is refused.
+ * `CellId` counts through. A mesh in pieces is gathered.
  *
  * @par Output port 0 `Triangles`:
  * vtkPolyData: the triangles that meet the disc. Cell arrays: `Case` (int), 1 all three corners

@@ -10,7 +10,7 @@
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane. Other cells but vertices and lines are refused. The data
- * sets of composite data are one mesh. A mesh on several processes is refused.
+ * sets of composite data are one mesh. A mesh in pieces is gathered.
  *
  * @par Output:
  * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the interaction

@@ -20,7 +20,7 @@
  * @par Input:
  * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds an
  * interaction layer; vtkDomainSource's square has one. The data sets of composite data are one
- * mesh; the output is then a vtkUnstructuredGrid. A mesh on several processes is refused.
+ * mesh; the output is then a vtkUnstructuredGrid. A mesh in pieces is gathered.
  *
  * @par Input arrays (SetInputArrayToProcess):
  * - 0, region: cell array with one component; cells where it is LayerValue are the interaction

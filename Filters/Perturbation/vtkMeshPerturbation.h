@@ -44,7 +44,7 @@
  * position.
  *
  * @par Limitations:
- * Quadratic cells are refused, and so are meshes on several processes. Points shared by two blocks
+ * Quadratic cells are refused. The pieces of several processes are gathered. Points shared by two blocks
  * are on the boundary of each and stay.
  *
  * @par Example:

@@ -144,7 +144,8 @@ def motions(name, cut, **options):
     compared = update(CompareMeshes(Input=source, Other=moved, Metrics=["Mean ratio"]))
     arrays = ["Validity_after", "mean_ratio_difference", "Change"]
     results[f"compare {name}"] = [values(compared, arrays, "cell number"), table(compared, 1), compared.Summary]
-    improved = update(ImproveMesh(moved, Preset="Aggressive"))
+    worse = PerturbMesh(source, Percentage=100, Fraction=0.9)
+    improved = update(ImproveMesh(worse, Preset="Aggressive"))
     cells = np.concatenate([arrays["smallest"] for arrays in parts(quality_of(improved), sys.argv[1])])
     results[f"improve {name}"] = [sorted(cells.tolist()), table(improved, 1), improved.WorstAfter, improved.Summary]
 
