@@ -1,7 +1,7 @@
 /**
  * @file GatheredExecution.h
- * @brief A filter on many processes, whose numbers are those of one: the first process has the whole
- * mesh while it computes, and the results go back to the pieces.
+ * @brief A filter on many processes, whose numbers are those of one: the first process has the
+ * whole mesh while it computes, and the results go back to the pieces.
  */
 #ifndef tautline_GatheredExecution_h
 #define tautline_GatheredExecution_h
@@ -33,7 +33,7 @@ enum class GatheredResult
 
 /**
  * @class tautline::ResultStream
- * @brief Writes members of a filter on the process that has computed them, reads them on the others.
+ * @brief Writes members of a filter on the process that has computed them, or reads them elsewhere.
  */
 class ResultStream
 {

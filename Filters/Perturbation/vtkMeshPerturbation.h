@@ -44,8 +44,8 @@
  * position.
  *
  * @par Limitations:
- * Quadratic cells are refused. The pieces of several processes are gathered. Points shared by two blocks
- * are on the boundary of each and stay.
+ * Quadratic cells are refused. The pieces of several processes are gathered. Points shared by two
+ * blocks are on the boundary of each and stay.
  *
  * @par Example:
  * @code

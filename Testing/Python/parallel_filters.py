@@ -20,8 +20,8 @@ RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
 WARP_ANGLE, WARP_STEPS = 30, 2
 results = {}
 
-# Runs on every rank: its part of a jittered cube of tetrahedra, or of a square of triangles. The points are in the order
-# of their coordinates and the cells in that of their points, as meshes without global ids are put together.
+# Runs on every rank: its part of a jittered cube of tetrahedra, or of a square of triangles. The points are in the
+# order of their coordinates and the cells in that of their points, as meshes without global ids are put together.
 PIECES = """
 import itertools
 import numpy as np
@@ -132,14 +132,15 @@ def table(filter_, port):
     return {name: column for name, column in plain.items() if column and not isinstance(column[0], str)}
 
 
-def motions(name, cut, **options):
-    source = mesh(cut, **options)
+def motions(name, cut, **given):
+    source = mesh(cut, **given)
     warped = update(WarpMesh(source, TransformKind="Rotation", Angle=WARP_ANGLE, Method="FEMWARP", AutomaticSolver=0))
     results[f"warp {name}"] = values(warped, ["points", "Displacement"])
     results[f"warp table {name}"] = table(warped, 2)
     pushed = update(WarpMesh(source, Motion="Displacement array", Displacement=["POINTS", "push"], Method="Hybrid"))
     results[f"hybrid {name}"] = [values(pushed, ["points"]), pushed.Summary.splitlines()[0]]
-    moved = update(PerturbMesh(source, Percentage=80, Fraction=0.7, TangledFraction=0.02, FixedPoints=["POINTS", "stay"]))
+    options = {"Percentage": 80, "Fraction": 0.7, "TangledFraction": 0.02, "FixedPoints": ["POINTS", "stay"]}
+    moved = update(PerturbMesh(source, **options))
     results[f"perturb {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
     compared = update(CompareMeshes(Input=source, Other=moved, Metrics=["Mean ratio"]))
     arrays = ["Validity_after", "mean_ratio_difference", "Change"]

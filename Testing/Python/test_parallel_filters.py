@@ -1,4 +1,4 @@
-"""test_parallel_filters.py PVBATCH: on 2, 3 and 4 MPI ranks the filters find what they find on one; skipped without mpirun.
+"""test_parallel_filters.py PVBATCH: on 2, 3 and 4 MPI ranks filters find what they find on one; skipped without mpirun.
 
 A mesh is cut into slabs, by a k-d tree and at random, with and without ghost cells and global ids.
 """
@@ -22,6 +22,7 @@ ENVIRONMENT = dict(
     os.environ, OMPI_MCA_btl_vader_single_copy_mechanism="none", OMPI_MCA_mpi_yield_when_idle="1", OMP_NUM_THREADS="1"
 )
 CLOSE = 1e-9
+INTEGRALS = 2e-6
 SECONDS = 200
 CASES = ("slabs", "tree", "random")
 
@@ -39,28 +40,29 @@ def run(ranks: int) -> dict:
     return json.loads(file.read_text())
 
 
-def compare(found, expected, where: str) -> None:
+def compare(found, expected, where: str, tolerance: float = CLOSE) -> None:
     """Numbers and what contains them within a tolerance, texts exactly."""
     if isinstance(expected, dict):
         assert found.keys() == expected.keys(), (where, found.keys(), expected.keys())
         for key, value in expected.items():
-            compare(found[key], value, f"{where}, {key}")
+            compare(found[key], value, f"{where}, {key}", tolerance)
     elif isinstance(expected, str):
         assert found == expected, (where, found, expected)
     elif isinstance(expected, list) and any(isinstance(value, (str, dict, list)) for value in expected):
         assert len(found) == len(expected), (where, len(found), len(expected))
         for k, (a, b) in enumerate(zip(found, expected)):
-            compare(a, b, f"{where} {k}")
+            compare(a, b, f"{where} {k}", tolerance)
     else:
         a, b = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
-        assert a.shape == b.shape and np.allclose(a, b, rtol=CLOSE, atol=CLOSE), (where, found, expected)
+        assert a.shape == b.shape and np.allclose(a, b, rtol=tolerance, atol=tolerance), (where, found, expected)
 
 
 one = run(1)
 for case in CASES:
     # Something has happened: points move, elements become inverted, cells change.
     assert np.abs(np.asarray(one[f"warp {case}"])[:, 3:]).max() > 0.1 and len(one[f"warp {case}"]) == 64
-    assert np.ptp(np.asarray(one[f"perturb {case}"][0])[:, 3:]) > 0.01 and "Inverted elements" in one[f"perturb {case}"][1]
+    points, summary = one[f"perturb {case}"]
+    assert np.ptp(np.asarray(points)[:, 3:]) > 0.01 and "Inverted elements" in summary
     assert len(one[f"compare {case}"][0]) == 162 and np.ptp(np.asarray(one[f"compare {case}"][0])[:, 2]) > 0
     assert len(one[f"improve {case}"][0]) != 162 or one[f"improve {case}"][2] > 1
     assert one[f"condition {case}"][0] > 1 and len(one[f"rows {case}"][0]) == 81
@@ -72,5 +74,6 @@ for ranks in (2, 3, 4):
     assert found.pop("upstream") == [0, ""], found
     assert found.keys() == one.keys() - {"ranks", "upstream"}
     for key, value in found.items():
-        compare(value, one[key], f"{ranks} ranks, {key}")
+        # The cells of the layer are in another order, and integrals are found to a tolerance.
+        compare(value, one[key], f"{ranks} ranks, {key}", INTEGRALS if key.startswith("condition") else CLOSE)
     print(ranks, "ranks:", found["condition tree"], found["improve random"][3].splitlines()[0])

@@ -1,6 +1,6 @@
-// Filters that gather their mesh on the first process: pieces of it on several processes, in blocks,
+// Filters that gather their mesh on the first process: pieces of it on several processes, blocks,
 // in partitions, on another process than the first; what is selected of them; results, summary and
-// numbers on all processes; errors on all. TestWholeMesh and Python-parallel-filters compare values.
+// numbers on all processes; errors on all. Python-parallel-filters compares values.
 #include "Check.h"
 #include "VtkMeshes.h"
 
@@ -26,12 +26,14 @@
 #include "vtkImageData.h"
 #include "vtkMPIController.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkObjectFactory.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPolyData.h"
 #include "vtkRegularPolygonSource.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
 #include "vtkTable.h"
+#include "vtkUnstructuredGridAlgorithm.h"
 
 #include <cmath>
 
@@ -284,6 +286,45 @@ void testSelection()
   TAUTLINE_CHECK(rank() != 1 || (chosen > 0 && moved == chosen));
 }
 
+/// Makes a piece, but cannot on process 1.
+class FailingSource : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static FailingSource* New();
+  vtkTypeMacro(FailingSource, vtkUnstructuredGridAlgorithm);
+  bool Fails = true;
+
+protected:
+  FailingSource() { this->SetNumberOfInputPorts(0); }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkUnstructuredGrid::GetData(outputs)->ShallowCopy(part(square(), rank(), ranks()));
+    return this->Fails && rank() == 1 ? 0 : 1;
+  }
+};
+vtkStandardNewMacro(FailingSource);
+
+/// If the filter before fails on one process, none computes with what the others have, also not the
+/// second time, and none waits; until it works.
+void testUpstream()
+{
+  const Context context("upstream");
+  vtkNew<FailingSource> source;
+  vtkNew<vtkMeshPerturbation> filter;
+  filter->SetInputConnection(source->GetOutputPort());
+  for (int time = 0; time < 2; ++time)
+  {
+    Messages messages(filter);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has("In process 1: An input could not be computed"));
+    TAUTLINE_CHECK_EQUAL(cellsOf(filter), 0);
+  }
+  source->Fails = false;
+  source->Modified();
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(cellsOf(filter), 72);
+}
+
 /// A white disc on black.
 vtkSmartPointer<vtkImageData> disc(double radius)
 {
@@ -420,6 +461,7 @@ int TestGatheredRanks(int argc, char* argv[])
     testNumbers();
     testBlocks();
     testSelection();
+    testUpstream();
     testShapes();
 #ifdef TAUTLINE_MESHING
     testMeshers();

@@ -25,7 +25,7 @@ struct Cut
   bool ids, ghosts;
 };
 
-/// The piece of a mesh with the cells of an owner, and with ghosts those that touch them; points and
+/// The piece of a mesh with the cells of an owner, and with ghosts those that touch them; points,
 /// cells in reverse order if `owner` is odd.
 Grid piece(const MeshData& whole, const Owner& ownerOf, int owner, const Cut& cut)
 {
