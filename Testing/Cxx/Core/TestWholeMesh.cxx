@@ -25,8 +25,8 @@ struct Cut
   bool ids, ghosts;
 };
 
-/// The piece of a mesh with the cells of an owner, and with ghosts those that touch them; points,
-/// cells in reverse order if `owner` is odd.
+/// The piece of a mesh with the cells of an owner, with ghosts also those that touch them; points
+/// and cells in reverse order if `owner` is odd.
 Grid piece(const MeshData& whole, const Owner& ownerOf, int owner, const Cut& cut)
 {
   std::vector<char> touched(whole.points.size() / 3, 0);
