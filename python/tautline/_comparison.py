@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -15,27 +15,35 @@ from ._arrays import cell_array, columns, point_array, snake
 from ._errors import interruptible, run
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose
+from ._results import Result
 from ._tables import comparison_rows, comparison_text
 
 
-@dataclass(frozen=True)
-class CompareResult:
-    """The result of compare()."""
+@dataclass(frozen=True, repr=False, eq=False)
+class CompareResult(Result):
+    """The result of compare().
 
-    #: The second mesh with the cell arrays `<metric>_before`, `_after`, `_difference`, `Validity_before`,
-    #: `Validity_after`, `Change`, and the point array `Displacement`.
+    mesh: the second mesh with the cell arrays `<metric>_before`, `_after`, `_difference`, `Validity_before`,
+        `Validity_after`, `Change`, and the point array `Displacement`.
+    statistics: per metric: better, worse, equal (numbers of elements), inverted_before, inverted_after, minimum_before,
+        minimum_after, mean_before, mean_after, maximum_before, maximum_after, largest_displacement.
+    difference: per metric the value after minus the value before on each cell, m.
+    change: per cell, m: 1 better by some metric and worse by none, -1 the opposite, else 0.
+    displacement: second minus first position, n x 3.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("difference", "change", "displacement")
     mesh: vtkDataObject
-    #: Per metric: better, worse, equal (numbers of elements), inverted_before, inverted_after, minimum_before,
-    #: minimum_after, mean_before, mean_after, maximum_before, maximum_after, largest_displacement.
     statistics: dict[str, dict[str, Any]]
-    #: Per metric the value after minus the value before on each cell, m.
     difference: dict[str, np.ndarray]
-    #: Per cell, m: 1 better by some metric and worse by none, -1 the opposite, else 0.
     change: np.ndarray
-    #: Second minus first position, n x 3.
     displacement: np.ndarray
-    #: The result in words.
     summary: str
+
+    def table(self) -> list[dict[str, Any]]:
+        """A row per metric: what --csv writes."""
+        return comparison_rows(self)
 
 
 @interruptible

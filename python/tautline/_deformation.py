@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, Mapping, Sequence, Union
+from typing import Any, ClassVar, Mapping, Sequence, Union
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
@@ -16,6 +16,7 @@ from ._arguments import flag_option, number_option, pick, set_options, set_threa
 from ._arrays import ANY, POINTS, InputArrays, cell_array, columns, point_array, table_rows, with_array
 from ._errors import Error, interruptible, run
 from ._io import Mesh, as_mesh
+from ._results import Result
 
 METHODS = (
     "hybrid",
@@ -56,32 +57,36 @@ _COUNTS = ("elements", "boundary_points", "moved_points", "inverted_after_warp",
 Transform = Union[Mapping[str, Any], Sequence, vtkLinearTransform]
 
 
-@dataclass(frozen=True)
-class WarpResult:
-    """The result of warp(). Of composite data, numbers are of all blocks."""
+@dataclass(frozen=True, repr=False, eq=False)
+class WarpResult(Result):
+    """The result of warp(). Of composite data, numbers are of all blocks.
 
-    #: The mesh with the new points, `Displacement`, `TMP shape` and `Validity`.
+    mesh: the mesh with the new points, `Displacement`, `TMP shape` and `Validity`.
+    inverted, inverted_after_warp, impossible: number of inverted or degenerate elements at the end, and after the
+        deformation without the final optimization; and of those that no positions of interior points make valid, since
+        the moved boundary itself is invalid.
+    history: per stage: amount, inverted, worst_shape, mean_shape, stage (list of str), iterations, seconds; of
+        composite data also block.
+    statistics: elements, boundary_points, moved_points, largest_displacement, amount, inverted_after_warp, inverted,
+        impossible, crossings, worst_shape, mean_shape, worst_imr_before, mean_imr_before, worst_imr, mean_imr, cxx to
+        cxz, decoupled, regularization, reused, and assemble_, set_up_, solve_, improve_ and total_seconds. Of composite
+        data a dict of these per block.
+    displacement: new minus old position, n x 3.
+    shape: TMP shape metric per cell, m; 0 where the shape is that of the undeformed element.
+    validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("displacement", "shape", "validity")
     mesh: vtkDataObject
-    #: Number of inverted or degenerate elements at the end, and after the deformation without the final optimization;
-    #: and of those that no positions of interior points make valid, since the moved boundary itself is invalid.
     inverted: int
     inverted_after_warp: int
     impossible: int
-    #: Per stage: amount, inverted, worst_shape, mean_shape, stage (list of str), iterations, seconds; of composite data
-    #: also block.
     history: dict[str, Any]
-    #: elements, boundary_points, moved_points, largest_displacement, amount, inverted_after_warp, inverted, impossible,
-    #: crossings, worst_shape, mean_shape, worst_imr_before, mean_imr_before, worst_imr, mean_imr, cxx to cxz,
-    #: decoupled, regularization, reused, and assemble_, set_up_, solve_, improve_ and total_seconds. Of composite data
-    #: a dict of these per block.
     statistics: dict[str, Any]
-    #: New minus old position, n x 3.
     displacement: np.ndarray
-    #: TMP shape metric per cell, m; 0 where the shape is that of the undeformed element.
     shape: np.ndarray
-    #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured.
     validity: np.ndarray
-    #: The result in words.
     summary: str
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 from inspect import signature
-from typing import Any, Callable, Iterable, Sequence, Union
+from typing import Any, ClassVar, Callable, Iterable, Sequence, Union
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -15,6 +15,7 @@ from ._arguments import check_options, number, pick, set_threads, set_time_limit
 from ._arrays import POINTS, InputArrays, cell_array, columns, has_array, point_array, table_rows
 from ._errors import Error, checked, interruptible, run, watch
 from ._io import Mesh, as_mesh
+from ._results import Result
 from ._tables import align
 
 PDES = ("poisson", "elliptic", "elasticity")
@@ -52,75 +53,85 @@ _STUDY_COLUMNS = {
 Function = Union[float, str, Sequence]
 
 
-@dataclass(frozen=True)
-class SolveResult:
-    """The result of solve(). Of composite data, numbers are of all blocks; the reason is that of the last one."""
+@dataclass(frozen=True, repr=False, eq=False)
+class SolveResult(Result):
+    """The result of solve(). Of composite data, numbers are of all blocks; the reason is that of the last one.
 
-    #: The mesh with the solution on the points and, on the cells, `Gradient`, or `Stress` and `VonMises`.
+    mesh: the mesh with the solution on the points and, on the cells, `Gradient`, or `Stress` and `VonMises`.
+    solution: the solution per point, n; of elasticity the displacement, n x 3.
+    gradient: per cell the gradient, m x 3; of elasticity the stress, m x 6 (xx yy zz xy yz xz). Empty if not computed.
+    times, series: the times of the steps and the solution at each of them, (steps + 1) x n or n x 3; None of stationary
+        problems, and the solutions also unless asked for.
+    history: with time steps, per step `time`, `iterations`, `residual`. Else per iteration (0 is the start) `residual`,
+        the norm that the method uses, and `log10_residual`, relative to the first one. Of composite data also `block`.
+    converged, reason, iterations: whether the method converged, and the stopping criterion that ended it.
+    unknowns: number of unknowns.
+    assembly_seconds, setup_seconds, solve_seconds: times of the assembly, of the set-up of the preconditioner or
+        factorization, and of the solution.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("solution", "gradient")
     mesh: vtkDataObject
-    #: The solution per point, n; of elasticity the displacement, n x 3.
     solution: np.ndarray
-    #: Per cell the gradient, m x 3; of elasticity the stress, m x 6 (xx yy zz xy yz xz). Empty if not computed.
     gradient: np.ndarray
-    #: The times of the steps and the solution at each of them, (steps + 1) x n or x n x 3; None of stationary problems,
-    #: and the solutions also unless asked for.
     times: np.ndarray | None
     series: np.ndarray | None
-    #: With time steps, per step `time`, `iterations`, `residual`. Else per iteration (0 is the start) `residual`, the
-    #: norm that the method uses, and `log10_residual`, relative to the first one. Of composite data also `block`.
     history: dict[str, Any]
-    #: Whether the method converged, and the stopping criterion that ended it.
     converged: bool
     reason: str
     iterations: int
-    #: Number of unknowns.
     unknowns: int
-    #: Times of the assembly, of the set-up of the preconditioner or factorization, and of the solution.
     assembly_seconds: float
     setup_seconds: float
     solve_seconds: float
-    #: The result in words.
     summary: str
 
 
-@dataclass(frozen=True)
-class ConditionResult:
-    """The result of condition()."""
+@dataclass(frozen=True, repr=False, eq=False)
+class ConditionResult(Result):
+    """The result of condition().
 
-    #: The mesh with the cell arrays `LargestEigenvalue`, `Excess` (its log10 over the geometric mean) and `Share`.
+    mesh: the mesh with the cell arrays `LargestEigenvalue`, `Excess` (its log10 over the geometric mean) and `Share`.
+    condition, preconditioned_condition: condition numbers of A and of P^-1 A, of composite data the largest; nan where
+        they are unknown.
+    spectrum: A row (dict) for A and one for P^-1 A: matrix, smallest, largest, condition, smallest_error, largest_error
+        (relative bounds; nan: unknown), converged, iterations, seconds, method, message; of composite data also block.
+    largest_eigenvalue, share: per cell, m: the largest eigenvalue of its matrix, and its share of the largest
+        eigenvalue of A; the shares add up to 1. `share` is empty if not computed, for lack of time, too.
+    unknowns: number of unknowns.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("largest_eigenvalue", "share")
     mesh: vtkDataObject
-    #: Condition numbers of A and of P^-1 A, of composite data the largest; nan where they are unknown.
     condition: float
     preconditioned_condition: float
-    #: A row (dict) for A and one for P^-1 A: matrix, smallest, largest, condition, smallest_error, largest_error
-    #: (relative bounds; nan: unknown), converged, iterations, seconds, method, message; of composite data also block.
     spectrum: list[dict[str, Any]]
-    #: Per cell, m: the largest eigenvalue of its matrix, and its share of the largest eigenvalue of A; the shares add
-    #: up to 1. `share` is empty if not computed, for lack of time, too.
     largest_eigenvalue: np.ndarray
     share: np.ndarray
-    #: Number of unknowns.
     unknowns: int
-    #: The result in words.
     summary: str
 
 
-@dataclass(frozen=True)
-class SolverStudyResult:
-    """The result of solver_study()."""
+@dataclass(frozen=True, repr=False, eq=False)
+class SolverStudyResult(Result):
+    """The result of solver_study().
 
-    #: A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it failed),
-    #: result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds, cpu_seconds
-    #: (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual, converged, reason; of
-    #: composite data also block.
+    rows: A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it
+        failed), result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds,
+        cpu_seconds (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual,
+        converged, reason; of composite data also block.
+    recommended, why: the name of the recommended combination and the reason for it; "" if none converged or the times
+        of the fastest do not differ by more than a tenth or a millisecond.
+    unknowns: number of unknowns.
+    summary: the result in words.
+    """
+
     rows: list[dict[str, Any]]
-    #: The name of the recommended combination and the reason for it; "" if none converged or the times of the fastest
-    #: do not differ by more than a tenth or a millisecond.
     recommended: str
     why: str
-    #: Number of unknowns.
     unknowns: int
-    #: The result in words.
     summary: str
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, ClassVar, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -14,19 +14,23 @@ from ._arguments import pick, set_threads, set_time_limit, within
 from ._arrays import point_array
 from ._errors import Error, interruptible, run
 from ._metrics import Metrics, choose
+from ._results import Result
 
 CELLS = ("triangle", "tetrahedron")
 
 
-@dataclass(frozen=True)
-class MetricFieldResult:
-    """The result of metric_field(). The arrays have the axes [z, y, x]; of a triangle [y, x]."""
+@dataclass(frozen=True, repr=False, eq=False)
+class MetricFieldResult(Result):
+    """The result of metric_field(). The arrays have the axes [z, y, x]; of a triangle [y, x].
 
-    #: An image with a point array per metric and `Validity`.
+    mesh: an image with a point array per metric and `Validity`.
+    values: per metric its value with the free vertex at each grid point.
+    validity: with the free vertex at each grid point: 1 valid, 0 degenerate, -1 inverted.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("values", "validity")
     mesh: vtkImageData
-    #: Per metric its value with the free vertex at each grid point.
     values: dict[str, np.ndarray]
-    #: With the free vertex at each grid point: 1 valid, 0 degenerate, -1 inverted.
     validity: np.ndarray
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, Iterable, Sequence, Union
+from typing import Any, ClassVar, Iterable, Sequence, Union
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -25,6 +25,7 @@ from ._arguments import (
 from ._arrays import ANY, CELLS, POINTS, InputArrays, cell_array, columns, history_of, point_array, snake, table_rows
 from ._errors import Error, interruptible, run, watch
 from ._io import Mesh, as_mesh
+from ._results import Result
 
 PRESETS = (
     "custom",
@@ -73,35 +74,39 @@ _SIZE, _TENSOR, _FIXED, _LIMITS, _WEIGHTS, _KINDS, _REGIONS = range(7)  # input 
 Objective = Union[str, "tuple[str, dict[str, Any]]"]
 
 
-@dataclass(frozen=True)
-class OptimizeResult:
-    """The result of optimize(). Of composite data, numbers are of all blocks; the reason is that of the last one."""
+@dataclass(frozen=True, repr=False, eq=False)
+class OptimizeResult(Result):
+    """The result of optimize(). Of composite data, numbers are of all blocks; the reason is that of the last one.
 
-    #: The mesh with the new points, `Displacement`, `Validity`, and per metric its value after (`imr`) and before
-    #: (`imr_before`).
+    mesh: the mesh with the new points, `Displacement`, `Validity`, and per metric its value after (`imr`) and before
+        (`imr_before`).
+    history: per iteration (0 is the input): iteration, objective, <metric>_mean, <metric>_worst, of several objectives
+        also <metric>_objective; inverted, gradient_norm, moving, seconds; of composite data also block.
+    statistics: per metric: label, and with the suffixes _before and _after: minimum, mean, maximum, rms,
+        standard_deviation, worst, outside_acceptable, inverted, degenerate. Of composite data the keys are "block n
+        metric".
+    reason: the stopping criterion that ended the run.
+    inverted_before, inverted, iterations: number of inverted or degenerate elements before and after.
+    free: number of points that were free to move.
+    displacement: new minus old position, n x 3.
+    validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
+    surface_error: largest distance of the elements of a surface in space (of the boundary, where its points slide) from
+        the facets of the input or of the geometry, in the mesh's unit.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("displacement", "validity")
     mesh: vtkDataObject
-    #: Per iteration (0 is the input): iteration, objective, <metric>_mean, <metric>_worst, of several objectives also
-    #: <metric>_objective; inverted, gradient_norm, moving, seconds; of composite data also block.
     history: dict[str, Any]
-    #: Per metric: label, and with the suffixes _before and _after: minimum, mean, maximum, rms, standard_deviation,
-    #: worst, outside_acceptable, inverted, degenerate. Of composite data the keys are "block n metric".
     statistics: dict[str, dict[str, Any]]
-    #: The stopping criterion that ended the run.
     reason: str
-    #: Number of inverted or degenerate elements before and after.
     inverted_before: int
     inverted: int
     iterations: int
-    #: Number of points that were free to move.
     free: int
-    #: New minus old position, n x 3.
     displacement: np.ndarray
-    #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Largest distance of the elements of a surface in space (of the boundary, where its points slide) from the
-    #: facets of the input or of the geometry, in the mesh's unit.
     surface_error: float
-    #: The result in words.
     summary: str
 
 

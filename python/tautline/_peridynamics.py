@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, ClassVar, Sequence
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -15,6 +15,7 @@ from ._arguments import pick, set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, columns, snake
 from ._errors import Error, interruptible, run
 from ._io import Mesh, as_mesh
+from ._results import Result
 
 BASES = ("constant", "linear", "discontinuous linear")
 KERNELS = ("power", "constant", "gaussian", "conical", "table")
@@ -26,37 +27,43 @@ _DEFAULT_REGION = "Reference"  # the filter's default
 _MAX_PIXELS = 4096
 
 
-@dataclass(frozen=True)
-class PeridynamicsResult:
-    """The result of peridynamics()."""
+@dataclass(frozen=True, repr=False, eq=False)
+class PeridynamicsResult(Result):
+    """The result of peridynamics().
 
-    #: The mesh with `Unknown`, `Neighbors`, `RowSum`, `Diagonal`, the extreme eigenvectors and `Solution`, on the
-    #: points (linear basis) or the cells.
+    mesh: the mesh with `Unknown`, `Neighbors`, `RowSum`, `Diagonal`, the extreme eigenvectors and `Solution`, on the
+        points (linear basis) or the cells.
+    condition: largest over smallest eigenvalue; nan where the matrix is not positive definite or no spectrum was
+        computed.
+    smallest, largest, smallest_bound, largest_bound: the extreme eigenvalues and their absolute error bounds.
+    definite, converged: whether the smallest eigenvalue is positive beyond its bound, and whether both bounds are
+        within the tolerance.
+    rows, nonzeros: number of unknowns, and of nonzero entries of the matrix.
+    asymmetry: of the dissertation's discretization: norm of the skew-symmetric part, which is dropped, over that of the
+        matrix.
+    layer_deficit: horizon minus width of the interaction layer, where the layer is narrower; else 0.
+    statistics: all columns of the table `Spectrum` by name in snake case.
+    solution: the solution per point (linear basis) or cell, elastic with 3 components; None if not computed.
+    sparsity: number of entries of the matrix per pixel, with the first row on top; None if not computed.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("solution", "sparsity")
     mesh: vtkDataSet
-    #: Largest over smallest eigenvalue; nan where the matrix is not positive definite or no spectrum was computed.
     condition: float
-    #: The extreme eigenvalues and their absolute error bounds.
     smallest: float
     largest: float
     smallest_bound: float
     largest_bound: float
-    #: Whether the smallest eigenvalue is positive beyond its bound, and whether both bounds are within the tolerance.
     definite: bool
     converged: bool
-    #: Number of unknowns, and of nonzero entries of the matrix.
     rows: int
     nonzeros: int
-    #: Of the dissertation's discretization: norm of the skew-symmetric part, which is dropped, over that of the matrix.
     asymmetry: float
-    #: Horizon minus width of the interaction layer, where the layer is narrower; else 0.
     layer_deficit: float
-    #: All columns of the table `Spectrum` by name in snake case.
     statistics: dict[str, Any]
-    #: The solution per point (linear basis) or cell, elastic with 3 components; None if not computed.
     solution: np.ndarray | None
-    #: Number of entries of the matrix per pixel, with the first row on top; None if not computed.
     sparsity: np.ndarray | None
-    #: The result in words.
     summary: str
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, ClassVar, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -14,29 +14,34 @@ from ._arguments import set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, point_array
 from ._errors import Error, interruptible, run
 from ._io import Mesh, as_mesh
+from ._results import Result
 
 _FIXED = 0  # input array of vtkMeshPerturbation
 _SEEDS = 2**31
 
 
-@dataclass(frozen=True)
-class PerturbResult:
-    """The result of perturb(). Of composite data, the numbers are those of all blocks."""
+@dataclass(frozen=True, repr=False, eq=False)
+class PerturbResult(Result):
+    """The result of perturb(). Of composite data, the numbers are those of all blocks.
 
-    #: The mesh with the new points and the point array `Displacement`; shares the rest with the input.
+    mesh: the mesh with the new points and the point array `Displacement`; shares the rest with the input.
+    displacement: new minus old position, n x 3.
+    movable, moved: number of interior points that were free to move, and of those that moved.
+    inverted_before, inverted, tangled: number of inverted elements before and after, and the latter as a fraction of
+        all elements.
+    largest_displacement: the largest displacement, in the mesh's unit.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("displacement",)
     mesh: vtkDataObject
-    #: New minus old position, n x 3.
     displacement: np.ndarray
-    #: Number of interior points that were free to move, and of those that moved.
     movable: int
     moved: int
-    #: Number of inverted elements before and after, and the latter as a fraction of all elements.
     inverted_before: int
     inverted: int
     tangled: float
-    #: The largest displacement, in the mesh's unit.
     largest_displacement: float
-    #: The result in words.
     summary: str
 
 

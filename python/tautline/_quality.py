@@ -8,7 +8,7 @@ import sys
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, Sequence
+from typing import Any, ClassVar, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
@@ -17,10 +17,11 @@ from . import _commands, _vtk
 from ._arguments import COMBINATIONS, TARGETS, pick, set_threads, set_time_limit, within
 from ._arrays import InputArrays, cell_array, columns, point_array, snake
 from ._errors import Error, checked, interruptible, run, unknown
-from ._files import file_name
+from ._files import file_name, replace_text
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose, metrics as known_metrics
 from ._html import html_report
+from ._results import Result
 from ._tables import quality_json, quality_rows, quality_text
 
 REVERSED = ("measure as given", "measure flipped", "flip output")
@@ -33,48 +34,63 @@ _NOT_NUMBERS = ("Metric", "WorstCells", "WorstPositions")  # columns of the stat
 _MAX_WORST = 10  # elements listed per metric
 
 
-@dataclass(frozen=True)
-class QualityResult:
-    """The result of quality(). Dicts are by the names of the metrics, in the order in which they were given."""
+@dataclass(frozen=True, repr=False, eq=False)
+class QualityResult(Result):
+    """The result of quality(). Dicts are by the names of the metrics, in the order in which they were given.
 
-    #: The mesh with a cell array per metric and `Validity`; shares the other arrays with the input.
+    mesh: the mesh with a cell array per metric and `Validity`; shares the other arrays with the input.
+    values: per metric its value on each cell, m; of composite data the blocks concatenated. 0 where it is not defined.
+    validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
+    statistics: per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to
+        quantile_99, worst (nan if nothing was measured), outside_acceptable, acceptable_low, acceptable_high, inverted,
+        degenerate, not_measured, non_finite. All are over the measured elements: the valid and the inverted ones on
+        which the metric is defined. The worst value is that of an inverted element if there are any, else the maximum
+        or minimum, by the direction of the metric. Of the k elements to repair first, at most ten: worst_cells (k),
+        worst_values (k), worst_positions (k x 3); inverted elements come first, then degenerate ones, then the worst of
+        the others.
+    distribution: per metric the histogram of the measured elements: value (centers of the bins) and count.
+    histogram: per metric the histogram over its acceptable range: from, to and count; the first row has the elements
+        below the range, the last row those above it.
+    angles: angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
+    worst: A point at the center of each of the worst elements, with the arrays Metric, Rank, CellId, Value, Validity.
+    inverted, degenerate: number of inverted elements, and of elements without area or volume.
+    verdict: by the criteria, if any were given: "passed", "warning", "failed", or "none" if no element could be graded.
+    index, indices: quality index of the mesh, 0 (ideal) to 1 (worst), and of each cell, m; None without criteria.
+    grades: grade of each cell, m: 0 passed, 1 warning, 2 failed, -1 none; None without criteria.
+    criteria: per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
+    notice: A note on the mesh (reversed orientation, cells left out), or "".
+    summary: the result in a few lines.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("values", "validity", "indices", "grades")
     mesh: vtkDataObject
-    #: Per metric its value on each cell, m; of composite data the blocks concatenated. 0 where it is not defined.
     values: dict[str, np.ndarray]
-    #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to quantile_99, worst
-    #: (nan if nothing was measured), outside_acceptable, acceptable_low, acceptable_high, inverted, degenerate,
-    #: not_measured, non_finite. All are over the measured elements: the valid and the inverted ones on which the metric
-    #: is defined. The worst value is that of an inverted element if there are any, else the maximum or minimum, by the
-    #: direction of the metric. Of the k elements to repair first, at most ten: worst_cells (k), worst_values (k),
-    #: worst_positions (k x 3); inverted elements come first, then degenerate ones, then the worst of the others.
     statistics: dict[str, dict[str, Any]]
-    #: Per metric the histogram of the measured elements: value (centers of the bins) and count.
     distribution: dict[str, dict[str, np.ndarray]]
-    #: Per metric the histogram over its acceptable range: from, to and count; the first row has the elements below the
-    #: range, the last row those above it.
     histogram: dict[str, dict[str, np.ndarray]]
-    #: Angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
     angles: dict[str, np.ndarray]
-    #: A point at the center of each of the worst elements, with the arrays Metric, Rank, CellId, Value, Validity.
     worst: vtkPolyData
-    #: Number of inverted elements, and of elements without area or volume.
     inverted: int
     degenerate: int
-    #: By the criteria, if any were given: "passed", "warning", "failed", or "none" if no element could be graded.
     verdict: str | None
-    #: Quality index of the mesh, 0 (ideal) to 1 (worst), and of each cell, m; None without criteria.
     index: float | None
     indices: np.ndarray | None
-    #: Grade of each cell, m: 0 passed, 1 warning, 2 failed, -1 none; None without criteria.
     grades: np.ndarray | None
-    #: Per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
     criteria: dict[str, dict[str, Any]]
-    #: A note on the mesh (reversed orientation, cells left out), or "".
     notice: str
-    #: The result in a few lines.
     summary: str
+
+    def table(self) -> list[dict[str, Any]]:
+        """A row per metric: what --csv writes."""
+        return quality_rows(self)
+
+    def to_json(self, file: str | PathLike[str] | None = None) -> str:
+        """Counts, statistics, histogram and, by the criteria, verdict, index and counts, as JSON; see Result."""
+        text = quality_json(self)
+        if file is not None:
+            replace_text(file, text + "\n")
+        return text
 
 
 @interruptible

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, ClassVar, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -14,6 +14,7 @@ from ._arguments import check_options, flag_option, pick, set_options, set_threa
 from ._arrays import CELLS, POINTS, InputArrays, cell_array, columns, table_rows
 from ._errors import Error, interruptible, run
 from ._io import Mesh, as_mesh
+from ._results import Result
 
 #: In the filter's numbering.
 PRESETS = ("custom", "remove slivers", "swap only", "swap and smooth", "aggressive")
@@ -27,37 +28,40 @@ _MAX_FEATURE_ANGLE, _MAX_SURFACE_ANGLE = 180.0, 90.0
 _OPERATIONS = {name: flag_option("Set" + name.title()) for name in ("swap", "smooth", "contract", "insert", "compound")}
 
 
-@dataclass(frozen=True)
-class ImproveResult:
-    """The result of improve(). Of composite data, numbers are of all blocks."""
+@dataclass(frozen=True, repr=False, eq=False)
+class ImproveResult(Result):
+    """The result of improve(). Of composite data, numbers are of all blocks.
 
-    #: The new mesh with the data of the input, `OriginalCellId`, `min_angle` and `imr`.
+    mesh: the new mesh with the data of the input, `OriginalCellId`, `min_angle` and `imr`.
+    history: per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals
+        (of triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite
+        data also block.
+    remaining: the elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z,
+        quality (of the objective; of triangles the sine of the smallest angle), quality_bound (what facets or angles on
+        the boundary and between regions allow), reason; of composite data also block. Empty if there are none.
+    original_cell: per cell the cell of the input that it has its data from, m.
+    min_angle, imr: per cell, m: smallest angle in degrees (of tetrahedra dihedral), inverse mean ratio.
+    elements_before, elements: number of elements before and after.
+    smallest_angle_before, smallest_angle: smallest angle in degrees before and after.
+    worst_before, worst: worst inverse mean ratio before and after.
+    reason: the stopping criterion that ended the run.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("original_cell", "min_angle", "imr")
     mesh: vtkDataObject
-    #: Per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals
-    #: (of triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite data
-    #: also block.
     history: dict[str, Any]
-    #: The elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, quality (of
-    #: the objective; of triangles the sine of the smallest angle), quality_bound (what facets or angles on the boundary
-    #: and between regions allow), reason; of composite data also block. Empty if there are none.
     remaining: dict[str, Any]
-    #: Per cell the cell of the input that it has its data from, m.
     original_cell: np.ndarray
-    #: Per cell, m: smallest angle in degrees (of tetrahedra dihedral), inverse mean ratio.
     min_angle: np.ndarray
     imr: np.ndarray
-    #: Number of elements before and after.
     elements_before: int
     elements: int
-    #: Smallest angle in degrees before and after.
     smallest_angle_before: float
     smallest_angle: float
-    #: Worst inverse mean ratio before and after.
     worst_before: float
     worst: float
-    #: The stopping criterion that ended the run.
     reason: str
-    #: The result in words.
     summary: str
 
 

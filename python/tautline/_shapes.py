@@ -6,7 +6,7 @@ import argparse
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any, Iterable
+from typing import Any, ClassVar, Iterable
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -27,6 +27,7 @@ from ._arguments import check_options, number, pick, set_time_limit
 from ._arrays import cell_array, columns, point_array, table_rows
 from ._errors import Error, interruptible, run, watch
 from ._files import check_input, check_target, file_name, replace_bytes
+from ._results import Result
 
 FOREGROUNDS = ("automatic", "bright", "dark")
 LOCATIONS = ("grid", "near grid", "contour")
@@ -71,21 +72,25 @@ def as_image(image: Any) -> vtkImageData:
     return made
 
 
-@dataclass(frozen=True)
-class SilhouetteResult:
-    """The result of silhouette()."""
+@dataclass(frozen=True, repr=False, eq=False)
+class SilhouetteResult(Result):
+    """The result of silhouette().
 
-    #: The triangulated polygon, with `BoundaryOrder`, `EliminationOrder` and `EliminationStep`.
+    mesh: the triangulated polygon, with `BoundaryOrder`, `EliminationOrder` and `EliminationStep`.
+    outline: the traced outline.
+    centre, max_distance: center of mass of the area inside the outline, 3, and the largest distance of the outline from
+        it, pixels.
+    components, holes: number of components of the foreground, of which the largest is taken, and of its holes, which
+        are ignored.
+    summary: the result in words.
+    """
+
     mesh: vtkUnstructuredGrid
-    #: The traced outline.
     outline: vtkPolyData
-    #: Center of mass of the area inside the outline, 3, and the largest distance of the outline from it, pixels.
     centre: np.ndarray
     max_distance: float
-    #: Number of components of the foreground, of which the largest is taken, and of its holes, which are ignored.
     components: int
     holes: int
-    #: The result in words.
     summary: str
 
 
@@ -135,24 +140,28 @@ def silhouette(
     )
 
 
-@dataclass(frozen=True)
-class MatchResult:
-    """The result of match()."""
+@dataclass(frozen=True, repr=False, eq=False)
+class MatchResult(Result):
+    """The result of match().
 
-    #: The triangles of the source in the target, with `Displacement` and, per triangle, the terms of the energy.
+    mesh: the triangles of the source in the target, with `Displacement` and, per triangle, the terms of the energy.
+    points, displacement: positions of the vertices in the target, n x 3, and these minus their positions in the source,
+        n x 3.
+    energy, statistics: the least energy, and all columns of the filter's table by name (see vtkShapeMatcher).
+    triangles: per triangle, m, without weights: edge_cost, deformation, distortion; and their weighted sum, energy.
+    rank, exact: rank of the solution by its energy (1: the least), and whether no placement of the vertices is better.
+    summary: the result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("points", "displacement", "triangles")
     mesh: vtkUnstructuredGrid
-    #: Positions of the vertices in the target, n x 3, and these minus their positions in the source, n x 3.
     points: np.ndarray
     displacement: np.ndarray
-    #: The least energy, and all columns of the filter's table by name (see vtkShapeMatcher).
     energy: float
     statistics: dict[str, float]
-    #: Per triangle, m, without weights: edge_cost, deformation, distortion; and their weighted sum, energy.
     triangles: dict[str, np.ndarray]
-    #: Rank of the solution by its energy (1: the least), and whether no placement of the vertices is better.
     rank: int
     exact: bool
-    #: The result in words.
     summary: str
 
 
@@ -224,30 +233,33 @@ def match(
     )
 
 
-@dataclass(frozen=True)
-class RetrievalResult:
-    """The result of retrieval()."""
+@dataclass(frozen=True, repr=False, eq=False)
+class RetrievalResult(Result):
+    """The result of retrieval().
 
-    #: Names and classes of the n shapes.
+    names, labels: names and classes of the n shapes.
+    distances: distance of each query (row) to each target (column), n x n; -1 where the run ended before.
+    ranking: per query the numbers of the other shapes, the nearest first, n x (n - 1).
+    rate, correct_at: percentage of the best matches that have the class of the query, and per rank the number of
+        queries for which the match has their class.
+    classes, confusion: percentage of the best matches of each class (row) that have each class (column), in the order
+        of `classes`.
+    tables: the filter's tables by name: Distances, Ranking, Statistics, Confusion.
+    sheet: a picture of each query, in a grey frame, with its best matches (at most 10), in a green frame if they are of
+        its class, in a red one if not: size x size x 3 bytes, the top row first. save_sheet() writes it.
+    summary: the result in words.
+    """
+
     names: list[str]
     labels: list[str]
-    #: Distance of each query (row) to each target (column), n x n; -1 where the run ended before.
     distances: np.ndarray
-    #: Per query the numbers of the other shapes, the nearest first, n x (n - 1).
     ranking: np.ndarray
-    #: Percentage of the best matches that have the class of the query, and per rank the number of queries for which the
-    #: match has their class.
     rate: float
     correct_at: np.ndarray
-    #: Percentage of the best matches of each class (row) that have each class (column), in the order of `classes`.
     classes: list[str]
     confusion: np.ndarray
-    #: The filter's tables by name: Distances, Ranking, Statistics, Confusion.
     tables: dict[str, vtkTable]
-    #: A picture of each query, in a grey frame, with its best matches (at most 10), in a green frame if they are of its
-    #: class, in a red one if not: size x size x 3 bytes, the top row first. save_sheet() writes it.
     sheet: np.ndarray
-    #: The result in words.
     summary: str
 
     def save_sheet(self, file: str | PathLike) -> None:

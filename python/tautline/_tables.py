@@ -138,6 +138,11 @@ def metrics_markdown(facts: list[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
+def json_text(facts: Any) -> str:
+    """Facts as JSON; numbers that are not finite, which it does not have, are texts."""
+    return json.dumps(finite(facts), indent=2)
+
+
 def finite(value: Any) -> Any:
     """The value with numbers that are not finite, which JSON does not have, as text."""
     if isinstance(value, dict):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, ClassVar, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -14,35 +14,40 @@ from ._arguments import pick, set_threads, set_time_limit
 from ._arrays import POINTS, InputArrays, cell_array, history_of, point_array, table_rows
 from ._errors import interruptible, run
 from ._io import Mesh, as_mesh
+from ._results import Result
 
 METHODS = ("automatic", "simultaneous")
 EFFORTS = ("local", "normal", "thorough")
 _FIXED = 0  # input array of vtkMeshUntangler
 
 
-@dataclass(frozen=True)
-class UntangleResult:
-    """The result of untangle(). Of composite data, numbers are of all blocks."""
+@dataclass(frozen=True, repr=False, eq=False)
+class UntangleResult(Result):
+    """The result of untangle(). Of composite data, numbers are of all blocks.
 
-    #: The mesh with the new points, `Displacement`, `Validity` and `Obstacle`.
+    mesh: the mesh with the new points, `Displacement`, `Validity` and `Obstacle`.
+    history: per iteration (0 is the input): iteration, objective (the energy), inverted, gradient_norm, moving,
+        seconds; of composite data also block.
+    validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
+    obstacle: per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no
+        position between the fixed points around makes it valid, 4 a fixed point is not finite.
+    inverted_before, inverted, impossible: number of inverted or degenerate elements before and after, and of those that
+        fixed points make infeasible.
+    reason: the stopping criterion that ended the run.
+    displacement: new minus old position, n x 3.
+    summary: the result in words: which elements remain invalid, where and why.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("validity", "obstacle", "displacement")
     mesh: vtkDataObject
-    #: Per iteration (0 is the input): iteration, objective (the energy), inverted, gradient_norm, moving, seconds; of
-    #: composite data also block.
     history: dict[str, Any]
-    #: Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     validity: np.ndarray
-    #: Per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no
-    #: position between the fixed points around makes it valid, 4 a fixed point is not finite.
     obstacle: np.ndarray
-    #: Number of inverted or degenerate elements before and after, and of those that fixed points make infeasible.
     inverted_before: int
     inverted: int
     impossible: int
-    #: The stopping criterion that ended the run.
     reason: str
-    #: New minus old position, n x 3.
     displacement: np.ndarray
-    #: The result in words: which elements remain invalid, where and why.
     summary: str
 
 

@@ -1,0 +1,281 @@
+"""The base of all results: printing, copies, pickle, comparison, tables."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import fields
+from html import escape
+from os import PathLike
+from textwrap import shorten
+from typing import Any, ClassVar
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkCharArray
+from vtkmodules.vtkCommonDataModel import (
+    vtkCompositeDataSet,
+    vtkDataObject,
+    vtkDataSet,
+    vtkImageData,
+    vtkStructuredPoints,
+    vtkTable,
+)
+from vtkmodules.vtkParallelCore import vtkCommunicator
+
+from ._arrays import leaves, table_rows
+from ._errors import Error
+from ._files import file_name, replace_text
+from ._pictures import picture_html
+from ._tables import csv_text, json_text
+
+_MAX_WIDTH = 110  # characters of a line that is printed
+_SUMMARY_LINES = 3
+_TIMES = "seconds"  # the end of the names of measured times, which differ from run to run
+
+
+class Result:
+    """What a function returns. It prints in five lines, and in a notebook with a picture of the mesh.
+
+    copy.copy() shares meshes and arrays, copy.deepcopy() and pickle do not. Two results are equal if all their fields
+    are, apart from measured times and the summary.
+    """
+
+    #: Fields with an array per point or cell, which to_dict() leaves out.
+    _per_element: ClassVar[tuple[str, ...]] = ()
+
+    def __repr__(self) -> str:
+        lines = [type(self).__name__ + (f": {_size(data)}" if (data := getattr(self, "mesh", None)) else "")]
+        words = [line.strip() for line in str(getattr(self, "summary", "")).splitlines() if line.strip()]
+        lines += words[:_SUMMARY_LINES]
+        if len(words) > _SUMMARY_LINES:
+            lines[-1] += " ..."
+        lines.append("fields: " + ", ".join(field.name for field in _fields(self)))
+        return "\n".join(shorten(line, _MAX_WIDTH, placeholder=" ...") for line in lines)
+
+    def _repr_html_(self) -> str:
+        """For notebooks: a picture of the mesh beside the text."""
+        text = f"<pre>{escape(repr(self))}</pre>"
+        data = getattr(self, "mesh", None)
+        return text + (picture_html(data) if data else "")
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(
+            _equal(field.name, getattr(self, field.name), getattr(other, field.name))
+            for field in _fields(self)
+            if field.name != "summary"
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Result:
+        made = object.__new__(type(self))
+        made.__dict__.update({name: _deep(value, memo) for name, value in self.__dict__.items()})
+        return made
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: _pack(value) for name, value in self.__dict__.items()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update({name: _unpack(value) for name, value in state.items()})
+
+    def __copy__(self) -> Result:
+        made = object.__new__(type(self))
+        made.__dict__.update(self.__dict__)
+        return made
+
+    def table(self) -> list[dict[str, Any]]:
+        """The main table as a list of rows, each a dict: what --csv writes. Raises Error if there is none."""
+        for name in ("rows", "spectrum"):
+            if isinstance(found := getattr(self, name, None), list):
+                return found
+        if found := getattr(self, "history", None):
+            return table_rows(found)
+        raise Error(f"a {type(self).__name__} has no table")
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields as numbers, texts, lists and dicts, without meshes and arrays per point or cell."""
+        names = [field.name for field in _fields(self) if field.name not in self._per_element]
+        values = {name: getattr(self, name) for name in names}
+        return {name: _plain(value) for name, value in values.items() if not isinstance(value, vtkDataObject)}
+
+    def to_json(self, file: str | PathLike[str] | None = None) -> str:
+        """to_dict() as JSON; `file`, if given, is replaced by it. Numbers that are not finite are texts."""
+        text = json_text(self.to_dict())
+        if file is not None:
+            replace_text(file, text + "\n")
+        return text
+
+    def to_csv(self, file: str | PathLike[str]) -> None:
+        """Replace a file by the table() as CSV, with numbers in full precision."""
+        replace_text(file_name(file), csv_text(self.table()))
+
+    def to_pandas(self) -> Any:
+        """The table() as a DataFrame of pandas. Raises Error if pandas is not installed."""
+        try:
+            import pandas
+        except ImportError:
+            raise Error("pandas is not installed (Debian: apt-get install python3-pandas)") from None
+        return pandas.DataFrame(self.table())
+
+
+class _Packed:
+    """A VTK data object as bytes, for pickle."""
+
+    def __init__(self, data: vtkDataObject) -> None:
+        buffer = vtkCharArray()
+        if not vtkCommunicator.MarshalDataObject(data, buffer):
+            raise Error(f"a {data.GetClassName()} cannot be written to bytes")
+        self.content = bytes(memoryview(buffer))
+        # The bytes have these rounded to six digits.
+        self.grids = [(leaf.GetOrigin(), leaf.GetSpacing()) for leaf in _images(data)]
+
+    def data(self) -> vtkDataObject:
+        """The object again."""
+        buffer = vtkCharArray()
+        buffer.SetNumberOfValues(len(self.content))
+        memoryview(buffer).cast("B")[:] = self.content
+        data = vtkCommunicator.UnMarshalDataObject(buffer)
+        if isinstance(data, vtkStructuredPoints):  # which VTK makes of images
+            image = vtkImageData()
+            image.ShallowCopy(data)
+            data = image
+        for image, (origin, spacing) in zip(_images(data), self.grids):
+            image.SetOrigin(origin)
+            image.SetSpacing(spacing)
+        return data
+
+
+def _images(data: vtkDataObject) -> list[vtkImageData]:
+    return [] if isinstance(data, vtkTable) else [leaf for leaf in leaves(data) if isinstance(leaf, vtkImageData)]
+
+
+def _fields(result: Any) -> tuple[Any, ...]:
+    return fields(result)  # of the dataclass that is derived from Result
+
+
+def _size(data: vtkDataObject) -> str:
+    if isinstance(data, (vtkDataSet, vtkCompositeDataSet)):
+        return f"{data.GetClassName()}, {data.GetNumberOfPoints()} points, {data.GetNumberOfCells()} cells"
+    return str(data.GetClassName())
+
+
+def _map(value: Any, function: Any) -> Any:
+    """A function on the values in dicts, lists and tuples."""
+    if isinstance(value, dict):
+        return {key: function(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return type(value)(function(inner) for inner in value)
+    return None
+
+
+def _pack(value: Any) -> Any:
+    if isinstance(value, vtkDataObject):
+        return _Packed(value)
+    inner = _map(value, _pack)
+    return np.array(value) if isinstance(value, np.ndarray) else value if inner is None else inner
+
+
+def _unpack(value: Any) -> Any:
+    if isinstance(value, _Packed):
+        return value.data()
+    inner = _map(value, _unpack)
+    return value if inner is None else inner
+
+
+def _deep(value: Any, memo: dict[int, Any]) -> Any:
+    if isinstance(value, vtkDataObject):
+        made = value.NewInstance()
+        made.DeepCopy(value)
+        return made
+    inner = _map(value, lambda part: _deep(part, memo))
+    return copy.deepcopy(value, memo) if inner is None else inner
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(inner) for key, inner in value.items() if not isinstance(inner, vtkDataObject)}
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    return [_plain(inner) for inner in value] if isinstance(value, (list, tuple)) else value
+
+
+def _equal(name: str, one: Any, other: Any) -> bool:
+    if name.endswith(_TIMES):
+        return True
+    if isinstance(one, vtkDataObject):
+        return isinstance(other, vtkDataObject) and _same_data(one, other)
+    if isinstance(one, dict):
+        same = isinstance(other, dict) and list(one) == list(other)
+        return same and all(_equal(str(key), one[key], other[key]) for key in one)
+    if isinstance(one, (list, tuple)):
+        same = type(one) is type(other) and len(one) == len(other)
+        return same and all(_equal("", *pair) for pair in zip(one, other))
+    return _same_values(one, other)
+
+
+def _same_values(one: Any, other: Any) -> bool:
+    a, b = np.asarray(one), np.asarray(other)
+    if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
+        return False
+    return bool(np.array_equal(a, b, equal_nan=a.dtype.kind == "f"))
+
+
+def _same_data(one: vtkDataObject, other: vtkDataObject) -> bool:
+    """Whether two data objects are of one class and have the same points, cells and arrays."""
+    if one.GetClassName() != other.GetClassName():
+        return False
+    if isinstance(one, vtkTable):
+        return _same_arrays(one.GetRowData(), other.GetRowData())
+    parts, others = list(leaves(one)), list(leaves(other))
+    return len(parts) == len(others) and all(map(_same_leaf, parts, others))
+
+
+def _same_leaf(one: vtkDataSet, other: vtkDataSet) -> bool:
+    return (
+        one.GetClassName() == other.GetClassName()
+        and _grid_facts(one) == _grid_facts(other)
+        and all(_same_values(a, b) for a, b in zip(_geometry(one), _geometry(other)))
+        and _same_arrays(one.GetPointData(), other.GetPointData())
+        and _same_arrays(one.GetCellData(), other.GetCellData())
+    )
+
+
+def _grid_facts(data: vtkDataSet) -> list[Any]:
+    """Numbers of points and cells and, of an image, its grid."""
+    facts = [data.GetNumberOfPoints(), data.GetNumberOfCells()]
+    for name in ("GetExtent", "GetSpacing", "GetOrigin"):
+        facts += list(getattr(data, name)()) if hasattr(data, name) else []
+    return facts
+
+
+def _geometry(data: vtkDataSet) -> list[np.ndarray]:
+    """Coordinates, and types, offsets and corners of the cells."""
+    found = [_numbers(data.GetPoints().GetData())] if hasattr(data, "GetPoints") and data.GetPoints() else []
+    names = ("GetCells",) if hasattr(data, "GetCellTypesArray") else ("GetVerts", "GetLines", "GetPolys", "GetStrips")
+    for name in names:
+        cells = getattr(data, name)() if hasattr(data, name) else None
+        if cells:
+            found += [_numbers(cells.GetOffsetsArray()), _numbers(cells.GetConnectivityArray())]
+    if hasattr(data, "GetCellTypesArray") and data.GetCellTypesArray():
+        found.append(_numbers(data.GetCellTypesArray()))
+    return found
+
+
+def _numbers(array: Any) -> np.ndarray:
+    return np.asarray(vtk_to_numpy(array))
+
+
+def _same_arrays(one: Any, other: Any) -> bool:
+    names = [one.GetArrayName(i) for i in range(one.GetNumberOfArrays())]
+    if sorted(map(str, names)) != sorted(str(other.GetArrayName(i)) for i in range(other.GetNumberOfArrays())):
+        return False
+    pairs = [(str(name), one.GetAbstractArray(name), other.GetAbstractArray(name)) for name in names]
+    return all(_equal(name.split(" (")[0].replace("Time", _TIMES), _values(a), _values(b)) for name, a, b in pairs)
+
+
+def _values(array: Any) -> Any:
+    if array.IsA("vtkDataArray"):
+        return _numbers(array)
+    return [str(array.GetVariantValue(i)) for i in range(array.GetNumberOfValues())]
