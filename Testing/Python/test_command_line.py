@@ -11,7 +11,7 @@ MESH, PLATE = DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
 
 # help and usage
 text = run("--help")
-assert all(f"    {name} " in text for name in ("quality", "perturb", "compare", "field", "metrics")), text
+assert all(f"    {name} " in text for name in ("quality", "perturb", "compare", "metric-field", "metrics")), text
 assert "COMMAND" in run(code=2) and "invalid choice: 'paint'" in run("paint", code=2)
 assert "required: FILE" in run("quality", code=2)
 assert "invalid float value: 'x'" in run("perturb", PLATE, "-o", OUT / "cli.vtu", "--fraction", "x", code=2)

@@ -8,12 +8,19 @@ from importlib import import_module
 from pathlib import Path
 
 from . import _build, _vtk
-from ._commands import check_outputs
+from ._commands import EXIT_CODES, Parser, check_outputs, standard_input
 from ._errors import Error
+from ._interrupts import reporting
 
 
 #: Exit code after Ctrl-C, as of shells: 128 and the number of SIGINT.
 _INTERRUPTED = 130
+_EPILOG = """COMMAND --help explains a command, with an example. Names of methods and presets are found in any case. The file
+name - is a .vtu mesh from the standard input or to the standard output:
+  python3 -m tautline untangle part.vtu -o - | python3 -m tautline optimize - -o better.vtu
+On a terminal, commands that take long show a progress bar.
+
+"""
 
 
 def _program() -> str:
@@ -23,8 +30,11 @@ def _program() -> str:
 
 def _parser() -> argparse.ArgumentParser:
     """The commands of every capability that was built, and of the studies."""
-    parser = argparse.ArgumentParser(
-        prog=_program(), description="Measure, repair, deform and match meshes, and solve equations on them."
+    parser = Parser(
+        prog=_program(),
+        description="Measure, repair, deform and match meshes, and solve equations on them.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=_EPILOG + EXIT_CODES,
     )
     parser.add_argument("--version", action="version", version=f"tautline {_build.VERSION}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -33,7 +43,7 @@ def _parser() -> argparse.ArgumentParser:
     text = "regenerate tables and figures of the dissertation; `study list` lists the studies"
     study = commands.add_parser("study", add_help=False, help=text)
     study.add_argument("arguments", nargs=argparse.REMAINDER)
-    study.set_defaults(run=_run_study)
+    study.set_defaults(run=_run_study, quiet=False, json=False)
     return parser
 
 
@@ -50,7 +60,8 @@ def main(arguments: list[str] | None = None) -> int:
     _vtk.CLASSES["vtkUpdateGuard"].EndWithMessage()
     try:
         check_outputs(parsed)
-        return parsed.run(parsed) or 0
+        with standard_input(parsed), reporting(not parsed.quiet):
+            return parsed.run(parsed) or 0
     except Error as error:
         print(f"tautline: {error}", file=sys.stderr)
         return 1

@@ -2,29 +2,45 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Iterable, Mapping
+from typing import Any, Callable, Iterable, Literal, Mapping, Sequence, TypeVar, get_args
 
 import numpy as np
 
 from ._arrays import snake
 from ._errors import Error, unknown
+from ._names import find_name, nearest_name
 
 #: How the values at the corners of a cell are combined, in the filters' numbering.
-COMBINATIONS = ("mean", "worst", "power mean")
+Combination = Literal["mean", "worst", "power mean"]
+COMBINATIONS: tuple[Combination, ...] = get_args(Combination)
 #: What the target element is, in the filters' numbering.
-TARGETS = ("ideal", "reference", "size", "tensor")
+Target = Literal["ideal", "reference", "size", "tensor"]
+TARGETS: tuple[Target, ...] = get_args(Target)
+
+#: Preconditioners of linear systems, in the filters' numbering.
+Preconditioner = Literal["jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none"]
+PRECONDITIONERS: tuple[Preconditioner, ...] = get_args(Preconditioner)
 
 _MAX_THREADS = 1024
+
+Name = TypeVar("Name", bound=str)
 
 #: Sets an option of a filter from the value of a keyword.
 Setter = Callable[[Any, Any], None]
 
 
-def pick(option: str, value: str, allowed: tuple[str, ...]) -> int:
-    """The index of a value in the allowed ones. Raises Error, which lists them, if it is none of them."""
-    if value not in allowed:
-        raise Error(f"{option} is {value!r}; there are {', '.join(map(repr, allowed))}")
-    return allowed.index(value)
+def pick(option: str, value: Any, allowed: Sequence[str]) -> int:
+    """The index of a name, in any case, in the allowed ones. Raises Error, with the nearest one, if it is none of them."""
+    found = find_name(value, allowed)
+    if found is None:
+        listed = ", ".join(map(repr, allowed))
+        raise Error(f"{option} is {value!r}{nearest_name(value, allowed)}; there are {listed}")
+    return allowed.index(found)
+
+
+def picked(option: str, value: Any, allowed: Sequence[Name]) -> Name:
+    """The one of the allowed names that a value means; see pick()."""
+    return allowed[pick(option, value, allowed)]
 
 
 def within(option: str, value: float, low: float, high: float) -> float:

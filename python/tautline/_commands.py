@@ -1,25 +1,110 @@
-"""What the commands of the shell share: options, types of their values, output."""
+"""What the commands of the shell share: options, types of their values, input and output."""
 
 from __future__ import annotations
 
 import argparse
-from typing import Any, Callable, Iterable
+import os
+import shutil
+import sys
+from contextlib import contextmanager
+from tempfile import TemporaryDirectory
+from textwrap import fill
+from typing import Any, Callable, Iterable, Iterator, Mapping
 
-from ._files import check_stream_or_target, replace_text
-from ._io import check_output, write
-from ._tables import csv_text
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
+
+from ._errors import Error, run as update
+from ._files import check_stream_or_target, replace_bytes, replace_text
+from ._io import as_mesh, check_output, write
+from ._names import find_name, nearest_name
+from ._results import Result
+from ._tables import csv_text, json_text
 
 #: A command: runs with the parsed arguments; the exit code is 0 for None.
 Run = Callable[[argparse.Namespace], "int | None"]
 
+#: The file name that stands for the standard input or output.
+STREAM = "-"
+_HELP_WIDTH = 100
+#: Arguments that are meshes to read.
+_INPUTS = ("mesh", "input", "before", "after", "reference", "target", "geometry")
+_STANDARD_INPUT = "standard-input.vtu"
 
-def add_command(commands: Any, name: str, run: Run, text: str, *, threads: bool = True) -> argparse.ArgumentParser:
-    """Add a command to the subparsers `commands`; `text` is its help."""
-    parser = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+EXIT_CODES = """exit codes:
+  0    done
+  1    an error, whose cause is on stderr; or the aim was missed: elements remain inverted, a solver did not converge
+  2    wrong usage
+  3    the mesh fails the criteria (quality --criteria)
+  130  interrupted by Ctrl-C"""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose choices are found in any case, and whose messages name the nearest one."""
+
+    def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
+        value = super()._get_value(action, arg_string)  # type: ignore[misc]
+        names = _choices(action)
+        return find_name(value, names) or value if names else value
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        names = list(action.choices or ())
+        if action.choices is not None and value not in action.choices:
+            near = nearest_name(value, [name for name in names if isinstance(name, str)])
+            raise argparse.ArgumentError(
+                action, f"invalid choice: {value!r}{near} (choose from {', '.join(map(repr, names))})"
+            )
+
+
+def _choices(action: argparse.Action) -> list[str]:
+    """The names an option has to be chosen from; none of the commands."""
+    if action.choices is None or isinstance(action, argparse._SubParsersAction):
+        return []
+    return [name for name in action.choices if isinstance(name, str)]
+
+
+def add_command(
+    commands: Any,
+    name: str,
+    run: Run,
+    text: str,
+    *,
+    example: str,
+    details: str = "",
+    threads: bool = True,
+    aliases: Iterable[str] = (),
+) -> argparse.ArgumentParser:
+    """Add a command to the subparsers `commands`.
+
+    text: its help. details: further sentences of its description. example: the arguments of an example.
+    aliases: older names.
+    """
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name,
+        help=text,
+        description=f"{text[0].upper()}{text[1:]}. {details}".strip(),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        aliases=list(aliases),
+    )
+    parser.description = fill(parser.description or "", _HELP_WIDTH)
+    parser.epilog = f"example:\n  {parser.prog} {example}".rstrip() + "\n\nexit codes: see --help without a command"
     parser.set_defaults(run=run)
     if threads:
         parser.add_argument("--threads", type=int, default=0, help="number of threads; 0, the default, is all cores")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON, and nothing else")
+    parser.add_argument("-q", "--quiet", action="store_true", help="print errors only")
     return parser
+
+
+def add_mesh(parser: argparse.ArgumentParser) -> None:
+    """Add the mesh to read."""
+    parser.add_argument("mesh", metavar="FILE", help="mesh to read; - is a .vtu from the standard input")
+
+
+def add_output(parser: argparse.ArgumentParser, text: str = "mesh to write", required: bool = True) -> None:
+    """Add the option of the mesh to write."""
+    parser.add_argument("-o", "--output", metavar="FILE", required=required,
+                        help=f"{text}; its ending decides on the format, - is a .vtu to the standard output")  # fmt: skip
 
 
 def add_metrics(parser: argparse.ArgumentParser) -> None:
@@ -36,8 +121,14 @@ def add_time_limit(parser: argparse.ArgumentParser, default: float = 0.0) -> Non
 
 def add_merge_points(parser: argparse.ArgumentParser) -> None:
     """Add the option of the points at the same place."""
-    parser.add_argument("--merge-coincident-points", action=argparse.BooleanOptionalAction, default=True,
-                        help="whether points at the same place on matching facets are one")  # fmt: skip
+    add_flag(parser, "merge_coincident_points", "whether points at the same place on matching facets are one")
+
+
+def add_flag(parser: argparse.ArgumentParser, name: str, text: str, off: str | None = None) -> None:
+    """Add --name and --no-name for an argument that is True by default; `off` is an older name of the latter."""
+    parser.add_argument("--" + name.replace("_", "-"), action=argparse.BooleanOptionalAction, default=True, help=text)
+    if off:
+        parser.add_argument(off, action="store_false", dest=name, help=argparse.SUPPRESS)
 
 
 def _names(text: str) -> list[str]:
@@ -72,25 +163,94 @@ def counts(mesh: Any) -> str:
 
 def check_outputs(arguments: argparse.Namespace) -> None:
     """Raise Error if a file that the command is to write cannot be written, before it does anything else."""
-    if getattr(arguments, "output", None):
-        check_output(arguments.output)
+    output = getattr(arguments, "output", None)
+    if output == STREAM:
+        if arguments.json:
+            raise Error("--json and --output - both write to the standard output: choose one")
+    elif output:
+        check_output(output)
     for name in ("csv", "report"):
         if getattr(arguments, name, None):
-            check_stream_or_target(getattr(arguments, name))
+            check_stream_or_target(_stream(getattr(arguments, name)))
 
 
-def save_text(file: str, text: str) -> None:
-    """Write a text file and print its name. Raises Error if that fails."""
-    replace_text(file, text, stream=True)
-    print(file)
+def _stream(file: str) -> str:
+    return "/dev/stdout" if file == STREAM else file
 
 
-def save(mesh: Any, arguments: argparse.Namespace, rows: list[dict[str, Any]] | None = None) -> None:
-    """Write the mesh to the file --output and the rows to the file --csv, where given, and print their names."""
-    if getattr(arguments, "output", None):
-        print("\n".join(write(mesh, arguments.output)))
+@contextmanager
+def standard_input(arguments: argparse.Namespace) -> Iterator[None]:
+    """A block in which the mesh argument that is "-", if any, is a file with the .vtu from the standard input."""
+    names = [name for name in _INPUTS if getattr(arguments, name, None) == STREAM]
+    if not names:
+        yield
+        return
+    if len(names) > 1:
+        raise Error(f"{' and '.join(names)} cannot both be the standard input")
+    with TemporaryDirectory() as folder:
+        file = os.path.join(folder, _STANDARD_INPUT)
+        replace_bytes(file, sys.stdin.buffer.read())
+        setattr(arguments, names[0], file)
+        yield
+
+
+def finish(
+    arguments: argparse.Namespace,
+    result: Result | vtkDataObject | None,
+    text: str,
+    rows: list[dict[str, Any]] | None = None,
+    texts: Mapping[str, str] | None = None,
+    facts: Mapping[str, Any] | None = None,
+    **options: Any,
+) -> None:
+    """Print a result and write its files.
+
+    text: the result in words. rows: for the file --csv. texts: more files with their contents. facts: what --json
+    prints if there is no result with to_dict(). options: of write(). The files are listed after the text, in the JSON as `files`. With
+    --output -, what else is printed goes to stderr.
+    """
+    out = sys.stderr if getattr(arguments, "output", None) == STREAM else sys.stdout
+    silent = arguments.quiet or arguments.json
+    if not silent:
+        print(text, file=out)
+    files = []
+    if getattr(arguments, "output", None) == STREAM:
+        _write_stream(result)
+    elif getattr(arguments, "output", None):
+        files += write(result, arguments.output, **options)
+    texts = dict(texts or {})
     if getattr(arguments, "csv", None):
-        save_text(arguments.csv, csv_text(rows or []))
+        texts[arguments.csv] = csv_text(rows or [])
+    for file, content in texts.items():
+        replace_text(_stream(file), content, stream=True)
+        files.append(file)
+    if arguments.json:
+        found = facts if facts is not None else _facts(result)
+        print(json_text({**found, "files": files}))
+    elif files and not silent:
+        print("\n".join(files), file=out)
+
+
+def _facts(result: Any) -> dict[str, Any]:
+    if isinstance(result, Result):
+        return result.to_dict()
+    return {"points": result.GetNumberOfPoints(), "cells": result.GetNumberOfCells()}
+
+
+def _write_stream(result: Any) -> None:
+    """Write a mesh as .vtu to the standard output."""
+    data = as_mesh(result)
+    if isinstance(data, vtkDataSet) and not isinstance(data, vtkUnstructuredGrid):
+        append = vtkAppendFilter()
+        append.AddInputData(data)
+        update(append)
+        data = append.GetOutput()
+    with TemporaryDirectory() as folder:
+        file = os.path.join(folder, "standard-output.vtu")
+        write(data, file)
+        with open(file, "rb") as content:
+            shutil.copyfileobj(content, sys.stdout.buffer)
+    sys.stdout.flush()
 
 
 def add_reproducible_order(parser: argparse.ArgumentParser) -> None:
@@ -100,8 +260,8 @@ def add_reproducible_order(parser: argparse.ArgumentParser) -> None:
 
 def add_moving_points(parser: argparse.ArgumentParser) -> None:
     """Add what the commands share that move points."""
-    parser.add_argument("mesh", metavar="FILE")
-    parser.add_argument("-o", "--output", metavar="FILE", required=True)
+    add_mesh(parser)
+    add_output(parser)
     parser.add_argument("--csv", metavar="FILE", help="write the history, a row per iteration or pass")
     parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
     add_merge_points(parser)

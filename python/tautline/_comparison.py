@@ -13,6 +13,7 @@ from . import _commands, _vtk
 from ._arguments import set_threads, set_time_limit, within
 from ._arrays import cell_array, columns, point_array, snake
 from ._errors import interruptible, run
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose
 from ._results import Result
@@ -55,6 +56,7 @@ def compare(
     tolerance: float = 1e-6,
     time_limit: float = 0.0,
     threads: int = 0,
+    progress: Progress | bool | None = None,
 ) -> CompareResult:
     """Compare the quality of two meshes with the same cells, element by element.
 
@@ -96,11 +98,13 @@ def compare(
 def add_commands(commands: Any) -> None:
     """Add `compare` to the subparsers of the command line."""
     parser = _commands.add_command(
-        commands, "compare", _run, "compare the quality of two meshes with the same cells, element by element"
+        commands, "compare", _run, "compare the quality of two meshes with the same cells, element by element",
+        example="part.vtu better.vtu --metrics imr,rr",
+        details="Prints how many elements became better and worse by each metric.",
     )
     parser.add_argument("before", metavar="BEFORE")
     parser.add_argument("after", metavar="AFTER")
-    parser.add_argument("-o", "--output", metavar="FILE", help="write the second mesh with the differences")
+    _commands.add_output(parser, "write the second mesh with the differences", False)
     parser.add_argument("--csv", metavar="FILE", help="write the comparison, a row per metric")
     _commands.add_metrics(parser)
     _commands.add_time_limit(parser)
@@ -111,5 +115,4 @@ def add_commands(commands: Any) -> None:
 def _run(arguments: argparse.Namespace) -> None:
     options = _commands.given(arguments, ("tolerance", "time_limit", "threads"))
     result = compare(arguments.before, arguments.after, arguments.metrics, **options)
-    print(comparison_text(result))
-    _commands.save(result, arguments, comparison_rows(result))
+    _commands.finish(arguments, result, comparison_text(result), comparison_rows(result))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Sequence, Union
+from typing import Any, ClassVar, Literal, Mapping, Sequence, Union, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
@@ -12,13 +12,25 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkCommonTransforms import vtkLinearTransform, vtkTransform
 
 from . import _commands, _vtk
-from ._arguments import flag_option, number_option, pick, set_options, set_threads, set_time_limit, within
+from ._arguments import (
+    PRECONDITIONERS,
+    Preconditioner,
+    flag_option,
+    number_option,
+    pick,
+    set_options,
+    set_threads,
+    set_time_limit,
+    within,
+)
 from ._arrays import ANY, POINTS, InputArrays, cell_array, columns, point_array, table_rows, with_array
 from ._errors import Error, interruptible, run
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
+from ._names import find_name
 from ._results import Result
 
-METHODS = (
+Method = Literal[
     "hybrid",
     "femwarp",
     "anisotropic femwarp",
@@ -30,12 +42,14 @@ METHODS = (
     "inverse distance",
     "radial basis",
     "weighted laplacian",
-)
+]
+METHODS: tuple[Method, ...] = get_args(Method)
 COEFFICIENTS = ("displacement sums", "principal directions")
-CORRESPONDENCES = ("automatic", "same mesh", "same boundary", "point ids", "closest point")
+Correspondence = Literal["automatic", "same mesh", "same boundary", "point ids", "closest point"]
+CORRESPONDENCES: tuple[Correspondence, ...] = get_args(Correspondence)
 PARTS = ("automatic", "whole boundary", "inner boundaries")
-SOLVERS = ("automatic", "conjugate gradients", "gmres", "minres", "bicgstab", "direct")
-PRECONDITIONERS = ("jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none")
+Solver = Literal["automatic", "cg", "gmres", "minres", "bicgstab", "direct"]
+SOLVERS: tuple[Solver, ...] = get_args(Solver)
 
 _DISPLACEMENT, _MOVED, _FIXED, _TENSORS, _REGIONS = range(5)  # input arrays of vtkMeshWarp
 _BY_ARRAY, _BY_TARGET, _BY_TRANSFORM = range(3)  # its motions
@@ -94,23 +108,24 @@ class WarpResult(Result):
 def warp(
     mesh: Mesh,
     displacement: str | Sequence | None = None,
-    method: str = "hybrid",
+    method: Method = "hybrid",
     amount: float = 1.0,
     *,
     target: Mesh | None = None,
     transform: Transform | None = None,
-    correspondence: str = "automatic",
+    correspondence: Correspondence = "automatic",
     target_ids: str | Sequence | None = None,
     moved: str | int | Sequence | None = None,
     values: Sequence[float] = (),
     fixed: str | Sequence | None = None,
     coefficients: str | Sequence = "displacement sums",
     regions: tuple[str | Sequence, Mapping[float, Sequence[float]]] | None = None,
-    solver: str = "automatic",
-    preconditioner: str = "boomeramg",
+    solver: Solver = "automatic",
+    preconditioner: Preconditioner = "boomeramg",
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    progress: Progress | bool | None = None,
     **options: Any,
 ) -> WarpResult:
     """Deform the interior of a mesh to follow a prescribed boundary motion, with valid elements of similar shapes.
@@ -142,7 +157,7 @@ def warp(
         numbers per cell.
     regions: (cell array, {value: (alpha, beta, gamma)}), the array by name or by one value per cell. Cells with other
         values have the `coefficients`, if these are numbers.
-    solver: of the linear systems: "automatic", "conjugate gradients", "gmres", "minres", "bicgstab", "direct".
+    solver: of the linear systems: "automatic", "cg", "gmres", "minres", "bicgstab", "direct".
     preconditioner: of the linear systems: "jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none".
     time_limit: seconds; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
@@ -297,8 +312,9 @@ def _flat(name: str, value: Any) -> list[float]:
 def _set_moved(filter_: Any, inputs: InputArrays, moved: Any, values: Sequence[float]) -> None:
     for value in values:
         filter_.AddValue(float(value))
-    if moved is None or (isinstance(moved, str) and moved in PARTS):
-        filter_.SetMovedPart(PARTS.index(moved or "automatic"))
+    part = "automatic" if moved is None else find_name(moved, PARTS)
+    if part is not None:
+        filter_.SetMovedPart(PARTS.index(part))
         return
     data = inputs.mesh
     per_point = isinstance(data, vtkDataSet) and np.shape(moved)[:1] == (data.GetNumberOfPoints(),)
@@ -370,11 +386,13 @@ def _statistics(filter_: Any) -> dict[str, Any]:
 def add_commands(commands: Any) -> None:
     """Add `warp` to the subparsers of the command line."""
     parser = _commands.add_command(
-        commands, "warp", _run, "deform the interior of a mesh to follow a prescribed boundary motion"
+        commands, "warp", _run, "deform the interior of a mesh to follow a prescribed boundary motion",
+        example="plate.vtu --rotate 30 -o turned.vtu",
+        details="The motion of the boundary is an array, a target mesh or a transform; exits with 1 if elements are inverted.",
     )
     numbers = _commands.numbers
-    parser.add_argument("mesh", metavar="FILE")
-    parser.add_argument("-o", "--output", metavar="FILE", required=True)
+    _commands.add_mesh(parser)
+    _commands.add_output(parser)
     parser.add_argument("--csv", metavar="FILE", help="write the history, a row per stage")
     motion = parser.add_mutually_exclusive_group(required=True)
     motion.add_argument("--displacement", metavar="ARRAY", help="point array with the motion of the boundary")
@@ -419,6 +437,5 @@ def _run(arguments: argparse.Namespace) -> int:
     elif any(value is not None for value in details.values()):
         raise Error("axis, direction and center belong to a transform: add --rotate, --scale or --bend")
     result = warp(arguments.mesh, **options)
-    print(result.summary)
-    _commands.save(result, arguments, table_rows(result.history))
+    _commands.finish(arguments, result, result.summary, table_rows(result.history))
     return 1 if result.inverted else 0

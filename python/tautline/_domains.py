@@ -10,6 +10,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 from . import _commands, _vtk
 from ._arguments import set_time_limit, within
 from ._errors import checked, interruptible, run, watch
+from ._names import find_name
+from ._interrupts import Progress
 
 
 @checked
@@ -30,6 +32,7 @@ def domain(
     layer_width: float = 0.2,
     time_limit: float = 0.0,
     deformed_boundary: bool = False,
+    progress: Progress | bool | None = None,
 ) -> vtkDataSet:
     """Mesh a domain of the dissertation.
 
@@ -50,7 +53,7 @@ def domain(
     """
     source = _vtk.vtkDomainSource()
     messages = watch(source)
-    source.SetDomainByName(str(name))
+    source.SetDomainByName(find_name(name, domains()) or str(name))
     messages.raise_errors()
     source.SetNumberOfCells(int(within("the number of cells", cells, 0, source.GetNumberOfCellsMaxValue())))
     source.SetAmount(within("the amount", amount, source.GetAmountMinValue(), source.GetAmountMaxValue()))
@@ -70,7 +73,11 @@ def domain(
 
 def add_commands(commands: Any) -> None:
     """Add `domain` to the subparsers of the command line."""
-    parser = _commands.add_command(commands, "domain", _run_domain, "mesh a domain of the dissertation", threads=False)
+    parser = _commands.add_command(
+        commands, "domain", _run_domain, "mesh a domain of the dissertation", threads=False,
+        example="cylinder --cells 2000 -o cylinder.vtu",
+        details="Moving domains have the motion of their boundary as a point array.",
+    )
     parser.add_argument("name", choices=domains(), metavar="NAME", help=", ".join(domains()))
     parser.add_argument("--cells", type=int, default=0, help="approximate number (default: that of the example)")
     parser.add_argument("--amount", type=float, default=1.0, help="fraction of the boundary's motion (default: 1)")
@@ -79,11 +86,10 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--layer-width", type=float, default=0.2,
                         help="square: width of the interaction layer (collar)")  # fmt: skip
     _commands.add_time_limit(parser)
-    parser.add_argument("-o", "--output", required=True, help="file to write; its ending decides on the format")
+    _commands.add_output(parser)
 
 
 def _run_domain(arguments: argparse.Namespace) -> None:
     names = ("cells", "amount", "element_size", "aspect_ratio", "layer_width", "time_limit")
     mesh = domain(arguments.name, **_commands.given(arguments, names))
-    print(_commands.counts(mesh))
-    _commands.save(mesh, arguments)
+    _commands.finish(arguments, mesh, _commands.counts(mesh))

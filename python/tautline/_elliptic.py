@@ -5,26 +5,34 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 from inspect import signature
-from typing import Any, ClassVar, Callable, Iterable, Sequence, Union
+from typing import Any, Callable, ClassVar, Iterable, Literal, Sequence, Union, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
-from ._arguments import check_options, number, pick, set_threads, set_time_limit, within
+from ._arguments import (
+    PRECONDITIONERS, Preconditioner, check_options, number, pick, picked, set_threads, set_time_limit, within,
+)  # fmt: skip
 from ._arrays import POINTS, InputArrays, cell_array, columns, has_array, point_array, table_rows
 from ._errors import Error, checked, interruptible, run, watch
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._results import Result
 from ._tables import align
 
-PDES = ("poisson", "elliptic", "elasticity")
-SOLVERS = ("cg", "gmres", "minres", "bicgstab", "direct")
-PRECONDITIONERS = ("jacobi", "ssor", "ilu", "amg", "icc", "gamg", "none")
-PLANES = ("strain", "stress")
-TIME_SCHEMES = ("stationary", "backward euler", "bdf2", "crank-nicolson", "newmark")
-MASSES = ("consistent", "lumped")
-METHODS = ("automatic", "ritz", "accurate")
+Pde = Literal["poisson", "elliptic", "elasticity"]
+PDES: tuple[Pde, ...] = get_args(Pde)
+Solver = Literal["cg", "gmres", "minres", "bicgstab", "direct"]
+SOLVERS: tuple[Solver, ...] = get_args(Solver)
+Plane = Literal["strain", "stress"]
+PLANES: tuple[Plane, ...] = get_args(Plane)
+TimeScheme = Literal["stationary", "backward euler", "bdf2", "crank-nicolson", "newmark"]
+TIME_SCHEMES: tuple[TimeScheme, ...] = get_args(TimeScheme)
+Mass = Literal["consistent", "lumped"]
+MASSES: tuple[Mass, ...] = get_args(Mass)
+Method = Literal["automatic", "ritz", "accurate"]
+METHODS: tuple[Method, ...] = get_args(Method)
 
 _MAX_ITERATIONS = 2**31 - 1
 _MAX_TIME_STEPS = 1_000_000
@@ -138,9 +146,9 @@ class SolverStudyResult(Result):
 @interruptible
 def solve(
     mesh: Mesh,
-    pde: str = "poisson",
-    solver: str = "cg",
-    preconditioner: str = "amg",
+    pde: Pde = "poisson",
+    solver: Solver = "cg",
+    preconditioner: Preconditioner = "boomeramg",
     *,
     relative_tolerance: float = 1e-5,
     absolute_tolerance: float = 1e-50,
@@ -150,14 +158,15 @@ def solve(
     fast_multigrid: bool = True,
     solution_name: str = "",
     gradient: bool = True,
-    time_scheme: str = "stationary",
+    time_scheme: TimeScheme = "stationary",
     time_step: float = 0.01,
     time_steps: int = 100,
-    mass: str = "consistent",
+    mass: Mass = "consistent",
     density: float = 1.0,
     initial: Function = 0.0,
     velocity: Function = 0.0,
     series: bool = False,
+    progress: Progress | bool | None = None,
     **problem: Any,
 ) -> SolveResult:
     """Solve an elliptic partial differential equation on a mesh by linear finite elements, or a heat or wave equation.
@@ -167,12 +176,12 @@ def solve(
     pde: "poisson", -laplace u = f; "elliptic", -alpha u_xx - beta u_yy - gamma u_zz + reaction u = f; "elasticity",
         linear elasticity, u is the displacement.
     solver: "cg", "gmres", "minres", "bicgstab", or "direct".
-    preconditioner: "jacobi", "ssor", "ilu", "amg" (BoomerAMG), "icc", "gamg" (smoothed aggregation), "none".
+    preconditioner: "jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg" (smoothed aggregation), "none".
     relative_tolerance, absolute_tolerance: of the preconditioned residual, 0 to 1, and at least 0.
     maximum_iterations: at least 0.
     restart: m of GMRES(m), at least 1.
     rigid_body_modes: whether the rigid body modes are passed to the multigrid method (elasticity).
-    fast_multigrid: whether "amg" coarsens aggressively, which takes more iterations and less time; False: PETSc's
+    fast_multigrid: whether "boomeramg" coarsens aggressively, which takes more iterations and less time; False: PETSc's
         defaults.
     solution_name: name of the point array of the solution; "" is `Solution`, or `Displacement` of elasticity.
     gradient: whether to compute the gradient or the stress of the cells.
@@ -213,7 +222,7 @@ def solve(
     >>> result.solution.max(), result.iterations
     """
     filter_ = _vtk.vtkEllipticSolver()
-    elastic = pde == "elasticity"
+    elastic = picked("pde", pde, PDES) == "elasticity"
     filter_.SetSolver(pick("solver", solver, SOLVERS))
     filter_.SetPreconditioner(pick("preconditioner", preconditioner, PRECONDITIONERS))
     _set_tolerances(filter_, relative_tolerance, absolute_tolerance, maximum_iterations, restart)
@@ -258,13 +267,14 @@ def solve(
 @interruptible
 def condition(
     mesh: Mesh,
-    pde: str = "poisson",
-    preconditioner: str = "amg",
+    pde: Pde = "poisson",
+    preconditioner: Preconditioner = "boomeramg",
     *,
-    method: str = "automatic",
+    method: Method = "automatic",
     tolerance: float = 1e-6,
     maximum_iterations: int = 10000,
     shares: bool = True,
+    progress: Progress | bool | None = None,
     **problem: Any,
 ) -> ConditionResult:
     """Estimate the condition number of the matrix A of a partial differential equation, and the share of each element.
@@ -317,7 +327,7 @@ def solver_combinations() -> dict[int, str]:
 @interruptible
 def solver_study(
     mesh: Mesh,
-    pde: str = "poisson",
+    pde: Pde = "poisson",
     combinations: Iterable[int | str] | None = None,
     *,
     relative_tolerance: float = 1e-5,
@@ -327,6 +337,7 @@ def solver_study(
     conditions: bool = True,
     repetitions: int = 1,
     combination_time_limit: float = 60.0,
+    progress: Progress | bool | None = None,
     **problem: Any,
 ) -> SolverStudyResult:
     """Solve by many combinations of solver and preconditioner and recommend one.
@@ -419,7 +430,7 @@ def _set_problem(
     tensor: str | Sequence | None = None,
     youngs_modulus: float = 1.0,
     poisson_ratio: float = 0.3,
-    plane: str = "strain",
+    plane: Plane = "strain",
     stiffness: str | Sequence | None = None,
     omega: float = 1.0,
     petsc_options: str = "",
@@ -441,7 +452,7 @@ def _set_problem(
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
-    set_function = _set_vector_function if pde == "elasticity" else _set_scalar_function
+    set_function = _set_vector_function if picked("pde", pde, PDES) == "elasticity" else _set_scalar_function
     if source is not None:
         set_function(filter_, inputs, "source", source, _SOURCE)
     set_function(filter_, inputs, "given", given, _GIVEN)
@@ -512,13 +523,13 @@ def _rows(table: Any, names: dict[str, str]) -> list[dict[str, Any]]:
 def add_commands(commands: Any) -> None:
     """Add `solve`, `condition` and `solver-study` to the subparsers of the command line."""
     made = _add_problem(commands, "solve", _run_solve, "solve a partial differential equation on a mesh")
-    made.add_argument("-o", "--output", metavar="FILE", help="write the mesh with the solution")
+    _commands.add_output(made, "write the mesh with the solution", False)
     made.add_argument("--csv", metavar="FILE", help="write the residuals, a row per iteration")
     made.add_argument("--solver", choices=SOLVERS, default="cg")
-    made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="amg")
-    made.add_argument("--tolerance", type=float, default=1e-5, dest="relative_tolerance",
+    made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")
+    made.add_argument("--relative-tolerance", "--tolerance", type=float, default=1e-5,
                       help="relative, of the preconditioned residual (default: 1e-5)")  # fmt: skip
-    made.add_argument("--iterations", type=int, default=10000, dest="maximum_iterations", help="(default: 10000)")
+    made.add_argument("--maximum-iterations", "--iterations", type=int, default=10000, help="(default: 10000)")
     made.add_argument("--restart", type=int, default=30, help="m of GMRES(m) (default: 30)")
     made.add_argument("--time-scheme", choices=TIME_SCHEMES, default="stationary",
                       help="of the heat equation, or newmark of the wave equation (default: stationary)")  # fmt: skip
@@ -532,9 +543,9 @@ def add_commands(commands: Any) -> None:
 
     made = _add_problem(commands, "condition", _run_condition,
                         "estimate the condition number of a linear system, and the share of each element")  # fmt: skip
-    made.add_argument("-o", "--output", metavar="FILE", help="write the mesh with each element's share")
+    _commands.add_output(made, "write the mesh with each element's share", False)
     made.add_argument("--csv", metavar="FILE", help="write the spectrum, a row for A and one for P^-1 A")
-    made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="amg")
+    made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")
     made.add_argument("--method", choices=METHODS, default="automatic")
     made.add_argument("--tolerance", type=float, default=1e-6, help="of the eigenvalues (default: 1e-6)")
 
@@ -550,10 +561,22 @@ def add_commands(commands: Any) -> None:
                       help="of each combination; 0 is no limit (default: 60)")  # fmt: skip
 
 
+#: Example and further sentence of the help of the commands.
+_HELP = {
+    "solve": (
+        'plate.vtu --source "x*y" --fixed "x < 0.01" -o solved.vtu',
+        "By linear finite elements; exits with 1 if the solver does not converge.",
+    ),
+    "condition": ("plate.vtu --preconditioner jacobi -o shares.vtu", "A is the matrix, P the preconditioner."),
+    "solver-study": ("plate.vtu --combinations 1,13 --csv study.csv", "Prints a row per combination."),
+}
+
+
 def _add_problem(commands: Any, name: str, run_command: _commands.Run, text: str) -> argparse.ArgumentParser:
     """Add a command with the mesh and the options of the problem."""
-    made = _commands.add_command(commands, name, run_command, text)
-    made.add_argument("mesh", metavar="FILE")
+    example, details = _HELP[name]
+    made = _commands.add_command(commands, name, run_command, text, example=example, details=details)
+    _commands.add_mesh(made)
     made.add_argument("--pde", choices=PDES, default="poisson")
     made.add_argument("--source", type=_function, metavar="F",
                       help="numbers, a point array or an expression (default: 1)")  # fmt: skip
@@ -596,21 +619,18 @@ def _run_solve(arguments: argparse.Namespace) -> int:
     names = ("solver", "preconditioner", "relative_tolerance", "maximum_iterations", "restart", "time_scheme",
              "time_step", "time_steps", "mass", "density", "initial", "velocity")  # fmt: skip
     result = _call(solve, arguments, *names)
-    print(result.summary)
-    _commands.save(result, arguments, table_rows(result.history))
+    _commands.finish(arguments, result, result.summary, table_rows(result.history))
     return 0 if result.converged else 1
 
 
 def _run_condition(arguments: argparse.Namespace) -> None:
     result = _call(condition, arguments, "preconditioner", "method", "tolerance")
-    print(result.summary)
-    _commands.save(result, arguments, result.spectrum)
+    _commands.finish(arguments, result, result.summary, result.spectrum)
 
 
 def _run_study(arguments: argparse.Namespace) -> int:
     result = _call(solver_study, arguments, "combinations", "restart", "repetitions", "combination_time_limit")
     shown = ("number", "name", "result", "iterations", "condition", "reason")
-    print(align([[row[key] for key in shown] for row in result.rows], shown), end="\n\n")
-    print(result.summary)
-    _commands.save(result, arguments, result.rows)
+    table = align([[row[key] for key in shown] for row in result.rows], shown)
+    _commands.finish(arguments, result, f"{table}\n\n{result.summary}", result.rows)
     return 0 if any(row["converged"] for row in result.rows) else 1

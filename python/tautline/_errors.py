@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from difflib import get_close_matches
 from functools import wraps
-from inspect import Parameter, Signature, signature
-from typing import Any, Callable, Iterable, TypeVar
+from inspect import Signature, signature
+from typing import Any, Callable, Iterable, TypeVar, cast
 
 from vtkmodules.vtkCommonCore import vtkCommand
 
-from ._interrupts import Cancelled, Progress, reporting, updating
+from ._interrupts import Cancelled, reporting, updating
 from ._vtk import CLASSES
 
 # VTK puts file, line, class and address before the text of a message.
@@ -44,21 +44,17 @@ def checked(function: Function) -> Function:
 
     Nor does it raise MemoryError.
     """
-    return _checked(function, signature(function))
+    return cast(Function, _checked(function, signature(function)))
 
 
 def interruptible(function: Function) -> Function:
-    """checked(), with the argument `progress` for functions that can take long."""
-    own = signature(function)
-    parameters = list(own.parameters.values())
-    place = len(parameters) - (parameters[-1].kind is Parameter.VAR_KEYWORD)
-    parameters.insert(place, Parameter("progress", Parameter.KEYWORD_ONLY, default=None, annotation="Progress | None"))
-    extended = own.replace(parameters=parameters)
+    """checked(), for functions that can take long: with their argument `progress`, a keyword, which this handles."""
 
     @wraps(function)
-    def call(*arguments: Any, progress: Progress | None = None, **options: Any) -> Any:
-        if progress is not None and not callable(progress):
-            raise Error(f"progress is {progress!r}; a function is expected")
+    def call(*arguments: Any, **options: Any) -> Any:
+        progress = options.pop("progress", None)
+        if not (progress is None or isinstance(progress, bool) or callable(progress)):
+            raise Error(f"progress is {progress!r}; True or a function is expected")
         try:
             with reporting(progress):
                 return function(*arguments, **options)
@@ -66,20 +62,20 @@ def interruptible(function: Function) -> Function:
             raise Aborted("cancelled") from None
 
     call.__doc__ = _with_progress(function.__doc__ or "")
-    call.__signature__ = extended
-    return _checked(call, extended)
+    return cast(Function, _checked(call, signature(function)))
 
 
 def _with_progress(text: str) -> str:
     """The documentation of a function with progress, in the paragraph before that of what it raises."""
     place = text.rfind("\n\n", 0, text.find("Raises Error"))
-    entry = """    progress: is called ten times a second with the fraction done, 0 to 1, and a text; False cancels,
-        which raises Aborted. Ctrl-C raises KeyboardInterrupt.
+    entry = """    progress: True: a bar on the terminal, if there is one. Else a function, which is called ten times a second with
+        the fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
+        KeyboardInterrupt.
 """
     return text[: place + 1] + entry + text[place + 1 :]
 
 
-def _checked(function: Function, known: Signature) -> Function:
+def _checked(function: Callable[..., Any], known: Signature) -> Callable[..., Any]:
     parameters = known.parameters
     keywords = [p.name for p in parameters.values() if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     others = any(p.kind is p.VAR_KEYWORD for p in parameters.values())
@@ -152,9 +148,9 @@ def plain(text: str) -> str:
     return _PREAMBLE.sub("", text).strip()
 
 
-def _collector(texts: list[str]):
-    def collect(_caller, _event, text):
+def _collector(texts: list[str]) -> Callable[..., None]:
+    def collect(_caller: Any, _event: str, text: str) -> None:
         texts.append(plain(text))
 
-    collect.CallDataType = "string0"
+    setattr(collect, "CallDataType", "string0")  # by which VTK passes the text
     return collect

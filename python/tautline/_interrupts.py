@@ -12,7 +12,7 @@ import threading
 import time
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any, Callable, Iterator, Optional
+from typing import Any, Callable, Iterator, Optional, TextIO
 
 from ._vtk import CLASSES
 
@@ -20,6 +20,9 @@ from ._vtk import CLASSES
 Progress = Callable[[float, str], Optional[bool]]
 
 _SECONDS_BETWEEN_CALLS = 0.1
+_SECONDS_BEFORE_BAR = 0.3  # what takes less has none
+_BAR_WIDTH, _TEXT_WIDTH = 30, 40
+_ERASE_LINE = "\r\x1b[K"
 _progress: ContextVar[Progress | None] = ContextVar("tautline_progress", default=None)
 
 
@@ -27,13 +30,44 @@ class Cancelled(Exception):
     """A progress callback has returned False. Becomes tautline.Aborted."""
 
 
+class ProgressBar:
+    """A progress callback that draws a bar in the last line of a terminal, and nothing where there is none."""
+
+    def __init__(self, stream: TextIO | None = None) -> None:
+        self.stream = stream or sys.stderr
+        self.terminal = self.stream.isatty()
+        self.start = time.monotonic()
+        self.drawn = False
+
+    def __call__(self, fraction: float, text: str) -> None:
+        """Draw the bar with the fraction done, 0 to 1, and a text."""
+        elapsed = time.monotonic() - self.start
+        if not self.terminal or elapsed < _SECONDS_BEFORE_BAR:
+            return
+        done = min(max(fraction, 0.0), 1.0)
+        bar = ("#" * round(done * _BAR_WIDTH)).ljust(_BAR_WIDTH, ".")
+        self.stream.write(f"{_ERASE_LINE}[{bar}] {done:4.0%} {elapsed:.0f} s  {text[:_TEXT_WIDTH]}")
+        self.stream.flush()
+        self.drawn = True
+
+    def erase(self) -> None:
+        """Remove the bar, before other output."""
+        if self.drawn:
+            self.stream.write(_ERASE_LINE)
+            self.stream.flush()
+            self.drawn = False
+
+
 @contextmanager
-def reporting(progress: Progress | None) -> Iterator[None]:
-    """Report the progress of the filters that run in the block; None keeps the callback of the block around."""
-    if progress is None:
+def reporting(progress: Progress | bool | None) -> Iterator[None]:
+    """Report the progress of the filters that run in the block, True by a bar on a terminal.
+
+    None, False and, if there is one, True keep the callback of the block around.
+    """
+    if progress is None or progress is False or (progress is True and _progress.get()):
         yield
         return
-    token = _progress.set(progress)
+    token = _progress.set(ProgressBar() if progress is True else progress)
     try:
         yield
     finally:
@@ -94,9 +128,11 @@ class _Report:
         for tag in self.tags:
             self.algorithm.RemoveObserver(tag)
         self.tags.clear()
+        if isinstance(self.progress, ProgressBar):
+            self.progress.erase()
 
     def call(self, *_: Any) -> None:
-        if self.cancelled or time.monotonic() < self.next:
+        if not self.progress or self.cancelled or time.monotonic() < self.next:
             return
         text = self.algorithm.GetProgressText() or self.algorithm.GetClassName()
         try:

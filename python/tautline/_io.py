@@ -14,7 +14,7 @@ from ._arrays import leaves
 from ._errors import Error, interruptible, plain, run, watch
 from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
-from ._interrupts import updating
+from ._interrupts import Progress, updating
 from ._legacy import check_counts, check_references, scan_legacy
 from ._mesh import from_arrays
 from ._surfaces import check_surface
@@ -53,7 +53,12 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
 
 
 @interruptible
-def read(file: str | PathLike, **options: Any) -> vtkDataObject:
+def read(
+    file: str | PathLike,
+    *,
+    progress: Progress | bool | None = None,
+    **options: Any,
+) -> vtkDataObject:
     """Read a mesh. The ending of the file name decides on the format.
 
     file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was
@@ -87,7 +92,13 @@ def read(file: str | PathLike, **options: Any) -> vtkDataObject:
 
 
 @interruptible
-def write(mesh: Mesh, file: str | PathLike, **options: Any) -> list[str]:
+def write(
+    mesh: Mesh,
+    file: str | PathLike,
+    *,
+    progress: Progress | bool | None = None,
+    **options: Any,
+) -> list[str]:
     """Write a mesh. The ending of the file name decides on the format.
 
     mesh: a vtkDataSet, a composite data set, the result of another function, a file name or (points, cells).

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Sequence
+from typing import Any, ClassVar, Literal, Sequence, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -13,10 +13,12 @@ from . import _commands, _vtk
 from ._arguments import pick, set_threads, set_time_limit, within
 from ._arrays import point_array
 from ._errors import Error, interruptible, run
+from ._interrupts import Progress
 from ._metrics import Metrics, choose
 from ._results import Result
 
-CELLS = ("triangle", "tetrahedron")
+Cell = Literal["triangle", "tetrahedron"]
+CELLS: tuple[Cell, ...] = get_args(Cell)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -37,13 +39,15 @@ class MetricFieldResult(Result):
 @interruptible
 def metric_field(
     metrics: Metrics = ("imr",),
-    cell: str = "triangle",
+    cell: Cell = "triangle",
     vertices: Sequence | None = None,
     bounds: Sequence[float] = (-1, 2, 0, 2, 0, 2),
     dimensions: Sequence[int] = (301, 201, 101),
     beta: float = 0.25,
     time_limit: float = 0.0,
     threads: int = 0,
+    *,
+    progress: Progress | bool | None = None,
 ) -> MetricFieldResult:
     """Evaluate metrics of one cell over the position of its last vertex, on a grid (Figures 2.1 and 3.1).
 
@@ -109,7 +113,12 @@ def _numbers(option: str, values: Any, shapes: list[tuple[int, ...]]) -> np.ndar
 
 def add_commands(commands: Any) -> None:
     """Add `field` to the subparsers of the command line."""
-    parser = _commands.add_command(commands, "field", _run, "metrics of one cell over the position of its last vertex")
+    parser = _commands.add_command(
+        commands, "metric-field", _run, "metrics of one cell over the position of its last vertex",
+        example="--metrics imr --dimensions 31 21 1 -o field.vti",
+        details="Writes an image with an array per metric (dissertation, Figures 2.1 and 3.1).",
+        aliases=["field"],
+    )
     parser.add_argument("-o", "--output", metavar="FILE.vti", required=True)
     _commands.add_metrics(parser)
     _commands.add_time_limit(parser)
@@ -124,8 +133,9 @@ def _run(arguments: argparse.Namespace) -> None:
     options = {name: value for name in ("bounds", "dimensions") if (value := getattr(arguments, name))}
     options |= _commands.given(arguments, ("beta", "time_limit", "threads"))
     result = metric_field(arguments.metrics, arguments.cell, **options)
+    lines = []
     for name, values in result.values.items():
         valid = values[result.validity == 1]
         extremes = f"{valid.min():.6g} to {valid.max():.6g}" if valid.size else "no valid position"
-        print(f"{name}: {' x '.join(map(str, values.shape[::-1]))} points, {extremes}")
-    _commands.save(result, arguments)
+        lines.append(f"{name}: {' x '.join(map(str, values.shape[::-1]))} points, {extremes}")
+    _commands.finish(arguments, result, "\n".join(lines))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 from pathlib import Path
 from typing import Any, Callable, Iterable, Union
@@ -14,7 +13,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from . import _vtk
 from ._commands import add_command
 from ._errors import Error, Messages, checked, unknown, watch
-from ._tables import finite, metrics_markdown, metrics_text
+from ._tables import json_text, metrics_markdown, metrics_text
 
 #: Metrics of a function: a name, label, symbol or alias, or several of them.
 Metrics = Union[str, Iterable[str]]
@@ -219,10 +218,12 @@ def choose(algorithm: Any, chosen: Metrics) -> Messages:
 
 def add_commands(commands: Any) -> None:
     """Add `metrics` to the subparsers of the command line."""
-    parser = add_command(commands, "metrics", _run, "list the metrics", threads=False)
-    form = parser.add_mutually_exclusive_group()
-    form.add_argument("--markdown", action="store_true", help="as a Markdown table")
-    form.add_argument("--json", action="store_true", help="all facts as JSON")
+    parser = add_command(
+        commands, "metrics", _run, "list the metrics", threads=False,
+        example="--markdown",
+        details="Prints name, label, ranges and direction of each.",
+    )
+    parser.add_argument("--markdown", action="store_true", help="as a Markdown table")
 
 
 def _run(arguments: argparse.Namespace) -> None:
@@ -231,6 +232,6 @@ def _run(arguments: argparse.Namespace) -> None:
     if errors:
         raise Error(errors.strip())
     if arguments.json:
-        print(json.dumps(finite(facts), indent=2))
-    else:
+        print(json_text(facts))
+    elif not arguments.quiet:
         print(metrics_markdown(facts) if arguments.markdown else metrics_text(facts))

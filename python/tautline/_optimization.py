@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterable, Sequence, Union
+from typing import Any, ClassVar, Iterable, Literal, Sequence, Union, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -17,6 +17,7 @@ from ._arguments import (
     flag_option,
     number_option,
     pick,
+    picked,
     set_options,
     set_threads,
     set_time_limit,
@@ -24,10 +25,11 @@ from ._arguments import (
 )
 from ._arrays import ANY, CELLS, POINTS, InputArrays, cell_array, columns, history_of, point_array, snake, table_rows
 from ._errors import Error, interruptible, run, watch
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._results import Result
 
-PRESETS = (
+Preset = Literal[
     "custom",
     "fast clean-up",
     "best shape",
@@ -36,8 +38,9 @@ PRESETS = (
     "untangle then improve",
     "preserve shape",
     "worst element",
-)
-TEMPLATES = (
+]
+PRESETS: tuple[Preset, ...] = get_args(Preset)
+Template = Literal[
     "default",
     "sum of squares",
     "sum of squared reciprocals",
@@ -45,8 +48,9 @@ TEMPLATES = (
     "sum",
     "power mean",
     "maximum",
-)
-SCALARIZATIONS = (
+]
+TEMPLATES: tuple[Template, ...] = get_args(Template)
+Scalarization = Literal[
     "exponential sum",
     "objective product",
     "equal sum",
@@ -55,8 +59,9 @@ SCALARIZATIONS = (
     "exponential weighted",
     "lexicographic",
     "rao",
-)
-OPTIMIZERS = (
+]
+SCALARIZATIONS: tuple[Scalarization, ...] = get_args(Scalarization)
+Optimizer = Literal[
     "automatic",
     "local newton",
     "local conjugate gradient",
@@ -64,8 +69,10 @@ OPTIMIZERS = (
     "polak-ribiere",
     "l-bfgs",
     "newton-cg",
-)
-BOUNDARIES = ("fixed", "sliding", "free", "on surface")
+]
+OPTIMIZERS: tuple[Optimizer, ...] = get_args(Optimizer)
+Boundary = Literal["fixed", "sliding", "free", "on surface"]
+BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 
 _MAX_ITERATIONS = 1000000
 _SIZE, _TENSOR, _FIXED, _LIMITS, _WEIGHTS, _KINDS, _REGIONS = range(7)  # input arrays of vtkMeshOptimizer
@@ -115,14 +122,14 @@ def optimize(
     mesh: Mesh,
     objectives: str | Iterable[Objective] | None = None,
     *,
-    preset: str | None = None,
-    scalarization: str | None = None,
-    optimizer: str | None = None,
+    preset: Preset | None = None,
+    scalarization: Scalarization | None = None,
+    optimizer: Optimizer | None = None,
     reference: Mesh | None = None,
     size: str | float | Sequence | None = None,
     tensor: str | Sequence | None = None,
     fixed: str | Sequence | None = None,
-    boundary: str = "fixed",
+    boundary: Boundary = "fixed",
     flat_angle: float = 1.0,
     feature_angle: float = 40.0,
     keep_features: bool = True,
@@ -142,6 +149,7 @@ def optimize(
     threads: int = 0,
     merge_coincident_points: bool = True,
     reproducible_order: bool = False,
+    progress: Progress | bool | None = None,
     **options: Any,
 ) -> OptimizeResult:
     """Move the points of a mesh so that its elements become better.
@@ -276,7 +284,8 @@ def _set_method(filter_: Any, preset: str | None, custom: dict[str, Any], target
     check_options({name: value for name, value in chosen.items() if name not in method}, _OPTIONS)
     if preset is None:
         preset = "custom" if chosen or targets else "best shape"
-    filter_.SetPreset(pick("preset", preset, PRESETS))
+    preset = picked("preset", preset, PRESETS)
+    filter_.SetPreset(PRESETS.index(preset))
     if preset != "custom":
         if chosen:
             raise Error(f"the preset {preset!r} decides on {', '.join(chosen)}: give one or the other")
@@ -302,12 +311,12 @@ def _add_objective(filter_: Any, objective: Any, targets: list[str]) -> None:
     unknown = set(facts) - {"template", "weight", "target"}
     if unknown:
         raise Error(f"objective {name!r}: there is no {sorted(unknown)[0]!r}; there are template, weight and target")
-    target = facts.get("target", targets[0] if len(targets) == 1 else "ideal")
+    target = picked("target", facts.get("target", targets[0] if len(targets) == 1 else "ideal"), TARGETS)
     if target in TARGETS[1:] and target not in targets:
         raise Error(f"objective {name!r}: the target is {target!r} but {target!r} is not given")
     template = pick("template", facts.get("template", "default"), TEMPLATES) - 1
     weight = within("weight", facts.get("weight", 1.0), np.nextafter(0, 1), np.inf)
-    filter_.AddObjectiveByName(name, template, weight, pick("target", target, TARGETS))
+    filter_.AddObjectiveByName(name, template, weight, TARGETS.index(target))
 
 
 def _best_known(filter_: Any, value: float | None) -> None:
@@ -364,15 +373,19 @@ def _statistics(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
 
 def add_commands(commands: Any) -> None:
     """Add `optimize` to the subparsers of the command line."""
-    parser = _commands.add_command(commands, "optimize", _run_optimize, "move points so that elements become better")
+    parser = _commands.add_command(
+        commands, "optimize", _run_optimize, "move points so that elements become better",
+        example='part.vtu --preset "best shape" -o better.vtu',
+        details="Neither the number of inverted elements nor the worst element becomes worse.",
+    )
     _commands.add_moving_points(parser)
     _commands.add_reproducible_order(parser)
     parser.add_argument("--preset", choices=PRESETS[1:], help="without --objective, the default is best shape")
-    parser.add_argument("--objective", action="append", type=_objective, metavar="NAME[,KEY=VALUE...]",
+    parser.add_argument("--objectives", "--objective", action="append", type=_objective, metavar="NAME[,KEY=VALUE...]",
                         help="a metric, optionally with template=, weight= and target=; may be repeated")  # fmt: skip
     parser.add_argument("--scalarization", choices=SCALARIZATIONS, help="(default: exponential sum)")
     parser.add_argument("--optimizer", choices=OPTIMIZERS, help="(default: automatic)")
-    parser.add_argument("--iterations", type=int, dest="maximum_iterations", help="the maximum (default: 300)")
+    parser.add_argument("--maximum-iterations", "--iterations", type=int, help="the maximum (default: 300)")
     parser.add_argument("--reference", metavar="FILE", help="target: the same cells of this mesh")
     parser.add_argument("--size", metavar="ARRAY", help="target: the size in this array")
     parser.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array")
@@ -380,14 +393,11 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--flat-angle", type=float, metavar="DEGREES", default=1.0,
                         help="facets that differ by at most this are one plane (default: 1)")  # fmt: skip
     parser.add_argument("--worst-metric", metavar="NAME", help="the metric that tells which element is the worst one")
-    parser.add_argument("--no-hold-worst", action="store_false", dest="hold_worst",
-                        help="the worst element may get worse")  # fmt: skip
+    _commands.add_flag(parser, "hold_worst", "whether the worst element must not get worse")
     parser.add_argument("--feature-angle", type=float, metavar="DEGREES", default=40.0,
                         help="edges that bend more are sharp (default: 40)")  # fmt: skip
-    parser.add_argument("--no-features", action="store_false", dest="keep_features",
-                        help="points of a surface may leave sharp edges")  # fmt: skip
-    parser.add_argument("--facets", action="store_false", dest="smooth_surface",
-                        help="points slide on the facets of the input, not on a smooth surface")  # fmt: skip
+    _commands.add_flag(parser, "keep_features", "whether points of a surface stay on sharp edges", "--no-features")
+    _commands.add_flag(parser, "smooth_surface", "whether points slide on a smooth surface, not on facets", "--facets")
     parser.add_argument("--show-features", action="store_true", help="add the arrays FeatureKind and PatchId")
     parser.add_argument("--feature-kinds", metavar="ARRAY", help="point array: 0 patch, 1 curve, 2 corner, -1 as found")
     parser.add_argument("--regions", metavar="ARRAY", help="cell array of regions, whose interfaces are kept")
@@ -413,6 +423,5 @@ def _run_optimize(arguments: argparse.Namespace) -> None:
              "boundary", "flat_angle", "worst_metric", "hold_worst", "feature_angle", "keep_features", "smooth_surface",
              "show_features", "feature_kinds", "regions", "geometry", "time_limit", "threads",
              "merge_coincident_points", "reproducible_order")  # fmt: skip
-    result = optimize(arguments.mesh, arguments.objective, **_commands.given(arguments, names))
-    print(result.summary)
-    _commands.save(result, arguments, table_rows(result.history))
+    result = optimize(arguments.mesh, arguments.objectives, **_commands.given(arguments, names))
+    _commands.finish(arguments, result, result.summary, table_rows(result.history))

@@ -4,24 +4,30 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Sequence
+from typing import Any, ClassVar, Literal, Sequence, get_args
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 
 from . import _commands, _vtk
-from ._arguments import pick, set_threads, set_time_limit, within
+from ._arguments import pick, picked, set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, columns, snake
 from ._errors import Error, interruptible, run
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._results import Result
 
-BASES = ("constant", "linear", "discontinuous linear")
-KERNELS = ("power", "constant", "gaussian", "conical", "table")
-MODELS = ("scalar", "elastic")
-DISCRETIZATIONS = ("dissertation", "exact")
-RULES = ("tables", "literal", "1/1", "3/3", "3/1")
+Basis = Literal["constant", "linear", "discontinuous linear"]
+BASES: tuple[Basis, ...] = get_args(Basis)
+Kernel = Literal["power", "constant", "gaussian", "conical", "table"]
+KERNELS: tuple[Kernel, ...] = get_args(Kernel)
+Model = Literal["scalar", "elastic"]
+MODELS: tuple[Model, ...] = get_args(Model)
+Discretization = Literal["dissertation", "exact"]
+DISCRETIZATIONS: tuple[Discretization, ...] = get_args(Discretization)
+Rules = Literal["tables", "literal", "1/1", "3/3", "3/1"]
+RULES: tuple[Rules, ...] = get_args(Rules)
 _REGION, _SOURCE, _GIVEN, _GIVEN_POINTS = range(4)  # input arrays of vtkPeridynamicStiffness
 _DEFAULT_REGION = "Reference"  # the filter's default
 _MAX_PIXELS = 4096
@@ -72,14 +78,14 @@ def peridynamics(
     mesh: Mesh,
     delta: float = 0.2,
     p: float = 1.0,
-    basis: str = "linear",
+    basis: Basis = "linear",
     *,
-    kernel: str = "power",
+    kernel: Kernel = "power",
     width: float = 0.5,
     values: Sequence[float] = (),
-    model: str = "scalar",
-    discretization: str = "exact",
-    rules: str = "tables",
+    model: Model = "scalar",
+    discretization: Discretization = "exact",
+    rules: Rules = "tables",
     tolerance: float = 1e-5,
     region: str | Sequence | None = _DEFAULT_REGION,
     layer_value: float = 2,
@@ -96,6 +102,7 @@ def peridynamics(
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    progress: Progress | bool | None = None,
 ) -> PeridynamicsResult:
     """Assemble the matrix of a nonlocal (bond-based peridynamic) model, compute its condition number, and solve.
 
@@ -142,7 +149,8 @@ def peridynamics(
     inputs = InputArrays(filter_, as_mesh(mesh))
     filter_.SetHorizon(float(delta))
     filter_.SetExponent(float(p))
-    filter_.SetBasis(pick("basis", basis, BASES))
+    basis = picked("basis", basis, BASES)
+    filter_.SetBasis(BASES.index(basis))
     filter_.SetKernel(pick("kernel", kernel, KERNELS))
     filter_.SetGaussianWidth(float(width))
     for value in values:
@@ -220,6 +228,7 @@ def interaction_layer(
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    progress: Progress | bool | None = None,
 ) -> vtkDataSet:
     """Add an interaction layer (collar, nonlocal boundary layer) of triangles around a mesh and in its holes.
 
@@ -258,10 +267,12 @@ def interaction_layer(
 def add_commands(commands: Any) -> None:
     """Add `peridynamics` and `interaction-layer` to the subparsers of the command line."""
     made = _commands.add_command(
-        commands, "peridynamics", _run_peridynamics, "compute the condition number of a nonlocal stiffness matrix"
+        commands, "peridynamics", _run_peridynamics, "compute the condition number of a nonlocal stiffness matrix",
+        example="square.vtu --delta 0.2 -p 2.5",
+        details="The mesh has an interaction layer, see interaction-layer and --add-layer.",
     )
     made.add_argument("mesh", metavar="FILE", help="triangles in a plane with an interaction layer (collar)")
-    made.add_argument("-o", "--output", metavar="FILE", help="write the mesh with the data of the rows")
+    _commands.add_output(made, "write the mesh with the data of the rows", False)
     made.add_argument("--delta", type=float, default=0.2, help="the horizon (default: 0.2)")
     made.add_argument("-p", type=float, default=1.0, help="exponent of the kernel (default: 1)")
     made.add_argument("--basis", choices=BASES, default="linear")
@@ -284,10 +295,12 @@ def add_commands(commands: Any) -> None:
     _commands.add_time_limit(made)
 
     made = _commands.add_command(
-        commands, "interaction-layer", _run_layer, "add an interaction layer (collar) around a planar triangle mesh"
+        commands, "interaction-layer", _run_layer, "add an interaction layer (collar) around a planar triangle mesh",
+        example="plate.vtu --width 0.1 -o layer.vtu",
+        details="Nonlocal models have their boundary condition in it.",
     )
-    made.add_argument("mesh", metavar="FILE")
-    made.add_argument("-o", "--output", metavar="FILE", required=True)
+    _commands.add_mesh(made)
+    _commands.add_output(made)
     made.add_argument("--width", type=float, default=0.2, help="least width (default: 0.2)")
     made.add_argument("--element-size", type=float, default=0.0,
                       help="edge length of its triangles (default: that of the boundary)")  # fmt: skip
@@ -304,12 +317,10 @@ def _run_peridynamics(arguments: argparse.Namespace) -> None:
              "allow_thin_layer", "solve", "memory_limit", "time_limit", "threads",
              "merge_coincident_points")  # fmt: skip
     result = peridynamics(mesh, **_commands.given(arguments, names))
-    print(result.summary)
-    _commands.save(result, arguments)
+    _commands.finish(arguments, result, result.summary)
 
 
 def _run_layer(arguments: argparse.Namespace) -> None:
     names = ("width", "element_size", "time_limit", "threads", "merge_coincident_points")
     made = interaction_layer(arguments.mesh, **_commands.given(arguments, names))
-    print(_commands.counts(made))
-    _commands.save(made, arguments)
+    _commands.finish(arguments, made, _commands.counts(made))

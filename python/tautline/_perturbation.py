@@ -13,6 +13,7 @@ from . import _commands, _vtk
 from ._arguments import set_threads, set_time_limit, within
 from ._arrays import POINTS, InputArrays, point_array
 from ._errors import Error, interruptible, run
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._results import Result
 
@@ -56,6 +57,8 @@ def perturb(
     threads: int = 0,
     merge_coincident_points: bool = True,
     time_limit: float = 0.0,
+    *,
+    progress: Progress | bool | None = None,
 ) -> PerturbResult:
     """Move interior points at random, without inverting an element or until a fraction of the elements is inverted.
 
@@ -109,9 +112,13 @@ def perturb(
 
 def add_commands(commands: Any) -> None:
     """Add `perturb` to the subparsers of the command line."""
-    parser = _commands.add_command(commands, "perturb", _run, "move interior points at random")
-    parser.add_argument("mesh", metavar="FILE")
-    parser.add_argument("-o", "--output", metavar="FILE", required=True)
+    parser = _commands.add_command(
+        commands, "perturb", _run, "move interior points at random",
+        example="part.vtu --fraction 0.8 --seed 3 -o worse.vtu",
+        details="For tests of methods that repair meshes.",
+    )
+    _commands.add_mesh(parser)
+    _commands.add_output(parser)
     parser.add_argument("--fraction", type=float, default=0.5,
                         help="largest displacement over the distance to inversion, 0 to 1 (default: 0.5)")  # fmt: skip
     parser.add_argument("--percentage", type=float, default=50, help="of the points to move, 0 to 100 (default: 50)")
@@ -125,5 +132,4 @@ def add_commands(commands: Any) -> None:
 def _run(arguments: argparse.Namespace) -> None:
     names = ("fraction", "percentage", "seed", "tangle", "fixed", "time_limit", "threads", "merge_coincident_points")
     result = perturb(arguments.mesh, **_commands.given(arguments, names))
-    print(result.summary)
-    _commands.save(result, arguments)
+    _commands.finish(arguments, result, result.summary)

@@ -4,27 +4,28 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
-from contextlib import redirect_stdout
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, ClassVar, Sequence
+from typing import Any, ClassVar, Literal, Sequence, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
 from . import _commands, _vtk
-from ._arguments import COMBINATIONS, TARGETS, pick, set_threads, set_time_limit, within
+from ._arguments import COMBINATIONS, TARGETS, Combination, Target, pick, picked, set_threads, set_time_limit, within
 from ._arrays import InputArrays, cell_array, columns, point_array, snake
 from ._errors import Error, checked, interruptible, run, unknown
 from ._files import file_name, replace_text
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose, metrics as known_metrics
+from ._names import find_name
 from ._html import html_report
 from ._results import Result
 from ._tables import quality_json, quality_rows, quality_text
 
-REVERSED = ("measure as given", "measure flipped", "flip output")
+ReversedMesh = Literal["measure as given", "measure flipped", "flip output"]
+REVERSED: tuple[ReversedMesh, ...] = get_args(ReversedMesh)
 
 #: Exit code of the command for a mesh that fails its criteria.
 FAILED = 3
@@ -98,19 +99,20 @@ def quality(
     mesh: Mesh,
     metrics: Metrics = ("imr",),
     *,
-    combination: str = "mean",
+    combination: Combination = "mean",
     power: float = 2.0,
-    target: str = "ideal",
+    target: Target = "ideal",
     reference: Mesh | None = None,
     size: str | float | Sequence | None = None,
     tensor: str | Sequence | None = None,
     beta: float = 0.0,
     epsilon: float = 1e-4,
-    reversed_mesh: str = "measure flipped",
+    reversed_mesh: ReversedMesh = "measure flipped",
     histogram_bins: int = 32,
     criteria: str | PathLike | dict[str, Any] | None = None,
     time_limit: float = 0.0,
     threads: int = 0,
+    progress: Progress | bool | None = None,
 ) -> QualityResult:
     """Measure every element of a mesh by one or several metrics.
 
@@ -152,15 +154,15 @@ def measure(
     mesh: Mesh,
     metrics: Metrics,
     *,
-    combination: str = "mean",
+    combination: Combination = "mean",
     power: float = 2.0,
-    target: str = "ideal",
+    target: Target = "ideal",
     reference: Mesh | None = None,
     size: str | float | Sequence | None = None,
     tensor: str | Sequence | None = None,
     beta: float = 0.0,
     epsilon: float = 1e-4,
-    reversed_mesh: str = "measure flipped",
+    reversed_mesh: ReversedMesh = "measure flipped",
     histogram_bins: int = 32,
     criteria: str | PathLike | dict[str, Any] | None = None,
     time_limit: float = 0.0,
@@ -199,10 +201,16 @@ def criteria(name: str) -> dict[str, Any]:
     >>> mine["criteria"][0]["limits"]["all"]["fail"] = 5
     >>> tautline.quality("part.vtu", criteria=mine).verdict
     """
-    known = _vtk.vtkElementQuality.GetCriteriaPresets().split("\t")
-    if name not in known:
+    known = _criteria_presets()
+    found = find_name(name, known)
+    if found is None:
         raise unknown("preset of quality criteria", str(name), known)
-    return json.loads(_vtk.vtkElementQuality.GetCriteriaPreset(name))
+    preset: dict[str, Any] = json.loads(_vtk.vtkElementQuality.GetCriteriaPreset(found))
+    return preset
+
+
+def _criteria_presets() -> list[str]:
+    return str(_vtk.vtkElementQuality.GetCriteriaPresets()).split("\t")
 
 
 def _criteria_text(chosen: str | PathLike | dict[str, Any] | None) -> str:
@@ -211,12 +219,12 @@ def _criteria_text(chosen: str | PathLike | dict[str, Any] | None) -> str:
             return json.dumps(chosen, allow_nan=False)
         except (TypeError, ValueError) as error:
             raise Error(f"the criteria cannot be written as JSON: {error}") from None
-    return "" if chosen is None else file_name(chosen)
+    return "" if chosen is None else find_name(chosen, _criteria_presets()) or file_name(chosen)
 
 
 def _set_target(filter_: Any, inputs: InputArrays, target: str, given: dict[str, Any]) -> None:
     """Set the type of the target and its mesh or array."""
-    pick("target", target, TARGETS)
+    target = picked("target", target, TARGETS)
     chosen = [name for name, value in given.items() if value is not None]
     if len(chosen) > 1:
         raise Error(f"only one target is possible, not {' and '.join(chosen)}")
@@ -300,9 +308,13 @@ def _plain(value: Any) -> Any:
 
 def add_commands(commands: Any) -> None:
     """Add `quality` to the subparsers of the command line."""
-    parser = _commands.add_command(commands, "quality", _run, "measure every element of a mesh")
-    parser.add_argument("mesh", metavar="FILE")
-    parser.add_argument("-o", "--output", metavar="FILE", help="write the mesh with a cell array per metric")
+    parser = _commands.add_command(
+        commands, "quality", _run, "measure every element of a mesh",
+        example="part.vtu --metrics imr,min_angle --worst 3 --csv quality.csv",
+        details="Prints counts, a row per metric and the distribution of angles.",
+    )
+    _commands.add_mesh(parser)
+    _commands.add_output(parser, "write the mesh with a cell array per metric", False)
     parser.add_argument("--csv", metavar="FILE", help="write the statistics, a row per metric")
     _commands.add_time_limit(parser)
     _commands.add_metrics(parser)
@@ -320,13 +332,15 @@ def add_commands(commands: Any) -> None:
                         help="if all cells are of opposite orientation")  # fmt: skip
     parser.add_argument("--criteria", metavar="NAME|FILE",
                         help="grade the elements by a preset or JSON file; exits with 3 if the mesh fails")  # fmt: skip
-    parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.add_argument("--report", metavar="FILE", help="write an HTML report, see the command report")
     parser.add_argument("--histogram-bins", type=int, default=32, help=argparse.SUPPRESS)
 
 
-    preset = _commands.add_command(commands, "criteria", _run_criteria, "print preset quality criteria as JSON",
-                                   threads=False)  # fmt: skip
+    preset = _commands.add_command(
+        commands, "criteria", _run_criteria, "print preset quality criteria as JSON", threads=False,
+        example="fem > criteria.json",
+        details="The file can be changed and given to quality --criteria.",
+    )
     preset.add_argument("name", metavar="NAME", help="fem, skewness, optistruct, hypermesh, nastran or ansys")
 
 
@@ -341,13 +355,11 @@ def _run(arguments: argparse.Namespace) -> int:
     options["size"] = _number_or_name(arguments.size)
     filter_ = measure(arguments.mesh, arguments.metrics, **options)
     result = result_of(filter_)
-    print(quality_json(result) if arguments.json else quality_text(result, arguments.worst))
-    # Nothing but the JSON on the standard output.
-    with redirect_stdout(sys.stderr if arguments.json else sys.stdout):
-        _commands.save(result, arguments, quality_rows(result))
-        if arguments.report:
-            settings = {"metrics": arguments.metrics, **options}
-            _commands.save_text(arguments.report, html_report(filter_, arguments.mesh, settings))
+    texts = {}
+    if arguments.report:
+        texts[arguments.report] = html_report(filter_, arguments.mesh, {"metrics": arguments.metrics, **options})
+    rows, facts = quality_rows(result), json.loads(quality_json(result))
+    _commands.finish(arguments, result, quality_text(result, arguments.worst), rows, texts, facts)
     return FAILED if result.verdict in ("failed", "none") else 0
 
 

@@ -4,23 +4,28 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Sequence
+from typing import Any, ClassVar, Literal, Sequence, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
-from ._arguments import check_options, flag_option, pick, set_options, set_threads, set_time_limit, within
+from ._arguments import check_options, flag_option, pick, picked, set_options, set_threads, set_time_limit, within
 from ._arrays import CELLS, POINTS, InputArrays, cell_array, columns, table_rows
 from ._errors import Error, interruptible, run
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._results import Result
 
 #: In the filter's numbering.
-PRESETS = ("custom", "remove slivers", "swap only", "swap and smooth", "aggressive")
-BOUNDARIES = ("fixed", "flat")
-OBJECTIVES = ("angles and shape", "angles", "shape")
-CELL_TRANSFERS = ("copy", "conservative")
+Preset = Literal["custom", "remove slivers", "swap only", "swap and smooth", "aggressive"]
+PRESETS: tuple[Preset, ...] = get_args(Preset)
+Boundary = Literal["fixed", "flat"]
+BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
+Objective = Literal["angles and shape", "angles", "shape"]
+OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
+CellTransfer = Literal["copy", "conservative"]
+CELL_TRANSFERS: tuple[CellTransfer, ...] = get_args(CellTransfer)
 _FIXED, _REGIONS, _SIZES = 0, 1, 2  # input arrays of vtkMeshImprover
 _MAX_ANGLE = 60.0
 _MAX_FLAT_TOLERANCE = 1.0
@@ -68,10 +73,10 @@ class ImproveResult(Result):
 @interruptible
 def improve(
     mesh: Mesh,
-    preset: str = "remove slivers",
+    preset: Preset = "remove slivers",
     *,
-    boundary: str = "fixed",
-    objective: str = "angles and shape",
+    boundary: Boundary = "fixed",
+    objective: Objective = "angles and shape",
     target_angle: float | None = None,
     smallest_count: float = 0.9,
     largest_count: float = 1.1,
@@ -84,10 +89,11 @@ def improve(
     edge_length: float | str | Sequence | None = None,
     edge_factor: float = 2.0,
     then_best_shape: bool = False,
-    cell_transfer: str = "copy",
+    cell_transfer: CellTransfer = "copy",
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    progress: Progress | bool | None = None,
     **operations: bool,
 ) -> ImproveResult:
     """Improve the worst tetrahedra or triangles of a mesh by swaps, contraction, insertion and motion of points.
@@ -139,7 +145,8 @@ def improve(
     """
     filter_ = _vtk.vtkMeshImprover()
     inputs = InputArrays(filter_, as_mesh(mesh))
-    filter_.SetPreset(pick("preset", preset, PRESETS))
+    preset = picked("preset", preset, PRESETS)
+    filter_.SetPreset(PRESETS.index(preset))
     check_options(operations, _OPERATIONS)
     if operations and preset != "custom":
         raise Error(f"{', '.join(operations)}: operations are chosen with preset='custom' only")
@@ -216,7 +223,11 @@ def _named(table: Any) -> dict[str, Any]:
 def add_commands(commands: Any) -> None:
     """Add `improve` to the subparsers of the command line."""
     text = "change the connectivity of tetrahedra or triangles so that the worst become better"
-    parser = _commands.add_command(commands, "improve", _run_improve, text)
+    parser = _commands.add_command(
+        commands, "improve", _run_improve, text,
+        example='part.vtu --preset "remove slivers" -o better.vtu',
+        details="Swaps, contracts and inserts; the smallest angle and the worst element never become worse.",
+    )
     _commands.add_moving_points(parser)
     parser.add_argument("--preset", choices=PRESETS, default="remove slivers")
     for name in _OPERATIONS:
@@ -263,5 +274,4 @@ def _run_improve(arguments: argparse.Namespace) -> None:
     names += ("time_limit", "threads", "merge_coincident_points")
     left_out = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
     result = improve(arguments.mesh, **_commands.given(arguments, names), **left_out)
-    print(result.summary)
-    _commands.save(result, arguments, table_rows(result.history))
+    _commands.finish(arguments, result, result.summary, table_rows(result.history))

@@ -10,6 +10,7 @@ from . import _commands
 from ._errors import interruptible
 from ._files import check_stream_or_target, replace_text
 from ._html import html_report
+from ._interrupts import Progress
 from ._io import Mesh
 from ._metrics import Metrics
 from ._quality import measure
@@ -27,6 +28,7 @@ def report(
     histogram_bins: int = 32,
     time_limit: float = 0.0,
     threads: int = 0,
+    progress: Progress | bool | None = None,
 ) -> str:
     """Report the quality of a mesh as one HTML file that needs no other file.
 
@@ -67,8 +69,12 @@ def report(
 
 def add_commands(commands: Any) -> None:
     """Add `report` to the subparsers of the command line."""
-    parser = _commands.add_command(commands, "report", _run, "write the quality of a mesh as one HTML file")
-    parser.add_argument("mesh", metavar="FILE")
+    parser = _commands.add_command(
+        commands, "report", _run, "write the quality of a mesh as one HTML file",
+        example="part.vtu -o report.html --criteria fem",
+        details="It has what Save Report in ParaView has: pictures, histograms, tables and settings.",
+    )
+    _commands.add_mesh(parser)
     parser.add_argument("-o", "--out", "--output", dest="report", metavar="FILE", required=True, help="the HTML file")
     parser.add_argument("--before", metavar="FILE", help="the mesh before it was changed, to compare with")
     _commands.add_metrics(parser)
@@ -79,4 +85,6 @@ def add_commands(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     options = _commands.given(arguments, ("before", "metrics", "criteria", "title", "time_limit", "threads"))
-    _commands.save_text(arguments.report, report(arguments.mesh, **options))
+    html = report(arguments.mesh, **options)
+    facts: dict[str, Any] = {"title": options["title"] or str(arguments.mesh)}
+    _commands.finish(arguments, None, "", texts={arguments.report: html}, facts=facts)

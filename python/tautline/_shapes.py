@@ -6,7 +6,7 @@ import argparse
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any, ClassVar, Iterable
+from typing import Any, ClassVar, Iterable, Literal, get_args
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -27,12 +27,17 @@ from ._arguments import check_options, number, pick, set_time_limit
 from ._arrays import cell_array, columns, point_array, table_rows
 from ._errors import Error, interruptible, run, watch
 from ._files import check_input, check_target, file_name, replace_bytes
+from ._interrupts import Progress
 from ._results import Result
 
-FOREGROUNDS = ("automatic", "bright", "dark")
-LOCATIONS = ("grid", "near grid", "contour")
-REFLECTIONS = ("forbidden", "whole", "free")
-SETTINGS = ("custom", "dissertation", "felzenszwalb", "highest")
+Foreground = Literal["automatic", "bright", "dark"]
+FOREGROUNDS: tuple[Foreground, ...] = get_args(Foreground)
+Locations = Literal["grid", "near grid", "contour"]
+LOCATIONS: tuple[Locations, ...] = get_args(Locations)
+Reflection = Literal["forbidden", "whole", "free"]
+REFLECTIONS: tuple[Reflection, ...] = get_args(Reflection)
+Setting = Literal["custom", "dissertation", "felzenszwalb", "highest"]
+SETTINGS: tuple[Setting, ...] = get_args(Setting)
 #: The properties of vtkShapeAlgorithm by option.
 _OPTIONS = {
     "lambda_": "Lambda", "a": "DeformationWeight", "b": "DistortionWeight", "signed_distortion": "SignedDistortion",
@@ -100,8 +105,9 @@ def silhouette(
     spacing: float = 25.0,
     *,
     threshold: float | None = None,
-    foreground: str = "automatic",
+    foreground: Foreground = "automatic",
     time_limit: float = 0.0,
+    progress: Progress | bool | None = None,
 ) -> SilhouetteResult:
     """Trace the silhouette in an image and triangulate a polygon around it (dissertation sections 5.2.1 and 5.2.2).
 
@@ -171,11 +177,12 @@ def match(
     target: Any,
     *,
     spacing: float = 25.0,
-    locations: str = "grid",
+    locations: Locations = "grid",
     grid: tuple[int, int] = (30, 30),
-    reflection: str = "forbidden",
-    foreground: str = "automatic",
+    reflection: Reflection = "forbidden",
+    foreground: Foreground = "automatic",
     grey_gradient: bool = False,
+    progress: Progress | bool | None = None,
     **options: Any,
 ) -> MatchResult:
     """Find a deformable shape in an image: the placement of least energy (dissertation chapter 5).
@@ -275,7 +282,11 @@ class RetrievalResult(Result):
 
 
 @interruptible
-def read_silhouettes(folder: str | PathLike) -> vtkMultiBlockDataSet:
+def read_silhouettes(
+    folder: str | PathLike,
+    *,
+    progress: Progress | bool | None = None,
+) -> vtkMultiBlockDataSet:
     """Read a set of images with their classes.
 
     folder: a folder with a list labels.csv; a folder of images without one, whose classes are their file names up to
@@ -302,15 +313,16 @@ def retrieval(
     shapes: Any,
     labels: Iterable[Any] | None = None,
     *,
-    setting: str = "highest",
+    setting: Setting = "highest",
     spacing: float = 25.0,
     symmetric: bool = False,
     best: int = 10,
     sheet_size: int = 1200,
-    locations: str = "grid",
+    locations: Locations = "grid",
     grid: tuple[int, int] = (30, 30),
-    reflection: str = "forbidden",
-    foreground: str = "automatic",
+    reflection: Reflection = "forbidden",
+    foreground: Foreground = "automatic",
+    progress: Progress | bool | None = None,
     **options: Any,
 ) -> RetrievalResult:
     """Match each of a set of silhouettes with each other one and rank them by similarity (dissertation section 5.3).
@@ -429,16 +441,22 @@ def _numbers(table: vtkTable, column: int) -> np.ndarray:
 def add_commands(commands: Any) -> None:
     """Add `silhouette`, `match` and `retrieval` to the subparsers of the command line."""
     parser = _commands.add_command(
-        commands, "silhouette", _run_silhouette, "trace the silhouette in an image, triangulate it", threads=False
+        commands, "silhouette", _run_silhouette, "trace the silhouette in an image, triangulate it", threads=False,
+        example="fish.png --spacing 12 -o fish.vtu",
+        details="The largest component of the foreground counts.",
     )
     parser.add_argument("image")
     _add_spacing(parser)
     parser.add_argument("--threshold", type=float, help="grey value between the shape and the background")
     parser.add_argument("--foreground", choices=FOREGROUNDS, default="automatic")
-    parser.add_argument("-o", "--output", required=True, help="mesh to write")
+    _commands.add_output(parser)
     _commands.add_time_limit(parser)
 
-    parser = _commands.add_command(commands, "match", _run_match, "find a deformable shape in an image")
+    parser = _commands.add_command(
+        commands, "match", _run_match, "find a deformable shape in an image",
+        example="fish.png fish-bent.png --locations contour --spacing 12 -o found.vtu",
+        details="Prints the least energy and, with --output, writes the triangles in the target.",
+    )
     parser.add_argument("source", help="an image")
     parser.add_argument("target", help="an image")
     _add_spacing(parser)
@@ -448,11 +466,13 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("-b", type=float, default=3.0, help="weight of the distortion (default: 3)")
     parser.add_argument("--centre-tolerance", type=float, default=1 / 3,
                         help="theta / d_max; 0: no rule (default: 1/3)")  # fmt: skip
-    parser.add_argument("-o", "--output", help="write the detected mesh")
+    _commands.add_output(parser, "write the detected mesh", False)
     _commands.add_time_limit(parser)
 
     parser = _commands.add_command(
-        commands, "retrieval", _run_retrieval, "rank a set of silhouettes by similarity, compute the recognition rate"
+        commands, "retrieval", _run_retrieval, "rank a set of silhouettes by similarity, compute the recognition rate",
+        example="silhouettes.csv --best 1",
+        details="Each is matched with each other one (dissertation, section 5.3).",
     )
     parser.add_argument("shapes", help="a folder of images, or a list (.csv) with the columns file and class")
     parser.add_argument("--setting", choices=SETTINGS, default="highest")
@@ -469,23 +489,21 @@ def _add_spacing(parser: argparse.ArgumentParser) -> None:
 def _run_silhouette(arguments: argparse.Namespace) -> None:
     options = _commands.given(arguments, ("spacing", "threshold", "foreground", "time_limit"))
     result = silhouette(arguments.image, **options)
-    print(result.summary)
-    _commands.save(result, arguments)
+    _commands.finish(arguments, result, result.summary)
 
 
 def _run_match(arguments: argparse.Namespace) -> None:
     names = ("spacing", "locations", "grid", "a", "b", "centre_tolerance", "time_limit", "threads")
     result = match(arguments.source, arguments.target, **_commands.given(arguments, names))
-    print(result.summary)
-    _commands.save(result, arguments)
+    _commands.finish(arguments, result, result.summary)
 
 
 def _run_retrieval(arguments: argparse.Namespace) -> None:
     if arguments.sheet:
         check_target(arguments.sheet)
     result = retrieval(arguments.shapes, **_commands.given(arguments, ("setting", "best", "time_limit", "threads")))
-    print(result.summary)
-    print("right at rank " + ", ".join(f"{k}: {n}" for k, n in enumerate(result.correct_at, 1)))
-    _commands.save(result, arguments, table_rows(columns(result.tables["Ranking"])))
+    ranks = "right at rank " + ", ".join(f"{k}: {n}" for k, n in enumerate(result.correct_at, 1))
+    rows = table_rows(columns(result.tables["Ranking"]))
+    _commands.finish(arguments, result, f"{result.summary}\n{ranks}", rows)
     if arguments.sheet:
         result.save_sheet(arguments.sheet)

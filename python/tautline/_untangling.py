@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Sequence
+from typing import Any, ClassVar, Literal, Sequence, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -13,11 +13,14 @@ from . import _commands, _vtk
 from ._arguments import pick, set_threads, set_time_limit
 from ._arrays import POINTS, InputArrays, cell_array, history_of, point_array, table_rows
 from ._errors import interruptible, run
+from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._results import Result
 
-METHODS = ("automatic", "simultaneous")
-EFFORTS = ("local", "normal", "thorough")
+Method = Literal["automatic", "simultaneous"]
+METHODS: tuple[Method, ...] = get_args(Method)
+Effort = Literal["local", "normal", "thorough"]
+EFFORTS: tuple[Effort, ...] = get_args(Effort)
 _FIXED = 0  # input array of vtkMeshUntangler
 
 
@@ -54,15 +57,16 @@ class UntangleResult(Result):
 @interruptible
 def untangle(
     mesh: Mesh,
-    effort: str = "normal",
+    effort: Effort = "normal",
     *,
-    method: str = "automatic",
+    method: Method = "automatic",
     fixed: str | Sequence | None = None,
     fix_boundary: bool = True,
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
     reproducible_order: bool = False,
+    progress: Progress | bool | None = None,
 ) -> UntangleResult:
     """Make the elements of a mesh valid by moving its points; the number of inverted elements never grows.
 
@@ -117,7 +121,11 @@ def untangle(
 
 def add_commands(commands: Any) -> None:
     """Add `untangle` to the subparsers of the command line."""
-    parser = _commands.add_command(commands, "untangle", _run_untangle, "move points so that elements become valid")
+    parser = _commands.add_command(
+        commands, "untangle", _run_untangle, "move points so that elements become valid",
+        example="tangled.vtu -o valid.vtu --csv history.csv",
+        details="The number of inverted elements never grows; exits with 1 if some remain.",
+    )
     _commands.add_moving_points(parser)
     parser.add_argument("--effort", choices=EFFORTS, default="normal")
     _commands.add_reproducible_order(parser)
@@ -128,6 +136,5 @@ def _run_untangle(arguments: argparse.Namespace) -> int:
     names = ("effort", "method", "fixed", "time_limit", "threads", "merge_coincident_points")
     names += ("reproducible_order",)
     result = untangle(arguments.mesh, **_commands.given(arguments, names))
-    print(result.summary)
-    _commands.save(result, arguments, table_rows(result.history))
+    _commands.finish(arguments, result, result.summary, table_rows(result.history))
     return 1 if result.inverted else 0
