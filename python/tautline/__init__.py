@@ -11,6 +11,8 @@ The compiled VTK classes (vtkElementQuality, ...) are attributes of the package,
 `python3 -m tautline --help` shows the same functions as commands of the shell.
 """
 
+from typing import TYPE_CHECKING
+
 from . import _build
 
 _build.check()  # before the first compiled module
@@ -27,21 +29,35 @@ from ._report import report
 
 __version__ = _build.VERSION
 
+__all__ = [
+    "CompareResult", "compare", "Aborted", "Error", "Mesh", "read", "write", "from_arrays", "MetricFieldResult",
+    "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric", "QualityResult", "criteria",
+    "quality", "report",
+]
+
+if TYPE_CHECKING:
+    from ._classes import *
 globals().update(_vtk.CLASSES)
 
 # What needs a compiled module that is optional. One that was built but cannot be imported raises ImportError.
 if _vtk.available("_optimization"):
     from ._optimization import OptimizeResult, optimize
+    __all__ += ["OptimizeResult", "optimize"]
 if _vtk.available("_untangling"):
     from ._untangling import UntangleResult, untangle
+    __all__ += ["UntangleResult", "untangle"]
 if _vtk.available("_reconnection"):
     from ._reconnection import ImproveResult, improve
+    __all__ += ["ImproveResult", "improve"]
 if _vtk.available("_perturbation"):
     from ._perturbation import PerturbResult, perturb
+    __all__ += ["PerturbResult", "perturb"]
 if _vtk.available("_domains"):
     from ._domains import domain, domains
+    __all__ += ["domain", "domains"]
 if _vtk.available("_deformation"):
     from ._deformation import WarpResult, warp
+    __all__ += ["WarpResult", "warp"]
 if _vtk.available("_shapes"):
     from ._shapes import (
         MatchResult,
@@ -52,6 +68,7 @@ if _vtk.available("_shapes"):
         retrieval,
         silhouette,
     )
+    __all__ += ["MatchResult", "RetrievalResult", "SilhouetteResult", "match", "read_silhouettes", "retrieval", "silhouette"]
 if _vtk.available("_elliptic"):
     from ._elliptic import (
         ConditionResult,
@@ -62,5 +79,9 @@ if _vtk.available("_elliptic"):
         solver_combinations,
         solver_study,
     )
+    __all__ += ["ConditionResult", "SolveResult", "SolverStudyResult", "condition", "solve", "solver_combinations", "solver_study"]
 if _vtk.available("_peridynamics"):
     from ._peridynamics import PeridynamicsResult, interaction_layer, peridynamics
+    __all__ += ["PeridynamicsResult", "interaction_layer", "peridynamics"]
+
+globals()["__all__"] += sorted(_vtk.CLASSES)

@@ -48,7 +48,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run_study(arguments: argparse.Namespace) -> int:
-    return import_module(".studies", __package__).main(arguments.arguments)
+    return int(import_module(".studies", __package__).main(arguments.arguments))
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -85,7 +85,11 @@ def number_option(setter: str, low: float, high: float, kind: type = float) -> S
 
 def flag_option(setter: str) -> Setter:
     """A setter of a filter for True and False."""
-    return lambda algorithm, value: getattr(algorithm, setter)(bool(value))
+
+    def set_flag(algorithm: Any, value: Any) -> None:
+        getattr(algorithm, setter)(bool(value))
+
+    return set_flag
 
 
 def check_options(options: Mapping[str, Any], known: Iterable[str]) -> None:

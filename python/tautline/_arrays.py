@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import re
 from operator import methodcaller
-from typing import Any, Callable, Iterator, NamedTuple, Sequence
+from typing import Any, Callable, Iterator, NamedTuple, Sequence, Union
 
 import numpy as np
+from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 
 from ._errors import Error
+
+#: An array of numbers.
+Array = NDArray[Any]
+
+#: The name of an array of the mesh, or numbers, one row per cell or point.
+Values = Union[str, Sequence[Any], Array]
 
 #: What an array belongs to.
 ANY, CELLS, POINTS = "any", "cells", "points"
@@ -26,7 +33,7 @@ class _Place(NamedTuple):
     on: str
     association: int
     fields: Callable[[vtkDataSet], Any]
-    count: Callable[[vtkDataSet], int]
+    size: Callable[[vtkDataSet], int]
 
 
 _PLACES = (
@@ -58,18 +65,18 @@ def leaves(data: vtkDataObject) -> Iterator[vtkDataSet]:
         walk.GoToNextItem()
 
 
-def cell_array(data: vtkDataObject, name: str) -> np.ndarray:
+def cell_array(data: vtkDataObject, name: str) -> Array:
     """A cell array by name; of composite data the blocks concatenated. Empty if there is none."""
     return _array(leaf.GetCellData().GetArray(name) for leaf in leaves(data))
 
 
-def point_array(data: vtkDataObject, name: str) -> np.ndarray:
+def point_array(data: vtkDataObject, name: str) -> Array:
     """A point array by name; of composite data the blocks concatenated. Empty if there is none."""
     return _array(leaf.GetPointData().GetArray(name) for leaf in leaves(data))
 
 
-def _array(found: Iterator[Any]) -> np.ndarray:
-    parts = [vtk_to_numpy(array) for array in found if array]
+def _array(found: Iterator[Any]) -> Array:
+    parts: list[Array] = [vtk_to_numpy(array) for array in found if array]
     return parts[0] if len(parts) == 1 else np.concatenate(parts) if parts else np.zeros(0)
 
 
@@ -113,7 +120,7 @@ class InputArrays:
         self.algorithm, self.mesh = algorithm, mesh
         self._added: list[str] = []
 
-    def use(self, index: int, values: str | Sequence | None, name: str, on: str = ANY) -> None:
+    def use(self, index: int, values: float | Values | None, name: str, on: str = ANY) -> None:
         """Choose array number `index` of the filter; nothing is done for None.
 
         values: the name of an array of the mesh, or numbers, one row per cell or per point; see with_array().
@@ -137,7 +144,7 @@ class InputArrays:
 
 
 def with_array(
-    data: vtkDataObject, values: str | Sequence, name: str, on: str = ANY
+    data: vtkDataObject, values: float | Values, name: str, on: str = ANY
 ) -> tuple[vtkDataObject, int, str]:
     """The mesh with an input array, its association (vtkDataObject.FIELD_ASSOCIATION_...) and its name.
 
@@ -161,7 +168,7 @@ def with_array(
     except (TypeError, ValueError) as error:
         raise Error(f"{name}: not an array of numbers: {error}") from None
     for place in places:
-        if len(numbers) == place.count(data):
+        if len(numbers) == place.size(data):
             copy = data.NewInstance()
             copy.ShallowCopy(data)
             array = numpy_to_vtk(numbers, deep=True)
@@ -171,7 +178,7 @@ def with_array(
     if on == ANY:
         cells, points = data.GetNumberOfCells(), data.GetNumberOfPoints()
         raise Error(f"{name}: {len(numbers)} rows; there are {cells} cells and {points} points")
-    count = places[0].count(data)
+    count = places[0].size(data)
     raise Error(f"{name} has the shape {np.shape(values)}; one row for each of the {count} {on} is expected")
 
 

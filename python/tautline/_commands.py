@@ -43,7 +43,7 @@ class Parser(argparse.ArgumentParser):
     """A parser whose choices are found in any case, and whose messages name the nearest one."""
 
     def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
-        value = super()._get_value(action, arg_string)  # type: ignore[misc]
+        value = super()._get_value(action, arg_string)
         names = _choices(action)
         return find_name(value, names) or value if names else value
 

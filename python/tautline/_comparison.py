@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
 from ._arguments import set_threads, set_time_limit, within
-from ._arrays import cell_array, columns, point_array, snake
+from ._arrays import Array, cell_array, columns, point_array, snake
 from ._errors import interruptible, run
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -37,9 +37,9 @@ class CompareResult(Result):
     _per_element: ClassVar[tuple[str, ...]] = ("difference", "change", "displacement")
     mesh: vtkDataObject
     statistics: dict[str, dict[str, Any]]
-    difference: dict[str, np.ndarray]
-    change: np.ndarray
-    displacement: np.ndarray
+    difference: dict[str, Array]
+    change: Array
+    displacement: Array
     summary: str
 
     def table(self) -> list[dict[str, Any]]:

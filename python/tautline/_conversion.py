@@ -24,5 +24,5 @@ def add_commands(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     mesh = read(arguments.input, **({"lower_cells": True} if arguments.lower_cells else {}))
-    options = {"binary": True} if arguments.binary else {}
+    options: dict[str, Any] = {"binary": True} if arguments.binary else {}
     _commands.finish(arguments, mesh, _commands.counts(mesh), **options)

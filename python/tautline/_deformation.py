@@ -23,7 +23,7 @@ from ._arguments import (
     set_time_limit,
     within,
 )
-from ._arrays import ANY, POINTS, InputArrays, cell_array, columns, point_array, table_rows, with_array
+from ._arrays import ANY, POINTS, Array, InputArrays, Values, cell_array, columns, point_array, table_rows, with_array
 from ._errors import Error, interruptible, run
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -98,28 +98,28 @@ class WarpResult(Result):
     impossible: int
     history: dict[str, Any]
     statistics: dict[str, Any]
-    displacement: np.ndarray
-    shape: np.ndarray
-    validity: np.ndarray
+    displacement: Array
+    shape: Array
+    validity: Array
     summary: str
 
 
 @interruptible
 def warp(
     mesh: Mesh,
-    displacement: str | Sequence | None = None,
+    displacement: Values | None = None,
     method: Method = "hybrid",
     amount: float = 1.0,
     *,
     target: Mesh | None = None,
     transform: Transform | None = None,
     correspondence: Correspondence = "automatic",
-    target_ids: str | Sequence | None = None,
-    moved: str | int | Sequence | None = None,
+    target_ids: Values | None = None,
+    moved: int | Values | None = None,
     values: Sequence[float] = (),
-    fixed: str | Sequence | None = None,
-    coefficients: str | Sequence = "displacement sums",
-    regions: tuple[str | Sequence, Mapping[float, Sequence[float]]] | None = None,
+    fixed: Values | None = None,
+    coefficients: Values = "displacement sums",
+    regions: tuple[Values, Mapping[float, Sequence[float]]] | None = None,
     solver: Solver = "automatic",
     preconditioner: Preconditioner = "boomeramg",
     time_limit: float = 0.0,
@@ -259,12 +259,12 @@ def _set_target(filter_: Any, target: vtkDataObject, ids: Any) -> None:
 
 def _vector(name: str, value: Any, sizes: tuple[int, ...] = (3,)) -> list[float]:
     try:
-        numbers = np.asarray(value, float).ravel()
+        numbers: Array = np.asarray(value, float).ravel()
     except (TypeError, ValueError):
         raise Error(f"{name} is {value!r}; numbers are expected") from None
     if numbers.size not in sizes or not np.isfinite(numbers).all():
         raise Error(f"{name} is {value!r}; {' or '.join(map(str, sizes))} finite numbers are expected")
-    return numbers.tolist()
+    return [float(value) for value in numbers]
 
 
 def _set_transform(filter_: Any, transform: Any) -> None:

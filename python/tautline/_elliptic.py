@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 from inspect import signature
-from typing import Any, Callable, ClassVar, Iterable, Literal, Sequence, Union, get_args
+from typing import Any, Callable, ClassVar, Iterable, Literal, Union, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -14,7 +14,7 @@ from . import _commands, _vtk
 from ._arguments import (
     PRECONDITIONERS, Preconditioner, check_options, number, pick, picked, set_threads, set_time_limit, within,
 )  # fmt: skip
-from ._arrays import POINTS, InputArrays, cell_array, columns, has_array, point_array, table_rows
+from ._arrays import POINTS, Array, InputArrays, Values, cell_array, columns, has_array, point_array, table_rows
 from ._errors import Error, checked, interruptible, run, watch
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -58,7 +58,7 @@ _STUDY_COLUMNS = {
 
 #: A function on the points: a number (elasticity: 2 or 3 of them), the name or the values of a point array, or an
 #: expression of x, y, z and of point arrays by name.
-Function = Union[float, str, Sequence]
+Function = Union[float, Values]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -81,10 +81,10 @@ class SolveResult(Result):
 
     _per_element: ClassVar[tuple[str, ...]] = ("solution", "gradient")
     mesh: vtkDataObject
-    solution: np.ndarray
-    gradient: np.ndarray
-    times: np.ndarray | None
-    series: np.ndarray | None
+    solution: Array
+    gradient: Array
+    times: Array | None
+    series: Array | None
     history: dict[str, Any]
     converged: bool
     reason: str
@@ -116,8 +116,8 @@ class ConditionResult(Result):
     condition: float
     preconditioned_condition: float
     spectrum: list[dict[str, Any]]
-    largest_eigenvalue: np.ndarray
-    share: np.ndarray
+    largest_eigenvalue: Array
+    share: Array
     unknowns: int
     summary: str
 
@@ -361,7 +361,7 @@ def solver_study(
         if number not in known:
             listed = ", ".join(f"{k}: {v}" for k, v in known.items())
             raise Error(f"there is no combination {chosen!r}; there are {listed}")
-        if combinations is not None or number <= _TABLE_2_5:
+        if combinations is not None or int(number) <= _TABLE_2_5:
             filter_.AddCombination(number)
     _set_tolerances(filter_, relative_tolerance, absolute_tolerance, maximum_iterations, restart)
     filter_.SetEstimateConditions(bool(conditions))
@@ -422,16 +422,16 @@ def _set_problem(
     *,
     source: Function | None = None,
     given: Function = 0.0,
-    fixed: str | Sequence | None = None,
+    fixed: Values | None = None,
     alpha: float = 1.0,
     beta: float = 1.0,
     gamma: float = 1.0,
     reaction: float = 1.0,
-    tensor: str | Sequence | None = None,
+    tensor: Values | None = None,
     youngs_modulus: float = 1.0,
     poisson_ratio: float = 0.3,
     plane: Plane = "strain",
-    stiffness: str | Sequence | None = None,
+    stiffness: Values | None = None,
     omega: float = 1.0,
     petsc_options: str = "",
     time_limit: float = 0.0,
@@ -488,7 +488,7 @@ def _set_vector_function(filter_: Any, inputs: InputArrays, name: str, value: Fu
         value = (0.0, 0.0, 0.0)
     if np.size(value) not in (2, 3):
         raise Error(f"{name} is {value!r}; of elasticity it is a vector of two or three numbers")
-    getattr(filter_, _VECTOR_SETTERS[name])(*(float(v) for v in (*value, 0.0)[:3]))
+    getattr(filter_, _VECTOR_SETTERS[name])(*(float(v) for v in [*np.ravel(value), 0.0][:3]))
 
 
 def _set_variable_function(filter_: Any, inputs: InputArrays, name: str, value: Function, index: int) -> None:
@@ -597,8 +597,9 @@ def _add_problem(commands: Any, name: str, run_command: _commands.Run, text: str
 
 
 def _function(text: str) -> float | list[float] | str:
-    values = _commands.numbers_or_text(text)
-    return values[0] if isinstance(values, list) and len(values) == 1 else values
+    values: Any = _commands.numbers_or_text(text)
+    made: float | list[float] | str = values[0] if isinstance(values, list) and len(values) == 1 else values
+    return made
 
 
 def _combinations(text: str) -> list[int]:

@@ -26,7 +26,7 @@ _MEBIBYTE = 2**20
 _NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
-def file_name(file: str | PathLike) -> str:
+def file_name(file: str | PathLike[str]) -> str:
     """The name of a file as a text. Raises Error for anything else."""
     try:
         name = fspath(file)
@@ -37,7 +37,7 @@ def file_name(file: str | PathLike) -> str:
     return name
 
 
-def check_input(file: str | PathLike) -> None:
+def check_input(file: str | PathLike[str]) -> None:
     """Raise Error for what is no file, before a reader waits for it or reads from it for ever."""
     name = file_name(file)
     try:
@@ -52,7 +52,7 @@ def check_input(file: str | PathLike) -> None:
     raise Error(f"{name}: {'is a directory' if stat.S_ISDIR(mode) else 'is not a regular file'}")
 
 
-def check_target(file: str | PathLike) -> str:
+def check_target(file: str | PathLike[str]) -> str:
     """The name of the file that writing to `file` replaces. Raises Error if it cannot be written.
 
     A link is followed: the file it points to is replaced, and the link stays. A link of another user in a directory
@@ -75,14 +75,14 @@ def check_target(file: str | PathLike) -> str:
     return target
 
 
-def check_stream_or_target(file: str | PathLike) -> None:
+def check_stream_or_target(file: str | PathLike[str]) -> None:
     """check_target() for files that may also be a pipe or a device, such as /dev/stdout."""
     if not _is_stream(file_name(file)):
         check_target(file)
 
 
 @contextmanager
-def replacing(file: str | PathLike, *, stream: bool = False) -> Iterator[BinaryIO]:
+def replacing(file: str | PathLike[str], *, stream: bool = False) -> Iterator[BinaryIO]:
     """A binary file for the new content of `file`, which replaces it at the end of the block.
 
     stream: whether the file may be a pipe or a device, which are written directly. Raises Error if the file cannot be
@@ -113,25 +113,25 @@ def replacing(file: str | PathLike, *, stream: bool = False) -> Iterator[BinaryI
         raise _unwritable(name, error.strerror or str(error)) from None
 
 
-def replace_bytes(file: str | PathLike, content: bytes) -> None:
+def replace_bytes(file: str | PathLike[str], content: bytes) -> None:
     """Replace a file. Raises Error if it cannot be written; it is then as it was."""
     with replacing(file) as out:
         out.write(content)
 
 
-def replace_text(file: str | PathLike, text: str, *, stream: bool = False) -> None:
+def replace_text(file: str | PathLike[str], text: str, *, stream: bool = False) -> None:
     """Replace a file by a text, as it is, in UTF-8; see replacing()."""
     with replacing(file, stream=stream) as out:
         out.write(text.encode())
 
 
-def save_figure(figure: Any, file: str | PathLike, **options: Any) -> None:
+def save_figure(figure: Any, file: str | PathLike[str], **options: Any) -> None:
     """Replace a file by the picture of a figure of matplotlib."""
     with replacing(file) as out:
         figure.savefig(out, format=os.path.splitext(file_name(file))[1][1:], **options)
 
 
-def make_folder(folder: str | PathLike) -> None:
+def make_folder(folder: str | PathLike[str]) -> None:
     """Make a directory for output, if there is none. Raises Error if it cannot be made or written to."""
     name = file_name(folder)
     try:

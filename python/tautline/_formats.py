@@ -32,7 +32,7 @@ class Format:
 
     def make_writer(self) -> Any:
         """A new writer."""
-        return self._make(self.writer)
+        return self._make(self.writer or "")
 
     def _make(self, name: str) -> Any:
         return getattr(_vtk if self.module is None else import_module(f"vtkmodules.{self.module}"), name)()

@@ -58,7 +58,7 @@ def html_report(
         if value is not None and value != "":
             report.AddRow(key.replace("_", " "), _text(value))
     messages.raise_errors()
-    return report.GetHtml()
+    return str(report.GetHtml())
 
 
 def _metrics(measured: Any) -> list[str]:
@@ -103,5 +103,5 @@ def _text(value: Any) -> str:
     if isinstance(value, (list, tuple)):
         return ", ".join(map(str, value))
     if isinstance(value, (vtkDataSet, vtkCompositeDataSet)):
-        return value.GetClassName()
+        return str(value.GetClassName())
     return str(value)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from os import PathLike
 from pathlib import Path
-from typing import Any, Union
+from typing import Any, Callable, Union
 
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
@@ -22,7 +22,7 @@ from ._vtk_writers import block_files, write_composite, write_data
 
 #: What every function takes as a mesh: a vtkDataSet, a composite data set, a file name, the result of another function,
 #: or (points, cells), see from_arrays().
-Mesh = Union[vtkDataObject, str, PathLike, "tuple[Any, Any]", Any]
+Mesh = Union[vtkDataObject, str, PathLike[str], "tuple[Any, Any]", Any]
 
 # VTK 9.1 and 9.2 with the expat of today's Debian 12 (VTK issue 19258).
 _APPENDED = (
@@ -54,7 +54,7 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
 
 @interruptible
 def read(
-    file: str | PathLike,
+    file: str | PathLike[str],
     *,
     progress: Progress | bool | None = None,
     **options: Any,
@@ -94,7 +94,7 @@ def read(
 @interruptible
 def write(
     mesh: Mesh,
-    file: str | PathLike,
+    file: str | PathLike[str],
     *,
     progress: Progress | bool | None = None,
     **options: Any,
@@ -126,7 +126,7 @@ def write(
     return write_composite(data, name) if ending == ".vtm" else write_data(data, name, form)
 
 
-def check_output(file: str | PathLike) -> Format:
+def check_output(file: str | PathLike[str]) -> Format:
     """The format of a mesh to be written. Raises Error if there is no writer for it or no file can be made there."""
     name = file_name(file)
     ending = Path(name).suffix.lower()
@@ -223,7 +223,7 @@ def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[
 class _CapturedOutput:
     """Captures the output of VTK's internal helper objects, which cannot be observed, as a list of texts."""
 
-    def __enter__(self):
+    def __enter__(self) -> Callable[[], list[str]]:
         self.window = vtkStringOutputWindow()
         self.before = vtkOutputWindow.GetInstance()
         vtkOutputWindow.SetInstance(self.window)
@@ -237,6 +237,6 @@ class _CapturedOutput:
             output = output.decode(errors="backslashreplace")
         return [plain(text) for text in output.split("\n\n") if text.strip()]
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         vtkOutputWindow.SetInstance(self.before)
         vtkLogger.SetStderrVerbosity(self.verbosity)

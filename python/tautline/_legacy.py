@@ -264,8 +264,8 @@ class _Scanner:
 
     def _rest_of_line(self) -> str:
         found = _REST_OF_LINE.match(self.content, self.at)
-        self.at = found.end()
-        return found[0].decode("latin-1")
+        self.at = found.end() if found else self.size
+        return found[0].decode("latin-1") if found else ""
 
     def _count(self) -> int:
         return self._number(self._word())

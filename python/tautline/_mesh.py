@@ -18,6 +18,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkUnstructuredGrid,
 )
 
+from ._arrays import Array
 from ._errors import Error, checked
 
 _CELLS = {  # name: VTK's cell type, number of points
@@ -55,7 +56,9 @@ def from_arrays(points: Any, cells: Any) -> vtkUnstructuredGrid:
     vtk_points = vtkPoints()
     vtk_points.SetData(numpy_to_vtk(xyz, deep=True))
     grid.SetPoints(vtk_points)
-    types, sizes, ids = [], [0], []
+    types: list[Array] = []
+    sizes: list[Any] = [0]
+    ids: list[Array] = []
     for kind, block in blocks:
         types.append(np.full(len(block), kind, np.uint8))
         sizes.append(np.full(len(block), block.shape[1], np.int64))
@@ -70,7 +73,7 @@ def from_arrays(points: Any, cells: Any) -> vtkUnstructuredGrid:
     return grid
 
 
-def _coordinates(points: Any) -> tuple[np.ndarray, bool]:
+def _coordinates(points: Any) -> tuple[Array, bool]:
     try:
         xyz = np.asarray(points)
         xyz = np.ascontiguousarray(xyz, xyz.dtype if xyz.dtype == np.float32 else np.float64)
@@ -82,7 +85,7 @@ def _coordinates(points: Any) -> tuple[np.ndarray, bool]:
     return (np.hstack([xyz, np.zeros((len(xyz), 1), xyz.dtype)]) if flat else xyz), flat
 
 
-def _block(name: str | None, array: Any, flat: bool, points: int) -> tuple[int, np.ndarray]:
+def _block(name: str | None, array: Any, flat: bool, points: int) -> tuple[int, Array]:
     """VTK's cell type and the point numbers, m x k, after checks of shape, type and range."""
     try:
         cells = np.asarray(array)

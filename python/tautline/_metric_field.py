@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from . import _commands, _vtk
 from ._arguments import pick, set_threads, set_time_limit, within
-from ._arrays import point_array
+from ._arrays import Array, point_array
 from ._errors import Error, interruptible, run
 from ._interrupts import Progress
 from ._metrics import Metrics, choose
@@ -32,15 +32,15 @@ class MetricFieldResult(Result):
 
     _per_element: ClassVar[tuple[str, ...]] = ("values", "validity")
     mesh: vtkImageData
-    values: dict[str, np.ndarray]
-    validity: np.ndarray
+    values: dict[str, Array]
+    validity: Array
 
 
 @interruptible
 def metric_field(
     metrics: Metrics = ("imr",),
     cell: Cell = "triangle",
-    vertices: Sequence | None = None,
+    vertices: Sequence[Any] | None = None,
     bounds: Sequence[float] = (-1, 2, 0, 2, 0, 2),
     dimensions: Sequence[int] = (301, 201, 101),
     beta: float = 0.25,
@@ -94,7 +94,7 @@ def metric_field(
     return MetricFieldResult(mesh=image, values=grids, validity=validity)
 
 
-def _numbers(option: str, values: Any, shapes: list[tuple[int, ...]]) -> np.ndarray:
+def _numbers(option: str, values: Any, shapes: list[tuple[int, ...]]) -> Array:
     """The values as an array of one of the shapes."""
     try:
         numbers = np.asarray(values, float)

@@ -11,6 +11,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import _vtk
+from ._arrays import Array
 from ._commands import add_command
 from ._errors import Error, Messages, checked, unknown, watch
 from ._tables import json_text, metrics_markdown, metrics_text
@@ -71,7 +72,7 @@ _TEXTS = ("label", "symbol", "aliases", "formula", "source", "unit")
 
 #: A metric of the user: takes x y z of the corners, shape (cells, corners, 3), and the type of the cells, and returns
 #: a value per cell, shape (cells,).
-MetricFunction = Callable[["np.ndarray", str], "np.ndarray"]
+MetricFunction = Callable[["Array", str], "Array"]
 
 
 @checked
@@ -150,7 +151,7 @@ def register_metric(
             _REGISTERED[name] = replaced
         messages.raise_errors()
     _REGISTERED[name] = metric
-    return next(facts["number"] for facts in metrics() if facts["name"] == name)
+    return next(int(facts["number"]) for facts in metrics() if facts["name"] == name)
 
 
 #: The metrics that Python has registered.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterable, Literal, Sequence, Union, get_args
+from typing import Any, ClassVar, Iterable, Literal, Union, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -15,6 +15,7 @@ from ._arguments import (
     TARGETS,
     check_options,
     flag_option,
+    number,
     number_option,
     pick,
     picked,
@@ -23,7 +24,7 @@ from ._arguments import (
     set_time_limit,
     within,
 )
-from ._arrays import ANY, CELLS, POINTS, InputArrays, cell_array, columns, history_of, point_array, snake, table_rows
+from ._arrays import ANY, CELLS, POINTS, Array, InputArrays, Values, cell_array, columns, history_of, point_array, snake, table_rows
 from ._errors import Error, interruptible, run, watch
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -111,8 +112,8 @@ class OptimizeResult(Result):
     inverted: int
     iterations: int
     free: int
-    displacement: np.ndarray
-    validity: np.ndarray
+    displacement: Array
+    validity: Array
     surface_error: float
     summary: str
 
@@ -126,20 +127,20 @@ def optimize(
     scalarization: Scalarization | None = None,
     optimizer: Optimizer | None = None,
     reference: Mesh | None = None,
-    size: str | float | Sequence | None = None,
-    tensor: str | Sequence | None = None,
-    fixed: str | Sequence | None = None,
+    size: float | Values | None = None,
+    tensor: Values | None = None,
+    fixed: Values | None = None,
     boundary: Boundary = "fixed",
     flat_angle: float = 1.0,
     feature_angle: float = 40.0,
     keep_features: bool = True,
     smooth_surface: bool = True,
     show_features: bool = False,
-    feature_kinds: str | Sequence | None = None,
-    regions: str | Sequence | None = None,
+    feature_kinds: Values | None = None,
+    regions: Values | None = None,
     geometry: Mesh | None = None,
-    limits: str | float | Sequence | None = None,
-    element_weights: str | Sequence | None = None,
+    limits: float | Values | None = None,
+    element_weights: Values | None = None,
     project_to_surface: bool = True,
     untangle_first: bool = True,
     allow_inversion: bool = False,
@@ -241,7 +242,7 @@ def optimize(
     if _is_number(size):
         size = np.full(inputs.mesh.GetNumberOfCells(), size)
     if _is_number(limits):
-        filter_.SetMaximumDisplacement(within("limits", limits, 0, np.inf))
+        filter_.SetMaximumDisplacement(within("limits", number("limits", limits), 0, np.inf))
         limits = None
     inputs.use(_SIZE, size, "size", ANY)
     inputs.use(_TENSOR, tensor, "tensor", ANY)

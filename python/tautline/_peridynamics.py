@@ -11,8 +11,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 
 from . import _commands, _vtk
-from ._arguments import pick, picked, set_threads, set_time_limit, within
-from ._arrays import POINTS, InputArrays, columns, snake
+from ._arguments import number, pick, picked, set_threads, set_time_limit, within
+from ._arrays import POINTS, Array, InputArrays, Values, columns, snake
 from ._errors import Error, interruptible, run
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -68,8 +68,8 @@ class PeridynamicsResult(Result):
     asymmetry: float
     layer_deficit: float
     statistics: dict[str, Any]
-    solution: np.ndarray | None
-    sparsity: np.ndarray | None
+    solution: Array | None
+    sparsity: Array | None
     summary: str
 
 
@@ -87,16 +87,16 @@ def peridynamics(
     discretization: Discretization = "exact",
     rules: Rules = "tables",
     tolerance: float = 1e-5,
-    region: str | Sequence | None = _DEFAULT_REGION,
+    region: Values | None = _DEFAULT_REGION,
     layer_value: float = 2,
-    given_points: str | Sequence | None = None,
+    given_points: Values | None = None,
     constrained: bool = True,
     allow_thin_layer: bool = False,
     spectrum: bool = True,
     spectrum_tolerance: float = 1e-8,
     solve: bool = False,
-    source: float | str | Sequence = 1.0,
-    given: str | Sequence | None = None,
+    source: float | Values = 1.0,
+    given: Values | None = None,
     sparsity: int = 0,
     memory_limit: float = 0.0,
     time_limit: float = 0.0,
@@ -175,7 +175,7 @@ def peridynamics(
     elif not (isinstance(region, str) and region == _DEFAULT_REGION):
         inputs.use(_REGION, region, "region")
     if np.ndim(source) == 0 and not isinstance(source, str):
-        filter_.SetUniformSource(float(source))
+        filter_.SetUniformSource(number("source", source))
     else:
         inputs.use(_SOURCE, source, "source")
     inputs.use(_GIVEN, given, "solution")
@@ -296,7 +296,7 @@ def add_commands(commands: Any) -> None:
 
     made = _commands.add_command(
         commands, "interaction-layer", _run_layer, "add an interaction layer (collar) around a planar triangle mesh",
-        example="plate.vtu --width 0.1 -o layer.vtu",
+        example="triangles.vtu --width 0.1 -o layer.vtu",
         details="Nonlocal models have their boundary condition in it.",
     )
     _commands.add_mesh(made)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Sequence
+from typing import Any, ClassVar
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
 from ._arguments import set_threads, set_time_limit, within
-from ._arrays import POINTS, InputArrays, point_array
+from ._arrays import POINTS, Array, InputArrays, Values, point_array
 from ._errors import Error, interruptible, run
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -36,7 +36,7 @@ class PerturbResult(Result):
 
     _per_element: ClassVar[tuple[str, ...]] = ("displacement",)
     mesh: vtkDataObject
-    displacement: np.ndarray
+    displacement: Array
     movable: int
     moved: int
     inverted_before: int
@@ -53,7 +53,7 @@ def perturb(
     percentage: float = 50.0,
     seed: int = 1,
     tangle: float = 0.0,
-    fixed: str | Sequence | None = None,
+    fixed: Values | None = None,
     threads: int = 0,
     merge_coincident_points: bool = True,
     time_limit: float = 0.0,

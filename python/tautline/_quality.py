@@ -6,14 +6,14 @@ import argparse
 import json
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, ClassVar, Literal, Sequence, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
 from . import _commands, _vtk
 from ._arguments import COMBINATIONS, TARGETS, Combination, Target, pick, picked, set_threads, set_time_limit, within
-from ._arrays import InputArrays, cell_array, columns, point_array, snake
+from ._arrays import Array, InputArrays, Values, cell_array, columns, point_array, snake
 from ._errors import Error, checked, interruptible, run, unknown
 from ._files import file_name, replace_text
 from ._interrupts import Progress
@@ -65,19 +65,19 @@ class QualityResult(Result):
 
     _per_element: ClassVar[tuple[str, ...]] = ("values", "validity", "indices", "grades")
     mesh: vtkDataObject
-    values: dict[str, np.ndarray]
-    validity: np.ndarray
+    values: dict[str, Array]
+    validity: Array
     statistics: dict[str, dict[str, Any]]
-    distribution: dict[str, dict[str, np.ndarray]]
-    histogram: dict[str, dict[str, np.ndarray]]
-    angles: dict[str, np.ndarray]
+    distribution: dict[str, dict[str, Array]]
+    histogram: dict[str, dict[str, Array]]
+    angles: dict[str, Array]
     worst: vtkPolyData
     inverted: int
     degenerate: int
     verdict: str | None
     index: float | None
-    indices: np.ndarray | None
-    grades: np.ndarray | None
+    indices: Array | None
+    grades: Array | None
     criteria: dict[str, dict[str, Any]]
     notice: str
     summary: str
@@ -103,13 +103,13 @@ def quality(
     power: float = 2.0,
     target: Target = "ideal",
     reference: Mesh | None = None,
-    size: str | float | Sequence | None = None,
-    tensor: str | Sequence | None = None,
+    size: float | Values | None = None,
+    tensor: Values | None = None,
     beta: float = 0.0,
     epsilon: float = 1e-4,
     reversed_mesh: ReversedMesh = "measure flipped",
     histogram_bins: int = 32,
-    criteria: str | PathLike | dict[str, Any] | None = None,
+    criteria: str | PathLike[str] | dict[str, Any] | None = None,
     time_limit: float = 0.0,
     threads: int = 0,
     progress: Progress | bool | None = None,
@@ -158,13 +158,13 @@ def measure(
     power: float = 2.0,
     target: Target = "ideal",
     reference: Mesh | None = None,
-    size: str | float | Sequence | None = None,
-    tensor: str | Sequence | None = None,
+    size: float | Values | None = None,
+    tensor: Values | None = None,
     beta: float = 0.0,
     epsilon: float = 1e-4,
     reversed_mesh: ReversedMesh = "measure flipped",
     histogram_bins: int = 32,
-    criteria: str | PathLike | dict[str, Any] | None = None,
+    criteria: str | PathLike[str] | dict[str, Any] | None = None,
     time_limit: float = 0.0,
     threads: int = 0,
 ) -> Any:
@@ -213,7 +213,7 @@ def _criteria_presets() -> list[str]:
     return str(_vtk.vtkElementQuality.GetCriteriaPresets()).split("\t")
 
 
-def _criteria_text(chosen: str | PathLike | dict[str, Any] | None) -> str:
+def _criteria_text(chosen: str | PathLike[str] | dict[str, Any] | None) -> str:
     if isinstance(chosen, dict):
         try:
             return json.dumps(chosen, allow_nan=False)
@@ -292,9 +292,9 @@ def _statistics(table: dict[str, Any], worst: vtkPolyData) -> dict[str, dict[str
 
 def _by_metric(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
     counts = ("Graded", "Passed", "Warning", "Failed")
-    kinds = {key: int if key in counts else _plain for key in table if key != "Metric"}
+    keys = [key for key in table if key != "Metric"]
     return {
-        str(name): {snake(key): kind(table[key][row]) for key, kind in kinds.items()}
+        str(name): {snake(key): int(table[key][row]) if key in counts else _plain(table[key][row]) for key in keys}
         for row, name in enumerate(table["Metric"])
     }
 
@@ -338,7 +338,7 @@ def add_commands(commands: Any) -> None:
 
     preset = _commands.add_command(
         commands, "criteria", _run_criteria, "print preset quality criteria as JSON", threads=False,
-        example="fem > criteria.json",
+        example="fem",
         details="The file can be changed and given to quality --criteria.",
     )
     preset.add_argument("name", metavar="NAME", help="fem, skewness, optistruct, hypermesh, nastran or ansys")
@@ -349,9 +349,9 @@ def _run_criteria(arguments: argparse.Namespace) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    names = ("combination", "power", "reference", "tensor", "beta", "epsilon", "reversed_mesh", "histogram_bins")
-    names += ("criteria",)
-    options = _commands.given(arguments, (*names, "time_limit", "threads"))
+    names = ("combination", "power", "reference", "tensor", "beta", "epsilon", "reversed_mesh", "histogram_bins",
+             "criteria", "time_limit", "threads")  # fmt: skip
+    options = _commands.given(arguments, names)
     options["size"] = _number_or_name(arguments.size)
     filter_ = measure(arguments.mesh, arguments.metrics, **options)
     result = result_of(filter_)

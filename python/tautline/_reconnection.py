@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Sequence, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
 from ._arguments import check_options, flag_option, pick, picked, set_options, set_threads, set_time_limit, within
-from ._arrays import CELLS, POINTS, InputArrays, cell_array, columns, table_rows
+from ._arrays import CELLS, POINTS, Array, InputArrays, Values, cell_array, columns, table_rows
 from ._errors import Error, interruptible, run
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -57,9 +57,9 @@ class ImproveResult(Result):
     mesh: vtkDataObject
     history: dict[str, Any]
     remaining: dict[str, Any]
-    original_cell: np.ndarray
-    min_angle: np.ndarray
-    imr: np.ndarray
+    original_cell: Array
+    min_angle: Array
+    imr: Array
     elements_before: int
     elements: int
     smallest_angle_before: float
@@ -84,9 +84,9 @@ def improve(
     feature_angle: float = 40.0,
     surface_angle: float = 20.0,
     surface_distance: float = 5e-3,
-    regions: str | Sequence | None = None,
-    fixed: str | Sequence | None = None,
-    edge_length: float | str | Sequence | None = None,
+    regions: Values | None = None,
+    fixed: Values | None = None,
+    edge_length: float | Values | None = None,
     edge_factor: float = 2.0,
     then_best_shape: bool = False,
     cell_transfer: CellTransfer = "copy",
@@ -191,7 +191,7 @@ def improve(
     )
 
 
-def _set_size(filter_: Any, inputs: InputArrays, edge_length: float | str | Sequence | None) -> None:
+def _set_size(filter_: Any, inputs: InputArrays, edge_length: Any) -> None:
     """Choose where the target length of edges comes from."""
     if edge_length is None:
         return
@@ -268,10 +268,11 @@ def _length_or_name(text: str) -> float | str:
 
 
 def _run_improve(arguments: argparse.Namespace) -> None:
-    names = ("preset", "boundary", "target_angle", "regions", "smallest_count", "largest_count")
-    names += ("edge_length", "edge_factor", "then_best_shape", "cell_transfer", "flat_tolerance", "fixed")
-    names += ("objective", "feature_angle", "surface_angle", "surface_distance")
-    names += ("time_limit", "threads", "merge_coincident_points")
-    left_out = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
+    names = (
+        *("preset", "boundary", "objective", "target_angle", "regions", "smallest_count", "largest_count", "fixed"),
+        *("edge_length", "edge_factor", "then_best_shape", "cell_transfer", "flat_tolerance", "feature_angle"),
+        *("surface_angle", "surface_distance", "time_limit", "threads", "merge_coincident_points"),
+    )
+    left_out: dict[str, Any] = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
     result = improve(arguments.mesh, **_commands.given(arguments, names), **left_out)
     _commands.finish(arguments, result, result.summary, table_rows(result.history))

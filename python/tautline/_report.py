@@ -19,11 +19,11 @@ from ._quality import measure
 @interruptible
 def report(
     mesh: Mesh,
-    file: str | PathLike | None = None,
+    file: str | PathLike[str] | None = None,
     *,
     before: Mesh | None = None,
     metrics: Metrics = ("imr",),
-    criteria: str | PathLike | dict[str, Any] | None = None,
+    criteria: str | PathLike[str] | dict[str, Any] | None = None,
     title: str | None = None,
     histogram_bins: int = 32,
     time_limit: float = 0.0,
@@ -54,10 +54,12 @@ def report(
     """
     if file is not None:
         check_stream_or_target(file)
-    options = {"criteria": criteria, "histogram_bins": histogram_bins, "time_limit": time_limit, "threads": threads}
+    options: dict[str, Any] = {
+        "criteria": criteria, "histogram_bins": histogram_bins, "time_limit": time_limit, "threads": threads,
+    }  # fmt: skip
     first = None if before is None else measure(before, metrics, **options)
     measured = measure(mesh, metrics, **options)
-    settings = {"metrics": metrics, **options, "before": before if isinstance(before, (str, PathLike)) else None}
+    settings: dict[str, Any] = {"metrics": metrics, **options, "before": before if isinstance(before, (str, PathLike)) else None}
     html = html_report(measured, mesh, settings, first, title)
     if file is not None:
         replace_text(file, html)

@@ -22,7 +22,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkParallelCore import vtkCommunicator
 
-from ._arrays import leaves, table_rows
+from ._arrays import Array, leaves, table_rows
 from ._errors import Error
 from ._files import file_name, replace_text
 from ._pictures import picture_html
@@ -250,7 +250,7 @@ def _grid_facts(data: vtkDataSet) -> list[Any]:
     return facts
 
 
-def _geometry(data: vtkDataSet) -> list[np.ndarray]:
+def _geometry(data: vtkDataSet) -> list[Array]:
     """Coordinates, and types, offsets and corners of the cells."""
     found = [_numbers(data.GetPoints().GetData())] if hasattr(data, "GetPoints") and data.GetPoints() else []
     names = ("GetCells",) if hasattr(data, "GetCellTypesArray") else ("GetVerts", "GetLines", "GetPolys", "GetStrips")
@@ -263,7 +263,7 @@ def _geometry(data: vtkDataSet) -> list[np.ndarray]:
     return found
 
 
-def _numbers(array: Any) -> np.ndarray:
+def _numbers(array: Any) -> Array:
     return np.asarray(vtk_to_numpy(array))
 
 

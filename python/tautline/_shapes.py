@@ -24,7 +24,7 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 
 from . import _commands, _vtk
 from ._arguments import check_options, number, pick, set_time_limit
-from ._arrays import cell_array, columns, point_array, table_rows
+from ._arrays import Array, cell_array, columns, point_array, table_rows
 from ._errors import Error, interruptible, run, watch
 from ._files import check_input, check_target, file_name, replace_bytes
 from ._interrupts import Progress
@@ -92,7 +92,7 @@ class SilhouetteResult(Result):
 
     mesh: vtkUnstructuredGrid
     outline: vtkPolyData
-    centre: np.ndarray
+    centre: Array
     max_distance: float
     components: int
     holes: int
@@ -161,11 +161,11 @@ class MatchResult(Result):
 
     _per_element: ClassVar[tuple[str, ...]] = ("points", "displacement", "triangles")
     mesh: vtkUnstructuredGrid
-    points: np.ndarray
-    displacement: np.ndarray
+    points: Array
+    displacement: Array
     energy: float
     statistics: dict[str, float]
-    triangles: dict[str, np.ndarray]
+    triangles: dict[str, Array]
     rank: int
     exact: bool
     summary: str
@@ -259,12 +259,12 @@ class RetrievalResult(Result):
 
     names: list[str]
     labels: list[str]
-    distances: np.ndarray
-    ranking: np.ndarray
+    distances: Array
+    ranking: Array
     rate: float
-    correct_at: np.ndarray
+    correct_at: Array
     classes: list[str]
-    confusion: np.ndarray
+    confusion: Array
     tables: dict[str, vtkTable]
     sheet: np.ndarray
     summary: str
@@ -283,7 +283,7 @@ class RetrievalResult(Result):
 
 @interruptible
 def read_silhouettes(
-    folder: str | PathLike,
+    folder: str | PathLike[str],
     *,
     progress: Progress | bool | None = None,
 ) -> vtkMultiBlockDataSet:
@@ -431,8 +431,8 @@ def _texts(table: vtkTable, name: str) -> list[str]:
     return [column.GetValue(i) for i in range(column.GetNumberOfValues())] if column else []
 
 
-def _numbers(table: vtkTable, column: int) -> np.ndarray:
-    return vtk_to_numpy(table.GetColumn(column)).astype(float)
+def _numbers(table: vtkTable, column: int) -> Array:
+    return np.asarray(vtk_to_numpy(table.GetColumn(column)), float)
 
 
 # --- the shell ----------------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from typing import Literal
 
 from ._errors import Error
 
@@ -70,7 +71,7 @@ def _check_ply(name: str) -> None:
         raise _damaged(name, "elements are missing")
 
 
-def _ply_end(content: bytes, elements: list[tuple[int, list[list[str]]]], order: str) -> int:
+def _ply_end(content: bytes, elements: list[tuple[int, list[list[str]]]], order: Literal["little", "big"]) -> int:
     """Where the binary elements end, as far as the content tells."""
     at = 0
     for count, properties in elements:

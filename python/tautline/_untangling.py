@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Sequence, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
 from ._arguments import pick, set_threads, set_time_limit
-from ._arrays import POINTS, InputArrays, cell_array, history_of, point_array, table_rows
+from ._arrays import POINTS, Array, InputArrays, Values, cell_array, history_of, point_array, table_rows
 from ._errors import interruptible, run
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -44,13 +44,13 @@ class UntangleResult(Result):
     _per_element: ClassVar[tuple[str, ...]] = ("validity", "obstacle", "displacement")
     mesh: vtkDataObject
     history: dict[str, Any]
-    validity: np.ndarray
-    obstacle: np.ndarray
+    validity: Array
+    obstacle: Array
     inverted_before: int
     inverted: int
     impossible: int
     reason: str
-    displacement: np.ndarray
+    displacement: Array
     summary: str
 
 
@@ -60,7 +60,7 @@ def untangle(
     effort: Effort = "normal",
     *,
     method: Method = "automatic",
-    fixed: str | Sequence | None = None,
+    fixed: Values | None = None,
     fix_boundary: bool = True,
     time_limit: float = 0.0,
     threads: int = 0,

@@ -9,6 +9,7 @@ bracket in Data.
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import tautline
 from paraview import simple
@@ -22,9 +23,10 @@ WORST = 3  # elements listed
 LOW_PRIORITY = -1.0  # of settings: below those of the site and the user
 DOMAIN, CELL_COUNT = "bore", 8000
 SIZE = [1200, 800]
-FROM, ABOVE, UP, ZOOM = [0.75, -1.0, 0.55], [0, 0, 1], [0, 0, 1], 1.1  # the camera
+FROM, ABOVE, UP, ZOOM = [0.75, -1.0, 0.55], [0.0, 0.0, 1.0], [0, 0, 1], 1.1  # the camera
 BLACK, WHITE, SHADOW = [0, 0, 0], [1, 1, 1], [0.2, 0.3, 0.4]
-EDGED = {"Representation": "Surface With Edges", "EdgeColor": [0.3, 0.3, 0.3], "LineWidth": 1.0}
+SHADOWED: dict[str, Any] = {"Opacity": 0.08}
+EDGED: dict[str, Any] = {"Representation": "Surface With Edges", "EdgeColor": [0.3, 0.3, 0.3], "LineWidth": 1.0}
 
 
 def start(output: Path) -> Path:
@@ -57,7 +59,7 @@ def improve(mesh: Path, output: Path) -> Path:
     return output / "better.vtu"
 
 
-def show(proxy, view, **options):
+def show(proxy: Any, view: Any, **options: Any) -> Any:
     """Show a mesh colored by quality with the range of the metric, to which ColorBy would not keep."""
     display = simple.Show(proxy, view)
     display.SetScalarColoring(SHOWN, CELLS)
@@ -67,9 +69,9 @@ def show(proxy, view, **options):
     return display
 
 
-def cut_open(quality, view, middle: list[float]) -> None:
+def cut_open(quality: Any, view: Any, middle: list[float]) -> None:
     """Show half of the elements, the other half transparent with the inverted elements in it."""
-    for half, options in ((0, EDGED), (1, {"Opacity": 0.08})):
+    for half, options in enumerate((EDGED, SHADOWED)):
         clip = simple.Clip(Input=quality, ClipType="Plane", Crinkleclip=1, Invert=half)
         clip.ClipType.Origin, clip.ClipType.Normal = middle, [0, 1, 0]
         display = show(clip, view, **options)

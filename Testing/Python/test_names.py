@@ -1,0 +1,113 @@
+"""Names of methods and presets: in any case, as ParaView's labels have them, with the nearest one if they are wrong.
+
+test_names.py SERVER_MANAGER_XML...
+"""
+
+import sys
+import xml.etree.ElementTree as ElementTree
+
+import tautline as tl
+from checks import DATA, OUT, refused, run_tests, shell
+from tautline import (
+    _arguments,
+    _deformation,
+    _elliptic,
+    _names,
+    _optimization,
+    _peridynamics,
+    _quality,
+    _reconnection,
+    _shapes,
+    _untangling,
+)
+
+TANGLED, PLATE = DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
+#: The names in Python of the labels of a property, by proxy and property.
+LABELLED = {
+    ("MeshOptimizer", "Preset"): _optimization.PRESETS,
+    ("MeshOptimizer", "Scalarization"): _optimization.SCALARIZATIONS,
+    ("MeshOptimizer", "Optimizer"): _optimization.OPTIMIZERS,
+    ("MeshOptimizer", "Boundary"): _optimization.BOUNDARIES,
+    ("MeshImprover", "Preset"): _reconnection.PRESETS,
+    ("MeshImprover", "Boundary"): _reconnection.BOUNDARIES,
+    ("MeshImprover", "CellTransfer"): _reconnection.CELL_TRANSFERS,
+    ("MeshUntangler", "Effort"): _untangling.EFFORTS,
+    ("MeshUntangler", "Method"): _untangling.METHODS,
+    ("ElementQuality", "TargetType"): _arguments.TARGETS,
+    ("ElementQuality", "Combination"): _arguments.COMBINATIONS,
+    ("ElementQuality", "ReversedMesh"): _quality.REVERSED,
+    ("MeshWarp", "Method"): _deformation.METHODS,
+    ("MeshWarp", "Correspondence"): _deformation.CORRESPONDENCES,
+    ("MeshWarp", "Solver"): _deformation.SOLVERS[1:],
+    ("MeshWarp", "Preconditioner"): _arguments.PRECONDITIONERS,
+    ("EllipticSolver", "Equation"): _elliptic.PDES,
+    ("EllipticSolver", "PlaneState"): _elliptic.PLANES,
+    ("EllipticSolver", "Solver"): _elliptic.SOLVERS,
+    ("EllipticSolver", "Preconditioner"): _arguments.PRECONDITIONERS,
+    ("ConditionEstimator", "Method"): _elliptic.METHODS,
+    ("PeridynamicCondition", "Basis"): _peridynamics.BASES,
+    ("PeridynamicCondition", "Kernel"): _peridynamics.KERNELS,
+    ("PeridynamicCondition", "Discretization"): _peridynamics.DISCRETIZATIONS,
+    ("PeridynamicCondition", "Rules"): _peridynamics.RULES,
+    ("MatchShape", "Locations"): _shapes.LOCATIONS,
+    ("MatchShape", "Reflection"): _shapes.REFLECTIONS,
+    ("MatchShape", "Foreground"): _shapes.FOREGROUNDS,
+    ("ShapeRetrieval", "Setting"): _shapes.SETTINGS,
+}
+
+
+def test_labels():
+    """Each label of an enumeration in ParaView's panels means the name of its number."""
+    proxies = {proxy.get("name"): proxy for xml in sys.argv[1:] for proxy in ElementTree.parse(xml).iter()
+               if proxy.tag.endswith("Proxy")}  # fmt: skip
+    checked = 0
+    for (proxy, name), names in LABELLED.items() if proxies else ():
+        prop = next(p for p in proxies[proxy].iter() if p.get("name") == name)
+        for entry in prop.iter("Entry"):
+            number, label = int(entry.get("value")), entry.get("text")
+            assert _names.find_name(label, names) == names[number], (proxy, name, label, names)
+            assert _names.find_name(label.upper().replace(" ", "_"), names) == names[number], label
+            checked += 1
+    assert checked > 100 or not proxies, checked
+
+
+def test_functions():
+    """Any case, hyphens and underscores; results are the same."""
+    assert tl.optimize(PLATE, preset="Best Shape") == tl.optimize(PLATE, preset="best shape")
+    assert tl.optimize(PLATE, optimizer="L BFGS") == tl.optimize(PLATE, optimizer="l-bfgs")
+    assert tl.untangle(TANGLED, "THOROUGH") == tl.untangle(TANGLED, "thorough")
+    assert tl.improve(TANGLED_VALID, "Swap_Only") == tl.improve(TANGLED_VALID, "swap only")
+    assert tl.improve(TANGLED_VALID, "Custom", swap=False) == tl.improve(TANGLED_VALID, "custom", swap=False)
+    elastic = tl.solve(PLATE, "Elasticity", "CG", "BoomerAMG", source=(0, -1))
+    assert elastic.solution.shape[1] == 3 and elastic == tl.solve(PLATE, "elasticity", source=(0, -1))
+    assert tl.solve(PLATE, preconditioner="amg") == tl.solve(PLATE, preconditioner="boomeramg")
+    turned = tl.warp(PLATE, transform={"rotate": 20}, solver="Conjugate gradients", moved="Whole Boundary")
+    assert turned == tl.warp(PLATE, transform={"rotate": 20}, solver="cg", moved="whole boundary")
+    assert tl.criteria("FEM") == tl.criteria("fem")
+    assert tl.quality(PLATE, criteria="FEM") == tl.quality(PLATE, criteria="fem")
+    assert tl.quality(PLATE, target="Ideal") == tl.quality(PLATE)
+    assert tl.domain("Rectangle", 100).GetNumberOfCells() == tl.domain("rectangle", 100).GetNumberOfCells()
+
+
+def test_wrong_names():
+    refused("preset is 'best shpae' (did you mean 'best shape'?); there are 'custom'", tl.optimize, PLATE,
+            preset="best shpae")  # fmt: skip
+    refused("effort is 'Thorugh' (did you mean 'thorough'?); there are 'local'", tl.untangle, PLATE, "Thorugh")
+    refused("preconditioner is 'boomramg' (did you mean 'boomeramg'?)", tl.solve, PLATE, preconditioner="boomramg")
+    refused("pde is 'xyz'; there are 'poisson'", tl.solve, PLATE, "xyz")
+    refused("effort is None; there are", tl.untangle, PLATE, None)
+    refused("did you mean 'fem'?", tl.criteria, "fen")
+
+
+def test_shell():
+    out = OUT / "names.vtu"
+    shell("optimize", PLATE, "--preset", "Best_Shape", "-o", out)
+    assert tl.compare(out, tl.optimize(PLATE, preset="best shape")).displacement.max() == 0
+    text = shell("optimize", PLATE, "--preset", "best shpae", "-o", out, code=2)
+    assert "invalid choice: 'best shpae' (did you mean 'best shape'?) (choose from 'fast clean-up'" in text, text
+    assert "(did you mean 'untangle'?)" in shell("untangel", PLATE, code=2)
+    shell("solve", PLATE, "--preconditioner", "AMG", "--solver", "Bi-CGSTAB")
+
+
+TANGLED_VALID = tl.untangle(TANGLED)
+run_tests(globals())
