@@ -55,6 +55,9 @@ if _vtk.available("_perturbation"):
 if _vtk.available("_domains"):
     from ._domains import domain, domains
     __all__ += ["domain", "domains"]
+if _vtk.available("_meshing"):
+    from ._meshing import MeshResult, tet_mesh, triangle_mesh
+    __all__ += ["MeshResult", "tet_mesh", "triangle_mesh"]
 if _vtk.available("_deformation"):
     from ._deformation import WarpResult, warp
     __all__ += ["WarpResult", "warp"]
@@ -81,7 +84,13 @@ if _vtk.available("_elliptic"):
     )
     __all__ += ["ConditionResult", "SolveResult", "SolverStudyResult", "condition", "solve", "solver_combinations", "solver_study"]
 if _vtk.available("_peridynamics"):
-    from ._peridynamics import PeridynamicsResult, interaction_layer, peridynamics
-    __all__ += ["PeridynamicsResult", "interaction_layer", "peridynamics"]
+    from ._peridynamics import (
+        HorizonResult,
+        PeridynamicsResult,
+        horizon_neighbors,
+        interaction_layer,
+        peridynamics,
+    )
+    __all__ += ["HorizonResult", "PeridynamicsResult", "horizon_neighbors", "interaction_layer", "peridynamics"]
 
 globals()["__all__"] += sorted(_vtk.CLASSES)

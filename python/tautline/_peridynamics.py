@@ -8,11 +8,11 @@ from typing import Any, ClassVar, Literal, Sequence, get_args
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet, vtkPolyData
 
 from . import _commands, _vtk
 from ._arguments import number, pick, picked, set_threads, set_time_limit, within
-from ._arrays import POINTS, Array, InputArrays, Values, columns, snake
+from ._arrays import POINTS, Array, InputArrays, Values, cell_array, columns, snake, table_rows
 from ._errors import Error, interruptible, run
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
@@ -219,6 +219,73 @@ def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity:
     )
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class HorizonResult(Result):
+    """The result of horizon_neighbors().
+
+    mesh: the triangles that meet the disc, with the cell arrays `Case`, `CellId`, `Area`, `ChordArea` and `Missed`.
+    case: per triangle of it, k: 1 all three corners are inside, 2 two, 3 one, 0 none.
+    cells: per triangle, k: its number in the input.
+    area: per triangle, k: area of its part in the disc.
+    missed: per triangle, k: area minus that which the dissertation approximates.
+    horizon: the circle, as a closed line.
+    pieces: the one or two triangles that replace each (Figure 4.5), with `Case` and `CellId`.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ()
+    mesh: vtkPolyData
+    case: Array
+    cells: Array
+    area: Array
+    missed: Array
+    horizon: vtkPolyData
+    pieces: vtkPolyData
+
+    def table(self) -> list[dict[str, Any]]:
+        """A row per triangle: cell, case, area, missed."""
+        names = {"cell": self.cells, "case": self.case, "area": self.area, "missed": self.missed}
+        return table_rows({name: values.tolist() for name, values in names.items()})
+
+
+@interruptible
+def horizon_neighbors(
+    mesh: Mesh,
+    center: Sequence[float] = (0.5, 0.5, 0.0),
+    delta: float = 0.2,
+    *,
+    progress: Progress | bool | None = None,
+) -> HorizonResult:
+    """The triangles that the horizon of a point meets, by the cases of dissertation Figure 4.4.
+
+    mesh: triangles in a plane: a vtkDataSet, a composite data set, a file name or (points, cells). It is not changed.
+    center: the point, 2 or 3 coordinates; one off the plane is projected to it.
+    delta: the horizon, above 0, in the mesh's unit.
+
+    Raises Error for wrong arguments and for meshes that the filter refuses.
+
+    >>> found = tautline.horizon_neighbors("square.vtu", (0.5, 0.5), 0.2)
+    >>> found.area.sum(), found.missed.sum()
+    """
+    numbers = np.asarray([number("center", value) for value in np.ravel(center)])
+    if len(numbers) not in (2, 3):
+        raise Error(f"center is {center!r}; 2 or 3 numbers are expected")
+    filter_ = _vtk.vtkHorizonNeighbors()
+    filter_.SetCenter(*numbers, *[0.0] * (3 - len(numbers)))
+    filter_.SetHorizon(number("delta", delta))
+    filter_.SetInputDataObject(as_mesh(mesh))
+    run(filter_)
+    found = filter_.GetOutputDataObject(0)
+    return HorizonResult(
+        mesh=found,
+        case=cell_array(found, "Case"),
+        cells=cell_array(found, "CellId"),
+        area=cell_array(found, "Area"),
+        missed=cell_array(found, "Missed"),
+        horizon=filter_.GetOutputDataObject(1),
+        pieces=filter_.GetOutputDataObject(2),
+    )
+
+
 @interruptible
 def interaction_layer(
     mesh: Mesh,
@@ -306,6 +373,26 @@ def add_commands(commands: Any) -> None:
                       help="edge length of its triangles (default: that of the boundary)")  # fmt: skip
     _commands.add_merge_points(made)
     _commands.add_time_limit(made)
+
+
+    made = _commands.add_command(
+        commands, "horizon-neighbors", _run_horizon, "list the triangles that the horizon of a point meets",
+        threads=False, example="square.vtu --center 0.5 0.5 --delta 0.2 --csv neighbors.csv",
+        details="By the cases of dissertation Figure 4.4.",
+    )  # fmt: skip
+    _commands.add_mesh(made)
+    _commands.add_output(made, "write these triangles", False)
+    made.add_argument("--csv", metavar="FILE", help="write a row per triangle")
+    made.add_argument("--center", type=float, nargs="+", default=(0.5, 0.5, 0.0), metavar="X",
+                      help="2 or 3 coordinates (default: 0.5 0.5 0)")  # fmt: skip
+    made.add_argument("--delta", type=float, default=0.2, help="the horizon (default: 0.2)")
+
+
+def _run_horizon(arguments: argparse.Namespace) -> None:
+    result = horizon_neighbors(arguments.mesh, arguments.center, arguments.delta)
+    counts = ", ".join(f"{np.count_nonzero(result.case == case)} of case {case}" for case in (1, 2, 3, 0))
+    text = f"{len(result.case)} triangles: {counts}; area {result.area.sum():.6g}, missed {result.missed.sum():.6g}"
+    _commands.finish(arguments, result, text, result.table())
 
 
 def _run_peridynamics(arguments: argparse.Namespace) -> None:

@@ -35,6 +35,7 @@ CAPABILITIES = {
     "_elliptic": "TautlineElliptic",
     "_peridynamics": "TautlinePeridynamics",
     "_domains": "TautlineDomains",
+    "_meshing": "TautlineMeshing",
     "_conversion": "TautlineReaders",
 }
 
