@@ -60,6 +60,12 @@ def test_examples():
     tl.write(tl.interaction_layer(square(6), 0.2), FOLDER / "square.vtu")
     for name in ("plate.vtu", "plate.poly", "cube.smesh", "fish.png", "fish-bent.png"):
         shutil.copy(DATA / name, FOLDER / name)
+    (FOLDER / "steps.toml").write_text("""[[step]]
+do = "read"
+file = "tangled.vtu"
+[[step]]
+do = "untangle"
+""")
     (FOLDER / "silhouettes.csv").write_text("file,class\nfish.png,fish\nfish-bent.png,fish\n")
     assert len(COMMANDS) >= 20
     for command in COMMANDS:
@@ -89,7 +95,7 @@ def test_json_and_quiet():
         "--combinations", "1"], "peridynamics": ["square.vtu"], "interaction-layer": ["triangles.vtu", "-o", "l.vtu"],
         "domain": ["rectangle", "--cells", "100", "-o", "d.vtu"], "convert": ["plate.vtu", "c.vtk"],
         "triangle-mesh": ["plate.poly", "-o", "t.vtu"], "tet-mesh": ["cube.smesh", "-o", "te.vtu"],
-        "horizon-neighbors": ["square.vtu"],
+        "horizon-neighbors": ["square.vtu"], "run": ["steps.toml"],
     }  # fmt: skip
     for command in COMMANDS:
         arguments = lines[command]

@@ -24,6 +24,7 @@ from ._io import Mesh, read, write
 from ._mesh import from_arrays
 from ._metric_field import MetricFieldResult, metric_field
 from ._metrics import load_metrics, metrics, register_metric, unregister_metric
+from ._pipeline import StepsResult, run_steps
 from ._quality import QualityResult, criteria, quality
 from ._report import report
 
@@ -32,7 +33,7 @@ __version__ = _build.VERSION
 __all__ = [
     "CompareResult", "compare", "Aborted", "Error", "Mesh", "read", "write", "from_arrays", "MetricFieldResult",
     "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric", "QualityResult", "criteria",
-    "quality", "report",
+    "quality", "report", "StepsResult", "run_steps",
 ]
 
 if TYPE_CHECKING:

@@ -37,6 +37,7 @@ CAPABILITIES = {
     "_domains": "TautlineDomains",
     "_meshing": "TautlineMeshing",
     "_conversion": "TautlineReaders",
+    "_pipeline": "TautlineQuality",
 }
 
 #: The compiled classes by name.
