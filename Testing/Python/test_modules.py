@@ -21,7 +21,7 @@ FLOORS = (
     ("_classes", "_interrupts", "_names"),
     ("_errors",),
     ("_arrays", "_files", "_formats", "_tables"),
-    ("_arguments", "_mesh", "_legacy", "_pictures", "_surfaces", "_vtk_writers"),
+    ("_arguments", "_legacy", "_mesh", "_meshio", "_pictures", "_surfaces", "_vtk_readers", "_vtk_writers"),
     ("_io", "_results"),
     ("_commands",),
     ("_html", "_metrics"),

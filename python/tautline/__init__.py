@@ -19,9 +19,11 @@ _build.check()  # before the first compiled module
 
 from . import _vtk
 from ._comparison import CompareResult, compare
+from ._conversion import formats
 from ._errors import Aborted, Error
-from ._io import Mesh, read, write
+from ._io import Mesh, read, times, write
 from ._mesh import from_arrays
+from ._meshio import to_meshio
 from ._metric_field import MetricFieldResult, metric_field
 from ._metrics import load_metrics, metrics, register_metric, unregister_metric
 from ._pipeline import StepsResult, run_steps
@@ -34,6 +36,7 @@ __all__ = [
     "CompareResult", "compare", "Aborted", "Error", "Mesh", "read", "write", "from_arrays", "MetricFieldResult",
     "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric", "QualityResult", "criteria",
     "quality", "report", "StepsResult", "run_steps",
+    "formats", "times", "to_meshio",
 ]
 
 if TYPE_CHECKING:

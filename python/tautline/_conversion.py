@@ -1,4 +1,4 @@
-"""The command convert: read() and write() from a shell."""
+"""The function formats; the commands convert and formats: read() and write() from a shell."""
 
 from __future__ import annotations
 
@@ -6,11 +6,54 @@ import argparse
 from typing import Any
 
 from . import _commands
-from ._io import read
+from ._errors import checked
+from ._formats import FORMATS
+from ._io import read, readable
+from ._meshio import MESHIO_FORMATS, installed
+from ._tables import align
+from ._vtk_readers import SERIES, SOLVER_FORMATS
+
+_OWN = {
+    ".node": "TetGen, Triangle", ".ele": "TetGen, Triangle", ".face": "TetGen, Triangle", ".edge": "TetGen, Triangle",
+    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
+    ".off": "OFF", ".coff": "OFF", ".noff": "OFF", ".cnoff": "OFF", ".ply": "PLY", ".stl": "STL", ".obj": "Wavefront OBJ",
+}  # fmt: skip
+
+
+@checked
+def formats() -> list[dict[str, Any]]:
+    """The formats of mesh files, made by asking the readers: a dict each.
+
+    ending; format (its name); read, write (whether it is possible here); times (whether files have time steps); by
+    ("Tautline", "VTK" or "meshio", which reads it).
+
+    >>> [form["ending"] for form in tautline.formats() if form["write"]]
+    """
+    return [_facts(ending) for ending in readable()]
+
+
+def _facts(ending: str) -> dict[str, Any]:
+    meshio = ending in MESHIO_FORMATS
+    facts = {"ending": ending, "format": _OWN.get(ending, "VTK"), "read": True, "write": False, "times": False,
+             "by": "VTK"}  # fmt: skip
+    if ending in FORMATS:
+        form = FORMATS[ending]
+        facts |= {"write": form.writer is not None, "by": "Tautline" if form.own else "VTK"}
+    elif ending == SERIES:
+        facts |= {"format": "ParaView, files by time", "times": True, "by": "Tautline"}
+    elif ending in SOLVER_FORMATS:
+        solver = SOLVER_FORMATS[ending]
+        facts |= {"format": solver.title, "read": solver.built(), "times": solver.times}
+    elif meshio:
+        here = installed()
+        # AVS UCD files .inp are read by VTK.
+        name = MESHIO_FORMATS[ending] + (", AVS UCD" if ending == ".inp" else "")
+        facts |= {"format": name, "read": here or ending == ".inp", "write": here, "by": "meshio"}
+    return facts
 
 
 def add_commands(commands: Any) -> None:
-    """Add `convert` to the subparsers of the command line."""
+    """Add `convert` and `formats` to the subparsers of the command line."""
     parser = _commands.add_command(
         commands, "convert", _run, "convert a mesh to another file format", threads=False,
         example="part.vtu part.msh",
@@ -19,10 +62,24 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("input", help="mesh to read; - is a .vtu from the standard input")
     parser.add_argument("output", help="mesh to write; - is a .vtu to the standard output")
     parser.add_argument("--lower-cells", action="store_true", help="keep boundary faces and edges")
+    parser.add_argument("--time", type=float, help="the time step to read, the nearest to this number")
     parser.add_argument("--binary", action="store_true", help="write .msh as bytes")
 
 
+    parser = _commands.add_command(
+        commands, "formats", _run_formats, "list the formats of mesh files", example="", threads=False,
+        details="What can be read and written here, by which program.",
+    )  # fmt: skip
+
+
+def _run_formats(arguments: argparse.Namespace) -> None:
+    rows = formats()
+    shown = [["yes" if value is True else "-" if value is False else value for value in row.values()] for row in rows]
+    _commands.finish(arguments, None, align(shown, list(rows[0])), facts={"formats": rows})
+
+
 def _run(arguments: argparse.Namespace) -> None:
-    mesh = read(arguments.input, **({"lower_cells": True} if arguments.lower_cells else {}))
+    chosen = {"lower_cells": arguments.lower_cells or None, "time": arguments.time}
+    mesh = read(arguments.input, **{name: value for name, value in chosen.items() if value is not None})
     options: dict[str, Any] = {"binary": True} if arguments.binary else {}
     _commands.finish(arguments, mesh, _commands.counts(mesh), **options)

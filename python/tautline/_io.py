@@ -11,17 +11,20 @@ from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutput
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
 
 from ._arrays import leaves
-from ._errors import Error, interruptible, plain, run, watch
+from ._arguments import number
+from ._errors import Error, checked, interruptible, plain, run, watch
 from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
 from ._interrupts import Progress, updating
 from ._legacy import check_counts, check_references, scan_legacy
 from ._mesh import from_arrays
+from ._meshio import MESHIO_FORMATS, PACKAGE, from_meshio, installed, is_meshio, read_meshio, write_meshio
 from ._surfaces import check_surface
+from ._vtk_readers import SERIES, SOLVER_FORMATS, is_ucd, read_series, read_solver, series, times_of
 from ._vtk_writers import block_files, write_composite, write_data
 
 #: What every function takes as a mesh: a vtkDataSet, a composite data set, a file name, the result of another function,
-#: or (points, cells), see from_arrays().
+#: (points, cells), see from_arrays(), a mesh of meshio, or one of PyVista, which is a vtkDataSet.
 Mesh = Union[vtkDataObject, str, PathLike[str], "tuple[Any, Any]", Any]
 
 # VTK 9.1 and 9.2 with the expat of today's Debian 12 (VTK issue 19258).
@@ -34,6 +37,17 @@ _IN_PIECES = (".pvtu", ".pvtp")
 _REFERRING = (".vtm", *_IN_PIECES)
 # Of a compressed file: its text, its bytes, what they expand to, the mesh and the buffers of the reader.
 _MEMORY_PER_BYTE = 8
+#: What converts formats that nothing here reads.
+_CONVERTERS = {
+    ".unv": "convert it with Gmsh (gmsh -save -format msh22)",
+    ".step": "it is a geometry without a mesh: mesh it with Gmsh",
+    ".stp": "it is a geometry without a mesh: mesh it with Gmsh",
+    ".iges": "it is a geometry without a mesh: mesh it with Gmsh",
+    ".geo": "it is a geometry without a mesh: mesh it with Gmsh",
+    ".meshb": "save it as text, .mesh, with the program that wrote it",
+    ".cdb": "save it as Nastran .bdf in ANSYS",
+    ".ans": "save it as Nastran .bdf in ANSYS",
+}
 # Of one file; a damaged one may have thousands.
 _MOST_MESSAGES = 5
 
@@ -46,9 +60,13 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
         return read(mesh)
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
         return from_arrays(*mesh)
+    if is_meshio(mesh):
+        return from_meshio(mesh)
     inner = getattr(mesh, "mesh", None)  # of a result
     if isinstance(inner, (vtkDataSet, vtkCompositeDataSet)):
         return inner
+    if hasattr(mesh, "IsA") and mesh.IsA("vtkDataSet"):
+        raise Error(f"this {type(mesh).__name__} is of another VTK than that of Tautline; save it as .vtu and read that")
     raise Error(f"a mesh is a vtkDataSet, a file name or (points, cells), not {type(mesh).__name__}")
 
 
@@ -63,9 +81,12 @@ def read(
 
     file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was
         built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++
-        (.msh), OFF (.off .coff .noff .cnoff).
-    options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles. Not for
-        formats of VTK.
+        (.msh), OFF (.off .coff .noff .cnoff). Of solvers: Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD
+        (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam), Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and
+        where meshio is installed Abaqus (.inp), Nastran (.bdf), MED, Netgen (.vol), SU2 and others, see formats().
+    options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the
+        formats of mesh generators. time: the time step to read, the nearest to this number, see times(); the default is
+        the first. Of the formats of solvers and .pvd.
 
     Returns a vtkDataSet; of .vtm and some .vtk files a composite data set. The pieces of a .pvtu or .pvtp file come one
     after the other, without their ghost cells and with the points of each: every function treats the points on their
@@ -77,8 +98,11 @@ def read(
     """
     name = file_name(file)
     ending = Path(name).suffix.lower()
+    time = options.pop("time", None)
     if ending not in FORMATS:
-        raise Error(f"{name}: no reader for '{ending}'; there are {' '.join(sorted(FORMATS))}")
+        return _read_other(name, ending, options, None if time is None else number("time", time))
+    if time is not None:
+        raise Error(f"{name}: '{ending}' has no time steps; leave out time")
     form = FORMATS[ending]
     _check_options(name, ending, options, "lower_cells" if form.own else None)
     check_input(name)
@@ -89,6 +113,60 @@ def read(
         run(reader)
         return reader.GetOutput()
     return _read_vtk(name, form)
+
+
+def _read_other(name: str, ending: str, options: dict[str, Any], time: float | None) -> vtkDataObject:
+    """Read a file of a solver with a reader of VTK, else with meshio."""
+    if ending not in readable():
+        raise Error(f"{name}: no reader for '{ending}'{_tool(ending)}; there are {' '.join(readable())}")
+    _check_options(name, ending, options, None)
+    check_input(name)
+    if os.path.getsize(name) == 0 and ending != ".foam":
+        raise Error(f"{name}: the file is empty")
+    if ending == SERIES:
+        return read_series(name, time, read)
+    form = SOLVER_FORMATS.get(ending) or (SOLVER_FORMATS[".avs"] if ending == ".inp" and is_ucd(name) else None)
+    if form is None:
+        if time is not None:
+            raise Error(f"{name}: '{ending}' has no time steps; leave out time")
+        return read_meshio(name)
+    with _CapturedOutput() as captured:
+        try:
+            mesh = read_solver(name, form, time)
+        except Error as error:
+            text = str(error).removeprefix(f"{name}: ")
+            raise Error("\n".join(dict.fromkeys([f"{name}: {text}", *captured()]))) from None
+        if found := captured():
+            raise Error("\n".join([f"{name}: the file is truncated or damaged:", *found[:_MOST_MESSAGES]]))
+    for leaf in leaves(mesh):
+        check_references(name, leaf)
+    return mesh
+
+
+def readable() -> list[str]:
+    """The endings of the files that read() takes, whether meshio is installed or not."""
+    return sorted({*FORMATS, *SOLVER_FORMATS, SERIES, *MESHIO_FORMATS})
+
+
+def _tool(ending: str) -> str:
+    """What converts files that nothing here reads."""
+    return f": {_CONVERTERS[ending]}" if ending in _CONVERTERS else ""
+
+
+@checked
+def times(file: str | PathLike[str]) -> list[float]:
+    """The time steps of a file (Exodus, CGNS, XDMF, EnSight, OpenFOAM, .pvd), for the option `time` of read().
+
+    >>> [tautline.quality(tautline.read("run.e", time=t)).inverted for t in tautline.times("run.e")]
+    """
+    name = file_name(file)
+    ending = Path(name).suffix.lower()
+    if ending not in readable():
+        raise Error(f"{name}: no reader for '{ending}'{_tool(ending)}; there are {' '.join(readable())}")
+    check_input(name)
+    if ending == SERIES:
+        return sorted({when for when, _ in series(name)})
+    return times_of(name, SOLVER_FORMATS[ending]) if ending in SOLVER_FORMATS else []
 
 
 @interruptible
@@ -116,6 +194,9 @@ def write(
     name = file_name(file)
     ending = Path(name).suffix.lower()
     form = check_output(name)
+    if form is None:
+        _check_options(name, ending, options, None)
+        return write_meshio(as_data_set(mesh), name)
     _check_options(name, ending, options, "binary" if form.own else None)
     data = as_mesh(mesh)
     if not _holds(form, data):
@@ -126,10 +207,18 @@ def write(
     return write_composite(data, name) if ending == ".vtm" else write_data(data, name, form)
 
 
-def check_output(file: str | PathLike[str]) -> Format:
-    """The format of a mesh to be written. Raises Error if there is no writer for it or no file can be made there."""
+def check_output(file: str | PathLike[str]) -> Format | None:
+    """The format of a mesh to be written; None: meshio writes it.
+
+    Raises Error if there is no writer for it or no file can be made there.
+    """
     name = file_name(file)
     ending = Path(name).suffix.lower()
+    if ending in MESHIO_FORMATS and installed():
+        check_target(name)
+        return None
+    if ending in MESHIO_FORMATS:
+        raise Error(f"{name}: this format is that of {PACKAGE}, which is not installed")
     if ending not in FORMATS or not FORMATS[ending].writer:
         known = " ".join(sorted(key for key, form in FORMATS.items() if form.writer))
         raise Error(f"{name}: no writer for '{ending}'; there are {known}")

@@ -1,0 +1,247 @@
+"""Files of solvers through VTK's readers and meshio, time steps, meshio's objects, the table of formats."""
+
+import sys
+
+import numpy as np
+import tautline as tl
+from checks import DATA, OUT, points, refused, run_tests, shell, square
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkUnstructuredGrid
+
+BRACKET = DATA / "bracket.vtu"
+FOLDER = OUT / "exchange"
+FOLDER.mkdir(exist_ok=True)
+UCD = """# a comment
+4 1 1 1 0
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+1 7 tet 1 2 3 4
+1 1
+height, m
+1 0
+2 0
+3 0
+4 1
+1 1
+density, kg
+1 2.5
+"""
+ENSIGHT_CASE = """FORMAT
+type: ensight gold
+GEOMETRY
+model: 1 run*.geo
+TIME
+time set: 1
+number of steps: 2
+filename start number: 0
+filename increment: 1
+time values: 0.5 2.0
+"""
+ENSIGHT_GEO = """a mesh
+of one tetrahedron
+node id off
+element id off
+part
+         1
+part one
+coordinates
+         4
+{x}
+ 1.00000e+00
+ 0.00000e+00
+ 0.00000e+00
+ 0.00000e+00
+ 0.00000e+00
+ 1.00000e+00
+ 0.00000e+00
+ 0.00000e+00
+ 0.00000e+00
+ 0.00000e+00
+ 1.00000e+00
+tetra4
+         1
+         1         2         3         4
+"""
+
+
+def same(one, other) -> None:
+    """The same points and cells, up to single precision."""
+    assert np.allclose(points(one), points(other), atol=1e-6)
+    assert one.GetNumberOfCells() == other.GetNumberOfCells()
+    for cell in range(0, one.GetNumberOfCells(), 97):
+        ids = [[mesh.GetCell(cell).GetPointId(k) for k in range(4)] for mesh in (one, other)]
+        assert ids[0] == ids[1] and one.GetCellType(cell) == other.GetCellType(cell)
+
+
+def test_exodus():
+    from vtkmodules.vtkIOExodus import vtkExodusIIWriter
+
+    grid = vtkUnstructuredGrid()
+    grid.DeepCopy(tl.read(BRACKET))
+    values = numpy_to_vtk(np.arange(grid.GetNumberOfPoints(), dtype=float), deep=True)
+    values.SetName("load")
+    grid.GetPointData().AddArray(values)
+    writer = vtkExodusIIWriter()
+    writer.SetFileName(str(FOLDER / "run.e"))
+    writer.SetInputData(grid)
+    writer.Write()
+    mesh = tl.read(FOLDER / "run.e")
+    same(mesh, grid)
+    assert np.allclose(vtk_to_numpy(mesh.GetPointData().GetArray("load")), np.arange(grid.GetNumberOfPoints()))
+    assert tl.quality(mesh).inverted == 0
+    assert tl.times(FOLDER / "run.e") in ([], [0.0])
+    (FOLDER / "broken.e").write_bytes((FOLDER / "run.e").read_bytes()[:5000])
+    refused("broken.e: ", tl.read, FOLDER / "broken.e")
+
+
+def test_ucd():
+    for ending in (".avs", ".ucd", ".inp"):
+        (FOLDER / f"one{ending}").write_text(UCD)
+        mesh = tl.read(FOLDER / f"one{ending}")
+        assert mesh.GetNumberOfCells() == 1 and mesh.GetCellType(0) == 10 and mesh.GetPoint(3) == (0, 0, 1)
+        assert mesh.GetPointData().GetArray("height").GetValue(3) == 1
+    refused("has no time steps", tl.read, FOLDER / "one.avs", time=1)
+
+
+def test_ensight():
+    (FOLDER / "run.case").write_text(ENSIGHT_CASE)
+    for step, corner in enumerate((0.0, 0.25)):
+        (FOLDER / f"run{step}.geo").write_text(ENSIGHT_GEO.format(x=f" {corner:.5e}"))
+    assert tl.times(FOLDER / "run.case") == [0.5, 2.0]
+    assert tl.read(FOLDER / "run.case").GetPoint(0) == (0, 0, 0)
+    assert tl.read(FOLDER / "run.case", time=1.9).GetPoint(0) == (0.25, 0, 0)
+    shell("convert", FOLDER / "run.case", FOLDER / "late.vtu", "--time", 2)
+    assert tl.read(FOLDER / "late.vtu").GetPoint(0) == (0.25, 0, 0)
+    refused("time is 'x'", tl.read, FOLDER / "run.case", time="x")
+    (FOLDER / "run1.geo").unlink()
+    refused("run.case: ", tl.read, FOLDER / "run.case", time=2)
+
+
+def test_xdmf():
+    from vtkmodules.vtkIOXdmf2 import vtkXdmfWriter
+
+    writer = vtkXdmfWriter()
+    writer.SetFileName(str(FOLDER / "run.xmf"))
+    writer.SetInputData(tl.read(BRACKET))
+    writer.Write()
+    same(tl.read(FOLDER / "run.xmf"), tl.read(BRACKET))
+    (FOLDER / "broken.xmf").write_text("<Xdmf>")
+    refused("broken.xmf: ", tl.read, FOLDER / "broken.xmf")
+
+
+def test_pvd():
+    for step in range(3):
+        tl.write(tl.perturb(BRACKET, seed=step + 1), FOLDER / f"step{step}.vtu")
+    entries = "".join(f'<DataSet timestep="{step / 2}" part="0" file="step{step}.vtu"/>' for step in (2, 0, 1))
+    (FOLDER / "run.pvd").write_text(f'<VTKFile type="Collection"><Collection>{entries}</Collection></VTKFile>')
+    assert tl.times(FOLDER / "run.pvd") == [0, 0.5, 1]
+    for time, seed in ((None, 1), (0.4, 2), (7, 3)):
+        same(tl.read(FOLDER / "run.pvd", time=time), tl.perturb(BRACKET, seed=seed).mesh)
+    entries = "".join(f'<DataSet timestep="0" part="{part}" file="step{part}.vtu"/>' for part in (0, 1))
+    (FOLDER / "parts.pvd").write_text(f'<VTKFile type="Collection"><Collection>{entries}</Collection></VTKFile>')
+    blocks = tl.read(FOLDER / "parts.pvd")
+    assert isinstance(blocks, vtkMultiBlockDataSet) and tl.quality(blocks).inverted == 0
+    (FOLDER / "none.pvd").write_text("<VTKFile/>")
+    refused("names no files", tl.read, FOLDER / "none.pvd")
+    (FOLDER / "cut.pvd").write_text("<VTKFile")
+    refused("cut.pvd: ", tl.read, FOLDER / "cut.pvd")
+
+
+def test_messages():
+    """Nothing of VTK's objects and addresses; what converts a format that nothing reads."""
+    for name in ("x.cgns", "x.neu", "x.cas", "x.e", "x.case", "x.xmf", "x.ucd", "x.tec", "x.pvti"):
+        (FOLDER / name).write_bytes(b"nonsense, not a mesh\n" * 5)
+        try:
+            tl.read(FOLDER / name)
+            raise AssertionError(f"{name} was read")
+        except tl.Error as error:
+            assert "0x" not in str(error) and "line " not in str(error).split(name)[0], error
+            assert name in str(error), error
+        (FOLDER / name).write_bytes(b"")
+        refused("the file is empty", tl.read, FOLDER / name)
+    refused("no reader for '.unv': convert it with Gmsh", tl.read, FOLDER / "x.unv")
+    refused("mesh it with Gmsh", tl.read, FOLDER / "x.step")
+    refused("no reader for '.xyz'", tl.times, FOLDER / "x.xyz")
+    refused("has no time steps", tl.read, BRACKET, time=1)
+    assert tl.times(BRACKET) == []
+
+
+def test_formats():
+    rows = {row["ending"]: row for row in tl.formats()}
+    assert rows[".vtu"] == {"ending": ".vtu", "format": "VTK", "read": True, "write": True, "times": False, "by": "VTK"}
+    assert rows[".e"]["times"] and rows[".e"]["read"] and not rows[".e"]["write"]
+    assert rows[".msh"]["by"] == "Tautline" and rows[".pvd"]["times"]
+    assert len(shell("formats").splitlines()) == len(rows) + 2
+    # What the table says can be read has a reader, here.
+    for ending, row in rows.items():
+        (FOLDER / f"table{ending}").write_text("nonsense")
+        try:
+            tl.read(FOLDER / f"table{ending}")
+        except tl.Error as error:
+            assert row["read"] == ("no reader" not in str(error) and "not installed" not in str(error)), error
+
+
+def test_meshio():
+    """meshio's objects and formats, forth and back; without meshio the messages name it."""
+    mesh = tl.read(BRACKET)
+    try:
+        import meshio
+    except ImportError:
+        refused("meshio (Debian: apt-get install python3-meshio)", tl.to_meshio, mesh)
+        refused("which is not installed", tl.write, mesh, FOLDER / "x.bdf")
+        return
+    measured = tl.quality(tl.perturb(mesh, seed=3), ["imr", "rr"])
+    there = tl.to_meshio(measured.mesh)
+    assert isinstance(there, meshio.Mesh) and there.cells[0].type == "tetra"
+    back = tl.quality(there, ["imr", "rr"])
+    assert (back.values["imr"] == measured.values["imr"]).all()
+    assert (np.concatenate(there.cell_data["rr"]) == measured.values["rr"]).all()
+    for ending in (".bdf", ".inp", ".su2", ".mdpa"):
+        file = FOLDER / f"bracket{ending}"
+        assert tl.write(mesh, file) == [str(file)]
+        again = tl.read(file)
+        assert np.allclose(points(again), points(mesh), rtol=1e-5, atol=1e-4), ending
+        assert again.GetNumberOfCells() == mesh.GetNumberOfCells(), ending
+        assert np.isclose(tl.quality(again).statistics["imr"]["mean"], tl.quality(mesh).statistics["imr"]["mean"],
+                          rtol=1e-3), ending  # fmt: skip
+    plane = meshio.Mesh([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0]], [("quad", [[0, 1, 2, 3]]), ("triangle", [[1, 4, 2]])],
+                        cell_sets={"part": [[0], []]})  # fmt: skip
+    grid = tl.quality(plane).mesh
+    assert [grid.GetCellType(i) for i in range(2)] == [9, 5]
+    assert vtk_to_numpy(grid.GetCellData().GetArray("part")).tolist() == [1, 0]
+    refused("cells 'triangle10' of meshio are not supported", tl.quality,
+            meshio.Mesh(np.zeros((10, 3)), [("triangle10", [list(range(10))])]))  # fmt: skip
+    refused("meshio cannot read it", tl.read, broken(".bdf"))
+    refused("use the points 0 to 9", tl.quality, meshio.Mesh(np.zeros((3, 3)), [("triangle", [[0, 1, 9]])]))
+    images = tl.metric_field(dimensions=(3, 3)).mesh
+    refused("VTK's type 8", tl.to_meshio, images)
+    assert tl.to_meshio(square(2)).points.shape == (9, 3)
+
+
+def broken(ending: str):
+    file = FOLDER / f"broken{ending}"
+    file.write_text("BEGIN BULK\nGRID,1,x,y\n")
+    return file
+
+
+def test_pyvista():
+    """A mesh of PyVista is a vtkDataSet; one of another VTK is named as such."""
+
+    class Other:
+        def IsA(self, name):
+            return name == "vtkDataSet"
+
+    refused("this Other is of another VTK", tl.quality, Other())
+
+    class Derived(vtkUnstructuredGrid):  # as PyVista's classes are
+        pass
+
+    mesh = Derived()
+    mesh.ShallowCopy(tl.read(BRACKET))
+    assert tl.quality(mesh).inverted == 0
+
+
+assert "meshio" not in sys.modules, "meshio is imported before it is needed"
+run_tests(globals())

@@ -1,0 +1,188 @@
+"""Meshes of meshio as meshes of VTK and back, where meshio is installed; its formats."""
+
+from __future__ import annotations
+
+import io
+import sys
+import warnings
+from contextlib import redirect_stderr, redirect_stdout
+from importlib.util import find_spec
+from typing import Any, Callable
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkUnstructuredGrid
+
+from ._arrays import Array
+from ._errors import Error
+
+#: VTK's number and the number of points of meshio's cells, in the same order of points.
+_CELLS = {
+    "vertex": (1, 1), "line": (3, 2), "triangle": (5, 3), "quad": (9, 4), "tetra": (10, 4), "hexahedron": (12, 8),
+    "wedge": (13, 6), "pyramid": (14, 5), "line3": (21, 3), "triangle6": (22, 6), "quad8": (23, 8), "tetra10": (24, 10),
+    "hexahedron20": (25, 20), "wedge15": (26, 15), "pyramid13": (27, 13), "quad9": (28, 9), "hexahedron27": (29, 27),
+    "triangle7": (34, 7),
+}  # fmt: skip
+_BY_NUMBER = {number: (name, size) for name, (number, size) in _CELLS.items()}
+#: Formats that meshio reads and VTK or Tautline do not, by ending: what they are.
+MESHIO_FORMATS = {
+    ".inp": "Abaqus",
+    ".bdf": "Nastran",
+    ".nas": "Nastran",
+    ".fem": "Nastran",
+    ".med": "Salome MED",
+    ".vol": "Netgen",
+    ".su2": "SU2",
+    ".h5m": "MOAB",
+    ".mdpa": "Kratos",
+    ".ugrid": "UGRID",
+    ".f3grid": "FLAC3D",
+    ".xml": "DOLFIN",
+}
+PACKAGE = "meshio (Debian: apt-get install python3-meshio)"
+
+
+def installed() -> bool:
+    """Whether meshio can be imported."""
+    return find_spec("meshio") is not None
+
+
+def is_meshio(mesh: Any) -> bool:
+    """Whether an object is a mesh of meshio, which is not imported for that."""
+    module = sys.modules.get("meshio")
+    return module is not None and isinstance(mesh, module.Mesh)
+
+
+def read_meshio(name: str) -> vtkUnstructuredGrid:
+    """Read a file. Raises Error if meshio is not installed or cannot read it; what it prints becomes a warning."""
+    meshio = _module(name)
+    mesh = _quietly(name, "read", lambda: meshio.read(name))
+    try:
+        return from_meshio(mesh)
+    except Error as error:
+        raise Error(f"{name}: {error}") from None
+
+
+def write_meshio(data: vtkDataSet, name: str) -> list[str]:
+    """Write a file. Raises Error if meshio is not installed or cannot write it."""
+    meshio = _module(name)
+    made = to_meshio(data)
+    _quietly(name, "write", lambda: meshio.write(name, made))
+    return [name]
+
+
+def _quietly(name: str, verb: str, action: Callable[[], Any]) -> Any:
+    """The result of an action of meshio, which prints messages and exits the program after some errors."""
+    said = io.StringIO()
+    try:
+        with redirect_stdout(said), redirect_stderr(said):
+            result = action()
+    except (Exception, SystemExit) as error:
+        text = " ".join((said.getvalue() or str(error)).split())
+        raise Error(f"{name}: meshio cannot {verb} it: {text or type(error).__name__}") from None
+    if text := " ".join(said.getvalue().split()):
+        warnings.warn(f"{name}: meshio: {text}", stacklevel=2)
+    return result
+
+
+def _module(name: str) -> Any:
+    try:
+        import meshio
+    except ImportError:
+        raise Error(f"{name}: this format is that of {PACKAGE}, which is not installed") from None
+    return meshio
+
+
+def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
+    """A grid of a mesh of meshio, with its point data, cell data and cell sets (arrays of 0 and 1).
+
+    Raises Error for cells that VTK does not have.
+    """
+    xyz = np.asarray(mesh.points, float)
+    if xyz.ndim != 2 or not 1 <= xyz.shape[1] <= 3 or not mesh.cells:
+        raise Error("this mesh of meshio has no points or no cells")
+    xyz = np.hstack([xyz, np.zeros((len(xyz), 3 - xyz.shape[1]))]) if xyz.shape[1] < 3 else xyz
+    types, sizes, ids = [], [], []
+    for block in mesh.cells:
+        if block.type not in _CELLS:
+            raise Error(f"cells {block.type!r} of meshio are not supported; there are {', '.join(_CELLS)}")
+        number, size = _CELLS[block.type]
+        used = np.asarray(block.data)
+        if used.size and (used.min() < 0 or used.max() >= len(xyz)):
+            raise Error(f"cells use the points {used.min()} to {used.max()}; there are 0 to {len(xyz) - 1}")
+        types.append(np.full(len(block.data), number, np.uint8))
+        sizes.append(np.full(len(block.data), size, np.int64))
+        ids.append(np.asarray(block.data, np.int64).ravel())
+    grid = vtkUnstructuredGrid()
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(xyz), deep=True))
+    grid.SetPoints(points)
+    if types:
+        cells = vtkCellArray()
+        offsets = np.concatenate([[0], np.cumsum(np.hstack(sizes))])
+        cells.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(np.hstack(ids), deep=True))
+        grid.SetCells(numpy_to_vtk(np.hstack(types), deep=True), cells)
+    for name, values in mesh.point_data.items():
+        _add(grid.GetPointData(), name, values)
+    for name, blocks in mesh.cell_data.items():
+        _add(grid.GetCellData(), name, np.concatenate([np.asarray(block) for block in blocks]))
+    for name, blocks in mesh.cell_sets.items():
+        _add(grid.GetCellData(), name, _membership(mesh, blocks))
+    return grid
+
+
+def _membership(mesh: Any, chosen: Any) -> Array:
+    """Per cell 1 in a set of cells, else 0."""
+    parts = []
+    for block, members in zip(mesh.cells, chosen):
+        part = np.zeros(len(block.data), np.uint8)
+        if members is not None and len(members):
+            part[np.asarray(members, int)] = 1
+        parts.append(part)
+    return np.concatenate(parts) if parts else np.zeros(0, np.uint8)
+
+
+def _add(fields: Any, name: str, values: Any) -> None:
+    numbers = np.ascontiguousarray(values)
+    if numbers.dtype.kind not in "iufb":
+        return
+    numbers = numbers.astype(np.uint8) if numbers.dtype.kind == "b" else numbers
+    array = numpy_to_vtk(numbers.reshape(len(numbers), -1) if numbers.ndim > 2 else numbers, deep=True)
+    array.SetName(name)
+    fields.AddArray(array)
+
+
+def to_meshio(data: vtkDataSet) -> Any:
+    """The mesh of meshio of a data set. Raises Error if meshio is not installed, and for cells that it does not have."""
+    try:
+        import meshio
+    except ImportError:
+        raise Error(f"{PACKAGE} is not installed") from None
+    count = data.GetNumberOfPoints()
+    xyz = np.array([data.GetPoint(i) for i in range(count)]).reshape(count, 3)
+    if hasattr(data, "GetPoints") and data.GetPoints():
+        xyz = np.array(vtk_to_numpy(data.GetPoints().GetData()))
+    blocks: list[tuple[str, list[list[int]]]] = []
+    starts: list[int] = []
+    for cell in range(data.GetNumberOfCells()):
+        kind = _BY_NUMBER.get(data.GetCellType(cell))
+        if kind is None:
+            raise Error(f"meshio has no cells of VTK's type {data.GetCellType(cell)} (cell {cell})")
+        ids = data.GetCell(cell).GetPointIds()
+        if not blocks or blocks[-1][0] != kind[0]:
+            blocks.append((kind[0], []))
+            starts.append(cell)
+        blocks[-1][1].append([ids.GetId(i) for i in range(kind[1])])
+    bounds = starts[1:]
+    return meshio.Mesh(
+        xyz,
+        [(name, np.array(cells)) for name, cells in blocks],
+        point_data=_arrays(data.GetPointData()),
+        cell_data={name: np.split(values, bounds) for name, values in _arrays(data.GetCellData()).items()},
+    )
+
+
+def _arrays(fields: Any) -> dict[str, Array]:
+    found = [fields.GetArray(i) for i in range(fields.GetNumberOfArrays())]
+    return {array.GetName(): np.array(vtk_to_numpy(array)) for array in found if array and array.GetName()}

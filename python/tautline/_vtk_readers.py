@@ -1,0 +1,204 @@
+"""Reading of the formats of solvers that VTK reads: blocks, time steps."""
+
+from __future__ import annotations
+
+import os
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Callable
+
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet, vtkMultiBlockDataSet
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+from ._arrays import leaves
+from ._errors import Error, run, watch
+
+
+@dataclass(frozen=True)
+class SolverFormat:
+    """How files with an ending are read."""
+
+    #: What the format is called, its module of vtkmodules and its class of reader.
+    title: str
+    module: str
+    reader: str
+    #: The setter of the file name.
+    setter: str = "SetFileName"
+    #: Whether files can have time steps.
+    times: bool = False
+
+    def built(self) -> bool:
+        """Whether this VTK has the reader."""
+        try:
+            return hasattr(import_module(f"vtkmodules.{self.module}"), self.reader)
+        except ImportError:
+            return False
+
+
+_EXODUS = SolverFormat("Exodus II", "vtkIOExodus", "vtkExodusIIReader", times=True)
+_XDMF = SolverFormat("XDMF 2", "vtkIOXdmf2", "vtkXdmfReader", times=True)
+_CGNS = SolverFormat("CGNS", "vtkIOCGNSReader", "vtkCGNSReader", times=True)
+_AVS = SolverFormat("AVS UCD", "vtkIOGeometry", "vtkAVSucdReader")
+_TECPLOT = SolverFormat("Tecplot, text", "vtkIOGeometry", "vtkTecplotReader")
+#: The formats by the ending, in lower case, of a file's name.
+SOLVER_FORMATS = {
+    **dict.fromkeys((".e", ".exo", ".ex2", ".exii", ".g"), _EXODUS),
+    ".cgns": _CGNS,
+    **dict.fromkeys((".xmf", ".xdmf"), _XDMF),
+    **dict.fromkeys((".avs", ".ucd"), _AVS),
+    ".case": SolverFormat("EnSight", "vtkIOEnSight", "vtkGenericEnSightReader", "SetCaseFileName", True),
+    ".foam": SolverFormat("OpenFOAM", "vtkIOGeometry", "vtkOpenFOAMReader", times=True),
+    ".neu": SolverFormat("Gambit neutral", "vtkIOGeometry", "vtkGAMBITReader"),
+    ".cas": SolverFormat("Fluent", "vtkIOGeometry", "vtkFLUENTReader"),
+    **dict.fromkeys((".tec", ".tp"), _TECPLOT),
+    ".pvti": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPImageDataReader"),
+    ".pvtr": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPRectilinearGridReader"),
+    ".pvts": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPStructuredGridReader"),
+}
+#: The ending of ParaView's lists of files by time.
+SERIES = ".pvd"
+#: How files begin.
+_HDF5, _NETCDF, _ADF = b"\x89HDF\r\n\x1a\n", b"CDF", b"@(#)ADF"
+_HEAD = 16  # bytes
+_UCD_NUMBERS = 5  # in the first line of a UCD file
+
+
+def is_ucd(name: str) -> bool:
+    """Whether a file .inp is AVS UCD: Abaqus' files, which have that ending too, begin with a star."""
+    with open(name, encoding="latin-1") as file:
+        for line in file:
+            words = line.split()
+            if words and not words[0].startswith("#"):
+                return len(words) >= _UCD_NUMBERS and all(word.isdecimal() for word in words[:_UCD_NUMBERS])
+    return False
+
+
+def read_solver(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
+    """The mesh of a file at the time step nearest to `time`, the first for None.
+
+    Raises Error if there is no such reader in this VTK, if it fails, or if the file has no time steps.
+    """
+    reader = _reader(name, form)
+    messages = watch(reader)
+    reader.UpdateInformation()
+    messages.raise_errors()
+    steps = _steps(reader)
+    if time is not None:
+        _request(reader, _nearest(name, steps, time))
+    elif steps:
+        _request(reader, steps[0])
+    run(reader, messages)
+    return _simplified(name, reader.GetOutputDataObject(0))
+
+
+def times_of(name: str, form: SolverFormat) -> list[float]:
+    """The time steps of a file; none where it has no times."""
+    reader = _reader(name, form)
+    messages = watch(reader)
+    reader.UpdateInformation()
+    messages.raise_errors()
+    return _steps(reader)
+
+
+def series(name: str) -> list[tuple[float, str]]:
+    """Times and files of a .pvd file, in the order of time. Raises Error if it is damaged."""
+    try:
+        root = ElementTree.parse(name).getroot()
+        entries = [(float(entry.get("timestep", "0")), entry.get("file", "")) for entry in root.iter("DataSet")]
+    except (ElementTree.ParseError, ValueError) as error:
+        raise Error(f"{name}: {error}") from None
+    if not entries or not all(file for _, file in entries):
+        raise Error(f"{name}: names no files")
+    folder = Path(name).parent
+    return sorted((time, os.path.join(folder, file)) for time, file in entries)
+
+
+def read_series(name: str, time: float | None, read: Callable[[str], vtkDataObject]) -> vtkDataObject:
+    """The mesh of a .pvd file at a time; several parts become blocks."""
+    entries = series(name)
+    times = sorted({when for when, _ in entries})
+    chosen = times[0] if time is None else _nearest(name, times, time)
+    parts = [read(file) for when, file in entries if when == chosen]
+    return parts[0] if len(parts) == 1 else _blocks([(f"part {i}", part) for i, part in enumerate(parts)])
+
+
+def _check_content(name: str, form: SolverFormat) -> None:
+    """Raise Error for what is not of the format: some libraries print to stderr or end the process then."""
+    with open(name, "rb") as file:
+        head = file.read(_HEAD)
+    if form is _CGNS and head.startswith(_ADF):
+        raise Error(f"{name}: is CGNS of the older kind, ADF: convert it by the program adf2hdf of CGNS")
+    signatures = {_CGNS: (_HDF5,), _EXODUS: (_HDF5, _NETCDF)}.get(form, ())
+    if signatures and not head.startswith(signatures):
+        raise Error(f"{name}: is not {form.title}, or damaged")
+    if form is _XDMF:
+        try:
+            ElementTree.parse(name)
+        except ElementTree.ParseError as error:
+            raise Error(f"{name}: {error}") from None
+
+
+def _reader(name: str, form: SolverFormat) -> Any:
+    _check_content(name, form)
+    if not form.built():
+        raise Error(f"{name}: this VTK has no reader for {form.title}; save the mesh as .vtu")
+    reader = getattr(import_module(f"vtkmodules.{form.module}"), form.reader)()
+    getattr(reader, form.setter)(name)
+    if form is _EXODUS:
+        reader.SetSqueezePoints(0)  # points keep their numbers
+        reader.UpdateInformation()
+        for kind in (reader.NODAL, reader.ELEM_BLOCK):
+            reader.SetAllArrayStatus(kind, 1)
+    return reader
+
+
+def _steps(reader: Any) -> list[float]:
+    key = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
+    found = reader.GetOutputInformation(0)
+    return [float(found.Get(key, i)) for i in range(found.Length(key))] if found.Has(key) else []
+
+
+def _nearest(name: str, steps: list[float], time: float) -> float:
+    if not steps:
+        raise Error(f"{name}: has no time steps; leave out time")
+    return min(steps, key=lambda step: abs(step - time))
+
+
+def _request(reader: Any, step: float) -> None:
+    reader.GetOutputInformation(0).Set(vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP(), step)
+
+
+def _simplified(name: str, data: Any) -> vtkDataObject:
+    """The only block with cells of composite data, or all of them in one level with their names."""
+    if isinstance(data, vtkDataSet):
+        found = [("", data)]
+    elif isinstance(data, vtkCompositeDataSet):
+        found = [(title, leaf) for title, leaf in _named_leaves(data) if leaf.GetNumberOfCells()]
+    else:
+        found = []
+    if not found or not found[0][1].GetNumberOfPoints():
+        raise Error(f"{name}: holds no mesh")
+    return found[0][1] if len(found) == 1 else _blocks(found)
+
+
+def _named_leaves(data: vtkCompositeDataSet) -> list[tuple[str, vtkDataSet]]:
+    names: list[str] = []
+    walk = data.NewIterator()
+    walk.InitTraversal()
+    while not walk.IsDoneWithTraversal():
+        if isinstance(walk.GetCurrentDataObject(), vtkDataSet):
+            facts = walk.GetCurrentMetaData() if walk.HasCurrentMetaData() else None
+            key = vtkCompositeDataSet.NAME()
+            names.append(facts.Get(key) if facts and facts.Has(key) else f"block {len(names)}")
+        walk.GoToNextItem()
+    return list(zip(names, leaves(data)))
+
+
+def _blocks(parts: list[tuple[str, vtkDataObject]]) -> vtkMultiBlockDataSet:
+    made = vtkMultiBlockDataSet()
+    for i, (title, part) in enumerate(parts):
+        made.SetBlock(i, part)
+        made.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), title)
+    return made
