@@ -250,11 +250,18 @@ MeshFile assemble(const TextCursor& cursor, Contents contents)
 
 void readHeader(TextCursor& cursor)
 {
-  if (nextWord(cursor, "MeshVersionFormatted") != "MeshVersionFormatted")
+  const std::string first = nextWord(cursor, "MeshVersionFormatted");
+  if (first == "MFEM")
+  {
+    cursor.fail(
+      "this is a mesh of MFEM, which has the same ending as those of Medit: save it as .vtu "
+      "(Mesh::PrintVTU), or with mesh-explorer as .vtk");
+  }
+  if (first != "MeshVersionFormatted")
   {
     cursor.fail("expected MeshVersionFormatted: this is no ASCII file of Medit");
   }
-  nextInteger(cursor, "version", 1, 4);
+  nextInteger(cursor, "version", 0, 4); // 0: bamg
 }
 
 /// One field of a .sol section.

@@ -168,6 +168,15 @@ def test_messages():
     assert tl.times(BRACKET) == []
 
 
+def test_medit():
+    """bamg writes version 0; MFEM's files have the same ending."""
+    text = "MeshVersionFormatted 0\nDimension\n2\nVertices\n3\n0 0 1\n1 0 1\n0 1 1\nTriangles\n1\n1 2 3 1\nEnd\n"
+    (FOLDER / "bamg.mesh").write_text(text)
+    assert tl.quality(FOLDER / "bamg.mesh").mesh.GetNumberOfCells() == 1
+    (FOLDER / "mfem.mesh").write_text("MFEM mesh v1.0\n\ndimension\n2\n")
+    refused("mfem.mesh:1: this is a mesh of MFEM", tl.read, FOLDER / "mfem.mesh")
+
+
 def test_formats():
     rows = {row["ending"]: row for row in tl.formats()}
     assert rows[".vtu"] == {"ending": ".vtu", "format": "VTK", "read": True, "write": True, "times": False, "by": "VTK"}

@@ -332,7 +332,7 @@ def test_every_output_first() -> None:
             fixed = inputs + needed.get(name, []) + [text for o in others for text in (o.option_strings[0], "x.vtu")]
             for file, text in ((absent / "x.vtu", "there is no directory"), (FOLDER / "x.docx", ".docx")):
                 if option.dest in ("csv", "report") and file.suffix == ".docx":
-                    continue  # a text may have any name
+                    continue  # a table or report may have any name
                 flag = option.option_strings[-1:]
                 error = call([name, *fixed, *flag, str(file)])
                 assert text in error and "no-mesh" not in error, (name, option.dest, error)

@@ -75,7 +75,8 @@ if _vtk.available("_shapes"):
         retrieval,
         silhouette,
     )
-    __all__ += ["MatchResult", "RetrievalResult", "SilhouetteResult", "match", "read_silhouettes", "retrieval", "silhouette"]
+    __all__ += ["MatchResult", "RetrievalResult", "SilhouetteResult"]
+    __all__ += ["match", "read_silhouettes", "retrieval", "silhouette"]
 if _vtk.available("_elliptic"):
     from ._elliptic import (
         ConditionResult,
@@ -86,7 +87,8 @@ if _vtk.available("_elliptic"):
         solver_combinations,
         solver_study,
     )
-    __all__ += ["ConditionResult", "SolveResult", "SolverStudyResult", "condition", "solve", "solver_combinations", "solver_study"]
+    __all__ += ["ConditionResult", "SolveResult", "SolverStudyResult"]
+    __all__ += ["condition", "solve", "solver_combinations", "solver_study"]
 if _vtk.available("_peridynamics"):
     from ._peridynamics import (
         HorizonResult,

@@ -15,8 +15,8 @@ from ._interrupts import reporting
 
 #: Exit code after Ctrl-C, as of shells: 128 and the number of SIGINT.
 _INTERRUPTED = 130
-_EPILOG = """COMMAND --help explains a command, with an example. Names of methods and presets are found in any case. The file
-name - is a .vtu mesh from the standard input or to the standard output:
+_EPILOG = """COMMAND --help explains a command, with an example. Names of methods and presets are found in any case.
+The file name - is a .vtu mesh from the standard input or to the standard output:
   python3 -m tautline untangle part.vtu -o - | python3 -m tautline optimize - -o better.vtu
 On a terminal, commands that take long show a progress bar.
 

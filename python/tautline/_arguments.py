@@ -30,7 +30,7 @@ Setter = Callable[[Any, Any], None]
 
 
 def pick(option: str, value: Any, allowed: Sequence[str]) -> int:
-    """The index of a name, in any case, in the allowed ones. Raises Error, with the nearest one, if it is none of them."""
+    """The index of a name, in any case, in the allowed ones. Raises Error, with the nearest one, for others."""
     found = find_name(value, allowed)
     if found is None:
         listed = ", ".join(map(repr, allowed))

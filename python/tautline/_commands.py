@@ -104,7 +104,7 @@ def add_mesh(parser: argparse.ArgumentParser) -> None:
 def add_output(parser: argparse.ArgumentParser, text: str = "mesh to write", required: bool = True) -> None:
     """Add the option of the mesh to write."""
     parser.add_argument("-o", "--output", metavar="FILE", required=required,
-                        help=f"{text}; its ending decides on the format, - is a .vtu to the standard output")  # fmt: skip
+                        help=f"{text}; its ending decides on the format, - is the standard output")  # fmt: skip
 
 
 def add_metrics(parser: argparse.ArgumentParser) -> None:
@@ -206,8 +206,8 @@ def finish(
     """Print a result and write its files.
 
     text: the result in words. rows: for the file --csv. texts: more files with their contents. facts: what --json
-    prints if there is no result with to_dict(). options: of write(). The files are listed after the text, in the JSON as `files`. With
-    --output -, what else is printed goes to stderr.
+    prints if there is no result with to_dict(). options: of write(). The files are listed after the text, in the JSON
+    as `files`. With --output -, what else is printed goes to stderr.
     """
     out = sys.stderr if getattr(arguments, "output", None) == STREAM else sys.stdout
     silent = arguments.quiet or arguments.json

@@ -388,7 +388,7 @@ def add_commands(commands: Any) -> None:
     parser = _commands.add_command(
         commands, "warp", _run, "deform the interior of a mesh to follow a prescribed boundary motion",
         example="plate.vtu --rotate 30 -o turned.vtu",
-        details="The motion of the boundary is an array, a target mesh or a transform; exits with 1 if elements are inverted.",
+        details="The motion is an array, a target mesh or a transform; exits with 1 if elements are inverted.",
     )
     numbers = _commands.numbers
     _commands.add_mesh(parser)

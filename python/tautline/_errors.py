@@ -68,8 +68,8 @@ def interruptible(function: Function) -> Function:
 def _with_progress(text: str) -> str:
     """The documentation of a function with progress, in the paragraph before that of what it raises."""
     place = text.rfind("\n\n", 0, text.find("Raises Error"))
-    entry = """    progress: True: a bar on the terminal, if there is one. Else a function, which is called ten times a second with
-        the fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
+    entry = """    progress: True: a bar on the terminal, if there is one. Else a function, called ten times a second
+        with the fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
         KeyboardInterrupt.
 """
     return text[: place + 1] + entry + text[place + 1 :]

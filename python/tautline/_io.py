@@ -66,7 +66,7 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
     if isinstance(inner, (vtkDataSet, vtkCompositeDataSet)):
         return inner
     if hasattr(mesh, "IsA") and mesh.IsA("vtkDataSet"):
-        raise Error(f"this {type(mesh).__name__} is of another VTK than that of Tautline; save it as .vtu and read that")
+        raise Error(f"this {type(mesh).__name__} is of another VTK than Tautline's; save it as .vtu and read that")
     raise Error(f"a mesh is a vtkDataSet, a file name or (points, cells), not {type(mesh).__name__}")
 
 

@@ -154,7 +154,7 @@ def _add(fields: Any, name: str, values: Any) -> None:
 
 
 def to_meshio(data: vtkDataSet) -> Any:
-    """The mesh of meshio of a data set. Raises Error if meshio is not installed, and for cells that it does not have."""
+    """The mesh of meshio of a data set. Raises Error if meshio is not installed, and for cells that it lacks."""
     try:
         import meshio
     except ImportError:

@@ -24,7 +24,20 @@ from ._arguments import (
     set_time_limit,
     within,
 )
-from ._arrays import ANY, CELLS, POINTS, Array, InputArrays, Values, cell_array, columns, history_of, point_array, snake, table_rows
+from ._arrays import (
+    ANY,
+    CELLS,
+    POINTS,
+    Array,
+    InputArrays,
+    Values,
+    cell_array,
+    columns,
+    history_of,
+    point_array,
+    snake,
+    table_rows,
+)
 from ._errors import Error, interruptible, run, watch
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh

@@ -232,7 +232,6 @@ class HorizonResult(Result):
     pieces: the one or two triangles that replace each (Figure 4.5), with `Case` and `CellId`.
     """
 
-    _per_element: ClassVar[tuple[str, ...]] = ()
     mesh: vtkPolyData
     case: Array
     cells: Array

@@ -59,7 +59,8 @@ def report(
     }  # fmt: skip
     first = None if before is None else measure(before, metrics, **options)
     measured = measure(mesh, metrics, **options)
-    settings: dict[str, Any] = {"metrics": metrics, **options, "before": before if isinstance(before, (str, PathLike)) else None}
+    settings: dict[str, Any] = {"metrics": metrics, **options}
+    settings["before"] = before if isinstance(before, (str, PathLike)) else None
     html = html_report(measured, mesh, settings, first, title)
     if file is not None:
         replace_text(file, html)

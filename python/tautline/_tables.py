@@ -89,7 +89,8 @@ def quality_rows(result: QualityResult) -> list[dict[str, Any]]:
     """A dict per metric with all statistics that are numbers or text, and the worst cell."""
     rows = []
     for name, facts in result.statistics.items():
-        row: dict[str, Any] = {"metric": name, **{key: value for key, value in facts.items() if not isinstance(value, np.ndarray)}}
+        plain = {key: value for key, value in facts.items() if not isinstance(value, np.ndarray)}
+        row: dict[str, Any] = {"metric": name, **plain}
         row["worst_cell"] = int(facts["worst_cells"][0]) if len(facts["worst_cells"]) else ""
         rows.append(row)
     return rows

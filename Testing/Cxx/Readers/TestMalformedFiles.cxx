@@ -85,6 +85,7 @@ void testOtherMessages()
   expect("mesh", mesh + "Corners\n1\n4\nEnd\n", "Corner: number 4 is out of range");
   expect("mesh", mesh + "1 1 1\nEnd\n", "bad.mesh:7: expected the name of a section, found '1'");
   expect("mesh", "solid stl\n", "bad.mesh:1: expected MeshVersionFormatted");
+  expect("mesh", "MFEM mesh v1.0\n\ndimension\n2\n", "bad.mesh:1: this is a mesh of MFEM");
   writeText(output + "/bad.mesh", mesh + "End\n");
   expect("sol", "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n2\n1 1\n1\n2\nEnd\n",
     "SolAtVertices has 2 values, the mesh has 3");
