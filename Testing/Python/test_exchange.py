@@ -202,7 +202,7 @@ def test_meshio():
         refused("which is not installed", tl.write, mesh, FOLDER / "x.bdf")
         return
     measured = tl.quality(tl.perturb(mesh, seed=3), ["imr", "rr"])
-    there = tl.to_meshio(measured.mesh)
+    there = tl.to_meshio(measured)
     assert isinstance(there, meshio.Mesh) and there.cells[0].type == "tetra"
     back = tl.quality(there, ["imr", "rr"])
     assert (back.values["imr"] == measured.values["imr"]).all()

@@ -21,9 +21,8 @@ from . import _vtk
 from ._comparison import CompareResult, compare
 from ._conversion import formats
 from ._errors import Aborted, Error
-from ._io import Mesh, read, times, write
+from ._io import Mesh, read, times, to_meshio, write
 from ._mesh import from_arrays
-from ._meshio import to_meshio
 from ._metric_field import MetricFieldResult, metric_field
 from ._metrics import load_metrics, metrics, register_metric, unregister_metric
 from ._pipeline import StepsResult, run_steps

@@ -18,7 +18,7 @@ from ._formats import FORMATS, Format
 from ._interrupts import Progress, updating
 from ._legacy import check_counts, check_references, scan_legacy
 from ._mesh import from_arrays
-from ._meshio import MESHIO_FORMATS, PACKAGE, from_meshio, installed, is_meshio, read_meshio, write_meshio
+from ._meshio import MESHIO_FORMATS, PACKAGE, from_meshio, installed, is_meshio, meshio_of, read_meshio, write_meshio
 from ._surfaces import check_surface
 from ._vtk_readers import SERIES, SOLVER_FORMATS, is_ucd, read_series, read_solver, series, times_of
 from ._vtk_writers import block_files, write_composite, write_data
@@ -205,6 +205,19 @@ def write(
     if form.own:
         return _write_own(data, name, form, options.get("binary", False))
     return write_composite(data, name) if ending == ".vtm" else write_data(data, name, form)
+
+
+@checked
+def to_meshio(mesh: Mesh) -> Any:
+    """The mesh of meshio of a mesh, with its point and cell arrays.
+
+    mesh: a vtkDataSet, a file name, the result of another function, or (points, cells).
+
+    Raises Error if meshio is not installed, and for cells that it lacks. Functions take meshes of meshio as they are.
+
+    >>> tautline.to_meshio(tautline.untangle("part.vtu")).write("part.xdmf")
+    """
+    return meshio_of(as_data_set(mesh))
 
 
 def check_output(file: str | PathLike[str]) -> Format | None:

@@ -67,7 +67,7 @@ def read_meshio(name: str) -> vtkUnstructuredGrid:
 def write_meshio(data: vtkDataSet, name: str) -> list[str]:
     """Write a file. Raises Error if meshio is not installed or cannot write it."""
     meshio = _module(name)
-    made = to_meshio(data)
+    made = meshio_of(data)
     _quietly(name, "write", lambda: meshio.write(name, made))
     return [name]
 
@@ -153,7 +153,7 @@ def _add(fields: Any, name: str, values: Any) -> None:
     fields.AddArray(array)
 
 
-def to_meshio(data: vtkDataSet) -> Any:
+def meshio_of(data: vtkDataSet) -> Any:
     """The mesh of meshio of a data set. Raises Error if meshio is not installed, and for cells that it lacks."""
     try:
         import meshio
