@@ -473,7 +473,8 @@ public:
   ///@{
   /**
    * After the objective has converged, improve the worst element as long as the mean of the first
-   * metric does not get worse by more than this fraction; 0, the default: off.
+   * metric does not get worse by more than this fraction, or five times as much where another
+   * metric judges the worst element; 0, the default: off.
    */
   vtkTautlineSetRangeMacro(ImproveWorst, double, 0.0, 1.0);
   vtkGetMacro(ImproveWorst, double);

@@ -23,7 +23,7 @@
 #ifndef tautline_JacobianBounds_h
 #define tautline_JacobianBounds_h
 
-#include "Mesh.h"
+#include "CellBatch.h"
 
 namespace tautline
 {
@@ -57,6 +57,11 @@ Validity classifyInside(const CellTopology& t, const Vec3* vertices, Validity co
  * largest coefficient.
  */
 TAUTLINE_KERNEL_EXPORT JacobianMinimum minimumJacobian(const CellTopology& t, const Vec3* vertices);
+
+/// The cells of a batch, all of a type that hasInside(), that are valid beyond doubt, inside and at
+/// the corners; their points are mirrored where the mesh is, as loadNodes() does.
+TAUTLINE_KERNEL_EXPORT Mask clearlyValidCells(
+  const Mesh& mesh, const CellTopology& t, const CellVertices& batch);
 
 /// The derivative of the determinant at a point of the reference element by each vertex.
 TAUTLINE_KERNEL_EXPORT void addJacobianGradient(

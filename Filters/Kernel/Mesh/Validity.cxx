@@ -194,6 +194,12 @@ Mask clearlyValid(const Mesh& mesh, const CellTopology& t, const CellVertices& b
 }
 
 //------------------------------------------------------------------------------
+Mask clearlyValidCells(const Mesh& mesh, const CellTopology& t, const CellVertices& batch)
+{
+  return t.nodes == 8 ? clearlyValid<8>(mesh, t, batch) : clearlyValid<6>(mesh, t, batch);
+}
+
+//------------------------------------------------------------------------------
 void Mesh::classifyCells(signed char* validity, int threads) const
 {
   if (this->Unsupported > 0)

@@ -1,6 +1,6 @@
 #include "GlobalFunction.h"
 
-#include "ValidityGuard.h"
+#include "ValidityLevels.h"
 #include "tautline/Mesh/JacobianBounds.h"
 #include "tautline/Objectives/ObjectiveSumState.h"
 

@@ -1,7 +1,5 @@
 #include "ImproveWorst.h"
 
-#include "ValidityGuard.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -15,13 +13,18 @@ constexpr int sweepsPerRound = 4;
 constexpr double worthwhile = 1e-3;
 /// p: elements at 0.8 of the worst value have a thousandth of its share.
 constexpr double power = 32;
+/// How much more the elements near the worst one count where a round no longer pays, and at most.
+constexpr double stronger = 4;
+constexpr double strongest = 256;
 
 /// What a round minimizes.
 class WorstObjectives
 {
 public:
-  WorstObjectives(OptimizationProblem& problem, const Objective& judged, double worst)
-    : Terms(problem.localTerms())
+  /// @param pull how much more the second sum counts than the first
+  WorstObjectives(OptimizationProblem& problem, const Objective& judged, double worst, double pull)
+    : Pull(pull)
+    , Terms(problem.localTerms())
     , Fast(Terms[0].shapePower > 0 && judged.metric == Metric::InverseMeanRatio)
   {
     this->Terms.resize(1);
@@ -49,7 +52,7 @@ public:
                       : std::vector<double>{ this->Sum->value(), this->Mean->value() };
   }
 
-  /// Both count as much, relative to where they start.
+  /// Both by the changes relative to where they start.
   Scalarizer scalarizer() const
   {
     ScalarizationOptions options;
@@ -57,12 +60,15 @@ public:
     std::vector<double> weights = { 1.0 };
     if (!this->Fast)
     {
-      weights = { 1.0 / std::abs(this->First[0]), 1.0 / std::abs(this->First[1]) };
+      weights = { 1.0 / std::abs(this->First[0]), this->Pull / std::abs(this->First[1]) };
     }
     return Scalarizer(options, weights, this->values());
   }
 
+  bool fast() const { return this->Fast; }
+
 private:
+  double Pull;
   std::vector<LocalTerm> Terms;
   bool Fast;
   const ObjectiveSum* Sum = nullptr;
@@ -109,10 +115,11 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   SimplexMesh& simplices = problem.simplices();
   const std::size_t size = VertexStride * static_cast<std::size_t>(simplices.freeVertices());
   std::vector<double> best(simplices.coordinates(), simplices.coordinates() + size);
-  ValidityGuard inside(problem);
+  double pull = 1.0;
+  bool lowered = false; // the pull, once, because its cost was too high
   for (int round = 0; round < maxRounds && !problem.outOfTime(); ++round)
   {
-    const WorstObjectives objectives(problem, judged, worst);
+    const WorstObjectives objectives(problem, judged, worst, pull);
     LocalOptions options = problem.localOptions();
     options.newton = true;
     options.relaxation = 1.0;
@@ -125,23 +132,37 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
       sweeper.sweep(scalarizer, values);
     }
     problem.store();
-    inside.restore(best);
     IterationRecord now = problem.record(0);
     const double worstNow = problem.worstMovable(judged);
     const bool affordable = sign * (now.mean[0] - bound) <= 0 || guard.worse(worst);
     const bool kept = better(worstNow, worst) && affordable && now.inverted <= start.inverted;
-    if (!kept)
+    const double gain = kept ? std::abs(worst - worstNow) / std::abs(worst) : 0.0;
+    if (kept)
+    {
+      worst = worstNow;
+      std::copy_n(simplices.coordinates(), size, best.begin());
+      if (!report(now) || (limits.onlyAsInput && !guard.worse(worst)))
+      {
+        return;
+      }
+    }
+    else
     {
       std::copy(best.begin(), best.end(), simplices.coordinates());
       problem.store();
-      return;
     }
-    const double gain = std::abs(worst - worstNow) / std::abs(worst);
-    worst = worstNow;
-    std::copy_n(simplices.coordinates(), size, best.begin());
-    if (!report(now) || gain < worthwhile || (limits.onlyAsInput && !guard.worse(worst)))
+    if (!affordable && !lowered && pull > 1)
     {
-      return;
+      lowered = true;
+      pull /= stronger;
+    }
+    else if (gain < worthwhile)
+    {
+      pull *= stronger;
+      if (objectives.fast() || !affordable || lowered || pull > strongest)
+      {
+        return;
+      }
     }
   }
 }

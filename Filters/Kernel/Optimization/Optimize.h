@@ -31,7 +31,8 @@ struct OptimizeResult
   /// Points that went back to their place in the input, because an element there would otherwise be
   /// worse than the worst one of the input.
   Index restored = 0;
-  /// The points are those of the input, because what was found had a larger objective.
+  /// The points are those of the input, because what was found was worse in one of the three
+  /// numbers.
   bool unchanged = false;
 };
 

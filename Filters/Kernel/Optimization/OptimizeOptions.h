@@ -84,7 +84,8 @@ enum class Preset : int
     4, ///< shape (IMR) and SS of section 3.2.1 at once, by the objective product
   UntangleThenImprove = 5, ///< untangle(), then BestShape
   PreserveShape = 6, ///< sum of squared IMR against the elements of a reference mesh (targets)
-  WorstElement = 7   ///< BestShape, then the worst IMR with the mean kept
+  WorstElement =
+    7 ///< BestShape, then the worst element; the mean hardly worsens (improveWorst 0.01)
 };
 
 struct OptimizeOptions
@@ -145,8 +146,9 @@ struct OptimizeOptions
   double relaxation = 1.4;
   /**
    * @brief WorstElement: after the objective has converged, improves the worst element as long as
-   * the mean of the first objective's metric does not get worse by more than this fraction of it;
-   * 0: off.
+   * the mean of the first objective's metric does not get worse by more than this fraction of it,
+   * or by five times as much where another metric judges the worst element (the two disagree on
+   * stretched hexahedra); 0: off.
    */
   double improveWorst = 0.0;
   /**

@@ -197,7 +197,8 @@ bool VertexOptimizer<Dim>::placeOnSurface(
     const bool kept = dot(turned[i], normals[i]) > 0 || !(dot(normals[i], normals[i]) > 0);
     smallest = kept ? smallest : -1.0;
   }
-  const bool upright = this->Options.allowInversion || smallest > 0;
+  const bool upright =
+    this->Options.allowInversion || (smallest > 0 && this->staysValidInside(w.patch, zero));
   if (!upright || !(this->changeAt(scalarizer, w, zero) < 0))
   {
     this->place(v, before);

@@ -1,7 +1,9 @@
 #include "VertexOptimizer.h"
 
 #include "tautline/Core/LineSearch.h"
+#include "tautline/Mesh/JacobianBounds.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tautline
@@ -30,6 +32,15 @@ VertexOptimizer<Dim>::VertexOptimizer(SimplexMesh& simplices, const Mesh& mesh, 
     this->Functions.push_back(this->makeFunction(term));
     this->NeedsCells = this->NeedsCells || this->Functions.back()->needsCells();
     this->Guarded = this->Guarded || this->NeedsCells || term.sizeSquared > 0;
+  }
+  this->Inside = !options.allowInversion &&
+    std::any_of(mesh.blocks().begin(), mesh.blocks().end(),
+      [](const CellBlock& block) { return hasInside(block.type); });
+  if (this->Inside)
+  {
+    this->NeedsCells = true;
+    this->Validities.resize(mesh.view().numberOfCells);
+    mesh.classifyCells(this->Validities.data(), options.threads);
   }
   if (this->NeedsCells)
   {
@@ -403,7 +414,8 @@ bool VertexOptimizer<Dim>::search(const Scalarizer& scalarizer, PatchWorker<Dim>
       to[c] = d[c] + t * direction[c];
     }
     if (this->changeAt(scalarizer, w, to) <= ArmijoConstant * t * slope &&
-      (!this->Guarded || staysValid<Dim>(w.patch.simplices, d, to)))
+      (!this->Guarded || staysValid<Dim>(w.patch.simplices, d, to)) &&
+      this->staysValidInside(w.patch, to))
     {
       return true;
     }
@@ -411,6 +423,57 @@ bool VertexOptimizer<Dim>::search(const Scalarizer& scalarizer, PatchWorker<Dim>
   return false;
 }
 
+//------------------------------------------------------------------------------
+/// Whether the cells that were valid throughout still are when the vertex is displaced by d.
+template <int Dim>
+bool VertexOptimizer<Dim>::staysValidInside(const VertexPatch<Dim>& patch, const double* d) const
+{
+  Vec3 shift = { 0, 0, 0 };
+  for (int c = 0; c < Dim; ++c)
+  {
+    shift += d[c] * patch.axes[c];
+  }
+  const bool mirrored = this->TheMesh.mirrored();
+  for (int i = 0; this->Inside && i < patch.cellBatches; ++i)
+  {
+    const CellBatch& cells = patch.cells[i];
+    const CellTopology& t = topology(this->TheMesh.blocks()[cells.block].type);
+    if (!hasInside(t.type))
+    {
+      continue;
+    }
+    CellVertices moved;
+    for (int k = 0; k < t.nodes; ++k)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        const double by = mirrored && c == 0 ? -shift[c] : shift[c];
+        moved.points[k][c] = cells.batch.points[k][c] + by * cells.here[k];
+      }
+    }
+    const Mask clear = clearlyValidCells(this->TheMesh, t, moved);
+    for (int l = 0; l < cells.batch.count; ++l)
+    {
+      if (clear[l] || this->Validities[cells.batch.cells[l]] != Valid)
+      {
+        continue;
+      }
+      Vec3 p[MaxNodes];
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        p[k] = { (mirrored ? -1.0 : 1.0) * moved.points[k][0][l], moved.points[k][1][l],
+          moved.points[k][2][l] };
+      }
+      if (this->TheMesh.classifyCell(t, p) != Valid)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
 /// Moves v by d, back to the surface if it is on one; whether it moved far enough to stay awake.
 template <int Dim>
 bool VertexOptimizer<Dim>::placeMoved(

@@ -77,6 +77,7 @@ private:
   std::vector<Vec3> normalsAt(std::int32_t v) const;
   bool search(const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d,
     const double* direction, double t, double slope, double* to);
+  bool staysValidInside(const VertexPatch<Dim>& patch, const double* d) const;
   bool placeMoved(
     std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w);
   void place(std::int32_t v, const Vec3& x);
@@ -89,6 +90,9 @@ private:
   LocalOptions Options;
   bool NeedsCells = false;
   bool Guarded = false; ///< some objective may be without a barrier, and no element may invert
+  /// Whether elements could fold between their corners, and which are valid at first: they stay so.
+  bool Inside = false;
+  std::vector<signed char> Validities;
   VertexCells Cells;
   std::vector<std::unique_ptr<PatchFunction<Dim>>> Functions;
   std::vector<double> Values; ///< of the objectives when the sweep began

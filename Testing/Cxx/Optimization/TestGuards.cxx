@@ -4,7 +4,6 @@
 
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Optimization/QualityGuard.h"
-#include "tautline/Optimization/ValidityGuard.h"
 
 using namespace tautline;
 
@@ -111,14 +110,11 @@ void testValidity()
     const Mesh mesh(data.view());
     std::vector<double> points = data.points;
     OptimizationProblem problem(mesh, options, points, Stopwatch());
-    ValidityGuard guard(problem);
-    SimplexMesh& simplices = problem.simplices();
-    const std::vector<double> before(simplices.coordinates(),
-      simplices.coordinates() + VertexStride * static_cast<std::size_t>(simplices.freeVertices()));
-    TAUTLINE_CHECK_EQUAL(guard.restore(before), Index(0));
+    const QualityGuard guard(mesh, options);
+    TAUTLINE_CHECK_EQUAL(guard.restore(problem), Index(0));
     problem.restart(shifted(data, firstApart, shift));
     TAUTLINE_CHECK(invalid(data, points) > 0);
-    const Index restored = guard.restore(before);
+    const Index restored = guard.restore(problem);
     TAUTLINE_CHECK_EQUAL(invalid(data, points), Index(0));
     check(data, firstApart, cells, shift, points, restored);
   }

@@ -91,7 +91,17 @@ void testFoldedTargets()
         options.fixed = fixed.data();
         options.objectives[0].evaluation.targets = &targets;
         options.stopping.maximumIterations = 60;
+        // After each iteration, before what became worse goes back at the end.
+        Index onTheWay = 0;
+        options.observer = [&](const IterationState& state)
+        {
+          std::vector<double> points(data.points.size());
+          state.points(points.data());
+          onTheWay += lost(data, points);
+          return true;
+        };
         const OptimizeResult result = run(data, options);
+        TAUTLINE_CHECK_EQUAL(onTheWay, Index(0));
         TAUTLINE_CHECK_EQUAL(lost(data, result.points), Index(0));
         TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
         without += result.history.size() < 2;

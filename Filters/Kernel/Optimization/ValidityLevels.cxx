@@ -1,0 +1,22 @@
+#include "ValidityLevels.h"
+
+#include "OptimizationProblem.h"
+
+namespace tautline
+{
+void findValidityLevels(const Mesh& mesh, int threads, std::vector<signed char>& levels)
+{
+  levels.resize(mesh.view().numberOfCells);
+  mesh.classifyCells(levels.data(), threads);
+  for (std::size_t cell = 0; cell < levels.size(); ++cell)
+  {
+    const signed char validity = levels[cell];
+    levels[cell] = validity == Valid ? ValidThroughout : InvalidCorners;
+    if ((validity == Inverted || validity == Degenerate) &&
+      cornerValidity(mesh, static_cast<Index>(cell)) == Valid)
+    {
+      levels[cell] = ValidCorners;
+    }
+  }
+}
+}
