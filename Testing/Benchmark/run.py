@@ -4,8 +4,8 @@ Every time is the best of several turns, and every ratio is between times of one
 are CPU time; those of the thread speed-up are wall time. Prints tables; writes benchmark.json (times in
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
 elements, optimization.json and .csv of the optimizer (see optimization.py), deformation.json and .csv of warping
-(see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), and stiff.json
-and .csv of stretched meshes (see stiff.py) to the output directory, by default DIR/benchmark. Prints how the preset
+(see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), stiff.json
+and .csv of stretched meshes (see stiff.py), and user-metric.json and .csv of metrics of one's own to the output directory, by default DIR/benchmark. Prints how the preset
 Aggressive of Improve Mesh compares with the program gmsh, where that is installed (see gmsh_comparison.py).
 """
 
@@ -207,6 +207,22 @@ def run_deformation(build: Path, output: Path, repeats: int, quick: bool) -> Non
     run_table(output, "deformation", *deformation.run(build / "bin" / "BenchmarkDeformation", repeats, quick))
 
 
+def run_user_metric(build: Path, output: Path, size: int, repeats: int) -> None:
+    """A user's metrics against the built-in ones, compiled for any machine and for this one."""
+    times: dict[str, float] = {}
+    rows: list[tuple[str, float, str]] = []
+    for program in ("BenchmarkUserMetric", "BenchmarkUserMetricNative"):
+        flags = "this machine" if program.endswith("Native") else "any machine"
+        command = [str(build / "bin" / program), str(size), str(repeats)]
+        output_text = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+        for line in output_text.splitlines():
+            name, built_in, own, ratio = line.split("\t")
+            times |= {f"{name}, built-in": float(built_in), f"{name}, user's, {flags}": float(own)}
+            rows.append((f"user's / built-in, {name}, {flags}", float(ratio), "<= 3"))
+    show_table(rows)
+    save(output, "user-metric", times, {what: number for what, number, _ in rows})
+
+
 def run_stiff(build: Path, output: Path, repeats: int, quick: bool, huge: bool) -> None:
     run_table(output, "stiff", *stiff.run(build / "bin" / "BenchmarkStiff", repeats, quick, huge))
 
@@ -219,7 +235,7 @@ def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> No
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parts = ("quality", "optimization", "deformation", "reconnection", "stiff", "gmsh")
+    parts = ("quality", "optimization", "deformation", "reconnection", "stiff", "user-metric", "gmsh")
     parser.add_argument("--only", choices=parts, help="one part; all otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
@@ -239,6 +255,8 @@ def main() -> int:
         run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
     if options.only in (None, "stiff"):
         run_stiff(options.build, output, options.repeats or 3, options.quick, options.huge and not options.quick)
+    if options.only in (None, "user-metric"):
+        run_user_metric(options.build, output, 4 if options.quick else 30, options.repeats or 9)
     if options.only in (None, "gmsh"):
         subprocess.run([sys.executable, str(Path(__file__).with_name("gmsh_comparison.py"))], check=False)
     return 0

@@ -84,6 +84,12 @@ def check_stiff(output: Path) -> None:
     assert measured["quads-aspect1000 100: sum at the start / minimum"] > 8 * 304**2 / 100, measured
 
 
+def check_user_metric(output: Path) -> None:
+    measured, ratios = read(output, "user-metric")
+    # Four metrics, two types of cells, with gradient and without, two compilations.
+    assert len(ratios) == 32 and all(number > 0 for number in (*measured.values(), *ratios.values())), ratios
+
+
 def main(build: Path, output: Path) -> int:
     subprocess.run(["cmake", "--build", str(build), "--target", "benchmarks"], check=True)
     script = Path(__file__).with_name("run.py")
@@ -95,6 +101,7 @@ def main(build: Path, output: Path) -> int:
     check_deformation(output)
     check_reconnection(output)
     check_stiff(output)
+    check_user_metric(output)
     return 0
 
 

@@ -52,11 +52,21 @@ HessianMatrix::HessianMatrix(
 {
   this->findPattern();
   const std::size_t numbers = static_cast<std::size_t>(this->Size) * this->Size;
-  requireMemory(static_cast<double>(sizeof(double) * numbers) *
-      static_cast<double>(this->Columns.size() + static_cast<std::size_t>(this->Rows)),
-    "the matrix of Newton's method", "choose another optimizer, such as Local Newton");
   this->Blocks.assign(numbers * this->Columns.size(), 0.0);
   this->Inverse.assign(numbers * this->Rows, 0.0);
+}
+
+/// Throws if the matrix with so many blocks, and what solves its systems, do not fit into memory.
+void HessianMatrix::require(Index blocks) const
+{
+  constexpr double coarseGrids = 1; // of multigrid, relative to the matrix
+  const double numbers = this->Size * this->Size * static_cast<double>(sizeof(double));
+  const double matrix = numbers * static_cast<double>(blocks + this->Rows);
+  const double indices = static_cast<double>(sizeof(std::int32_t)) *
+    static_cast<double>(blocks + this->PlaceStarts.back());
+  const bool full = this->ThePattern == Pattern::Full;
+  requireMemory(matrix * (full ? 1 + coarseGrids : 1) + indices, "the matrix of Newton's method",
+    "choose another optimizer, such as Local Newton");
 }
 
 std::int32_t HessianMatrix::place(std::int32_t row, std::int32_t column) const
@@ -156,8 +166,10 @@ void HessianMatrix::findPattern()
   }
   if (total > std::numeric_limits<std::int32_t>::max())
   {
-    throw Error("The mesh has too many points for Newton's method: choose Local Newton or L-BFGS.");
+    throw MemoryError(
+      "The mesh has too many points for Newton's method: choose Local Newton or L-BFGS.");
   }
+  this->require(total);
   this->Columns.reserve(total);
   for (const auto& part : columns)
   {

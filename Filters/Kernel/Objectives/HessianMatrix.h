@@ -100,6 +100,7 @@ private:
   template <int Dim>
   void sweep(const double* r, double* z) const;
   void findPattern();
+  void require(Index blocks) const;
   std::int32_t place(std::int32_t row, std::int32_t column) const;
 
   const Mesh& TheMesh;

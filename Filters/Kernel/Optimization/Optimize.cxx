@@ -262,6 +262,7 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch,
   const std::vector<double> swept = result.points;
   const double reached = result.history.back().objective;
   problem.restart(start);
+  bool fits = true;
   try
   {
     takeHarmonicStart(problem, start, result);
@@ -269,11 +270,13 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch,
   }
   catch (const MemoryError&)
   {
-    problem.restart(swept);
-    result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
-    return;
+    fits = false;
   }
   catch (const std::bad_alloc&)
+  {
+    fits = false;
+  }
+  if (!fits)
   {
     problem.restart(swept);
     result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);

@@ -1,6 +1,10 @@
 // optimize() on sheared and strongly stretched meshes.
 #include "Optimizing.h"
 
+#include "tautline/Core/Memory.h"
+
+#include <sys/resource.h>
+
 using namespace tautline;
 
 namespace
@@ -131,6 +135,43 @@ void testStiff()
     TAUTLINE_CHECK(stopped.reason == StopReason::IterationLimit);
   }
 }
+
+/// Where the matrix of Newton's method does not fit into memory, the sweeps go on.
+void testMemory()
+{
+  const MeshData data = stretched(CellType::Quadrilateral, 200,
+    [](const Vec3& p) {
+      return Vec3{ p[0], p[1] * p[1], p[2] };
+    });
+  constexpr int sweeps = 12, beforeNewton = 7;
+  OptimizeOptions options;
+  options.threads = 1;
+  options.stopping.maximumIterations = sweeps;
+  OptimizeOptions local = options;
+  local.optimizer = Optimizer::LocalNewton;
+  const OptimizeResult expected = run(data, local);
+  const OptimizeResult usual = run(data, options);
+  TAUTLINE_CHECK(usual.history.back().objective < 0.9 * expected.history.back().objective);
+
+  rlimit before{};
+  getrlimit(RLIMIT_DATA, &before);
+  options.observer = [](const IterationState& state)
+  {
+    if (state.record.iteration == beforeNewton)
+    {
+      constexpr double mebibyte = 1048576;
+      limitMemory(14 * mebibyte); // sweeps need less, the matrix alone 11 and its grids as much
+    }
+    return true;
+  };
+  const OptimizeResult result = run(data, options);
+  setrlimit(RLIMIT_DATA, &before);
+  TAUTLINE_CHECK_EQUAL(result.iterations, sweeps);
+  TAUTLINE_CHECK(result.reason == StopReason::IterationLimit);
+  // The first sweep after the way back visits all vertices again.
+  TAUTLINE_CHECK_RELATIVE(result.history.back().objective, expected.history.back().objective, 0.01);
+  TAUTLINE_CHECK(result.history.back().objective < result.history[beforeNewton].objective);
+}
 }
 
 int TestOptimizeStiff(int, char*[])
@@ -138,5 +179,6 @@ int TestOptimizeStiff(int, char*[])
   testStiff();
   testStiffThreads();
   testStiffRing();
+  testMemory();
   return exitCode();
 }
