@@ -42,10 +42,10 @@ bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeRes
  * @brief Sweeps to convergence.
  * @param failed set where a sweep raised the objective, as those of several objectives can
  * @param repaired set where an element that was left out has become valid
- * @param stiff set, if not null, where they converge too slowly
+ * @param slow set, if not null, where they converge too slowly
  */
 StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& watch,
-  OptimizeResult& result, bool& failed, bool& repaired, bool* stiff)
+  OptimizeResult& result, bool& failed, bool& repaired, Slowness* slow)
 {
   const StoppingCriteria& stop = problem.options().stopping;
   SimplexMesh& simplices = problem.simplices();
@@ -58,8 +58,8 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
   const bool simple = problem.isSimple();
   StopReason reason = StopReason::NoProgress;
   double firstGradient = 0;
-  bool all = true; // whether the next sweep visits every vertex
-  SweepGains gains;
+  bool all = true;           // whether the next sweep visits every vertex
+  SweepGains gains(!simple); // hexahedra have no closed form
   for (int iteration = result.history.back().iteration + 1;; ++iteration)
   {
     if (watch.ends(result.history, reason))
@@ -105,9 +105,9 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     gains.add(lowered);
     // On a surface each sweep moves the points a little off the input: no more of them than needed.
     const double remaining = problem.surface() ? lowered : gains.remaining();
-    if (stiff && gains.stiff(size))
+    if (slow && (gains.stiff(size) || gains.slow(size, stop.relativeChange)))
     {
-      *stiff = true;
+      *slow = gains.stiff(size) ? Slowness::Far : Slowness::Near;
       return StopReason::NoProgress;
     }
 
@@ -251,21 +251,25 @@ void takeHarmonicStart(
 }
 
 /**
- * @brief Newton's method from the start, where sweeps converge too slowly. If its matrix does not
- * fit into memory the sweeps go on; if it does not get as far as they did, their points are kept.
+ * @brief Newton's method where sweeps converge too slowly: from the start, or near the minimum from
+ * where they are. If its matrix does not fit into memory the sweeps go on; if it does not get as
+ * far as they did, their points are kept.
  */
-void useNewton(OptimizationProblem& problem, const StoppingTest& watch,
+void useNewton(OptimizationProblem& problem, const StoppingTest& watch, Slowness slow,
   const std::vector<double>& start, OptimizeResult& result, bool& failed, bool& repaired)
 {
   // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
   problem.store();
   const std::vector<double> swept = result.points;
   const double reached = result.history.back().objective;
-  problem.restart(start);
   bool fits = true;
   try
   {
-    takeHarmonicStart(problem, start, result);
+    if (slow == Slowness::Far)
+    {
+      problem.restart(start);
+      takeHarmonicStart(problem, start, result);
+    }
     result.reason = optimizeGlobally(problem, watch, Optimizer::NewtonConjugateGradient, result);
   }
   catch (const MemoryError&)
@@ -286,6 +290,10 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch,
   {
     problem.restart(swept);
     result.history.back() = problem.record(result.history.back().iteration);
+    if (slow == Slowness::Near && result.reason != StopReason::Aborted)
+    {
+      result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
+    }
   }
 }
 
@@ -385,18 +393,18 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   {
     const bool onlyLocal = isLocal(options.optimizer) || options.limits || options.slideSurface ||
       options.model || mesh.dimension() == Dimension::Surface;
-    bool stiff = false;
+    Slowness slow = Slowness::None;
     const bool mayGoOver = !onlyLocal && mayUseNewton(options);
     const std::vector<double> start = mayGoOver ? result.points : std::vector<double>();
     result.reason =
-      optimizeLocally(problem, watch, result, failed, repaired, mayGoOver ? &stiff : nullptr);
+      optimizeLocally(problem, watch, result, failed, repaired, mayGoOver ? &slow : nullptr);
     if (failed && !onlyLocal)
     {
       result.reason = optimizeGlobally(problem, watch, Optimizer::LimitedMemoryBFGS, result);
     }
-    else if (stiff)
+    else if (slow != Slowness::None)
     {
-      useNewton(problem, watch, start, result, failed, repaired);
+      useNewton(problem, watch, slow, start, result, failed, repaired);
     }
   }
   if (!repaired)

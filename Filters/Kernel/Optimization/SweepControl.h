@@ -115,6 +115,12 @@ private:
 class SweepGains
 {
 public:
+  /// @param costly whether a sweep takes much of the time of Newton's method
+  explicit SweepGains(bool costly)
+    : Trial(costly ? 4 : 7)
+  {
+  }
+
   void add(double gain) { this->Gains.push_back(gain); }
 
   /// The objective's distance from its minimum if the gains go on as a geometric series; at least
@@ -130,12 +136,24 @@ public:
   {
     constexpr double slow = 0.6;     // isotropic meshes have ratios below a half
     constexpr double worthIt = 0.01; // of the objective, that is still to be gained
-    return this->Gains.size() >= trial && this->ratio() > slow &&
+    return this->Gains.size() >= this->Trial && this->ratio() > slow &&
       this->remaining() > worthIt * objective;
   }
 
+  /**
+   * @brief Whether, if the gains go on as a geometric series, more sweeps are needed until the rest
+   * is this fraction of the objective than Newton's method costs near the minimum.
+   */
+  bool slow(double objective, double relativeChange) const
+  {
+    constexpr double worthNewton = 25; // sweeps; a run of Newton's method from afar takes 30 to 85
+    const double ratio = std::min(this->ratio(), slowest);
+    const double rest = this->remaining() / (relativeChange * objective);
+    return this->Gains.size() >= this->Trial && relativeChange > 0 && ratio > 0 && rest > 1 &&
+      std::log(rest) > -worthNewton * std::log(ratio);
+  }
+
 private:
-  static constexpr std::size_t trial = 7;  // sweeps before they are judged
   static constexpr std::size_t window = 3; // sweeps that a ratio is the mean of
   static constexpr double slowest = 0.99;  // ratio that gives an estimate
 
@@ -148,7 +166,16 @@ private:
       : 0.0;
   }
 
+  std::size_t Trial; // sweeps before they are judged
   std::vector<double> Gains;
+};
+
+/// How sweeps converge.
+enum class Slowness
+{
+  None, ///< fast enough
+  Far,  ///< too slowly, and the minimum is far away
+  Near  ///< too slowly near the minimum
 };
 
 /// Whether the sweeps have converged, and why; `all`: it visited every vertex.

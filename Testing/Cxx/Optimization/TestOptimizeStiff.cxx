@@ -143,7 +143,7 @@ void testMemory()
     [](const Vec3& p) {
       return Vec3{ p[0], p[1] * p[1], p[2] };
     });
-  constexpr int sweeps = 12, beforeNewton = 7;
+  constexpr int sweeps = 12, beforeNewton = 4;
   OptimizeOptions options;
   options.threads = 1;
   options.stopping.maximumIterations = sweeps;
