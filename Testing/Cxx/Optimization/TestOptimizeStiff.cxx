@@ -122,11 +122,11 @@ void testStiff()
     }
     // Out of time, the best so far is returned: here that of the sweeps.
     OptimizeOptions few;
-    few.stopping.maximumIterations = 8;
+    few.stopping.maximumIterations = 5;
     const OptimizeResult stopped = run(data, few);
     OptimizeOptions sweeps = few;
     sweeps.optimizer = Optimizer::LocalNewton;
-    sweeps.stopping.maximumIterations = 7;
+    sweeps.stopping.maximumIterations = 4;
     const OptimizeResult swept = run(data, sweeps);
     const double reached = sumOfSquares(data, stopped.points, Metric::InverseMeanRatio);
     TAUTLINE_CHECK(
