@@ -55,7 +55,6 @@ private:
   }
   void store();
   void load(const std::vector<double>& points);
-  Index restoreInside(const std::vector<double>& before);
   Index restoreWorst();
   void keepInput(const IterationRecord& first);
   double judge(const std::vector<double>& points, std::vector<double>& values,
@@ -73,8 +72,6 @@ private:
   std::vector<Objective> Resolved;
   std::vector<int> Sets;
   std::unique_ptr<Scalarizer> TheScalarizer;
-  std::vector<signed char>
-    Levels; ///< see ValidityLevel; empty without elements that have an inside
   StoppingTest Watch;
   OptimizeResult Result;
   // The worst element of the input.

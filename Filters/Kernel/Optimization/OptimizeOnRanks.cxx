@@ -3,7 +3,6 @@
 #include "OptimizationOnRanks.h"
 #include "OptionChecks.h"
 #include "RankSweep.h"
-#include "ValidityGuard.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/JacobianBounds.h"
@@ -176,13 +175,6 @@ void OptimizationOnRanks::makeProblem()
     count += free[p] && this->TheMesh.owned(p);
   }
   this->Result.freeVertices = this->Group.sum(count);
-  this->Levels.clear();
-  const auto inside = [](const CellBlock& block) { return hasInside(block.type); };
-  if (this->Problem && !this->Options.allowInversion &&
-    std::any_of(this->Start->blocks().begin(), this->Start->blocks().end(), inside))
-  {
-    findValidityLevels(this->Problem->moving(), this->Options.threads, this->Levels);
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -322,7 +314,8 @@ StopReason OptimizationOnRanks::sweep(bool& repaired)
   StopReason reason = StopReason::NoProgress;
   double firstGradient = 0;
   bool all = true;
-  SweepGains gains;
+  const bool costly = this->Group.any(this->Problem && !this->Problem->isSimple());
+  SweepGains gains(costly);
   for (int iteration = this->Result.history.back().iteration + 1;; ++iteration)
   {
     if (this->Watch.ends(this->Result.history, reason))
@@ -332,7 +325,6 @@ StopReason OptimizationOnRanks::sweep(bool& repaired)
     const IterationRecord before = this->Result.history.back();
     const SweepResult swept = sweeper.sweep(*this->TheScalarizer, before.objectives);
     this->store();
-    this->restoreInside(best);
     IterationRecord now = this->record(iteration);
     now.gradientNorm = swept.gradientNorm;
     now.moving = swept.moved;

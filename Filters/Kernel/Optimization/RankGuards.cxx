@@ -1,66 +1,11 @@
 // What an optimization on ranks must not make worse: validity, the worst element, the objective.
 #include "OptimizationOnRanks.h"
 
-#include "ValidityGuard.h"
-
 #include <algorithm>
 #include <cmath>
 
 namespace tautline
 {
-//------------------------------------------------------------------------------
-/// Lets the points of elements that became less valid between their corners go back.
-Index OptimizationOnRanks::restoreInside(const std::vector<double>& before)
-{
-  if (!this->Group.any(!this->Levels.empty()))
-  {
-    return 0;
-  }
-  constexpr int maxRounds = 20; // then all points go back
-  const MeshView& view = this->TheMesh.view();
-  std::vector<signed char> levels;
-  Index restored = 0;
-  for (int round = 0; round <= maxRounds; ++round)
-  {
-    std::vector<unsigned char> back(this->TheMesh.localPoints(), round == maxRounds);
-    bool worse = false;
-    this->Group.together(
-      [&]
-      {
-        if (!this->Levels.empty())
-        {
-          findValidityLevels(this->Problem->moving(), this->Options.threads, levels);
-        }
-        for (std::size_t cell = 0; cell < this->Levels.size(); ++cell)
-        {
-          const bool less = levels[cell] < this->Levels[cell];
-          worse = worse || less;
-          for (Index n = view.offsets[cell]; less && n < view.offsets[cell + 1]; ++n)
-          {
-            back[view.connectivity[n]] = 1;
-          }
-        }
-      });
-    if (!this->Group.any(worse))
-    {
-      break;
-    }
-    this->TheMesh.exchange(back.data());
-    std::vector<double> points = this->Points;
-    for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
-    {
-      if (back[p])
-      {
-        std::copy_n(&before[3 * p], 3, &points[3 * p]);
-        ++restored;
-      }
-    }
-    this->load(points);
-  }
-  this->Levels.swap(levels);
-  return restored;
-}
-
 //------------------------------------------------------------------------------
 /// The metric that judges elements and the validity, of the local cells; the worst of the whole
 /// mesh, which is larger the worse.
