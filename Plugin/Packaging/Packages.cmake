@@ -2,7 +2,7 @@
 # libtautline-dev and tautline-doc, one for each install component.
 install(DIRECTORY Data/ DESTINATION "${CMAKE_INSTALL_DATADIR}/tautline/samples" COMPONENT doc
   PATTERN "*.py" EXCLUDE)
-install(DIRECTORY Examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc)
+install(DIRECTORY python/examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc)
 install(FILES CHANGELOG.md SECURITY.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc)
 
 set(CPACK_GENERATOR DEB)

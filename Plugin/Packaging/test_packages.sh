@@ -64,7 +64,7 @@ inside 'cd /tmp; python3 -c "import tautline as tl; q = tl.quality(\"valid.vtu\"
 
 echo "--- every example script runs"
 inside 'shopt -s nullglob; mkdir -p /tmp/examples; cd /tmp/examples
-  for script in /usr/share/doc/tautline/Examples/[0-9]*.py; do python3 "$script" /usr/share/tautline/samples >/dev/null || { echo "$script"; exit 1; }; done'
+  for script in /usr/share/doc/tautline/examples/[0-9]*.py; do python3 "$script" /usr/share/tautline/samples >/dev/null || { echo "$script"; exit 1; }; done'
 
 echo "--- ParaView finds the plugin without settings: pvpython and the program with its window"
 cat >"$root/packages/plugin.py" <<'PYTHON'

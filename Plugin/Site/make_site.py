@@ -1,6 +1,6 @@
 """make_site.py SOURCE WORK OUTPUT VERSION: makes the site of all documents with Sphinx, and checks its links.
 
-The pages are README.md, Documents, CONTRIBUTING.md, CHANGELOG.md, SECURITY.md and the help pages of the plugin, which
+The pages are README.md, Plugin/Site, CONTRIBUTING.md, CHANGELOG.md, SECURITY.md and the help pages of the plugin, which
 are taken as they are. Links between them are those of the repository; in the site they lead to the pages made of these
 files.
 """
@@ -16,13 +16,13 @@ from pathlib import Path
 from urllib.parse import unquote
 
 HELP = "Plugin/Documentation"
-#: Files outside Documents, and the names of their pages.
+#: Files outside Plugin/Site, and the names of their pages.
 PAGES = {
     "README.md": "index",
     "CONTRIBUTING.md": "contributing",
     "CHANGELOG.md": "changes",
     "SECURITY.md": "security",
-    "Packaging/requirements.md": "requirements",
+    "Plugin/Packaging/requirements.md": "requirements",
 }
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
 COMMENT = re.compile(r"^<!--.*?-->\n", re.MULTILINE)
@@ -51,7 +51,7 @@ class Site:
         name = Path(os.path.relpath(page.parent / path, self.source)).as_posix()
         if name in PAGES:
             return f"{PAGES[name]}.html{mark}{anchor}"
-        if name.startswith("Documents/") and name.endswith(".md"):
+        if name.startswith("Plugin/Site/") and name.endswith(".md"):
             return f"{Path(name).stem}.html{mark}{anchor}"
         if name.startswith((HELP, "Data/")):
             return f"{name}{mark}{anchor}"
@@ -73,7 +73,7 @@ class Site:
         (self.work / f"{name}.md").write_text("".join(parts), encoding="utf-8")
 
     def add_all(self) -> None:
-        for page in (self.source / "Documents").glob("*.md"):
+        for page in (self.source / "Plugin/Site").glob("*.md"):
             self.add(page, page.stem)
         for name, page in PAGES.items():
             self.add(self.source / name, page if page != "index" else "readme")
@@ -84,9 +84,9 @@ class Site:
         (self.work / "python.md").write_text(python_page(), encoding="utf-8")
         (self.work / "tutorial.md").write_text(help_page("Tutorial", "tutorial.html", "index.html", "jobs.html"))
         (self.work / "gallery.md").write_text(gallery_page(self.source), encoding="utf-8")
-        shutil.copyfile(self.source / "Documents/conf.py", self.work / "conf.py")
+        shutil.copyfile(self.source / "Plugin/Site/conf.py", self.work / "conf.py")
         (self.work / "static").mkdir()
-        shutil.copyfile(self.source / "Documents/style.css", self.work / "static/style.css")
+        shutil.copyfile(self.source / "Plugin/Site/style.css", self.work / "static/style.css")
 
 
 def signature_of(name: str, value) -> str:
@@ -119,12 +119,12 @@ def help_page(title: str, *pages: str) -> str:
 
 def gallery_page(source: Path) -> str:
     """The examples: title and text of the docstring, and the script. A test runs each of them."""
-    parts = ["# Gallery\n\nEvery example is a script in `Examples`; a test runs all of them.\n"]
-    for script in sorted((source / "Examples").glob("[0-9]*.py")):
+    parts = ["# Gallery\n\nEvery example is a script in `python/examples`; a test runs all of them.\n"]
+    for script in sorted((source / "python/examples").glob("[0-9]*.py")):
         text = script.read_text(encoding="utf-8")
         title, _, rest = text.split('"""')[1].partition("\n")
         code = text.split('"""', 2)[2].strip()
-        head = f"## {title.rstrip('.')}\n\n{rest.strip()}\n\n`Examples/{script.name}`"
+        head = f"## {title.rstrip('.')}\n\n{rest.strip()}\n\n`python/examples/{script.name}`"
         parts.append(f"{head}\n\n```python\n{code}\n```\n")
     return "\n".join(parts)
 

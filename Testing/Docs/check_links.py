@@ -35,8 +35,8 @@ def complaint(page: Path, link: str):
 
 
 def main(top: Path) -> int:
-    pages = [*top.glob("*.md"), *(top / "Data").glob("*.md"), *(top / "Documents").glob("*.md"),
-             *(top / "Packaging").glob("*.md"), *(top / "Plugin/Documentation").glob("*.html")]
+    pages = [*top.glob("*.md"), *(top / "Data").glob("*.md"), *(top / "Plugin/Site").glob("*.md"),
+             *(top / "Plugin/Packaging").glob("*.md"), *(top / "Plugin/Documentation").glob("*.html")]
     links = [(page, a or b) for page in pages for a, b in LINK.findall(page.read_text(encoding="utf-8"))]
     wrong = [f"{page}: {link} {said}" for page, link in links if (said := complaint(page, link))]
     print("\n".join(wrong + [f"{len(pages)} pages, {len(links)} links, {len(wrong)} wrong"]))

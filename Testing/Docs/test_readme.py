@@ -1,4 +1,4 @@
-"""test_readme.py SOURCE BUILD WORK PVPYTHON...: runs every example of README.md and Documents.
+"""test_readme.py SOURCE BUILD WORK PVPYTHON...: runs every example of README.md and Plugin/Site.
 
 A comment before each block of code says how: <!-- test: sh -->, python3, pvpython (PVPYTHON and its arguments run
 it), file NAME (saves it), install (runs it with this build tree), prefix (runs it and then checks that what it sets
@@ -83,7 +83,7 @@ def run_page(page: Path, build: Path, work: Path, pvpython: list) -> int:
 
 def main(source: Path, build: Path, work: Path, pvpython: list) -> None:
     shutil.rmtree(work, ignore_errors=True)
-    for page in (source / "README.md", *sorted((source / "Documents").glob("*.md"))):
+    for page in (source / "README.md", *sorted((source / "Plugin/Site").glob("*.md"))):
         directory = work / page.stem
         directory.mkdir(parents=True)
         (directory / "Data").symlink_to(source / "Data")

@@ -5,8 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", "Packaging", "Examples",
-               "Documents", ".ci")  # fmt: skip
+DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", ".ci")
 CODE = {".h", ".cxx", ".py", ".cmake", ".in", ".sh"}
 TEXT = CODE | {".xml", ".md", ".qrc", ".svg", ".txt", ".module", ".plugin"}
 MAX_LINES = 700

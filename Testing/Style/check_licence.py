@@ -8,8 +8,7 @@ import sys
 from pathlib import Path
 
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
-DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", "Packaging", "Examples",
-               "Documents", ".ci")  # fmt: skip
+DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", ".ci")
 COMMENTS = {".h": "// {}", ".cxx": "// {}", ".py": "# {}", ".cmake": "# {}", ".sh": "# {}"}
 NAMES = {"CMakeLists.txt": "# {}", "run": "# {}"}
 FIRST_LINES = 2  # among which it is looked for
