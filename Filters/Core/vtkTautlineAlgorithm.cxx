@@ -223,6 +223,32 @@ int vtkTautlineAlgorithm::ModifyRequest(vtkInformation* request, int when)
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+/// Whether the next filter of Tautline upstream has failed, which says so by its error code only, see
+/// processInScope(). ParaView has filters of its own between those of the user.
+bool hasFailed(vtkExecutive* executive)
+{
+  vtkAlgorithm* algorithm = executive->GetAlgorithm();
+  if (vtkTautlineAlgorithm::SafeDownCast(algorithm) || algorithm->GetErrorCode() != 0)
+  {
+    return algorithm->GetErrorCode() == vtkErrorCode::UserError;
+  }
+  for (int i = 0; i < algorithm->GetNumberOfInputPorts(); ++i)
+  {
+    for (int k = 0; k < algorithm->GetNumberOfInputConnections(i); ++k)
+    {
+      if (hasFailed(executive->GetInputExecutive(i, k)))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+}
+
+//------------------------------------------------------------------------------
 int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
 {
   const int port = request->Get(vtkExecutive::FROM_OUTPUT_PORT());
@@ -237,8 +263,7 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
       failed = !upstream->ProcessRequest(
                  request, upstream->GetInputInformation(), upstream->GetOutputInformation()) ||
         failed;
-      // A filter of Tautline that fails says so in this way only, see processInScope().
-      failed = failed || upstream->GetAlgorithm()->GetErrorCode() == vtkErrorCode::UserError;
+      failed = failed || hasFailed(upstream);
       auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(upstream);
       time = std::max(time, pipeline ? pipeline->GetPipelineMTime() : 0);
     }
