@@ -93,8 +93,8 @@ public:
                                              : found->second * static_cast<double>(chunks);
   }
 
-  /// Whether a loop need not be measured: what its chunks take is known, and workers would not help.
-  /// On a crowded machine measuring costs time: when a thread asks for its computing time, Linux
+  /// Whether a loop need not be measured: what its chunks take is known, and workers would not
+  /// help. On a crowded machine measuring costs time: when a thread asks for its computing time, Linux
   /// ends its time slice if that is used up, not only at the next tick.
   bool measuredEnough(ChunkWork::Function function) const
   {

@@ -163,10 +163,21 @@ void testErrors()
     std::atomic<Index> sum{ 0 };
     runChunks(n, threads, [&](Index chunk) { sum += chunk; });
     TAUTLINE_CHECK_EQUAL(sum.load(), n * (n - 1) / 2);
-    TAUTLINE_CHECK_THROWS(
-      runChunks(
-        n, threads, [](Index) {}, [](double) -> bool { throw Error("from the callback"); }),
-      "from the callback");
+    // The chunks of the workers wait for the callback; without that they could all be done before.
+    std::atomic<bool> called{ false };
+    const auto waitForCall = [&](Index)
+    {
+      while (!called)
+      {
+        std::this_thread::yield();
+      }
+    };
+    const auto callback = [&](double) -> bool
+    {
+      called = true;
+      throw Error("from the callback");
+    };
+    TAUTLINE_CHECK_THROWS(runChunks(n, threads, waitForCall, callback), "from the callback");
   }
 }
 
