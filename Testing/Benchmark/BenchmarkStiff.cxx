@@ -4,8 +4,8 @@
 //   grid NAME CELLS METHOD REPEATS   a mesh made here, see makeGrid()
 //   file FILE METHOD REPEATS BEST    a mesh of a legacy VTK file; BEST is its minimum sum
 //   compare FILE REPEATS             the default against each of our methods, on a mesh of a file
-// METHOD: automatic, local, local-cg, fletcher-reeves, polak-ribiere, lbfgs or newton. The minimum is known for grids of quadrilaterals and hexahedra, else
-// found by Newton's method to ten digits.
+// METHOD: automatic, local, local-cg, fletcher-reeves, polak-ribiere, lbfgs or newton. The minimum
+// is known for grids of quadrilaterals and hexahedra, else found by Newton's method to ten digits.
 
 #include "../../Filters/Core/MeshAdapter.h"
 #include "../Cxx/Blocks.h"

@@ -5,8 +5,9 @@ are CPU time; those of the thread speed-up are wall time. Prints tables; writes 
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
 elements, optimization.json and .csv of the optimizer (see optimization.py), deformation.json and .csv of warping
 (see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), stiff.json
-and .csv of stretched meshes (see stiff.py), and user-metric.json and .csv of metrics of one's own to the output directory, by default DIR/benchmark. Prints how the preset
-Aggressive of Improve Mesh compares with the program gmsh, where that is installed (see gmsh_comparison.py).
+and .csv of stretched meshes (see stiff.py), and user-metric.json and .csv of metrics of one's own to the output
+directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh compares with the program gmsh,
+where that is installed (see gmsh_comparison.py).
 """
 
 import argparse

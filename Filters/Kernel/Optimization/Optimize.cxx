@@ -286,7 +286,13 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch, Slowness
     result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
     return;
   }
-  if (!(result.history.back().objective < reached))
+  // Where the harmonic map is the minimum, no iteration is recorded.
+  const IterationRecord found = problem.record(result.history.back().iteration);
+  if (found.objective < result.history.back().objective)
+  {
+    result.history.back() = found;
+  }
+  if (!(found.objective < reached))
   {
     problem.restart(swept);
     result.history.back() = problem.record(result.history.back().iteration);
@@ -338,14 +344,14 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
 {
   problem.store();
   problem.restart(std::vector<double>(result.points));
-  const double now = problem.record(0).objective;
-  const double allowed = first.objective + roundingOfSums * std::abs(first.objective);
-  const bool larger = guard.holdsObjective() && !(now <= allowed);
+  const bool larger = guard.holdsObjective() &&
+    isLarger(problem.options().scalarization, problem.scalarizer(), problem.record(0), first);
   if (larger || guard.violated(problem))
   {
     const double* start = mesh.view().points;
     problem.restart(std::vector<double>(start, start + result.points.size()));
     IterationRecord record = problem.record(result.history.back().iteration);
+    record.objective = first.objective;
     result.history.back() = record;
     if (result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit)
     {

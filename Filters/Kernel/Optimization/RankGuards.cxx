@@ -94,13 +94,13 @@ Index OptimizationOnRanks::restoreWorst()
 void OptimizationOnRanks::keepInput(const IterationRecord& first)
 {
   IterationRecord now = this->record(this->Result.history.back().iteration);
-  const double allowed = first.objective + roundingOfSums * std::abs(first.objective);
-  if (!this->ValidInput || now.objective <= allowed)
+  if (!this->ValidInput || !isLarger(this->Options.scalarization, *this->TheScalarizer, now, first))
   {
     return;
   }
   this->load(this->TheMesh.points());
   now = this->record(now.iteration);
+  now.objective = first.objective;
   this->Result.history.back() = now;
   if (this->Result.reason != StopReason::Aborted && this->Result.reason != StopReason::TimeLimit)
   {

@@ -111,6 +111,17 @@ private:
   std::function<bool()> OutOfTime;
 };
 
+/// Whether the objective is larger than at the start. In the lexicographic method it is another one
+/// in each stage: the first one counts then, which may rise by the tolerance.
+inline bool isLarger(const ScalarizationOptions& options, const Scalarizer& scalarizer,
+  const IterationRecord& now, const IterationRecord& first)
+{
+  const bool other = options.method == Scalarization::Lexicographic && scalarizer.stage() > 0;
+  const double start = other ? first.objectives[0] : first.objective;
+  const double rise = roundingOfSums + (other ? options.tolerance : 0.0);
+  return !((other ? now.objectives[0] : now.objective) <= start + rise * std::abs(start));
+}
+
 /// What sweeps have gained so far, and what is to be expected of further ones.
 class SweepGains
 {

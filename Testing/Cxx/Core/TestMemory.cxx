@@ -1,11 +1,9 @@
 // The memory that is available, under the limits of a process, and the errors where it does not
 // suffice.
-#include "Blocks.h"
 #include "Check.h"
 
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Types.h"
-#include "tautline/Optimization/Optimize.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -118,41 +116,6 @@ void testRequire()
   TAUTLINE_CHECK_THROWS(requireMemory(std::nan(""), "the test", "stop"), "nan");
 }
 
-/// Where the matrix of Newton's method does not fit, the sweeps that called for it go on.
-bool sweepsGoOn()
-{
-  constexpr Index n = 256; // a matrix of 20 MB
-  MeshData data = blockMesh(CellType::Quadrilateral, n, n, 0);
-  data.transform(
-    [](const Vec3& p)
-    {
-      constexpr double amplitude = 0.14;
-      const double push =
-        amplitude * n * std::sin(2 * M_PI * p[0] / n) * std::sin(2 * M_PI * p[1] / n);
-      return Vec3{ p[0] + push, p[1] + push, 0 };
-    });
-  OptimizeOptions options;
-  options.stopping.maximumIterations = 12;
-  options.threads = 1;
-  int records = 0;
-  options.observer = [&records](const IterationState&)
-  {
-    constexpr int judged = 7; // sweeps, after which Newton's method begins
-    if (records++ == judged)
-    {
-      limitMemory(12 * Mebibyte);
-    }
-    return true;
-  };
-  const OptimizeResult result = optimize(Mesh(data.view()), options);
-  bool falls = result.history.size() == 13;
-  for (std::size_t i = 1; i < result.history.size(); ++i)
-  {
-    falls = falls && result.history[i].objective < result.history[i - 1].objective;
-  }
-  return falls && result.reason == StopReason::IterationLimit;
-}
-
 void testTexts()
 {
   TAUTLINE_CHECK_EQUAL(memoryText(512 * Mebibyte), std::string("512 MiB"));
@@ -167,7 +130,6 @@ void testTexts()
 
 int TestMemory(int, char*[])
 {
-  TAUTLINE_CHECK_EQUAL(inChild(sweepsGoOn), 0);
   testLimits();
   testRequire();
   testTexts();

@@ -198,6 +198,27 @@ void testScalarizations()
   }
 }
 
+/// The last objective of the lexicographic method is not the first one, which may be smaller.
+void testLexicographic()
+{
+  const MeshData data = perturbedBlock(CellType::Tetrahedron, 6, 0.25);
+  OptimizeOptions options;
+  Objective second;
+  second.metric = Metric::EdgeRatio;
+  options.objectives.push_back(second);
+  options.scalarization.method = Scalarization::Lexicographic;
+  for (const Optimizer optimizer : { Optimizer::LocalNewton, Optimizer::LimitedMemoryBFGS })
+  {
+    options.optimizer = optimizer;
+    const OptimizeResult result = run(data, options);
+    const IterationRecord &first = result.history.front(), &last = result.history.back();
+    TAUTLINE_CHECK(last.objective > first.objective); // of the second, and of the first
+    TAUTLINE_CHECK(!result.unchanged);
+    TAUTLINE_CHECK(last.objectives[0] < 0.99 * first.objectives[0]);
+    TAUTLINE_CHECK(last.objectives[1] < 0.99 * first.objectives[1]);
+  }
+}
+
 /// Blocks of one colour, each of which reduces several objectives by itself, together raise them,
 /// or leave the domain of a product: the sweep is taken back.
 void testSweepTakenBack()
@@ -581,6 +602,7 @@ int TestOptimize(int, char*[])
   testInvariance();
   testThreads();
   testScalarizations();
+  testLexicographic();
   testSweepTakenBack();
   testMetrics();
   testTargetsAndWeights();
