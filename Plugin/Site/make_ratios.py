@@ -10,7 +10,7 @@ from pathlib import Path
 
 import tautline as tl
 
-DATA = Path(__file__).resolve().parents[1] / "Data"
+DATA = Path(__file__).resolve().parents[2] / "Data"
 PLACE = re.compile(r"(<!-- ratios -->\n)(.*?)(<!-- end of ratios -->)", re.DOTALL)
 TURN = {"rotate": 120}
 

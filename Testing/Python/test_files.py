@@ -320,7 +320,7 @@ def test_every_output_first() -> None:
     for name, parser in commands().items():
         inputs, options = [], []
         for action in parser._actions:
-            writes = action.dest in ("output", "csv", "report")
+            writes = action.dest in ("output", "csv", "report", "sheet")
             named = action.nargs != 0 and (action.help or "").startswith("write ")
             assert writes or not named, f"{name}: --{action.dest} is not checked"
             if writes:
