@@ -10,6 +10,7 @@ CODE = {".h", ".cxx", ".py", ".cmake", ".in", ".sh"}
 TEXT = CODE | {".xml", ".md", ".qrc", ".svg", ".txt", ".module", ".plugin"}
 MAX_LINES = 700
 LICENCE = b"SPDX-License-Identifier"  # a line that does not count
+CONFLICT = (b"<<<<<<< ", b">>>>>>> ")
 MAX_COLUMNS = {".h": 100, ".cxx": 100, ".py": 120}  # clang-format leaves comments and texts as they are
 
 
@@ -33,6 +34,8 @@ def complaints(path: Path):
     lines = content.split(b"\n")
     if any(line.endswith(b" ") for line in lines) and path.suffix != ".md":
         yield "has spaces at a line's end"
+    if any(line.startswith(CONFLICT) for line in lines):
+        yield "has the marks of a conflict"
     columns = MAX_COLUMNS.get(path.suffix)
     for number, line in enumerate(lines, 1):
         if columns and len(line.decode()) > columns:
