@@ -76,7 +76,7 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     IterationRecord now = problem.record(iteration);
     now.gradientNorm = sweep.gradientNorm;
     now.moving = sweep.moved;
-    const double lowered = before.objective - now.objective;
+    const double lowered = scalarized(problem.scalarizer(), before) - now.objective;
     const double size = std::abs(now.objective);
     if (!simple && !(std::isfinite(size) && lowered >= -roundingOfSums * size))
     {
@@ -129,6 +129,8 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     else if (problem.scalarizer().next(result.history.back().objectives))
     {
       sweeper.wakeAll();
+      gains.clear();
+      firstGradient = 0;
     }
     else
     {

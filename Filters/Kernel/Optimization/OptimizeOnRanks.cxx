@@ -328,7 +328,7 @@ StopReason OptimizationOnRanks::sweep(bool& repaired)
     IterationRecord now = this->record(iteration);
     now.gradientNorm = swept.gradientNorm;
     now.moving = swept.moved;
-    const double lowered = before.objective - now.objective;
+    const double lowered = scalarized(*this->TheScalarizer, before) - now.objective;
     const double size = std::abs(now.objective);
     if (!(std::isfinite(size) && lowered >= -roundingOfSums * size))
     {
@@ -357,7 +357,12 @@ StopReason OptimizationOnRanks::sweep(bool& repaired)
     {
       all = true;
     }
-    else if (!this->TheScalarizer->next(this->Result.history.back().objectives))
+    else if (this->TheScalarizer->next(this->Result.history.back().objectives))
+    {
+      gains.clear();
+      firstGradient = 0;
+    }
+    else
     {
       return reason;
     }

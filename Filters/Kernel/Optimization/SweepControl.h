@@ -111,6 +111,13 @@ private:
   std::function<bool()> OutOfTime;
 };
 
+/// The value of the scalarization at the last record. That of the record itself may be of the
+/// objective that the lexicographic method reduced before.
+inline double scalarized(const Scalarizer& scalarizer, const IterationRecord& record)
+{
+  return record.objectives.size() > 1 ? scalarizer.value(record.objectives) : record.objective;
+}
+
 /// Whether the objective is larger than at the start. In the lexicographic method it is another one
 /// in each stage: the first one counts then, which may rise by the tolerance.
 inline bool isLarger(const ScalarizationOptions& options, const Scalarizer& scalarizer,
@@ -133,6 +140,8 @@ public:
   }
 
   void add(double gain) { this->Gains.push_back(gain); }
+  /// Of another objective, from here on.
+  void clear() { this->Gains.clear(); }
 
   /// The objective's distance from its minimum if the gains go on as a geometric series; at least
   /// the last gain.
