@@ -225,14 +225,15 @@ int vtkTautlineAlgorithm::ModifyRequest(vtkInformation* request, int when)
 //------------------------------------------------------------------------------
 namespace
 {
-/// Whether the next filter of Tautline upstream has failed, which says so by its error code only, see
-/// processInScope(). ParaView has filters of its own between those of the user.
+/// Whether the next filter of Tautline upstream has failed, which says so by its error code only,
+/// see processInScope(). ParaView has filters of its own between those of the user.
 bool hasFailed(vtkExecutive* executive)
 {
   vtkAlgorithm* algorithm = executive->GetAlgorithm();
-  if (vtkTautlineAlgorithm::SafeDownCast(algorithm) || algorithm->GetErrorCode() != 0)
+  const bool failed = algorithm->GetErrorCode() == vtkErrorCode::UserError;
+  if (failed || vtkTautlineAlgorithm::SafeDownCast(algorithm))
   {
-    return algorithm->GetErrorCode() == vtkErrorCode::UserError;
+    return failed;
   }
   for (int i = 0; i < algorithm->GetNumberOfInputPorts(); ++i)
   {

@@ -94,8 +94,8 @@ public:
   }
 
   /// Whether a loop need not be measured: what its chunks take is known, and workers would not
-  /// help. On a crowded machine measuring costs time: when a thread asks for its computing time, Linux
-  /// ends its time slice if that is used up, not only at the next tick.
+  /// help. On a crowded machine measuring costs time: when a thread asks for its computing time,
+  /// Linux ends its time slice if that is used up, not only at the next tick.
   bool measuredEnough(ChunkWork::Function function) const
   {
     return this->Crowded && this->ChunkSeconds.count(function) > 0;
