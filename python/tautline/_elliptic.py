@@ -502,7 +502,7 @@ def _set_variable_function(filter_: Any, inputs: InputArrays, name: str, value: 
         inputs.use(index, value, name, POINTS)
 
 
-def _series(filter_: Any, name: str, times: np.ndarray) -> np.ndarray:
+def _series(filter_: Any, name: str, times: Array) -> Array:
     """The solution at all times; the output is then that of the last one."""
     found = []
     for step in times:

@@ -266,11 +266,12 @@ class RetrievalResult(Result):
     classes: list[str]
     confusion: Array
     tables: dict[str, vtkTable]
-    sheet: np.ndarray
+    sheet: Array
     summary: str
 
-    def save_sheet(self, file: str | PathLike) -> None:
-        """Write the sheet of pictures as a PNG file. Raises Error if it cannot be written."""
+    def save_sheet(self, file: str | PathLike[str]) -> None:
+        """Write the sheet of pictures as a PNG file. Raises Error if it cannot be written, or is not named .png."""
+        _check_sheet(file)
         image = vtkImageData()
         image.SetDimensions(self.sheet.shape[1], self.sheet.shape[0], 1)
         image.GetPointData().SetScalars(numpy_to_vtk(self.sheet[::-1].reshape(-1, 3), deep=True))
@@ -373,10 +374,19 @@ def retrieval(
     )
 
 
-def _sheet(image: vtkImageData) -> np.ndarray:
+def _check_sheet(file: str | PathLike[str]) -> None:
+    check_target(file)
+    if not str(file).lower().endswith(".png"):
+        raise Error(f"{file}: the sheet of pictures is a PNG file; give it a name that ends in .png.")
+
+
+def _sheet(image: vtkImageData) -> Array:
     columns_, rows, _ = image.GetDimensions()
     pixels = image.GetPointData().GetScalars()
-    return vtk_to_numpy(pixels).reshape(rows, columns_, 3)[::-1].copy() if pixels else np.empty((0, 0, 3), np.uint8)
+    sheet: Array = np.empty((0, 0, 3), np.uint8)
+    if pixels:
+        sheet = vtk_to_numpy(pixels).reshape(rows, columns_, 3)[::-1].copy()
+    return sheet
 
 
 def _as_set(shapes: Any, labels: Iterable[Any] | None) -> vtkMultiBlockDataSet:
@@ -500,7 +510,7 @@ def _run_match(arguments: argparse.Namespace) -> None:
 
 def _run_retrieval(arguments: argparse.Namespace) -> None:
     if arguments.sheet:
-        check_target(arguments.sheet)
+        _check_sheet(arguments.sheet)
     result = retrieval(arguments.shapes, **_commands.given(arguments, ("setting", "best", "time_limit", "threads")))
     ranks = "right at rank " + ", ".join(f"{k}: {n}" for k, n in enumerate(result.correct_at, 1))
     rows = table_rows(columns(result.tables["Ranking"]))

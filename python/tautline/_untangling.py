@@ -133,8 +133,8 @@ def add_commands(commands: Any) -> None:
 
 
 def _run_untangle(arguments: argparse.Namespace) -> int:
-    names = ("effort", "method", "fixed", "time_limit", "threads", "merge_coincident_points")
-    names += ("reproducible_order",)
+    names = ("effort", "method", "fixed", "time_limit", "threads", "merge_coincident_points",
+             "reproducible_order")  # fmt: skip
     result = untangle(arguments.mesh, **_commands.given(arguments, names))
     _commands.finish(arguments, result, result.summary, table_rows(result.history))
     return 1 if result.inverted else 0
