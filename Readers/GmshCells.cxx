@@ -20,7 +20,7 @@ constexpr int Wedge15[] = { 0, 2, 1, 3, 5, 4, 7, 9, 6, 13, 14, 12, 8, 11, 10 };
 constexpr int Wedge18[] = { 0, 2, 1, 3, 5, 4, 7, 9, 6, 13, 14, 12, 8, 11, 10, 16, 17, 15 };
 constexpr int Pyramid13[] = { 0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12 };
 
-constexpr std::array<GmshCell, 19> Cells = { {
+constexpr std::array<GmshCell, 36> Cells = { {
   { 15, FileVertex, 1, nullptr },
   { 1, FileLine, 2, nullptr },
   { 2, FileTriangle, 3, nullptr },
@@ -40,6 +40,24 @@ constexpr std::array<GmshCell, 19> Cells = { {
   { 18, FileWedge15, 15, Wedge15 },
   { 19, FilePyramid13, 13, Pyramid13 },
   { 14, FilePyramid13, 14, Pyramid13 },
+  // Third order, then fourth; corners come first.
+  { 26, FileLine, 4, nullptr, true },
+  { 20, FileTriangle, 9, nullptr, true },
+  { 21, FileTriangle, 10, nullptr, true },
+  { 36, FileQuadrilateral, 16, nullptr, true },
+  { 39, FileQuadrilateral, 12, nullptr, true },
+  { 29, FileTetrahedron, 20, nullptr, true },
+  { 92, FileHexahedron, 64, nullptr, true },
+  { 90, FileWedge, 40, Wedge, true },
+  { 118, FilePyramid, 30, nullptr, true },
+  { 27, FileLine, 5, nullptr, true },
+  { 22, FileTriangle, 12, nullptr, true },
+  { 23, FileTriangle, 15, nullptr, true },
+  { 37, FileQuadrilateral, 25, nullptr, true },
+  { 30, FileTetrahedron, 35, nullptr, true },
+  { 93, FileHexahedron, 125, nullptr, true },
+  { 91, FileWedge, 75, Wedge, true },
+  { 119, FilePyramid, 55, nullptr, true },
 } };
 }
 
@@ -122,6 +140,19 @@ void GmshInput::addElement(const GmshCell& cell, const Index* tags, const char* 
     }
   }
   this->mesh.addCell(cell.type, ids.data(), size);
+  if (!cell.onlyCorners)
+  {
+    return;
+  }
+  ++this->elementsOfHighOrder;
+  this->inner.resize(static_cast<std::size_t>(this->mesh.numberOfPoints()), 0);
+  for (int i = size; i < cell.nodes; ++i)
+  {
+    if (const Index point = this->nodes.find(tags[i]); point >= 0)
+    {
+      this->inner[static_cast<std::size_t>(point)] = 1;
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -1,12 +1,15 @@
 /**
  * @file GmshFile.h
- * @brief Gmsh's .msh 2.2 and 4.1, text and binary, and FreeFem++'s .msh, which has the same ending.
+ * @brief Gmsh's .msh 1, 2, 4.0 and 4.1, text and binary, and FreeFem++'s .msh, which has the same
+ * ending.
  *
  * Points keep the order of the file, numbers with gaps are closed. Elements up to second order are
- * read; of a 14-node pyramid the node in its base is left out. `Reference` is the physical tag (the
+ * read; of a 14-node pyramid the node in its base is left out. Elements of third and fourth order
+ * are read as linear ones, without the nodes that are no corners, with a warning. `Reference` is the physical tag (the
  * first, where an entity has several), `Entity` the elementary one. $NodeData and $ElementData
  * become arrays (NaN where a node or element has no value), of several steps the last one. Names of
- * physical groups become the field arrays `PhysicalNames` and `PhysicalGroups` (dimension, tag).
+ * physical groups become the field arrays `PhysicalNames` and `PhysicalGroups` (dimension, tag). A
+ * file that gives no dimension of a group: that of its elements; of no element, 3.
  */
 #ifndef tautline_GmshFile_h
 #define tautline_GmshFile_h
@@ -35,7 +38,11 @@ struct GmshCell
   int nodes;          ///< in Gmsh; more than VTK's where one is left out
   /// Node i of VTK's cell is node order[i] of Gmsh's; null where they are the same.
   const int* order;
+  bool onlyCorners = false; ///< of an element of higher order: the nodes after them are left out
 };
+
+/// Nodes of an element of Gmsh, at most.
+constexpr int MaxGmshNodes = 128;
 
 /// Null for an unknown code or type.
 const GmshCell* gmshCellByCode(Index code);
@@ -69,6 +76,9 @@ struct GmshInput
   std::vector<Index> elementTags;
   std::vector<Index> references, entities;
   std::size_t dataBudget = 0; ///< bytes that $NodeData and $ElementData may still take
+  double version = 0.0;
+  Index elementsOfHighOrder = 0;
+  std::vector<unsigned char> inner; ///< per point: a node of such an element, but no corner
 
   Index integer(const char* what, Index low, Index high); ///< text: in any line
   double coordinate(const char* what);
@@ -82,6 +92,8 @@ struct GmshInput
 
 void readGmshNodes2(GmshInput& input);
 void readGmshElements2(GmshInput& input);
+/// $ELM of version 1.
+void readGmshElements1(GmshInput& input);
 void readGmshEntities4(GmshInput& input, std::vector<std::unordered_map<Index, Index>>& physical);
 void readGmshNodes4(GmshInput& input);
 void readGmshElements4(

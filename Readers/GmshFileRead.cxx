@@ -8,13 +8,16 @@ namespace tautline
 namespace
 {
 constexpr Index Largest = std::numeric_limits<Index>::max();
+constexpr Index UnknownDimension = -1; // of a physical group
 
-/// Moves behind the line "$End<section>".
+/// Moves behind the line that ends a section.
 void expectEnd(TextCursor& cursor, const std::string& section)
 {
-  if (!cursor.skipToToken() || cursor.word() != "$End" + section)
+  const bool old = section == "NOD" || section == "ELM"; // of version 1
+  const std::string end = (old ? "$END" : "$End") + section;
+  if (!cursor.skipToToken() || cursor.word() != end)
   {
-    cursor.fail("expected $End" + section + " (is the count of the section right?)");
+    cursor.fail("expected " + end + " (is the count of the section right?)");
   }
 }
 
@@ -48,10 +51,11 @@ double readFormat(GmshInput& input)
   const double version = cursor.real("version");
   const Index type = cursor.integer("file type", 0, 1);
   const Index size = cursor.integer("size of numbers", 4, 8);
-  if (version != 2.0 && version != 2.1 && version != 2.2 && version != 4.1)
+  constexpr double known[] = { 2.0, 2.1, 2.2, 4.0, 4.1 };
+  if (std::find(std::begin(known), std::end(known), version) == std::end(known))
   {
     cursor.fail("version " + std::to_string(version).substr(0, 4) +
-      " of the format cannot be read; 2.2 and 4.1 can: gmsh -save -format msh41 FILE");
+      " of the format cannot be read; 1, 2, 4.0 and 4.1 can: gmsh -save -format msh41 FILE");
   }
   if (type == 1 && size != 8)
   {
@@ -78,8 +82,16 @@ void readPhysicalNames(GmshInput& input)
   {
     cursor.skipToToken();
     auto& numbers = std::get<MeshArray::Integers>(groups.values);
-    numbers.push_back(cursor.integer("dimension", 0, 3));
-    numbers.push_back(cursor.integer("physical tag"));
+    const char* place = cursor.place();
+    const Index first = cursor.integer("dimension or physical tag");
+    cursor.skipBlanks();
+    const bool onlyTag = *cursor.place() == '"'; // as in old files
+    if (!onlyTag && (first < 0 || first > 3))
+    {
+      cursor.failAt(place, "dimension is " + std::to_string(first) + ", 0 to 3 is allowed");
+    }
+    numbers.push_back(onlyTag ? UnknownDimension : first);
+    numbers.push_back(onlyTag ? first : cursor.integer("physical tag"));
     names.values.push_back(cursor.quoted("name of a group"));
   }
   expectEnd(cursor, "PhysicalNames");
@@ -165,8 +177,80 @@ void readData(GmshInput& input, bool points)
   arrays.push_back(std::move(array));
 }
 
+/// Gives physical groups of a file without their dimensions that of their elements.
+void findDimensions(GmshInput& input)
+{
+  const auto groups = std::find_if(input.mesh.fieldArrays.begin(), input.mesh.fieldArrays.end(),
+    [](const MeshArray& array) { return array.name == "PhysicalGroups"; });
+  if (groups == input.mesh.fieldArrays.end())
+  {
+    return;
+  }
+  auto& numbers = std::get<MeshArray::Integers>(groups->values);
+  for (std::size_t i = 0; i < numbers.size(); i += 2)
+  {
+    for (std::size_t c = 0; numbers[i] == UnknownDimension && c < input.references.size(); ++c)
+    {
+      if (input.references[c] == numbers[i + 1])
+      {
+        numbers[i] = cellDimension(input.mesh.cellTypes[c]);
+      }
+    }
+    numbers[i] = numbers[i] == UnknownDimension ? 3 : numbers[i];
+  }
+}
+
+/// Removes the nodes of elements of high order that no cell has.
+void dropInnerNodes(GmshInput& input)
+{
+  MeshFile& mesh = input.mesh;
+  if (input.elementsOfHighOrder == 0)
+  {
+    return;
+  }
+  for (const Index point : mesh.connectivity)
+  {
+    input.inner[static_cast<std::size_t>(point)] = 0;
+  }
+  const std::size_t count = input.inner.size();
+  std::vector<Index> place(count);
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < count; ++p)
+  {
+    place[p] = static_cast<Index>(kept);
+    if (input.inner[p])
+    {
+      continue;
+    }
+    std::copy_n(&mesh.points[3 * p], 3, &mesh.points[3 * kept]);
+    for (MeshArray& array : mesh.pointArrays)
+    {
+      const auto width = static_cast<std::size_t>(array.components);
+      for (std::size_t c = 0; c < width; ++c)
+      {
+        setValue(array, width * kept + c, array.at(width * p + c));
+      }
+    }
+    ++kept;
+  }
+  mesh.points.resize(3 * kept);
+  for (MeshArray& array : mesh.pointArrays)
+  {
+    array.resize(kept * static_cast<std::size_t>(array.components));
+  }
+  for (Index& point : mesh.connectivity)
+  {
+    point = place[static_cast<std::size_t>(point)];
+  }
+  mesh.warnings.push_back(std::to_string(input.elementsOfHighOrder) +
+    " elements of third or fourth order are read as linear ones; " + std::to_string(count - kept) +
+    " nodes that are no corners are left out.");
+}
+
 MeshFile finish(GmshInput& input)
 {
+  findDimensions(input);
+  dropInnerNodes(input);
   MeshFile mesh = std::move(input.mesh);
   if (!input.references.empty())
   {
@@ -180,7 +264,7 @@ MeshFile finish(GmshInput& input)
 void readSections(GmshInput& input)
 {
   TextCursor& cursor = input.cursor;
-  double version = 0.0;
+  double& version = input.version;
   bool nodes = false, elements = false;
   std::vector<std::unordered_map<Index, Index>> physical(4);
   while (cursor.skipToToken())
@@ -192,12 +276,13 @@ void readSections(GmshInput& input)
       cursor.failAt(place, "expected a section such as $Nodes, found '" + word.substr(0, 20) + "'");
     }
     const std::string section = word.substr(1);
+    if (version == 0.0 && section == "NOD")
+    {
+      version = 1.0;
+    }
     if (version == 0.0 && section != "MeshFormat")
     {
-      const bool old = section == "NOD";
-      cursor.failAt(place,
-        old ? "version 1 of the format cannot be read: gmsh -save -format msh41 FILE"
-            : "expected $MeshFormat, found '" + word.substr(0, 20) + "'");
+      cursor.failAt(place, "expected $MeshFormat, found '" + word.substr(0, 20) + "'");
     }
     finishLine(cursor);
     if (section == "MeshFormat")
@@ -208,20 +293,26 @@ void readSections(GmshInput& input)
     {
       readPhysicalNames(input);
     }
-    else if (section == "Entities" && version > 4.0)
+    else if (section == "Entities" && version >= 4.0)
     {
       readGmshEntities4(input, physical);
       expectEnd(cursor, section);
     }
-    else if (section == "Nodes" && !nodes)
+    else if ((section == "Nodes" || (section == "NOD" && version == 1.0)) && !nodes)
     {
-      version > 4.0 ? readGmshNodes4(input) : readGmshNodes2(input);
+      version >= 4.0 ? readGmshNodes4(input) : readGmshNodes2(input);
       expectEnd(cursor, section);
       nodes = true;
     }
+    else if (section == "ELM" && version == 1.0 && !elements)
+    {
+      readGmshElements1(input);
+      expectEnd(cursor, section);
+      elements = true;
+    }
     else if (section == "Elements" && !elements)
     {
-      version > 4.0 ? readGmshElements4(input, physical) : readGmshElements2(input);
+      version >= 4.0 ? readGmshElements4(input, physical) : readGmshElements2(input);
       expectEnd(cursor, section);
       elements = true;
     }
@@ -319,7 +410,7 @@ void readGmshElements2(GmshInput& input)
     {
       cursor.failAt(place,
         "an element of type " + std::to_string(code) + " with " + std::to_string(tags) +
-          " tags cannot be read; elements up to second order can");
+          " tags cannot be read; elements up to fourth order can");
     }
     number = input.binary ? next("element number") : number;
     Index reference = 0, entity = 0;
@@ -329,7 +420,7 @@ void readGmshElements2(GmshInput& input)
       reference = t == 0 ? tag : reference;
       entity = t == 1 ? tag : entity;
     }
-    Index nodes[32];
+    Index nodes[MaxGmshNodes];
     for (int n = 0; n < cell->nodes; ++n)
     {
       nodes[n] = next("node");
@@ -347,12 +438,46 @@ void readGmshElements2(GmshInput& input)
 }
 
 //------------------------------------------------------------------------------
+void readGmshElements1(GmshInput& input)
+{
+  TextCursor& cursor = input.cursor;
+  const Index count = input.integer("number of elements", 0, Largest);
+  finishLine(cursor);
+  cursor.expectRoom(count, 12, "number of elements");
+  input.reserveElements(static_cast<std::size_t>(count));
+  for (Index i = 0; i < count; ++i)
+  {
+    cursor.skipToToken();
+    const char* place = cursor.place();
+    input.elementTags.push_back(cursor.integer("element number"));
+    const Index code = cursor.integer("type of an element");
+    input.references.push_back(cursor.integer("physical tag"));
+    input.entities.push_back(cursor.integer("entity"));
+    const Index size = cursor.integer("number of nodes");
+    const GmshCell* cell = gmshCellByCode(code);
+    if (!cell || size != cell->nodes)
+    {
+      cursor.failAt(place,
+        "an element of type " + std::to_string(code) + " with " + std::to_string(size) +
+          " nodes cannot be read; elements up to fourth order can");
+    }
+    Index nodes[MaxGmshNodes];
+    for (int n = 0; n < cell->nodes; ++n)
+    {
+      nodes[n] = cursor.integer("node");
+    }
+    input.addElement(*cell, nodes, place);
+    cursor.expectLineEnd();
+  }
+}
+
+//------------------------------------------------------------------------------
 MeshFile readGmsh(const std::string& name, bool lowerCells)
 {
   const FileContent file(name);
   // values for a few nodes only make arrays larger than the file; nothing sensible makes them huge
   const std::size_t budget = 1048576 + 64 * static_cast<std::size_t>(file.end() - file.begin());
-  GmshInput input{ TextCursor(file), false, {}, {}, {}, {}, {}, budget };
+  GmshInput input{ TextCursor(file), false, {}, {}, {}, {}, {}, budget, 0.0, 0, {} };
   if (!input.cursor.skipToToken())
   {
     input.cursor.fail("the file is empty");

@@ -6,6 +6,8 @@ namespace tautline
 {
 namespace
 {
+/// From this version on, blocks begin with the dimension and list all numbers before the points.
+constexpr double NewBlocks = 4.1;
 constexpr Index Largest = std::numeric_limits<Index>::max();
 
 /// An unsigned number of 8 bytes, or text.
@@ -41,6 +43,44 @@ Index readInt(GmshInput& input, const char* what, Index low, Index high)
 constexpr Index AnyLow = std::numeric_limits<int>::min();
 constexpr Index AnyHigh = std::numeric_limits<int>::max();
 
+/// The number of a node or element, which takes 8 bytes since version 4.1.
+Index readNumber(GmshInput& input, const char* what)
+{
+  return input.version >= NewBlocks ? readSize(input, what) : readInt(input, what, 0, AnyHigh);
+}
+
+/// The entity that a block belongs to.
+struct Entity
+{
+  Index dimension, tag;
+};
+
+Entity readEntity(GmshInput& input)
+{
+  Entity entity{};
+  if (input.version >= NewBlocks)
+  {
+    entity.dimension = readInt(input, "dimension of an entity", 0, 3);
+    entity.tag = readInt(input, "entity", AnyLow, AnyHigh);
+  }
+  else
+  {
+    entity.tag = readInt(input, "entity", AnyLow, AnyHigh);
+    entity.dimension = readInt(input, "dimension of an entity", 0, 3);
+  }
+  return entity;
+}
+
+/// The smallest and the largest number, which are not used.
+void skipRange(GmshInput& input, const char* what)
+{
+  if (input.version >= NewBlocks)
+  {
+    readSize(input, what);
+    readSize(input, what);
+  }
+}
+
 double readReal(GmshInput& input, const char* what)
 {
   if (input.binary)
@@ -66,7 +106,7 @@ void readGmshEntities4(GmshInput& input, std::vector<std::unordered_map<Index, I
     for (Index i = 0; i < counts[dimension]; ++i)
     {
       const Index tag = readInt(input, "entity", AnyLow, AnyHigh);
-      for (int c = 0; c < (dimension == 0 ? 3 : 6); ++c)
+      for (int c = 0; c < (dimension == 0 && input.version >= NewBlocks ? 3 : 6); ++c)
       {
         readReal(input, "bound of an entity");
       }
@@ -92,16 +132,15 @@ void readGmshNodes4(GmshInput& input)
 {
   const Index blocks = readSize(input, "number of node blocks");
   const Index count = readSize(input, "number of nodes");
-  readSize(input, "smallest node number");
-  readSize(input, "largest node number");
-  input.cursor.expectRoom(count, input.binary ? 32 : 8, "number of nodes");
+  skipRange(input, "range of node numbers");
+  const bool together = input.version < NewBlocks; // each number before its point
+  input.cursor.expectRoom(count, input.binary ? 28 : 8, "number of nodes");
   std::vector<Index> tags;
   reserveLarge(tags, static_cast<std::size_t>(count));
   reserveLarge(input.mesh.points, static_cast<std::size_t>(3 * count));
   for (Index block = 0; block < blocks; ++block)
   {
-    const Index dimension = readInt(input, "dimension of an entity", 0, 3);
-    readInt(input, "entity", AnyLow, AnyHigh);
+    const Index dimension = readEntity(input).dimension;
     const bool parametric = readInt(input, "parametric flag", 0, 1) == 1;
     const Index size = readSize(input, "nodes in a block");
     if (size > count - static_cast<Index>(tags.size()))
@@ -109,12 +148,16 @@ void readGmshNodes4(GmshInput& input)
       input.cursor.fail("the blocks have more nodes than the header of $Nodes announces (" +
         std::to_string(count) + ")");
     }
-    for (Index i = 0; i < size; ++i)
+    for (Index i = 0; !together && i < size; ++i)
     {
-      tags.push_back(readSize(input, "node number"));
+      tags.push_back(readNumber(input, "node number"));
     }
     for (Index i = 0; i < size; ++i)
     {
+      if (together)
+      {
+        tags.push_back(readNumber(input, "node number"));
+      }
       for (int c = 0; c < 3; ++c)
       {
         input.mesh.points.push_back(input.coordinate("coordinate"));
@@ -139,21 +182,19 @@ void readGmshElements4(
 {
   const Index blocks = readSize(input, "number of element blocks");
   const Index count = readSize(input, "number of elements");
-  readSize(input, "smallest element number");
-  readSize(input, "largest element number");
-  input.cursor.expectRoom(count, input.binary ? 16 : 4, "number of elements");
+  skipRange(input, "range of element numbers");
+  input.cursor.expectRoom(count, input.binary ? 8 : 4, "number of elements");
   input.reserveElements(static_cast<std::size_t>(count));
   for (Index block = 0; block < blocks; ++block)
   {
-    const Index dimension = readInt(input, "dimension of an entity", 0, 3);
-    const Index entity = readInt(input, "entity", AnyLow, AnyHigh);
+    const auto [dimension, entity] = readEntity(input);
     const Index code = readInt(input, "type of an element", AnyLow, AnyHigh);
     const Index size = readSize(input, "elements in a block");
     const GmshCell* cell = gmshCellByCode(code);
     if (!cell)
     {
       input.cursor.fail("elements of type " + std::to_string(code) +
-        " cannot be read; elements up to second order can");
+        " cannot be read; elements up to fourth order can");
     }
     if (size > count - input.mesh.numberOfCells())
     {
@@ -168,11 +209,11 @@ void readGmshElements4(
     for (Index i = 0; i < size; ++i)
     {
       const char* place = input.cursor.place();
-      input.elementTags.push_back(readSize(input, "element number"));
-      Index nodes[32];
+      input.elementTags.push_back(readNumber(input, "element number"));
+      Index nodes[MaxGmshNodes];
       for (int n = 0; n < cell->nodes; ++n)
       {
-        nodes[n] = readSize(input, "node");
+        nodes[n] = readNumber(input, "node");
       }
       input.addElement(*cell, nodes, place);
     }

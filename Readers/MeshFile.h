@@ -108,6 +108,7 @@ struct TAUTLINEREADERS_EXPORT MeshFile
   std::vector<MeshArray> cellArrays;
   std::vector<MeshArray> fieldArrays;
   std::vector<MeshStrings> fieldStrings;
+  std::vector<std::string> warnings; ///< what of the file is not in the mesh, a sentence each
 
   Index numberOfPoints() const { return static_cast<Index>(this->points.size() / 3); }
   Index numberOfCells() const { return static_cast<Index>(this->cellTypes.size()); }

@@ -147,6 +147,7 @@ void readFaces(TextCursor& cursor, Index count, MeshFile& mesh, FaceColors& colo
     ids.clear();
     for (Index c = 0; c < corners; ++c)
     {
+      cursor.skipToToken(); // long faces may take several lines
       ids.push_back(cursor.integer("vertex", 0, mesh.numberOfPoints() - 1));
     }
     mesh.addCell(corners <= 4 ? types[corners - 1] : static_cast<unsigned char>(FilePolygon),

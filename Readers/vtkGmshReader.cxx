@@ -20,5 +20,6 @@ int vtkGmshReader::CanReadFile(const char* name)
   const std::string extension = tautline::splitExtension(name).second;
   const std::string start = tautline::firstWord(name);
   return extension == "msh" &&
-    (start == "$MeshFormat" || (!start.empty() && start[0] >= '0' && start[0] <= '9'));
+    (start == "$MeshFormat" || start == "$NOD" ||
+      (!start.empty() && start[0] >= '0' && start[0] <= '9'));
 }

@@ -1,12 +1,13 @@
 /**
  * @class vtkGmshReader
- * @brief Reads Gmsh's .msh 2.2 and 4.1, text and binary, and FreeFem++'s .msh.
+ * @brief Reads Gmsh's .msh 1, 2, 4.0 and 4.1, text and binary, and FreeFem++'s .msh.
  *
  * Cell arrays: `Reference` (physical tag; FreeFem++: label), `Entity` (elementary tag). $NodeData
- * and $ElementData come as arrays of their names. Elements up to second order.
+ * and $ElementData come as arrays of their names. Elements up to second order; those of third and
+ * fourth order become linear ones, without the other nodes, with a warning.
  *
- * Limits: versions 1 and 4.0 are refused with the command that converts them; periodic, ghost and
- * partition data are skipped; of a field with several time steps the last is kept.
+ * Limits: periodic, ghost and partition data are skipped; of a field with several time steps the
+ * last is kept.
  *
  * @sa vtkMeshFileReader vtkGmshWriter tautline::readGmsh
  */

@@ -68,6 +68,10 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
     }
     tautline::MeshFile mesh = this->ReadMesh();
     this->UpdateProgress(0.8);
+    for (const std::string& warning : mesh.warnings)
+    {
+      vtkWarningMacro(<< this->FileName << ": " << warning);
+    }
     if (auto* surface = vtkPolyData::SafeDownCast(output))
     {
       tautline::toSurface(std::move(mesh), surface);

@@ -96,8 +96,15 @@ void testOtherMessages()
   const std::string format = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
   expect("msh", format, "the file ends without $Nodes");
   expect(
-    "msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n", "version 4.00 of the format cannot be read");
-  expect("msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n", "version 1 of the format cannot be read");
+    "msh", "$MeshFormat\n3 0 8\n$EndMeshFormat\n", "version 3.00 of the format cannot be read");
+  const std::string old = "$NOD\n2\n1 0 0 0\n2 1 0 0\n$ENDNOD\n$ELM\n1\n1 1 0 0 ";
+  expect("msh", "$NOD\n2\n1 0 0 0\n2 1 0 0\n$EndNOD\n", "bad.msh:5: expected $ENDNOD");
+  expect("msh", old + "3 1 2 2\n$ENDELM\n", "bad.msh:8: an element of type 1 with 3 nodes");
+  expect("msh", old + "2 1 3\n$ENDELM\n", "bad.msh:8: an element uses node 3");
+  expect("msh", old + "2 1\n$ENDELM\n", "bad.msh:8: expected a whole number (node)");
+  expect("msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n1 2\n1 2 0 1\n1 0 0 0\n$EndNodes\n",
+    "the blocks have 1 nodes, the header of $Nodes announces 2");
+  expect("msh", format + "$PhysicalNames\n1\n7 5 \"a\"\n", "bad.msh:6: dimension is 7");
   expect("msh", format + "$Nodes\n1 2 1 2\n2 1 0 1\n1\n0 0 0\n$EndNodes\n",
     "the blocks have 1 nodes, the header of $Nodes announces 2");
   expect("msh", format + "$Nodes\n1 2 1 2\n2 1 0 2\n1\n1\n0 0 0\n0 0 0\n$EndNodes\n",
@@ -108,9 +115,9 @@ void testOtherMessages()
       "2\n$EndElements\n",
     "bad.msh:12: an element uses node 2, which is not in $Nodes");
   expect("msh",
-    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 93 0 "
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 94 0 "
     "1\n$EndElements\n",
-    "bad.msh:10: an element of type 93");
+    "bad.msh:10: an element of type 94");
   expect("msh", "$MeshFormat\n2.2 1 8\n\1", "the file ends before the byte order");
   expect("msh", "1 2\n", "this is no .msh file");
   expect("msh", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n1 2 9 0\n",

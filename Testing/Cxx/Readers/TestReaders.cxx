@@ -17,7 +17,10 @@
 #include "vtkTetGenReader.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 
 using namespace tautline;
 
@@ -159,6 +162,145 @@ void testGmsh()
   }
 }
 
+/// A tetrahedron and the triangle below it, in group 5 "solid" and 20.
+void checkSmall(const MeshFile& mesh)
+{
+  TAUTLINE_CHECK(mesh.numberOfPoints() == 4 && mesh.numberOfCells() == 2);
+  TAUTLINE_CHECK(countCells(mesh, FileTetrahedron) == 1 && countCells(mesh, FileTriangle) == 1);
+  TAUTLINE_CHECK_EQUAL(volume(mesh), 1.0 / 6);
+  TAUTLINE_CHECK(value(mesh.cellArrays, "Reference", 0) == 20);
+  TAUTLINE_CHECK(value(mesh.cellArrays, "Reference", 1) == 5);
+  TAUTLINE_CHECK(value(mesh.cellArrays, "Entity", 0) == 2);
+  TAUTLINE_CHECK(value(mesh.cellArrays, "Entity", 1) == 1);
+  TAUTLINE_CHECK(mesh.warnings.empty());
+}
+
+/// Versions 1 and 4.0 of Gmsh's format, and names of groups without their dimension.
+void testOldGmsh()
+{
+  const std::string file = output + "/old.msh";
+  writeText(file,
+    "$NOD\n4\n1 0 0 0\n2 1 0 0\n\n4 0 1 0\n7 0 0 1\n$ENDNOD\n$ELM\n2\n"
+    "1 2 20 2 3 1 2 4\n2 4 5 1 4 1 2 4 7\n$ENDELM\n");
+  checkSmall(readGmsh(file, true));
+  vtkNew<vtkGmshReader> reader;
+  TAUTLINE_CHECK(reader->CanReadFile(file.c_str()) == 1);
+
+  // In 4.0, points of $Entities have a box, too; the tag of an entity comes before its dimension.
+  writeText(file,
+    "$MeshFormat\n4 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n\n 5 \"solid\"\n20 \"below\"\n"
+    "$EndPhysicalNames\n$Entities\n1 0 1 1\n3 0 0 0 0 0 0 0\n2 0 0 0 1 1 0 1 20 0\n"
+    "1 0 0 0 1 1 1 1 5 1 2\n$EndEntities\n$Nodes\n2 4\n3 0 0 1\n1 0 0 0\n2 2 1 3\n"
+    "2 1 0 0 1 0\n4 0 1 0 0 1\n7 0 0 1 0.5 0.5\n$EndNodes\n$Elements\n2 2\n2 2 2 1\n1 1 2 4\n"
+    "1 3 4 1\n2 1 2 4 7\n$EndElements\n$NodeData\n1\n\"height\"\n1\n0\n3\n0\n1\n1\n7 8.5\n"
+    "$EndNodeData\n");
+  const MeshFile mesh = readGmsh(file, true);
+  checkSmall(mesh);
+  TAUTLINE_CHECK_EQUAL(value(mesh.pointArrays, "height", 3), 8.5);
+  TAUTLINE_CHECK(value(mesh.fieldArrays, "PhysicalGroups", 0) == 3);
+  TAUTLINE_CHECK(value(mesh.fieldArrays, "PhysicalGroups", 1) == 5);
+  TAUTLINE_CHECK(value(mesh.fieldArrays, "PhysicalGroups", 2) == 2);
+  TAUTLINE_CHECK(mesh.fieldStrings[0].values[1] == "below");
+
+  // The same in binary: numbers of nodes and elements have four bytes in 4.0.
+  std::string bytes = "$MeshFormat\n4 1 8\n";
+  const auto add = [&bytes](auto number)
+  { bytes.append(reinterpret_cast<const char*>(&number), sizeof(number)); };
+  const auto addInts = [&](std::initializer_list<std::int32_t> numbers)
+  { std::for_each(numbers.begin(), numbers.end(), add); };
+  using Size = std::uint64_t;
+  const auto addNode = [&](std::int32_t number, double x, double y, double z)
+  {
+    add(number);
+    add(x);
+    add(y);
+    add(z);
+  };
+  add(std::int32_t(1));
+  bytes += "\n$EndMeshFormat\n$Entities\n";
+  for (const Size count : { 0, 0, 1, 1 })
+  {
+    add(count);
+  }
+  for (const std::int32_t group : { 20, 5 })
+  {
+    add(std::int32_t(group == 20 ? 2 : 1));
+    for (int c = 0; c < 6; ++c)
+    {
+      add(0.0);
+    }
+    add(Size(1));
+    add(group);
+    add(Size(0));
+  }
+  bytes += "\n$EndEntities\n$Nodes\n";
+  add(Size(1));
+  add(Size(4));
+  addInts({ 1, 3, 0 });
+  add(Size(4));
+  addNode(1, 0, 0, 0);
+  addNode(2, 1, 0, 0);
+  addNode(4, 0, 1, 0);
+  addNode(7, 0, 0, 1);
+  bytes += "\n$EndNodes\n$Elements\n";
+  add(Size(2));
+  add(Size(2));
+  addInts({ 2, 2, 2 });
+  add(Size(1));
+  addInts({ 1, 1, 2, 4 });
+  addInts({ 1, 3, 4 });
+  add(Size(1));
+  addInts({ 2, 1, 2, 4, 7 });
+  bytes += "\n$EndElements\n";
+  writeText(file, bytes);
+  checkSmall(readGmsh(file, true));
+}
+
+/// Elements of third order are read as their corners; the other nodes go, unless a cell has them.
+void testHighOrder()
+{
+  const std::string file = output + "/cubic.msh";
+  std::ostringstream text;
+  text << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n20\n";
+  const double corners[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+  for (int n = 20; n > 0; --n) // the corners come last
+  {
+    const double* x = corners[n <= 4 ? n - 1 : 0];
+    text << n << ' ' << x[0] + (n > 4) * n << ' ' << x[1] << ' ' << x[2] << '\n';
+  }
+  text << "$EndNodes\n$Elements\n2\n1 29 2 5 1";
+  for (int n = 1; n <= 20; ++n)
+  {
+    text << ' ' << n;
+  }
+  text << "\n2 2 2 20 2 1 2 11\n$EndElements\n$NodeData\n1\n\"number\"\n0\n3\n0\n1\n5\n"
+          "1 1\n2 2\n11 11\n12 12\n4 4\n$EndNodeData\n";
+  writeText(file, text.str());
+  const MeshFile mesh = readGmsh(file, true);
+  TAUTLINE_CHECK(mesh.numberOfPoints() == 5 && countCells(mesh, FileTetrahedron) == 1);
+  TAUTLINE_CHECK_EQUAL(volume(mesh), 1.0 / 6);
+  // In the order of the file: 11, 4, 3, 2, 1.
+  TAUTLINE_CHECK_EQUAL(mesh.points[0], 11.0);
+  const double numbers[] = { 11, 4, 0, 2, 1 };
+  for (std::size_t i = 0; i < 5; ++i)
+  {
+    TAUTLINE_CHECK(i == 2 || value(mesh.pointArrays, "number", i) == numbers[i]);
+  }
+  const std::vector<Index> nodes = { 4, 3, 2, 1, 4, 3, 0 };
+  TAUTLINE_CHECK(mesh.connectivity == nodes);
+  TAUTLINE_CHECK(mesh.warnings.size() == 1 &&
+    mesh.warnings[0] ==
+      "1 elements of third or fourth order are read as linear ones; 15 nodes that are no corners "
+      "are left out.");
+
+  vtkNew<vtkGmshReader> reader;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  reader->AddObserver(vtkCommand::WarningEvent, observer);
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  TAUTLINE_CHECK_EQUAL(observer->CheckWarningMessage("read as linear ones"), 0);
+}
+
 /// The kernel finds every cell valid: orders of nodes are those VTK and Tautline compute with.
 void testValidity()
 {
@@ -194,6 +336,14 @@ void testFreeFemAndOff()
   writeText(output + "/normals.off",
     "\xef\xbb\xbfNOFF\r\n3 1\r\n0 0 0 0 0 1\r\n1 0 0 0 0 1\r\n0 1 0 0 0 1\r\n3 0 1 2 0.5 1.0 "
     "0\r\n");
+  // A face over several lines.
+  writeText(output + "/lines.off",
+    "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n-1 0.5 0\n5 0 1 2\n 3\n 4 255 0 0\n3 0 3 4\n");
+  const MeshFile lines = readOff(output + "/lines.off", false);
+  TAUTLINE_CHECK(countCells(lines, FilePolygon) == 1 && countCells(lines, FileTriangle) == 1);
+  TAUTLINE_CHECK(lines.connectivity == std::vector<Index>({ 0, 1, 2, 3, 4, 0, 3, 4 }));
+  TAUTLINE_CHECK(value(lines.cellArrays, "Color", 0) == 255.0);
+
   const MeshFile normals = readOff(output + "/normals.off", false);
   TAUTLINE_CHECK(value(normals.pointArrays, "Normals", 8) == 1.0);
   TAUTLINE_CHECK(value(normals.cellArrays, "Color", 0) == 0.5);
@@ -285,6 +435,8 @@ int TestReaders(int, char* argv[])
   testComplexes();
   testMedit();
   testGmsh();
+  testOldGmsh();
+  testHighOrder();
   testValidity();
   testFreeFemAndOff();
   vtkNew<vtkGmshReader> gmsh;
