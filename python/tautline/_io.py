@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from os import PathLike
 from pathlib import Path
 from typing import Any, Callable, Union
@@ -110,7 +111,8 @@ def read(
         reader = form.make_reader()
         reader.SetLowerCells(options.get("lower_cells", False))
         reader.SetFileName(name)
-        run(reader)
+        for text in dict.fromkeys(run(reader).warnings):
+            warnings.warn(text, stacklevel=2)
         return reader.GetOutput()
     return _read_vtk(name, form)
 
