@@ -492,6 +492,13 @@ void GatheredExecution::execute(const std::function<int()>& execute)
     replaced.replace(
       this->Inputs[port]->GetInformationObject(0), selectionOf(this->Meshes.front().whole, port));
   }
+  for (const int port : this->SelectionPorts)
+  {
+    for (PortMesh& mesh : this->Meshes)
+    {
+      removeMarks(mesh.whole, port);
+    }
+  }
   this->prepareOutputs(replaced);
   const CaughtError error(this->Algorithm);
   this->Failure = this->attempt([&] { this->Result = execute(); });

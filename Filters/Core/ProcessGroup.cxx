@@ -8,6 +8,8 @@
 #include "vtkMPICommunicator.h"
 #endif
 
+#include <algorithm>
+#include <deque>
 #include <limits>
 #include <numeric>
 
@@ -30,26 +32,18 @@ public:
 
   void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override
   {
-    // Nobody waits for a message that is too long: this ends the job, not only the filter.
-    const auto length = [](const RankMessage& message)
-    {
-      if (message.bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-      {
-        throw Error("A process would send more than 2 GiB to another one: take more processes.");
-      }
-      return static_cast<int>(message.bytes.size());
-    };
-    constexpr int tag = 7241;
-    this->Requests.resize(sent.size() + received.size());
-    auto request = this->Requests.begin();
+    this->Requests.clear();
     for (RankMessage& message : received)
     {
-      this->Mpi->NoBlockReceive(
-        message.bytes.data(), length(message), message.rank, tag, *request++);
+      this->forEachPart(message.bytes.data(), message.bytes.size(),
+        [&](char* part, int length, vtkMPICommunicator::Request& request)
+        { this->Mpi->NoBlockReceive(part, length, message.rank, Tag, request); });
     }
     for (const RankMessage& message : sent)
     {
-      this->Mpi->NoBlockSend(message.bytes.data(), length(message), message.rank, tag, *request++);
+      this->forEachPart(message.bytes.data(), message.bytes.size(),
+        [&](const char* part, int length, vtkMPICommunicator::Request& request)
+        { this->Mpi->NoBlockSend(part, length, message.rank, Tag, request); });
     }
   }
 
@@ -69,7 +63,13 @@ public:
     std::vector<vtkIdType> lengths(this->size()), offsets(this->size(), 0);
     this->Controller->AllGather(&mine, lengths.data(), 1);
     std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
-    Bytes joined(static_cast<std::size_t>(offsets.back() + lengths.back()) + 1);
+    const vtkIdType total = offsets.back() + lengths.back();
+    if (total > std::numeric_limits<int>::max()) // all of them know
+    {
+      throw Error("The processes would exchange more than 2 GiB at once, as MPI cannot: take a "
+                  "smaller mesh, or put it together first (Aggregate Dataset).");
+    }
+    Bytes joined(static_cast<std::size_t>(total) + 1);
     char none = 0; // the address of nothing
     this->Controller->AllGatherV(
       own.empty() ? &none : own.data(), joined.data(), mine, lengths.data(), offsets.data());
@@ -83,9 +83,24 @@ public:
   }
 
 private:
+  static constexpr int Tag = 7241;
+
+  /// Calls back for each part of a message that MPI can send at once; they arrive in order.
+  template <class Byte, class Callback>
+  void forEachPart(Byte* bytes, std::size_t size, Callback&& callback)
+  {
+    constexpr std::size_t longest = std::size_t(1) << 30;
+    for (std::size_t begin = 0; begin == 0 || begin < size; begin += longest)
+    {
+      this->Requests.emplace_back();
+      callback(
+        bytes + begin, static_cast<int>(std::min(longest, size - begin)), this->Requests.back());
+    }
+  }
+
   vtkMultiProcessController* Controller;
   vtkMPICommunicator* Mpi;
-  std::vector<vtkMPICommunicator::Request> Requests;
+  std::deque<vtkMPICommunicator::Request> Requests; // they stay where they are
 };
 #endif
 }

@@ -60,6 +60,17 @@ void uniteMarks(const std::vector<vtkDataSet*>& pieces, const WholeMesh& whole, 
 }
 
 //------------------------------------------------------------------------------
+void removeMarks(vtkDataObject* whole, int port)
+{
+  forEachLeaf(whole,
+    [port](unsigned int, vtkDataSet* leaf)
+    {
+      leaf->GetPointData()->RemoveArray(markName(port).c_str());
+      leaf->GetCellData()->RemoveArray(markName(port).c_str());
+    });
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkSelection> selectionOf(vtkDataObject* whole, int port)
 {
   auto selection = vtkSmartPointer<vtkSelection>::New();

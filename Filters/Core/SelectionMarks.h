@@ -27,6 +27,9 @@ TAUTLINECORE_EXPORT void addMarks(
 TAUTLINECORE_EXPORT void uniteMarks(
   const std::vector<vtkDataSet*>& pieces, const WholeMesh& whole, int port);
 
+/// Removes the marks of an input.
+TAUTLINECORE_EXPORT void removeMarks(vtkDataObject* whole, int port);
+
 /// A selection of what has marks.
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkSelection> selectionOf(vtkDataObject* whole, int port);
 }

@@ -255,6 +255,7 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
   const int port = request->Get(vtkExecutive::FROM_OUTPUT_PORT());
   bool failed = false;
   vtkMTimeType time = 0;
+  double step = 0;
   for (int i = 0; i < this->GetNumberOfInputPorts(); ++i)
   {
     for (int k = 0; k < this->GetNumberOfInputConnections(i); ++k)
@@ -267,12 +268,19 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
       failed = failed || hasFailed(upstream);
       auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(upstream);
       time = std::max(time, pipeline ? pipeline->GetPipelineMTime() : 0);
+      vtkInformation* info =
+        upstream->GetOutputInformation(this->GetInputConnection(i, k)->GetIndex());
+      using Streaming = vtkStreamingDemandDrivenPipeline;
+      step +=
+        info->Has(Streaming::UPDATE_TIME_STEP()) ? info->Get(Streaming::UPDATE_TIME_STEP()) : 0.0;
     }
   }
   request->Set(vtkExecutive::FROM_OUTPUT_PORT(), port);
   // What has failed once is taken for up to date, with empty outputs.
-  failed = failed || (this->FailedInputs > 0 && this->FailedInputs == time);
+  failed =
+    failed || (this->FailedInputs > 0 && this->FailedInputs == time && this->FailedStep == step);
   this->FailedInputs = failed ? time : 0;
+  this->FailedStep = step;
   const std::string problem = tautline::firstProblem(failed
       ? "An input could not be computed, see the error of the filter or reader before this one."
       : "");

@@ -216,6 +216,7 @@ private:
 
   std::vector<int> SelectionPorts;
   vtkMTimeType FailedInputs = 0; ///< the time of inputs that could not be computed, or 0
+  double FailedStep = 0;         ///< the time step that was requested of them then
   std::chrono::steady_clock::time_point Start; ///< of the execution
   bool Best = false;                           ///< whether HaveBest() was called in this execution
 };

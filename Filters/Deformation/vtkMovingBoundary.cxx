@@ -1,5 +1,6 @@
 #include "vtkMovingBoundary.h"
 
+#include "GatheredExecution.h"
 #include "Processes.h"
 #include "WarpSession.h"
 #include "tautline/Core/Interruption.h"
@@ -181,6 +182,12 @@ int vtkMovingBoundary::RequestData(
   output->ShallowCopy(found);
   this->Summary = std::to_string(output->GetNumberOfPoints()) + " points of the boundary move.";
   return 1;
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredResult vtkMovingBoundary::GetGatheredResult() const
+{
+  return tautline::GatheredResult::OnFirst;
 }
 
 //------------------------------------------------------------------------------

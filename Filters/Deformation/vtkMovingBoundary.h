@@ -48,6 +48,8 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  /// The boundary stays on the first process.
+  tautline::GatheredResult GetGatheredResult() const override;
   /// No error: the summary has the message.
   int Fail(vtkInformationVector* outputVector, const std::string& message) override;
 

@@ -10,6 +10,7 @@
 #include "vtkMeshImprover.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshWarp.h"
+#include "vtkMovingBoundary.h"
 #include "vtkPeridynamicStiffness.h"
 #include "vtkShapeMatcher.h"
 #include "vtkShapeRetrieval.h"
@@ -19,6 +20,7 @@
 #include "vtkTriangleMesher.h"
 #endif
 
+#include "vtkCellData.h"
 #include "vtkCleanPolyData.h"
 #include "vtkCubeSource.h"
 #include "vtkDataSet.h"
@@ -284,6 +286,28 @@ void testSelection()
     moved += mesh->GetPoint(i)[0] == 0 && std::abs(result->GetPoint(i)[0] + 0.1) < 1e-12;
   }
   TAUTLINE_CHECK(rank() != 1 || (chosen > 0 && moved == chosen));
+
+  // The preview of what moves is on the first process.
+  vtkNew<vtkMovingBoundary> preview;
+  Messages said(preview);
+  preview->SetInputData(mesh);
+  preview->SetInputDataObject(2, selection);
+  preview->SetMovedPart(vtkMeshWarp::SELECTION);
+  preview->Update();
+  TAUTLINE_CHECK(said.empty());
+  auto* seen = vtkPolyData::SafeDownCast(preview->GetOutputDataObject(0));
+  const auto all = sum(chosen);
+  TAUTLINE_CHECK_EQUAL(seen->GetNumberOfPoints(), rank() == 0 ? all : 0);
+
+  // A new mesh has nothing of what the selection was gathered by.
+  vtkNew<vtkMeshImprover> improver;
+  improver->SetInputData(mesh);
+  improver->SetInputDataObject(1, selection);
+  improver->Update();
+  auto* improved = vtkDataSet::SafeDownCast(improver->GetOutputDataObject(0));
+  TAUTLINE_CHECK(improved->GetNumberOfCells() > 0);
+  TAUTLINE_CHECK(!improved->GetPointData()->GetArray("Tautline selected by input 1"));
+  TAUTLINE_CHECK(!improved->GetCellData()->GetArray("Tautline selected by input 1"));
 }
 
 /// Makes a piece, but cannot on process 1.
