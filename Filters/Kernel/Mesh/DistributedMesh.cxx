@@ -115,7 +115,13 @@ DistributedMesh::DistributedMesh(RankGroup& group, const MeshPiece& piece)
         for (Index n = piece.view.offsets[cell];
              takesPart(piece.view, cell) && n < piece.view.offsets[cell + 1]; ++n)
         {
-          used[piece.view.connectivity[n]] |= mark;
+          const Index point = piece.view.connectivity[n];
+          if (point < 0 || point >= piece.view.numberOfPoints) // beyond what the cell's type has
+          {
+            throw Error("Cell " + std::to_string(cell) + " lists point " + std::to_string(point) +
+              ", but the mesh has " + std::to_string(piece.view.numberOfPoints) + " points.");
+          }
+          used[point] |= mark;
         }
       }
       for (Index p = 0; p < piece.view.numberOfPoints; ++p)
@@ -205,9 +211,10 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
       used[p] > 1 };
     for (int c = 0; c < 3; ++c)
     {
-      key.x[c] = piece.view.points[3 * p + c] + 0.0; // -0 becomes 0
-      key.curve |= spreadBits(static_cast<std::uint64_t>(perLength * (key.x[c] - this->Bounds[c])))
-        << c;
+      key.x[c] = piece.view.points[3 * p + c] + 0.0;                // -0 becomes 0
+      const double cell = perLength * (key.x[c] - this->Bounds[c]); // NaN if too small or too large
+      key.curve |=
+        spreadBits(static_cast<std::uint64_t>(cell > 0 ? std::min(cell, mortonCells) : 0.0)) << c;
     }
     keys.push_back(key);
     if (withIds)
@@ -549,13 +556,13 @@ void exchangeValues(RankGroup& group,
   group.start(sent, received);
   group.finish();
   auto message = received.begin();
+  std::vector<Value> got(components);
   for (const auto& neighbour : neighbours)
   {
     const auto& in = listOf(neighbour, false);
     for (std::size_t i = 0; i < in.size(); ++i)
     {
       Value* to = values + static_cast<std::size_t>(components) * in[i];
-      std::vector<Value> got(components);
       std::memcpy(got.data(), message->bytes.data() + i * size, size);
       for (int c = 0; c < components; ++c)
       {

@@ -59,7 +59,6 @@ private:
   void keepInput(const IterationRecord& first);
   double judge(const std::vector<double>& points, std::vector<double>& values,
     std::vector<signed char>& validity) const;
-  std::vector<std::string> names() const;
 
   DistributedMesh& TheMesh;
   RankGroup& Group;

@@ -170,7 +170,6 @@ private:
   std::vector<signed char> Validity; ///< of the local cells
   std::map<std::vector<Index>, Obstacle> Obstacles;
   double Objective = 0;
-  int Iterations = 0;
   bool Stopped = false;
   RankUntangleResult Result;
 };
@@ -308,7 +307,6 @@ void RankUntangler::solve(const Region& region, int width)
   std::vector<RegionPoint> moved;
   std::vector<Index> obstacles; // of elements: the obstacle, how many points, their numbers
   std::vector<double> objectives;
-  int iterations = 0;
   this->Group.together(
     [&]
     {
@@ -329,7 +327,6 @@ void RankUntangler::solve(const Region& region, int width)
             this->Options.maximumSeconds - this->Clock.seconds());
         }
         const UntangleResult result = tautline::untangle(mesh, options);
-        iterations = std::max(iterations, static_cast<int>(result.history.size()));
         objectives.push_back(result.history.empty() ? 0.0 : result.history.back().objective);
         for (std::size_t p = 0; p < part.pointOf.size(); ++p)
         {
@@ -353,7 +350,6 @@ void RankUntangler::solve(const Region& region, int width)
       }
     });
   this->Objective = this->Group.orderlessSum(objectives);
-  this->Iterations += static_cast<int>(this->Group.maximum(static_cast<Index>(iterations)));
   for (const auto& list : this->Group.gatherItems(moved))
   {
     this->take(list);
