@@ -215,6 +215,14 @@ def test_meshio():
         assert again.GetNumberOfCells() == mesh.GetNumberOfCells(), ending
         assert np.isclose(tl.quality(again).statistics["imr"]["mean"], tl.quality(mesh).statistics["imr"]["mean"],
                           rtol=1e-3), ending  # fmt: skip
+    # A wedge as meshio has it: the normal of the first triangle points inwards.
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]]
+    wedge = meshio.Mesh(corners, [("wedge", [[0, 1, 2, 3, 4, 5]])])
+    assert tl.quality(wedge, "min_jacobian").values["min_jacobian"][0] > 0.1
+    assert tl.to_meshio(tl.quality(wedge).mesh).cells[0].data.tolist() == [[0, 1, 2, 3, 4, 5]]
+    for ending in (".inp", ".vtu"):
+        meshio.write(FOLDER / f"wedge{ending}", wedge)
+        assert tl.quality(FOLDER / f"wedge{ending}", "min_jacobian").values["min_jacobian"][0] > 0.1, ending
     plane = meshio.Mesh([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0]], [("quad", [[0, 1, 2, 3]]), ("triangle", [[1, 4, 2]])],
                         cell_sets={"part": [[0], []]})  # fmt: skip
     grid = tl.quality(plane).mesh

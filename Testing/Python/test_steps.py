@@ -84,6 +84,10 @@ def test_checks():
     wrong("step 3: fix_boundary is 1; true or false", 'do = "untangle"\nfix_boundary = 1')
     wrong("stop is 3; true or false", 'do = "criteria"\ncriteria = "fem"\nstop = 3')
     wrong("step 3: the key criteria is missing", 'do = "criteria"')
+    wrong("step 3: there is no preset of quality criteria 'femm'; did you mean 'fem'?",
+          'do = "criteria"\ncriteria = "femm"')  # fmt: skip
+    wrong("limits.json: there is no such file", 'do = "report"\nfile = "r.html"\ncriteria = "limits.json"')
+    wrong("step 3: there is no metric 'imrr'", 'do = "quality"\nmetrics = ["imrr"]')
     wrong("step 3: the key file is missing", 'do = "report"')
     wrong("step 3: the key do is missing", 'file = "x.vtu"')
     wrong("absent.vtu: there is no such file", 'do = "warp"\ntarget = "absent.vtu"')

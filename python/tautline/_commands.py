@@ -164,10 +164,11 @@ def counts(mesh: Any) -> str:
 def check_outputs(arguments: argparse.Namespace) -> None:
     """Raise Error if a file that the command is to write cannot be written, before it does anything else."""
     output = getattr(arguments, "output", None)
-    if output == STREAM:
-        if arguments.json:
-            raise Error("--json and --output - both write to the standard output: choose one")
-    elif output:
+    streams = [f"--{name} -" for name in ("output", "csv", "report") if getattr(arguments, name, None) == STREAM]
+    streams += ["--json"] if arguments.json else []
+    if len(streams) > 1:
+        raise Error(f"{' and '.join(streams)} would all write to the standard output: choose one")
+    if output and output != STREAM:
         check_output(output)
     for name in ("csv", "report"):
         if getattr(arguments, name, None):

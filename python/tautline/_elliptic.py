@@ -79,7 +79,7 @@ class SolveResult(Result):
     summary: the result in words.
     """
 
-    _per_element: ClassVar[tuple[str, ...]] = ("solution", "gradient")
+    _per_element: ClassVar[tuple[str, ...]] = ("solution", "gradient", "series")
     mesh: vtkDataObject
     solution: Array
     gradient: Array

@@ -17,13 +17,15 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkUnstructu
 from ._arrays import Array
 from ._errors import Error
 
-#: VTK's number and the number of points of meshio's cells, in the same order of points.
+#: VTK's number and the number of points of meshio's cells, in the same order of points but for _ORDERS.
 _CELLS = {
     "vertex": (1, 1), "line": (3, 2), "triangle": (5, 3), "quad": (9, 4), "tetra": (10, 4), "hexahedron": (12, 8),
     "wedge": (13, 6), "pyramid": (14, 5), "line3": (21, 3), "triangle6": (22, 6), "quad8": (23, 8), "tetra10": (24, 10),
     "hexahedron20": (25, 20), "wedge15": (26, 15), "pyramid13": (27, 13), "quad9": (28, 9), "hexahedron27": (29, 27),
     "triangle7": (34, 7),
 }  # fmt: skip
+#: meshio's linear wedge is that of Gmsh: the normal of its first triangle points inwards. Its own inverse.
+_ORDERS = {"wedge": [0, 2, 1, 3, 5, 4]}
 _BY_NUMBER = {number: (name, size) for name, (number, size) in _CELLS.items()}
 #: Formats that meshio reads and VTK or Tautline do not, by ending: what they are.
 MESHIO_FORMATS = {
@@ -113,7 +115,7 @@ def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
             raise Error(f"cells use the points {used.min()} to {used.max()}; there are 0 to {len(xyz) - 1}")
         types.append(np.full(len(block.data), number, np.uint8))
         sizes.append(np.full(len(block.data), size, np.int64))
-        ids.append(np.asarray(block.data, np.int64).ravel())
+        ids.append(_ordered(block.type, np.asarray(block.data, np.int64)).ravel())
     grid = vtkUnstructuredGrid()
     points = vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(xyz), deep=True))
@@ -130,6 +132,11 @@ def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
     for name, blocks in mesh.cell_sets.items():
         _add(grid.GetCellData(), name, _membership(mesh, blocks))
     return grid
+
+
+def _ordered(name: str, cells: Array) -> Array:
+    """The points of cells in the order of VTK instead of meshio's, or the other way round."""
+    return cells[:, _ORDERS[name]] if name in _ORDERS and cells.size else cells
 
 
 def _membership(mesh: Any, chosen: Any) -> Array:
@@ -160,9 +167,10 @@ def meshio_of(data: vtkDataSet) -> Any:
     except ImportError:
         raise Error(f"{PACKAGE} is not installed") from None
     count = data.GetNumberOfPoints()
-    xyz = np.array([data.GetPoint(i) for i in range(count)]).reshape(count, 3)
     if hasattr(data, "GetPoints") and data.GetPoints():
         xyz = np.array(vtk_to_numpy(data.GetPoints().GetData()))
+    else:
+        xyz = np.array([data.GetPoint(i) for i in range(count)]).reshape(count, 3)
     blocks: list[tuple[str, list[list[int]]]] = []
     starts: list[int] = []
     for cell in range(data.GetNumberOfCells()):
@@ -177,7 +185,7 @@ def meshio_of(data: vtkDataSet) -> Any:
     bounds = starts[1:]
     return meshio.Mesh(
         xyz,
-        [(name, np.array(cells)) for name, cells in blocks],
+        [(name, _ordered(name, np.array(cells))) for name, cells in blocks],
         point_data=_arrays(data.GetPointData()),
         cell_data={name: np.split(values, bounds) for name, values in _arrays(data.GetCellData()).items()},
     )

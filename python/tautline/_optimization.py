@@ -205,7 +205,7 @@ def optimize(
     project_to_surface: whether the points of a surface in space stay on it.
     untangle_first: whether a mesh with inverted elements is untangled first where the objectives cannot repair it.
     allow_inversion: whether steps may invert valid elements.
-    worst_metric: the metric that tells which element is the worst one, which never gets worse by it and which the
+    worst_metric: the metric by which the worst element is found, which never gets worse by it and which the
         preset "worst element" and improve_worst improve. The default is the scaled Jacobian where the worst element is
         improved in a mesh with quadrilaterals, hexahedra or wedges, but no pyramids; else the metric of the first
         objective.
@@ -406,7 +406,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
     parser.add_argument("--flat-angle", type=float, metavar="DEGREES", default=1.0,
                         help="facets that differ by at most this are one plane (default: 1)")  # fmt: skip
-    parser.add_argument("--worst-metric", metavar="NAME", help="the metric that tells which element is the worst one")
+    parser.add_argument("--worst-metric", metavar="NAME", help="the metric by which the worst element is found")
     _commands.add_flag(parser, "hold_worst", "whether the worst element must not get worse")
     parser.add_argument("--feature-angle", type=float, metavar="DEGREES", default=40.0,
                         help="edges that bend more are sharp (default: 40)")  # fmt: skip

@@ -19,7 +19,9 @@ from ._errors import Error, interruptible, unknown
 from ._files import check_input, check_target, file_name
 from ._interrupts import Progress
 from ._io import check_output, read, write
+from ._metrics import choose
 from ._names import find_name, nearest_name
+from ._quality import _criteria_presets
 from ._results import Result
 
 #: The functions that a step can call, by the file of the capability. Each takes the mesh of the steps before.
@@ -157,6 +159,8 @@ def _checked_step(number: int, step: dict[str, Any], folder: Path, made: list[st
     else:
         _check_arguments(do, step)
     _check_files(do, step, folder, made)
+    if do in ("quality", "criteria") and "metrics" in step:
+        choose(_vtk.vtkElementQuality(), step["metrics"])
     return _Step(number, do, step)
 
 
@@ -221,6 +225,12 @@ def _check_files(do: str, step: dict[str, Any], folder: Path, made: list[str]) -
             check_target(name)
         elif name not in made:
             check_input(name)
+    chosen = step.get("criteria")
+    if isinstance(chosen, str) and find_name(chosen, _criteria_presets()) is None:
+        if not Path(chosen).suffix:
+            raise unknown("preset of quality criteria", chosen, _criteria_presets())
+        step["criteria"] = os.path.join(folder, chosen)
+        check_input(step["criteria"])
 
 
 # --- the run ------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ import os
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from importlib import import_module
+from math import isfinite
 from pathlib import Path
 from typing import Any, Callable
 
@@ -111,6 +112,11 @@ def series(name: str) -> list[tuple[float, str]]:
         raise Error(f"{name}: {error}") from None
     if not entries or not all(file for _, file in entries):
         raise Error(f"{name}: names no files")
+    for time, file in entries:
+        if not isfinite(time):
+            raise Error(f"{name}: the time of {file} is not finite")
+        if file.lower().endswith(".pvd"):
+            raise Error(f"{name}: names {file}; files of a .pvd are meshes, not other .pvd")
     folder = Path(name).parent
     return sorted((time, os.path.join(folder, file)) for time, file in entries)
 
