@@ -5,11 +5,12 @@
  *
  * Points keep the order of the file, numbers with gaps are closed. Elements up to second order are
  * read; of a 14-node pyramid the node in its base is left out. Elements of third and fourth order
- * are read as linear ones, without the nodes that are no corners, with a warning. `Reference` is the physical tag (the
- * first, where an entity has several), `Entity` the elementary one. $NodeData and $ElementData
- * become arrays (NaN where a node or element has no value), of several steps the last one. Names of
- * physical groups become the field arrays `PhysicalNames` and `PhysicalGroups` (dimension, tag). A
- * file that gives no dimension of a group: that of its elements; of no element, 3.
+ * are read as linear ones, without the nodes that are no corners, with a warning. `Reference` is
+ * the physical tag (the first, where an entity has several), `Entity` the elementary one. $NodeData
+ * and $ElementData become arrays (NaN where a node or element has no value), of several steps the
+ * last one. Names of physical groups become the field arrays `PhysicalNames` and `PhysicalGroups`
+ * (dimension, tag). A file that gives no dimension of a group: that of its elements; of no element,
+ * 3.
  */
 #ifndef tautline_GmshFile_h
 #define tautline_GmshFile_h
