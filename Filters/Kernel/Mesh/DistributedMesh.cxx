@@ -273,6 +273,12 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
 }
 
 //------------------------------------------------------------------------------
+std::uint64_t DistributedMesh::ownerHash(Index number, int rank)
+{
+  return mixed(mixed(static_cast<std::uint64_t>(number)) + static_cast<std::uint64_t>(rank));
+}
+
+//------------------------------------------------------------------------------
 /// The numbers of the points, and the owners: of the ranks with a cell there one by a hash.
 void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<char>& used)
 {
@@ -301,8 +307,7 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     for (end = begin; end < range.size() && !(range[begin] < range[end]); ++end)
     {
-      const std::uint64_t hash = mixed(
-        mixed(static_cast<std::uint64_t>(first)) + static_cast<std::uint64_t>(range[end].rank));
+      const std::uint64_t hash = ownerHash(first, static_cast<int>(range[end].rank));
       if (range[end].withCell && hash < least)
       {
         least = hash;

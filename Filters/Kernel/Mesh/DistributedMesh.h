@@ -64,6 +64,9 @@ public:
   const std::vector<Index>& numbers() const { return this->Numbers; }
   /// Per local point: the rank that owns it.
   const std::vector<int>& owners() const { return this->Owners; }
+  /// Of the ranks with a cell at a point, the one with the least of these numbers owns it; of equal
+  /// ones the lowest rank.
+  static std::uint64_t ownerHash(Index number, int rank);
   bool owned(Index point) const { return this->Owners[point] == this->Group->rank(); }
   /// One flag per local cell: whether this rank owns it.
   const std::vector<unsigned char>& ownedCells() const { return this->OwnedCells; }
