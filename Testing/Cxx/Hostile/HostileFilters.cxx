@@ -548,8 +548,8 @@ const std::vector<std::string>& classesWithoutInput()
     "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm", "vtkBoundaryMesher",
     "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField", "vtkDomainSource", "vtkGmshReader",
     "vtkMeditReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader", "vtkHtmlReport",
-    "vtkImageFileReader", "vtkInterruption", "vtkTautlineSetRange", "vtkUpdateGuard",
-    "vtkUserMetric" };
+    "vtkImageFileReader", "vtkInterruption", "vtkMeshDecomposition", "vtkTautlineSetRange",
+    "vtkUpdateGuard", "vtkUserMetric" };
   return names;
 }
 
