@@ -138,4 +138,5 @@ SECTIONS = (
     ("5.3", "retrieval", "Shape Retrieval; retrieval()", "shapes"),
     ("2.8", "time-dependent problems", "Solve PDE with a Time Scheme; solve()", "time_stepping"),
     ("-", "beyond the dissertation", "Improve Mesh, Warp Mesh; improve(), warp()", "reconnection, box_rotation"),
+    ("-", "decomposition of the domain, many processes", "Optimize Mesh; optimize()", "decomposition"),
 )

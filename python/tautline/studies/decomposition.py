@@ -1,0 +1,397 @@
+"""Divisions of a mesh for MPI ranks: halos, messages and balance by partitioner, and a model of weak scaling."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import time
+from dataclasses import dataclass
+from typing import Callable, Sequence
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIntArray
+from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkTable
+
+import tautline
+from tautline._errors import Messages
+
+from ._common import Method, Report, _configured, _timed, cells_of, parser, points_of
+
+PARTS, SMALL_PARTS = (2, 4, 8, 16, 32, 64), (2, 4, 8)
+#: Of the weak series: parts beyond those, which the model predicts.
+BEYOND, SMALL_BEYOND = 256, 16
+CELLS, SMALL_CELLS = {"disk3d": 400_000, "disk2d": 200_000}, {"disk3d": 3_000, "disk2d": 1_500}
+#: Cells of each part in the weak series, in space.
+PER_PART, SMALL_PER_PART = 2_000, 250
+#: Cells per part, parts: of the series that shows how a halo grows with the size of a part.
+SIZES, SMALL_SIZES = (1_000, 2_000, 4_000, 8_000, 16_000), (200, 400, 800)
+SIZE_PARTS, SMALL_SIZE_PARTS = 27, 8
+#: What a rank sends of a point that has moved: x y z and a flag, in double precision.
+POINT_BYTES = 32
+#: Exchanges of one number with all ranks at the end of a sweep (RankSweeper), and their bytes per rank.
+REDUCTIONS, REDUCED_BYTES = 6, 16
+#: Assumed of the network, not measured: seconds per message, bytes per second.
+LATENCY, BANDWIDTH = 2e-6, 1e10
+SWEEPS = 6  # of which the time is measured
+RANKS = (16, 64, 256, 1024)
+RANK_CELLS = (1_000, 10_000, 100_000)
+BALANCE, WIDEST, SAME_HALO, SAME_MODEL, EFFICIENT = 1.1, 32, 1.3, 0.2, 0.8
+SURFACE, SURFACE_TOLERANCE = 2 / 3, 0.1
+METHODS = ("slabs", "k-d tree", "curve", "graph", "random")
+CURVE_BITS = 16  # per direction, of the places on the curve
+
+
+@dataclass
+class Division:
+    """Counts of a mesh in parts; the largest of any part unless it is said otherwise."""
+
+    cells: int  # of the whole mesh
+    balance: float  # cells, over the mean
+    halo: int
+    mean_halo: float
+    neighbours: int
+    messages: int  # that a part sends in a sweep
+    bytes: int
+    sets: int
+    free: int  # points that move, of the whole mesh
+    slowest: int  # points of a sweep one after the other, where all wait for each other after each set
+    seconds: float  # CPU, for the division
+
+
+# --- divisions ------------------------------------------------------------------------------------------------
+
+
+def bisected(centres: np.ndarray, parts: int, axis: int | None = None) -> np.ndarray:
+    """Halves of equal numbers of cells across the longest direction, or always across an axis."""
+    found = np.zeros(len(centres), np.int32)
+    left = [(np.arange(len(centres)), 0, parts)]
+    while left:
+        cells, first, count = left.pop()
+        if count == 1:
+            found[cells] = first
+            continue
+        across = int(np.argmax(np.ptp(centres[cells], axis=0))) if axis is None else axis
+        half = count // 2
+        middle = len(cells) * half // count
+        order = np.argpartition(centres[cells, across], middle)
+        left += [(cells[order[:middle]], first, half), (cells[order[middle:]], first + half, count - half)]
+    return found
+
+
+def along_curve(centres: np.ndarray, parts: int) -> np.ndarray:
+    """Pieces of equal length of Morton's space-filling curve."""
+    low = centres.min(axis=0)
+    grid = ((centres - low) / np.ptp(centres, axis=0).max() * (2**CURVE_BITS - 1)).astype(np.uint64)
+    code = np.zeros(len(centres), np.uint64)
+    for bit in range(CURVE_BITS):
+        for axis in range(3):
+            code |= (grid[:, axis] >> np.uint64(bit) & np.uint64(1)) << np.uint64(3 * bit + axis)
+    found = np.empty(len(centres), np.int32)
+    found[np.argsort(code, kind="stable")] = np.arange(len(centres)) * parts // len(centres)
+    return found
+
+
+def by_graph(mesh: vtkDataSet, parts: int) -> np.ndarray:
+    """PT-Scotch on the graph of cells with common edges or faces."""
+    decomposition = tautline.vtkMeshDecomposition()
+    messages = Messages(decomposition)
+    decomposition.SetNumberOfParts(parts)
+    found = vtkIntArray()
+    decomposition.DivideGraph(mesh, found)
+    messages.raise_errors()
+    return np.array(vtk_to_numpy(found))
+
+
+def divided(mesh: vtkDataSet, method: str, parts: int) -> np.ndarray:
+    """The number of the part of each cell."""
+    centres = points_of(mesh)[cells_of(mesh)].mean(axis=1)
+    ways: dict[str, Callable[[], np.ndarray]] = {
+        "slabs": lambda: bisected(centres, parts, int(np.argmax(np.ptp(centres, axis=0)))),
+        "k-d tree": lambda: bisected(centres, parts),
+        "curve": lambda: along_curve(centres, parts),
+        "graph": lambda: by_graph(mesh, parts),
+        "random": lambda: np.random.default_rng(parts).integers(0, parts, len(centres)).astype(np.int32),
+    }
+    return ways[method]()
+
+
+def counted(mesh: vtkDataSet, method: str, parts: int) -> Division:
+    """Divide a mesh and count what the kernel's sweeps would send."""
+    began = time.process_time()
+    of_cell = divided(mesh, method, parts)
+    seconds = time.process_time() - began
+    decomposition = tautline.vtkMeshDecomposition()
+    messages = Messages(decomposition)
+    decomposition.SetNumberOfParts(parts)
+    table = vtkTable()
+    decomposition.Count(mesh, numpy_to_vtk(np.ascontiguousarray(of_cell, np.int32), deep=True), table)
+    messages.raise_errors()
+    column = {name: vtk_to_numpy(table.GetColumnByName(name)) for name in
+              ("Cells", "Halo Points", "Neighbours", "Messages", "Sent Points")}
+    return Division(
+        cells=int(column["Cells"].sum()),
+        balance=float(column["Cells"].max() / column["Cells"].mean()),
+        halo=int(column["Halo Points"].max()),
+        mean_halo=float(column["Halo Points"].mean()),
+        neighbours=int(column["Neighbours"].max()),
+        messages=int(column["Messages"].max()),
+        bytes=POINT_BYTES * int(column["Sent Points"].max()),
+        sets=decomposition.GetNumberOfSets(),
+        free=decomposition.GetFreePoints(),
+        slowest=decomposition.GetSlowestPoints(),
+        seconds=seconds,
+    )
+
+
+# --- the model ------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Model:
+    """What a sweep costs a rank with a number of cells."""
+
+    halo: float  # points of the halo, of cells ** exponent
+    exponent: float
+    neighbours: float
+    sets: float
+    points: float  # free points per cell
+    waiting: float  # points for which a rank waits for others, of (points x sets) ** 0.5
+    sent: float  # points that a rank sends, of those in its halo
+    second: float  # CPU, of a point in a sweep
+    latency: float
+    bandwidth: float
+
+    def halo_of(self, cells: float) -> float:
+        return self.halo * cells**self.exponent
+
+    def slowest(self, cells: float) -> float:
+        """Points that move one after the other."""
+        free = self.points * cells
+        return free + self.waiting * math.sqrt(free * self.sets)
+
+    def parts_of(self, cells: float, ranks: int) -> dict[str, float]:
+        """Seconds of a sweep: points, waiting for other ranks, messages, bytes, collective exchanges."""
+        free = self.points * cells
+        rounds = math.ceil(math.log2(max(2, ranks)))
+        return {
+            "points": self.second * free,
+            "waiting": self.second * (self.slowest(cells) - free),
+            "messages": self.latency * self.neighbours * self.sets,
+            "bytes": POINT_BYTES * self.sent * self.halo_of(cells) / self.bandwidth,
+            "collective": REDUCTIONS * (rounds * self.latency + ranks * REDUCED_BYTES / self.bandwidth),
+        }
+
+    def efficiency(self, cells: float, ranks: int) -> float:
+        """The time of one rank with as many cells over that of many ranks."""
+        parts = self.parts_of(cells, ranks)
+        return parts["points"] / max(sum(parts.values()), math.ulp(0.0))
+
+
+def slope(sizes: Sequence[float], values: Sequence[float]) -> tuple[float, float]:
+    """a and b of values = a sizes^b."""
+    b, a = np.polyfit(np.log(sizes), np.log(np.maximum(values, 1)), 1)
+    return float(np.exp(a)), float(b)
+
+
+def fitted(sizes: dict[int, Division], weak: dict[int, Division], second: float, given: argparse.Namespace) -> Model:
+    """The model from the halo by size of a part, and the counts of the weak series but for its last."""
+    last = weak[max(list(weak)[:-1])]
+    parts = max(list(weak)[:-1])
+    factor, exponent = slope(list(sizes), [d.halo for d in sizes.values()])
+    free = last.free / parts
+    return Model(factor, exponent, last.neighbours, last.sets, free / (last.cells / parts),
+                 (last.slowest - free) / math.sqrt(free * last.sets), last.bytes / POINT_BYTES / max(1, last.halo),
+                 second, given.latency, given.bandwidth)
+
+
+def second_per_point(mesh: vtkDataSet, free: int) -> float:
+    """CPU seconds of a point in a sweep of Local Newton on inverse mean ratio, in the order of several ranks."""
+    filter_, messages = _configured(mesh, Method("imr", "IMR", ("imr",)), SWEEPS, "newton", threads=1)
+    filter_.SetReproducibleOrder(True)
+    stamps = _timed(filter_, messages)
+    return float((stamps[-1] - stamps[0]) / max(1, len(stamps) - 1) / free)
+
+
+# --- the study ------------------------------------------------------------------------------------------------
+
+COLUMNS = ("parts", "largest / mean cells", "largest halo", "mean halo", "neighbours", "messages", "kB", "waiting %",
+           "CPU s")
+
+
+def row(d: Division, parts: int) -> list:
+    waiting = 100 * (d.slowest * parts / d.free - 1)
+    return [parts, d.balance, d.halo, d.mean_halo, d.neighbours, d.messages, d.bytes / 1000, waiting, d.seconds]
+
+
+def main(arguments: list[str]) -> int:
+    made = parser("decomposition", __doc__, threads=None)
+    made.add_argument("--latency", type=float, default=LATENCY, metavar="S",
+                      help="of the model: seconds per message, an assumption (default: %(default)s)")
+    made.add_argument("--bandwidth", type=float, default=BANDWIDTH, metavar="B",
+                      help="of the model: bytes per second, an assumption (default: %(default)s)")
+    given = made.parse_args(arguments)
+    if not (0 < given.latency < math.inf and 0 < given.bandwidth < math.inf):
+        raise tautline.Error(f"latency {given.latency}, bandwidth {given.bandwidth}: positive numbers are needed")
+    report = Report("decomposition", "Divisions of a mesh for many ranks", given.out, given.small)
+    parts = SMALL_PARTS if given.small else PARTS
+    report.text(
+        "What was asked (outlook of the dissertation): the best decomposition of the domain for an optimizer on many "
+        "processes. Counts are those of the kernel's own order: independent sets move one after the other, after each "
+        f"of them a rank sends its points ({POINT_BYTES} bytes each) in one message to every rank with a copy. They "
+        "are the largest of any part, for one sweep. The boundary is fixed. The optimized points are the same "
+        "for every division, to rounding, so that quality does not depend on it. Slabs, k-d tree and curve are divided "
+        "in numpy, the graph by PT-Scotch. Not measured: energy, and times on a network; the model assumes "
+        f"{given.latency:g} s per message and {given.bandwidth:g} bytes per second."
+    )
+    found: dict[str, dict[str, dict[int, Division]]] = {}
+    for domain, cells in (SMALL_CELLS if given.small else CELLS).items():
+        mesh = tautline.domain(domain, cells)
+        found[domain] = {method: {n: counted(mesh, method, n) for n in parts} for method in METHODS}
+        for method, counts in found[domain].items():
+            file = f"{domain}_{method.replace(' ', '_').replace('-', '')}"
+            title = f"{domain}, {mesh.GetNumberOfCells():,} cells, {method}"
+            report.table(file, title, COLUMNS, [row(d, n) for n, d in counts.items()])
+    division_findings(report, found)
+    scaling(report, given, parts)
+    pictures(report, found)
+    return report.finish("Findings")
+
+
+def scaling(report: Report, given: argparse.Namespace, parts: Sequence[int]) -> None:
+    """The weak series, the model and what it predicts."""
+    per_part = SMALL_PER_PART if given.small else PER_PART
+    beyond = SMALL_BEYOND if given.small else BEYOND
+    weak, mesh = {}, None
+    for n in (*parts, beyond):
+        mesh = tautline.domain("disk3d", n * per_part)
+        weak[n] = counted(mesh, "graph", n)
+    report.table("weak", f"disk3d with about {per_part:,} cells per part, graph", COLUMNS,
+                 [row(d, n) for n, d in weak.items()])
+    count = SMALL_SIZE_PARTS if given.small else SIZE_PARTS
+    sizes: dict[int, Division] = {}
+    for n in SMALL_SIZES if given.small else SIZES:
+        mesh = tautline.domain("disk3d", n * count)
+        d = counted(mesh, "graph", count)
+        sizes[d.cells // count] = d
+    report.table("sizes", f"disk3d in {count} parts, graph", ["cells per part", *COLUMNS[1:]],
+                 [[n, *row(d, count)[1:]] for n, d in sizes.items()])
+    second = second_per_point(tautline.perturb(mesh, fraction=0.9).mesh, list(sizes.values())[-1].free)
+    model = fitted(sizes, weak, second, given)
+    report.table("model", "Parts of a sweep by the model, microseconds per rank, on 1,024 ranks",
+                 ["cells per rank", *model.parts_of(1, 2)],
+                 [[n, *(1e6 * s for s in model.parts_of(n, max(RANKS)).values())] for n in RANK_CELLS])
+    report.table("efficiency", "Efficiency of weak scaling by the model", ["cells per rank", *map(str, RANKS)],
+                 [[n, *(model.efficiency(n, ranks) for ranks in RANKS)] for n in RANK_CELLS])
+    on_each = weak[beyond].cells / beyond
+    scaling_findings(report, weak, model.exponent, {"slowest": model.slowest(on_each), "halo": model.halo_of(on_each)},
+                     {n: model.efficiency(n, max(RANKS)) for n in RANK_CELLS},
+                     model.parts_of(RANK_CELLS[1], max(RANKS)))
+    report.text(explained(model))
+
+
+def explained(model: Model) -> str:
+    """What breaks weak scaling, from the numbers."""
+    rank_cells = RANK_CELLS[1]
+    parts = model.parts_of(rank_cells, max(RANKS))
+    rest = {name: seconds for name, seconds in parts.items() if name != "points"}
+    others = ", ".join(f"{name} {1e6 * seconds:.3g} us" for name, seconds in rest.items())
+    ranks = 2
+    while model.parts_of(rank_cells, ranks)["collective"] < 0.1 * parts["points"] and ranks < 2**30:
+        ranks *= 2
+    return (
+        f"The model: a point takes {1e6 * model.second:.3g} microseconds in a sweep; a part of n cells has "
+        f"{model.points:.3g} n free points, a halo of {model.halo:.3g} n^{model.exponent:.3g} points and "
+        f"{model.neighbours:g} neighbours; {model.sets:g} sets follow each other. All ranks wait for the slowest one "
+        f"after each set, for {model.waiting:.3g} times the root of (free points x sets), in points. With "
+        f"{rank_cells:,} cells on each of {max(RANKS):,} ranks, of what is not the moving of own points "
+        f"{max(rest, key=lambda name: rest[name])} takes the most: {others}. The halo is that of {SIZE_PARTS} parts, "
+        "most of which are at the boundary of the domain: parts inside have larger ones, whose bytes cost little.\n"
+        "What breaks it: (1) few cells per rank: waiting and messages do not shrink with the cells as the work does; "
+        f"(2) exchanges of a number with all ranks send it from each rank to each: from about {ranks:,} ranks "
+        "they take a tenth of the time of the points; (3) the set-up agrees on lengths of messages by a table of ranks "
+        f"x ranks on each rank: {8 * max(RANKS)**2 / 2**20:.0f} MiB with {max(RANKS):,} ranks, "
+        f"{8 * (16 * max(RANKS))**2 / 2**30:.0f} GiB with {16 * max(RANKS):,}; (4) filters that gather the mesh on the "
+        "first rank do not scale at all."
+    )
+
+
+# --- findings -------------------------------------------------------------------------------------------------
+
+
+def division_findings(report: Report, found: dict[str, dict[str, dict[int, Division]]]) -> None:
+    """Partitioners compared on one mesh in more and more parts."""
+    def ratios(domain: str, one: str, other: str) -> dict[int, float]:
+        return {n: d.halo / max(1, found[domain][other][n].halo) for n, d in found[domain][one].items()}
+
+    def text(values: dict[int, float]) -> str:
+        return ", ".join(f"{n}: {v:.2f}" for n, v in values.items())
+
+    for domain, methods in found.items():
+        for method in ("k-d tree", "graph"):
+            balances = {n: d.balance for n, d in methods[method].items()}
+            report.finding(domain, f"{method}: the largest part has at most {BALANCE:g} times the mean of the cells",
+                           max(balances.values()) <= BALANCE, text(balances))
+        values = ratios(domain, "graph", "k-d tree")
+        report.finding(domain, "The graph's largest halo is smaller than the k-d tree's, for every number of parts",
+                       max(values.values()) < 1, "graph over k-d tree: " + text(values))
+        values = ratios(domain, "k-d tree", "curve")
+        report.finding(domain, "The k-d tree's largest halo is smaller than the curve's, for every number of parts",
+                       max(values.values()) < 1, "k-d tree over curve: " + text(values))
+        values = {n: v for n, v in ratios(domain, "slabs", "k-d tree").items() if n > 4}
+        report.finding(domain, "From 8 parts on slabs have larger halos than the k-d tree", min(values.values()) > 1,
+                       "slabs over k-d tree: " + text(values))
+        values = {n: d.messages / max(1, methods["slabs"][n].messages) for n, d in methods["graph"].items() if n > 4}
+        report.finding(domain, "From 8 parts on slabs send fewer messages than the graph's parts, in spite of halos",
+                       min(values.values()) > 1, "graph over slabs: " + text(values))
+        values = {n: d.mean_halo * n / max(1, d.free) for n, d in methods["random"].items()}
+        report.finding(domain, "At random, halos together have more points than move in the whole mesh",
+                       min(values.values()) > 1, "halo points over free points: " + text(values))
+
+
+def scaling_findings(report: Report, weak: dict[int, Division], exponent: float, predicted: dict[str, float],
+                     efficiencies: dict[int, float], shares: dict[str, float]) -> None:
+    """Parts of one size in more and more of them, and what the model says of 1,024 ranks.
+
+    predicted: counts of the last of the series. efficiencies: by cells of a rank. shares: seconds of a sweep.
+    """
+    *parts, beyond = weak
+    last, before = weak[parts[-1]], weak[parts[-2]]
+    where = "weak scaling"
+    report.finding(where, f"The largest halo of {parts[-1]} parts is at most {SAME_HALO:g} times that of {parts[-2]}",
+                   last.halo <= SAME_HALO * before.halo, f"{before.halo}, {last.halo} points")
+    report.finding(where, f"A part has at most {WIDEST} neighbours, with {beyond} parts, too",
+                   max(d.neighbours for d in weak.values()) <= WIDEST,
+                   ", ".join(f"{n}: {d.neighbours}" for n, d in weak.items()))
+    report.finding(where, f"Halos grow with the surface of a part, cells^(2/3) (exponent within {SURFACE_TOLERANCE:g})",
+                   abs(exponent - SURFACE) <= SURFACE_TOLERANCE, f"exponent {exponent:.3f}")
+    measured = weak[beyond].slowest
+    report.finding(where, f"The model has the points that move one after the other on {beyond} ranks, which it was not "
+                   f"fitted to, within {100 * SAME_MODEL:g} %",
+                   abs(predicted["slowest"] / max(1, measured) - 1) <= SAME_MODEL,
+                   f"predicted {predicted['slowest']:.0f}, counted {measured}")
+    measured = weak[beyond].halo
+    report.finding(where, f"... and the largest halo within {100 * SAME_MODEL:g} %",
+                   abs(predicted["halo"] / max(1, measured) - 1) <= SAME_MODEL,
+                   f"predicted {predicted['halo']:.0f}, counted {measured}")
+    ranks = max(RANKS)
+    for cells, value in efficiencies.items():
+        report.finding("model", f"{ranks:,} ranks with {cells:,} cells each are {100 * EFFICIENT:g} % efficient",
+                       value >= EFFICIENT, f"{100 * value:.1f} %")
+    report.finding("model", f"With {RANK_CELLS[1]:,} cells each messages cost more than the bytes in them",
+                   shares["messages"] > shares["bytes"],
+                   f"{1e6 * shares['messages']:.3g} and {1e6 * shares['bytes']:.3g} microseconds")
+    report.finding("model", f"With {RANK_CELLS[1]:,} cells each ranks wait longer for each other than for the network",
+                   shares["waiting"] > shares["messages"] + shares["bytes"] + shares["collective"],
+                   ", ".join(f"{name} {1e6 * s:.3g} us" for name, s in shares.items()))
+
+
+def pictures(report: Report, found: dict[str, dict[str, dict[int, Division]]]) -> None:
+    panels = []
+    for domain, methods in found.items():
+        shown = {name: counts for name, counts in methods.items() if name != "random"}
+        for quantity, label in (("halo", "points of the largest halo"), ("messages", "messages in a sweep")):
+            curves = {name: (list(counts), [getattr(d, quantity) for d in counts.values()])
+                      for name, counts in shown.items()}
+            panels.append((domain, "parts", label, curves))
+    report.lines("halos", panels)
