@@ -28,7 +28,7 @@ std::vector<Bytes> RankGroup::exchange(const std::vector<Bytes>& sent)
   {
     lengths.push_back(static_cast<Index>(bytes.size()));
   }
-  const std::vector<std::vector<Index>> all = this->gatherItems(lengths);
+  const std::vector<Index> expected = this->transpose(std::move(lengths));
   const int own = this->rank();
   std::vector<RankMessage> out, in;
   for (int r = 0; r < this->size(); ++r)
@@ -37,9 +37,9 @@ std::vector<Bytes> RankGroup::exchange(const std::vector<Bytes>& sent)
     {
       out.push_back({ r, sent[r] });
     }
-    if (r != own && all[r][own] > 0)
+    if (r != own && expected[r] > 0)
     {
-      in.push_back({ r, Bytes(static_cast<std::size_t>(all[r][own])) });
+      in.push_back({ r, Bytes(static_cast<std::size_t>(expected[r])) });
     }
   }
   this->start(out, in);
@@ -49,6 +49,42 @@ std::vector<Bytes> RankGroup::exchange(const std::vector<Bytes>& sent)
   for (RankMessage& message : in)
   {
     received[message.rank] = std::move(message.bytes);
+  }
+  return received;
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> RankGroup::transpose(std::vector<Index> numbers)
+{
+  // Number i is under way to the rank i after the one that has it. In each round those with one of
+  // the bits of i go as far as this bit is worth.
+  const int own = this->rank(), size = this->size();
+  std::rotate(numbers.begin(), numbers.begin() + own, numbers.end());
+  for (int step = 1; step < size; step *= 2)
+  {
+    std::vector<Index> moving;
+    for (int i = 0; i < size; ++i)
+    {
+      if (i & step)
+      {
+        moving.push_back(numbers[i]);
+      }
+    }
+    const std::vector<RankMessage> out = { { (own + step) % size, bytesOf(moving) } };
+    std::vector<RankMessage> in = { { (own - step + size) % size, Bytes(out[0].bytes.size()) } };
+    this->start(out, in);
+    this->finish();
+    const std::vector<Index> arrived = itemsOf<Index>(in[0].bytes);
+    auto next = arrived.begin();
+    for (int i = 0; i < size; ++i)
+    {
+      numbers[i] = i & step ? *next++ : numbers[i];
+    }
+  }
+  std::vector<Index> received(numbers.size());
+  for (int i = 0; i < size; ++i)
+  {
+    received[(own - i + size) % size] = numbers[i];
   }
   return received;
 }

@@ -48,6 +48,15 @@ public:
   /// The bytes of every rank, on every rank.
   virtual std::vector<Bytes> allGather(const Bytes& own) = 0;
 
+  /**
+   * @brief Sends one number to each rank (numbers[r], also to itself) and returns that of each.
+   *
+   * In as many rounds as the size has binary digits, each with one message of about half of the
+   * numbers, so that no rank has a table of all ranks by all ranks. Source: J. Bruck et al.,
+   * Efficient algorithms for all-to-all communications in multiport message-passing systems, IEEE
+   * Trans. Parallel Distrib. Syst. 8 (1997), the index operation.
+   */
+  std::vector<Index> transpose(std::vector<Index> numbers);
   /// Sends bytes to each rank (sent[r], also to itself) and returns those of each rank.
   std::vector<Bytes> exchange(const std::vector<Bytes>& sent);
   /// The same with lists of items.

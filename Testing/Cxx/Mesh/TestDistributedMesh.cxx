@@ -228,6 +228,38 @@ void testErrors()
     "neither marks it as a ghost");
 }
 
+/// Every number arrives where it is sent, in few messages.
+void testTranspose()
+{
+  for (const int ranks : { 1, 2, 3, 4, 5, 6, 7, 8, 13, 16, 21 })
+  {
+    const Context context(std::to_string(ranks) + " ranks");
+    Index rounds = 0;
+    while ((1 << rounds) < ranks)
+    {
+      ++rounds;
+    }
+    std::mutex mutex;
+    onRanks(ranks,
+      [&](ThreadRank& group)
+      {
+        std::vector<Index> numbers;
+        for (int r = 0; r < ranks; ++r)
+        {
+          numbers.push_back(1000 * group.rank() + r);
+        }
+        const std::vector<Index> received = group.transpose(numbers);
+        const std::lock_guard<std::mutex> lock(mutex);
+        TAUTLINE_CHECK_EQUAL(group.messages, rounds);
+        TAUTLINE_CHECK_EQUAL(static_cast<int>(received.size()), ranks);
+        for (int r = 0; r < ranks; ++r)
+        {
+          TAUTLINE_CHECK_EQUAL(received[r], 1000 * r + group.rank());
+        }
+      });
+  }
+}
+
 /// The exact sum, in any order and on any ranks.
 void testSum()
 {
@@ -268,6 +300,7 @@ void testSum()
 int TestDistributedMesh(int, char*[])
 {
   testSum();
+  testTranspose();
   testLayout(CellType::Tetrahedron);
   testLayout(CellType::Hexahedron);
   testErrors();
