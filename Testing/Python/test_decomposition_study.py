@@ -92,7 +92,7 @@ def test_model() -> None:
                                 second=1e-6, latency=1e-6, bandwidth=1e9)
     parts = model.parts_of(1000, 64)
     expected = {"points": 2e-4, "waiting": 1e-6 * 1.5 * (200 * 20) ** 0.5, "messages": 2e-4,
-                "bytes": 32 * 0.5 * 600 / 1e9, "collective": 6 * (6e-6 + 64 * 16 / 1e9)}
+                "bytes": 32 * 0.5 * 600 / 1e9, "collective": 6 * (2 * 6e-6 + 64 * 16 / 1e9)}
     assert parts.keys() == expected.keys()
     assert all(abs(parts[name] / expected[name] - 1) < 1e-12 for name in parts), parts
     assert abs(model.efficiency(1000, 64) - 2e-4 / sum(expected.values())) < 1e-12
@@ -100,7 +100,7 @@ def test_model() -> None:
     factor, exponent = decomposition.slope([10, 100, 1000], [3 * n**0.6 for n in (10, 100, 1000)])
     assert abs(factor - 3) < 1e-9 and abs(exponent - 0.6) < 1e-12
     report = _common.Report("decomposition", "verdicts", studies.directory)
-    weak = {n: decomposition.Division(1000 * n, 1.0, 600, 500.0, 10, 100, 9600, 20, 200 * n, 294, 0.1)
+    weak = {n: decomposition.Division(1000 * n, 1.0, 600, 500.0, 10, 100, 9600, 20, 200 * n, 294, 0.1, [])
             for n in (16, 64, 256)}
     numbers = (model.exponent, {"slowest": model.slowest(1000), "halo": model.halo_of(1000)}, {1000: 0.81},
                model.parts_of(1000, 64))
@@ -114,9 +114,22 @@ def test_model() -> None:
     assert verdicts[0] == verdicts[3] == _verdicts.DOES_NOT_HOLD, verdicts
 
 
+def test_spread() -> None:
+    """Where runs of PT-Scotch are on both sides of the k-d tree, nothing is decided."""
+    assert decomposition.counted(tl.domain("disk2d", 500), "graph", 3).halos[1] > 0
+    for halos, verdict in (([90, 95, 99], _verdicts.HOLDS), ([90, 99, 101], _verdicts.NOT_DECIDED),
+                           ([100, 102, 103], _verdicts.DOES_NOT_HOLD)):
+        report = _common.Report("decomposition", "verdicts", studies.directory)
+        one = decomposition.Division(1000, 1.0, 100, 90.0, 4, 10, 960, 10, 200, 210, 0.1, halos)
+        decomposition.division_findings(report, {"any": {method: {8: one} for method in decomposition.METHODS}})
+        found = {sentence: verdict for _, sentence, verdict, _ in report.findings}
+        assert found["The graph's largest halo is smaller than the k-d tree's, for every number of parts"] == verdict
+
+
 if __name__ == "__main__":
     run_all()
     test_numbers()
     test_divisions()
     test_errors()
     test_model()
+    test_spread()

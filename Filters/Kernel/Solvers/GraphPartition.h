@@ -19,8 +19,8 @@ namespace tautline
  * @param parts at least 1, at most the number of cells
  * @return per cell, the number of its part, 0 to parts - 1
  *
- * PT-Scotch goes on with its random numbers from call to call: the first call of a program always
- * gives the same parts, a later one may give others, as good.
+ * The parts are not reproducible: PT-Scotch works with threads, and two calls, also of two runs of
+ * one program, give different parts, about as good.
  *
  * Throws Error for numbers of parts out of range and where PETSc has no PT-Scotch.
  *
