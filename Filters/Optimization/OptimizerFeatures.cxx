@@ -2,6 +2,7 @@
 #include "OptimizerSetup.h"
 
 #include "MeshAdapter.h"
+#include "tautline/Core/Interruption.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -159,29 +160,27 @@ void OptimizerSetup::slideOnGeometry(const OptimizerSettings& settings, vtkDataS
 /// slide as soon as a step takes them there.
 void OptimizerSetup::placePoints()
 {
-  constexpr int maxRounds = 20;
   const Mesh& mesh = this->TheMesh.mesh();
   const MeshView& view = mesh.view();
   const std::vector<signed char>& before = this->TheMesh.validity();
   std::vector<double>& points = this->Match.points;
-  bool valid = false;
-  for (int round = 0; round < maxRounds && !valid; ++round)
+  // What goes back may make elements beside it invalid. Each round takes a point back for good.
+  for (bool more = true; more;)
   {
+    more = false;
     const std::vector<signed char> after = this->TheMesh.validityAt(points);
-    valid = true;
     for (Index cell = 0; cell < view.numberOfCells; ++cell)
     {
+      pollInterruption(cell);
       const bool lost = before[cell] == Valid && after[cell] != Valid;
-      valid = valid && !lost;
       for (Index n = view.offsets[cell]; lost && n < view.offsets[cell + 1]; ++n)
       {
-        std::copy_n(view.points + 3 * view.connectivity[n], 3, &points[3 * view.connectivity[n]]);
+        const double* from = view.points + 3 * view.connectivity[n];
+        double* to = &points[3 * view.connectivity[n]];
+        more = more || !std::equal(from, from + 3, to);
+        std::copy_n(from, 3, to);
       }
     }
-  }
-  if (!valid)
-  {
-    points.assign(view.points, view.points + 3 * view.numberOfPoints);
   }
   MeshView placed = view;
   placed.points = points.data();

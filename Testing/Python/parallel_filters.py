@@ -18,6 +18,8 @@ from parallel_tools import columns, parts, update  # noqa: E402
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
 WARP_ANGLE, WARP_STEPS = 30, 2
+CRITERIA = """{"name": "test", "criteria": [{"metric": "mean_ratio", "weight": 2,
+  "limits": {"all": {"ideal": 1, "good": 0.8, "warn": 0.72, "fail": 0.69, "worst": 0.5}}}]}"""
 results = {}
 
 # Runs on every rank: its part of a jittered cube of tetrahedra, or of a square of triangles. The points are in the
@@ -142,6 +144,8 @@ def motions(name, cut, **given):
     options = {"Percentage": 80, "Fraction": 0.7, "TangledFraction": 0.02, "FixedPoints": ["POINTS", "stay"]}
     moved = update(PerturbMesh(source, **options))
     results[f"perturb {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
+    graded = update(ElementQuality(source, Metrics=["Mean ratio"], Criteria=CRITERIA))
+    results[f"criteria {name}"] = values(graded, ["Grade", "QualityIndex", "mean_ratio"], "cell number")
     compared = update(CompareMeshes(Input=source, Other=moved, Metrics=["Mean ratio"]))
     arrays = ["Validity_after", "mean_ratio_difference", "Change"]
     results[f"compare {name}"] = [values(compared, arrays, "cell number"), table(compared, 1), compared.Summary]

@@ -4,7 +4,8 @@ test_interrupts.py PART [NAME], where PART is signal, cancel, limit, shell or so
 operation would take much longer than the test waits. SIGINT is sent after the operation has reported its first
 progress, by another process, because Python executes nothing else meanwhile. The times to the end are printed; the
 bound that is checked is generous, because the machine may be busy. The time that an operation computes between two
-polls does not depend on that: it is CPU time of the calling thread, and has a bound of its own.
+polls does not depend on that: it is CPU time of the calling thread, and has a bound of its own. So is what it computes
+after its time limit: CPU time of the process.
 """
 
 import os
@@ -28,6 +29,7 @@ ENDS_WITHIN = 20.0  # seconds, on a busy machine; a second on an idle one
 UNPOLLED = 0.7  # seconds of CPU time between two polls; a loop without a poll takes longer
 DELAY = 0.5  # seconds from the first progress to SIGINT
 TIME_LIMIT = 1.0
+OVERRUN = 1.0  # seconds of CPU time of the whole process after the time limit
 #: What goes on in the background after its end, and is in the way of what follows.
 IN_BACKGROUND = ("warp factorization", "solve factorization", "condition accurate", "solver study")
 #: What the part `some` interrupts, in pvpython: one of each kind.
@@ -157,11 +159,28 @@ def check_writer() -> None:
     file.unlink()
 
 
+class CpuAtLimit:
+    """The CPU time of this process at its time limit, read by another process: Python executes nothing meanwhile."""
+
+    TICKS = 11, 12  # of the fields of /proc/PID/stat after the name: utime and stime
+
+    def __init__(self) -> None:
+        script = f"sleep {TIME_LIMIT}; cat /proc/{os.getpid()}/stat"
+        self.reader = subprocess.Popen(["sh", "-c", script], stdout=subprocess.PIPE, text=True)
+
+    def overrun(self) -> float:
+        """Seconds of CPU time since then, of all threads."""
+        now = sum(os.times()[:2])
+        fields = self.reader.communicate()[0].rpartition(")")[2].split()
+        return now - sum(int(fields[k]) for k in self.TICKS) / os.sysconf("SC_CLK_TCK")
+
+
 def check_limit(name: str) -> None:
     operation, outcome = OPERATIONS[name]
     with suppress(tl.Aborted):  # makes the input, which is kept
         operation(progress=lambda *_: False)
     began = time.monotonic()
+    cpu = CpuAtLimit()
     try:
         with polling(name):
             operation(time_limit=TIME_LIMIT)
@@ -169,7 +188,10 @@ def check_limit(name: str) -> None:
         assert outcome != BEST and "time limit" in str(error), (name, str(error))
     else:
         assert outcome != LIMIT, f"{name} did not end at its time limit"
+    overrun = cpu.overrun()
     show(name, time.monotonic() - began, f"the start, with a limit of {TIME_LIMIT} s")
+    print(f"  {name}: {overrun:.2f} s of CPU time after the limit", flush=True)
+    assert overrun < OVERRUN, f"{name} computed {overrun:.2f} s after its time limit"
 
 
 def check_shell() -> None:

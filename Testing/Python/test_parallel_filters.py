@@ -63,6 +63,8 @@ for case in CASES:
     assert np.abs(np.asarray(one[f"warp {case}"])[:, 3:]).max() > 0.1 and len(one[f"warp {case}"]) == 64
     points, summary = one[f"perturb {case}"]
     assert np.ptp(np.asarray(points)[:, 3:]) > 0.01 and "Inverted elements" in summary
+    grades = np.asarray(one[f"criteria {case}"])
+    assert len(grades) == 162 and len(set(grades[:, 0])) > 1 and np.ptp(grades[:, 1]) > 0.1, grades
     assert len(one[f"compare {case}"][0]) == 162 and np.ptp(np.asarray(one[f"compare {case}"][0])[:, 2]) > 0
     assert len(one[f"improve {case}"][0]) != 162 or one[f"improve {case}"][2] > 1
     assert one[f"condition {case}"][0] > 1 and len(one[f"rows {case}"][0]) == 81

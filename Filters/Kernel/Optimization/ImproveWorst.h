@@ -27,7 +27,7 @@ struct WorstLimits
  * the second sum.
  * @param report called after each round that improved the mesh; returns false to stop
  */
-void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
+TAUTLINE_KERNEL_EXPORT void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report);
 }
 #endif

@@ -73,6 +73,65 @@ inline OptimizeResult run(const MeshData& data, const OptimizeOptions& options)
   return optimize(Mesh(data.view()), options);
 }
 
+/**
+ * A smooth wave, which each sweep reduces by little steps of all vertices, and far from it a vertex
+ * that the first sweep moves a long way and that stays there: with a culling threshold of
+ * QuickCulling, the second sweep visits that one only.
+ */
+inline MeshData waveAndQuickVertex()
+{
+  constexpr Index n = 12;
+  MeshData data = blockMesh(CellType::Triangle, n, n, 0);
+  data.transform(
+    [](const Vec3& p)
+    {
+      const double turn = 2 * std::acos(-1.0) / n;
+      return Vec3{ p[0] + 0.4 * std::sin(turn * p[0]), p[1] + 0.4 * std::sin(turn * p[1]), 0 };
+    });
+  constexpr double away = 2 * n;
+  const Index middle = data.addPoint({ away + 0.7, away, 0 });
+  constexpr Index around = 6;
+  for (Index k = 0; k < around; ++k)
+  {
+    const double angle = 2 * std::acos(-1.0) * static_cast<double>(k) / around;
+    data.addPoint({ away + std::cos(angle), away + std::sin(angle), 0 });
+  }
+  for (Index k = 0; k < around; ++k)
+  {
+    data.addCell(CellType::Triangle,
+      std::vector<Index>{ middle, middle + 1 + k, middle + 1 + (k + 1) % around });
+  }
+  return data;
+}
+constexpr double QuickCulling = 0.1;
+
+/// Whether a sweep gained less than a fraction of the objective, and a later one more.
+inline bool wentOn(const std::vector<IterationRecord>& history, double fraction)
+{
+  bool little = false, more = false;
+  for (std::size_t i = 1; i < history.size(); ++i)
+  {
+    const double gain = 1 - history[i].objective / history[i - 1].objective;
+    more = more || (little && gain > fraction);
+    little = little || gain < fraction;
+  }
+  return more;
+}
+
+/// How much one more sweep over all vertices lowers the objective, relative to it.
+inline double nextGain(const MeshData& like, const std::vector<double>& points)
+{
+  MeshData moved = like;
+  moved.points = points;
+  OptimizeOptions options;
+  options.optimizer = Optimizer::LocalNewton;
+  options.stopping.maximumIterations = 1;
+  options.relaxation = 1;
+  options.holdWorst = false;
+  const OptimizeResult result = optimize(Mesh(moved.view()), options);
+  return 1 - result.history.back().objective / result.history.front().objective;
+}
+
 /// A history whose objective never rises and agrees with the metric at the points.
 inline void checkHistory(const MeshData& data, const OptimizeResult& result)
 {

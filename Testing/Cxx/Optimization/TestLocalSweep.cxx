@@ -191,6 +191,29 @@ void testCulling()
   }
 }
 
+/// A sweep that culling has kept to a few vertices does not tell that the others have converged.
+void testConvergenceOfAll()
+{
+  constexpr double tolerance = 1e-3;
+  const MeshData data = waveAndQuickVertex();
+  OptimizeOptions options;
+  options.optimizer = Optimizer::LocalNewton;
+  options.culling = QuickCulling;
+  options.relaxation = 1;
+  options.stopping.relativeChange = tolerance;
+  const OptimizeResult result = run(data, options);
+  TAUTLINE_CHECK(result.reason == StopReason::RelativeChange);
+  const std::vector<IterationRecord>& history = result.history;
+  std::cout << "gains";
+  for (std::size_t i = 1; i < history.size(); ++i)
+  {
+    std::cout << " " << 1 - history[i].objective / history[i - 1].objective;
+  }
+  std::cout << ", then " << nextGain(data, result.points) << "\n";
+  TAUTLINE_CHECK(wentOn(history, tolerance));
+  TAUTLINE_CHECK(nextGain(data, result.points) <= tolerance);
+}
+
 //------------------------------------------------------------------------------
 /// The worst element is improved as long as the mean does not rise by more than is allowed; the
 /// result is the last round that keeps to it.
@@ -233,6 +256,7 @@ int TestLocalSweep(int, char*[])
   testGradient();
   testRelaxation();
   testCulling();
+  testConvergenceOfAll();
   testAllowance();
   return exitCode();
 }

@@ -514,6 +514,112 @@ void testStopping()
   TAUTLINE_CHECK_THROWS(
     minimize(f, x.data(), optionsFor(Optimizer::LimitedMemoryBFGS, -1, 0)), "at least 0");
 }
+
+//------------------------------------------------------------------------------
+/// A value that falls by steps of the way gone, with a slope too small to be seen in it.
+struct Stairs : SmoothFunction
+{
+  static constexpr double slope = 1e-20, height = 0.1;
+  int stepsPerStair; ///< 0: it never falls
+  explicit Stairs(int steps)
+    : stepsPerStair(steps)
+  {
+  }
+  std::size_t size() const override { return 4; }
+  double valueAndGradient(const double* x, double* g) override
+  {
+    std::fill(g, g + this->size(), -slope);
+    const double gone = std::floor(x[0] + 0.5);
+    return 2 - (this->stepsPerStair > 0 ? height * std::floor(gone / this->stepsPerStair) : 0.0);
+  }
+  /// No step is longer than 1 in each variable.
+  double largestStep(const double*, const double* d, double wanted) override
+  {
+    return std::min(wanted, 1 / std::abs(d[0]));
+  }
+  /// Newton's step has length 1.
+  bool hessianTimes(const double* d, double* product) override
+  {
+    std::transform(d, d + this->size(), product, [](double x) { return slope * x; });
+    return true;
+  }
+};
+
+/// Three iterations in a row without a visible change end the run; two, and then a change, do not.
+void testStalled()
+{
+  constexpr int stalled = 3, iterations = 30;
+  for (Optimizer method : methods)
+  {
+    const Context name(nameOf(method));
+    Stairs flat(0);
+    Vector x(flat.size(), 0.0);
+    MinimizeResult m = minimize(flat, x.data(), optionsFor(method, iterations, 0));
+    TAUTLINE_CHECK(m.reason == StopReason::NoProgress);
+    TAUTLINE_CHECK_EQUAL(m.iterations, stalled);
+    Stairs falling(stalled);
+    x.assign(falling.size(), 0.0);
+    m = minimize(falling, x.data(), optionsFor(method, iterations, 0));
+    TAUTLINE_CHECK(m.reason == StopReason::IterationLimit);
+    TAUTLINE_CHECK_NEAR(x[0], static_cast<double>(iterations), 1e-6);
+    TAUTLINE_CHECK_NEAR(m.value, 2 - Stairs::height * iterations / stalled, 1e-12);
+  }
+}
+
+/// Of one variable: the first trial step of each method goes to `trial`, where the value has fallen
+/// by a given part of what the slope promises, and the slope is 0.
+struct FirstTrial : SmoothFunction
+{
+  static constexpr double trial = 0.1;
+  double part;
+  explicit FirstTrial(double given)
+    : part(given)
+  {
+  }
+  std::size_t size() const override { return 1; }
+  double valueAndGradient(const double* x, double* g) override
+  {
+    // Hermite's cubic from value 1 and slope -1, and a parabola beyond.
+    const double t = x[0] / trial, end = 1 - this->part * trial;
+    if (t > 1)
+    {
+      g[0] = x[0] - trial;
+      return end + 0.5 * g[0] * g[0];
+    }
+    const double up = t * t * (3 - 2 * t);
+    g[0] = -(1 - 4 * t + 3 * t * t) + 6 * t * (1 - t) * (end - 1) / trial;
+    return 1 - trial * t * (1 - t) * (1 - t) + up * (end - 1);
+  }
+  /// Of a parabola with its minimum at the trial step.
+  bool hessianTimes(const double* d, double* product) override
+  {
+    product[0] = d[0] / trial;
+    return true;
+  }
+};
+
+/// A step has to reach 1e-4 of the decrease that the slope promises: half of that is refused, twice
+/// as much is taken.
+void testArmijo()
+{
+  constexpr double constant = 1e-4;
+  for (Optimizer method : methods)
+  {
+    const Context name(nameOf(method));
+    for (const double times : { 0.5, 2.0 })
+    {
+      const Context inner("times " + std::to_string(times));
+      FirstTrial f(times * constant);
+      Vector x(1, 0.0);
+      const MinimizeResult m = minimize(f, x.data(), optionsFor(method, 1, 0));
+      TAUTLINE_CHECK_EQUAL(m.iterations, 1);
+      TAUTLINE_CHECK(m.value <= 1 - constant * x[0]);
+      const bool taken = std::abs(x[0] - FirstTrial::trial) < 1e-12;
+      TAUTLINE_CHECK_EQUAL(taken, times > 1);
+      TAUTLINE_CHECK_EQUAL(m.evaluations == 2, times > 1);
+    }
+  }
+}
 }
 
 int TestMinimize(int, char*[])
@@ -525,5 +631,7 @@ int TestMinimize(int, char*[])
   testBarrier();
   testRough();
   testStopping();
+  testStalled();
+  testArmijo();
   return exitCode();
 }

@@ -1,7 +1,6 @@
 // Optimization and untangling on ranks: the points do not depend on how the mesh is cut, and are as
 // good as those of one process in its own order.
-#include "Blocks.h"
-#include "Check.h"
+#include "Optimizing.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
@@ -187,6 +186,22 @@ OptimizeOptions with(std::vector<Metric> metrics)
   return options;
 }
 
+/// See testConvergenceOfAll() of TestLocalSweep.
+void testConvergenceOfAll()
+{
+  constexpr double tolerance = 1e-3;
+  const MeshData data = waveAndQuickVertex();
+  OptimizeOptions options = with({ Metric::InverseMeanRatio });
+  options.culling = QuickCulling;
+  options.relaxation = 1;
+  options.stopping.relativeChange = tolerance;
+  const Run found = testCuts("convergence of all", data, options);
+  TAUTLINE_CHECK(found.result.reason == StopReason::RelativeChange);
+  const std::vector<IterationRecord>& history = found.result.history;
+  TAUTLINE_CHECK(wentOn(history, tolerance));
+  TAUTLINE_CHECK(nextGain(data, found.points) <= tolerance);
+}
+
 /// Throws on one rank: an error on all.
 void testFailure()
 {
@@ -291,6 +306,7 @@ int TestOptimizeOnRanks(int, char*[])
   TAUTLINE_CHECK_EQUAL(both.result.invertedAfter, usual.invertedAfter);
   std::cout << "untangled " << untangled.result.invertedBefore << " elements, "
             << usual.invertedAfter << " remain\n";
+  testConvergenceOfAll();
   testFailure();
   testRefusals();
   return exitCode();
