@@ -20,25 +20,25 @@ void TableRows::begin(const std::string& block)
 }
 
 //------------------------------------------------------------------------------
-TableRows::Column& TableRows::next(const std::string& name)
+TableRows::Column& TableRows::next(std::string_view name)
 {
   if (this->Next == this->Columns.size())
   {
-    this->Columns.push_back({ name, {}, {} });
+    this->Columns.push_back({ std::string(name), {}, {} });
   }
   return this->Columns[this->Next++];
 }
 
 //------------------------------------------------------------------------------
-void TableRows::add(const std::string& column, double value)
+void TableRows::add(std::string_view column, double value)
 {
   this->next(column).values.push_back(value);
 }
 
 //------------------------------------------------------------------------------
-void TableRows::addText(const std::string& column, const std::string& value)
+void TableRows::addText(std::string_view column, std::string_view value)
 {
-  this->next(column).texts.push_back(value);
+  this->next(column).texts.emplace_back(value);
 }
 
 //------------------------------------------------------------------------------
@@ -58,9 +58,10 @@ void TableRows::fill(vtkTable* table) const
     }
     vtkNew<vtkStringArray> array;
     array->SetName(column.name.c_str());
-    for (const std::string& text : column.texts)
+    array->SetNumberOfValues(static_cast<vtkIdType>(column.texts.size()));
+    for (std::size_t i = 0; i < column.texts.size(); ++i)
     {
-      array->InsertNextValue(text);
+      array->SetValue(static_cast<vtkIdType>(i), column.texts[i]);
     }
     table->AddColumn(array);
   }

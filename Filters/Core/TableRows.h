@@ -13,6 +13,7 @@
 #include "TautlineCoreModule.h" // for export macro
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 class vtkTable;
@@ -25,8 +26,29 @@ public:
   /// Begins a row. @param block a name for the text column `Block`; "": there is no such column
   void begin(const std::string& block = "");
   /// Adds a value to the row. Rows have the same columns in the same order.
-  void add(const std::string& column, double value);
-  void addText(const std::string& column, const std::string& value);
+  void add(std::string_view column, double value);
+  void addText(std::string_view column, std::string_view value);
+  /// Adds a column of many rows at once, value(i) of row i; after begin(), like all columns of these.
+  template <class Value>
+  void addMany(std::string_view column, std::size_t rows, const Value& value)
+  {
+    std::vector<double>& values = this->next(column).values;
+    values.reserve(values.size() + rows);
+    for (std::size_t i = 0; i < rows; ++i)
+    {
+      values.push_back(value(i));
+    }
+  }
+  template <class Text>
+  void addManyTexts(std::string_view column, std::size_t rows, const Text& text)
+  {
+    std::vector<std::string>& texts = this->next(column).texts;
+    texts.reserve(texts.size() + rows);
+    for (std::size_t i = 0; i < rows; ++i)
+    {
+      texts.emplace_back(text(i));
+    }
+  }
   /// Replaces the contents of a table.
   void fill(vtkTable* table) const;
 
@@ -37,7 +59,7 @@ private:
     std::vector<double> values;
     std::vector<std::string> texts;
   };
-  Column& next(const std::string& name);
+  Column& next(std::string_view name);
   std::vector<Column> Columns;
   std::size_t Next = 0;
 };

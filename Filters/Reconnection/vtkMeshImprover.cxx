@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <sstream>
+#include <utility>
 
 vtkStandardNewMacro(vtkMeshImprover);
 
@@ -83,17 +84,18 @@ const char* reasonText(tautline::StopReason reason)
 std::vector<tautline::Index> remainingOf(
   const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved)
 {
-  std::vector<tautline::Index> cells;
+  std::vector<std::pair<double, tautline::Index>> byAngle;
   for (std::size_t i = 0; i < result.obstacles.size(); ++i)
   {
     if (result.obstacles[i] != static_cast<signed char>(tautline::ReconnectionObstacle::None))
     {
-      cells.push_back(static_cast<tautline::Index>(i));
+      byAngle.emplace_back(improved.smallestAngles[i], static_cast<tautline::Index>(i));
     }
   }
-  std::stable_sort(cells.begin(), cells.end(),
-    [&improved](tautline::Index a, tautline::Index b)
-    { return improved.smallestAngles[a] < improved.smallestAngles[b]; });
+  std::sort(byAngle.begin(), byAngle.end());
+  std::vector<tautline::Index> cells(byAngle.size());
+  std::transform(
+    byAngle.begin(), byAngle.end(), cells.begin(), [](const auto& entry) { return entry.second; });
   return cells;
 }
 
@@ -124,19 +126,31 @@ void addRemaining(tautline::TableRows& rows, const std::vector<tautline::Index>&
   const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved,
   const Words& words, const std::string& block)
 {
-  for (const tautline::Index cell : cells)
+  const std::size_t n = cells.size();
+  if (n == 0)
   {
-    rows.begin(block);
-    rows.add("Cell", static_cast<double>(cell));
-    rows.add("Smallest angle", improved.smallestAngles[cell]);
-    rows.add("imr", improved.inverseMeanRatios[cell]);
-    rows.add("X", improved.centers[cell][0]);
-    rows.add("Y", improved.centers[cell][1]);
-    rows.add("Z", improved.centers[cell][2]);
-    rows.add("Quality", result.qualities[cell]);
-    rows.add("Quality bound", result.bounds[cell]);
-    rows.addText("Reason", words.obstacles[result.obstacles[cell]]);
+    return;
   }
+  // Column by column: rows of cells in any order are slow to collect, and there may be many.
+  rows.begin();
+  if (!block.empty())
+  {
+    rows.addManyTexts("Block", n, [&](std::size_t) { return block; });
+  }
+  const auto add = [&](const char* column, const std::vector<double>& values)
+  { rows.addMany(column, n, [&](std::size_t i) { return values[cells[i]]; }); };
+  rows.addMany("Cell", n, [&](std::size_t i) { return static_cast<double>(cells[i]); });
+  add("Smallest angle", improved.smallestAngles);
+  add("imr", improved.inverseMeanRatios);
+  constexpr std::array<const char*, 3> axes = { "X", "Y", "Z" };
+  for (std::size_t c = 0; c < axes.size(); ++c)
+  {
+    rows.addMany(axes[c], n, [&](std::size_t i) { return improved.centers[cells[i]][c]; });
+  }
+  add("Quality", result.qualities);
+  add("Quality bound", result.bounds);
+  rows.addManyTexts(
+    "Reason", n, [&](std::size_t i) { return words.obstacles[result.obstacles[cells[i]]]; });
 }
 
 /// "12 edge removals, 3 motions of points"

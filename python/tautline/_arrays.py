@@ -91,7 +91,7 @@ def columns(table: Any) -> dict[str, Any]:
     for i in range(table.GetNumberOfColumns()):
         column = table.GetColumn(i)
         if column.IsA("vtkStringArray"):
-            result[column.GetName()] = [column.GetValue(k) for k in range(column.GetNumberOfValues())]
+            result[column.GetName()] = list(map(column.GetValue, range(column.GetNumberOfValues())))
         else:
             result[column.GetName()] = vtk_to_numpy(column)
     return result

@@ -209,8 +209,9 @@ def _named(table: Any) -> dict[str, Any]:
     """The columns of a table by names of Python; ids and counts are integers."""
     renamed = {"Time (s)": "seconds"}
     real = ("seconds", "smallest_angle", "largest_angle", "worst_imr", "imr", "x", "y", "z", "quality", "quality_bound")
-    names = {name: name.removeprefix("N ").lower().replace(" ", "_") for name in columns(table)} | renamed
-    result = {names[name]: column for name, column in columns(table).items()}
+    found = columns(table)  # once: texts of many rows take a while
+    names = {name: name.removeprefix("N ").lower().replace(" ", "_") for name in found} | renamed
+    result = {names[name]: column for name, column in found.items()}
     return {
         name: column if isinstance(column, list) or name in real else column.astype(int)
         for name, column in result.items()

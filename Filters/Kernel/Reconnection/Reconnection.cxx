@@ -513,7 +513,7 @@ bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels)
       }
     }
     joinBlocks(this->Mesh, this->Operations, blocks, this->Options.threads);
-    starts = this->addRings(std::move(next));
+    starts = goesOn ? this->addRings(std::move(next)) : std::vector<char>();
     if (!this->record(k + 1, BlockProgress * (k + 1) / Partitions) && goesOn)
     {
       goesOn = false;

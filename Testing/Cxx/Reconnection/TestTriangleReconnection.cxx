@@ -307,10 +307,10 @@ void testFlat()
   TAUTLINE_CHECK(borderOf(output) != borderOf(data));
   TAUTLINE_CHECK_RELATIVE(areaOf(output), areaOf(data), 1e-13);
   const double right = 12 + 0.07 * 144, top = 12 + 0.3 * std::sin(12.0);
-  for (const auto& [a, b] : borderOf(output))
+  for (const auto& ends : borderOf(output))
   {
     const auto along = [&](int axis, double value)
-    { return std::abs(a[axis] - value) < 1e-13 && std::abs(b[axis] - value) < 1e-13; };
+    { return std::abs(ends[0][axis] - value) < 1e-13 && std::abs(ends[1][axis] - value) < 1e-13; };
     TAUTLINE_CHECK(along(0, 0.0) || along(0, right) || along(1, 0.0) || along(1, top));
   }
   TAUTLINE_CHECK(result.history.back().smallestAngle >= 40.0 && kept >= 39.0);
