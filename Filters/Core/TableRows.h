@@ -28,7 +28,8 @@ public:
   /// Adds a value to the row. Rows have the same columns in the same order.
   void add(std::string_view column, double value);
   void addText(std::string_view column, std::string_view value);
-  /// Adds a column of many rows at once, value(i) of row i; after begin(), like all columns of these.
+  /// Adds a column of many rows, value(i) of row i. Follows begin(); all columns of a row are then
+  /// added so, with the same number of rows.
   template <class Value>
   void addMany(std::string_view column, std::size_t rows, const Value& value)
   {
