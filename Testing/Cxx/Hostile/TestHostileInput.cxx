@@ -9,6 +9,7 @@
 #include "HostileFilters.h"
 
 #include "Check.h"
+#include "Sanitized.h"
 #include "VtkMeshes.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -458,9 +459,10 @@ void send(int pipe, int place, int state, const std::string& text)
   }
   const rlimit noCore = { 0, 0 }, memory = { MemoryLimit, MemoryLimit };
   setrlimit(RLIMIT_CORE, &noCore);
-#if !defined(__SANITIZE_ADDRESS__)
-  setrlimit(RLIMIT_AS, &memory);
-#endif
+  if (!TAUTLINE_ADDRESS_SANITIZER)
+  {
+    setrlimit(RLIMIT_AS, &memory);
+  }
   vtkNew<SilentWindow> window;
   vtkOutputWindow::SetInstance(window);
   for (; place < static_cast<int>(list.size()); ++place)
