@@ -88,6 +88,16 @@ std::vector<double> tupleOf(
   return { p[0], p[1] };
 }
 
+/// A column of one row.
+template <class Array, class Value>
+void addColumn(const char* name, Value value, vtkTable* table)
+{
+  vtkNew<Array> column;
+  column->SetName(name);
+  column->InsertNextValue(value);
+  table->AddColumn(column);
+}
+
 void checkComponents(Index components, vtkDataArray* array)
 {
   const int has = array->GetNumberOfComponents();
@@ -227,19 +237,9 @@ std::vector<double> onMesh(
 void fillSpectrum(const PeridynamicSystem& system, const Spectrum* spectrum, vtkTable* table)
 {
   const auto real = [table](const char* name, double value)
-  {
-    vtkNew<vtkDoubleArray> column;
-    column->SetName(name);
-    column->InsertNextValue(value);
-    table->AddColumn(column);
-  };
+  { addColumn<vtkDoubleArray>(name, value, table); };
   const auto whole = [table](const char* name, Index value)
-  {
-    vtkNew<vtkTypeInt64Array> column;
-    column->SetName(name);
-    column->InsertNextValue(value);
-    table->AddColumn(column);
-  };
+  { addColumn<vtkTypeInt64Array>(name, value, table); };
   const Spectrum none;
   const Spectrum& s = spectrum ? *spectrum : none;
   real("Condition", s.condition);
@@ -256,6 +256,17 @@ void fillSpectrum(const PeridynamicSystem& system, const Spectrum* spectrum, vtk
   real("LayerDeficit", system.layerDeficit);
   whole("IntegratedPairs", system.integratedPairs);
   real("Memory", system.memory);
+}
+
+//------------------------------------------------------------------------------
+void addSolveReport(const SolveReport& report, vtkTable* table)
+{
+  addColumn<vtkTypeInt64Array>("SolverIterations", report.iterations, table);
+  addColumn<vtkDoubleArray>("SolverResidual", report.residual, table);
+  addColumn<vtkTypeInt64Array>("SolverConverged", report.converged, table);
+  const bool known = report.ritzSmallest > 0.0;
+  addColumn<vtkDoubleArray>(
+    "PreconditionedCondition", known ? report.ritzLargest / report.ritzSmallest : 0.0, table);
 }
 
 //------------------------------------------------------------------------------

@@ -49,6 +49,9 @@ std::vector<double> onMesh(
 /// One row: the facts of the matrix and, if there is one, of its spectrum.
 void fillSpectrum(const PeridynamicSystem& system, const Spectrum* spectrum, vtkTable* table);
 
+/// Adds columns to it: how the solution was found; zeros where there is none.
+void addSolveReport(const SolveReport& report, vtkTable* table);
+
 /// Entries per pixel, rows from top to bottom (Figure 4.2); at most `pixels` each way.
 void drawSparsity(const SparseMatrix& matrix, int pixels, vtkImageData* image);
 }

@@ -5,6 +5,8 @@
 #include "PointMerge.h"
 #include "GatheredExecution.h"
 
+#include "tautline/Peridynamics/PeridynamicSolve.h"
+
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -45,6 +47,7 @@ constexpr const char* DefaultRegion = "Reference";
 // Fractions of the progress: until the matrix is there, and until its eigenvalues are.
 constexpr double AssemblyShare = 0.7, SpectrumShare = 0.9;
 constexpr double MebiByte = 1048576.0;
+constexpr double SolverTolerance = 1e-10; // relative residual of the solution
 }
 
 //------------------------------------------------------------------------------
@@ -181,6 +184,7 @@ void vtkPeridynamicStiffness::ClearResult()
 {
   this->Superclass::ClearResult();
   this->Condition = this->SmallestEigenvalue = this->LargestEigenvalue = 0.0;
+  this->SolverIterations = 0;
 }
 
 //------------------------------------------------------------------------------
@@ -252,25 +256,24 @@ void vtkPeridynamicStiffness::Compute(
     tautline::addRowVector(result, spectrum->smallestVector, "SmallestMode", nullptr, output);
     tautline::addRowVector(result, spectrum->largestVector, "LargestMode", nullptr, output);
   }
-  if (this->Solve)
-  {
-    this->SolveSystem(taken, system, given, input, output);
-  }
+  const tautline::SolveReport solved =
+    this->Solve ? this->SolveSystem(taken, system, given, input, output) : tautline::SolveReport();
   vtkDataSetAttributes* data = this->Basis == PIECEWISE_LINEAR
     ? static_cast<vtkDataSetAttributes*>(output->GetPointData())
     : output->GetCellData();
   data->SetActiveScalars(this->Solve ? "Solution" : "Neighbors");
   tautline::fillSpectrum(system, spectrum, table);
+  tautline::addSolveReport(solved, table);
   if (this->SparsityPixels > 0)
   {
     tautline::drawSparsity(system.matrix, this->SparsityPixels, picture);
   }
-  this->Report(system, spectrum);
+  this->Report(system, spectrum, solved);
   this->AddToSummary(taken.notice());
 }
 
 //------------------------------------------------------------------------------
-void vtkPeridynamicStiffness::SolveSystem(const tautline::HorizonInput& input,
+tautline::SolveReport vtkPeridynamicStiffness::SolveSystem(const tautline::HorizonInput& input,
   const tautline::PeridynamicSystem& system, const std::vector<double>& given, vtkDataSet* data,
   vtkDataSet* output)
 {
@@ -305,19 +308,22 @@ void vtkPeridynamicStiffness::SolveSystem(const tautline::HorizonInput& input,
   options.threads = this->Threads;
   options.progress = [this](double part) { return this->ProceedWithin(SpectrumShare, 1.0, part); };
   std::vector<double> solution;
-  const tautline::SolveReport report =
-    tautline::solveConjugateGradients(system.matrix, load, solution, 1e-10, options);
+  const tautline::SolveReport report = tautline::solvePeridynamics(input.mesh(), this->GetOptions(),
+    system, static_cast<tautline::NonlocalPreconditioner>(this->Preconditioner), load, solution,
+    SolverTolerance, options);
+  this->SolverIterations = static_cast<int>(report.iterations);
   if (!report.converged)
   {
     vtkWarningMacro("The solution is not converged: its relative residual is " << report.residual);
   }
   tautline::addRowVector(
     { input, basis, system }, solution, "Solution", given.empty() ? nullptr : &given, output);
+  return report;
 }
 
 //------------------------------------------------------------------------------
-void vtkPeridynamicStiffness::Report(
-  const tautline::PeridynamicSystem& system, const tautline::Spectrum* spectrum)
+void vtkPeridynamicStiffness::Report(const tautline::PeridynamicSystem& system,
+  const tautline::Spectrum* spectrum, const tautline::SolveReport& solved)
 {
   std::ostringstream text;
   text.precision(7);
@@ -346,6 +352,12 @@ void vtkPeridynamicStiffness::Report(
         << spectrum->smallestBound << " and " << spectrum->largestBound);
     }
   }
+  if (this->Solve)
+  {
+    text << "\nSolved in " << solved.iterations << " iterations (preconditioner: "
+         << tautline::nameOf(static_cast<tautline::NonlocalPreconditioner>(this->Preconditioner))
+         << ").";
+  }
   if (system.layerDeficit > 0.0)
   {
     text << "\nThe interaction layer is too thin by " << system.layerDeficit << ".";
@@ -364,6 +376,7 @@ void vtkPeridynamicStiffness::ExchangeResult(tautline::ResultStream& stream)
 {
   this->Superclass::ExchangeResult(stream);
   stream(this->Condition, this->SmallestEigenvalue, this->LargestEigenvalue);
+  stream(this->SolverIterations);
 }
 
 //------------------------------------------------------------------------------
@@ -387,6 +400,7 @@ void vtkPeridynamicStiffness::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ComputeSpectrum: " << this->ComputeSpectrum << "\n";
   os << indent << "SpectrumTolerance: " << this->SpectrumTolerance << "\n";
   os << indent << "Solve: " << this->Solve << "\n";
+  os << indent << "Preconditioner: " << this->Preconditioner << "\n";
   os << indent << "UniformSource: " << this->UniformSource << "\n";
   os << indent << "SparsityPixels: " << this->SparsityPixels << "\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";

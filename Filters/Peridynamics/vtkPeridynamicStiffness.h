@@ -41,7 +41,9 @@
  * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`,
  * `Largest`, `SmallestBound`, `LargestBound` (absolute error bounds), `Definite`, `Converged`,
  * `Iterations`, `Rows`, `Nonzeros`, `Asymmetry` (of the dissertation's discretization: norm of the
- * part that is dropped, relative), `LayerDeficit`, `IntegratedPairs`, `Memory` (bytes, estimated).
+ * part that is dropped, relative), `LayerDeficit`, `IntegratedPairs`, `Memory` (bytes, estimated);
+ * of the solution, 0 unless Solve: `SolverIterations`, `SolverResidual` (relative),
+ * `SolverConverged`, `PreconditionedCondition` (estimated from the iterations, from below).
  *
  * @par Output port 2 `Sparsity`:
  * vtkImageData with `Entries` per pixel, as Figure 4.2; empty unless SparsityPixels is above 0.
@@ -85,6 +87,7 @@ namespace tautline
 class HorizonInput;
 struct PeridynamicOptions;
 struct PeridynamicSystem;
+struct SolveReport;
 struct Spectrum;
 }
 
@@ -281,6 +284,25 @@ public:
   vtkBooleanMacro(Solve, bool);
   ///@}
 
+  /**
+   * Preconditioners of the solution, see tautline/Peridynamics/PeridynamicSolve.h.
+   */
+  enum Preconditioners
+  {
+    JACOBI = 0,    ///< the diagonal
+    LOCAL_AMG = 1, ///< and algebraic multigrid for the local limit
+    TWO_LEVEL = 2  ///< and a coarse grid, solved exactly
+  };
+
+  ///@{
+  /**
+   * The preconditioner of the conjugate gradients that find the solution. Those other than JACOBI
+   * need values that are given in the interaction layer. The default is JACOBI (0).
+   */
+  vtkTautlineSetRangeMacro(Preconditioner, int, JACOBI, TWO_LEVEL);
+  vtkGetMacro(Preconditioner, int);
+  ///@}
+
   ///@{
   /**
    * The source b where no array is given; elastic: of its first component, the other is 0. The
@@ -317,6 +339,11 @@ public:
   vtkGetMacro(LargestEigenvalue, double);
   ///@}
 
+  /**
+   * Iterations of the last solution; 0 if there was none.
+   */
+  vtkGetMacro(SolverIterations, int);
+
   /// The mesh with the results.
   vtkDataSet* GetOutput();
 
@@ -340,9 +367,11 @@ private:
   void Compute(vtkDataSet* input, vtkDataSet* output, vtkTable* table, vtkImageData* picture);
   vtkDataArray* GetRegion(vtkDataSet* input);
   tautline::Spectrum FindSpectrum(const tautline::PeridynamicSystem& system);
-  void Report(const tautline::PeridynamicSystem& system, const tautline::Spectrum* spectrum);
-  void SolveSystem(const tautline::HorizonInput& input, const tautline::PeridynamicSystem& system,
-    const std::vector<double>& given, vtkDataSet* data, vtkDataSet* output);
+  void Report(const tautline::PeridynamicSystem& system, const tautline::Spectrum* spectrum,
+    const tautline::SolveReport& solved);
+  tautline::SolveReport SolveSystem(const tautline::HorizonInput& input,
+    const tautline::PeridynamicSystem& system, const std::vector<double>& given, vtkDataSet* data,
+    vtkDataSet* output);
   bool ProceedWithin(double from, double to, double fraction);
   /// The eigenvalues and the solution: those found so far.
   bool KeepsBest() const override { return this->Assembled; }
@@ -364,12 +393,14 @@ private:
   bool ComputeSpectrum = true;
   double SpectrumTolerance = 1e-8;
   bool Solve = false;
+  int Preconditioner = JACOBI;
   double UniformSource = 1.0;
   int SparsityPixels = 0;
   double MemoryLimit = 0.0;
   double Condition = 0.0;
   double SmallestEigenvalue = 0.0;
   double LargestEigenvalue = 0.0;
+  int SolverIterations = 0;
   bool Assembled = false; ///< the matrix of this execution
 };
 

@@ -7,7 +7,8 @@ import numpy as np
 import tautline as tl
 from checks import points, refused, run_tests, shell, square
 from study_checks import Studies
-from tautline.studies import _horizon, names
+from tautline import _peridynamics
+from tautline.studies import _horizon, names, nonlocal_preconditioner
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from wrong_data import verdicts
 
@@ -57,6 +58,23 @@ def test_functions():
     assert tl.peridynamics(mesh, 0.5, allow_thin_layer=True).layer_deficit > 0.2
 
 
+def test_preconditioners():
+    """The same solution with each; the condition number from the iterations is that of the spectrum."""
+    mesh = tl.interaction_layer(square(20), 0.2)
+    found = {name: tl.peridynamics(mesh, 0.2, 2.5, solve=True, preconditioner=name) for name in _peridynamics.PRECONDITIONERS}
+    expected = found["jacobi"]
+    for name, result in found.items():
+        assert np.abs(result.solution - expected.solution).max() < 1e-8 * expected.solution.max(), name
+        assert result.residual <= 1e-10 and f"in {result.iterations} iterations" in result.summary, name
+        assert name == "jacobi" or result.iterations < 0.8 * expected.iterations, name
+        assert name == "jacobi" or result.preconditioned_condition < 0.5 * expected.preconditioned_condition, name
+    none = tl.peridynamics(mesh, spectrum=False)
+    assert none.iterations == 0 and math.isnan(none.preconditioned_condition)
+    refused("preconditioner is 'ilu'", tl.peridynamics, mesh, solve=True, preconditioner="ilu")
+    for name in ("local amg", "two-level"):
+        refused("choose Jacobi", tl.peridynamics, mesh, solve=True, preconditioner=name, constrained=False)
+
+
 def test_commands():
     tl.write(square(10), OUT / "square.vtu")
 
@@ -66,6 +84,8 @@ def test_commands():
     assert tl.read(OUT / "rows.vtu").GetPointData().GetArray("Solution") is not None
     assert "Condition number 9.28" in shell("peridynamics", OUT / "square.vtu", "--add-layer")
     assert REMEDY in shell("peridynamics", OUT / "square.vtu", code=1)
+    text = shell("peridynamics", OUT / "layer.vtu", "--solve", "--preconditioner", "two-level")
+    assert "(preconditioner: two-level)" in text, text
     listed = shell("study", "list")
     assert all(name in listed for name in names()) and "peridynamics_tables" in names()
     assert "there is no study" in shell("study", "absent", code=1)
@@ -86,6 +106,26 @@ def stated(calls):
         "ratio_findings": ({40: [10.0, 14.0, 14.1, 14.0]},),
     }
     return [(function, ideal[function.__name__], named) for function, _, named in calls]
+
+
+def test_preconditioner_study():
+    """Small numbers of iterations; those of Jacobi in place of the new ones change the verdicts."""
+    studies = Studies(OUT / "studies")
+    study = nonlocal_preconditioner
+    studies.run("nonlocal_preconditioner", "--threads", "1")
+    calls = studies.calls["nonlocal_preconditioner"]
+    studies.check("nonlocal_preconditioner", FINDINGS, ("nonlocal_preconditioner",),
+                  {"tables": 36, "exponents": 8, "small_horizons": 4, "unstructured": 4, "seconds": 3})
+    for row in studies.rows("nonlocal_preconditioner", "tables"):
+        assert all(int(row[f"{name} iterations"]) < 30 for name in study.NEW), row
+    grown = []  # iterations as those of Jacobi in the local case: like 1/h
+    for function, (rows, *_), named in calls:
+        if function.__name__ == "horizon_findings":
+            wrong = {key: {name: study.Found(2 * key[1], 9.0) for name in row} for key, row in rows.items()}
+            grown.append((function, (wrong,), named))
+    found = verdicts(grown, OUT / "grown")
+    assert [v for (_, text), v in found.items() if "bounded" in text] == ["does not hold"] * 2, found
+    assert [v for (_, text), v in found.items() if "Jacobi: with" in text] == ["holds"], found
 
 
 def test_studies():

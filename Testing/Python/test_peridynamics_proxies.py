@@ -32,6 +32,12 @@ assert "Solution" in condition.CellData.keys()
 image = servermanager.Fetch(condition, idx=2)
 assert image.GetDimensions() == (50, 50, 1)
 
+assert condition.SolverIterations > 0
+condition.Preconditioner = "AMG of the local limit"
+update(condition)
+assert "(preconditioner: AMG of the local limit)" in condition.Summary
+assert servermanager.Fetch(condition, idx=1).GetValueByName(0, "SolverConverged").ToInt() == 1
+
 condition.Kernel = "Table"
 condition.KernelValues = [1, 0.5, 0]
 update(condition)

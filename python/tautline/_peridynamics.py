@@ -28,6 +28,8 @@ Discretization = Literal["dissertation", "exact"]
 DISCRETIZATIONS: tuple[Discretization, ...] = get_args(Discretization)
 Rules = Literal["tables", "literal", "1/1", "3/3", "3/1"]
 RULES: tuple[Rules, ...] = get_args(Rules)
+Preconditioner = Literal["jacobi", "local amg", "two-level"]
+PRECONDITIONERS: tuple[Preconditioner, ...] = get_args(Preconditioner)
 _REGION, _SOURCE, _GIVEN, _GIVEN_POINTS = range(4)  # input arrays of vtkPeridynamicStiffness
 _DEFAULT_REGION = "Reference"  # the filter's default
 _MAX_PIXELS = 4096
@@ -50,6 +52,10 @@ class PeridynamicsResult(Result):
     layer_deficit: horizon minus width of the interaction layer, where the layer is narrower; else 0.
     statistics: all columns of the table `Spectrum` by name in snake case.
     solution: the solution per point (linear basis) or cell, elastic with 3 components; None if not computed.
+    iterations: of the solution; 0 if not computed.
+    residual: relative, of the solution.
+    preconditioned_condition: condition number of the preconditioned matrix, estimated from the iterations, from below;
+        nan if not computed.
     sparsity: number of entries of the matrix per pixel, with the first row on top; None if not computed.
     summary: the result in words.
     """
@@ -69,6 +75,9 @@ class PeridynamicsResult(Result):
     layer_deficit: float
     statistics: dict[str, Any]
     solution: Array | None
+    iterations: int
+    residual: float
+    preconditioned_condition: float
     sparsity: Array | None
     summary: str
 
@@ -95,6 +104,7 @@ def peridynamics(
     spectrum: bool = True,
     spectrum_tolerance: float = 1e-8,
     solve: bool = False,
+    preconditioner: Preconditioner = "jacobi",
     source: float | Values = 1.0,
     given: Values | None = None,
     sparsity: int = 0,
@@ -130,6 +140,9 @@ def peridynamics(
     spectrum: whether to compute the extreme eigenvalues.
     spectrum_tolerance: relative, of the eigenvalues, 1e-14 to 0.1.
     solve: whether to solve for `source` and the solution `given` in the layer.
+    preconditioner: of the conjugate gradients that solve: "jacobi", the diagonal; "local amg", the diagonal and
+        algebraic multigrid for the local limit on the same triangles; "two-level", the diagonal and a coarse grid with
+        cells of about half the horizon. The last two need values given in the layer.
     source: a number, or name or values of an array.
     given: name or values of an array; None is 0.
     sparsity: largest width of the picture of the matrix, pixels, 0 (no picture) to 4096.
@@ -165,6 +178,7 @@ def peridynamics(
     filter_.SetComputeSpectrum(bool(spectrum))
     filter_.SetSpectrumTolerance(within("spectrum_tolerance", spectrum_tolerance, 1e-14, 0.1))
     filter_.SetSolve(bool(solve))
+    filter_.SetPreconditioner(pick("preconditioner", preconditioner, PRECONDITIONERS))
     filter_.SetSparsityPixels(int(within("sparsity", sparsity, 0, _MAX_PIXELS)))
     filter_.SetMemoryLimit(within("memory_limit", memory_limit, 0, 1e12))
     set_time_limit(filter_, time_limit)
@@ -214,6 +228,9 @@ def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity:
         layer_deficit=facts["layer_deficit"],
         statistics=facts,
         solution=solution,
+        iterations=facts["solver_iterations"],
+        residual=facts["solver_residual"],
+        preconditioned_condition=facts["preconditioned_condition"] or float("nan"),
         sparsity=picture,
         summary=filter_.GetSummary(),
     )
@@ -355,6 +372,7 @@ def add_commands(commands: Any) -> None:
                       help="first add an interaction layer of width delta around the mesh")  # fmt: skip
     made.add_argument("--allow-thin-layer", action="store_true", help="the layer may be narrower than delta")
     made.add_argument("--solve", action="store_true", help="solve for a source of 1, and 0 in the layer")
+    made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="jacobi", help="of the solution")
     made.add_argument("--memory-limit", type=float, default=0.0, metavar="MIB",
                       help="0, the default, is the free memory")  # fmt: skip
     _commands.add_merge_points(made)
@@ -400,7 +418,7 @@ def _run_peridynamics(arguments: argparse.Namespace) -> None:
         options = _commands.given(arguments, ("time_limit", "threads", "merge_coincident_points"))
         mesh = interaction_layer(mesh, arguments.delta, **options)
     names = ("delta", "p", "basis", "kernel", "width", "model", "discretization", "rules", "tolerance", "region",
-             "allow_thin_layer", "solve", "memory_limit", "time_limit", "threads",
+             "allow_thin_layer", "solve", "preconditioner", "memory_limit", "time_limit", "threads",
              "merge_coincident_points")  # fmt: skip
     result = peridynamics(mesh, **_commands.given(arguments, names))
     _commands.finish(arguments, result, result.summary)

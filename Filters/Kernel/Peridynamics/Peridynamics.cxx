@@ -1,5 +1,6 @@
 #include "Peridynamics.h"
 
+#include "PeridynamicsKernel.h"
 #include "TriangleAssembler.h"
 
 #include "tautline/Core/Memory.h"
@@ -333,14 +334,6 @@ void flush(const PeridynamicWork& work, Index t, const std::vector<std::int32_t>
       }
     }
   }
-}
-
-/// s of the bilinear form.
-double kernelScale(const PeridynamicOptions& options)
-{
-  const double p = options.kernel.shape == KernelShape::Power ? options.kernel.exponent : 0.0;
-  const double more = options.model == PeridynamicModel::Elastic ? 2.0 : 0.0;
-  return std::pow(options.horizon, p - 4.0 - more);
 }
 
 void checkDiagonal(const PeridynamicSystem& system)

@@ -15,6 +15,9 @@ namespace tautline
 constexpr int NodeCount = 8;
 using Nodes = std::array<double, NodeCount>;
 
+/// s of the bilinear form, see Peridynamics.h.
+double kernelScale(const PeridynamicOptions& options);
+
 /**
  * @brief k(r) for 0 < r <= delta, and F_m(R) = int_0^R r^(m+1) k(r) dr, m = 0 .. 6.
  *

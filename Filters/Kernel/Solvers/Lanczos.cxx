@@ -229,17 +229,10 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
 }
 
 //------------------------------------------------------------------------------
-SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vector<double>& b,
-  std::vector<double>& x, double tolerance, const LanczosOptions& options)
+std::vector<double> inverseDiagonal(const SparseMatrix& matrix)
 {
-  const Index n = matrix.size;
-  const int threads = threadsFor(matrix, options);
-  const Stopwatch time;
-  SolveReport report;
-  x.assign(n, 0.0);
-  // Jacobi preconditioner.
-  std::vector<double> inverse(n), r = b, z(n), q(n);
-  for (Index i = 0; i < n; ++i)
+  std::vector<double> inverse(matrix.size);
+  for (Index i = 0; i < matrix.size; ++i)
   {
     const double d = matrix.at(i, i);
     if (!(d > 0.0))
@@ -249,6 +242,51 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
     }
     inverse[i] = 1.0 / d;
   }
+  return inverse;
+}
+
+namespace
+{
+/// The matrix of the Lanczos method that conjugate gradients carry out, by its steps.
+class RitzValues
+{
+public:
+  /// A step of length `step`; `ratio` is that of the products (r, B r) after it and before.
+  void add(double step, double ratio)
+  {
+    this->T.diagonal.push_back(1.0 / step + this->Last);
+    this->T.beside.push_back(std::sqrt(ratio) / step);
+    this->Last = ratio / step;
+  }
+  void report(SolveReport& report)
+  {
+    const auto size = static_cast<Index>(this->T.diagonal.size());
+    if (size > 0)
+    {
+      this->T.beside.resize(this->T.diagonal.size() - 1);
+      report.ritzSmallest = this->T.eigenvalue(0);
+      report.ritzLargest = this->T.eigenvalue(size - 1);
+    }
+  }
+
+private:
+  Tridiagonal T;
+  double Last = 0.0;
+};
+}
+
+//------------------------------------------------------------------------------
+SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vector<double>& b,
+  std::vector<double>& x, double tolerance, const LanczosOptions& options,
+  const Preconditioning& precondition)
+{
+  const Index n = matrix.size;
+  const int threads = threadsFor(matrix, options);
+  const Stopwatch time;
+  SolveReport report;
+  x.assign(n, 0.0);
+  const std::vector<double> inverse = inverseDiagonal(matrix);
+  std::vector<double> r = b, z(n), q(n);
   const double norm = std::sqrt(product(b, b, threads));
   if (!std::isfinite(norm))
   {
@@ -259,16 +297,27 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
     report.converged = true;
     return report;
   }
-  const auto precondition = [&]
+  // z = B r, and the product of both.
+  const auto apply = [&]
   {
-    for (Index i = 0; i < n; ++i)
+    if (precondition)
+    {
+      precondition(r.data(), z.data());
+    }
+    for (Index i = 0; i < n && !precondition; ++i)
     {
       z[i] = inverse[i] * r[i];
     }
+    const double rho = product(r, z, threads);
+    if (!(rho >= 0.0))
+    {
+      throw Error("the preconditioner is not positive definite: choose Jacobi");
+    }
+    return rho;
   };
-  precondition();
+  double rho = apply();
   std::vector<double> p = z;
-  double rho = product(r, z, threads);
+  RitzValues ritz;
   report.residual = 1.0;
   while (report.residual > tolerance && report.iterations < options.maxIterations &&
     !time.reached(options.timeLimit))
@@ -286,12 +335,12 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
       x[i] += step * p[i];
       r[i] -= step * q[i];
     }
-    precondition();
-    const double next = product(r, z, threads);
+    const double next = apply();
     for (Index i = 0; i < n; ++i)
     {
       p[i] = z[i] + next / rho * p[i];
     }
+    ritz.add(step, next / rho);
     rho = next;
     report.residual = std::sqrt(product(r, r, threads)) / norm;
     ++report.iterations;
@@ -302,6 +351,7 @@ SolveReport solveConjugateGradients(const SparseMatrix& matrix, const std::vecto
       break;
     }
   }
+  ritz.report(report);
   // The residual was updated step by step: the system itself decides.
   const bool met = report.residual <= tolerance;
   matrix.multiply(x.data(), q.data(), threads);

@@ -63,16 +63,27 @@ struct SolveReport
   double residual = 0.0; ///< norm of b - A x over that of b, computed from x
   /// The method reached the tolerance, and `residual` is at most ResidualFactor times that.
   bool converged = false;
+  /// Extreme Ritz values of the preconditioned matrix: they lie inside its spectrum; 0: no step.
+  double ritzSmallest = 0.0, ritzLargest = 0.0;
 };
 
+/// z = B r, both with as many entries as the matrix has rows; B symmetric positive definite.
+using Preconditioning = std::function<void(const double* r, double* z)>;
+
 /**
- * @brief Solves A x = b, A symmetric positive definite, by conjugate gradients with the diagonal as
- * the preconditioner, from x = 0, to a relative residual of `tolerance`.
+ * @brief Solves A x = b, A symmetric positive definite, by preconditioned conjugate gradients, from
+ * x = 0, to a relative residual of `tolerance`.
+ * @param precondition null: division by the diagonal of A (Jacobi)
  *
- * Throws Error if A is found not to be positive definite.
+ * Throws Error if A or B is found not to be positive definite.
+ *
+ * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 11.3.8 and 11.5.
  */
 TAUTLINE_SOLVERS_EXPORT SolveReport solveConjugateGradients(const SparseMatrix& matrix,
   const std::vector<double>& b, std::vector<double>& x, double tolerance = 1e-10,
-  const LanczosOptions& options = {});
+  const LanczosOptions& options = {}, const Preconditioning& precondition = nullptr);
+
+/// 1 / a_ii. Throws Error where a diagonal entry is not above 0.
+TAUTLINE_SOLVERS_EXPORT std::vector<double> inverseDiagonal(const SparseMatrix& matrix);
 }
 #endif

@@ -431,6 +431,21 @@ void addFilters(std::vector<HostileFilter>& list)
       return filter;
     },
     triangles);
+  const auto preconditioned = [](int preconditioner)
+  {
+    auto filter = peridynamics();
+    filter->SetConstrained(true);
+    filter->SetAllowThinLayer(true);
+    filter->SetSolve(true);
+    filter->SetPreconditioner(preconditioner);
+    return filter;
+  };
+  add(
+    "Peridynamics", "vtkPeridynamicStiffness", "local AMG",
+    [=] { return preconditioned(vtkPeridynamicStiffness::LOCAL_AMG); }, triangles);
+  add(
+    "Peridynamics", "vtkPeridynamicStiffness", "two-level",
+    [=] { return preconditioned(vtkPeridynamicStiffness::TWO_LEVEL); }, triangles);
   add(
     "Peridynamics", "vtkInteractionLayer", "",
     []

@@ -1,0 +1,383 @@
+#include "PeridynamicSolve.h"
+
+#include "LocalLimit.h"
+#include "MassSmoother.h"
+
+#include "tautline/Core/Interruption.h"
+#include "tautline/Core/Parallel.h"
+#include "tautline/Solvers/InnerSolver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// Cells of the coarse grid in a horizon, and the fewest elements in a cell.
+constexpr double CellsPerHorizon = 2.0, LeastElements = 2.0;
+
+/// How much the form of a singular kernel may grow on waves that the diagonal has to serve for.
+constexpr double DiagonalGrowth = 3.0;
+
+/// Part of the diagonal that is added to the coarse matrix: functions of the grid that depend on
+/// each other at the unknown ones make it singular.
+constexpr double CoarseShift = 1e-10;
+
+/// Where an unknown function is: its vertex, or the centroid of its triangle.
+Vec2 placeOf(const HorizonMesh& mesh, PeridynamicBasis basis, Index function)
+{
+  const auto point = [&](Index i) { return Vec2{ mesh.points[2 * i], mesh.points[2 * i + 1] }; };
+  if (basis != PeridynamicBasis::Constant)
+  {
+    return point(basis == PeridynamicBasis::Linear ? function : mesh.triangles[function]);
+  }
+  Vec2 centre = {};
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vec2 p = point(mesh.triangles[3 * function + k]);
+    centre = { centre[0] + p[0] / 3.0, centre[1] + p[1] / 3.0 };
+  }
+  return centre;
+}
+
+/// The side of the square that two triangles of mean area make.
+double elementSize(const HorizonMesh& mesh)
+{
+  double area = 0.0;
+  Index count = 0;
+  for (Index t = 0; t < mesh.numberOfTriangles(); ++t)
+  {
+    if (mesh.layer.empty() || !mesh.layer[t])
+    {
+      const Index* ids = &mesh.triangles[3 * t];
+      const double* a = &mesh.points[2 * ids[0]];
+      const double* b = &mesh.points[2 * ids[1]];
+      const double* c = &mesh.points[2 * ids[2]];
+      area += 0.5 * std::abs((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
+      ++count;
+    }
+  }
+  return std::sqrt(2.0 * area / static_cast<double>(std::max<Index>(count, 1)));
+}
+
+/// The cells of the coarse grid.
+double gridSpacing(const HorizonMesh& mesh, const PeridynamicOptions& options)
+{
+  const double h = elementSize(mesh);
+  double spacing = options.horizon / CellsPerHorizon;
+  const double order = formOrder(options);
+  if (order > 0.0)
+  {
+    spacing = std::min(spacing, h * std::pow(DiagonalGrowth, 1.0 / order));
+  }
+  return std::max(spacing, LeastElements * h);
+}
+
+/// Bilinear interpolation from a grid over the unknown functions; grid points without any are left
+/// out.
+Prolongation fromGrid(
+  const HorizonMesh& mesh, const PeridynamicOptions& options, const PeridynamicSystem& system)
+{
+  const double spacing = gridSpacing(mesh, options);
+  std::vector<Vec2> places;
+  Vec2 low = { INFINITY, INFINITY }, high = { -INFINITY, -INFINITY };
+  for (const Index f : system.functionOf)
+  {
+    places.push_back(placeOf(mesh, options.basis, f));
+    for (int i = 0; i < 2; ++i)
+    {
+      low[i] = std::min(low[i], places.back()[i]);
+      high[i] = std::max(high[i], places.back()[i]);
+    }
+  }
+  double cells[2], size[2];
+  for (int i = 0; i < 2; ++i)
+  {
+    cells[i] = std::max(1.0, std::ceil((high[i] - low[i]) / spacing));
+    size[i] = std::max((high[i] - low[i]) / cells[i], spacing / LeastElements);
+  }
+  // The four corners of each one's cell; corners of weight 0 are none.
+  std::vector<std::pair<std::int64_t, double>> found;
+  std::vector<std::int64_t> keys;
+  Prolongation map;
+  const auto columns = static_cast<std::int64_t>(cells[0]) + 2;
+  for (std::size_t u = 0; u < places.size(); ++u)
+  {
+    pollInterruption(static_cast<Index>(u));
+    double from[2], part[2];
+    for (int i = 0; i < 2; ++i)
+    {
+      const double at = (places[u][i] - low[i]) / size[i];
+      from[i] = std::min(std::floor(at), cells[i] - 1.0);
+      part[i] = at - from[i];
+    }
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      const int right = corner % 2, up = corner / 2;
+      const double weight = (right ? part[0] : 1.0 - part[0]) * (up ? part[1] : 1.0 - part[1]);
+      if (weight > 0.0)
+      {
+        found.emplace_back((static_cast<std::int64_t>(from[1]) + up) * columns +
+            static_cast<std::int64_t>(from[0]) + right,
+          weight);
+        keys.push_back(found.back().first);
+      }
+    }
+    map.offsets.push_back(static_cast<Index>(found.size()));
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  for (const auto& [key, weight] : found)
+  {
+    const auto place = std::lower_bound(keys.begin(), keys.end(), key) - keys.begin();
+    map.columns.push_back(static_cast<std::int32_t>(place));
+    map.weights.push_back(weight);
+  }
+  map.coarse = static_cast<Index>(keys.size());
+  return map;
+}
+
+/// The rows and columns of P exchanged.
+Prolongation transposed(const Prolongation& map)
+{
+  Prolongation result;
+  result.coarse = map.fine();
+  result.offsets.assign(map.coarse + 1, 0);
+  for (const std::int32_t column : map.columns)
+  {
+    ++result.offsets[column + 1];
+  }
+  for (Index i = 0; i < map.coarse; ++i)
+  {
+    result.offsets[i + 1] += result.offsets[i];
+  }
+  result.columns.resize(map.columns.size());
+  result.weights.resize(map.columns.size());
+  std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
+  for (Index u = 0; u < map.fine(); ++u)
+  {
+    for (Index k = map.offsets[u]; k < map.offsets[u + 1]; ++k)
+    {
+      const Index to = next[map.columns[k]]++;
+      result.columns[to] = static_cast<std::int32_t>(u);
+      result.weights[to] = map.weights[k];
+    }
+  }
+  return result;
+}
+
+/// Sums by column, with a list of the columns that have one.
+struct SparseRow
+{
+  std::vector<double> sums;
+  std::vector<char> marked;
+  std::vector<std::int32_t> touched;
+
+  explicit SparseRow(Index size)
+    : sums(size, 0.0)
+    , marked(size, 0)
+  {
+  }
+  void add(Index column, double value)
+  {
+    if (!this->marked[column])
+    {
+      this->marked[column] = 1;
+      this->touched.push_back(static_cast<std::int32_t>(column));
+    }
+    this->sums[column] += value;
+  }
+  void clear()
+  {
+    for (const std::int32_t column : this->touched)
+    {
+      this->sums[column] = 0.0;
+      this->marked[column] = 0;
+    }
+    this->touched.clear();
+  }
+};
+
+/// P^T A P, each component for itself.
+SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
+  const Prolongation& transpose, Index c, int threads)
+{
+  const Index rows = c * map.coarse;
+  std::vector<std::vector<std::pair<std::int32_t, double>>> made(rows);
+  struct Scratch
+  {
+    SparseRow fine, coarse;
+  };
+  ScratchPool<Scratch> pool([&] { return Scratch{ SparseRow(matrix.size), SparseRow(rows) }; });
+  constexpr Index grain = 1;
+  parallelFor(rows, grain, threads, pool,
+    [&](Scratch& scratch, Index row)
+    {
+      const Index function = row / c, i = row % c;
+      for (Index k = transpose.offsets[function]; k < transpose.offsets[function + 1]; ++k)
+      {
+        const Index from = c * transpose.columns[k] + i;
+        for (Index m = matrix.offsets[from]; m < matrix.offsets[from + 1]; ++m)
+        {
+          scratch.fine.add(matrix.columns[m], transpose.weights[k] * matrix.values[m]);
+        }
+      }
+      for (const std::int32_t column : scratch.fine.touched)
+      {
+        const Index u = column / c;
+        for (Index k = map.offsets[u]; k < map.offsets[u + 1]; ++k)
+        {
+          scratch.coarse.add(
+            c * map.columns[k] + column % c, map.weights[k] * scratch.fine.sums[column]);
+        }
+      }
+      std::sort(scratch.coarse.touched.begin(), scratch.coarse.touched.end());
+      for (const std::int32_t column : scratch.coarse.touched)
+      {
+        made[row].emplace_back(column, scratch.coarse.sums[column]);
+      }
+      scratch.fine.clear();
+      scratch.coarse.clear();
+    });
+  SparseMatrix coarse;
+  coarse.size = rows;
+  for (Index row = 0; row < rows; ++row)
+  {
+    for (const auto& [column, value] : made[row])
+    {
+      coarse.columns.push_back(column);
+      coarse.values.push_back(column == row ? (1.0 + CoarseShift) * value : value);
+    }
+    coarse.offsets.push_back(coarse.nonzeros());
+  }
+  symmetrize(coarse, threads); // rounding
+  return coarse;
+}
+}
+
+//------------------------------------------------------------------------------
+const char* nameOf(NonlocalPreconditioner preconditioner)
+{
+  switch (preconditioner)
+  {
+    case NonlocalPreconditioner::Jacobi:
+      return "Jacobi";
+    case NonlocalPreconditioner::LocalMultigrid:
+      return "AMG of the local limit";
+    case NonlocalPreconditioner::TwoLevel:
+      return "two-level";
+  }
+  return "unknown";
+}
+
+//------------------------------------------------------------------------------
+struct PeridynamicPreconditioner::State
+{
+  Index components = 1;
+  std::vector<double> inverse;            // of the diagonal
+  std::unique_ptr<MassSmoother> smoother; // in place of it, unless Jacobi is chosen
+  Prolongation map;
+  std::unique_ptr<InnerSolver> inner;
+  std::vector<double> coarse, correction;
+};
+
+PeridynamicPreconditioner::PeridynamicPreconditioner(const HorizonMesh& mesh,
+  const PeridynamicOptions& options, const PeridynamicSystem& system,
+  NonlocalPreconditioner preconditioner)
+  : Impl(std::make_unique<State>())
+{
+  State& own = *this->Impl;
+  own.components = system.components;
+  own.inverse = inverseDiagonal(system.matrix);
+  if (preconditioner == NonlocalPreconditioner::Jacobi)
+  {
+    return;
+  }
+  constexpr Index given = -1;
+  if (std::find(system.unknownOf.begin(), system.unknownOf.end(), given) == system.unknownOf.end())
+  {
+    throw Error("the preconditioner " + std::string(nameOf(preconditioner)) +
+      " needs values that are given in an interaction layer: choose Jacobi, or constrain the "
+      "solution");
+  }
+  own.smoother = std::make_unique<MassSmoother>(mesh, options, system);
+  SparseMatrix matrix;
+  const bool local = preconditioner == NonlocalPreconditioner::LocalMultigrid;
+  if (local)
+  {
+    LocalLimit limit = localLimit(mesh, options, system);
+    matrix = std::move(limit.matrix);
+    own.map = std::move(limit.prolongation);
+  }
+  else
+  {
+    own.map = fromGrid(mesh, options, system);
+    matrix = galerkin(system.matrix, own.map, transposed(own.map), own.components, options.threads);
+  }
+  own.coarse.resize(matrix.size);
+  own.correction.resize(matrix.size);
+  if (matrix.size > 0)
+  {
+    own.inner = std::make_unique<InnerSolver>(std::move(matrix), static_cast<int>(own.components),
+      local ? InnerSolver::Kind::Multigrid : InnerSolver::Kind::Factorization);
+  }
+}
+
+PeridynamicPreconditioner::~PeridynamicPreconditioner() = default;
+
+Index PeridynamicPreconditioner::coarseRows() const
+{
+  return static_cast<Index>(this->Impl->coarse.size());
+}
+
+//------------------------------------------------------------------------------
+void PeridynamicPreconditioner::apply(const double* r, double* z)
+{
+  State& own = *this->Impl;
+  if (own.smoother)
+  {
+    own.smoother->apply(r, z);
+  }
+  for (std::size_t i = 0; i < own.inverse.size() && !own.smoother; ++i)
+  {
+    z[i] = own.inverse[i] * r[i];
+  }
+  if (!own.inner)
+  {
+    return;
+  }
+  const Index c = own.components;
+  const Prolongation& map = own.map;
+  std::fill(own.coarse.begin(), own.coarse.end(), 0.0);
+  const auto forEachWeight = [&](const auto& use)
+  {
+    for (Index u = 0; u < map.fine(); ++u)
+    {
+      for (Index k = map.offsets[u]; k < map.offsets[u + 1]; ++k)
+      {
+        for (Index i = 0; i < c; ++i)
+        {
+          use(c * u + i, c * map.columns[k] + i, map.weights[k]);
+        }
+      }
+    }
+  };
+  forEachWeight(
+    [&](Index fine, Index coarse, double weight) { own.coarse[coarse] += weight * r[fine]; });
+  own.inner->apply(own.coarse.data(), own.correction.data());
+  forEachWeight(
+    [&](Index fine, Index coarse, double weight) { z[fine] += weight * own.correction[coarse]; });
+}
+
+//------------------------------------------------------------------------------
+SolveReport solvePeridynamics(const HorizonMesh& mesh, const PeridynamicOptions& options,
+  const PeridynamicSystem& system, NonlocalPreconditioner preconditioner,
+  const std::vector<double>& load, std::vector<double>& x, double tolerance,
+  const LanczosOptions& limits)
+{
+  PeridynamicPreconditioner own(mesh, options, system, preconditioner);
+  return solveConjugateGradients(system.matrix, load, x, tolerance, limits,
+    [&](const double* r, double* z) { own.apply(r, z); });
+}
+}

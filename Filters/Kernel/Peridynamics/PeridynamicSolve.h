@@ -1,0 +1,92 @@
+/**
+ * @file PeridynamicSolve.h
+ * @brief Solves nonlocal (peridynamic) systems by conjugate gradients with preconditioners that are
+ * made for them: an answer to the open question of dissertation section 4.6.
+ *
+ * On waves of length 2 pi / q the form of an integrable kernel acts like min(c q^2, C), c of the
+ * local limit, C of the order delta^-2: like the local operator on waves longer than the horizon,
+ * like a mass matrix on shorter ones. Its condition number is C over the smallest c q^2. The inverse
+ * is therefore close to the sum of the inverses of both,
+ *
+ *     B = Q + P S P^T,
+ *
+ * Q that of a mass matrix or a diagonal (MassSmoother.h), S an approximate inverse on a space of long waves and P the interpolation from it.
+ * The local operator alone would be no preconditioner: B A would grow with (delta / h)^2.
+ * - LocalMultigrid: S is one cycle of algebraic multigrid (BoomerAMG) for the local limit in linear
+ *   elements on the same triangles (LocalLimit.h).
+ * - TwoLevel: S is the inverse of P^T A P, with P bilinear interpolation from a square grid with
+ *   cells of half the horizon, but at least two elements, and fewer elements the more singular the
+ *   kernel is: above p = 2 (elastic: 4) the diagonal has to serve for all waves shorter than the
+ *   grid, on which A grows like q^(p-2).
+ *
+ * B is symmetric positive definite; an iteration takes one product with A, as with the diagonal
+ * alone.
+ *
+ * Source: J. Xu, SIAM Review 34 (1992) 581-613 (additive methods); J. Xu, Computing 56 (1996)
+ * 215-235 (auxiliary spaces).
+ */
+#ifndef tautline_PeridynamicSolve_h
+#define tautline_PeridynamicSolve_h
+
+#include "PeridynamicOptions.h"
+#include "tautline/Solvers/Lanczos.h"
+#include "tautline/SolversExport.h"
+
+#include <memory>
+
+namespace tautline
+{
+/// The preconditioners. The numbers are stable: ParaView state files hold them.
+enum class NonlocalPreconditioner : int
+{
+  Jacobi = 0,         ///< the diagonal
+  LocalMultigrid = 1, ///< Q and algebraic multigrid for the local limit
+  TwoLevel = 2        ///< Q and a coarse grid, solved exactly
+};
+
+/// "Jacobi", "AMG of the local limit", "two-level".
+TAUTLINE_SOLVERS_EXPORT const char* nameOf(NonlocalPreconditioner preconditioner);
+
+/**
+ * @class tautline::PeridynamicPreconditioner
+ * @brief z = B r for a system.
+ */
+class TAUTLINE_SOLVERS_EXPORT PeridynamicPreconditioner
+{
+public:
+  /**
+   * @brief Sets it up.
+   * @param options those that the system was assembled with
+   * @param system must outlive the preconditioner
+   *
+   * Throws Error, with the remedy, if the matrix is found not to be positive definite, and, unless
+   * it is Jacobi, if no function is given, so that the local operator is singular.
+   */
+  PeridynamicPreconditioner(const HorizonMesh& mesh, const PeridynamicOptions& options,
+    const PeridynamicSystem& system, NonlocalPreconditioner preconditioner);
+  ~PeridynamicPreconditioner();
+  PeridynamicPreconditioner(const PeridynamicPreconditioner&) = delete;
+  PeridynamicPreconditioner& operator=(const PeridynamicPreconditioner&) = delete;
+
+  void apply(const double* r, double* z);
+  /// Rows of the local or coarse matrix; 0: there is none, as with Jacobi, or in a domain so small
+  /// that it has no free vertex.
+  Index coarseRows() const;
+
+private:
+  struct State;
+  std::unique_ptr<State> Impl;
+};
+
+/**
+ * @brief Solves A x = b from x = 0, to a relative residual of `tolerance`.
+ * @param load b, as sourceLoad() less the system's constraintLoad
+ *
+ * Throws Error as the constructor of PeridynamicPreconditioner and solveConjugateGradients() do.
+ */
+TAUTLINE_SOLVERS_EXPORT SolveReport solvePeridynamics(const HorizonMesh& mesh,
+  const PeridynamicOptions& options, const PeridynamicSystem& system,
+  NonlocalPreconditioner preconditioner, const std::vector<double>& load, std::vector<double>& x,
+  double tolerance = 1e-10, const LanczosOptions& limits = {});
+}
+#endif
