@@ -290,8 +290,8 @@ public:
   enum Preconditioners
   {
     JACOBI = 0,    ///< the diagonal
-    LOCAL_AMG = 1, ///< and algebraic multigrid for the local limit
-    TWO_LEVEL = 2  ///< and a coarse grid, solved exactly
+    LOCAL_AMG = 1, ///< with algebraic multigrid for the local limit
+    TWO_LEVEL = 2  ///< with a coarse grid, solved exactly
   };
 
   ///@{

@@ -1,7 +1,7 @@
 /**
  * @file LocalLimit.h
- * @brief The local operator that a nonlocal one tends to as the horizon tends to 0, in linear finite
- * elements on the same triangles.
+ * @brief The local operator that a nonlocal one tends to as the horizon tends to 0, in linear
+ * finite elements on the same triangles.
  *
  * For a smooth u, u(x) - u(y) is the gradient times x - y but for higher orders, so that a(u, u)
  * of Peridynamics.h becomes the integral of

@@ -13,13 +13,14 @@
 namespace tautline
 {
 /**
- * @brief z = Q r, Q symmetric positive definite: the inverse of the diagonal or, with a linear basis
- * and a kernel that is integrable, of the mass matrix that is scaled to that diagonal.
+ * @brief z = Q r, Q symmetric positive definite: the inverse of the diagonal or, with a linear
+ * basis and a kernel that is integrable, of the mass matrix that is scaled to that diagonal.
  *
- * On short waves the form of an integrable kernel is a multiple of the mass matrix M; by diag(M),
- * the eigenvalues of the latter are between 1/2 and 2 on every mesh (Wathen 1987), so three steps of
- * Chebyshev's method leave 7 %. The form of other kernels grows with the frequency by about what M
- * falls, and the diagonal is the better choice; with the constant basis both are the same.
+ * On short waves the form of an integrable kernel is a multiple of the mass matrix M. The
+ * eigenvalues of M by its diagonal are between 1/2 and 2 on every mesh (Wathen 1987), so three
+ * steps of Chebyshev's method leave 7 %. The form of other kernels grows with the frequency by
+ * about what M falls, and the diagonal is the better choice; with the constant basis both are the
+ * same.
  *
  * Source: A. J. Wathen, IMA J. Numer. Anal. 7 (1987) 449-457; Y. Saad, Iterative Methods for Sparse
  * Linear Systems, 2nd ed., algorithm 12.1.

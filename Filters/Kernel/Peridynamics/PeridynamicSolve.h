@@ -5,13 +5,14 @@
  *
  * On waves of length 2 pi / q the form of an integrable kernel acts like min(c q^2, C), c of the
  * local limit, C of the order delta^-2: like the local operator on waves longer than the horizon,
- * like a mass matrix on shorter ones. Its condition number is C over the smallest c q^2. The inverse
- * is therefore close to the sum of the inverses of both,
+ * like a mass matrix on shorter ones. Its condition number is C over the smallest c q^2. The
+ * inverse is therefore close to the sum of the inverses of both,
  *
  *     B = Q + P S P^T,
  *
- * Q that of a mass matrix or a diagonal (MassSmoother.h), S an approximate inverse on a space of long waves and P the interpolation from it.
- * The local operator alone would be no preconditioner: B A would grow with (delta / h)^2.
+ * Q that of a mass matrix or a diagonal (MassSmoother.h), S an approximate inverse on a space of
+ * long waves and P the interpolation from it. The local operator alone would be a poor
+ * preconditioner of an integrable kernel: on the shortest waves it is larger by (delta / h)^2.
  * - LocalMultigrid: S is one cycle of algebraic multigrid (BoomerAMG) for the local limit in linear
  *   elements on the same triangles (LocalLimit.h).
  * - TwoLevel: S is the inverse of P^T A P, with P bilinear interpolation from a square grid with

@@ -132,6 +132,8 @@ SECTIONS = (
      "hydrocephalus, bore, conditioning"),
     ("4.2 to 4.5", "nonlocal models", "Peridynamic Condition, Interaction Layer; peridynamics(), interaction_layer()",
      "peridynamics_tables, peridynamics_horizon, peridynamics_kernel, peridynamics_local"),
+    ("4.6", "preconditioners of nonlocal models", "Peridynamic Condition with a Preconditioner; peridynamics()",
+     "nonlocal_preconditioner"),
     ("4.7 to 4.9", "FEMWARP and the hybrid algorithm", "Warp Mesh; warp()", "rectangle_warp"),
     ("4.10", "six moving domains", "Mesh Domain, Warp Mesh; domain(), warp()", "deformation, deformation_methods"),
     ("5.2", "shape matching", "Silhouette to Mesh, Match Shape; silhouette(), match()", "figures"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import Any, NamedTuple, Sequence
 
@@ -22,10 +23,11 @@ _SIZES, _DELTAS, _RATIOS = (10, 20, 40), (0.2, 0.3, 0.4), (1, 4)
 _EXPONENTS, _EXPONENT_SIZE, _EXPONENT_DELTA = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5), 20, 0.2
 #: Horizons of this many elements, and 1/h.
 _ELEMENTS, _FINE_SIZES = 2, (10, 20, 40, 80)
-#: Domains with unstructured triangles, numbers of cells, the horizon in mean element sizes, relative error of integrals.
+#: Domains with unstructured triangles, numbers of cells, the horizon in mean element sizes, tolerance of integrals.
 _DOMAINS, _CELLS, _ELEMENTS_UNSTRUCTURED, _INTEGRALS = ("disk2d", "hinge"), (500, 2000, 8000), 3, 1e-3
-#: By how much iterations may grow over a range in which they count as bounded.
-BOUNDED = 0.25
+#: By how much iterations may vary over a range in which they count as bounded: a factor of 2 in delta, 4 or 8 in h.
+#: (Those of Jacobi should grow like 1/delta and, with a horizon of fixed elements, like 1/h.)
+BOUNDED = 0.5
 #: The condition number of the preconditioned matrix that no case may exceed.
 CONDITION = 10.0
 #: Order in 1/h of Jacobi's iterations where the horizon is a fixed number of elements.
@@ -80,10 +82,10 @@ def main(arguments: Sequence[str]) -> int:
                     given.small)  # fmt: skip
     report.text(
         "What was asked: a preconditioner that decreases the condition number of the nonlocal matrices. Conjugate "
-        "gradients with three: the diagonal (Jacobi); the diagonal and one cycle of algebraic multigrid for the local "
-        "limit (delta to 0), linear elements on the same triangles; the diagonal and a coarse grid with cells of about "
-        "half the horizon (two-level). Iterations to a relative residual of 1e-10 with a source of 1, and in brackets "
-        f"the condition number estimated from them. Bounded: {BOUNDED:.0%} more iterations at most."
+        "gradients with three: the diagonal (Jacobi); and, added to the inverse of a mass matrix (p below 2) or of the "
+        "diagonal, one cycle of algebraic multigrid for the local limit (delta to 0), linear elements on the same "
+        "triangles, or a coarse grid with cells of about half the horizon (two-level). Iterations to a relative residual of 1e-10 with a source of 1, and in brackets "
+        f"the condition number estimated from them. Bounded: at most {BOUNDED:.0%} more iterations within the range."
     )
     sizes = _SIZES[:2] if given.small else _SIZES
     tables = {(basis, p, r, n, delta): solved(n, r, delta, basis, p, given.threads)
@@ -100,10 +102,12 @@ def main(arguments: Sequence[str]) -> int:
     horizon_findings(report, fine)
     meshes = {}
     for domain in _DOMAINS:
-        for cells in _CELLS[:1] if given.small else _CELLS:
+        for cells in _CELLS[:2] if given.small else _CELLS:
             for p in (1.0, 2.5):
                 delta, row = unstructured(domain, cells, p, given.threads)
                 meshes[domain, p, cells, f"{delta:.3g}"] = row
+    report.text("On the coarsest hinge the horizon is nearly as wide as its arms: the matrix is almost a multiple of "
+                "the mass matrix, and all three take few iterations.")
     shown(report, "unstructured", f"Unstructured triangles, delta = {_ELEMENTS_UNSTRUCTURED} elements",
           ["domain", "p", "cells", "delta"], meshes)  # fmt: skip
     mesh_findings(report, {key[:3]: row for key, row in meshes.items()})
@@ -132,11 +136,12 @@ def shown(report: Report, file: str, title: str, headings: list[str], rows: dict
 
 
 def growth(rows: dict[tuple, Row], name: str, varied: int) -> float:
-    """The largest growth of the iterations along one part of the keys, all others fixed."""
+    """The largest growth of the iterations along one part of the keys, all others fixed; nan if it does not vary."""
     groups: dict[tuple, list[int]] = {}
     for key, row in rows.items():
         groups.setdefault((*key[:varied], *key[varied + 1 :]), []).append(row[name].iterations)
-    return max(max(values) / max(min(values), 1) for values in groups.values()) - 1
+    found = [max(values) / max(min(values), 1) - 1 for values in groups.values() if len(values) > 1]
+    return max(found, default=math.nan)
 
 
 def bounded(report: Report, source: str, where: str, rows: dict[tuple, Row], varied: int) -> None:
@@ -144,7 +149,16 @@ def bounded(report: Report, source: str, where: str, rows: dict[tuple, Row], var
     found = {name: growth(rows, name, varied) for name in PRECONDITIONERS}
     for name in NEW:
         report.finding(source, f"{PRECONDITIONERS[name]}: iterations are bounded in {where} (by {BOUNDED:.0%})",
-                       found[name] <= BOUNDED, ", ".join(f"{PRECONDITIONERS[n]} {v:.0%} more" for n, v in found.items()))
+                       None if math.isnan(found[name]) else found[name] <= BOUNDED,
+                       ", ".join(f"{PRECONDITIONERS[n]} {v:.0%} more" for n, v in found.items()))
+
+
+def condition_findings(report: Report, source: str, where: str, rows: dict[tuple, Row]) -> None:
+    """States for each of the new preconditioners whether the condition number is small everywhere."""
+    worst = {name: max(row[name].condition for row in rows.values()) for name in PRECONDITIONERS}
+    for name in NEW:
+        report.finding(source, f"{PRECONDITIONERS[name]}: condition number at most {CONDITION:g} in {where}",
+                       worst[name] <= CONDITION, ", ".join(f"{PRECONDITIONERS[n]} {v:.3g}" for n, v in worst.items()))
 
 
 def table_findings(report: Report, rows: dict[tuple, Row]) -> None:
@@ -155,10 +169,7 @@ def table_findings(report: Report, rows: dict[tuple, Row]) -> None:
         less = [row[name].iterations / max(row["jacobi"].iterations, 1) for row in rows.values()]
         report.finding("Tables 4.1 to 4.3", f"{PRECONDITIONERS[name]}: fewer iterations than Jacobi in all cases",
                        max(less) < 1, f"{min(less):.2f} to {max(less):.2f} times those of Jacobi")
-        worst = max(row[name].condition for row in rows.values())
-        report.finding("Tables 4.1 to 4.3", f"{PRECONDITIONERS[name]}: condition number at most {CONDITION:g}",
-                       worst <= CONDITION,
-                       f"{worst:.3g}; Jacobi {max(row['jacobi'].condition for row in rows.values()):.3g}")
+    condition_findings(report, "Tables 4.1 to 4.3", "all cases", rows)
 
 
 def exponent_findings(report: Report, rows: dict[float, Row]) -> None:
@@ -178,10 +189,11 @@ def horizon_findings(report: Report, rows: dict[tuple, Row]) -> None:
 def mesh_findings(report: Report, rows: dict[tuple, Row]) -> None:
     """Unstructured meshes, by domain, p and cells."""
     bounded(report, "4.6", "h on unstructured meshes", rows, 2)
+    condition_findings(report, "4.6", "unstructured meshes", rows)
 
 
 def time_findings(report: Report, times: dict[str, Times]) -> None:
     for name in NEW:
-        report.finding("4.6", f"{PRECONDITIONERS[name]}: assembly and solution together take less time than with Jacobi",
+        report.finding("4.6", f"{PRECONDITIONERS[name]}: assembly and solution take less time together than Jacobi's",
                        below(times[name], times["jacobi"], 1.0),
                        ", ".join(f"{PRECONDITIONERS[n]} {t}" for n, t in times.items()))
