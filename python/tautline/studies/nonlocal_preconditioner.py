@@ -25,6 +25,7 @@ _EXPONENTS, _EXPONENT_SIZE, _EXPONENT_DELTA = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0
 _ELEMENTS, _FINE_SIZES = 2, (10, 20, 40, 80)
 #: Domains with unstructured triangles, numbers of cells, the horizon in mean element sizes, tolerance of integrals.
 _DOMAINS, _CELLS, _ELEMENTS_UNSTRUCTURED, _INTEGRALS = ("disk2d", "hinge"), (500, 2000, 8000), 3, 1e-3
+_SMALL_CELLS = (250, 500)
 #: By how much iterations may vary over a range in which they count as bounded: a factor of 2 in delta, 4 or 8 in h.
 #: (Those of Jacobi should grow like 1/delta and, with a horizon of fixed elements, like 1/h.)
 BOUNDED = 0.5
@@ -84,8 +85,9 @@ def main(arguments: Sequence[str]) -> int:
         "What was asked: a preconditioner that decreases the condition number of the nonlocal matrices. Conjugate "
         "gradients with three: the diagonal (Jacobi); and, added to the inverse of a mass matrix (p below 2) or of the "
         "diagonal, one cycle of algebraic multigrid for the local limit (delta to 0), linear elements on the same "
-        "triangles, or a coarse grid with cells of about half the horizon (two-level). Iterations to a relative residual of 1e-10 with a source of 1, and in brackets "
-        f"the condition number estimated from them. Bounded: at most {BOUNDED:.0%} more iterations within the range."
+        "triangles, or a coarse grid with cells of about half the horizon (two-level). Iterations to a relative "
+        "residual of 1e-10 with a source of 1, and in brackets the condition number estimated from them. Bounded: at "
+        f"most {BOUNDED:.0%} more iterations within the range."
     )
     sizes = _SIZES[:2] if given.small else _SIZES
     tables = {(basis, p, r, n, delta): solved(n, r, delta, basis, p, given.threads)
@@ -102,7 +104,7 @@ def main(arguments: Sequence[str]) -> int:
     horizon_findings(report, fine)
     meshes = {}
     for domain in _DOMAINS:
-        for cells in _CELLS[:2] if given.small else _CELLS:
+        for cells in _SMALL_CELLS if given.small else _CELLS:
             for p in (1.0, 2.5):
                 delta, row = unstructured(domain, cells, p, given.threads)
                 meshes[domain, p, cells, f"{delta:.3g}"] = row
