@@ -159,7 +159,7 @@ def condition_findings(report: Report, source: str, where: str, rows: dict[tuple
     """States for each of the new preconditioners whether the condition number is small everywhere."""
     worst = {name: max(row[name].condition for row in rows.values()) for name in PRECONDITIONERS}
     for name in NEW:
-        report.finding(source, f"{PRECONDITIONERS[name]}: condition number at most {CONDITION:g} in {where}",
+        report.finding(source, f"{PRECONDITIONERS[name]}: condition number at most {CONDITION:g} {where}",
                        worst[name] <= CONDITION, ", ".join(f"{PRECONDITIONERS[n]} {v:.3g}" for n, v in worst.items()))
 
 
@@ -171,7 +171,7 @@ def table_findings(report: Report, rows: dict[tuple, Row]) -> None:
         less = [row[name].iterations / max(row["jacobi"].iterations, 1) for row in rows.values()]
         report.finding("Tables 4.1 to 4.3", f"{PRECONDITIONERS[name]}: fewer iterations than Jacobi in all cases",
                        max(less) < 1, f"{min(less):.2f} to {max(less):.2f} times those of Jacobi")
-    condition_findings(report, "Tables 4.1 to 4.3", "all cases", rows)
+    condition_findings(report, "Tables 4.1 to 4.3", "in all cases", rows)
 
 
 def exponent_findings(report: Report, rows: dict[float, Row]) -> None:
@@ -191,7 +191,7 @@ def horizon_findings(report: Report, rows: dict[tuple, Row]) -> None:
 def mesh_findings(report: Report, rows: dict[tuple, Row]) -> None:
     """Unstructured meshes, by domain, p and cells."""
     bounded(report, "4.6", "h on unstructured meshes", rows, 2)
-    condition_findings(report, "4.6", "unstructured meshes", rows)
+    condition_findings(report, "4.6", "on unstructured meshes", rows)
 
 
 def time_findings(report: Report, times: dict[str, Times]) -> None:
