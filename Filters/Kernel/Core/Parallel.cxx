@@ -1,6 +1,7 @@
 #include "Parallel.h"
 
 #include "Interruption.h"
+#include "LoopProgress.h"
 #include "MachineLoad.h"
 
 #include <pthread.h>
@@ -182,7 +183,7 @@ public:
     Index run = 0;
     try
     {
-      while (this->Next < this->Chunks && this->mayProceed(proceed) && this->runNext())
+      while (this->Next < this->Chunks && this->mayProceed(proceed) && this->runInCaller())
       {
         ++run;
       }
@@ -210,9 +211,16 @@ private:
   bool mayProceed(const Proceed& proceed)
   {
     throwIfInterrupted();
-    this->Stopped =
-      proceed && !proceed(static_cast<double>(this->Done) / static_cast<double>(this->Chunks));
+    const double done = static_cast<double>(this->Done) / static_cast<double>(this->Chunks);
+    LoopProgress::at(done);
+    this->Stopped = proceed && !proceed(done);
     return !this->Stopped;
+  }
+
+  bool runInCaller() noexcept
+  {
+    const LoopProgress::Nested nested;
+    return this->runNext();
   }
 
   bool runNext() noexcept

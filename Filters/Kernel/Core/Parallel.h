@@ -11,6 +11,7 @@
  * nothing else meanwhile. Loops may therefore be nested, and be called by several threads. Where
  * threads cannot be started, and in the child of a fork, the caller does all the work; so it does
  * in loops that are too short for workers to pay, by what the thread learned from earlier ones.
+ * Loops report to a LoopProgress of the calling thread, those within a chunk do not.
  *
  * `threads` is the largest number of threads of a loop, the caller included; 0 means all cores the
  * process may use, or OMP_NUM_THREADS if that is set and smaller.

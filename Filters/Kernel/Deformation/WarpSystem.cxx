@@ -2,6 +2,9 @@
 
 #include "tautline/Core/Parallel.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tautline
 {
 namespace
@@ -211,14 +214,23 @@ bool WarpSystem::runSolver(const std::vector<double>& right, double tolerance,
   this->Solver->options().relativeTolerance = tolerance;
   this->Solver->options().maximumSeconds = control.secondsLeft();
   constexpr double interval = 0.05; // of progress reports, in seconds
-  this->Solver->options().observer = [&control](int, double) { return control.proceed(0.5); };
+  constexpr double share = 0.5;     // of the progress of a step
+  double first = 0.0;
+  this->Solver->options().observer = [&control, &first, tolerance](int iteration, double residual)
+  {
+    first = iteration == 0 ? residual : first;
+    const bool known = first > residual && residual > 0.0;
+    const double reduced = known ? std::log(first / residual) / -std::log(tolerance) : 0.0;
+    return control.proceed(share * std::clamp(reduced, 0.0, 1.0));
+  };
   this->Solver->options().observerSeconds = interval;
-  this->Solver->options().cancelled = [&control]() { return !control.proceed(0.5); };
+  this->Solver->options().cancelled = [&control]() { return !control.proceed(0.0); };
   control.result().setupSeconds += this->Solver->setUp();
   solution.assign(this->Inner->matrix.size, 0.0);
   const LinearSolution done = this->Solver->solve(right.data(), solution.data());
   this->Solver->options().observer = nullptr;
   this->Solver->options().cancelled = nullptr;
+  control.proceed(share);
   control.result().setupSeconds += done.setupSeconds;
   control.result().solveSeconds += done.solveSeconds;
   control.addIterations(done.iterations);

@@ -1,5 +1,7 @@
 #include "Domains.h"
 
+#include "tautline/Core/LoopProgress.h"
+
 #include <algorithm>
 
 namespace tautline
@@ -23,6 +25,7 @@ void addTriangles(const Grid& grid, StructuredMesh& mesh)
 {
   for (Index j = 0; j < grid.ny; ++j)
   {
+    LoopProgress::at(static_cast<double>(j) / static_cast<double>(grid.ny));
     for (Index i = 0; i < grid.nx; ++i)
     {
       const Index a = nodeAt(grid, i, j), b = nodeAt(grid, i + 1, j);
@@ -42,6 +45,7 @@ StructuredMesh makeGrid(const Grid& grid)
   StructuredMesh mesh;
   for (Index j = 0; j <= grid.ny; ++j)
   {
+    LoopProgress::at(static_cast<double>(j) / static_cast<double>(grid.ny + 1));
     for (Index i = 0; i <= grid.nx; ++i)
     {
       mesh.points.push_back(grid.x0 + static_cast<double>(i) * grid.dx);

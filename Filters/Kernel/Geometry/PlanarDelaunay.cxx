@@ -1,6 +1,7 @@
 #include "PlanarDelaunay.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/LoopProgress.h"
 
 #include <algorithm>
 #include <deque>
@@ -393,10 +394,12 @@ std::vector<std::array<Index, 3>> constrainedDelaunay(
   const std::vector<double>& points, const std::vector<std::pair<Index, Index>>& segments)
 {
   Triangulation triangulation(points);
-  for (const Index p : triangulation.order())
+  const std::vector<Index> order = triangulation.order();
+  for (std::size_t i = 0; i < order.size(); ++i)
   {
     throwIfInterrupted();
-    triangulation.insert(p);
+    LoopProgress::atPass(static_cast<Index>(i), static_cast<Index>(order.size()));
+    triangulation.insert(order[i]);
   }
   for (const auto& [a, b] : segments)
   {

@@ -3,6 +3,7 @@
 #include "Predicates.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/LoopProgress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,8 @@ std::vector<Triangle> clipEars(const std::vector<Vec2>& points)
   while (left.size() > 3)
   {
     throwIfInterrupted();
+    LoopProgress::atPass(
+      static_cast<Index>(points.size() - left.size()), static_cast<Index>(points.size()));
     const std::size_t n = left.size();
     bool found = false;
     for (std::size_t step = 0; step < n && !found; ++step)
@@ -226,6 +229,7 @@ bool isSimple(const std::vector<Vec2>& polygon)
   for (std::size_t i = 0; i < n; ++i)
   {
     throwIfInterrupted();
+    LoopProgress::at(static_cast<double>(i) / static_cast<double>(n));
     const Vec2 &a = polygon[i], &b = polygon[(i + 1) % n];
     if (a == b)
     {

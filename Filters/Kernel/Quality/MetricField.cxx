@@ -1,7 +1,10 @@
 #include "MetricField.h"
 
+#include "tautline/Core/LoopProgress.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace tautline
 {
@@ -92,6 +95,13 @@ void MetricField::forEachSlice(const FieldGrid& grid, int threads, const Visit& 
   view.connectivity = connectivity.data();
   for (Index k = 0; k < grid.size[2]; ++k)
   {
+    // The loops of one slice among many are too short to report.
+    std::optional<LoopProgress::Nested> nested;
+    if (grid.size[2] > 1)
+    {
+      LoopProgress::at(static_cast<double>(k) / static_cast<double>(grid.size[2]));
+      nested.emplace();
+    }
     for (Index i = 0; i < cells; ++i)
     {
       const std::array<Index, 3> at = { i % grid.size[0], i / grid.size[0], k };

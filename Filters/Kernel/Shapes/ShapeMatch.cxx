@@ -529,7 +529,11 @@ private:
       }
       problem.limit = static_cast<float>(match.energy * (1.0 + 1e-4) + 1e-4);
       problem.energy.ordering = problem.energy.descriptor = 0.0;
-      problem.progress = this->Progress;
+      if (this->Progress)
+      {
+        problem.progress = [this, level](double done)
+        { return this->Progress((level + done) / RefineLevels); };
+      }
       PlacementSolver solver(problem);
       if (!solver.run())
       {

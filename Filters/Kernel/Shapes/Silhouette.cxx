@@ -1,6 +1,7 @@
 #include "Silhouette.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/LoopProgress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +37,7 @@ public:
     for (Index j = 0; j < image.height; ++j)
     {
       throwIfInterrupted();
+      LoopProgress::at(static_cast<double>(j) / static_cast<double>(image.height));
       for (Index i = 0; i < image.width; ++i)
       {
         const double above = image(i, j) - threshold;
@@ -97,6 +99,7 @@ public:
     for (Index j = 0; j + 1 < this->Height; ++j)
     {
       throwIfInterrupted();
+      LoopProgress::at(static_cast<double>(j) / static_cast<double>(this->Height));
       for (Index i = 0; i + 1 < this->Width; ++i)
       {
         const bool corner[4] = { in(i, j), in(i + 1, j), in(i + 1, j + 1), in(i, j + 1) };
@@ -232,6 +235,7 @@ std::vector<float> fill(const std::vector<Index>& labels, Index label, Index wid
   for (Index j = 0; j < height; ++j)
   {
     throwIfInterrupted();
+    LoopProgress::at(static_cast<double>(j) / static_cast<double>(height));
     for (Index i = 0; i < width; ++i)
     {
       mask[j * width + i] = outside[(j + 1) * framed + i + 1] ? 0.0f : 1.0f;
@@ -283,6 +287,7 @@ public:
       std::vector<int> last(n + 1, 0);
       sum[0] = 0.0;
       throwIfInterrupted();
+      LoopProgress::at(static_cast<double>(start) / static_cast<double>(this->Most));
       for (std::size_t end = this->Least; end <= n; ++end)
       {
         for (int step = this->Least; step <= std::min<int>(this->Most, static_cast<int>(end));

@@ -3,6 +3,7 @@
 // asleep.
 #include "Check.h"
 
+#include "tautline/Core/LoopProgress.h"
 #include "tautline/Core/MachineLoad.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
@@ -390,6 +391,41 @@ void testMachineLoad()
   TAUTLINE_CHECK(most > number);
 #endif
 }
+
+/// Loops report growing fractions of the range of a scope; loops within chunks, of other threads
+/// and outside of the scope do not.
+void testProgress()
+{
+  constexpr Index chunks = 8;
+  const auto nothing = [](Index) {};
+  const auto nested = [&](Index) { runChunks(chunks, 1, nothing); };
+  std::vector<double> reports;
+  {
+    const LoopProgress progress([&](double done) { reports.push_back(done); }, 0.2, 0.6);
+    TAUTLINE_CHECK(runChunks(chunks, 1, nested));
+    // The first loop stands for one half: its last chunk began at 7 / 8 of 0.2 to 0.4.
+    TAUTLINE_CHECK_EQUAL(reports.size(), std::size_t{ 7 });
+    TAUTLINE_CHECK_NEAR(reports.front(), 0.2 + 0.2 / 8, 1e-12);
+    TAUTLINE_CHECK_NEAR(reports.back(), 0.375, 1e-12);
+    std::thread([&] { runChunks(chunks, 1, nothing); }).join();
+    TAUTLINE_CHECK_EQUAL(reports.size(), std::size_t{ 7 });
+    TAUTLINE_CHECK(runChunks(chunks, 1, nothing)); // one half of 0.375 to 0.6
+    TAUTLINE_CHECK_NEAR(reports.back(), 0.375 + 0.5 * 0.225 * 7 / 8, 1e-12);
+  }
+  TAUTLINE_CHECK_EQUAL(reports.back(), 0.6);
+  TAUTLINE_CHECK(std::is_sorted(reports.begin(), reports.end()));
+  const std::size_t number = reports.size();
+  runChunks(chunks, 1, nothing);
+  try
+  {
+    const LoopProgress progress([&](double done) { reports.push_back(done); });
+    throw Error("ends the scope");
+  }
+  catch (const Error&)
+  {
+    TAUTLINE_CHECK_EQUAL(reports.size(), number);
+  }
+}
 }
 
 int TestParallel(int, char*[])
@@ -397,7 +433,7 @@ int TestParallel(int, char*[])
   TAUTLINE_CHECK(resolveThreads(0) >= 1);
   TAUTLINE_CHECK_EQUAL(resolveThreads(3), 3);
   for (const auto& test : { testEveryChunkOnce, testScratch, testErrors, testProceed, testNesting,
-         testSeveralCallers, testFork, testWaiting, testMachineLoad })
+         testSeveralCallers, testFork, testWaiting, testMachineLoad, testProgress })
   {
     inNewThread(test);
   }
