@@ -376,6 +376,7 @@ void readGmshNodes2(GmshInput& input)
     {
       input.mesh.points[3 * i + c] = input.coordinate("coordinate");
     }
+    cursor.countRecord();
   }
   input.setNodes(std::move(tags));
 }

@@ -166,6 +166,7 @@ void readGmshNodes4(GmshInput& input)
       {
         readReal(input, "parameter");
       }
+      input.cursor.countRecord();
     }
   }
   if (static_cast<Index>(tags.size()) != count)
@@ -216,6 +217,7 @@ void readGmshElements4(
         nodes[n] = readNumber(input, "node");
       }
       input.addElement(*cell, nodes, place);
+      input.cursor.countRecord();
     }
   }
   if (input.mesh.numberOfCells() != count)

@@ -79,6 +79,7 @@ void readVertices(TextCursor& cursor, Contents& contents)
     }
     cursor.skipToToken();
     contents.pointReferences[i] = cursor.integer("reference of a vertex");
+    cursor.countRecord();
   }
 }
 
@@ -109,6 +110,7 @@ void readCells(TextCursor& cursor, const MeditSection& section, Contents& conten
     }
     cursor.skipToToken();
     references[reference++] = cursor.integer("reference");
+    cursor.countRecord();
   }
 }
 

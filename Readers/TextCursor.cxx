@@ -1,6 +1,7 @@
 #include "TextCursor.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/LoopProgress.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -214,14 +215,18 @@ int TextCursor::tokensInLine()
 }
 
 //------------------------------------------------------------------------------
+void TextCursor::poll()
+{
+  this->Records = 0;
+  throwIfInterrupted();
+  const double read = static_cast<double>(this->At - this->File.begin());
+  LoopProgress::at(read / (read + static_cast<double>(this->bytesLeft())));
+}
+
+//------------------------------------------------------------------------------
 void TextCursor::expectLineEnd()
 {
-  constexpr int linesPerPoll = 10000;
-  if (++this->Lines == linesPerPoll)
-  {
-    this->Lines = 0;
-    throwIfInterrupted();
-  }
+  this->countRecord();
   if (!this->lineIsOver())
   {
     this->fail("the line has more than it should: '" + excerpt(this->At, this->End) + "'");

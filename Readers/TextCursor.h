@@ -103,8 +103,17 @@ public:
   void skipRestOfLine();
   /// The numbers and words between here and the end of the line.
   int tokensInLine();
-  /// Throws unless the line is over.
+  /// Throws unless the line is over; counts a record.
   void expectLineEnd();
+  /// For records that are no lines: polls, and reports how far it is, with each 4096th.
+  void countRecord()
+  {
+    constexpr int recordsPerPoll = 4096;
+    if (++this->Records == recordsPerPoll)
+    {
+      this->poll();
+    }
+  }
   /// Throws unless only blanks and comments are left; `what` names the last thing read.
   void expectFileEnd(const char* what);
 
@@ -168,6 +177,7 @@ public:
   void setSwap(bool swap) { this->Swap = swap; }
 
 private:
+  void poll();
   [[noreturn]] void failNumber(const char* kind, const char* what) const;
   [[noreturn]] void failNotFinite(const char* start, const char* what) const;
   [[noreturn]] void failRange(
@@ -186,7 +196,7 @@ private:
   const char* End;
   char Comment;
   bool Swap = false;
-  int Lines = 0; ///< since the last poll
+  int Records = 0; ///< since the last poll
 };
 
 //------------------------------------------------------------------------------

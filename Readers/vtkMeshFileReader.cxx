@@ -2,6 +2,7 @@
 
 #include "ExecutionScope.h"
 #include "MeshFileAdapter.h"
+#include "ProgressStep.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkDataObject.h"
@@ -45,12 +46,13 @@ vtkPointSet* vtkMeshFileReader::GetOutput()
 vtkTypeBool vtkMeshFileReader::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
-  {
-    return tautline::processInScope(
-      this, {}, request, outputs, [&] { return this->RequestData(outputs); });
-  }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
+  return tautline::processInScope(this, {}, request, outputs,
+    [&]
+    {
+      return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA())
+        ? this->RequestData(outputs)
+        : this->Superclass::ProcessRequest(request, inputs, outputs);
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -66,8 +68,12 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
     {
       throw tautline::Error("no file name");
     }
-    tautline::MeshFile mesh = this->ReadMesh();
-    this->UpdateProgress(0.8);
+    constexpr double readingShare = 0.8;
+    tautline::MeshFile mesh = [&]
+    {
+      const tautline::ProgressStep progress(this, 0.0, readingShare);
+      return this->ReadMesh();
+    }();
     for (const std::string& warning : mesh.warnings)
     {
       vtkWarningMacro(<< this->FileName << ": " << warning);

@@ -2,6 +2,7 @@
 
 #include "ImageFile.h"
 #include "ImageFileAdapter.h"
+#include "MenuNames.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Types.h"
 
@@ -154,6 +155,7 @@ void addText(vtkImageData* image, const char* name, const std::string& text)
 vtkSilhouetteSetReader::vtkSilhouetteSetReader()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetProgressText(tautline::menuName("vtkSilhouetteSetReader"));
 }
 
 //------------------------------------------------------------------------------

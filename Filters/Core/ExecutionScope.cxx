@@ -76,9 +76,19 @@ void pollAlgorithm(vtkAlgorithm* algorithm, const ExecutionLimits& limits, const
 }
 
 //------------------------------------------------------------------------------
+void nameProgress(vtkAlgorithm* algorithm)
+{
+  if (!algorithm->GetProgressText())
+  {
+    algorithm->SetProgressText(menuName(algorithm->GetClassName()));
+  }
+}
+
+//------------------------------------------------------------------------------
 int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits, vtkInformation* request,
   vtkInformationVector* outputs, const std::function<int()>& work)
 {
+  nameProgress(algorithm);
   if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
     return work();
@@ -86,10 +96,6 @@ int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits, vtkIn
   const auto reportOnce = [algorithm, outputs, &work]
   {
     ErrorCode::set(algorithm, vtkErrorCode::NoError);
-    if (!algorithm->GetProgressText())
-    {
-      algorithm->SetProgressText(menuName(algorithm->GetClassName()));
-    }
     if (!work())
     {
       if (algorithm->GetErrorCode() == vtkErrorCode::NoError)

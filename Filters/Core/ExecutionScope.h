@@ -24,6 +24,10 @@ struct ExecutionLimits
   std::function<bool()> keepsBest;
 };
 
+/// Gives the text of the progress the name in the menu, if it has none. The executive reports 0
+/// before the request for data: this is for the requests before it, too.
+TAUTLINECORE_EXPORT void nameProgress(vtkAlgorithm* algorithm);
+
 /**
  * @brief Calls work(), the ProcessRequest() of a superclass; if the request is for data, ends it
  * where it polls (tautline/Core/Interruption.h), about ten times a second.

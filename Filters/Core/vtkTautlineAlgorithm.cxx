@@ -3,6 +3,7 @@
 #include "ExecutionScope.h"
 #include "GatheredExecution.h"
 #include "Processes.h"
+#include "ProgressStep.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
@@ -111,6 +112,7 @@ vtkTypeBool vtkTautlineAlgorithm::ProcessRequest(
 {
   if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
+    tautline::nameProgress(this);
     return this->Superclass::ProcessRequest(request, inputs, outputs);
   }
   this->Start = std::chrono::steady_clock::now();
@@ -419,7 +421,7 @@ int vtkTautlineAlgorithm::Attempt(
 //------------------------------------------------------------------------------
 bool vtkTautlineAlgorithm::Proceed(double fraction)
 {
-  this->UpdateProgress(fraction);
+  tautline::advance(this, fraction);
   tautline::throwIfInterrupted();
   return this->GetAbortExecute() == 0;
 }

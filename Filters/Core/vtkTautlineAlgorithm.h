@@ -173,7 +173,7 @@ protected:
   /// Reports a failure as Attempt() does. @return 0
   virtual int Fail(vtkInformationVector* outputVector, const std::string& message);
 
-  /// Reports progress, 0 to 1. @return false if the execution is to be aborted
+  /// Reports progress, 0 to 1; it never falls. @return false if the execution is to be aborted
   bool Proceed(double fraction);
 
   /// A number that the text of the progress shows, after its name.

@@ -2,6 +2,7 @@
 
 #include "ExecutionScope.h"
 #include "MeshOutput.h"
+#include "ProgressStep.h"
 
 #include "tautline/Core/Memory.h"
 #include "tautline/Domains/Domains.h"
@@ -46,6 +47,8 @@ struct Made
   Index count() const { return static_cast<Index>(this->cells.size()) / (this->dimension + 1); }
 };
 
+constexpr Index NumberUnknown = -1; ///< of points, for the progress
+
 #if TAUTLINE_HAS_MESH_GENERATORS
 Made makeWithSpacing(
   const DomainInfo& info, double spacing, const std::function<bool(Index)>& progress)
@@ -69,7 +72,14 @@ Made makeWithSpacing(
   }
   tautline::SolidOptions options;
   options.volume = 0.2 * spacing * spacing * spacing;
-  options.progress = [&progress] { return progress(0); };
+  options.progress = [&progress, calls = 0.0]() mutable
+  {
+    // The time it takes is not known.
+    constexpr double callsForHalf = 20.0;
+    calls += 1.0;
+    tautline::LoopProgress::at(calls / (calls + callsForHalf));
+    return progress(NumberUnknown);
+  };
   tautline::SolidMesh mesh =
     tautline::meshSolid(tautline::solidBoundary(info.name, spacing), options);
   made.dimension = 3;
@@ -244,13 +254,16 @@ int vtkDomainSource::RequestData(
   const Index cells = this->NumberOfCells > 0 ? this->NumberOfCells : info.cells;
   const auto progress = [&](Index points)
   {
-    this->UpdateProgress(
-      std::min(0.95, 2.0 * static_cast<double>(points) / static_cast<double>(cells)));
+    if (points != NumberUnknown)
+    {
+      tautline::LoopProgress::at(2.0 * static_cast<double>(points) / static_cast<double>(cells));
+    }
     return this->GetAbortExecute() == 0;
   };
   Made made;
   try
   {
+    const tautline::ProgressStep step(this, 0.0, 0.9);
     made = info.kind != DomainKind::Structured ? makeUnstructured(info, cells, progress)
       : std::string(info.name) == "rectangle"
       ? fromStructured(tautline::structuredRectangle(cells))

@@ -2,6 +2,7 @@
 
 #include "Blocks.h"
 #include "EllipticInput.h"
+#include "ProgressStep.h"
 #include "TableRows.h"
 
 #include "vtkDataObject.h"
@@ -10,6 +11,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 namespace
@@ -30,6 +32,8 @@ enum Arrays
   TensorArray = 3,
   StiffnessArray = 4
 };
+
+constexpr double AssemblyShare = 0.25; // of the progress on a mesh
 }
 
 //------------------------------------------------------------------------------
@@ -94,7 +98,11 @@ int vtkEllipticAlgorithm::RequestData(
       tautline::forEachMesh(input, selected, output, this->MergeCoincidentPoints, processes,
         [&](tautline::LocalMesh& mesh)
         {
+          std::optional<tautline::ProgressStep> assembly(std::in_place, this,
+            static_cast<double>(mesh.number) / mesh.meshes,
+            (mesh.number + AssemblyShare) / mesh.meshes);
           const tautline::EllipticInput problem(mesh, choice, this, processes, this->Threads);
+          assembly.reset();
           this->Unknowns += problem.system().unknowns();
           this->AssemblySeconds += problem.system().assembleSeconds();
           this->HaveBest();
@@ -140,7 +148,8 @@ void vtkEllipticAlgorithm::Describe(const tautline::LocalMesh& mesh, const std::
 //------------------------------------------------------------------------------
 bool vtkEllipticAlgorithm::Report(const tautline::LocalMesh& mesh, double fraction)
 {
-  this->Fraction = (mesh.number + fraction) / mesh.meshes;
+  const double done = AssemblyShare + (1.0 - AssemblyShare) * fraction;
+  this->Fraction = (mesh.number + done) / mesh.meshes;
   return this->Proceed(this->Fraction);
 }
 

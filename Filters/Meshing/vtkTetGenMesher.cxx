@@ -1,6 +1,7 @@
 #include "vtkTetGenMesher.h"
 
 #include "MeshOutput.h"
+#include "ProgressStep.h"
 #include "SolidMesher.h"
 
 #include "vtkCellData.h"
@@ -135,8 +136,9 @@ void vtkTetGenMesher::Generate(
   options.regions = fieldValues(input, "Regions", 5);
   options.progress = [this, calls = 0.0]() mutable
   {
+    constexpr double callsForHalf = 10.0, share = 0.9;
     calls += 1.0;
-    this->UpdateProgress(0.05 + 0.9 * calls / (calls + 50.0));
+    tautline::advance(this, 0.05 + share * tautline::openEnded(calls, callsForHalf));
     return this->GetAbortExecute() == 0;
   };
   if (this->UseSizeArray)

@@ -2,6 +2,7 @@
 
 #include "MeshOutput.h"
 #include "PlanarMesher.h"
+#include "ProgressStep.h"
 
 #include "vtkCell.h"
 #include "vtkCellData.h"
@@ -145,7 +146,8 @@ void vtkTriangleMesher::Generate(
   options.progress = [this](tautline::Index points)
   {
     const auto done = static_cast<double>(points);
-    this->UpdateProgress(done / (done + 1e5)); // the number of points is not known beforehand
+    constexpr double pointsForHalf = 2e4; // their number is not known beforehand
+    tautline::advance(this, tautline::openEnded(done, pointsForHalf));
     return this->GetAbortExecute() == 0;
   };
   const tautline::PlanarMesh mesh = tautline::meshPlane(outline, options);

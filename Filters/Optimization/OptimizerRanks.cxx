@@ -5,6 +5,7 @@
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
 #include "ProcessGroup.h"
+#include "ProgressStep.h"
 #include "RankMesh.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
 
@@ -196,7 +197,7 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
     this->ShowIteration(FilterName, record.iteration,
       { { "objective", record.objective },
         { "worst", record.worst.empty() ? vtkMath::Nan() : record.worst.front() } });
-    return this->Proceed(state.progress);
+    return this->Proceed(std::max(state.progress, tautline::openEnded(record.iteration)));
   };
   this->Runs.push_back(std::make_unique<tautline::OptimizerRun>());
   tautline::OptimizerRun& run = *this->Runs.back();

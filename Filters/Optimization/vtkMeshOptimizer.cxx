@@ -4,6 +4,7 @@
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
 #include "Processes.h"
+#include "ProgressStep.h"
 #include "RankMesh.h"
 
 #include "vtkDataSet.h"
@@ -481,7 +482,8 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
       this->ShowIteration(FilterName, record.iteration,
         { { "objective", record.objective },
           { "worst", record.worst.empty() ? vtkMath::Nan() : record.worst.front() } });
-      return this->ProceedInBlock(block.number, state.progress);
+      return this->ProceedInBlock(
+        block.number, std::max(state.progress, tautline::openEnded(record.iteration)));
     };
     run.iterations = -1;
     options.stopping.maximumSeconds = this->GetRemainingSeconds();

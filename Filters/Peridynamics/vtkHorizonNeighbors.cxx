@@ -2,6 +2,7 @@
 
 #include "GatheredExecution.h"
 #include "HorizonInput.h"
+#include "ProgressStep.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
@@ -129,6 +130,7 @@ void collectTriangles(const tautline::HorizonInput& taken, const Disc& disc,
   for (tautline::Index t = 0; t < mesh.numberOfTriangles(); ++t)
   {
     tautline::pollInterruption(t);
+    tautline::LoopProgress::atPass(t, mesh.numberOfTriangles());
     const tautline::Index* corners = &mesh.triangles[3 * t];
     double xy[6];
     for (int k = 0; k < 3; ++k)
@@ -220,6 +222,7 @@ int vtkHorizonNeighbors::RequestData(
       throw tautline::Error("the horizon has to be between 5e-20 and 2e19, and the center within "
                             "2e19 of the origin: scale the mesh first (filter Transform)");
     }
+    const tautline::ProgressStep progress(this, 0.0, 1.0);
     const tautline::HorizonInput taken(input, nullptr, 0.0, false, 0); // of places only
     const Disc disc = { taken.project({ this->Center[0], this->Center[1], this->Center[2] }),
       this->Horizon };

@@ -2,6 +2,7 @@
 
 #include "HorizonInput.h"
 #include "GatheredExecution.h"
+#include "ProgressStep.h"
 #include "ValidateInput.h"
 
 #include "tautline/Core/Memory.h"
@@ -95,9 +96,10 @@ int vtkInteractionLayer::RequestData(
     options.threads = this->Threads;
     options.progress = [this](double done)
     {
-      this->UpdateProgress(done);
+      tautline::advance(this, done);
       return !this->GetAbortExecute();
     };
+    const tautline::ProgressStep progress(this, 0.0, 0.9);
     const tautline::HorizonMesh made = tautline::addInteractionLayer(taken.mesh(), options);
 
     vtkNew<vtkPoints> points;

@@ -9,6 +9,7 @@
 #include "PieceOrientations.h"
 #include "PointMerge.h"
 #include "Processes.h"
+#include "ProgressStep.h"
 #include "QualityTotals.h"
 #include "TargetChoice.h"
 #include "tautline/Core/Memory.h"
@@ -28,6 +29,7 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <optional>
 
 vtkStandardNewMacro(vtkElementQuality);
 vtkCxxSetObjectMacro(vtkElementQuality, Controller, vtkMultiProcessController);
@@ -278,6 +280,15 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block, bool ambiguou
   using namespace tautline;
   vtkDataSet *input = block.input, *output = block.output;
   output->ShallowCopy(input);
+  // The checks are one step, each metric is one, and the grades are the last.
+  const auto& metrics = totals.metrics();
+  const int blocks = countBlocks(this->GetInputDataObject(0, 0));
+  const auto stepAt = [&](std::size_t step)
+  {
+    const double done = static_cast<double>(step) / static_cast<double>(metrics.size() + 2);
+    return (block.number + done) / blocks;
+  };
+  std::optional<ProgressStep> progress(std::in_place, this, stepAt(0), stepAt(1));
   MeshAdapter adapter(input, this->Threads);
   Mesh& mesh = adapter.mesh();
   const Index cells = mesh.view().numberOfCells;
@@ -301,10 +312,10 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block, bool ambiguou
   options.power = this->Power;
   options.targets = this->TargetType == IDEAL ? nullptr : &targets;
   options.threads = this->Threads;
-  const auto& metrics = totals.metrics();
   for (std::size_t m = 0; m < metrics.size() && !this->GetAbortExecute(); ++m)
   {
     const MetricInfo& info = metricInfo(metrics[m]);
+    progress.emplace(this, stepAt(m + 1), stepAt(m + 2));
     vtkNew<vtkDoubleArray> values;
     values->SetName(info.name);
     values->SetNumberOfValues(cells);
@@ -313,8 +324,8 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block, bool ambiguou
     totals.addValues(m, mesh,
       { cells, values->GetPointer(0), validity->GetPointer(0), mesh.view().cellTypes, skipped },
       input->GetCellData()->GetGlobalIds());
-    this->UpdateProgress(static_cast<double>(m + 1) / static_cast<double>(metrics.size()));
   }
+  progress.emplace(this, stepAt(metrics.size() + 1), stepAt(metrics.size() + 2));
   grader.grade(mesh, validity->GetPointer(0), skipped, output);
   output->GetCellData()->AddArray(validity);
   // Without active point scalars, views colour by the metric.

@@ -1,8 +1,10 @@
 #include "vtkMeshComparison.h"
 
+#include "Blocks.h"
 #include "GatheredExecution.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
+#include "ProgressStep.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Mesh/CellOrder.h"
 #include "tautline/Quality/Compare.h"
@@ -23,6 +25,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <optional>
 #include <cmath>
 #include <sstream>
 
@@ -35,6 +38,7 @@ struct vtkMeshComparison::Totals
   std::vector<tautline::MetricChange> changes; ///< one per metric
   tautline::Index invertedBefore = 0, invertedAfter = 0;
   double largestDisplacement = 0;
+  double blocks = 1, blocksDone = 0; ///< for the progress
 };
 
 namespace
@@ -143,6 +147,7 @@ int vtkMeshComparison::RequestData(
   Totals totals;
   totals.metrics = this->GetSelection().metrics();
   totals.changes.resize(totals.metrics.size());
+  totals.blocks = tautline::countBlocks(vtkDataObject::GetData(inputVector[0]));
   return this->Attempt(outputVector, "choose fewer metrics or compare the mesh in parts",
     [&]
     {
@@ -210,6 +215,12 @@ void vtkMeshComparison::Compare(
   vtkDataSet* before, vtkDataSet* after, vtkDataSet* output, Totals& totals)
 {
   using namespace tautline;
+  const auto stepAt = [&](double step)
+  {
+    const double steps = static_cast<double>(totals.metrics.size()) + 1.0; // with the checks
+    return (totals.blocksDone + step / steps) / totals.blocks;
+  };
+  std::optional<ProgressStep> progress(std::in_place, this, stepAt(0.0), stepAt(1.0));
   MeshAdapter was(before, this->Threads), is(after, this->Threads);
   const std::string difference = connectivityDifference(was.mesh(), is.mesh());
   if (!difference.empty())
@@ -245,6 +256,8 @@ void vtkMeshComparison::Compare(
     double* low = addCellArray(output, std::string(info.name) + "_before");
     double* high = addCellArray(output, std::string(info.name) + "_after");
     double* delta = addCellArray(output, std::string(info.name) + "_difference");
+    const double step = static_cast<double>(m) + 1.0;
+    progress.emplace(this, stepAt(step), stepAt(step + 1.0));
     requireInRange(info, evaluateMetric(was.mesh(), info.metric, options, low));
     requireInRange(info, evaluateMetric(is.mesh(), info.metric, options, high));
     compareMetric(info, dimension, { cells, low, validBefore, types, is.ghostCells() },
@@ -256,8 +269,9 @@ void vtkMeshComparison::Compare(
       better[i] |= change[i] > 0;
       worse[i] |= change[i] < 0;
     }
-    this->UpdateProgress(static_cast<double>(m + 1) / static_cast<double>(totals.metrics.size()));
   }
+  totals.blocksDone += 1.0;
+  progress.reset();
   signed char* verdict = addFlags(output, "Change");
   std::transform(better.begin(), better.end(), worse.begin(), verdict,
     [](char up, char down) { return static_cast<signed char>(up - down); });

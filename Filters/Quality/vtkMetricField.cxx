@@ -1,6 +1,7 @@
 #include "vtkMetricField.h"
 
 #include "MetricSelection.h"
+#include "ProgressStep.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Quality/MetricField.h"
 
@@ -124,19 +125,22 @@ int vtkMetricField::RequestData(
       tautline::requireMemory(static_cast<double>(grid.count()) *
           static_cast<double>(1 + metrics.size() * sizeof(double)),
         "the field", "choose smaller Dimensions or fewer metrics");
+      const auto stepAt = [&](std::size_t step) // each metric is one, the signs are the last
+      { return static_cast<double>(step) / static_cast<double>(metrics.size() + 1); };
       for (std::size_t i = 0; i < metrics.size() && !this->GetAbortExecute(); ++i)
       {
+        const tautline::ProgressStep progress(this, stepAt(i), stepAt(i + 1));
         vtkNew<vtkDoubleArray> values;
         values->SetName(tautline::metricInfo(metrics[i]).name);
         values->SetNumberOfTuples(grid.count());
         field.evaluate(grid, metrics[i], options, values->GetPointer(0));
         output->GetPointData()->AddArray(values);
-        this->Proceed(static_cast<double>(i + 1) / static_cast<double>(metrics.size() + 1));
       }
       output->GetPointData()->SetActiveScalars(tautline::metricInfo(metrics.front()).name);
       vtkNew<vtkSignedCharArray> validity;
       validity->SetName("Validity");
       validity->SetNumberOfTuples(grid.count());
+      const tautline::ProgressStep progress(this, stepAt(metrics.size()), 1.0);
       field.classify(grid, validity->GetPointer(0), this->Threads);
       output->GetPointData()->AddArray(validity);
     });

@@ -1,6 +1,7 @@
 #include "vtkSilhouetteMesher.h"
 
 #include "Processes.h"
+#include "ProgressStep.h"
 #include "ShapeAdapter.h"
 #include "GatheredExecution.h"
 #include "ValidateInput.h"
@@ -21,6 +22,7 @@
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <optional>
 #include <sstream>
 
 vtkStandardNewMacro(vtkSilhouetteMesher);
@@ -154,8 +156,9 @@ int vtkSilhouetteMesher::RequestData(
       }
       options.threshold = this->Threshold;
     }
+    std::optional<tautline::ProgressStep> progress(std::in_place, this, 0.0, 0.5);
     const tautline::Silhouette shape = tautline::traceSilhouette(image.view(), options);
-    this->UpdateProgress(0.5);
+    progress.emplace(this, 0.5, 1.0);
     const tautline::PolygonMesh mesh =
       tautline::triangulatePolygon(tautline::approximateOutline(shape.outline, this->Spacing));
     tautline::fillGrid(output, mesh, mesh.points, image);

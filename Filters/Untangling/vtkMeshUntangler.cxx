@@ -5,6 +5,7 @@
 #include "MovableMesh.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
+#include "ProgressStep.h"
 #include "RankMesh.h"
 #include "tautline/Untangling/Untangle.h"
 #include "tautline/Untangling/UntangleOnRanks.h"
@@ -202,7 +203,8 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
     this->ShowIteration(FilterName, state.record.iteration,
       { { "objective", state.record.objective },
         { "inverted", static_cast<double>(state.record.inverted) } });
-    return this->ProceedInBlock(block.number, state.progress);
+    return this->ProceedInBlock(
+      block.number, std::max(state.progress, tautline::openEnded(state.record.iteration)));
   };
   tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);
   this->HaveBest();
@@ -270,7 +272,7 @@ void vtkMeshUntangler::UntangleOnRanks(
   options.observer = [&](const tautline::IterationState& state)
   {
     this->HaveBest();
-    return this->Proceed(state.progress);
+    return this->Proceed(std::max(state.progress, tautline::openEnded(state.record.iteration)));
   };
   const tautline::RankUntangleResult untangled =
     tautline::untangleOnRanks(mesh.mesh(), mesh.mirrored(), options);

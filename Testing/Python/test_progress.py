@@ -1,0 +1,160 @@
+"""The progress of every filter, source and reader moves while it computes, and carries its name in the menu."""
+
+import os
+import sys
+from pathlib import Path
+
+from paraview import servermanager, simple
+from vtkmodules.vtkImagingSources import vtkImageEllipsoidSource
+from vtkmodules.vtkIOImage import vtkPNGWriter
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Plugin"))
+import list_proxies  # noqa: E402
+
+DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
+OUT = Path(os.environ["TAUTLINE_TEST_DIR"])
+#: How many different values are between 0 and 1, at least, and how far they are apart, at most.
+MOVES, JUMP = 3, 0.75
+#: Of the panel of Warp Mesh, not in a menu.
+HIDDEN = {("filters", "MovingBoundary")}
+
+before = list_proxies.proxies()
+simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns={})
+PROXIES = sorted(list_proxies.proxies() - before)
+
+
+def read(name):
+    return simple.OpenDataFile(str(DATA / name))
+
+
+def grid(half):
+    """A cube of 5 (2 half)^3 tetrahedra."""
+    return simple.Tetrahedralize(Input=simple.Wavelet(WholeExtent=[-half, half] * 3))
+
+
+def make(group, name, inputs, settings):
+    """The proxy, whatever its label is."""
+    proxy = servermanager.ProxyManager().NewProxy(group, name)
+    made = servermanager._getPyProxy(proxy)
+    for key, value in {**inputs, **settings}.items():
+        made.SetPropertyWithName(key, value)
+    return made
+
+
+def square(**settings):
+    domain = make("sources", "MeshDomain", {}, {"Domain": "Square with Interaction Layer, Structured"})
+    for key, value in settings.items():
+        domain.SetPropertyWithName(key, value)
+    return domain
+
+
+def rotation():
+    transform = servermanager._getPyProxy(servermanager.ProxyManager().NewProxy("extended_sources", "Transform3"))
+    transform.Rotate = [0, 0, 20]
+    return transform
+
+
+def disc():
+    """A picture of 1500 x 1500 pixels."""
+    size = 1500
+    image = vtkImageEllipsoidSource()
+    image.SetWholeExtent(0, size - 1, 0, size - 1, 0, 0)
+    image.SetCenter(size / 2, size / 2, 0)
+    image.SetRadius(size / 3, size / 3, 1)
+    writer = vtkPNGWriter()
+    writer.SetInputConnection(image.GetOutputPort())
+    writer.SetFileName(str(OUT / "progress.png"))
+    writer.Write()
+    return simple.OpenDataFile(str(OUT / "progress.png"))
+
+
+def written(extension, mesh):
+    file = OUT / f"progress{extension}"
+    simple.SaveData(str(file), mesh)
+    return str(file)
+
+
+def cases():
+    """Inputs that take long enough: group, name, inputs, settings."""
+    cube = grid(15)
+    surface = simple.ExtractSurface(Input=simple.Wavelet(WholeExtent=[-150, 150, -150, 150, 0, 0]))
+    triangles = simple.Triangulate(Input=surface)
+    perturbed = make("filters", "MeshPerturbation", {"Input": grid(6)}, {})
+    tangled = make("filters", "MeshPerturbation", {"Input": grid(8)}, {"TangledFraction": 0.1})
+    yield "sources", "MetricField", {}, {}
+    yield "sources", "MeshDomain", {}, {"NumberOfCells": 30000}
+    yield "sources", "MeshDomain", {}, {"Domain": "Rectangle, Structured", "NumberOfCells": 200000}
+    yield "sources", "MeshDomain", {}, {"Domain": "Disk (2D)", "NumberOfCells": 30000}
+    for extension, name in ((".mesh", "Medit"), (".msh", "Gmsh"), (".off", "Off"), (".ele", "TetGen")):
+        file = written(extension, triangles if name == "Off" else cube)
+        yield "sources", f"Tautline{name}Reader", {}, {"FileNames": [file]}
+    yield "sources", "SilhouetteSetReader", {}, {"FileName": str(DATA / "silhouettes.csv")}
+    yield "filters", "ElementQuality", {"Input": cube}, {}
+    yield "filters", "MeshComparison", {"Input": cube, "Other": cube}, {}
+    yield "filters", "MeshPerturbation", {"Input": cube}, {}
+    yield "filters", "MeshOptimizer", {"Input": perturbed}, {}
+    yield "filters", "MeshUntangler", {"Input": tangled}, {}
+    yield "filters", "MeshImprover", {"Input": perturbed}, {"TargetAngle": 40}
+    yield "filters", "MeshWarp", {"Input": read("plate.vtu")}, {"Transform": rotation()}
+    yield "filters", "EllipticSolver", {"Input": cube}, {}
+    yield "filters", "ConditionEstimator", {"Input": read("plate.vtu")}, {}
+    yield "filters", "SolverStudy", {"Input": read("plate.vtu")}, {}
+    yield "filters", "TriangleMesher", {"Input": read("plate.poly")}, {"Size": 0.02}
+    yield "filters", "TetGenMesher", {"Input": read("cube.smesh")}, {"Volume": 4e-6}
+    fine = square(ElementSize=0.01)
+    yield "filters", "InteractionLayer", {"Input": fine}, {}
+    yield "filters", "HorizonNeighbors", {"Input": fine}, {}
+    yield "filters", "PeridynamicCondition", {"Input": square()}, {}
+    yield "filters", "SilhouetteToMesh", {"Input": disc()}, {}
+    yield "filters", "MatchShape", {"Input": read("clover.png"), "Target": read("clover-turned.png")}, {}
+    silhouettes = make("sources", "SilhouetteSetReader", {}, {"FileName": str(DATA / "silhouettes.csv")})
+    yield "filters", "ShapeRetrieval", {"Input": silhouettes}, {}
+
+
+def algorithm_of(made):
+    """What computes: of a series of files the reader of one file."""
+    algorithm = made.SMProxy.GetClientSideObject()
+    return algorithm.GetReader() if algorithm.IsA("vtkFileSeriesReader") else algorithm
+
+
+def watch(made):
+    """Executes; the fractions and texts of its reports."""
+    reports = []
+    algorithm = algorithm_of(made)
+    algorithm.AddObserver(
+        "ProgressEvent", lambda *_: reports.append((algorithm.GetProgress(), algorithm.GetProgressText()))
+    )
+    made.UpdatePipeline()
+    return reports
+
+
+def check(name, made, reports):
+    label = made.SMProxy.GetXMLLabel()
+    fractions = [fraction for fraction, _ in reports]
+    texts = {text for _, text in reports}
+    assert all(text and (text == label or text.startswith(f"{label}: ")) for text in texts), (name, label, texts)
+    if made.SMProxy.GetClientSideObject() != algorithm_of(made):
+        fractions = [0, *fractions, 1]  # the series reports begin and end
+    else:
+        assert fractions[0] == 0 and fractions[-1] == 1, (name, fractions[0], fractions[-1])
+    jumps = [after - before for before, after in zip(fractions, fractions[1:])]
+    assert min(jumps) >= 0, (name, [f"{fraction:.3f}" for fraction in fractions])
+    assert max(jumps) <= JUMP, (name, [f"{fraction:.3f}" for fraction in fractions])
+    between = {fraction for fraction in fractions if 0 < fraction < 1}
+    assert len(between) >= MOVES, (name, between)
+    print(f"{name}: {len(between)} values, at most {max(jumps):.2f} apart", flush=True)
+
+
+def main():
+    seen = set()
+    for group, name, inputs, settings in cases():
+        for source in inputs.values():
+            source.UpdatePipeline()
+        made = make(group, name, inputs, settings)
+        seen.add((group, name))
+        check(name, made, watch(made))
+    left = {proxy for proxy in PROXIES if proxy[0] != "writers"} - seen - HIDDEN
+    assert not left, f"no input for {left}"
+
+
+main()
