@@ -78,10 +78,29 @@ void setSeries(vtkSMProxy* chart, const char* property, const std::string& name,
   }
 }
 
+void setTitle(vtkSMProxy* view, const char* axis, const char* title)
+{
+  vtkSMPropertyHelper(view, axis).Set(title);
+}
+
 void arrangeHistory(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<Column>& columns)
 {
   for (const Column& column : columns)
   {
+    if (column.name == "Log10 residual") // of Solve PDE
+    {
+      setTitle(view, "LeftAxisTitle", column.name.c_str());
+      setTitle(view, "BottomAxisTitle", "Iteration");
+      return;
+    }
+    if (column.name == "Worst imr") // of Improve Mesh, beside two angles
+    {
+      setSeries(chart, Corner, column.name, RightAxis);
+      setTitle(view, "LeftAxisTitle", "Angle (degrees)");
+      setTitle(view, "RightAxisTitle", column.name.c_str());
+      setTitle(view, "BottomAxisTitle", "Pass");
+      return;
+    }
     if (column.name == "Objective")
     {
       for (const Column& other : columns)
@@ -93,9 +112,9 @@ void arrangeHistory(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<Colum
       }
       // An objective of untangling ends at 0.
       vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(column.smallest > 0 ? 1 : 0);
-      vtkSMPropertyHelper(view, "LeftAxisTitle").Set(column.name.c_str());
-      vtkSMPropertyHelper(view, "RightAxisTitle").Set("Other series");
-      vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Iteration");
+      setTitle(view, "LeftAxisTitle", column.name.c_str());
+      setTitle(view, "RightAxisTitle", "Other series");
+      setTitle(view, "BottomAxisTitle", "Iteration");
       return;
     }
   }
@@ -115,8 +134,8 @@ void arrangeDistribution(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<
       {
         setSeries(chart, Visibility, other.name, other.name == metric + count ? "1" : "0");
       }
-      vtkSMPropertyHelper(view, "BottomAxisTitle").Set(metric.c_str());
-      vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Elements");
+      setTitle(view, "BottomAxisTitle", metric.c_str());
+      setTitle(view, "LeftAxisTitle", "Elements");
       return;
     }
   }
@@ -157,7 +176,7 @@ void arrangeStudy(vtkSMProxy* chart, vtkSMProxy* view, pqOutputPort* port)
   constexpr int fontSize = 8;
   vtkSMPropertyHelper(view, "BottomAxisUseCustomLabels").Set(1);
   vtkSMPropertyHelper(view, "BottomAxisLabelFontSize").Set(fontSize);
-  vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Total time (s)");
+  setTitle(view, "LeftAxisTitle", "Total time (s)");
 }
 }
 
