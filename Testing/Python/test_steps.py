@@ -87,7 +87,7 @@ def test_checks():
     wrong("step 3: there is no preset of quality criteria 'femm'; did you mean 'fem'?",
           'do = "criteria"\ncriteria = "femm"')  # fmt: skip
     wrong("limits.json: there is no such file", 'do = "report"\nfile = "r.html"\ncriteria = "limits.json"')
-    wrong("step 3: there is no metric 'imrr'", 'do = "quality"\nmetrics = ["imrr"]')
+    wrong("step 3: There is no metric 'imrr'", 'do = "quality"\nmetrics = ["imrr"]')
     wrong("step 3: the key file is missing", 'do = "report"')
     wrong("step 3: the key do is missing", 'file = "x.vtu"')
     wrong("absent.vtu: there is no such file", 'do = "warp"\ntarget = "absent.vtu"')
