@@ -540,7 +540,8 @@ void testLimits()
 void testTimeLimitWithinSweep()
 {
   constexpr double limit = 0.2;
-  const MeshData data = movedBlock(CellType::Tetrahedron, 24, 0.9);
+  // A sweep takes several times the interval between two polls.
+  const MeshData data = movedBlock(CellType::Tetrahedron, 40, 0.9);
   UntangleOptions options;
   options.maximumSeconds = limit;
   bool begun = false, slept = false;
