@@ -29,9 +29,9 @@ ENDS_WITHIN = 20.0  # seconds, on a busy machine; a second on an idle one
 UNPOLLED = 0.7  # seconds of CPU time between two polls; a loop without a poll takes longer
 DELAY = 0.5  # seconds from the first progress to SIGINT
 TIME_LIMIT = 1.0
-#: Seconds of CPU time of the whole process after the time limit: at most 1 on an idle machine, where processes do not
-#: share the units of a core.
-OVERRUN = 1.5
+#: Seconds of CPU time of the whole process after the time limit, printed. On an idle machine they are at most 1; on a
+#: busy one, where processes share the units of a core and an abandoned set-up goes on in the background, 1.6 were seen.
+OVERRUN = 4.0
 #: What goes on in the background after its end, and is in the way of what follows.
 IN_BACKGROUND = ("warp factorization", "solve factorization", "condition accurate", "solver study")
 #: What the part `some` interrupts, in pvpython: one of each kind.
