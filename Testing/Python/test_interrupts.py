@@ -29,11 +29,12 @@ ENDS_WITHIN = 20.0  # seconds, on a busy machine; a second on an idle one
 UNPOLLED = 0.7  # seconds of CPU time between two polls; a loop without a poll takes longer
 DELAY = 0.5  # seconds from the first progress to SIGINT
 TIME_LIMIT = 1.0
-#: Seconds of CPU time of the whole process after the time limit, printed. On an idle machine they are at most 1; on a
-#: busy one, where processes share the units of a core and an abandoned set-up goes on in the background, 1.6 were seen.
-OVERRUN = 4.0
-#: What goes on in the background after its end, and is in the way of what follows.
+#: Seconds of CPU time of the whole process after the time limit: at most 1 on an idle machine, where processes do not
+#: share the units of a core.
+OVERRUN = 1.5
+#: What goes on in the background after its end, and is in the way of what follows. Its CPU time counts, too.
 IN_BACKGROUND = ("warp factorization", "solve factorization", "condition accurate", "solver study")
+OVERRUN_IN_BACKGROUND = 4.0
 #: What the part `some` interrupts, in pvpython: one of each kind.
 SOME = ("quality", "optimize local newton", "solve factorization")
 
@@ -193,7 +194,8 @@ def check_limit(name: str) -> None:
     overrun = cpu.overrun()
     show(name, time.monotonic() - began, f"the start, with a limit of {TIME_LIMIT} s")
     print(f"  {name}: {overrun:.2f} s of CPU time after the limit", flush=True)
-    assert overrun < OVERRUN, f"{name} computed {overrun:.2f} s after its time limit"
+    allowed = OVERRUN_IN_BACKGROUND if name in IN_BACKGROUND else OVERRUN
+    assert overrun < allowed, f"{name} computed {overrun:.2f} s after its time limit"
 
 
 def check_shell() -> None:
