@@ -1,9 +1,32 @@
 #include "IterationHistory.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace tautline
 {
+namespace
+{
+/// "Objective: 12 to 8", or "Objectives: 12 to 8, 3 to 2". Of several, each one is stated: the
+/// scalarized objective of the lexicographic method is another one in each of its stages.
+std::string objectivesPhrase(const IterationRecord& first, const IterationRecord& last)
+{
+  std::ostringstream text;
+  const std::size_t count = std::min(first.objectives.size(), last.objectives.size());
+  if (count < 2)
+  {
+    text << "Objective: " << first.objective << " to " << last.objective;
+    return text.str();
+  }
+  text << "Objectives: ";
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    text << (i == 0 ? "" : ", ") << first.objectives[i] << " to " << last.objectives[i];
+  }
+  return text.str();
+}
+}
+
 //------------------------------------------------------------------------------
 void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
   const std::vector<std::string>& names, const std::string& block)
@@ -48,8 +71,7 @@ std::string summarize(
   if (!result.history.empty())
   {
     const IterationRecord &first = result.history.front(), &last = result.history.back();
-    text << ", " << last.seconds << " s. Objective: " << first.objective << " to "
-         << last.objective;
+    text << ", " << last.seconds << " s. " << objectivesPhrase(first, last);
   }
   text << ".\n"
        << result.freeVertices << " of " << points

@@ -16,6 +16,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 using namespace tautline;
 
@@ -172,6 +173,12 @@ void testCustom()
   TAUTLINE_CHECK_EQUAL(cell(filter->GetHistory(), 7, "Objective"), last.objective);
   TAUTLINE_CHECK_EQUAL(cell(filter->GetHistory(), 7, "rr objective"), last.objectives[1]);
   TAUTLINE_CHECK_EQUAL(cell(filter->GetHistory(), 7, "rr worst"), last.worst[1]);
+  // The summary states each of several objectives, not their scalarization.
+  const IterationRecord& first = expected.history.front();
+  std::ostringstream objectives;
+  objectives << "Objectives: " << first.objectives[0] << " to " << last.objectives[0] << ", "
+             << first.objectives[1] << " to " << last.objectives[1] << ".";
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(objectives.str()) != std::string::npos);
 
   // The slots of the panel are the same rows.
   vtkNew<vtkMeshOptimizer> slots;
