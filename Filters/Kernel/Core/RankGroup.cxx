@@ -144,7 +144,8 @@ double RankGroup::orderlessSum(const std::vector<double>& values)
   for (const double value : values)
   {
     const double scaled = std::ldexp(value, exponent), high = std::rint(scaled);
-    const Wide wide = static_cast<Wide>(static_cast<std::int64_t>(high)) << lowBits;
+    // A product, as the shift of a negative number is undefined in C++17.
+    const Wide wide = static_cast<Wide>(static_cast<std::int64_t>(high)) * (Wide(1) << lowBits);
     total += wide + static_cast<std::int64_t>(std::rint(std::ldexp(scaled - high, lowBits)));
   }
   Wide sum = 0;
