@@ -5,9 +5,12 @@
 //   domains FACTOR         the hybrid algorithm on the domains of section 4.10, cells times FACTOR
 //   stages CUBES REPEATS   FEMWARP of 5 CUBES^3 tetrahedra without a box in their middle;
 //                          positions after the first
+//   groups CUBES           inverse distance weighting of CUBES^3 hexahedra: with groups of
+//                          prescribed points, and the plain sums over all of them
 
 #include "../../Filters/Core/MeshAdapter.h"
 #include "../Cxx/VtkMeshes.h"
+#include "../Cxx/Blocks.h"
 #include "../Cxx/Deformation/Warping.h"
 #include "Clocks.h"
 
@@ -193,6 +196,60 @@ void stagesPart(Index cubes, int repeats)
 }
 
 //------------------------------------------------------------------------------
+/// The weights and means of inverse distance weighting at every 20th point that is not
+/// prescribed, by plain sums over the prescribed ones. Seconds for all points.
+double plainSums(
+  const MeshData& data, const std::vector<char>& prescribed, const std::vector<double>& motion)
+{
+  constexpr Index stride = 20;
+  std::vector<Index> sources, targets;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    (prescribed[i] ? sources : targets).push_back(i);
+  }
+  double check = 0;
+  const double start = processTime();
+  for (std::size_t t = 0; t < targets.size(); t += stride)
+  {
+    const Vec3 y = data.point(targets[t]);
+    Vec3 mean = { 0, 0, 0 };
+    for (const Index i : sources)
+    {
+      const Vec3 d = y - data.point(i);
+      const double square = dot(d, d), weight = 1 / (square * std::sqrt(square));
+      mean += weight * Vec3{ motion[3 * i], motion[3 * i + 1], motion[3 * i + 2] };
+      check += weight;
+    }
+    check += mean[0];
+  }
+  const double seconds = double(stride) * (processTime() - start);
+  // The sums must be used, or the compiler leaves them out.
+  return std::isfinite(check) ? seconds : 0.0;
+}
+
+void groupsPart(Index cubes)
+{
+  const MeshData data = blockMesh(CellType::Hexahedron, cubes, cubes, cubes);
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  const double size = static_cast<double>(cubes);
+  // A bump on one side and a shear that is not linear.
+  const std::vector<double> motion = displacements(data,
+    [size](const Vec3& p)
+    {
+      const Vec3 q = (1 / size) * p;
+      return size * Vec3{ 0.15 * std::sin(3 * q[1]) * q[0], 0.1 * q[0] * q[0], 0.1 * q[1] * q[2] };
+    });
+  const Mesh mesh(data.view());
+  const double start = processTime();
+  const WarpResult result =
+    Warper(mesh, withMethod(WarpMethod::InverseDistance)).warp(motion.data());
+  print("seconds by groups", processTime() - start);
+  print("seconds by plain sums", plainSums(data, boundary, motion));
+  print("points", static_cast<double>(data.numberOfPoints()));
+  print("inverted", static_cast<double>(result.invertedAfter));
+}
+
+//------------------------------------------------------------------------------
 using Arguments = std::vector<std::string>;
 
 struct Part
@@ -209,6 +266,7 @@ int number(const std::string& text)
 const std::map<std::string, Part> parts = {
   { "box", { 2, [](const Arguments& a) { boxPart(number(a[0]), number(a[1])); } } },
   { "domains", { 1, [](const Arguments& a) { domainsPart(std::stod(a[0])); } } },
+  { "groups", { 1, [](const Arguments& a) { groupsPart(number(a[0])); } } },
   { "stages", { 2, [](const Arguments& a) { stagesPart(number(a[0]), number(a[1])); } } },
 };
 }

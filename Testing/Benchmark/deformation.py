@@ -10,6 +10,7 @@ Row = tuple[str, float, str]
 BOX_CELLS = (12_000, 6_000)
 CUBES = (60, 10)  # 1,071,360 tetrahedra
 DOMAINS = (1.0, 0.3)
+HEXAHEDRA = (40, 8)  # along each edge of a cube
 DEGREES = (30, 60, 90, 120, 180)
 
 
@@ -25,7 +26,8 @@ def run(program: Path, repeats: int, quick: bool) -> tuple[dict[str, float], lis
         measured.update({f"{name}: {key}": value for key, value in result.items()})
         return result
 
-    return measured, _box(part, repeats, quick) + _domains(part, quick) + _stages(part, repeats, quick)
+    return measured, (_box(part, repeats, quick) + _domains(part, quick) + _stages(part, repeats, quick)
+                      + _groups(part, quick))
 
 
 def _box(part, repeats: int, quick: bool) -> list[Row]:
@@ -68,3 +70,9 @@ def _stages(part, repeats: int, quick: bool) -> list[Row]:
         ("  wave, little later / first position", m["wave, little later seconds"] / wave, ""),
         ("  wave, another / first position", m["wave, another seconds"] / wave, ""),
     ]
+
+
+def _groups(part, quick: bool) -> list[Row]:
+    m = part("groups", HEXAHEDRA[quick])
+    return [(f"inverse distance, {m['points']:.0f} points: groups / plain sums",
+             m["seconds by groups"] / m["seconds by plain sums"], "" if quick else "<= 0.7")]

@@ -62,6 +62,7 @@ def check_deformation(output: Path) -> None:
     # No new solve for a part that turns on, or a motion that grows.
     for motion in ("turned on", "wave, larger"):
         assert measured[f"stages: {motion} iterations"] == 0, measured
+    assert measured["groups: points"] == 9**3 and measured["groups: inverted"] == 0, measured
 
 
 def check_reconnection(output: Path) -> None:

@@ -5,8 +5,6 @@
 
 #include "tautline/Deformation/WarpPointwise.h"
 
-#include <ctime>
-
 using namespace tautline;
 
 namespace
@@ -226,47 +224,6 @@ void testInverseDistance()
     }
     TAUTLINE_CHECK(worst < 1e-4 * motion.largest());
   }
-}
-
-/// Groups spare most of the work of the sums: CPU seconds of both in one process.
-void testGroupsAreFaster()
-{
-  Problem problem = boundaryProblem(blockMesh(CellType::Hexahedron, 40, 40, 40));
-  problem.prescribe([](const Vec3& p) { return wave(p, 40); });
-  WarpOptions options;
-  options.threads = 1;
-  const auto now = [] { return double(std::clock()) / CLOCKS_PER_SEC; };
-  const double start = now();
-  problem.run(warpByInverseDistance, options);
-  const double grouped = now() - start;
-
-  const Mesh mesh(problem.data.view());
-  const PrescribedMotion motion(mesh, problem.prescribed, problem.displacement.data(), 1);
-  std::vector<Vec3> points;
-  for (const Index id : motion.prescribed())
-  {
-    points.push_back(motion.local(id));
-  }
-  constexpr std::size_t part = 20; // of the sums is done
-  double sum = 0;
-  const double middle = now();
-  for (std::size_t i = 0; i < motion.free().size(); i += part)
-  {
-    const Vec3 y = motion.local(motion.free()[i]);
-    Vec3 mean = { 0, 0, 0 };
-    for (std::size_t j = 0; j < points.size(); ++j)
-    {
-      const Vec3 d = y - points[j];
-      const double square = dot(d, d), weight = 1 / (square * std::sqrt(square));
-      mean += weight * motion.rest(j);
-      sum += weight;
-    }
-    sum += mean[0];
-  }
-  const double all = double(part) * (now() - middle);
-  std::cout << motion.free().size() << " points from " << points.size() << ": " << grouped
-            << " s by groups, " << all << " s by sums " << (sum > 0 ? "" : "?") << "\n";
-  TAUTLINE_CHECK(grouped < 0.7 * all);
 }
 
 /// Interpolation of all prescribed points against a dense elimination, and what a tolerance means.
@@ -575,7 +532,6 @@ int TestWarpPointwise(int, char*[])
   testInvariances(CellType::Tetrahedron);
   testInvariances(CellType::Hexahedron);
   testInverseDistance();
-  testGroupsAreFaster();
   testRadialBasis();
   testManyCenters();
   testWeights();
