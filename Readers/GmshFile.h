@@ -28,6 +28,16 @@ TAUTLINEREADERS_EXPORT MeshFile readGmsh(const std::string& name, bool lowerCell
 TAUTLINEREADERS_EXPORT std::vector<std::string> writeGmsh(
   const MeshFile& mesh, const std::string& name, bool binary);
 
+/**
+ * @brief Writes every array as a view of Gmsh's .pos, as text.
+ *
+ * An element has the values of its corners, or its own at each of them; one with a value that is
+ * not finite is left out of the view. Arrays of 1, 3 and 9 components are a view each, of others
+ * each component, NAME_0 and so on. Throws FileError if there is no array.
+ */
+TAUTLINEREADERS_EXPORT std::vector<std::string> writeGmshViews(
+  const MeshFile& mesh, const std::string& name);
+
 /// FreeFem++'s "points triangles edges" files in 2D and "points tetrahedra triangles" files in 3D.
 MeshFile readFreeFem(const FileContent& file);
 

@@ -10,5 +10,14 @@ vtkStandardNewMacro(vtkGmshWriter);
 std::vector<std::string> vtkGmshWriter::WriteMesh(
   const tautline::MeshFile& mesh, const std::string& name)
 {
-  return tautline::writeGmsh(mesh, name, this->Binary);
+  const std::string ending = ".pos";
+  if (name.size() < ending.size() || name.substr(name.size() - ending.size()) != ending)
+  {
+    return tautline::writeGmsh(mesh, name, this->Binary);
+  }
+  if (this->Binary)
+  {
+    throw tautline::FileError(name + ": views are written as text; switch Binary off");
+  }
+  return tautline::writeGmshViews(mesh, name);
 }

@@ -1,6 +1,9 @@
 /**
  * @class vtkGmshWriter
- * @brief Writes Gmsh's .msh 4.1, text or binary.
+ * @brief Writes Gmsh's .msh 4.1, text or binary, and its .pos.
+ *
+ * A file name that ends in `.pos` gives a view for every array instead of a mesh, as text:
+ * tautline::writeGmshViews. The rest is about .msh.
  *
  * `Reference` (else `BoundaryMarker`) becomes the physical tag, `Entity` the elementary one; all
  * other numeric arrays become $NodeData and $ElementData, as doubles. Cells up to second order,

@@ -20,6 +20,8 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 using namespace tautline;
 
@@ -133,6 +135,34 @@ void checkStaleCompanions()
   TAUTLINE_CHECK(!fileExists(stem + ".sol"));
 }
 
+/// Views of .pos: values at corners and of cells, wedges in Gmsh's order, components, no NaN.
+void checkViews()
+{
+  MeshFile mesh;
+  mesh.points = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 2, 1, 0, 2, 0, 1, 2, 0.5, 0, 0, 0.5, 0.5, 0, 0,
+    0.5, 0 };
+  mesh.addCells(FileWedge, { 0, 1, 2, 3, 4, 5 });
+  mesh.addCells(FileTriangle6, { 0, 1, 2, 6, 7, 8 });
+  MeshArray& heat =
+    mesh.pointArrays.emplace_back(MeshArray::make("a \"heat\"", 1, 'f', mesh.points.size() / 3));
+  std::get<MeshArray::Doubles>(heat.values) = { 0, 1, 2, 3, 4, 5, 6, 7, 8 };
+  MeshArray& pair = mesh.cellArrays.emplace_back(MeshArray::make("pair", 2, 'f', 4));
+  std::get<MeshArray::Doubles>(pair.values) = { std::nan(""), 1.5, 2.5, -3 };
+  const std::string name = output + "/views.pos";
+  writeGmshViews(mesh, name);
+  std::ifstream file(name);
+  const std::string text{ std::istreambuf_iterator<char>(file), {} };
+  const std::string wedge = "SI(0,0,0,0,1,0,1,0,0,0,0,2,0,1,2,1,0,2)";
+  const std::string triangle = "ST(0,0,0,1,0,0,0,1,0)";
+  TAUTLINE_CHECK(text ==
+    "View \"a 'heat'\" {\n" + wedge + "{0,2,1,3,5,4};\n" + triangle + "{0,1,2};\n};\n" +
+      "View \"pair_0\" {\n" + triangle + "{2.5,2.5,2.5};\n};\n" + "View \"pair_1\" {\n" + wedge +
+      "{1.5,1.5,1.5,1.5,1.5,1.5};\n" + triangle + "{-3,-3,-3};\n};\n");
+  mesh.pointArrays.clear();
+  mesh.cellArrays.clear();
+  TAUTLINE_CHECK_THROWS(writeGmshViews(mesh, name), "no");
+}
+
 /// Writers take any data set, reject by name, and report when a file cannot be written.
 void checkWriterClasses()
 {
@@ -163,6 +193,10 @@ void checkWriterClasses()
   {
     TAUTLINE_CHECK(read.connectivity[i] == first[i]);
   }
+
+  gmsh->SetFileName((output + "/image.pos").c_str());
+  gmsh->BinaryOff();
+  TAUTLINE_CHECK(gmsh->Write() == 1 && fileExists(output + "/image.pos"));
 
   const auto refusal = [&](vtkMeshFileWriter* writer, const std::string& name)
   {
@@ -204,6 +238,7 @@ int TestReadWriteRead(int, char* argv[])
   checkConversion();
   checkArrays();
   checkStaleCompanions();
+  checkViews();
   checkWriterClasses();
   return exitCode();
 }

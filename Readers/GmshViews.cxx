@@ -1,0 +1,162 @@
+#include "GmshFile.h"
+#include "TextOutput.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// The letter of an element in the name of its list, the number of its corners.
+struct ViewCell
+{
+  int dimension;
+  std::size_t corners;
+  char letter;
+};
+constexpr std::array<ViewCell, 8> ViewCells = { { { 0, 1, 'P' }, { 1, 2, 'L' }, { 2, 3, 'T' },
+  { 2, 4, 'Q' }, { 3, 4, 'S' }, { 3, 8, 'H' }, { 3, 6, 'I' }, { 3, 5, 'Y' } } };
+
+/// VTK's linear cell with the corners of a cell; its nodes come first in both.
+unsigned char linearType(unsigned char type)
+{
+  switch (type)
+  {
+    case FileLine3:
+      return FileLine;
+    case FileTriangle6:
+      return FileTriangle;
+    case FileQuadrilateral8:
+    case FileQuadrilateral9:
+      return FileQuadrilateral;
+    case FileTetrahedron10:
+      return FileTetrahedron;
+    case FileHexahedron20:
+    case FileHexahedron27:
+      return FileHexahedron;
+    case FileWedge15:
+    case FileWedge18:
+      return FileWedge;
+    case FilePyramid13:
+      return FilePyramid;
+    default:
+      return type;
+  }
+}
+
+const ViewCell& viewCell(unsigned char type)
+{
+  const int dimension = cellDimension(type);
+  const auto corners = static_cast<std::size_t>(cellNodes(type));
+  return *std::find_if(ViewCells.begin(), ViewCells.end(),
+    [=](const ViewCell& c) { return c.dimension == dimension && c.corners == corners; });
+}
+
+/// What a view shows of an array: all components, or one where Gmsh has no name for their number.
+struct View
+{
+  const MeshArray& array;
+  bool ofPoints;
+  std::size_t first;
+  std::size_t count;
+
+  char letter() const { return this->count == 1 ? 'S' : this->count == 3 ? 'V' : 'T'; }
+};
+
+/// Adds an element with its values, unless one of them is not finite, which Gmsh cannot read.
+void writeElement(TextOutput& out, const MeshFile& mesh, const View& view, std::size_t cell)
+{
+  const unsigned char type = linearType(mesh.cellTypes[cell]);
+  const ViewCell& form = viewCell(type);
+  const int* order = gmshCellByType(type)->order;
+  const auto stride = static_cast<std::size_t>(view.array.components);
+  std::array<std::size_t, 8> nodes{};
+  for (std::size_t i = 0; i < form.corners; ++i)
+  {
+    const auto place = static_cast<std::size_t>(mesh.offsets[cell]) +
+      (order ? static_cast<std::size_t>(order[i]) : i);
+    nodes[i] = static_cast<std::size_t>(mesh.connectivity[place]);
+    for (std::size_t c = 0; c < view.count; ++c)
+    {
+      if (!std::isfinite(
+            view.array.at((view.ofPoints ? nodes[i] : cell) * stride + view.first + c)))
+      {
+        return;
+      }
+    }
+  }
+  out << view.letter() << form.letter;
+  for (std::size_t i = 0; i < 3 * form.corners; ++i)
+  {
+    out << (i == 0 ? '(' : ',') << mesh.points[3 * nodes[i / 3] + i % 3];
+  }
+  out << "){";
+  for (std::size_t i = 0; i < view.count * form.corners; ++i)
+  {
+    const std::size_t tuple = view.ofPoints ? nodes[i / view.count] : cell;
+    out << (i == 0 ? "" : ",");
+    out << view.array.at(tuple * stride + view.first + i % view.count);
+  }
+  out << "};";
+  out.endLine();
+}
+
+void writeView(TextOutput& out, const MeshFile& mesh, const View& view, std::string name)
+{
+  std::replace(name.begin(), name.end(), '"', '\'');
+  out << "View \"" << name << "\" {\n";
+  for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
+  {
+    writeElement(out, mesh, view, cell);
+  }
+  out << "};\n";
+}
+
+void writeViews(TextOutput& out, const MeshFile& mesh, const MeshArray& array, bool ofPoints)
+{
+  constexpr std::size_t scalar = 1, vector = 3, tensor = 9;
+  const auto components = static_cast<std::size_t>(array.components);
+  if (components == scalar || components == vector || components == tensor)
+  {
+    writeView(out, mesh, { array, ofPoints, 0, components }, array.name);
+    return;
+  }
+  for (std::size_t c = 0; c < components; ++c)
+  {
+    writeView(out, mesh, { array, ofPoints, c, scalar }, array.name + "_" + std::to_string(c));
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> writeGmshViews(const MeshFile& mesh, const std::string& name)
+{
+  for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
+  {
+    if (!gmshCellByType(mesh.cellTypes[cell]))
+    {
+      throw FileError(name + ": Gmsh's views cannot hold " + cellPlural(mesh.cellTypes[cell]) +
+        " (cell " + std::to_string(cell) + "); run Triangulate first");
+    }
+  }
+  if (mesh.pointArrays.empty() && mesh.cellArrays.empty())
+  {
+    throw FileError(name +
+      ": a .pos file holds arrays of numbers, and this mesh has none; measure it first, or write "
+      ".msh");
+  }
+  TextOutput out(name);
+  for (const MeshArray& array : mesh.pointArrays)
+  {
+    writeViews(out, mesh, array, true);
+  }
+  for (const MeshArray& array : mesh.cellArrays)
+  {
+    writeViews(out, mesh, array, false);
+  }
+  out.close();
+  return { name };
+}
+}
