@@ -237,6 +237,68 @@ def test_meshio():
     assert tl.to_meshio(square(2)).points.shape == (9, 3)
 
 
+def test_views():
+    """A .pos file has a view for each array; it is written, not read."""
+    measured = tl.quality(BRACKET, ["imr", "rr"])
+    tl.write(measured, FOLDER / "bracket.pos")
+    text = (FOLDER / "bracket.pos").read_text()
+    assert text.count("View ") == 3 and text.count("\nSS(") == 3 * measured.mesh.GetNumberOfCells()
+    last = text.split('View "imr" {', 1)[1].split("\n};", 1)[0].splitlines()[-1]
+    value = float(last.split("){", 1)[1].split(",", 1)[0])
+    assert value == measured.values["imr"][-1], (value, measured.values["imr"][-1])
+    refused("write .msh", tl.read, FOLDER / "bracket.pos")
+    refused("this mesh has none", tl.write, BRACKET, FOLDER / "none.pos")
+    refused("views are written as text", tl.write, measured, FOLDER / "none.pos", binary=True)
+    assert not (FOLDER / "none.pos").exists()
+
+
+def test_groups():
+    """The elements that a criterion fails, as sets: arrays in VTK's files, element sets in .inp, groups in .med."""
+    tangled = DATA / "bracket-tangled.vtu"
+    result = tl.quality(tangled, criteria="fem")
+    sets = result.groups()
+    assert len(sets["Inverted"]) == 41 and len(sets["Degenerate"]) == 0 and list(sets)[2:] == ["Failed", "Warning"]
+    assert (np.flatnonzero(result.grades == 2) == sets["Failed"]).all() and len(sets["Failed"]) >= 41
+    assert list(tl.quality(tangled).groups()) == ["Inverted", "Degenerate"]
+    tl.write(result, FOLDER / "sets.vtu", groups=sets)
+    again = tl.read(FOLDER / "sets.vtu").GetCellData()
+    for name, members in sets.items():
+        assert np.flatnonzero(vtk_to_numpy(again.GetArray(name))).tolist() == members.tolist()
+    assert result.mesh.GetCellData().GetArray("Inverted") is None
+    for wrong, text in (({"a": [10**6]}, "there are 0 to"), ({"a": [0.5]}, "no list of numbers"), ({"": [1]}, "name"),
+                        ({"a": [True, False]}, "mask of 2"), ({"a": [[1], [1, 2]]}, "no ")):  # fmt: skip
+        refused(text, tl.write, result, FOLDER / "none.vtu", groups=wrong)
+    shell("quality", tangled, "--groups", "-o", FOLDER / "shell.vtu")
+    assert tl.read(FOLDER / "shell.vtu").GetCellData().GetArray("Inverted").GetRange() == (0, 1)
+    try:
+        import meshio
+    except ImportError:
+        return
+    # Two blocks of triangles around a quadrilateral: MED has one block of each type, triangles first.
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]]
+    plane = meshio.Mesh(corners, [("triangle", [[0, 1, 2]]), ("quad", [[0, 2, 3, 0]]), ("triangle", [[1, 4, 2], [4, 5, 2]])])
+    mixed = {"bad ones": [0, 3], "quads": [1], "none": []}
+    tl.write(plane, FOLDER / "sets.inp", groups=mixed)
+    assert (FOLDER / "sets.inp").read_text().endswith("*ELSET, ELSET=bad_ones\n1, 4\n*ELSET, ELSET=quads\n2\n")
+    arrays = tl.read(FOLDER / "sets.inp").GetCellData()
+    assert vtk_to_numpy(arrays.GetArray("bad_ones")).tolist() == [1, 0, 0, 1]
+    tl.write(result, FOLDER / "bracket.inp", groups=sets)
+    arrays = tl.read(FOLDER / "bracket.inp").GetCellData()
+    assert np.flatnonzero(vtk_to_numpy(arrays.GetArray("Inverted"))).tolist() == sets["Inverted"].tolist()
+    try:
+        import h5py  # noqa: F401, which meshio needs for MED
+    except ImportError:
+        return
+    tl.write(plane, FOLDER / "sets.med", groups=mixed | {"all": [0, 1, 2, 3]})
+    arrays = tl.read(FOLDER / "sets.med").GetCellData()
+    kinds = [tl.read(FOLDER / "sets.med").GetCellType(i) for i in range(4)]
+    of_triangles = {"bad ones": [1, 0, 1], "quads": [0, 0, 0], "all": [1, 1, 1]}
+    for name, members in of_triangles.items():
+        values = vtk_to_numpy(arrays.GetArray(name))
+        assert [v for v, kind in zip(values, kinds) if kind == 5] == members, name
+    assert arrays.GetArray("none") is None
+
+
 def broken(ending: str):
     file = FOLDER / f"broken{ending}"
     file.write_text("BEGIN BULK\nGRID,1,x,y\n")

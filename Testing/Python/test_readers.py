@@ -94,6 +94,9 @@ def test_gmsh():
                     assert count(first, tag) == count(second, tag) > 0, (version, tag)
     run("gmsh", OUTPUT / "ours0.msh", "-save", "-format", "mesh", "-o", "theirs.mesh")
     assert read("Medit", OUTPUT / "theirs.mesh").GetNumberOfCells() == 243
+    write("Gmsh", ours, OUTPUT / "ours.pos")
+    told = run("gmsh", OUTPUT / "ours.pos", "-save", "-format", "msh22", "-o", "views.msh")
+    assert "Error" not in told and "error" not in told, told
     zoo = read("Medit", DATA / "zoo.mesh")
     write("Gmsh", zoo, OUTPUT / "zoo.msh")
     run("gmsh", OUTPUT / "zoo.msh", "-save", "-format", "msh41", "-o", "zoo2.msh")

@@ -11,6 +11,8 @@ The compiled VTK classes (vtkElementQuality, ...) are attributes of the package,
 `python3 -m tautline --help` shows the same functions as commands of the shell.
 """
 
+import sys
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from . import _build
@@ -99,3 +101,6 @@ if _vtk.available("_peridynamics"):
     __all__ += ["HorizonResult", "PeridynamicsResult", "horizon_neighbors", "interaction_layer", "peridynamics"]
 
 globals()["__all__"] += sorted(_vtk.CLASSES)
+
+if "pyvista" in sys.modules and hasattr(sys.modules["pyvista"], "DataObject"):
+    import_module(".pyvista", __name__)

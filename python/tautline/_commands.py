@@ -16,6 +16,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
 from ._errors import Error, run as update
 from ._files import check_stream_or_target, replace_bytes, replace_text
+from ._groups import Groups, with_groups
 from ._io import as_mesh, check_output, write
 from ._names import find_name, nearest_name
 from ._results import Result
@@ -216,7 +217,7 @@ def finish(
         print(text, file=out)
     files = []
     if getattr(arguments, "output", None) == STREAM:
-        _write_stream(result)
+        _write_stream(result, options.get("groups"))
     elif getattr(arguments, "output", None):
         files += write(result, arguments.output, **options)
     texts = dict(texts or {})
@@ -238,9 +239,9 @@ def _facts(result: Any) -> dict[str, Any]:
     return {"points": result.GetNumberOfPoints(), "cells": result.GetNumberOfCells()}
 
 
-def _write_stream(result: Any) -> None:
+def _write_stream(result: Any, groups: Groups | None) -> None:
     """Write a mesh as .vtu to the standard output."""
-    data = as_mesh(result)
+    data = as_mesh(result) if groups is None else with_groups(as_mesh(result), groups)
     if isinstance(data, vtkDataSet) and not isinstance(data, vtkUnstructuredGrid):
         append = vtkAppendFilter()
         append.AddInputData(data)

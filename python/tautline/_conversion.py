@@ -15,7 +15,7 @@ from ._vtk_readers import SERIES, SOLVER_FORMATS
 
 _OWN = {
     ".node": "TetGen, Triangle", ".ele": "TetGen, Triangle", ".face": "TetGen, Triangle", ".edge": "TetGen, Triangle",
-    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
+    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".sol": "Medit", ".msh": "Gmsh, FreeFem++", ".pos": "Gmsh's views",
     ".off": "OFF", ".coff": "OFF", ".noff": "OFF", ".cnoff": "OFF", ".ply": "PLY", ".stl": "STL",
     ".obj": "Wavefront OBJ",
 }  # fmt: skip
@@ -30,7 +30,7 @@ def formats() -> list[dict[str, Any]]:
 
     >>> [form["ending"] for form in tautline.formats() if form["write"]]
     """
-    return [_facts(ending) for ending in readable()]
+    return [_facts(ending) for ending in sorted({*readable(), *FORMATS})]
 
 
 def _facts(ending: str) -> dict[str, Any]:
@@ -39,7 +39,7 @@ def _facts(ending: str) -> dict[str, Any]:
              "by": "VTK"}  # fmt: skip
     if ending in FORMATS:
         form = FORMATS[ending]
-        facts |= {"write": form.writer is not None, "by": "Tautline" if form.own else "VTK"}
+        facts |= {"read": form.reader is not None, "write": form.writer is not None, "by": "Tautline" if form.own else "VTK"}
     elif ending == SERIES:
         facts |= {"format": "ParaView, files by time", "times": True, "by": "Tautline"}
     elif ending in SOLVER_FORMATS:

@@ -13,8 +13,8 @@ from . import _vtk
 class Format:
     """How files with an ending are read and written."""
 
-    #: The classes; None where files are not written.
-    reader: str
+    #: The classes; None where files are not read, or not written.
+    reader: str | None
     writer: str | None
     #: The class of data that a file can hold; None: any mesh.
     holds: str | None
@@ -28,7 +28,7 @@ class Format:
 
     def make_reader(self) -> Any:
         """A new reader."""
-        return self._make(self.reader)
+        return self._make(self.reader or "")
 
     def make_writer(self) -> Any:
         """A new writer."""
@@ -55,6 +55,7 @@ _OWN_FORMATS = {
     ".mesh": Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet"),
     ".sol": Format("vtkMeditReader", None, "vtkDataSet"),
     ".msh": Format("vtkGmshReader", "vtkGmshWriter", "vtkDataSet"),
+    ".pos": Format(None, "vtkGmshWriter", "vtkDataSet"),
     ".off": Format(_OFF, "vtkOffWriter", "vtkDataSet"),
     **dict.fromkeys((".coff", ".noff", ".cnoff"), Format(_OFF, None, "vtkDataSet")),
 }

@@ -16,6 +16,7 @@ from ._arguments import number
 from ._errors import Error, checked, interruptible, plain, run, watch
 from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
+from ._groups import Groups, with_groups
 from ._interrupts import Progress, updating
 from ._legacy import check_counts, check_references, scan_legacy
 from ._mesh import from_arrays
@@ -44,6 +45,7 @@ _CONVERTERS = {
     ".step": "it is a geometry without a mesh: mesh it with Gmsh",
     ".stp": "it is a geometry without a mesh: mesh it with Gmsh",
     ".iges": "it is a geometry without a mesh: mesh it with Gmsh",
+    ".pos": "it holds views without their mesh: write .msh",
     ".geo": "it is a geometry without a mesh: mesh it with Gmsh",
     ".meshb": "save it as text, .mesh, with the program that wrote it",
     ".cdb": "save it as Nastran .bdf in ANSYS",
@@ -100,7 +102,7 @@ def read(
     name = file_name(file)
     ending = Path(name).suffix.lower()
     time = options.pop("time", None)
-    if ending not in FORMATS:
+    if ending not in FORMATS or not FORMATS[ending].reader:
         return _read_other(name, ending, options, None if time is None else number("time", time))
     if time is not None:
         raise Error(f"{name}: '{ending}' has no time steps; leave out time")
@@ -147,7 +149,8 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
 
 def readable() -> list[str]:
     """The endings of the files that read() takes, whether meshio is installed or not."""
-    return sorted({*FORMATS, *SOLVER_FORMATS, SERIES, *MESHIO_FORMATS})
+    own = {ending for ending, form in FORMATS.items() if form.reader}
+    return sorted({*own, *SOLVER_FORMATS, SERIES, *MESHIO_FORMATS})
 
 
 def _tool(ending: str) -> str:
@@ -176,6 +179,7 @@ def write(
     mesh: Mesh,
     file: str | PathLike[str],
     *,
+    groups: Groups | None = None,
     progress: Progress | bool | None = None,
     **options: Any,
 ) -> list[str]:
@@ -184,7 +188,10 @@ def write(
     mesh: a vtkDataSet, a composite data set, the result of another function, a file name or (points, cells).
     file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl), always binary and compressed where the format can be; or,
         where the module of readers was built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh),
-        Gmsh (.msh), OFF (.off).
+        Gmsh (.msh, and .pos: a view for each array), OFF (.off).
+    groups: sets of cells by name: numbers of cells from 0, or a mask of one value per cell; see
+        QualityResult.groups(). They are element sets in Abaqus's .inp and groups in Salome's .med, in other files cell
+        arrays of 0 and 1.
     options: binary (False): write .msh as bytes. Not for formats of VTK.
 
     A file is replaced as a whole: whatever happens, there is the older file or the complete new one. Where `file` is
@@ -198,9 +205,9 @@ def write(
     form = check_output(name)
     if form is None:
         _check_options(name, ending, options, None)
-        return write_meshio(as_data_set(mesh), name)
+        return write_meshio(as_data_set(mesh), name, groups)
     _check_options(name, ending, options, "binary" if form.own else None)
-    data = as_mesh(mesh)
+    data = as_mesh(mesh) if groups is None else with_groups(as_mesh(mesh), groups)
     if not _holds(form, data):
         able = [key for key, other in FORMATS.items() if other.writer and not other.own and _holds(other, data)]
         raise Error(f"{name}: '{ending}' cannot hold a {data.GetClassName()}; {' '.join(able)} can")

@@ -7,7 +7,7 @@ import sys
 import warnings
 from contextlib import redirect_stderr, redirect_stdout
 from importlib.util import find_spec
-from typing import Any, Callable
+from typing import Any, Callable, cast
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -16,6 +16,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkUnstructu
 
 from ._arrays import Array
 from ._errors import Error
+from ._groups import Groups, element_sets, families, masks, members_of, with_groups
 
 #: VTK's number and the number of points of meshio's cells, in the same order of points but for _ORDERS.
 _CELLS = {
@@ -66,12 +67,41 @@ def read_meshio(name: str) -> vtkUnstructuredGrid:
         raise Error(f"{name}: {error}") from None
 
 
-def write_meshio(data: vtkDataSet, name: str) -> list[str]:
-    """Write a file. Raises Error if meshio is not installed or cannot write it."""
+def write_meshio(data: vtkDataSet, name: str, groups: Groups | None = None) -> list[str]:
+    """Write a file. Raises Error if meshio is not installed or cannot write it.
+
+    Groups are element sets in .inp and groups in .med, else arrays of 0 and 1.
+    """
     meshio = _module(name)
+    ending = name[name.rfind(".") :].lower()
+    sets = masks(groups or {}, data.GetNumberOfCells())
+    if sets and ending not in (".inp", ".med"):
+        data = cast(vtkDataSet, with_groups(data, groups or {}))
     made = meshio_of(data)
+    if ending == ".med":
+        made = _by_type(made, *families(sets, data.GetNumberOfCells()))
     _quietly(name, "write", lambda: meshio.write(name, made))
+    if sets and ending == ".inp":
+        with open(name, "a", encoding="ascii", errors="replace") as file:
+            file.write(element_sets(sets))
     return [name]
+
+
+def _by_type(mesh: Any, tags: Array, names: dict[int, list[str]]) -> Any:
+    """A mesh with one block for each type of cells, and the families of MED."""
+    blocks = [block.type for block in mesh.cells]
+    data = {name: np.concatenate(values) for name, values in mesh.cell_data.items()} | {"cell_tags": tags}
+    types = np.repeat(np.arange(len(blocks)), [len(block.data) for block in mesh.cells])
+    kinds = list(dict.fromkeys(blocks))
+    of_kind = np.array([kinds.index(block) for block in blocks])[types] if blocks else types
+    made = type(mesh)(
+        mesh.points,
+        [(kind, np.concatenate([b.data for b in mesh.cells if b.type == kind])) for kind in kinds],
+        point_data=mesh.point_data,
+        cell_data={name: [values[of_kind == i] for i in range(len(kinds))] for name, values in data.items()},
+    )
+    made.cell_tags = names
+    return made
 
 
 def _quietly(name: str, verb: str, action: Callable[[], Any]) -> Any:
@@ -131,6 +161,9 @@ def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
         _add(grid.GetCellData(), name, np.concatenate([np.asarray(block) for block in blocks]))
     for name, blocks in mesh.cell_sets.items():
         _add(grid.GetCellData(), name, _membership(mesh, blocks))
+    if names := getattr(mesh, "cell_tags", None):  # of MED
+        for name, values in members_of(np.concatenate(mesh.cell_data["cell_tags"]), names).items():
+            _add(grid.GetCellData(), name, values)
     return grid
 
 

@@ -32,6 +32,8 @@ FAILED = 3
 
 _SIZE, _TENSOR = range(2)  # input arrays of vtkElementQuality
 _NOT_NUMBERS = ("Metric", "WorstCells", "WorstPositions")  # columns of the statistics
+_INVERTED = -1  # of `validity`
+_WARNING_GRADE, _FAILED_GRADE = 1, 2
 _MAX_WORST = 10  # elements listed per metric
 
 
@@ -85,6 +87,18 @@ class QualityResult(Result):
     def table(self) -> list[dict[str, Any]]:
         """A row per metric: what --csv writes."""
         return quality_rows(self)
+
+    def groups(self) -> dict[str, Array]:
+        """Sets of elements by name, as numbers from 0: what write() takes as `groups`.
+
+        Inverted and Degenerate; with criteria also Failed and Warning. A set may be empty.
+
+        >>> tautline.write(result, "part.inp", groups=result.groups())
+        """
+        found = {"Inverted": self.validity == _INVERTED, "Degenerate": self.validity == 0}
+        if self.grades is not None:
+            found |= {"Failed": self.grades == _FAILED_GRADE, "Warning": self.grades == _WARNING_GRADE}
+        return {name: np.flatnonzero(mask) for name, mask in found.items()}
 
     def to_json(self, file: str | PathLike[str] | None = None) -> str:
         """Counts, statistics, histogram and, by the criteria, verdict, index and counts, as JSON; see Result."""
@@ -332,6 +346,8 @@ def add_commands(commands: Any) -> None:
                         help="if all cells are of opposite orientation")  # fmt: skip
     parser.add_argument("--criteria", metavar="NAME|FILE",
                         help="grade the elements by a preset or JSON file; exits with 3 if the mesh fails")  # fmt: skip
+    parser.add_argument("--groups", action="store_true",
+                        help="write the inverted, degenerate and failed elements as groups (.inp, .med) or cell arrays")  # fmt: skip
     parser.add_argument("--report", metavar="FILE", help="write an HTML report, see the command report")
     parser.add_argument("--histogram-bins", type=int, default=32, help=argparse.SUPPRESS)
 
@@ -359,7 +375,8 @@ def _run(arguments: argparse.Namespace) -> int:
     if arguments.report:
         texts[arguments.report] = html_report(filter_, arguments.mesh, {"metrics": arguments.metrics, **options})
     rows, facts = quality_rows(result), json.loads(quality_json(result))
-    _commands.finish(arguments, result, quality_text(result, arguments.worst), rows, texts, facts)
+    sets = {"groups": result.groups()} if arguments.groups else {}
+    _commands.finish(arguments, result, quality_text(result, arguments.worst), rows, texts, facts, **sets)
     return FAILED if result.verdict in ("failed", "none") else 0
 
 
