@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # test_platform.sh SOURCE_TREE SUITE LOG [MIRROR]: builds and tests the committed files in a bare chroot of a Debian release.
 # The last line that it prints is a row of a table: suite, ParaView, compiler, packages, build, tests. Needs root,
-# debootstrap, the network, and about 7 GB in TMPDIR.
+# debootstrap, the network, and about 7 GB in TMPDIR. TAUTLINE_PLATFORM_ROOT names a chroot that is kept, and used again
+# if it is there: packages and objects of the last time stay.
 set -uo pipefail
 source="$1" suite="$2" log="$3" mirror="${4:-http://deb.debian.org/debian}"
 fail() { echo "test_platform.sh: $*; see $log" >&2; row; exit 1; }
@@ -10,14 +11,15 @@ row() { printf '| Debian %s | %s | %s | %s | %s | %s |\n' "$suite" "$paraview" "
 ((EUID == 0)) || fail "a chroot needs root"
 command -v debootstrap >/dev/null || fail "no debootstrap: apt-get install debootstrap"
 
-root="$(mktemp -d)"
+root="${TAUTLINE_PLATFORM_ROOT:-$(mktemp -d)}"
 mounted=()
 cleanup() {
   for directory in "${mounted[@]}"; do umount "$directory"; done
-  rm -rf --one-file-system "$root"
+  [[ -n ${TAUTLINE_PLATFORM_ROOT:-} ]] || rm -rf --one-file-system "$root"
 }
 trap cleanup EXIT
-debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$log" 2>&1 || fail "debootstrap"
+: >"$log"
+[[ -x $root/usr/bin/apt-get ]] || debootstrap --variant=minbase "$suite" "$root" "$mirror" >>"$log" 2>&1 || fail "debootstrap"
 if mount -t proc proc "$root/proc" 2>>"$log"; then mounted=("$root/proc"); fi
 # Nothing of this machine's environment, but the cache of the compiler where there is one.
 inside() {
