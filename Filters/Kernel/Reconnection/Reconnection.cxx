@@ -450,7 +450,7 @@ bool Run::runBlocks(
     }
     try
     {
-      std::all_of(passes.begin(), passes.end(),
+      [[maybe_unused]] const bool complete = std::all_of(passes.begin(), passes.end(),
         [&](PassOptions pass)
         {
           // Of the failures that a pass may have, the block has its share.

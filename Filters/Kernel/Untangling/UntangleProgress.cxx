@@ -1,5 +1,6 @@
 #include "UntangleProgress.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace tautline
