@@ -276,7 +276,8 @@ def test_groups():
         return
     # Two blocks of triangles around a quadrilateral: MED has one block of each type, triangles first.
     corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]]
-    plane = meshio.Mesh(corners, [("triangle", [[0, 1, 2]]), ("quad", [[0, 2, 3, 0]]), ("triangle", [[1, 4, 2], [4, 5, 2]])])
+    blocks = [("triangle", [[0, 1, 2]]), ("quad", [[0, 2, 3, 0]]), ("triangle", [[1, 4, 2], [4, 5, 2]])]
+    plane = meshio.Mesh(corners, blocks)
     mixed = {"bad ones": [0, 3], "quads": [1], "none": []}
     tl.write(plane, FOLDER / "sets.inp", groups=mixed)
     assert (FOLDER / "sets.inp").read_text().endswith("*ELSET, ELSET=bad_ones\n1, 4\n*ELSET, ELSET=quads\n2\n")

@@ -15,7 +15,8 @@ from ._vtk_readers import SERIES, SOLVER_FORMATS
 
 _OWN = {
     ".node": "TetGen, Triangle", ".ele": "TetGen, Triangle", ".face": "TetGen, Triangle", ".edge": "TetGen, Triangle",
-    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".sol": "Medit", ".msh": "Gmsh, FreeFem++", ".pos": "Gmsh's views",
+    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
+    ".pos": "Gmsh's views",
     ".off": "OFF", ".coff": "OFF", ".noff": "OFF", ".cnoff": "OFF", ".ply": "PLY", ".stl": "STL",
     ".obj": "Wavefront OBJ",
 }  # fmt: skip
@@ -39,7 +40,8 @@ def _facts(ending: str) -> dict[str, Any]:
              "by": "VTK"}  # fmt: skip
     if ending in FORMATS:
         form = FORMATS[ending]
-        facts |= {"read": form.reader is not None, "write": form.writer is not None, "by": "Tautline" if form.own else "VTK"}
+        facts |= {"read": form.reader is not None, "write": form.writer is not None}
+        facts["by"] = "Tautline" if form.own else "VTK"
     elif ending == SERIES:
         facts |= {"format": "ParaView, files by time", "times": True, "by": "Tautline"}
     elif ending in SOLVER_FORMATS:

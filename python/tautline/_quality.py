@@ -347,7 +347,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--criteria", metavar="NAME|FILE",
                         help="grade the elements by a preset or JSON file; exits with 3 if the mesh fails")  # fmt: skip
     parser.add_argument("--groups", action="store_true",
-                        help="write the inverted, degenerate and failed elements as groups (.inp, .med) or cell arrays")  # fmt: skip
+                        help="write the bad elements as groups (.inp, .med) or cell arrays")  # fmt: skip
     parser.add_argument("--report", metavar="FILE", help="write an HTML report, see the command report")
     parser.add_argument("--histogram-bins", type=int, default=32, help=argparse.SUPPRESS)
 

@@ -210,7 +210,7 @@ ExtremeEigenvalues plainExtremeEigenvalues(const LinearSystem& system, const Pet
   {
     ExtremeEigenvalues other =
       preconditionedExtremeEigenvalues(system, options, options.preconditioner, "", test);
-    for (const auto& [extreme, second] : { std::make_pair(&extremes.smallest, &other.smallest),
+    for (const auto [extreme, second] : { std::make_pair(&extremes.smallest, &other.smallest),
            std::make_pair(&extremes.largest, &other.largest) })
     {
       if (!extreme->found)

@@ -285,7 +285,7 @@ ExtremeEigenvalues lanczosExtremeEigenvalues(
       measure(matrix, preconditioner, yHigh, pass.high, extremes.largest);
     }
   }
-  for (const auto& [extreme, candidate] : { std::make_pair(&extremes.smallest, &pass.low),
+  for (const auto [extreme, candidate] : { std::make_pair(&extremes.smallest, &pass.low),
          std::make_pair(&extremes.largest, &pass.high) })
   {
     extreme->iterations = static_cast<int>(candidate->pair.vector.size());
