@@ -4,6 +4,7 @@
 #include "LinearSolver.h"
 #include "LinearSolverState.h"
 
+#include <array>
 #include <atomic>
 #include <limits>
 
@@ -210,8 +211,9 @@ ExtremeEigenvalues plainExtremeEigenvalues(const LinearSystem& system, const Pet
   {
     ExtremeEigenvalues other =
       preconditionedExtremeEigenvalues(system, options, options.preconditioner, "", test);
-    for (const auto [extreme, second] : { std::make_pair(&extremes.smallest, &other.smallest),
-           std::make_pair(&extremes.largest, &other.largest) })
+    const std::array pairs = { std::make_pair(&extremes.smallest, &other.smallest),
+      std::make_pair(&extremes.largest, &other.largest) };
+    for (const auto& [extreme, second] : pairs)
     {
       if (!extreme->found)
       {

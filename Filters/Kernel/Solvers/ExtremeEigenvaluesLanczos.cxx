@@ -2,6 +2,8 @@
 
 #include "Tridiagonal.h"
 
+#include <array>
+
 namespace tautline
 {
 namespace
@@ -285,8 +287,9 @@ ExtremeEigenvalues lanczosExtremeEigenvalues(
       measure(matrix, preconditioner, yHigh, pass.high, extremes.largest);
     }
   }
-  for (const auto [extreme, candidate] : { std::make_pair(&extremes.smallest, &pass.low),
-         std::make_pair(&extremes.largest, &pass.high) })
+  const std::array pairs = { std::make_pair(&extremes.smallest, &pass.low),
+    std::make_pair(&extremes.largest, &pass.high) };
+  for (const auto& [extreme, candidate] : pairs)
   {
     extreme->iterations = static_cast<int>(candidate->pair.vector.size());
     if (!gathered)
