@@ -170,6 +170,10 @@ bool TriangleRun::record(int pass, double progress)
   this->Result.history.push_back(record);
   this->Progress = progress;
   this->LastCall = record.seconds;
+  if (this->Result.reason == StopReason::Aborted)
+  {
+    return false; // within the pass: the observer is not called again
+  }
   return !this->Options.observer || this->Options.observer(record, progress);
 }
 
@@ -349,7 +353,10 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
   std::vector<TrianglePass> passes = planPasses(this->Options);
   const std::size_t planned = passes.size();
   bool stopped = !started;
-  this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
+  if (!started)
+  {
+    this->Result.reason = StopReason::Aborted;
+  }
   for (std::size_t i = 0; i < passes.size() && !stopped; ++i)
   {
     const ReconnectionRecord before = this->Result.history.back();

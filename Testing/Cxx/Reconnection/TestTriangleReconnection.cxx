@@ -2,7 +2,9 @@
 
 #include "Triangulating.h"
 
+#include <chrono>
 #include <numeric>
+#include <thread>
 
 using namespace tautline;
 
@@ -476,6 +478,18 @@ void testLimits()
     TAUTLINE_CHECK_EQUAL(calls, allowed + 1);
     checkTriangles(data, stopped);
   }
+  // An observer that ends the run within a pass is not called again at the end of the pass.
+  const auto longerThanItsInterval = std::chrono::milliseconds(150);
+  int calls = 0;
+  options.observer = [&](const ReconnectionRecord&, double)
+  {
+    std::this_thread::sleep_for(longerThanItsInterval);
+    return ++calls < 2;
+  };
+  const ReconnectionResult within = reconnect(data, options);
+  TAUTLINE_CHECK(within.reason == StopReason::Aborted);
+  TAUTLINE_CHECK_EQUAL(calls, 2);
+  checkTriangles(data, within);
 }
 }
 
