@@ -128,6 +128,21 @@ def test_cut_legacy_files() -> None:
     assert refused_cuts > 0.95 * cuts
 
 
+def test_chunks_of_legacy_files() -> None:
+    """Numbers are counted right wherever a chunk of the file ends: within a number, after one, after a space."""
+    file = FOLDER / "chunks.vtk"
+    writer = vtkGenericDataObjectWriter()
+    writer.SetInputData(square(5))
+    writer.SetFileName(str(file))
+    writer.Write()
+    cells, chunk = square(5).GetNumberOfCells(), tl._legacy._CHUNK
+    try:
+        for tl._legacy._CHUNK in range(30, 60):  # longer than any number
+            assert tl.read(file).GetNumberOfCells() == cells, tl._legacy._CHUNK
+    finally:
+        tl._legacy._CHUNK = chunk
+
+
 def test_cut_xml_files() -> None:
     for name, ending in (("grid", ".vtu"), ("surface", ".vtp"), ("image", ".vti"), ("structured", ".vts"),
                          ("rectilinear", ".vtr")):  # fmt: skip

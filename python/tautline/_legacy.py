@@ -247,8 +247,8 @@ class _Scanner:
         left = count
         while left:
             chunk = self.content[self.at : self.at + _CHUNK]
-            if self.at + len(chunk) < self.size:
-                chunk = chunk[: len(chunk) - len(chunk.split()[-1])] if chunk.split() else chunk
+            if self.at + len(chunk) < self.size and not chunk[-1:].isspace():
+                chunk = chunk[: len(chunk) - len(chunk.split()[-1])]  # the last one may go on
             words = chunk.split(None, left)
             if not words or (len(words) < left and self.at + len(chunk) >= self.size):
                 raise self._damaged(f"{count} values are announced, {count - left + len(words)} are there")
