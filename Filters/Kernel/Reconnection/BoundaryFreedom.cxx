@@ -26,9 +26,8 @@ struct WallPlanes
     this->count = std::min(this->count + 1, 3);
   }
 };
+}
 
-/// A point whose walls are in one or two planes: whether its tetrahedra are one fan, so that moving
-/// it takes all of them along.
 void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
 {
   std::vector<std::int32_t> uses(mesh.pointSlots(), 0);
@@ -47,11 +46,10 @@ void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
       mesh.star(v, star);
       if (static_cast<std::int32_t>(star.size()) != uses[v])
       {
-        freedoms[v] = { PointFreedom::Fixed, { 0, 0, 0 } };
+        freedoms[v].fix();
       }
     }
   }
-}
 }
 
 std::vector<PointFreedom> findFreedoms(TetrahedronMesh& mesh, bool slide, double tolerance)

@@ -33,6 +33,10 @@ bool CavityOperations::aboveFloor(
 /// Compares the qualities of the replacement in increasing order.
 bool CavityOperations::improves()
 {
+  if (this->sums)
+  {
+    return this->decreasesSum();
+  }
   this->Before.clear();
   for (TetId t : this->Change.before)
   {
@@ -76,7 +80,7 @@ bool CavityOperations::isValidChange()
       return false;
     }
   }
-  return true;
+  return !this->surface || !this->Change.opensBoundary || this->keepsSurface();
 }
 
 bool CavityOperations::applyChange()
@@ -155,7 +159,15 @@ bool CavityOperations::smooth(PointId v, int steps)
 {
   // In vain since the last change of the star; tentative changes leave no stamps.
   const bool known = !this->Tentative && this->SmoothedAt[v] > this->Stamps[v];
-  if (this->freedoms[v].kind == PointFreedom::Fixed || known || !this->loadStar(v, this->Smoothing))
+  if (this->freedoms[v].kind == PointFreedom::Fixed || known)
+  {
+    return false;
+  }
+  if (this->sums)
+  {
+    return this->improveSum(v);
+  }
+  if (!this->loadStar(v, this->Smoothing))
   {
     return false;
   }
@@ -165,8 +177,10 @@ bool CavityOperations::smooth(PointId v, int steps)
     before = std::min(before, this->Mesh.quality(t));
   }
   Vec3 p = this->Mesh.point(v);
-  const double after = this->Smoothing.maximize(p, steps, this->freedoms[v]);
-  if (!(after > before * (1.0 + SameQuality)) || p == this->Mesh.point(v))
+  const PointFreedom freedom = this->freedomAt(v);
+  const double after = this->Smoothing.maximize(p, steps, freedom, this->projectionOf(freedom));
+  if (!(after > before * (1.0 + SameQuality)) || p == this->Mesh.point(v) ||
+    (freedom.isCurved() && !this->keepsSurface(v, p)))
   {
     this->SmoothedAt[v] = this->Tentative ? this->SmoothedAt[v] : this->Clock + 1;
     return false;
@@ -241,7 +255,7 @@ void CavityOperations::setMetric(PointId p, const std::vector<PointId>& around)
 }
 
 /// Whether moving v into its neighbour w leaves walls and fixed points as they are.
-bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring) const
+bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring)
 {
   const PointFreedom& freedom = this->freedoms[v];
   if (freedom.kind == PointFreedom::Free)
@@ -251,6 +265,10 @@ bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring) c
   if (freedom.kind == PointFreedom::Fixed || ring.closed || !ring.whole)
   {
     return false;
+  }
+  if (freedom.isCurved())
+  {
+    return this->canContractCurved(v, w, ring);
   }
   const Vec3 d = this->Mesh.point(w) - this->Mesh.point(v);
   return norm(d - freedom.project(d)) <= this->flatTolerance * norm(d);
@@ -302,7 +320,7 @@ bool CavityOperations::prepareContraction(TetId t, int i, int j, double above)
 
 bool CavityOperations::contract(TetId t, int i, int j)
 {
-  if (!this->prepareContraction(t, i, j, this->Mesh.quality(t)) || !this->commit())
+  if (!this->prepareContraction(t, i, j, this->leastOf(t)) || !this->commit())
   {
     return false;
   }

@@ -11,8 +11,11 @@
 #ifndef tautline_CavityOperations_h
 #define tautline_CavityOperations_h
 
+#include "BoundarySurface.h"
 #include "EdgeMetric.h"
 #include "StarSmoothing.h"
+
+#include <memory>
 
 namespace tautline
 {
@@ -23,6 +26,7 @@ struct QualityFloor
   double meanRatio = 0;     ///< (mean ratio)^(3/2)
   /// Tetrahedra of this quality and more are above both.
   double sufficient = 0;
+  double quality = 0; ///< the smallest one; motions for the mean keep it where it is a metric's
 };
 
 /// How many operations were accepted, and moves of points.
@@ -41,12 +45,15 @@ struct OperationRules
   std::vector<EdgeMetric> metrics;
   /// How much longer or shorter new edges may be.
   double edgeFactor = 2.0;
+  bool sums = false; ///< ReconnectionObjective::Sum decides, not the worst qualities
   QualityFloor floor;
   Index smallestSize = 0, largestSize = 0; ///< bounds of the number of tetrahedra
   /// Edges between coplanar facets may be removed, facets and edges of the boundary divided.
   bool swapsBoundary = false;
   /// Sine of the largest angle between coplanar facets, or directions that are the same.
   double flatTolerance = 0;
+  /// Of ReconnectionBoundary::Surface, else null.
+  std::shared_ptr<const BoundarySurface> surface;
 };
 
 class TAUTLINE_KERNEL_EXPORT CavityOperations : public OperationRules
@@ -66,7 +73,8 @@ public:
   bool smooth(PointId v, int steps);
   /// Moves a vertex so that the sum of the inverse mean ratios around decreases and nothing falls
   /// below the floor. @return the decrease
-  double improveMean(PointId v);
+  /// @param least a smaller decrease is none
+  double improveMean(PointId v, double least = 0.0);
   /// Sets what a motion has to gain; points that could not be moved are tried again.
   void setLeastGain(double gain)
   {
@@ -116,6 +124,9 @@ private:
     std::vector<TetId> tets;
     Vec3 point = { 0, 0, 0 };
     PointFreedom freedom; ///< of the point: not Free on the boundary
+    /// On a curved boundary: the facets that the point divides, and how many.
+    std::array<TriangleVertices, 2> opened = {};
+    int openedCount = 0;
     double quality = -1;
   };
 
@@ -157,20 +168,36 @@ private:
   bool loadStar(PointId v, StarSmoothing& star);
   void touch(const std::vector<TetId>& tets);
   bool isFlat(const EdgeRing& ring) const;
-  bool canSwapBoundary(const EdgeRing& ring) const;
+  bool canSwapBoundary(const EdgeRing& ring);
   double triangulate(const EdgeRing& ring, double above);
+  bool improveSum(PointId v);
+  bool decreasesSum() const;
+  bool canTriangulateForSum(const EdgeRing& ring);
+  double excess(const TetVertices& v) const;
+  /// What tetrahedra have to be better than, where one of this quality is replaced.
+  double leastOf(TetId t) const { return this->sums ? 0.0 : this->Mesh.quality(t); }
   void addTriangles(const EdgeRing& ring, int i, int j);
   double extendFaces(PointId a, PointId b, TetId above, PointId u, PointId w, int depth);
   void grow(Insertion& insertion);
   void addToCavity(TetId t);
-  bool startInsertion(const std::vector<TetId>& start, const Vec3& point,
-    const PointFreedom& freedom, Insertion& best);
+  bool startInsertion(const std::vector<TetId>& start, Insertion trial, Insertion& best);
   bool isOpened(const CavityFace& face, const Insertion& insertion) const;
   PointFreedom freedomOnEdge(const EdgeRing& ring) const;
   bool isOuter(const EdgeRing& ring) const;
   bool keepsLengths(PointId v, const std::vector<PointId>& others, bool isInsertion) const;
   void setMetric(PointId p, const std::vector<PointId>& around);
-  bool canContract(PointId v, PointId w, const EdgeRing& ring) const;
+  bool canContract(PointId v, PointId w, const EdgeRing& ring);
+  // On a curved boundary.
+  PointFreedom freedomAt(PointId v) const;
+  std::function<Vec3(const Vec3&)> projectionOf(const PointFreedom& freedom) const;
+  int patchOf(const TriangleVertices& facet) const;
+  bool keepsSurface(const TriangleVertices& facet) const;
+  bool keepsSurface(PointId v, const Vec3& p) const;
+  bool keepsSurface();
+  bool canSwapCurved(const EdgeRing& ring);
+  bool canContractCurved(PointId v, PointId w, const EdgeRing& ring);
+  bool prepareInsertion(const TriangleVertices& facet, Insertion& insertion) const;
+  bool prepareInsertion(const EdgeRing& ring, Insertion& insertion) const;
 
   TetrahedronMesh& Mesh;
   OperationCounts Counts;
@@ -178,7 +205,7 @@ private:
   std::vector<std::uint32_t> SmoothedAt; ///< clock at the last motion in vain, per point
   std::uint32_t Clock = 0;
   Replacement Change;
-  std::vector<TetId> Created, Star;
+  std::vector<TetId> Created, Star, OtherStar;
   std::vector<double> Before, After;
   StarSmoothing Smoothing;
   EdgeRing Ring;

@@ -17,44 +17,43 @@ bool isPositiveDefinite(const EdgeMetric& m)
     m[2] * minor - m[4] * (m[0] * m[4] - m[3] * m[5]) + m[5] * (m[3] * m[4] - m[1] * m[5]);
   return std::isfinite(determinant) && m[0] > 0.0 && minor > 0.0 && determinant > 0.0;
 }
-
-/// The mean length of the edges at each point; edges count once per tetrahedron.
-std::vector<EdgeMetric> metricsOfInput(const ReconnectionInput& input)
-{
-  std::vector<double> sums(input.points.size(), 0.0);
-  std::vector<int> counts(input.points.size(), 0);
-  for (const TetVertices& cell : input.cells)
-  {
-    for (int i = 0; i < 4; ++i)
-    {
-      for (int j = 0; j < 4; ++j)
-      {
-        sums[cell[i]] += norm(input.points[cell[j]] - input.points[cell[i]]);
-        counts[cell[i]] += i != j;
-      }
-    }
-  }
-  std::vector<EdgeMetric> metrics;
-  for (std::size_t v = 0; v < sums.size(); ++v)
-  {
-    metrics.push_back(metricOf(counts[v] > 0 ? sums[v] / counts[v] : 1.0));
-  }
-  return metrics;
 }
+
+EdgeMetric turned(const EdgeMetric& m, const std::array<Vec3, 3>& axes)
+{
+  const auto product = [&](int i, int j)
+  {
+    const Vec3 &a = axes[i], &b = axes[j];
+    return m[0] * a[0] * b[0] + m[1] * a[1] * b[1] + m[2] * a[2] * b[2] +
+      m[3] * (a[0] * b[1] + a[1] * b[0]) + m[4] * (a[1] * b[2] + a[2] * b[1]) +
+      m[5] * (a[0] * b[2] + a[2] * b[0]);
+  };
+  return { product(0, 0), product(1, 1), product(2, 2), product(0, 1), product(1, 2),
+    product(0, 2) };
 }
 
 std::vector<EdgeMetric> edgeMetrics(
   const ReconnectionInput& input, const ReconnectionOptions& options)
 {
-  const std::size_t count = input.points.size();
-  const auto converted = [&](double length) { return std::ldexp(length, -input.exponent); };
+  const bool own = options.size == ReconnectionSize::Input;
+  return edgeMetrics(input.points, input.exponent,
+    own ? meanEdgeLengths(input.points, input.cells) : std::vector<double>(), options);
+}
+
+std::vector<EdgeMetric> edgeMetrics(const std::vector<Vec3>& points, int exponent,
+  const std::vector<double>& lengths, const ReconnectionOptions& options)
+{
+  const std::size_t count = points.size();
+  const auto converted = [&](double length) { return std::ldexp(length, -exponent); };
   if (options.size == ReconnectionSize::None)
   {
     return {};
   }
   if (options.size == ReconnectionSize::Input)
   {
-    return metricsOfInput(input);
+    std::vector<EdgeMetric> metrics(lengths.size());
+    std::transform(lengths.begin(), lengths.end(), metrics.begin(), metricOf);
+    return metrics;
   }
   if (options.size == ReconnectionSize::Length)
   {
@@ -78,7 +77,7 @@ std::vector<EdgeMetric> edgeMetrics(
     invalid += !isPositiveDefinite(metrics[v]);
     for (double& m : metrics[v])
     {
-      m = std::ldexp(m, 2 * input.exponent);
+      m = std::ldexp(m, 2 * exponent);
     }
   }
   if (invalid > 0)

@@ -26,5 +26,40 @@ inline double squaredLength(const Vec3& e, const EdgeMetric& a, const EdgeMetric
  */
 std::vector<EdgeMetric> edgeMetrics(
   const ReconnectionInput& input, const ReconnectionOptions& options);
+
+/**
+ * @brief The same of other cells.
+ * @param points as converted: times 2^-exponent
+ * @param lengths the mean length of the edges at each point, with ReconnectionSize::Input
+ */
+std::vector<EdgeMetric> edgeMetrics(const std::vector<Vec3>& points, int exponent,
+  const std::vector<double>& lengths, const ReconnectionOptions& options);
+
+/// The mean length of the edges at each point, 1 where there are none; edges count once per cell.
+template <class Cells>
+std::vector<double> meanEdgeLengths(const std::vector<Vec3>& points, const Cells& cells)
+{
+  std::vector<double> sums(points.size(), 0.0);
+  std::vector<int> counts(points.size(), 0);
+  for (const auto& cell : cells)
+  {
+    for (const auto v : cell)
+    {
+      for (const auto w : cell)
+      {
+        sums[v] += norm(points[w] - points[v]);
+        counts[v] += v != w;
+      }
+    }
+  }
+  for (std::size_t v = 0; v < sums.size(); ++v)
+  {
+    sums[v] = counts[v] > 0 ? sums[v] / counts[v] : 1.0;
+  }
+  return sums;
+}
+
+/// A metric in other coordinates: of points x with x . axes[i].
+EdgeMetric turned(const EdgeMetric& m, const std::array<Vec3, 3>& axes);
 }
 #endif

@@ -28,7 +28,7 @@ double facetQuality(const Vec3& a, const Vec3& b, const Vec3& c, const QualityWe
     return 0.0;
   }
   smoothing.clear();
-  smoothing.weights = weights;
+  smoothing.weights = weights; // before faces are added
   const double leastGain = smoothing.leastGain;
   smoothing.leastGain = LeastGain;
   smoothing.addFace(a, b, c);

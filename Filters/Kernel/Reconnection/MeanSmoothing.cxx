@@ -16,6 +16,8 @@ constexpr double RatioFactor = 12.0;
 constexpr int Halvings = 6;
 /// A decrease that is kept, relative to the sum.
 constexpr double LeastDecrease = 1e-7;
+/// What an operation has to decrease the sum by, where the sum is the objective.
+constexpr double LeastSumDecrease = 1e-3;
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -82,13 +84,13 @@ Vec3 stepOf(const RatioSum& sum, const PointFreedom& freedom)
 }
 }
 
-double CavityOperations::improveMean(PointId v)
+double CavityOperations::improveMean(PointId v, double least)
 {
-  const PointFreedom& freedom = this->freedoms[v];
-  if (freedom.kind == PointFreedom::Fixed || !this->Mesh.used(v))
+  if (this->freedoms[v].kind == PointFreedom::Fixed || !this->Mesh.used(v))
   {
     return 0.0;
   }
+  const PointFreedom freedom = this->freedomAt(v);
   this->Mesh.star(v, this->Star);
   std::vector<std::array<Vec3, 3>> faces;
   for (TetId t : this->Star)
@@ -114,15 +116,19 @@ double CavityOperations::improveMean(PointId v)
   Vec3 step = stepOf(before, freedom);
   for (int k = 0; k < Halvings; ++k, step = 0.5 * step)
   {
-    const Vec3 p = start + step;
+    const Vec3 p =
+      freedom.isCurved() ? this->surface->closest(start + step, freedom) : start + step;
     const double decrease = before.value - evaluate(p, false).value;
-    const bool kept = decrease > LeastDecrease * before.value &&
+    const bool kept = decrease > std::max(LeastDecrease * before.value, least) &&
       std::all_of(faces.begin(), faces.end(),
         [&](const std::array<Vec3, 3>& f)
         {
           const double q = exactQuality(p, f[0], f[1], f[2]);
-          return q > CertainQuality && this->aboveFloor(p, f[0], f[1], f[2], q);
-        });
+          const MetricQuality* metric = this->Mesh.weights().metric;
+          return q > CertainQuality && this->aboveFloor(p, f[0], f[1], f[2], q) &&
+            (!metric || metric->quality(p, f[0], f[1], f[2]) >= this->floor.quality);
+        }) &&
+      (!freedom.isCurved() || this->keepsSurface(v, p));
     if (kept)
     {
       this->Mesh.movePoint(v, p, this->Star, nullptr);
@@ -131,5 +137,82 @@ double CavityOperations::improveMean(PointId v)
     }
   }
   return 0.0;
+}
+
+//------------------------------------------------------------------------------
+/// What the inverse mean ratio of a tetrahedron exceeds 1; infinite unless it is positive.
+double CavityOperations::excess(const TetVertices& v) const
+{
+  const auto x = [&](int k) { return this->Mesh.point(v[k]); };
+  const double ratio = measure(x(0), x(1), x(2), x(3)).meanRatio;
+  return ratio > 0.0 ? std::pow(ratio, -2.0 / 3.0) - 1.0 : std::numeric_limits<double>::infinity();
+}
+
+/// Whether the replacement decreases the sum.
+bool CavityOperations::decreasesSum() const
+{
+  double change = LeastSumDecrease;
+  for (const TetVertices& v : this->Change.after)
+  {
+    change += this->excess(v);
+  }
+  for (TetId t : this->Change.before)
+  {
+    change -= this->excess(this->Mesh.tet(t).vertices);
+  }
+  return change < 0.0;
+}
+
+/// As triangulate(), but with the smallest sum; false if that is not smaller than that of the ring.
+bool CavityOperations::canTriangulateForSum(const EdgeRing& ring)
+{
+  const int n = ring.vertices;
+  const auto& r = ring.ring;
+  double before = 0.0;
+  for (int i = 0; i < ring.size; ++i)
+  {
+    before += this->excess(this->Mesh.tet(ring.tets[i]).vertices);
+  }
+  for (int i = 0; i + 1 < n; ++i)
+  {
+    this->Best[i][i + 1] = 0.0;
+  }
+  for (int length = 2; length < n; ++length)
+  {
+    for (int i = 0; i + length < n; ++i)
+    {
+      const int j = i + length;
+      double best = before - LeastSumDecrease;
+      this->Middle[i][j] = NoId;
+      for (int k = i + 1; k < j; ++k)
+      {
+        double sum = this->Best[i][k] + this->Best[k][j];
+        sum += sum < best ? this->excess({ r[i], r[k], r[j], ring.b }) : 0.0;
+        sum += sum < best ? this->excess({ r[k], r[i], r[j], ring.a }) : 0.0;
+        if (sum < best)
+        {
+          best = sum;
+          this->Middle[i][j] = k;
+        }
+      }
+      this->Best[i][j] =
+        this->Middle[i][j] == NoId ? std::numeric_limits<double>::infinity() : best;
+    }
+  }
+  return std::isfinite(this->Best[0][n - 1]);
+}
+
+/// Moves a point for the sum.
+bool CavityOperations::improveSum(PointId v)
+{
+  this->prepareStamps();
+  if (!(this->improveMean(v, LeastSumDecrease) > 0.0))
+  {
+    this->SmoothedAt[v] = this->Clock + 1;
+    return false;
+  }
+  this->Created = this->Star;
+  this->touch(this->Created);
+  return true;
 }
 }

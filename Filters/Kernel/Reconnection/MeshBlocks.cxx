@@ -137,6 +137,8 @@ MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
   this->Operations.edgeFactor = rules.edgeFactor;
   this->Operations.swapsBoundary = rules.swapsBoundary;
   this->Operations.flatTolerance = rules.flatTolerance;
+  this->Operations.surface = rules.surface;
+  this->Operations.sums = rules.sums;
   const double share = static_cast<double>(this->Own.size()) / static_cast<double>(whole.size());
   const auto shareOf = [share](Index count) {
     return static_cast<Index>(std::floor(share * static_cast<double>(std::max<Index>(count, 0))));
@@ -157,9 +159,11 @@ MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
     {
       this->Operations.metrics.push_back(rules.metrics[this->Points[v]]);
     }
-    this->Operations.freedoms.push_back(this->Shared[v]
-        ? PointFreedom{ PointFreedom::Fixed, { 0, 0, 0 } }
-        : rules.freedoms[this->Points[v]]);
+    this->Operations.freedoms.push_back(rules.freedoms[this->Points[v]]);
+    if (this->Shared[v])
+    {
+      this->Operations.freedoms.back().fix();
+    }
   }
 }
 

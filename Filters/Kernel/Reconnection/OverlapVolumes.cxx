@@ -91,11 +91,10 @@ double sharedVolume(const Corners& x, const Corners& y)
 }
 }
 
-std::vector<std::pair<TetId, double>> InputLocator::overlaps(
-  const Corners& corners, TetId start) const
+OverlapRow InputLocator::overlaps(const Corners& corners, TetId start) const
 {
   const double least = RoundingFraction * std::abs(volumeOf(corners));
-  std::vector<std::pair<TetId, double>> result;
+  OverlapRow result;
   std::vector<TetId> queue = { start };
   std::unordered_set<TetId> known = { start };
   for (std::size_t i = 0; i < queue.size(); ++i)
@@ -125,34 +124,15 @@ std::vector<std::pair<TetId, double>> InputLocator::overlaps(
   return result;
 }
 
-void computeOverlaps(const ReconnectionInput& input, const TetrahedronMesh& changed,
-  const InputLocator& locator, int threads, ReconnectionResult& result)
+void takeOverlaps(std::vector<OverlapRow>& rows, ReconnectionResult& result)
 {
-  std::vector<TetId> tets;
-  for (TetId t = 0; t < changed.slots(); ++t)
+  for (std::size_t c = 0; c < rows.size(); ++c)
   {
-    if (changed.alive(t))
+    if (rows[c].empty())
     {
-      tets.push_back(t);
+      rows[c].push_back({ static_cast<std::int32_t>(result.originalCells[c]), 1.0 });
     }
   }
-  std::vector<std::vector<std::pair<TetId, double>>> rows(tets.size());
-  parallelFor(static_cast<Index>(tets.size()), TetrahedraPerChunk, threads,
-    [&](Index c)
-    {
-      const TetVertices& v = changed.tet(tets[c]).vertices;
-      const TetId original = static_cast<TetId>(result.originalCells[c]);
-      if (!isUnchanged(input, changed, tets[c]))
-      {
-        rows[c] = locator.overlaps(
-          { changed.point(v[0]), changed.point(v[1]), changed.point(v[2]), changed.point(v[3]) },
-          original);
-      }
-      if (rows[c].empty())
-      {
-        rows[c].push_back({ original, 1.0 });
-      }
-    });
   CellOverlaps& overlaps = result.overlaps;
   overlaps.offsets.push_back(0);
   for (std::size_t c = 0; c < rows.size(); ++c)
@@ -174,5 +154,32 @@ void computeOverlaps(const ReconnectionInput& input, const TetrahedronMesh& chan
     }
     overlaps.offsets.push_back(static_cast<Index>(overlaps.cells.size()));
   }
+}
+
+void computeOverlaps(const ReconnectionInput& input, const TetrahedronMesh& changed,
+  const InputLocator& locator, int threads, ReconnectionResult& result)
+{
+  std::vector<TetId> tets;
+  for (TetId t = 0; t < changed.slots(); ++t)
+  {
+    if (changed.alive(t))
+    {
+      tets.push_back(t);
+    }
+  }
+  std::vector<OverlapRow> rows(tets.size());
+  parallelFor(static_cast<Index>(tets.size()), TetrahedraPerChunk, threads,
+    [&](Index c)
+    {
+      const TetVertices& v = changed.tet(tets[c]).vertices;
+      const TetId original = static_cast<TetId>(result.originalCells[c]);
+      if (!isUnchanged(input, changed, tets[c]))
+      {
+        rows[c] = locator.overlaps(
+          { changed.point(v[0]), changed.point(v[1]), changed.point(v[2]), changed.point(v[3]) },
+          original);
+      }
+    });
+  takeOverlaps(rows, result);
 }
 }

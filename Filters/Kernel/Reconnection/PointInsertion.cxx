@@ -49,6 +49,11 @@ bool CavityOperations::isOpened(const CavityFace& face, const Insertion& inserti
     return false;
   }
   const TriangleVertices f = this->Mesh.face(face.tet, face.face);
+  if (insertion.freedom.isCurved())
+  {
+    const auto opened = insertion.opened.begin();
+    return std::find(opened, opened + insertion.openedCount, f) != opened + insertion.openedCount;
+  }
   const Vec3& a = this->Mesh.point(f[0]);
   const Vec3 n = cross(this->Mesh.point(f[1]) - a, this->Mesh.point(f[2]) - a);
   const double area = norm(n);
@@ -106,11 +111,9 @@ void CavityOperations::grow(Insertion& insertion)
 
 /// Grows a cavity from a start, and moves the point in it; keeps the best.
 bool CavityOperations::startInsertion(
-  const std::vector<TetId>& start, const Vec3& point, const PointFreedom& freedom, Insertion& best)
+  const std::vector<TetId>& start, Insertion trial, Insertion& best)
 {
-  Insertion trial;
-  trial.point = point;
-  trial.freedom = freedom;
+  const auto project = this->projectionOf(trial.freedom);
   bool better = false;
   for (int round = 0; round < Rounds; ++round)
   {
@@ -142,7 +145,7 @@ bool CavityOperations::startInsertion(
     {
       break;
     }
-    trial.quality = this->Smoothing.maximize(trial.point, PointSteps, freedom);
+    trial.quality = this->Smoothing.maximize(trial.point, PointSteps, trial.freedom, project);
     if (trial.quality > best.quality)
     {
       best = trial;
@@ -174,20 +177,27 @@ bool CavityOperations::findInsertion(TetId t, Insertion& best, std::vector<Inser
   const TetVertices v = this->Mesh.tet(t).vertices;
   const auto x = [&](int k) { return this->Mesh.point(v[k]); };
   const Vec3 sum = x(0) + x(1) + x(2) + x(3);
-  const auto start =
-    [&](const std::vector<TetId>& tets, const Vec3& point, const PointFreedom& freedom = {})
+  const auto begin = [&](const std::vector<TetId>& tets, const Insertion& trial)
   {
     if (!all)
     {
-      this->startInsertion(tets, point, freedom, best);
+      this->startInsertion(tets, trial, best);
       return;
     }
     Insertion own;
     own.quality = least;
-    if (this->startInsertion(tets, point, freedom, own))
+    if (this->startInsertion(tets, trial, own))
     {
       all->push_back(own);
     }
+  };
+  const auto start =
+    [&](const std::vector<TetId>& tets, const Vec3& point, const PointFreedom& freedom = {})
+  {
+    Insertion trial;
+    trial.point = point;
+    trial.freedom = freedom;
+    begin(tets, trial);
   };
   start({ t }, 0.25 * sum);
   for (int i = 0; i < 4; ++i)
@@ -196,6 +206,14 @@ bool CavityOperations::findInsertion(TetId t, Insertion& best, std::vector<Inser
     if (!this->Mesh.isWall(t, i))
     {
       start({ t, this->Mesh.tet(t).neighbors[i] >> 2 }, center);
+    }
+    else if (this->swapsBoundary && this->Mesh.tet(t).neighbors[i] == NoId && this->surface)
+    {
+      Insertion trial;
+      if (this->prepareInsertion(this->Mesh.face(t, i), trial))
+      {
+        begin({ t }, trial);
+      }
     }
     else if (this->swapsBoundary && this->Mesh.tet(t).neighbors[i] == NoId)
     {
@@ -207,7 +225,15 @@ bool CavityOperations::findInsertion(TetId t, Insertion& best, std::vector<Inser
     {
       this->Mesh.ring(t, i, j, this->Ring);
       const EdgeRing& ring = this->Ring;
-      if (ring.whole && (ring.closed || (this->swapsBoundary && this->isOuter(ring))))
+      Insertion trial;
+      if (ring.whole && !ring.closed && this->surface)
+      {
+        if (this->isOuter(ring) && this->prepareInsertion(ring, trial))
+        {
+          begin({ ring.tets.begin(), ring.tets.begin() + ring.size }, trial);
+        }
+      }
+      else if (ring.whole && (ring.closed || (this->swapsBoundary && this->isOuter(ring))))
       {
         start({ ring.tets.begin(), ring.tets.begin() + ring.size }, 0.5 * (x(i) + x(j)),
           ring.closed ? PointFreedom() : this->freedomOnEdge(ring));
@@ -295,7 +321,7 @@ bool CavityOperations::applyInsertion(const Insertion& best)
 bool CavityOperations::insert(TetId t)
 {
   Insertion best;
-  best.quality = this->Mesh.quality(t);
+  best.quality = this->leastOf(t);
   return this->findInsertion(t, best) && this->applyInsertion(best);
 }
 }

@@ -63,10 +63,35 @@ double radians(double degrees)
   return degrees * (Pi / 180.0);
 }
 
-QualityWeights weightsOf(ReconnectionObjective objective)
+QualityWeights weightsOf(ReconnectionObjective objective, const MetricQuality* metric)
 {
+  if (metric)
+  {
+    return { IgnoredWeight, IgnoredWeight, metric };
+  }
   return { objective == ReconnectionObjective::Shape ? IgnoredWeight : 1.0,
     objective == ReconnectionObjective::Angles ? IgnoredWeight : 1.0 };
+}
+
+/// The metric that is the objective; null: another one is.
+std::unique_ptr<MetricQuality> metricOf(
+  const Mesh& mesh, const ReconnectionInput& input, const ReconnectionOptions& options)
+{
+  if (options.objective != ReconnectionObjective::Metric || mesh.view().numberOfCells == 0)
+  {
+    return nullptr;
+  }
+  std::vector<double> values(mesh.view().numberOfCells);
+  EvaluationOptions evaluation;
+  evaluation.threads = options.threads;
+  requireInRange(
+    metricInfo(options.metric), evaluateMetric(mesh, options.metric, evaluation, values.data()));
+  double sum = 0.0;
+  for (double value : values)
+  {
+    sum += value / static_cast<double>(values.size());
+  }
+  return std::make_unique<MetricQuality>(options.metric, input.exponent, sum);
 }
 
 /// Sets the worst values of the record; only tetrahedra that may be worse than those before are
@@ -99,6 +124,7 @@ void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord
     meanRatio = std::min(meanRatio, measure(x(0), x(1), x(2), x(3)).meanRatio);
     // With weights 1, all angles are between asin(q) and 180 degrees minus it, and the mean ratio's
     // power is above q.
+    // (Of a metric of the registry nothing follows for these: the weights are large.)
     const QualityWeights& w = mesh.weights();
     sufficient =
       std::max({ w.meanRatio * meanRatio, w.sine * std::sin(radians(std::min(smallest, 90.0))),
@@ -109,6 +135,37 @@ void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord
   record.smallestAngle = smallest;
   record.largestAngle = largest;
   record.worstInverseMeanRatio = std::pow(meanRatio, -2.0 / 3.0);
+}
+
+/// In the units of the input, which are 2^exponent.
+double volumeOf(const TetrahedronMesh& mesh, int exponent)
+{
+  double sum = 0.0;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    if (mesh.alive(t))
+    {
+      const TetVertices& v = mesh.tet(t).vertices;
+      const auto x = [&](int k) { return mesh.point(v[k]) - mesh.point(v[0]); };
+      sum += dot(x(1), cross(x(2), x(3)));
+    }
+  }
+  return std::ldexp(sum / 6.0, 3 * exponent);
+}
+
+double meanRatioOf(const TetrahedronMesh& mesh)
+{
+  double sum = 0.0;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    if (mesh.alive(t))
+    {
+      const TetVertices& v = mesh.tet(t).vertices;
+      const auto x = [&](int k) { return mesh.point(v[k]); };
+      sum += std::pow(measure(x(0), x(1), x(2), x(3)).meanRatio, -2.0 / 3.0);
+    }
+  }
+  return sum / static_cast<double>(mesh.size());
 }
 
 void copyCounts(const OperationCounts& counts, ReconnectionRecord& record)
@@ -124,15 +181,16 @@ void copyCounts(const OperationCounts& counts, ReconnectionRecord& record)
 /// First swaps and smoothing, for ever better tetrahedra; then insertion, then what is costly.
 std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index size)
 {
-  const double target = std::sin(radians(options.targetAngle));
+  const bool sums = options.objective == ReconnectionObjective::Sum;
+  const double target = sums ? 1.0 : std::sin(radians(options.targetAngle));
   PassOptions pass;
   pass.swap = options.swap;
   pass.smooth = options.smooth;
-  pass.skipsBound = options.boundary == ReconnectionBoundary::Fixed;
+  pass.skipsBound = options.boundary == ReconnectionBoundary::Fixed && !sums;
   std::vector<PassOptions> passes;
   for (double first : FirstTargets)
   {
-    if (first < target)
+    if (first < target && !sums)
     {
       pass.target = first;
       passes.push_back(pass);
@@ -154,7 +212,7 @@ std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index si
     pass.contract = true;
     passes.push_back(pass);
   }
-  if (options.compound && options.smooth)
+  if (options.compound && options.smooth && !sums)
   {
     pass.compound = true;
     pass.leastGain = FineGain;
@@ -216,7 +274,8 @@ public:
   {
   }
 
-  void run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics);
+  void run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics,
+    std::shared_ptr<const BoundarySurface> surface);
   const Schedule& schedule() const { return this->Passes; }
 
 private:
@@ -285,6 +344,7 @@ void Run::setFloor(const ReconnectionRecord& record)
 {
   QualityFloor& floor = this->Operations.floor;
   floor.smallestAngle = record.smallestAngle;
+  floor.quality = record.worstQuality;
   floor.meanRatio = std::pow(record.worstInverseMeanRatio, -1.5);
   const double sine = record.smallestAngle < 90.0 ? std::sin(radians(record.smallestAngle)) : 1.0;
   const QualityWeights& weights = this->Mesh.weights();
@@ -303,17 +363,19 @@ void Run::setBounds()
         static_cast<double>(std::numeric_limits<std::int32_t>::max() / 4)));
 }
 
-void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics)
+void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics,
+  std::shared_ptr<const BoundarySurface> surface)
 {
+  this->Operations.surface = std::move(surface);
   this->Operations.freedoms = freedoms;
   this->Operations.metrics = std::move(metrics);
   this->Operations.edgeFactor = this->Options.edgeFactor;
+  this->Operations.sums = this->Options.objective == ReconnectionObjective::Sum;
   this->Operations.swapsBoundary =
-    this->Options.swap && this->Options.boundary == ReconnectionBoundary::Flat;
+    this->Options.swap && this->Options.boundary != ReconnectionBoundary::Fixed;
   this->Operations.flatTolerance = std::max(
     std::sin(radians(this->Options.flatTolerance)), 4.0 * std::numeric_limits<double>::epsilon());
   this->setBounds();
-  this->Mesh.setWeights(weightsOf(this->Options.objective));
   this->Result.reason = StopReason::NoProgress;
   const bool started = this->record(0, 0.0);
   this->setFloor(this->Result.history.front());
@@ -343,7 +405,7 @@ bool Run::runPasses(std::vector<PassOptions> passes)
   for (std::size_t i = 0; i < passes.size() && !stopped; ++i)
   {
     const ReconnectionRecord before = this->Result.history.back();
-    if (before.belowTarget == 0)
+    if (before.belowTarget == 0 && !this->Operations.sums)
     {
       break;
     }
@@ -481,6 +543,10 @@ bool Run::runBlocks(
 /// Whether enough tetrahedra are below the target, of those that passes start with.
 bool Run::paysInBlocks(const std::vector<char>& starts) const
 {
+  if (this->Operations.sums)
+  {
+    return true;
+  }
   const double target = std::sin(radians(this->Options.targetAngle));
   Index count = 0;
   for (TetId t = 0; t < this->Mesh.slots(); ++t)
@@ -551,18 +617,33 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   ReconnectionInput input = convertInput(mesh, options);
   ReconnectionResult result;
   TetrahedronMesh changing(input.points, input.cells, input.regions);
+  const std::unique_ptr<MetricQuality> metric = metricOf(mesh, input, options);
+  changing.setWeights(weightsOf(options.objective, metric.get()));
   checkFaces(changing);
   const InputLocator locator(changing, input);
-  std::vector<PointFreedom> freedoms =
-    findFreedoms(changing, options.boundary == ReconnectionBoundary::Flat,
+  std::shared_ptr<const BoundarySurface> surface;
+  std::vector<PointFreedom> freedoms;
+  if (options.boundary == ReconnectionBoundary::Surface && changing.size() > 0)
+  {
+    MeshView scaled = mesh.view();
+    scaled.points = input.points.data()->data();
+    surface = std::make_shared<BoundarySurface>(Mesh(scaled), changing, options);
+    freedoms = surface->freedoms();
+    fixNonManifold(changing, freedoms);
+    result.volumeBefore = volumeOf(changing, input.exponent);
+  }
+  else
+  {
+    freedoms = findFreedoms(changing, options.boundary == ReconnectionBoundary::Flat,
       std::max(
         std::sin(radians(options.flatTolerance)), 4.0 * std::numeric_limits<double>::epsilon()));
+  }
   std::vector<char> fixedPoints(freedoms.size(), 0);
   for (std::size_t v = 0; v < freedoms.size(); ++v)
   {
     if (options.fixed && options.fixed[v])
     {
-      freedoms[v] = { PointFreedom::Fixed, { 0, 0, 0 } };
+      freedoms[v].fix();
       fixedPoints[v] = 1;
     }
     result.pointsInPlanes += freedoms[v].kind == PointFreedom::InPlane;
@@ -571,8 +652,20 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   Run run(changing, options, result);
   if (changing.size() > 0)
   {
-    run.run(freedoms, edgeMetrics(input, options));
+    result.meanBefore = meanRatioOf(changing);
+    run.run(freedoms, edgeMetrics(input, options), surface);
+    result.meanAfter = meanRatioOf(changing);
     findObstacles(changing, run.schedule(), options, fixedPoints, result);
+  }
+  if (metric)
+  {
+    result.worstMetricBefore = metric->valueOf(result.history.front().worstQuality);
+    result.worstMetricAfter = metric->valueOf(result.history.back().worstQuality);
+  }
+  if (surface)
+  {
+    result.volumeAfter = volumeOf(changing, input.exponent);
+    result.boundaryDistance = std::ldexp(surface->distance(changing), input.exponent);
   }
   convertOutput(mesh, input, changing, locator, result);
   if (options.overlaps)

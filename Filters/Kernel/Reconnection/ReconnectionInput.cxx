@@ -15,6 +15,7 @@ constexpr double BytesPerTetrahedron = 250.0;
 /// Of the blocks beside these.
 constexpr double BlockBytesPerTetrahedron = 110.0;
 constexpr double LargestTargetAngle = 60.0, LargestFlatTolerance = 1.0;
+constexpr double LargestFeatureAngle = 180.0, LargestSurfaceAngle = 90.0;
 
 void checkCells(const Mesh& mesh)
 {
@@ -81,6 +82,12 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
     "the target angle must be above 0 and at most 60 degrees");
   check(options.flatTolerance >= 0.0 && options.flatTolerance <= LargestFlatTolerance,
     "the flat tolerance must be from 0 to 1 degree");
+  check(options.featureAngle >= 0.0 && options.featureAngle <= LargestFeatureAngle,
+    "the feature angle must be 0 to 180 degrees");
+  check(options.surfaceAngle >= 0.0 && options.surfaceAngle <= LargestSurfaceAngle,
+    "the surface angle must be 0 to 90 degrees");
+  check(options.surfaceDistance >= 0.0 && options.surfaceDistance <= 1.0,
+    "the surface distance must be 0 to 1 times the diagonal of the mesh");
   check(options.smallestCount >= 0.0 && options.smallestCount <= 1.0,
     "the smallest count must be from 0 to 1 times that of the input");
   check(options.largestCount >= 1.0 && std::isfinite(options.largestCount),

@@ -6,6 +6,7 @@
 #define tautline_ReconnectionOptions_h
 
 #include "tautline/Core/Iteration.h"
+#include "tautline/Quality/Metrics.h"
 
 namespace tautline
 {
@@ -31,7 +32,15 @@ enum class ReconnectionBoundary : int
    * volume and the volume of each region stay, within the flat tolerance. Facets between regions
    * are not swapped or contracted.
    */
-  Flat = 1
+  Flat = 1,
+  /**
+   * @brief Also on curved parts: points of the boundary move on it, or along its sharp edges, and
+   * are contracted, inserted and swapped there; facets stay within surfaceDistance and surfaceAngle
+   * of the boundary of the input. Corners, sharp edges (featureAngle) and facets between regions
+   * stay. The shape and the volume change within these bounds. Boundaries closer to each other than
+   * the distance may come to overlap. Tetrahedra only.
+   */
+  Surface = 2
 };
 
 /// What the worst tetrahedra are improved for. The numbers are stable.
@@ -39,7 +48,20 @@ enum class ReconnectionObjective : int
 {
   AnglesAndShape = 0, ///< the smaller of the sines of the dihedral angles and (mean ratio)^(3/2)
   Angles = 1,         ///< the sines alone: larger smallest angles, longer tetrahedra
-  Shape = 2           ///< (mean ratio)^(3/2) alone
+  Shape = 2,          ///< (mean ratio)^(3/2) alone
+  /**
+   * @brief ReconnectionOptions::metric, the worst values first. Qualities are x / I or I / x of a
+   * value x and the ideal value I; 1 / (1 + x) where I is 0; without an ideal value x / (x + u) or
+   * u / (x + u) with the mean u of the input. Tetrahedra are worked on while theirs is below the
+   * sine of the target angle. Tetrahedra only.
+   */
+  Metric = 3,
+  /**
+   * @brief The sum over all tetrahedra of what their inverse mean ratios exceed 1: changes that
+   * decrease it, while the smallest angle and the largest inverse mean ratio of the input are held.
+   * All tetrahedra are worked on, whatever the target; compound operations are not used.
+   */
+  Sum = 4
 };
 
 /// One line of the history; pass 0 is the input.
@@ -93,10 +115,21 @@ struct ReconnectionOptions
    */
   double targetAngle = 33.4;
   ReconnectionObjective objective = ReconnectionObjective::AnglesAndShape;
+  /// With ReconnectionObjective::Metric: any with derivatives that is defined on tetrahedra, better
+  /// larger or smaller, and does not depend on the orientation in space.
+  Metric metric = Metric::InverseMeanRatio;
   ReconnectionBoundary boundary = ReconnectionBoundary::Fixed;
   /// With Flat: facets whose normals differ by at most so many degrees are coplanar; 0 to 1. The
   /// default allows for coordinates in single precision, or with six decimals in a file.
   double flatTolerance = 0.01;
+  ///@{ With Surface, and of triangles of surfaces in space.
+  /// Degrees, 0 to 180: edges between facets that differ by more are kept.
+  double featureAngle = 40.0;
+  /// Degrees, 0 to 90: the normals of changed facets are as close to that of the input below.
+  double surfaceAngle = 20.0;
+  /// Changed facets are as close to the input, as a multiple of the diagonal of its box; 0 to 1.
+  double surfaceDistance = 5e-3;
+  ///@}
   /// One flag per point, nonzero = it stays where it is and is not removed; null: none besides
   /// those of the boundary.
   const unsigned char* fixed = nullptr;
@@ -123,7 +156,8 @@ struct ReconnectionOptions
   /**
    * @brief Whether the overlaps of the cells of the output with those of the input are computed,
    * for a conservative transfer of quantities. Then the original cells are those that overlap most.
-   * Costs some 20 microseconds per cell that changed.
+   * Costs some 20 microseconds per cell that changed. On a surface in space they are those seen
+   * along the normal of the output's triangle.
    */
   bool overlaps = false;
   /// The largest number of threads, see Parallel.h; 0: all cores. The result does not depend on it.

@@ -11,6 +11,9 @@
 
 namespace tautline
 {
+/// The cells of the input that a cell overlaps, and how much they share.
+using OverlapRow = std::vector<std::pair<std::int32_t, double>>;
+
 /// Finds the tetrahedron of the input that contains a point, by walking from a nearby one.
 class InputLocator
 {
@@ -26,8 +29,7 @@ public:
    * if there are none.
    * @param start a cell of its region, near it
    */
-  std::vector<std::pair<TetId, double>> overlaps(
-    const std::array<Vec3, 4>& corners, TetId start) const;
+  OverlapRow overlaps(const std::array<Vec3, 4>& corners, TetId start) const;
   /// Barycentric coordinates of x.
   std::array<double, 4> weights(const Vec3& x, TetId cell) const;
 
@@ -41,6 +43,10 @@ private:
 
 /// Whether a tetrahedron is one of the input, its points where they were.
 bool isUnchanged(const ReconnectionInput& input, const TetrahedronMesh& changed, TetId t);
+
+/// Sets ReconnectionResult::overlaps, and the original cells to those that overlap most, from a row
+/// per cell of the output; an empty one is for its original cell.
+void takeOverlaps(std::vector<OverlapRow>& rows, ReconnectionResult& result);
 
 /// Sets ReconnectionResult::overlaps, and the original cells to those that overlap most.
 void computeOverlaps(const ReconnectionInput& input, const TetrahedronMesh& changed,

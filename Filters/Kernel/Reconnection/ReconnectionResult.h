@@ -38,12 +38,14 @@ struct CellOverlaps
 {
   std::vector<Index> offsets; ///< cells + 1
   std::vector<Index> cells;   ///< of the input
-  /// The part of the volume of the output's cell that is in the input's; the sum of a row is 1.
+  /// The part of the volume (area) of the output's cell that is in the input's; the sum of a row is
+  /// 1. Parts outside the input do not count.
   std::vector<double> fractions;
 
   /**
    * @brief The average of a field of the input over a cell of the output. Exact for constants; the
-   * integral over the mesh stays, to rounding.
+   * integral over the mesh stays, to rounding (to the change of the volume, where the boundary
+   * moves).
    * @param values of the cells of the input
    */
   template <class Values>
@@ -87,6 +89,12 @@ struct ReconnectionResult
   std::vector<ReconnectionRecord> history;
   StopReason reason = StopReason::NoProgress;  ///< or Reduction (target), TimeLimit, Aborted
   Index pointsInPlanes = 0, pointsOnLines = 0; ///< points of the boundary that may slide
+  /// With ReconnectionBoundary::Surface: the largest distance of the boundary from that of the
+  /// input, or back, at corners, middles of edges and centres of facets; and the volumes.
+  double boundaryDistance = 0, volumeBefore = 0, volumeAfter = 0;
+  double meanBefore = 0, meanAfter = 0; ///< of the inverse mean ratios of tetrahedra
+  /// With ReconnectionObjective::Metric: the metric's worst value.
+  double worstMetricBefore = 0, worstMetricAfter = 0;
   /**
    * @brief The largest inverse mean ratio and the smallest quality that the facets of the boundary
    * and of interfaces force: every mesh with these facets has a tetrahedron as bad. Of the output.

@@ -23,6 +23,10 @@ bool StarSmoothing::addFace(const Vec3& a, const Vec3& b, const Vec3& c)
     return false;
   }
   const int i = this->Size++;
+  if (this->weights.metric)
+  {
+    this->Faces[i] = { a, b, c };
+  }
   const Vec3 ab = b - a, ac = c - a, bc = c - b, n = cross(ab, ac);
   for (int k = 0; k < 3; ++k)
   {
@@ -47,6 +51,11 @@ double StarSmoothing::evaluate(const Vec3& p)
 {
   double smallest = 1.0;
   const int n = this->Size;
+  if (this->weights.metric)
+  {
+    this->weights.metric->evaluate(p, this->Faces.data(), n, this->Values, nullptr);
+    return n > 0 ? std::min(smallest, *std::min_element(this->Values, this->Values + n)) : smallest;
+  }
   const double px = p[0], py = p[1], pz = p[2];
   const double sineWeight = this->weights.sine,
                ratioFactor = this->weights.meanRatio * MeanRatioFactor;
@@ -88,6 +97,21 @@ void StarSmoothing::linearize(const Vec3& p, double below)
 {
   this->Functions = 0;
   const double unit = std::sqrt(this->Length2);
+  if (this->weights.metric)
+  {
+    std::array<Vec3, MaxFaces> gradients;
+    this->weights.metric->evaluate(
+      p, this->Faces.data(), this->Size, this->Values, gradients.data());
+    for (int i = 0; i < this->Size && this->Functions < MaxFunctions; ++i)
+    {
+      if (this->Values[i] < below)
+      {
+        this->F[this->Functions] = this->Values[i];
+        this->G[this->Functions++] = unit * gradients[i];
+      }
+    }
+    return;
+  }
   for (int i = 0; i < this->Size; ++i)
   {
     if (!(this->Values[i] < below))
@@ -177,7 +201,8 @@ double StarSmoothing::solve(double weight, Vec3& step)
   return predicted;
 }
 
-double StarSmoothing::maximize(Vec3& p, int steps, const PointFreedom& freedom)
+double StarSmoothing::maximize(
+  Vec3& p, int steps, const PointFreedom& freedom, const std::function<Vec3(const Vec3&)>& project)
 {
   double smallest = this->evaluate(p);
   if (freedom.kind == PointFreedom::Fixed || !(smallest > 0.0))
@@ -208,7 +233,7 @@ double StarSmoothing::maximize(Vec3& p, int steps, const PointFreedom& freedom)
         weight = 2.0 * LastWeight; // converged
         break;
       }
-      const Vec3 x = p + unit * step;
+      const Vec3 x = project ? project(p + unit * step) : p + unit * step;
       const double value = this->evaluate(x);
       moved = value > smallest + SufficientFraction * gain;
       current = moved;

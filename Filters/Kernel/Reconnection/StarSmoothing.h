@@ -8,6 +8,8 @@
 
 #include "TetrahedronMesh.h"
 
+#include <functional>
+
 namespace tautline
 {
 /// Where a point may go: anywhere, in a plane, along a line, or nowhere.
@@ -22,6 +24,16 @@ struct PointFreedom
   };
   Kind kind = Free;
   Vec3 direction = { 0, 0, 0 };
+  /// Of BoundarySurface: the patch (InPlane) or curve (OnLine) of a point whose direction varies,
+  /// and the set of patches that the point touches; -1: none.
+  std::int32_t part = -1, patches = -1;
+  void fix()
+  {
+    this->kind = Fixed;
+    this->direction = { 0, 0, 0 };
+    this->part = -1;
+  }
+  bool isCurved() const { return this->part >= 0; }
   Vec3 project(const Vec3& d) const
   {
     const double along = dot(d, this->direction);
@@ -59,9 +71,11 @@ public:
    * @brief Improves the position.
    * @param p start, and result; unchanged if no step improves the smallest quality
    * @param steps the largest number of accepted steps
+   * @param project brings a trial position to where the point may be; may be null
    * @return the smallest quality; qualities() are those at p
    */
-  double maximize(Vec3& p, int steps, const PointFreedom& freedom = {});
+  double maximize(Vec3& p, int steps, const PointFreedom& freedom = {},
+    const std::function<Vec3(const Vec3&)>& project = nullptr);
 
 private:
   static constexpr int MaxFunctions = 48;
@@ -75,7 +89,8 @@ private:
   double Normal[4][MaxFaces];
   double Edges[4][MaxFaces]; ///< ab, bc, ca, and their sum
   double Values[MaxFaces];
-  double Length2 = 0; ///< the smallest squared edge of the faces
+  std::array<std::array<Vec3, 3>, MaxFaces> Faces; ///< of a metric of the registry
+  double Length2 = 0;                              ///< the smallest squared edge of the faces
   // Linearized functions, and the weights of their convex combination.
   int Functions = 0;
   double F[MaxFunctions];

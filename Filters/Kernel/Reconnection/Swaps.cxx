@@ -88,10 +88,12 @@ bool CavityOperations::isOuter(const EdgeRing& ring) const
     { return this->Mesh.tet(t).neighbors[this->Mesh.tet(t).indexOf(v)] == NoId; });
 }
 
-/// Whether the edge of an open ring may be swapped: it is between two coplanar outer facets.
-bool CavityOperations::canSwapBoundary(const EdgeRing& ring) const
+/// Whether the edge of an open ring may be swapped: it is between two outer facets that are
+/// coplanar, or of a curved patch.
+bool CavityOperations::canSwapBoundary(const EdgeRing& ring)
 {
-  return this->swapsBoundary && ring.size > 1 && this->isOuter(ring) && this->isFlat(ring);
+  return this->swapsBoundary && ring.size > 1 && this->isOuter(ring) &&
+    (this->surface ? this->canSwapCurved(ring) : this->isFlat(ring));
 }
 
 /// Sets up the replacement that removes an edge. Returns false where that is not allowed, or the
@@ -101,7 +103,7 @@ bool CavityOperations::prepareEdgeRemoval(TetId t, int i, int j, double above)
   this->Mesh.ring(t, i, j, this->Ring);
   const EdgeRing& ring = this->Ring;
   if (!ring.whole || ring.vertices < 3 || (!ring.closed && !this->canSwapBoundary(ring)) ||
-    !(this->triangulate(ring, above) > above))
+    !(this->sums ? this->canTriangulateForSum(ring) : this->triangulate(ring, above) > above))
   {
     return false;
   }
@@ -114,7 +116,7 @@ bool CavityOperations::prepareEdgeRemoval(TetId t, int i, int j, double above)
 
 bool CavityOperations::removeEdge(TetId t, int i, int j)
 {
-  if (!this->prepareEdgeRemoval(t, i, j, this->Mesh.quality(t)) || !this->commit())
+  if (!this->prepareEdgeRemoval(t, i, j, this->leastOf(t)) || !this->commit())
   {
     return false;
   }
@@ -197,7 +199,7 @@ bool CavityOperations::prepareFaceRemoval(TetId t, int i, double above)
 
 bool CavityOperations::removeFaces(TetId t, int i)
 {
-  if (!this->prepareFaceRemoval(t, i, this->Mesh.quality(t)) || !this->commit())
+  if (!this->prepareFaceRemoval(t, i, this->leastOf(t)) || !this->commit())
   {
     return false;
   }

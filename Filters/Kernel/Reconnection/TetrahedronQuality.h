@@ -6,11 +6,13 @@
  * tetrahedron, at most 0 for one that is degenerate or inverted. With d = 6 V, an edge of length l
  * between faces with normals m and n (twice their areas long), and S the sum of the six squared
  * edges: sine = d l / (|m| |n|), (mean ratio)^(3/2) = 12 sqrt(3) d / S^(3/2). The sine alone
- * accepts flat shapes, the mean ratio alone small angles. Weights shift the balance.
+ * accepts flat shapes, the mean ratio alone small angles. Weights shift the balance. Or q is made
+ * from a metric of the registry (MetricQuality).
  */
 #ifndef tautline_TetrahedronQuality_h
 #define tautline_TetrahedronQuality_h
 
+#include "MetricQuality.h"
 #include "tautline/Core/Types.h"
 #include "tautline/Geometry/Predicates.h"
 
@@ -30,6 +32,8 @@ constexpr double CertainQuality = 1e-9;
 struct QualityWeights
 {
   double sine = 1, meanRatio = 1;
+  /// Instead of both; the weights are then large, so that bounds by them hold.
+  const MetricQuality* metric = nullptr;
 };
 
 /// What the quality is the smaller of, and the sign of the volume.
@@ -73,7 +77,8 @@ inline TetrahedronMeasures measure(const Vec3& p, const Vec3& a, const Vec3& b, 
 inline double roundedQuality(
   const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const QualityWeights& weights = {})
 {
-  return measure(p, a, b, c).quality(weights);
+  return weights.metric ? weights.metric->quality(p, a, b, c)
+                        : measure(p, a, b, c).quality(weights);
 }
 
 /// The quality; positive exactly if the volume is, by the exact predicate.

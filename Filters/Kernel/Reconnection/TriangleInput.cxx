@@ -11,7 +11,6 @@ namespace
 {
 /// Of mesh, surface, workspace and result.
 constexpr double BytesPerTriangle = 500.0;
-constexpr double LargestFeatureAngle = 180.0, LargestSurfaceAngle = 90.0;
 /// Rounding in the distance from a flat patch, in scaled coordinates.
 constexpr double LeastDistance = 1e-12;
 
@@ -133,17 +132,11 @@ void convertSurface(const Mesh& mesh, const TriangleOptions& options, TriangleIn
 void checkTriangleOptions(const TriangleOptions& options)
 {
   checkReconnectionOptions(options);
-  const auto check = [](double value, double largest, const char* message)
+  if (options.boundary == ReconnectionBoundary::Surface)
   {
-    if (!(value >= 0.0 && value <= largest))
-    {
-      throw Error(message);
-    }
-  };
-  check(options.featureAngle, LargestFeatureAngle, "the feature angle must be 0 to 180 degrees");
-  check(options.surfaceAngle, LargestSurfaceAngle, "the surface angle must be 0 to 90 degrees");
-  check(options.surfaceDistance, 1.0,
-    "the surface distance must be 0 to 1 times the diagonal of the mesh");
+    throw Error("motion within a distance of the boundary is for tetrahedra: let the boundary of "
+                "triangles slide in flat parts (their points stay on the surface in any case)");
+  }
 }
 
 Vec3 TriangleInput::leave(const Mesh& mesh, const Vec3& x) const
@@ -178,6 +171,18 @@ TriangleInput convertTriangles(const Mesh& mesh, const TriangleOptions& options)
   }
   input.regions = renumberRegions(options.regions, view.numberOfCells);
   input.walls = options.markedEdges;
+  const bool own = options.size == ReconnectionSize::Input;
+  input.metrics = edgeMetrics(input.points, input.exponent,
+    own ? meanEdgeLengths(input.points, input.cells) : std::vector<double>(), options);
+  if (input.planar && options.size == ReconnectionSize::Metrics)
+  {
+    // The points are in the frame of the plane.
+    const auto& [e1, e2] = mesh.frame();
+    for (EdgeMetric& metric : input.metrics)
+    {
+      metric = turned(metric, { e1, e2, cross(e1, e2) });
+    }
+  }
   if (!input.planar)
   {
     convertSurface(mesh, options, input);

@@ -6,6 +6,7 @@
 #ifndef tautline_TriangleInput_h
 #define tautline_TriangleInput_h
 
+#include "EdgeMetric.h"
 #include "ReconnectionResult.h"
 #include "StarSmoothing.h"
 #include "TriangleMesh.h"
@@ -27,6 +28,7 @@ struct TriangleInput
   std::vector<char> corners;               ///< points that are kept; empty: none
   std::vector<int> patches;                ///< per cell; empty: planar
   TriangleSurface surface;
+  std::vector<EdgeMetric> metrics; ///< per point, of target lengths; empty: any length
   bool planar = true;
   int exponent = 0; ///< point = input's times 2^-exponent, in the frame
   Vec3 origin = { 0, 0, 0 };
@@ -49,6 +51,13 @@ std::vector<PointFreedom> findFreedoms(
 /// Cells of the output that are below the target, why, and the bounds that the walls force.
 void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoints,
   const TriangleOptions& options, ReconnectionResult& result);
+
+/// Whether a triangle is one of the input, its points where they were.
+bool isUnchanged(const TriangleInput& input, const TriangleMesh& changed, TriId t);
+
+/// Sets ReconnectionResult::overlaps, and the original cells to those that overlap most.
+void computeOverlaps(const TriangleInput& input, const TriangleMesh& before,
+  const TriangleMesh& changed, int threads, ReconnectionResult& result);
 
 /// Writes points, triangles and how they follow from the input.
 void convertOutput(const Mesh& mesh, const TriangleInput& input, const TriangleMesh& before,

@@ -85,6 +85,57 @@ bool TriangleOperations::improves()
     { return this->accepts(this->Mesh.triangle(t).vertices, this->Mesh.triangle(t).origin); });
 }
 
+/// Whether the edges of the operation's point are not too short (insertion) or too long
+/// (contraction), after tidying up.
+bool TriangleOperations::keepsLengths()
+{
+  if (this->metrics.empty())
+  {
+    return true;
+  }
+  const VertexId p = this->Centre;
+  const double factor = this->edgeFactor * this->edgeFactor;
+  this->Mesh.star(p, this->Near);
+  for (TriId t : this->Near)
+  {
+    for (VertexId v : this->Mesh.triangle(t).vertices)
+    {
+      const double length = v == p ? 1.0
+                                   : squaredLength(this->Mesh.point(v) - this->Mesh.point(p),
+                                       this->metrics[v], this->metrics[p]);
+      if (this->IsInsertion ? length * factor < 1.0 : length > factor)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// What a new point may do; its metric is the mean of those around.
+void TriangleOperations::setPoint(
+  VertexId p, const PointFreedom& freedom, const std::vector<VertexId>& around)
+{
+  this->freedoms.resize(this->Mesh.pointSlots());
+  this->freedoms[p] = freedom;
+  this->Centre = p;
+  this->IsInsertion = true;
+  if (this->metrics.empty())
+  {
+    return;
+  }
+  this->metrics.resize(this->Mesh.pointSlots());
+  EdgeMetric mean = {};
+  for (VertexId v : around)
+  {
+    for (std::size_t k = 0; k < mean.size(); ++k)
+    {
+      mean[k] += this->metrics[v][k] / static_cast<double>(around.size());
+    }
+  }
+  this->metrics[p] = mean;
+}
+
 /// Carries out an operation, tidies up around it, and keeps it only if that is an improvement.
 template <class Operation>
 bool TriangleOperations::attempt(const Operation& operation, Index& counter)
@@ -94,7 +145,7 @@ bool TriangleOperations::attempt(const Operation& operation, Index& counter)
   if (operation())
   {
     this->tidy();
-    if (this->improves())
+    if (this->keepsLengths() && this->improves())
     {
       this->Mesh.commit();
       ++counter;
@@ -294,6 +345,8 @@ bool TriangleOperations::contract(TriId t, int i, int j)
       {
         return false;
       }
+      this->Centre = w;
+      this->IsInsertion = false;
       // Inverted triangles cannot be repaired by flips that look at two triangles only.
       this->Mesh.star(w, this->Near);
       return std::all_of(this->Near.begin(), this->Near.end(),
@@ -330,8 +383,7 @@ VertexId TriangleOperations::divide(TriId t, int i)
     x = this->Input.surface.closest(x, this->patchOf(t));
   }
   const VertexId p = this->Mesh.splitEdge(t, i, x);
-  this->freedoms.resize(this->Mesh.pointSlots());
-  this->freedoms[p] = freedom;
+  this->setPoint(p, freedom, { v[Next[i]], v[Previous[i]] });
   return p;
 }
 
@@ -355,9 +407,9 @@ bool TriangleOperations::insertAt(TriId t, const Vec3& x)
     }
     if (beyond < 0)
     {
+      const std::vector<VertexId> around(v.begin(), v.end());
       const VertexId p = this->Mesh.splitTriangle(t, x);
-      this->freedoms.resize(this->Mesh.pointSlots());
-      this->freedoms[p] = PointFreedom();
+      this->setPoint(p, PointFreedom(), around);
       this->Mesh.star(p, this->Near);
       return std::all_of(this->Near.begin(), this->Near.end(),
         [this](TriId s) { return this->Mesh.quality(s) > 0.0; });

@@ -36,7 +36,10 @@ public:
   std::vector<PointFreedom> freedoms;
   double leastMeanRatio = 0;               ///< no operation makes a triangle with a smaller one
   Index smallestSize = 0, largestSize = 0; ///< bounds of the number of triangles
-  bool dividesWalls = false;               ///< whether edges of walls may be divided
+  /// One per point slot, in which target lengths of edges are 1; empty: any length.
+  std::vector<EdgeMetric> metrics;
+  double edgeFactor = 2.0;   ///< how much longer or shorter new edges may be
+  bool dividesWalls = false; ///< whether edges of walls may be divided
   /// What insertions and contractions are followed by.
   bool flips = true, moves = true;
   double leastGain = 1e-4; ///< of the smallest quality, by a motion or a compound change
@@ -66,6 +69,8 @@ public:
 private:
   template <class Operation>
   bool attempt(const Operation& operation, Index& counter);
+  bool keepsLengths();
+  void setPoint(VertexId p, const PointFreedom& freedom, const std::vector<VertexId>& around);
   bool accepts(const Corners& v, TriId origin) const;
   bool improves();
   bool isBetterFlip(TriId t, int i);
@@ -86,6 +91,10 @@ private:
   const TriangleInput& Input;
   Counts Count;
   TriangleStar Star;
+  /// Of the operation: the point whose edges are to keep to the target lengths, and from which
+  /// side.
+  VertexId Centre = NoNumber;
+  bool IsInsertion = false;
   std::vector<TriId> Changed, Around, Near;
   std::vector<double> Before, After;
   std::vector<std::uint32_t> Stamps;

@@ -26,14 +26,6 @@ struct TriangleOptions : ReconnectionOptions
   std::vector<std::array<Index, 2>> markedEdges;
   /// First all edges are flipped that should be, also far from triangles below the target.
   bool swapEverywhere = true;
-  ///@{ Of surfaces in space.
-  /// Degrees, 0 to 180: edges between facets that differ by more are kept.
-  double featureAngle = 40.0;
-  /// Degrees, 0 to 90: the normals of changed triangles are as close to that of the input below.
-  double surfaceAngle = 20.0;
-  /// Changed triangles are as close to the input, as a multiple of the diagonal of its box; 0 to 1.
-  double surfaceDistance = 5e-3;
-  ///@}
 };
 
 /// Sets the operations and the target of a preset for triangles; the rest stays.

@@ -137,6 +137,7 @@ std::vector<Index> writePoints(const Mesh& mesh, const TriangleInput& input,
   }
   return numbers;
 }
+}
 
 bool isUnchanged(const TriangleInput& input, const TriangleMesh& changed, TriId t)
 {
@@ -148,7 +149,6 @@ bool isUnchanged(const TriangleInput& input, const TriangleMesh& changed, TriId 
   return changed.triangle(t).vertices == v &&
     std::all_of(
       v.begin(), v.end(), [&](VertexId p) { return changed.point(p) == input.points[p]; });
-}
 }
 
 void convertOutput(const Mesh& mesh, const TriangleInput& input, const TriangleMesh& before,

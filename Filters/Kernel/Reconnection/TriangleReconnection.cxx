@@ -116,6 +116,7 @@ public:
   TriangleRun(TriangleMesh& mesh, const TriangleInput& input, const TriangleOptions& options,
     ReconnectionResult& result)
     : Mesh(mesh)
+    , Input(input)
     , Options(options)
     , Result(result)
     , Operations(mesh, input)
@@ -147,6 +148,7 @@ private:
   bool isWaiting(const Entry& entry);
 
   TriangleMesh& Mesh;
+  const TriangleInput& Input;
   const TriangleOptions& Options;
   ReconnectionResult& Result;
   TriangleOperations Operations;
@@ -338,6 +340,8 @@ void TriangleRun::prepare(const std::vector<PointFreedom>& freedoms)
   operations.flips = this->Options.swap;
   operations.moves = this->Options.smooth;
   operations.dividesWalls = this->Options.boundary == ReconnectionBoundary::Flat;
+  operations.metrics = this->Input.metrics;
+  operations.edgeFactor = this->Options.edgeFactor;
   operations.target = sineOf(this->Options.targetAngle);
   operations.leastMeanRatio = 1.0 / this->Result.history.front().worstInverseMeanRatio;
   const double size = static_cast<double>(this->Mesh.size());
@@ -430,6 +434,10 @@ ReconnectionResult improveTriangles(const Mesh& mesh, const TriangleOptions& opt
     findObstacles(changing, fixedPoints, options, result);
   }
   convertOutput(mesh, input, before, changing, result);
+  if (options.overlaps)
+  {
+    computeOverlaps(input, before, changing, options.threads, result);
+  }
   return result;
 }
 }
