@@ -6,6 +6,7 @@
 #include "GatheredExecution.h"
 #include "ReconnectableMesh.h"
 #include "TableRows.h"
+#include "tautline/Quality/Metrics.h"
 #include "tautline/Reconnection/TriangleReconnection.h"
 
 #include "vtkCellData.h"
@@ -41,8 +42,9 @@ constexpr Reasons obstacles = { "it is not below the target",
 
 /// What would help, in the same order.
 constexpr Reasons remedies = { "", "try the preset Aggressive, a larger time limit or other counts",
-  "let the boundary slide in flat parts, or repair the surface mesh", "fix fewer points",
-  "choose fewer regions", "let the boundary slide in flat parts" };
+  "let the boundary slide in flat parts or on the surface, or repair the surface mesh",
+  "fix fewer points", "choose fewer regions",
+  "let the boundary slide in flat parts or on the surface" };
 
 /// The same for triangles.
 constexpr Reasons edgeObstacles = { "it is not below the target",
@@ -227,7 +229,18 @@ std::string describeResult(const tautline::ReconnectionResult& result, const Wor
        << words.angle << ": " << first.smallestAngle << " to " << last.smallestAngle
        << " degrees; largest: " << first.largestAngle << " to " << last.largestAngle
        << ". Worst inverse mean ratio: " << first.worstInverseMeanRatio << " to "
-       << last.worstInverseMeanRatio << ".\nOperations: " << describeOperations(last) << ".";
+       << last.worstInverseMeanRatio << ".";
+  if (result.meanAfter > 0.0)
+  {
+    text << " Mean: " << result.meanBefore << " to " << result.meanAfter << ".";
+  }
+  text << "\nOperations: " << describeOperations(last) << ".";
+  if (result.volumeBefore > 0.0)
+  {
+    text << "\nLargest distance between the boundary and that of the input: "
+         << result.boundaryDistance << ". Volume: " << result.volumeBefore << " to "
+         << result.volumeAfter << ".";
+  }
   return text.str();
 }
 }
@@ -240,6 +253,44 @@ vtkMeshImprover::vtkMeshImprover()
 
 //------------------------------------------------------------------------------
 vtkMeshImprover::~vtkMeshImprover() = default;
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::SetMetric(int metric)
+{
+  try
+  {
+    tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if there is none
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what() << " Element Quality and its help page list the metrics.");
+    return;
+  }
+  if (metric != this->Metric)
+  {
+    this->Metric = metric;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::SetMetricByName(const char* name)
+{
+  const tautline::MetricInfo* info = tautline::findMetric(name ? name : "");
+  if (!info)
+  {
+    vtkErrorMacro(<< "There is no metric '" << (name ? name : "")
+                  << "'. Element Quality and its help page list them.");
+    return;
+  }
+  this->SetMetric(static_cast<int>(info->metric));
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMeshImprover::GetUserMetrics()
+{
+  return tautline::listUserMetrics();
+}
 
 //------------------------------------------------------------------------------
 int vtkMeshImprover::RequestData(
@@ -278,7 +329,8 @@ void vtkMeshImprover::ClearResult()
   this->Reason.clear();
   this->ElementsBefore = this->ElementsAfter = this->Remaining = 0;
   this->SmallestAngleBefore = this->SmallestAngleAfter = 0.0;
-  this->WorstBefore = this->WorstAfter = 0.0;
+  this->WorstBefore = this->WorstAfter = this->BoundaryDistance = 0.0;
+  this->WorstMetricBefore = this->WorstMetricAfter = 0.0;
 }
 
 //------------------------------------------------------------------------------
@@ -305,8 +357,12 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
   options.insert = this->Insert;
   options.compound = this->Compound;
   options.objective = static_cast<tautline::ReconnectionObjective>(this->Objective);
+  options.metric = static_cast<tautline::Metric>(this->Metric);
   options.boundary = static_cast<tautline::ReconnectionBoundary>(this->Boundary);
   options.flatTolerance = this->FlatTolerance;
+  options.featureAngle = this->FeatureAngle;
+  options.surfaceAngle = this->SurfaceAngle;
+  options.surfaceDistance = this->SurfaceDistance;
   options.smallestCount = this->SmallestCount;
   options.largestCount = this->LargestCount;
   options.threads = this->Threads;
@@ -341,24 +397,25 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
       return this->Proceed((block.number + progress) / static_cast<double>(blocks));
     };
   };
+  std::vector<double> sizes;
   if (!mesh.isTriangles())
   {
     tautline::ReconnectionOptions options;
     prepare(options);
-    const std::vector<double> sizes = this->SetSize(block.input, options);
+    sizes = this->SetSize(block.input, options);
     options.sizes = sizes.data();
     return tautline::improveConnectivity(mesh.mesh(), options);
   }
-  if (this->Size != ANY_LENGTH || this->CellTransfer != COPY || this->Objective != ANGLES_AND_SHAPE)
+  if (this->Objective != ANGLES_AND_SHAPE)
   {
-    throw tautline::Error("Objective, target lengths of edges and conservative cell data are for "
-                          "tetrahedra: leave them at their defaults for triangles.");
+    throw tautline::Error(
+      "the objective is for tetrahedra: leave it at its default for triangles, whose angles are "
+      "improved");
   }
   tautline::TriangleOptions options;
   prepare(options);
-  options.featureAngle = this->FeatureAngle;
-  options.surfaceAngle = this->SurfaceAngle;
-  options.surfaceDistance = this->SurfaceDistance;
+  sizes = this->SetSize(block.input, options);
+  options.sizes = sizes.data();
   options.markedEdges = mesh.lines();
   return tautline::improveTriangles(mesh.mesh(), options);
 }
@@ -418,10 +475,10 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
   const std::vector<tautline::Index> cells = remainingOf(result, improved);
   addHistory(history, result.history, block.name);
   addRemaining(remaining, cells, result, improved, words, block.name);
-  this->TakeResult(result);
   this->Remaining += static_cast<vtkIdType>(cells.size());
   this->AddToSummary(
     (block.name.empty() ? "" : "In " + block.name + ": ") + describeResult(result, words));
+  this->TakeResult(result);
   this->AddToSummary(describeRemaining(cells, result, improved, words, targetAngle));
   if (!cells.empty())
   {
@@ -448,6 +505,21 @@ void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result)
   smaller(this->SmallestAngleAfter, last.smallestAngle);
   this->WorstBefore = std::max(this->WorstBefore, first.worstInverseMeanRatio);
   this->WorstAfter = std::max(this->WorstAfter, last.worstInverseMeanRatio);
+  this->BoundaryDistance = std::max(this->BoundaryDistance, result.boundaryDistance);
+  if (this->Objective == METRIC)
+  {
+    const tautline::MetricInfo& info =
+      tautline::metricInfo(static_cast<tautline::Metric>(this->Metric));
+    const bool larger = info.direction == tautline::Direction::LargerIsBetter;
+    const auto worse = [none, larger](double& number, double other)
+    { number = none || (larger ? other < number : other > number) ? other : number; };
+    worse(this->WorstMetricBefore, result.worstMetricBefore);
+    worse(this->WorstMetricAfter, result.worstMetricAfter);
+    std::ostringstream text;
+    text << info.label << " of the worst tetrahedron: " << result.worstMetricBefore << " to "
+         << result.worstMetricAfter << ".";
+    this->AddToSummary(text.str());
+  }
   this->ElementsBefore += first.tetrahedra;
   this->ElementsAfter += last.tetrahedra;
   this->Reason = reasonText(result.reason);
@@ -464,7 +536,8 @@ void vtkMeshImprover::ExchangeResult(tautline::ResultStream& stream)
 {
   this->Superclass::ExchangeResult(stream);
   stream(this->Reason, this->ElementsBefore, this->ElementsAfter, this->SmallestAngleBefore,
-    this->SmallestAngleAfter, this->WorstBefore, this->WorstAfter, this->Remaining);
+    this->SmallestAngleAfter, this->WorstBefore, this->WorstAfter, this->Remaining,
+    this->BoundaryDistance, this->WorstMetricBefore, this->WorstMetricAfter);
 }
 
 //------------------------------------------------------------------------------
@@ -479,6 +552,7 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Compound: " << this->Compound << "\n";
   os << indent << "TargetAngle: " << this->TargetAngle << "\n";
   os << indent << "Objective: " << this->Objective << "\n";
+  os << indent << "Metric: " << this->Metric << "\n";
   os << indent << "Boundary: " << this->Boundary << "\n";
   os << indent << "FlatTolerance: " << this->FlatTolerance << "\n";
   os << indent << "SmallestCount: " << this->SmallestCount << "\n";

@@ -146,30 +146,57 @@ public:
   {
     ANGLES_AND_SHAPE = 0,
     ANGLES = 1,
-    SHAPE = 2
+    SHAPE = 2,
+    METRIC = 3,
+    SUM = 4
   };
   ///@{
   /**
    * What the worst tetrahedra are improved for: ANGLES_AND_SHAPE, the default, the smaller of the
    * sines of the dihedral angles and (mean ratio)^(3/2); ANGLES the sines alone (larger smallest
-   * angles, longer tetrahedra); SHAPE (mean ratio)^(3/2) alone. Triangles: refused.
+   * angles, longer tetrahedra); SHAPE (mean ratio)^(3/2) alone; METRIC the metric of SetMetric(),
+   * whose worst value never becomes worse; SUM all tetrahedra, for the sum of what their inverse
+   * mean ratios exceed 1. Triangles: refused.
    */
-  vtkTautlineSetRangeMacro(Objective, int, ANGLES_AND_SHAPE, SHAPE);
+  vtkTautlineSetRangeMacro(Objective, int, ANGLES_AND_SHAPE, SUM);
   vtkGetMacro(Objective, int);
   ///@}
+
+  ///@{
+  /**
+   * With METRIC: the number of a metric, one that has derivatives, is defined on tetrahedra, is
+   * better larger or smaller and does not depend on the orientation in space. Then a tetrahedron's
+   * quality is x / I of its value x and the ideal value I, or I / x where smaller is better, or 1 /
+   * (1 + x) where I is 0; of metrics without ideal value x / (x + u) or u / (x + u) with the mean u
+   * of the input. Tetrahedra are worked on while it is below the sine of TargetAngle. The default
+   * is 0, the inverse mean ratio. Other numbers and names are refused with an error.
+   */
+  void SetMetric(int metric);
+  vtkGetMacro(Metric, int);
+  /// By name, label, symbol or alias.
+  void SetMetricByName(const char* name);
+  ///@}
+
+  /// Numbers and labels of the metrics that were registered, for menus.
+  std::string GetUserMetrics();
 
   enum Boundaries
   {
     FIXED = 0,
-    FLAT = 1
+    FLAT = 1,
+    ON_SURFACE = 2
   };
   ///@{
   /**
    * FIXED, the default: the points and facets of the boundary and between regions stay. FLAT:
    * points slide within flat parts of the boundary and along straight edges, and are contracted
-   * there; edges between coplanar facets are swapped. The shape and the volumes stay.
+   * there; edges between coplanar facets are swapped. The shape and the volumes stay. ON_SURFACE
+   * (tetrahedra only): the same on curved parts; facets stay within SurfaceDistance and
+   * SurfaceAngle of the input's, corners, sharp edges (FeatureAngle) and facets between regions
+   * stay. The shape and the volume change within these bounds; the summary has both. Parts of the
+   * boundary that are closer to each other than the distance may come to overlap.
    */
-  vtkTautlineSetRangeMacro(Boundary, int, FIXED, FLAT);
+  vtkTautlineSetRangeMacro(Boundary, int, FIXED, ON_SURFACE);
   vtkGetMacro(Boundary, int);
   ///@}
 
@@ -182,10 +209,10 @@ public:
 
   ///@{
   /**
-   * Of surfaces in space. FeatureAngle, 0 to 180 degrees: edges between facets that differ by more
-   * are kept. SurfaceAngle, 0 to 90 degrees, and SurfaceDistance, 0 to 1 times the diagonal of the
-   * mesh: how far changed triangles turn and move away from the input. The defaults are 40, 20 and
-   * 0.005.
+   * Of surfaces in space, and of a boundary ON_SURFACE. FeatureAngle, 0 to 180 degrees: edges
+   * between facets that differ by more are kept. SurfaceAngle, 0 to 90 degrees, and
+   * SurfaceDistance, 0 to 1 times the diagonal of the mesh: how far changed facets turn and move
+   * away from the input. The defaults are 40, 20 and 0.005.
    */
   vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
@@ -257,9 +284,10 @@ public:
   /**
    * Where cells have their data from. COPY, the default: from the cell of the input that contains
    * the centroid. CONSERVATIVE: arrays of real numbers are averages over the cells of the input,
-   * weighted by the volumes that the cell shares with them; so constants stay, and so does the
-   * integral of each array over the mesh. Other arrays are copied from the cell that shares the
-   * largest volume. Costs some 20 microseconds per cell that changed.
+   * weighted by the volumes (areas) that the cell shares with them; so constants stay, and so does
+   * the integral of each array over the mesh, to the change of the volume (area) where the boundary
+   * or surface changes. Other arrays are copied from the cell that shares most. Costs some 20
+   * microseconds per cell that changed.
    */
   vtkTautlineSetRangeMacro(CellTransfer, int, COPY, CONSERVATIVE);
   vtkGetMacro(CellTransfer, int);
@@ -296,6 +324,18 @@ public:
   double GetWorstAfter() const { return this->WorstAfter; }
   vtkIdType GetRemaining() const { return this->Remaining; }
   ///@}
+
+  ///@{
+  /// With METRIC: the metric's worst values; else 0.
+  double GetWorstMetricBefore() const { return this->WorstMetricBefore; }
+  double GetWorstMetricAfter() const { return this->WorstMetricAfter; }
+  ///@}
+
+  /**
+   * The largest distance of the boundary from that of the input, or back, measured at corners,
+   * middles of edges and centres of facets. 0 unless the boundary is ON_SURFACE.
+   */
+  double GetBoundaryDistance() const { return this->BoundaryDistance; }
 
 protected:
   vtkMeshImprover();
@@ -337,6 +377,7 @@ private:
   bool Compound = true;
   double TargetAngle = 0.0;
   int Objective = ANGLES_AND_SHAPE;
+  int Metric = 0;
   int Boundary = FIXED;
   double FlatTolerance = 0.01;
   double SmallestCount = 0.9;
@@ -359,6 +400,9 @@ private:
   double WorstBefore = 0.0;
   double WorstAfter = 0.0;
   vtkIdType Remaining = 0;
+  double BoundaryDistance = 0.0;
+  double WorstMetricBefore = 0.0;
+  double WorstMetricAfter = 0.0;
 };
 
 #endif

@@ -166,6 +166,70 @@ def test_inputs():
     assert flat.smallest_angle >= flat.smallest_angle_before
 
 
+def test_sheet_transfer():
+    """Averages over a planar mesh of triangles keep the integral and constants."""
+    mesh = sheet()
+    for name, values in (("heat", np.random.default_rng(1).uniform(-1, 3, mesh.GetNumberOfCells())),
+                         ("one", np.full(mesh.GetNumberOfCells(), 0.1))):  # fmt: skip
+        array = numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        mesh.GetCellData().AddArray(array)
+
+    def total(of):
+        corners = triangles(of)
+        area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        return area @ vtk_to_numpy(of.GetCellData().GetArray("heat"))
+
+    averaged = tl.improve(mesh, "aggressive", cell_transfer="conservative").mesh
+    assert abs(total(averaged) - total(mesh)) < 1e-10 * abs(total(mesh)), (total(averaged), total(mesh))
+    assert abs(total(tl.improve(mesh, "aggressive").mesh) - total(mesh)) > 1e-6 * abs(total(mesh))
+    assert (vtk_to_numpy(averaged.GetCellData().GetArray("one")) == 0.1).all()
+
+
+def test_on_surface():
+    """The points of a ball's surface move on it; a cube's stay as they are without a distance."""
+    ball = tl.perturb(tl.domain("sphere", 3000), 0.9, seed=3).mesh
+    fixed = tl.improve(ball, "aggressive")
+    moved = tl.improve(ball, "aggressive", boundary="on surface", surface_distance=0.01)
+    diagonal = np.linalg.norm(np.ptp(points(ball), axis=0))
+    assert fixed.boundary_distance == 0 < moved.boundary_distance < 0.02 * diagonal, moved.boundary_distance
+    assert moved.smallest_angle > fixed.smallest_angle, (moved.smallest_angle, fixed.smallest_angle)
+    assert "Largest distance between the boundary" in moved.summary and "Volume: " in moved.summary, moved.summary
+    assert 0 < abs(volumes(moved.mesh).sum() / volumes(ball).sum() - 1) < 0.02
+    assert moved.history["boundary_swaps"][-1] > 0
+    source, out = OUT / "ball.vtu", OUT / "ball_improved.vtu"
+    tl.write(ball, source)
+    run("improve", source, "-o", out, "--preset", "aggressive", "--boundary", "on surface",
+        "--surface-distance", "0.01")  # fmt: skip
+    assert (points(tl.read(out)) == points(moved.mesh)).all()
+
+
+def test_metric():
+    """The worst value of a metric improves; metrics without an order or on other cells are refused."""
+    mesh = slivers()
+    for name, larger in (("rr", False), ("min_angle", True), ("condition_number", False), ("mu_301", False)):
+        result = tl.improve(mesh, "aggressive", metric=name)
+        worst = {True: "minimum", False: "maximum"}[larger]
+        before, after = (tl.quality(m, [name]).statistics[name][worst] for m in (mesh, result.mesh))
+        assert abs(result.worst_metric_before - before) < 1e-6 * abs(before), (name, result.worst_metric_before, before)
+        assert abs(result.worst_metric - after) < 1e-6 * abs(after), (name, result.worst_metric, after)
+        assert after > 1.5 * before if larger else after < 0.7 * before, (name, before, after)
+        assert result.smallest_angle >= result.smallest_angle_before and result.worst <= result.worst_before
+    plain, total = tl.improve(mesh, "aggressive"), tl.improve(mesh, "aggressive", objective="sum")
+    assert plain.worst_metric == 0 and total.imr.mean() < plain.imr.mean(), (total.imr.mean(), plain.imr.mean())
+    excess = total.imr.sum() - total.elements, tl.quality(mesh, ["imr"]).values["imr"].sum() - total.elements_before
+    assert excess[0] < 0.6 * excess[1], excess
+    assert total.smallest_angle >= total.smallest_angle_before and total.worst <= total.worst_before
+    refused("no metric 'x'", tl.improve, mesh, metric="x")
+    refused("neither better larger nor smaller", tl.improve, mesh, metric="size")
+    refused("depends on the orientation", tl.improve, mesh, metric="mu_shape_orientation")
+    refused("either an objective or a metric", tl.improve, mesh, metric="imr", objective="angles")
+    source, out = OUT / "metric.vtu", OUT / "metric_improved.vtu"
+    tl.write(mesh, source)
+    run("improve", source, "-o", out, "--preset", "aggressive", "--metric", "rr")
+    assert (points(tl.read(out)) == points(tl.improve(source, "aggressive", metric="rr").mesh)).all()
+
+
 def sheet():
     """The wrench with inner points moved at random; a linear field, and two regions."""
     mesh = tl.perturb(tl.domain("wrench", 1500), 0.95, 100.0, seed=2).mesh
@@ -315,11 +379,14 @@ def test_command():
     text = run("improve", flat, "-o", mesh, "--preset", "aggressive", "--feature-angle", "30", "--surface-angle", "10",
                "--surface-distance", "0.01")
     assert "Triangles: " in text and (points(tl.read(mesh)) == points(tl.improve(flat, "aggressive").mesh)).all()
-    refused("for tetrahedra: leave them at their defaults", tl.improve, flat, cell_transfer="conservative")
+    sized, plain = (tl.improve(flat, "aggressive", edge_length=length, smallest_count=0) for length in (1e-3, None))
+    assert sized.history["contractions"][-1] == 0 < plain.history["contractions"][-1]  # no edge is as short
+    refused("is for tetrahedra", tl.improve, flat, boundary="on surface")
+    refused("objective is for tetrahedra", tl.improve, flat, metric="imr")
     shaped, plain = (tl.improve(flat, "aggressive", then_best_shape=yes) for yes in (True, False))
     assert shaped.smallest_angle >= plain.smallest_angle and shaped.worst <= plain.worst
     assert shaped.imr.mean() < 1 + 0.95 * (plain.imr.mean() - 1), (shaped.imr.mean(), plain.imr.mean())
-    refused("Objective", tl.improve, flat, objective="angles")
+    refused("objective is for tetrahedra", tl.improve, flat, objective="angles")
     run("improve", source, "-o", mesh, "--objective", "angles", "--target-angle", "40", "--preset", "aggressive")
     angles = tl.improve(source, "aggressive", objective="angles", target_angle=40)
     assert (points(tl.read(mesh)) == points(angles.mesh)).all()

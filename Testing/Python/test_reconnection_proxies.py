@@ -65,6 +65,14 @@ assert column(sized, 1, "N insertions")[-1] == 0
 assert averaged.CellData["region"].GetRange() == (1, 1)
 assert column(averaged, 1, "N moves")[-1] > column(plain, 1, "N moves")[-1]
 
+# a metric; a boundary that changes within a distance
+named = ImproveMesh(Input=worse, Preset="Aggressive", Objective="Metric", Metric="Radius ratio")  # noqa: F821
+named.Boundary, named.SurfaceDistance = "On surface", 0.01
+named.UpdatePipeline()
+named.UpdatePropertyInformation()
+assert "Radius ratio of the worst tetrahedron: " in named.Summary, named.Summary
+assert 0 <= named.BoundaryDistance < 0.1 and "Largest distance between the boundary" in named.Summary, named.Summary
+
 # points that stay
 fixed = simple.Calculator(worse, AttributeType="Point Data", ResultArrayName="stay", Function="1")
 held = ImproveMesh(Input=fixed, Preset="Swap and smooth", FixedPoints=["POINTS", "stay"])  # noqa: F821

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from . import _commands, _vtk
 from ._arguments import check_options, flag_option, pick, picked, set_options, set_threads, set_time_limit, within
 from ._arrays import CELLS, POINTS, Array, InputArrays, Values, cell_array, columns, table_rows
-from ._errors import Error, interruptible, run
+from ._errors import Error, interruptible, run, watch
 from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._results import Result
@@ -20,9 +20,9 @@ from ._results import Result
 #: In the filter's numbering.
 Preset = Literal["custom", "remove slivers", "swap only", "swap and smooth", "aggressive"]
 PRESETS: tuple[Preset, ...] = get_args(Preset)
-Boundary = Literal["fixed", "flat"]
+Boundary = Literal["fixed", "flat", "on surface"]
 BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
-Objective = Literal["angles and shape", "angles", "shape"]
+Objective = Literal["angles and shape", "angles", "shape", "sum"]
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 CellTransfer = Literal["copy", "conservative"]
 CELL_TRANSFERS: tuple[CellTransfer, ...] = get_args(CellTransfer)
@@ -49,6 +49,8 @@ class ImproveResult(Result):
     elements_before, elements: number of elements before and after.
     smallest_angle_before, smallest_angle: smallest angle in degrees before and after.
     worst_before, worst: worst inverse mean ratio before and after.
+    worst_metric_before, worst_metric: worst value of the metric before and after; 0 without one.
+    boundary_distance: largest distance between the boundary and that of the input; 0 unless it is "on surface".
     reason: the stopping criterion that ended the run.
     summary: the result in words.
     """
@@ -66,6 +68,9 @@ class ImproveResult(Result):
     smallest_angle: float
     worst_before: float
     worst: float
+    worst_metric_before: float
+    worst_metric: float
+    boundary_distance: float
     reason: str
     summary: str
 
@@ -77,6 +82,7 @@ def improve(
     *,
     boundary: Boundary = "fixed",
     objective: Objective = "angles and shape",
+    metric: str | None = None,
     target_angle: float | None = None,
     smallest_count: float = 0.9,
     largest_count: float = 1.1,
@@ -106,19 +112,26 @@ def improve(
     preset: "remove slivers" (changes only neighbourhoods of elements with dihedral angles below 15 or above 165
         degrees, of triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is
         inserted or removed), "aggressive" (every operation everywhere) or "custom" (the operations given).
-    boundary: "fixed" (same points and facets) or "flat" (points slide in flat parts and along straight edges, facets
-        there change; the shape stays).
+    boundary: "fixed" (same points and facets), "flat" (points slide in flat parts and along straight edges, facets
+        there change; the shape stays) or, of tetrahedra, "on surface" (the same on curved parts: the boundary stays
+        within surface_distance and surface_angle of that of the input, corners and sharp edges stay; the volume
+        changes a little).
     objective: of tetrahedra, what the worst are improved for: "angles and shape" (the smaller of the sines of the
         dihedral angles and (mean ratio)^(3/2)), "angles" (the sines alone: larger smallest angles, longer tetrahedra)
-        or "shape" ((mean ratio)^(3/2) alone).
+        or "shape" ((mean ratio)^(3/2) alone). "sum": all are improved, for the sum of what their inverse mean ratios
+        exceed 1, and the worst are held.
+    metric: of tetrahedra, instead of an objective: the name of a metric, whose worst values are improved first and
+        never become worse. Tetrahedra are worked on while the quality x / I (I / x where smaller is better, 1 / (1 + x)
+        where I is 0), of the value x and the ideal value I, is below the sine of the target angle.
     target_angle: (dihedral) angle in degrees, at most 60, that every element should reach; None or 0: that of the
         preset, 15 for "remove slivers" and 33.4 (triangles: 40) for the others.
     smallest_count, largest_count: bounds of the number of elements as multiples of that of the input. Both 1: no
         point is inserted or removed.
     flat_tolerance: angle in degrees, 0 to 1, up to which facets are coplanar, with boundary "flat".
-    feature_angle: of a surface: edges between facets that differ by more degrees, 0 to 180, stay, and so do corners.
-    surface_angle, surface_distance: of a surface: how far the normals of changed triangles turn from the input below,
-        in degrees, 0 to 90, and how far triangles are from it, 0 to 1 times the diagonal of the mesh. Points are on it.
+    feature_angle: of a surface, and of a boundary "on surface": edges between facets that differ by more degrees, 0 to
+        180, stay, and so do corners.
+    surface_angle, surface_distance: of the same: how far the normals of changed facets turn from the input below, in
+        degrees, 0 to 90, and how far facets are from it, 0 to 1 times the diagonal of the mesh. Points are on it.
     regions: the region of each cell, m, or the name of a cell array; facets (edges) between regions stay.
     fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
     edge_length: target length of edges, which bounds contraction and insertion; None: any length. A number; "input"
@@ -128,8 +141,9 @@ def improve(
     then_best_shape: whether points move at the end for the best shape on average (inverse mean ratio), while the
         smallest dihedral angle and the worst inverse mean ratio stay as good as they are.
     cell_transfer: "copy" (a cell has the data of the cell of the input that contains its centroid) or "conservative"
-        (real numbers are averages over the cells of the input, weighted by the volumes that the cell shares with them:
-        constants and the integral over the mesh stay; other data are of the cell that shares most).
+        (real numbers are averages over the cells of the input, weighted by the volumes or areas that the cell shares
+        with them: constants and, unless the boundary or a curved surface changes, the integral over the mesh stay;
+        other data are of the cell that shares most).
     time_limit: seconds; 0 is no limit.
     threads: number of threads, which large meshes make use of; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match become one, as on the seams of a
@@ -152,7 +166,15 @@ def improve(
         raise Error(f"{', '.join(operations)}: operations are chosen with preset='custom' only")
     set_options(filter_, operations, _OPERATIONS)
     filter_.SetBoundary(pick("boundary", boundary, BOUNDARIES))
-    filter_.SetObjective(pick("objective", objective, OBJECTIVES))
+    chosen = pick("objective", objective, OBJECTIVES)
+    filter_.SetObjective(filter_.SUM if objective == "sum" else chosen)
+    if metric is not None:
+        if objective != OBJECTIVES[0]:
+            raise Error("give either an objective or a metric")
+        filter_.SetObjective(filter_.METRIC)
+        messages = watch(filter_)
+        filter_.SetMetricByName(metric)
+        messages.raise_errors()
     if target_angle is not None:
         filter_.SetTargetAngle(within("target_angle", target_angle, 0, _MAX_ANGLE))
     filter_.SetSmallestCount(within("smallest_count", smallest_count, 0, 1))
@@ -186,6 +208,9 @@ def improve(
         smallest_angle=filter_.GetSmallestAngleAfter(),
         worst_before=filter_.GetWorstBefore(),
         worst=filter_.GetWorstAfter(),
+        worst_metric_before=filter_.GetWorstMetricBefore(),
+        worst_metric=filter_.GetWorstMetricAfter(),
+        boundary_distance=filter_.GetBoundaryDistance(),
         reason=filter_.GetReason(),
         summary=filter_.GetSummary(),
     )
@@ -238,10 +263,11 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
     parser.add_argument("--objective", choices=OBJECTIVES, default=OBJECTIVES[0],
                         help="what the worst tetrahedra are improved for")  # fmt: skip
+    parser.add_argument("--metric", metavar="NAME", help="a metric instead of an objective, its worst values first")
     parser.add_argument("--target-angle", type=float, metavar="DEGREES",
                         help="(dihedral) angle to be reached by all (default: that of the preset)")  # fmt: skip
     parser.add_argument("--feature-angle", type=float, metavar="DEGREES", default=40.0,
-                        help="sharper edges of a surface stay (default: 40)")  # fmt: skip
+                        help="sharper edges of a surface or boundary stay (default: 40)")  # fmt: skip
     parser.add_argument("--surface-angle", type=float, metavar="DEGREES", default=20.0,
                         help="of normals from the input surface, at most (default: 20)")  # fmt: skip
     parser.add_argument("--surface-distance", type=float, metavar="FACTOR", default=5e-3,
@@ -270,8 +296,8 @@ def _length_or_name(text: str) -> float | str:
 
 def _run_improve(arguments: argparse.Namespace) -> None:
     names = (
-        *("preset", "boundary", "objective", "target_angle", "regions", "smallest_count", "largest_count", "fixed"),
-        *("edge_length", "edge_factor", "then_best_shape", "cell_transfer", "flat_tolerance", "feature_angle"),
+        *("preset", "boundary", "objective", "metric", "target_angle", "regions", "smallest_count", "largest_count"),
+        *("fixed", "edge_length", "edge_factor", "then_best_shape", "cell_transfer", "flat_tolerance", "feature_angle"),
         *("surface_angle", "surface_distance", "time_limit", "threads", "merge_coincident_points"),
     )
     left_out: dict[str, Any] = {name: False for name in _OPERATIONS if not getattr(arguments, name)}
