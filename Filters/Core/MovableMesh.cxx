@@ -74,8 +74,10 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
   this->Validity.resize(this->mesh().view().numberOfCells);
   const std::string oriented = this->Adapter.orient(this->Validity.data());
   const Mesh& mesh = this->mesh();
+  MeshSkin skin = findSkin(mesh, threads);
+  this->Skin = std::move(skin.boundaryPoints);
   for (const std::string& more :
-    { oriented, describeDuplicates(findSkin(mesh).duplicates), this->Adapter.notice() })
+    { oriented, describeDuplicates(skin.duplicates), this->Adapter.notice() })
   {
     this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
   }
@@ -95,11 +97,7 @@ void MovableMesh::fixWhatStays()
 {
   const Mesh& mesh = this->mesh();
   const MeshView& view = mesh.view();
-  std::vector<char> onBoundary;
-  if (mesh.dimension() == Dimension::Volume && !this->Skip.empty())
-  {
-    onBoundary = boundaryPoints(mesh);
-  }
+  const bool slide = mesh.dimension() == Dimension::Volume && !this->Skip.empty();
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     const bool ghost = this->Adapter.ghostCells() && this->Adapter.ghostCells()[cell];
@@ -112,7 +110,7 @@ void MovableMesh::fixWhatStays()
     {
       // The triangles on the boundary of a solid do not keep its points from sliding.
       const Index point = view.connectivity[n];
-      if (ghost || onBoundary.empty() || !onBoundary[point])
+      if (ghost || !slide || !this->Skin[point])
       {
         this->Fixed[point] = 1;
       }
@@ -147,9 +145,9 @@ void MovableMesh::uniteFixed()
 //------------------------------------------------------------------------------
 void MovableMesh::fixBoundary()
 {
-  this->Boundary = boundaryPoints(this->mesh());
-  std::transform(this->Fixed.begin(), this->Fixed.end(), this->Boundary.begin(),
-    this->Fixed.begin(), [](unsigned char fixed, char on) { return fixed || on; });
+  this->BoundaryFixed = true;
+  std::transform(this->Fixed.begin(), this->Fixed.end(), this->Skin.begin(), this->Fixed.begin(),
+    [](unsigned char fixed, char on) { return fixed || on; });
   this->uniteFixed();
 }
 
@@ -175,7 +173,7 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
     {
       ++used;
       fixed += this->Fixed[p] != 0;
-      onBoundary += !this->Boundary.empty() && this->Boundary[p];
+      onBoundary += this->BoundaryFixed && this->Skin[p];
     }
   }
   if (fixed < used)
@@ -198,7 +196,7 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
   // Pieces whose points are not merged are the usual cause.
   const Index coincident = this->MergePoints ? 0 : findCoincidentPoints(mesh).merged;
   Index first = 0;
-  const Index near = coincident > 0 ? 0 : countNearPoints(mesh, boundaryPoints(mesh), &first);
+  const Index near = coincident > 0 ? 0 : countNearPoints(mesh, this->Skin, &first);
   if (coincident > 0)
   {
     return text + ". " + std::to_string(coincident) +

@@ -104,7 +104,8 @@ private:
   MeshAdapter Adapter;
   int Threads;
   bool MergePoints;
-  std::vector<char> Boundary; ///< the points fixBoundary() fixed
+  std::vector<char> Skin;     ///< one flag per point: on the boundary
+  bool BoundaryFixed = false; ///< whether fixBoundary() fixed these
   bool SlidingFixed = false;  ///< whether fixCorners() fixed any
   std::vector<signed char> Validity;
   std::vector<unsigned char> Skip, Fixed;

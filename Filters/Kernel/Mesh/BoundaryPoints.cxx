@@ -1,5 +1,7 @@
 #include "BoundaryPoints.h"
 
+#include "tautline/Core/CountingSort.h"
+
 #include <algorithm>
 #include <cstdint>
 
@@ -70,27 +72,53 @@ void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks
   }
 }
 
-/// The same for a tetrahedron, unrolled: a face has the number of the vertex opposite to it.
-inline void addTetrahedron(const Index* node, std::vector<Mark>& marks)
+/// The same for tetrahedra, several at once for the vector units: a face has the number of the
+/// vertex opposite to it.
+void addTetrahedra(
+  const MeshView& view, const CellBlock& block, Index begin, Index end, std::vector<Mark>& marks)
 {
-  std::uint64_t a[4], face[4], sense[4];
-  for (int k = 0; k < 4; ++k)
-  {
-    a[k] = mix(static_cast<std::uint64_t>(node[k]));
-  }
+  constexpr int most = 16;
   constexpr int round[4][3] = { { 1, 2, 3 }, { 2, 0, 3 }, { 0, 1, 3 }, { 0, 2, 1 } };
-  for (int k = 0; k < 4; ++k)
+  std::uint64_t a[4][most] = {}, face[4][most], sense[4][most];
+  for (; begin < end; begin += most)
   {
-    const std::uint64_t x = a[round[k][0]], y = a[round[k][1]], z = a[round[k][2]];
-    face[k] = mix(x + y + z);
-    sense[k] = (x - y) * (y - z) * (z - x);
-  }
-  const std::uint64_t all = face[0] ^ face[1] ^ face[2] ^ face[3];
-  const std::uint64_t sum = sense[0] + sense[1] + sense[2] + sense[3];
-  for (int k = 0; k < 4; ++k)
-  {
-    marks[node[k]].parity ^= all ^ face[k];
-    marks[node[k]].sum += sum - sense[k];
+    const int count = static_cast<int>(std::min<Index>(most, end - begin));
+    const Index* nodes[most];
+    for (int l = 0; l < count; ++l)
+    {
+      nodes[l] = view.connectivity + view.offsets[block.cell(begin + l)];
+      for (int k = 0; k < 4; ++k)
+      {
+        a[k][l] = static_cast<std::uint64_t>(nodes[l][k]);
+      }
+    }
+    for (auto& of : a)
+    {
+      for (std::uint64_t& number : of)
+      {
+        number = mix(number);
+      }
+    }
+    for (int k = 0; k < 4; ++k)
+    {
+      for (int l = 0; l < most; ++l)
+      {
+        const std::uint64_t x = a[round[k][0]][l], y = a[round[k][1]][l], z = a[round[k][2]][l];
+        face[k][l] = mix(x + y + z);
+        sense[k][l] = (x - y) * (y - z) * (z - x);
+      }
+    }
+    for (int l = 0; l < count; ++l)
+    {
+      const std::uint64_t all = face[0][l] ^ face[1][l] ^ face[2][l] ^ face[3][l];
+      const std::uint64_t sum = sense[0][l] + sense[1][l] + sense[2][l] + sense[3][l];
+      for (int k = 0; k < 4; ++k)
+      {
+        Mark& mark = marks[nodes[l][k]];
+        mark.parity ^= all ^ face[k][l];
+        mark.sum += sum - sense[k][l];
+      }
+    }
   }
 }
 
@@ -114,22 +142,56 @@ void forEachElement(const Mesh& mesh, const Visit& visit)
   }
 }
 
-std::vector<Mark> marksOf(const Mesh& mesh)
+/// Adds what the facets of a part of each block's cells, the `part`-th of `parts`, leave.
+void addMarksOfPart(const Mesh& mesh, int part, int parts, std::vector<Mark>& marks)
 {
-  std::vector<Mark> marks(mesh.view().numberOfPoints);
-  forEachElement(mesh,
-    [&marks](Index, const CellTopology& t, const Index* node)
+  const MeshView& view = mesh.view();
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    const Index begin = block.count * part / parts, end = block.count * (part + 1) / parts;
+    for (Index i = begin; t.dimension == dimensionOf(mesh) && i < end; i += ChunkSize)
     {
+      throwIfInterrupted();
+      const Index next = std::min(end, i + ChunkSize);
       if (t.type == CellType::Tetrahedron)
       {
-        addTetrahedron(node, marks);
+        addTetrahedra(view, block, i, next, marks);
       }
-      else
+      for (Index k = i; t.type != CellType::Tetrahedron && k < next; ++k)
       {
-        addMarks(t, node, marks);
+        addMarks(t, view.connectivity + view.offsets[block.cell(k)], marks);
+      }
+    }
+  }
+}
+
+/// Each part has marks of its own, which are then combined: sums modulo 2^64 and exclusive or do
+/// not depend on their order.
+std::vector<Mark> marksOf(const Mesh& mesh, int threads)
+{
+  const Index points = mesh.view().numberOfPoints;
+  const int parts = numberOfParts(mesh.view().numberOfCells, threads);
+  std::vector<std::vector<Mark>> marks(parts);
+  parallelFor(parts, 1, threads,
+    [&](Index part)
+    {
+      marks[part].resize(points);
+      addMarksOfPart(mesh, static_cast<int>(part), parts, marks[part]);
+    });
+  forEachChunk(parts > 1 ? points : 0, threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (int part = 1; part < parts; ++part)
+      {
+        for (Index p = begin; p < end; ++p)
+        {
+          marks[0][p].parity ^= marks[part][p].parity;
+          marks[0][p].sum += marks[part][p].sum;
+        }
       }
     });
-  return marks;
+  return std::move(marks[0]);
 }
 
 /// A cell with a number that depends on its points only, not on their order.
@@ -172,15 +234,15 @@ std::vector<DuplicateCell> duplicatesAmong(const Mesh& mesh, std::vector<KeyedCe
   return duplicates;
 }
 
-/// The duplicate cells among those with a point that satisfies a condition.
+/// The duplicate cells among those of whose points `least` or more satisfy a condition.
 template <class Condition>
-std::vector<DuplicateCell> duplicatesWhere(const Mesh& mesh, const Condition& condition)
+std::vector<DuplicateCell> duplicatesWhere(const Mesh& mesh, int least, const Condition& condition)
 {
   std::vector<KeyedCell> cells;
   forEachElement(mesh,
     [&](Index cell, const CellTopology& t, const Index* node)
     {
-      if (std::any_of(node, node + t.nodes, condition))
+      if (std::count_if(node, node + t.nodes, condition) >= least)
       {
         std::uint64_t key = static_cast<std::uint64_t>(t.type);
         std::for_each(node, node + t.nodes,
@@ -193,14 +255,14 @@ std::vector<DuplicateCell> duplicatesWhere(const Mesh& mesh, const Condition& co
 }
 
 //------------------------------------------------------------------------------
-MeshSkin findSkin(const Mesh& mesh)
+MeshSkin findSkin(const Mesh& mesh, int threads)
 {
   MeshSkin skin;
   std::vector<char>& boundary = skin.boundaryPoints;
   boundary.resize(mesh.view().numberOfPoints);
   bool consistent = true;
   {
-    const std::vector<Mark> marks = marksOf(mesh);
+    const std::vector<Mark> marks = marksOf(mesh, threads);
     std::transform(
       marks.begin(), marks.end(), boundary.begin(), [](const Mark& mark) { return mark.any(); });
     // Else duplicate cells, or cells that are listed in opposite senses: their two uses of a facet
@@ -208,13 +270,14 @@ MeshSkin findSkin(const Mesh& mesh)
     consistent = std::all_of(marks.begin(), marks.end(),
       [](const Mark& mark) { return (mark.parity == 0) == (mark.sum == 0); });
   }
-  // A region of duplicates has facets of three cells, or of two in the same sense, around it: its
-  // points there are marked, as if they were on a boundary.
+  // A region of duplicates has facets of three cells, or of two in the same sense, around it: their
+  // points are marked, as if they were on a boundary. One of a volume has three points or more.
+  const int ofFacet = dimensionOf(mesh);
   const auto marked = [&boundary](Index point) { return boundary[point] != 0; };
   const bool closed = std::find(boundary.begin(), boundary.end(), 1) == boundary.end();
-  if (!consistent || !duplicatesWhere(mesh, marked).empty())
+  if (!consistent || !duplicatesWhere(mesh, ofFacet, marked).empty())
   {
-    skin.duplicates = duplicatesWhere(mesh, [](Index) { return true; });
+    skin.duplicates = duplicatesWhere(mesh, 0, [](Index) { return true; });
   }
   if (closed || !consistent || !skin.duplicates.empty() || mesh.dimension() == Dimension::Surface)
   {
@@ -224,10 +287,10 @@ MeshSkin findSkin(const Mesh& mesh)
 }
 
 //------------------------------------------------------------------------------
-std::vector<char> boundaryPoints(const Mesh& mesh)
+std::vector<char> boundaryPoints(const Mesh& mesh, int threads)
 {
   // On surfaces more than two cells often meet at an edge, which only the facets show.
   return mesh.dimension() == Dimension::Surface ? mesh.boundary().isBoundaryPoint
-                                                : findSkin(mesh).boundaryPoints;
+                                                : findSkin(mesh, threads).boundaryPoints;
 }
 }

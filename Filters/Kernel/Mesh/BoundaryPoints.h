@@ -21,7 +21,7 @@ namespace tautline
  * more than two cells often meet, Mesh::boundary() is used. In planar and volume meshes a boundary
  * point is overlooked with probability 2^-60, or if its facets have two cells on each side.
  */
-TAUTLINE_KERNEL_EXPORT std::vector<char> boundaryPoints(const Mesh& mesh);
+TAUTLINE_KERNEL_EXPORT std::vector<char> boundaryPoints(const Mesh& mesh, int threads = 1);
 
 /// A cell with the same points as one with a smaller id.
 struct DuplicateCell
@@ -43,6 +43,6 @@ struct MeshSkin
  * @brief The boundary points and the duplicate cells. Overlooked are duplicates inside that cancel
  * out at each of their facets: pairs of duplicates of one cell, one in each sense.
  */
-TAUTLINE_KERNEL_EXPORT MeshSkin findSkin(const Mesh& mesh);
+TAUTLINE_KERNEL_EXPORT MeshSkin findSkin(const Mesh& mesh, int threads = 1);
 }
 #endif

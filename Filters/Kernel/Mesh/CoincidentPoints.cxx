@@ -42,7 +42,8 @@ std::array<std::uint64_t, 3> placeOf(const MeshView& view, Index point)
   return bits;
 }
 
-/// Ids filed under keys that a function gives for an id: open addressing, linear probing.
+/// Ids filed under keys that a function gives for an id: open addressing, linear probing. Keys are
+/// compared only where the leading bits of their hashes are equal.
 class IdTable
 {
 public:
@@ -53,45 +54,49 @@ public:
     {
       size *= 2;
     }
-    this->Slots.assign(size, -1);
+    this->Slots.assign(size, empty);
   }
 
   /// The id that was filed with an equal key, or this one, which is filed.
   template <class Key, class KeyOf>
   Index insert(Index id, const Key& key, const KeyOf& keyOf)
   {
-    const std::size_t mask = this->Slots.size() - 1;
-    for (std::size_t slot = hashOf(key) & mask;; slot = (slot + 1) & mask)
-    {
-      if (this->Slots[slot] < 0)
-      {
-        this->Slots[slot] = id;
-        return id;
-      }
-      if (keyOf(this->Slots[slot]) == key)
-      {
-        return this->Slots[slot];
-      }
-    }
+    const std::uint64_t hash = hashOf(key);
+    std::uint64_t& slot = this->Slots[this->slotOf(hash, key, keyOf)];
+    slot = slot == empty ? ((hash & tag) | static_cast<std::uint64_t>(id)) : slot;
+    return idIn(slot);
   }
 
   /// The id that was filed with an equal key, or -1.
   template <class Key, class KeyOf>
   Index find(const Key& key, const KeyOf& keyOf) const
   {
-    const std::size_t mask = this->Slots.size() - 1;
-    for (std::size_t slot = hashOf(key) & mask; this->Slots[slot] >= 0; slot = (slot + 1) & mask)
-    {
-      if (keyOf(this->Slots[slot]) == key)
-      {
-        return this->Slots[slot];
-      }
-    }
-    return -1;
+    const std::uint64_t slot = this->Slots[this->slotOf(hashOf(key), key, keyOf)];
+    return slot == empty ? -1 : idIn(slot);
   }
 
 private:
-  std::vector<Index> Slots;
+  static constexpr int idBits = 44; // more than memory has points
+  static constexpr std::uint64_t tag = ~std::uint64_t(0) << idBits;
+  static constexpr std::uint64_t empty = ~std::uint64_t(0);
+
+  static Index idIn(std::uint64_t slot) { return static_cast<Index>(slot & ~tag); }
+
+  /// The slot with an equal key, or else an empty one.
+  template <class Key, class KeyOf>
+  std::size_t slotOf(std::uint64_t hash, const Key& key, const KeyOf& keyOf) const
+  {
+    const std::size_t mask = this->Slots.size() - 1;
+    std::size_t slot = hash & mask;
+    while (this->Slots[slot] != empty &&
+      (((this->Slots[slot] ^ hash) & tag) != 0 || keyOf(idIn(this->Slots[slot])) != key))
+    {
+      slot = (slot + 1) & mask;
+    }
+    return slot;
+  }
+
+  std::vector<std::uint64_t> Slots; ///< the leading bits of the hash, then the id
 };
 
 bool isFinite(const MeshView& view, Index point)

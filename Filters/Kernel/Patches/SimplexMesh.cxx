@@ -1,7 +1,6 @@
 #include "SimplexMesh.h"
 
-#include "tautline/Core/Interruption.h"
-#include "tautline/Core/Parallel.h"
+#include "tautline/Core/CountingSort.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 
 #include <algorithm>
@@ -56,6 +55,13 @@ bool isFinite(const MeshView& view, Index point)
 {
   return std::isfinite(view.points[3 * point]) && std::isfinite(view.points[3 * point + 1]) &&
     std::isfinite(view.points[3 * point + 2]);
+}
+
+/// A pair of blocks that share a cell, which sorts by the later one.
+std::uint64_t blockPair(std::int32_t a, std::int32_t b)
+{
+  return static_cast<std::uint64_t>(std::max(a, b)) << 32 |
+    static_cast<std::uint64_t>(std::min(a, b));
 }
 
 /// Even permutations of a simplex that bring each vertex to the front.
@@ -154,10 +160,10 @@ SimplexMesh::SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Tar
   {
     vertexOf[this->Point[v]] = v;
   }
-  this->cut(mesh, vertexOf, targets, frame);
+  this->cut(mesh, vertexOf, targets, frame, threads);
   this->load(mesh.view().points, threads);
-  this->findPatches();
-  this->findBlocks(mesh, vertexOf);
+  this->findPatches(threads);
+  this->findBlocks(mesh, vertexOf, threads);
 }
 
 //------------------------------------------------------------------------------
@@ -242,74 +248,80 @@ void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free, const 
 }
 
 //------------------------------------------------------------------------------
-void SimplexMesh::findPatches()
+template <int Dim>
+void SimplexMesh::findPatchesOf(int threads)
 {
-  const int corners = this->Dim + 1;
-  this->PatchStarts.assign(this->Free + 1, 0);
-  const std::size_t uses = this->Corners.size();
-  for (std::size_t i = 0; i < uses; ++i)
-  {
-    const std::int32_t v = this->Corners[i];
-    if (v < this->Free)
+  constexpr int corners = Dim + 1;
+  const auto cornersOf = [this](Index simplex) { return this->Corners.data() + corners * simplex; };
+  CountingSort entries(this->Simplices, this->Free, threads,
+    [&](Index simplex, const auto& use)
     {
-      ++this->PatchStarts[v + 1];
-    }
-  }
-  std::partial_sum(this->PatchStarts.begin(), this->PatchStarts.end(), this->PatchStarts.begin());
-  const std::size_t entries = this->PatchStarts[this->Free];
-  this->PatchVertices.resize(entries * this->Dim);
-  this->forEachPatchCorner(
-    [&](std::int32_t simplex, int k, std::size_t entry)
-    {
-      const std::int32_t* corner =
-        this->Corners.data() + static_cast<std::size_t>(corners) * simplex;
-      const int* front = this->Dim == 3 ? toFront3[k] : toFront2[k];
-      for (int l = 0; l < this->Dim; ++l)
+      const std::int32_t* corner = cornersOf(simplex);
+      for (int k = 0; k < corners; ++k)
       {
-        this->PatchVertices[entry * this->Dim + l] = corner[front[l + 1]];
+        if (corner[k] < this->Free)
+        {
+          use(corner[k]);
+        }
       }
     });
-  if (!this->uniform())
-  {
-    this->indexPatches();
-  }
+  this->PatchStarts = std::move(entries.starts());
+  const std::size_t count = this->PatchStarts[this->Free];
+  this->PatchVertices.resize(count * Dim);
+  this->PatchCorners.resize(this->uniform() ? 0 : count);
+  entries.place(
+    [&](Index simplex, const auto& placeOf)
+    {
+      const std::int32_t* corner = cornersOf(simplex);
+      for (int k = 0; k < corners; ++k)
+      {
+        if (corner[k] >= this->Free)
+        {
+          continue;
+        }
+        const auto entry = static_cast<std::size_t>(placeOf(corner[k]));
+        const int* front = Dim == 3 ? toFront3[k] : toFront2[k];
+        for (int l = 0; l < Dim; ++l)
+        {
+          this->PatchVertices[entry * Dim + l] = corner[front[l + 1]];
+        }
+        if (!this->uniform())
+        {
+          this->PatchCorners[entry] = static_cast<std::int32_t>(simplex) * corners + k;
+        }
+      }
+    });
 }
 
 //------------------------------------------------------------------------------
-template <class Visit>
-void SimplexMesh::forEachPatchCorner(const Visit& visit)
+void SimplexMesh::findPatches(int threads)
 {
-  const int corners = this->Dim + 1;
-  std::vector<std::int32_t> next(this->PatchStarts.begin(), this->PatchStarts.end() - 1);
-  for (std::int32_t i = 0; i < this->Simplices; ++i)
-  {
-    pollInterruption(i);
-    const std::int32_t* corner = this->Corners.data() + static_cast<std::size_t>(corners) * i;
-    for (int k = 0; k < corners; ++k)
-    {
-      if (corner[k] < this->Free)
-      {
-        visit(i, k, static_cast<std::size_t>(next[corner[k]]++));
-      }
-    }
-  }
+  this->Dim == 3 ? this->findPatchesOf<3>(threads) : this->findPatchesOf<2>(threads);
 }
 
 //------------------------------------------------------------------------------
 void SimplexMesh::indexPatches()
 {
+  const int corners = this->Dim + 1;
   this->PatchCorners.resize(this->PatchStarts[this->Free]);
-  this->forEachPatchCorner([&](std::int32_t simplex, int k, std::size_t entry)
-    { this->PatchCorners[entry] = simplex * (this->Dim + 1) + k; });
+  std::vector<std::int32_t> next(this->PatchStarts.begin(), this->PatchStarts.end() - 1);
+  for (std::int32_t i = 0; i < corners * this->Simplices; ++i)
+  {
+    pollInterruption(i);
+    const std::int32_t v = this->Corners[i];
+    if (v < this->Free)
+    {
+      this->PatchCorners[next[v]++] = i;
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
-/// Pairs of blocks with vertices that are opposite in a hexahedron, which no simplex of it has both
-/// of.
-std::vector<std::pair<std::int32_t, std::int32_t>> SimplexMesh::blocksAcross(
+/// Those with vertices that are opposite in a hexahedron, which no simplex of it has both of.
+std::vector<std::uint64_t> SimplexMesh::blocksAcross(
   const Mesh& mesh, const std::vector<std::int32_t>& vertexOf) const
 {
-  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  std::vector<std::uint64_t> pairs;
   const MeshView& view = mesh.view();
   for (const CellBlock& block : mesh.blocks())
   {
@@ -323,55 +335,78 @@ std::vector<std::pair<std::int32_t, std::int32_t>> SimplexMesh::blocksAcross(
         {
           continue;
         }
-        const std::int32_t first = a / this->Blocks.size, second = b / this->Blocks.size;
+        const std::int32_t first = a / VertexBlocks::size, second = b / VertexBlocks::size;
         if (first != second)
         {
-          pairs.emplace_back(first, second);
-          pairs.emplace_back(second, first);
+          pairs.push_back(blockPair(first, second));
         }
       }
     }
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }
 
 //------------------------------------------------------------------------------
-void SimplexMesh::findBlocks(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf)
+/// Those with vertices of one simplex, chunk by chunk.
+template <int Dim>
+std::vector<std::vector<std::uint64_t>> SimplexMesh::blocksOfSimplices(int threads) const
 {
-  const std::int32_t size = this->Blocks.size;
-  const std::int32_t blocks = (this->Free + size - 1) / size;
-  const auto across = this->blocksAcross(mesh, vertexOf);
-  auto pair = across.begin();
-  std::vector<std::int32_t> colour(blocks, -1), seen(blocks, -1);
+  constexpr int corners = Dim + 1;
+  std::vector<std::vector<std::uint64_t>> ofChunk(numberOfChunks(this->Simplices));
+  forEachChunk(this->Simplices, threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      std::vector<std::uint64_t>& pairs = ofChunk[chunk];
+      for (Index i = begin; i < end; ++i)
+      {
+        const std::int32_t* corner = this->Corners.data() + corners * i;
+        for (int k = 0; k < corners; ++k)
+        {
+          for (int l = k + 1; l < corners; ++l)
+          {
+            const std::int32_t a = corner[k] / VertexBlocks::size,
+                               b = corner[l] / VertexBlocks::size;
+            // Most simplices lie in one block.
+            if (a != b && corner[k] < this->Free && corner[l] < this->Free)
+            {
+              pairs.push_back(blockPair(a, b));
+            }
+          }
+        }
+      }
+      std::sort(pairs.begin(), pairs.end());
+      pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    });
+  return ofChunk;
+}
+
+//------------------------------------------------------------------------------
+void SimplexMesh::findBlocks(
+  const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, int threads)
+{
+  const std::int32_t blocks = (this->Free + VertexBlocks::size - 1) / VertexBlocks::size;
+  std::vector<std::uint64_t> pairs = this->blocksAcross(mesh, vertexOf);
+  const auto ofSimplices =
+    this->Dim == 3 ? this->blocksOfSimplices<3>(threads) : this->blocksOfSimplices<2>(threads);
+  for (const std::vector<std::uint64_t>& ofChunk : ofSimplices)
+  {
+    pairs.insert(pairs.end(), ofChunk.begin(), ofChunk.end());
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+
+  // Each block gets the first colour that no earlier block has with which it shares a cell.
+  auto pair = pairs.begin();
+  std::vector<std::int32_t> colour(blocks, -1);
   std::vector<char> taken;
   std::int32_t colours = 0;
   for (std::int32_t b = 0; b < blocks; ++b)
   {
-    throwIfInterrupted();
+    pollInterruption(b);
     taken.assign(colours + 1, 0);
-    const auto take = [&](std::int32_t other)
+    for (; pair != pairs.end() && static_cast<std::int32_t>(*pair >> 32) == b; ++pair)
     {
-      if (seen[other] != b && colour[other] >= 0)
-      {
-        taken[colour[other]] = 1;
-      }
-      seen[other] = b;
-    };
-    const std::size_t begin = static_cast<std::size_t>(this->PatchStarts[b * size]) * this->Dim;
-    const std::size_t end =
-      static_cast<std::size_t>(this->PatchStarts[std::min(this->Free, (b + 1) * size)]) * this->Dim;
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      if (this->PatchVertices[i] < this->Free)
-      {
-        take(this->PatchVertices[i] / size);
-      }
-    }
-    for (; pair != across.end() && pair->first == b; ++pair)
-    {
-      take(pair->second);
+      taken[colour[static_cast<std::uint32_t>(*pair)]] = 1;
     }
     colour[b] = static_cast<std::int32_t>(std::find(taken.begin(), taken.end(), 0) - taken.begin());
     colours = std::max(colours, colour[b] + 1);

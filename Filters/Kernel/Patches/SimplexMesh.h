@@ -33,9 +33,9 @@ struct TargetSimplex
 /// all points of the cells at a vertex: those of one colour can move at the same time.
 struct VertexBlocks
 {
-  std::int32_t size = 256;                ///< block b has the vertices from b * size on
-  std::vector<std::int32_t> byColour;     ///< the blocks, colour by colour
-  std::vector<std::int32_t> colourStarts; ///< into byColour, and its end
+  static constexpr std::int32_t size = 256; ///< block b has the vertices from b * size on
+  std::vector<std::int32_t> byColour;       ///< the blocks, colour by colour
+  std::vector<std::int32_t> colourStarts;   ///< into byColour, and its end
 };
 
 /// What the coordinates and the order of the vertices follow from, the same for all parts of a mesh
@@ -120,13 +120,18 @@ public:
 private:
   void number(const Mesh& mesh, const std::vector<char>& free, const SimplexFrame* frame);
   void cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets,
-    const SimplexFrame* frame);
-  void findPatches();
-  template <class Visit>
-  void forEachPatchCorner(const Visit& visit);
-  std::vector<std::pair<std::int32_t, std::int32_t>> blocksAcross(
+    const SimplexFrame* frame, int threads);
+  template <int Dim>
+  void cutInto(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets,
+    const SimplexFrame* frame, int threads);
+  void findPatches(int threads);
+  template <int Dim>
+  void findPatchesOf(int threads);
+  std::vector<std::uint64_t> blocksAcross(
     const Mesh& mesh, const std::vector<std::int32_t>& vertexOf) const;
-  void findBlocks(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf);
+  template <int Dim>
+  std::vector<std::vector<std::uint64_t>> blocksOfSimplices(int threads) const;
+  void findBlocks(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, int threads);
 
   int Dim = 3;
   bool Surface = false;

@@ -1,8 +1,9 @@
 #include "SimplexMesh.h"
 
-#include "tautline/Core/Interruption.h"
+#include "tautline/Core/CountingSort.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -50,42 +51,122 @@ void swapFirstTwo(TargetSimplex& shape, int dimension)
   }
 }
 
-/// Calls visit(topology, cell, corner, vertices) for each simplex of finite points at the corners
-/// of the cells of a dimension.
-template <class Visit>
-void visitSimplices(
-  const Mesh& mesh, int dimension, const std::vector<std::int32_t>& vertexOf, const Visit& visit)
+/// The simplices at the corners of the cells of a dimension: cell after cell, and corner after
+/// corner.
+template <int Dim>
+class CornerSimplices
 {
-  const MeshView& view = mesh.view();
-  for (const CellBlock& block : mesh.blocks())
+public:
+  CornerSimplices(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf)
+    : View(mesh.view())
+    , VertexOf(vertexOf)
+    , Finite(mesh.nonFinitePoints() == 0)
   {
-    const CellTopology& t = topology(block.type);
-    if (t.dimension != dimension)
+    for (const CellBlock& block : mesh.blocks())
     {
-      continue;
-    }
-    for (Index i = 0; i < block.count; ++i)
-    {
-      pollInterruption(i);
-      const Index cell = block.cell(i);
-      const Index* node = view.connectivity + view.offsets[cell];
-      for (int s = 0; s < t.samples; ++s)
+      const CellTopology& t = topology(block.type);
+      if (t.dimension == Dim)
       {
-        std::int32_t v[4] = {};
-        bool finite = true;
-        for (int k = 0; k <= dimension; ++k)
-        {
-          v[k] = vertexOf[node[t.cornerNodes[s][k]]];
-          finite = finite && v[k] >= 0;
-        }
-        if (finite)
-        {
-          visit(t, cell, s, v);
-        }
+        this->Parts.push_back({ &block, &t });
+        this->OfType[topologyIndex(block.type)] = &t;
+        this->Cells += block.count;
+        this->Simplices += block.count * t.samples;
       }
     }
   }
-}
+
+  /// Of cells of the dimension.
+  Index cells() const { return this->Cells; }
+  /// At most: with those of points that are not finite.
+  Index simplices() const { return this->Simplices; }
+  /// Whether each cell has one.
+  bool onePerCell() const { return this->Simplices == this->Cells; }
+
+  /// Of a cell of the dimension.
+  const CellTopology& topologyOf(Index cell) const
+  {
+    return this->Parts.size() == 1
+      ? *this->Parts.front().topology
+      : *this->OfType[topologyIndex(cornerType(this->View.cellTypes[cell]))];
+  }
+
+  /// Calls visit(cell, corner, vertices) for each simplex of finite points of a cell, by its place
+  /// among those of the dimension.
+  template <class Visit>
+  void visit(Index place, const Visit& visit) const
+  {
+    auto part = this->Parts.begin();
+    for (; place >= part->block->count; ++part)
+    {
+      place -= part->block->count;
+    }
+    const Index cell = part->block->cell(place);
+    for (int s = 0; s < part->topology->samples; ++s)
+    {
+      std::int32_t v[Dim + 1];
+      if (this->find(*part->topology, cell, s, v))
+      {
+        visit(cell, s, v);
+      }
+    }
+  }
+
+  /// The vertices of the simplex at a corner; false if one has no number.
+  bool find(const CellTopology& t, Index cell, Index corner, std::int32_t* v) const
+  {
+    const Index* node = this->View.connectivity + this->View.offsets[cell];
+    bool finite = true;
+    for (int k = 0; k <= Dim; ++k)
+    {
+      v[k] = this->VertexOf[node[t.cornerNodes[corner][k]]];
+      finite = finite && v[k] >= 0;
+    }
+    return finite;
+  }
+
+  /// Of the first edge of each 16th simplex, which is enough for a scale; 1 if there is none.
+  double meanLength(const std::vector<std::int32_t>& points) const
+  {
+    constexpr Index every = 16;
+    Index count = 0, sampled = 0;
+    double lengths = 0;
+    for (const Part& part : this->Parts)
+    {
+      const CellTopology& t = *part.topology;
+      const Index simplices = part.block->count * t.samples;
+      // Simplices with points that are not finite do not count.
+      for (Index i = this->Finite ? (every - count % every) % every : 0; i < simplices;
+           i += this->Finite ? every : 1)
+      {
+        std::int32_t v[Dim + 1];
+        const bool found = this->find(t, part.block->cell(i / t.samples), i % t.samples, v);
+        if (found && (this->Finite || count++ % every == 0))
+        {
+          const double length =
+            norm(pointOf(this->View, points[v[1]]) - pointOf(this->View, points[v[0]]));
+          lengths += std::isfinite(length) ? length : 0.0;
+          ++sampled;
+        }
+      }
+      count += this->Finite ? simplices : 0;
+    }
+    return sampled > 0 ? lengths / static_cast<double>(sampled) : 1.0;
+  }
+
+private:
+  struct Part
+  {
+    const CellBlock* block;
+    const CellTopology* topology;
+  };
+
+  const MeshView& View;
+  const std::vector<std::int32_t>& VertexOf;
+  bool Finite; ///< every simplex counts
+  std::vector<Part> Parts;
+  std::array<const CellTopology*, NumberOfCellTypes> OfType = {};
+  Index Cells = 0, Simplices = 0;
+};
 
 /// The targets of the corners of the ideal cells, and where those of each type begin.
 std::vector<TargetSimplex> idealShapes(
@@ -116,40 +197,48 @@ double powerOfTwo(double length)
 
 //------------------------------------------------------------------------------
 void SimplexMesh::cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf,
-  const Targets* targets, const SimplexFrame* frame)
+  const Targets* targets, const SimplexFrame* frame, int threads)
 {
-  const MeshView& view = mesh.view();
-  const int corners = this->Dim + 1;
+  this->Dim == 3 ? this->cutInto<3>(mesh, vertexOf, targets, frame, threads)
+                 : this->cutInto<2>(mesh, vertexOf, targets, frame, threads);
+}
 
-  const auto forEachSimplex = [&](const auto& visit)
-  { visitSimplices(mesh, this->Dim, vertexOf, visit); };
+//------------------------------------------------------------------------------
+template <int Dim>
+void SimplexMesh::cutInto(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf,
+  const Targets* targets, const SimplexFrame* frame, int threads)
+{
+  constexpr int corners = Dim + 1;
+  const CornerSimplices<Dim> source(mesh, vertexOf);
+  const auto first = [](const std::int32_t* v) { return *std::min_element(v, v + corners); };
 
-  // Sorted by their first vertex in the new numbering.
-  std::vector<std::int32_t> starts(this->vertices() + 1, 0);
-  Index total = 0;
-  double lengths = 0;
-  forEachSimplex(
-    [&](const CellTopology&, Index, int, const std::int32_t* v)
-    {
-      ++starts[*std::min_element(v, v + corners) + 1];
-      ++total;
-      constexpr Index every = 16; // a sample of the edges is enough for a scale
-      if (total % every == 1)
-      {
-        const double length =
-          norm(pointOf(view, this->Point[v[1]]) - pointOf(view, this->Point[v[0]]));
-        lengths += std::isfinite(length) ? length : 0.0;
-      }
-    });
-  if (total > std::numeric_limits<std::int32_t>::max() / corners)
+  if (source.simplices() > std::numeric_limits<std::int32_t>::max() / corners)
   {
     throw Error(
       "The mesh has more elements than the optimizers take (about 500 million): split it.");
   }
-  this->Simplices = static_cast<std::int32_t>(total);
-  this->Scale = frame
-    ? frame->scale
-    : powerOfTwo(total > 0 ? lengths / static_cast<double>((total + 15) / 16) : 1.0);
+  // Sorted by their first vertex in the new numbering: each goes to the next place of that.
+  CountingSort places(source.cells(), this->vertices(), threads,
+    [&](Index cell, const auto& use)
+    { source.visit(cell, [&](Index, int, const std::int32_t* v) { use(first(v)); }); });
+  this->Simplices = places.starts().back();
+  this->Cell.resize(this->Simplices);
+  std::vector<unsigned char> cornerOf(source.onePerCell() ? 0 : this->Simplices, 0);
+  places.place(
+    [&](Index cellPlace, const auto& placeOf)
+    {
+      source.visit(cellPlace,
+        [&](Index cell, int s, const std::int32_t* v)
+        {
+          const std::int32_t place = placeOf(first(v));
+          this->Cell[place] = static_cast<std::int32_t>(cell);
+          if (!cornerOf.empty())
+          {
+            cornerOf[place] = static_cast<unsigned char>(s);
+          }
+        });
+    });
+  this->Scale = frame ? frame->scale : powerOfTwo(source.meanLength(this->Point));
 
   // The shapes of ideal corners are few; one for all simplices needs no index.
   std::vector<int> firstShape(NumberOfCellTypes, 0);
@@ -159,42 +248,41 @@ void SimplexMesh::cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexO
   }
   else
   {
-    this->Shapes = idealShapes(mesh, this->Dim, firstShape);
+    this->Shapes = idealShapes(mesh, Dim, firstShape);
   }
   const bool several = targets || this->Shapes.size() > 1;
-
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  // A counting sort: each simplex goes to the next place of its first vertex.
   this->Corners.resize(static_cast<std::size_t>(corners) * this->Simplices);
-  this->Cell.resize(this->Simplices);
   this->Shape.resize(several ? this->Simplices : 0);
-  forEachSimplex(
-    [&](const CellTopology& t, Index cell, int s, const std::int32_t* v)
+  forEachChunk(this->Simplices, threads,
+    [&](Index, Index begin, Index end)
     {
-      const std::int32_t place = starts[*std::min_element(v, v + corners)]++;
-      std::int32_t* corner = this->Corners.data() + static_cast<std::size_t>(corners) * place;
-      std::copy_n(v, corners, corner);
-      if (this->Mirrored)
+      for (Index place = begin; place < end; ++place)
       {
-        std::swap(corner[0], corner[1]);
-      }
-      this->Cell[place] = static_cast<std::int32_t>(cell);
-      if (targets)
-      {
-        this->Shape[place] = place;
-        this->Shapes[place] = targetFrom(
-          targets->inverse.data() + 9 * (targets->offsets[cell] + s), this->Dim, this->Scale);
-      }
-      else if (several)
-      {
-        this->Shape[place] = firstShape[topologyIndex(t.type)] + s;
+        const Index cell = this->Cell[place], s = cornerOf.empty() ? 0 : cornerOf[place];
+        const CellTopology& t = source.topologyOf(cell);
+        std::int32_t* corner = this->Corners.data() + corners * place;
+        source.find(t, cell, s, corner);
+        if (this->Mirrored)
+        {
+          std::swap(corner[0], corner[1]);
+        }
+        if (targets)
+        {
+          this->Shape[place] = static_cast<std::int32_t>(place);
+          this->Shapes[place] = targetFrom(
+            targets->inverse.data() + 9 * (targets->offsets[cell] + s), Dim, this->Scale);
+        }
+        else if (several)
+        {
+          this->Shape[place] = firstShape[topologyIndex(t.type)] + static_cast<int>(s);
+        }
       }
     });
   if (this->Mirrored && several)
   {
     for (TargetSimplex& shape : this->Shapes)
     {
-      swapFirstTwo(shape, this->Dim);
+      swapFirstTwo(shape, Dim);
     }
   }
 }
