@@ -26,12 +26,21 @@ struct Measurement
 };
 
 /// @param unit the length that is 1 in the coordinates of the mesh
+/// @param known the values of the metric, or empty
 Measurement measure(const Mesh& mesh, double unit, const MeasuredMetric& what,
-  const signed char* validity, const unsigned char* skip, double* values)
+  const std::vector<double>& known, const signed char* validity, const unsigned char* skip,
+  double* values)
 {
   const MetricInfo& info = metricInfo(what.metric);
   const Index cells = mesh.view().numberOfCells;
-  evaluateMetric(mesh, what.metric, what.options, values);
+  if (known.empty())
+  {
+    evaluateMetric(mesh, what.metric, what.options, values);
+  }
+  else
+  {
+    std::copy(known.begin(), known.end(), values);
+  }
   const int power = info.lengthPower(mesh.dimension() == Dimension::Volume ? 3 : 2);
   for (Index i = 0; i < cells && unit != 1 && power != 0; ++i)
   {
@@ -168,8 +177,8 @@ std::vector<std::string> objectiveNames(const std::vector<Objective>& objectives
 
 //------------------------------------------------------------------------------
 std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& points,
-  const std::vector<MeasuredMetric>& metrics, int threads, const std::string& block,
-  vtkDataSet* output, TableRows& rows)
+  const std::vector<MeasuredMetric>& metrics, const VerifiedElements& known, int threads,
+  const std::string& block, vtkDataSet* output, TableRows& rows)
 {
   MeshView view = mesh.mesh().view();
   view.points = points.data();
@@ -178,16 +187,26 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(view.numberOfCells);
-  moved.classifyCells(validity->GetPointer(0), threads);
+  if (known.validity.empty())
+  {
+    moved.classifyCells(validity->GetPointer(0), threads);
+  }
+  else
+  {
+    std::copy(known.validity.begin(), known.validity.end(), validity->GetPointer(0));
+  }
 
   const double unit = mesh.frame().unit();
   std::ostringstream text;
+  const std::vector<double> unknown;
   for (const MeasuredMetric& what : metrics)
   {
-    const Measurement before = measure(mesh.mesh(), unit, what, mesh.validity().data(),
-      mesh.skipped(), addCellArray(output, what.name + "_before")->GetPointer(0));
-    const Measurement after = measure(moved, unit, what, validity->GetPointer(0), mesh.skipped(),
-      addCellArray(output, what.name)->GetPointer(0));
+    const bool first = &what == &metrics.front();
+    const Measurement before =
+      measure(mesh.mesh(), unit, what, first ? known.before : unknown, mesh.validity().data(),
+        mesh.skipped(), addCellArray(output, what.name + "_before")->GetPointer(0));
+    const Measurement after = measure(moved, unit, what, first ? known.after : unknown,
+      validity->GetPointer(0), mesh.skipped(), addCellArray(output, what.name)->GetPointer(0));
     addRow(what, block, before, after, rows, text);
   }
   output->GetCellData()->AddArray(validity);

@@ -9,6 +9,7 @@
 #include "RankMesh.h"
 #include "TableRows.h"
 #include "tautline/Objectives/Objective.h"
+#include "tautline/Optimization/Optimize.h"
 
 #include <string>
 #include <vector>
@@ -33,11 +34,13 @@ std::vector<std::string> objectiveNames(const std::vector<Objective>& objectives
  * @param rows gets a row per metric: `Block` (composite input), `Metric`, `Label`, and with the
  * endings Before and After `Minimum`, `Mean`, `Maximum`, `RMS`, `StandardDeviation`, `Worst`,
  * `OutsideAcceptable`, `Inverted`, `Degenerate`
+ * @param known of these points, with the first metric, if it was measured before; what is empty is
+ * measured
  * @return a line per metric: "imr: mean 1.3 to 1.1, worst 8.2 to 2.1"
  */
 std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& points,
-  const std::vector<MeasuredMetric>& metrics, int threads, const std::string& block,
-  vtkDataSet* output, TableRows& rows);
+  const std::vector<MeasuredMetric>& metrics, const VerifiedElements& known, int threads,
+  const std::string& block, vtkDataSet* output, TableRows& rows);
 
 /**
  * @brief The same of a mesh on several processes: arrays of the piece, numbers of the whole mesh,

@@ -487,7 +487,14 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     };
     run.iterations = -1;
     options.stopping.maximumSeconds = this->GetRemainingSeconds();
-    run.result = tautline::optimize(setup.start(), options);
+    // With a geometry, the start is another mesh than the input.
+    const bool asGiven = &setup.start() == &mesh.mesh();
+    run.result = tautline::optimize(
+      setup.start(), options, asGiven ? mesh.validity() : std::vector<signed char>());
+    if (!asGiven || !mesh.frame().isIdentity())
+    {
+      run.result.elements = {};
+    }
     run.result.surfaceError *= mesh.frame().unit();
     std::string note;
     run.result.points = mesh.settle(run.result.points, note);
@@ -511,10 +518,13 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     // The summary is that of the result, also if an iteration before it is shown.
     tautline::TableRows ofResult;
     qualities = tautline::addBeforeAfter(
-      mesh, run.result.points, metrics, this->Threads, block.name, block.output, ofResult);
+      mesh, run.result.points, metrics, {}, this->Threads, block.name, block.output, ofResult);
   }
+  const tautline::VerifiedElements known =
+    points == run.result.points ? std::move(run.result.elements) : tautline::VerifiedElements();
+  run.result.elements = {};
   const std::string shown = tautline::addBeforeAfter(
-    mesh, points, metrics, this->Threads, block.name, block.output, statistics);
+    mesh, points, metrics, known, this->Threads, block.name, block.output, statistics);
   qualities = qualities.empty() ? shown : qualities;
   tautline::addHistory(
     history, run.result.history, tautline::objectiveNames(options.objectives), block.name);

@@ -216,10 +216,15 @@ bool mayUseNewton(const OptimizeOptions& options)
     !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;
 }
 
-Index countInvalid(const Mesh& mesh, int threads)
+std::vector<signed char> validityOf(const Mesh& mesh, int threads)
 {
   std::vector<signed char> validity(mesh.view().numberOfCells);
   mesh.classifyCells(validity.data(), threads);
+  return validity;
+}
+
+Index countInvalid(const std::vector<signed char>& validity)
+{
   return std::count_if(validity.begin(), validity.end(),
     [](signed char v) { return v == Inverted || v == Degenerate; });
 }
@@ -305,9 +310,10 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch, Slowness
   }
 }
 
-/// Improves the worst element as far as wanted, and at least to that of the input.
-void settleWorst(OptimizationProblem& problem, const StoppingTest& watch, const QualityGuard& guard,
-  OptimizeResult& result)
+/// Improves the worst element as far as wanted, and at least to that of the input. Stores the
+/// points and measures the elements there.
+QualityGuard::State settleWorst(OptimizationProblem& problem, const StoppingTest& watch,
+  const QualityGuard& guard, OptimizeResult& result)
 {
   // The metrics of the mean and of the worst element disagree on stretched hexahedra.
   constexpr double ofAnotherMetric = 5;
@@ -316,9 +322,13 @@ void settleWorst(OptimizationProblem& problem, const StoppingTest& watch, const 
   const double allowance = options.improveWorst * (same ? 1.0 : ofAnotherMetric);
   const bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
   const bool wanted = going && allowance > 0;
-  if (!wanted && !guard.violated(problem))
+  if (!wanted)
   {
-    return;
+    QualityGuard::State state = guard.check(problem);
+    if (!state.violated)
+    {
+      return state;
+    }
   }
   if (going)
   {
@@ -337,18 +347,21 @@ void settleWorst(OptimizationProblem& problem, const StoppingTest& watch, const 
     IterationRecord record = problem.record(result.history.back().iteration + 1);
     report(problem, watch, result, record);
   }
+  return guard.check(problem);
 }
 
-/// Goes back to the input if the result, computed anew from its points, has an invalid element, a
-/// worse worst element or a larger objective.
+/**
+ * @brief Goes back to the input if the result, computed anew from its points, has an invalid
+ * element, a worse worst element or a larger objective.
+ * @param state of the elements at the stored points, which become those of the result
+ */
 void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecord& first,
-  const QualityGuard& guard, OptimizeResult& result)
+  const QualityGuard& guard, QualityGuard::State& state, OptimizeResult& result)
 {
-  problem.store();
   problem.restart(std::vector<double>(result.points));
   const bool larger = guard.holdsObjective() &&
     isLarger(problem.options().scalarization, problem.scalarizer(), problem.record(0), first);
-  if (larger || guard.violated(problem))
+  if (larger || state.violated)
   {
     const double* start = mesh.view().points;
     problem.restart(std::vector<double>(start, start + result.points.size()));
@@ -361,6 +374,8 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
     }
     result.unchanged = true;
     result.restored = 0;
+    state.validity = validityOf(problem.moving(), problem.options().threads);
+    state.values = guard.values();
   }
 }
 
@@ -415,14 +430,21 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
       useNewton(problem, watch, slow, start, result, failed, repaired);
     }
   }
-  if (!repaired)
+  QualityGuard::State state;
+  if (repaired)
   {
-    settleWorst(problem, watch, guard, result);
-    verify(mesh, problem, first, guard, result);
+    problem.store();
+    state.validity = validityOf(problem.moving(), options.threads);
   }
-  problem.store();
+  else
+  {
+    state = settleWorst(problem, watch, guard, result);
+    verify(mesh, problem, first, guard, state, result);
+  }
   result.iterations = result.history.back().iteration;
-  result.invertedAfter = countInvalid(problem.moving(), options.threads);
+  result.invertedAfter = countInvalid(state.validity);
+  result.elements.validity = std::move(state.validity);
+  result.elements.after = std::move(state.values);
   if (problem.surface() && mesh.dimension() == Dimension::Surface)
   {
     result.surfaceError =
@@ -474,7 +496,8 @@ bool untangleFirst(
 }
 
 //------------------------------------------------------------------------------
-OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
+OptimizeResult optimize(
+  const Mesh& mesh, const OptimizeOptions& options, const std::vector<signed char>& known)
 {
   const Stopwatch clock;
   OptimizeResult result;
@@ -487,7 +510,9 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
   }
   requireOrdinaryScale(view, "Optimization");
   checkOptions(mesh, options);
-  result.invertedBefore = result.invertedAfter = countInvalid(mesh, options.threads);
+  const std::vector<signed char> validity =
+    known.empty() ? validityOf(mesh, options.threads) : known;
+  result.invertedBefore = result.invertedAfter = countInvalid(validity);
   const bool repairs =
     std::any_of(options.objectives.begin(), options.objectives.end(), canUntangle);
   if (result.invertedBefore > 0 && !repairs && mesh.dimension() != Dimension::Surface)
@@ -506,7 +531,7 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
     }
   }
 
-  const QualityGuard guard(mesh, options);
+  QualityGuard guard(mesh, validity, options);
   // Elements left out join the objective as soon as they are valid: another stage.
   const Index invalid = result.invertedAfter;
   while (optimizeStage(mesh, options, guard, clock, result))
@@ -520,6 +545,14 @@ OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options)
     throw Error("Optimization would invert " + std::to_string(result.invertedAfter - invalid) +
       " elements: the coordinates are of too different magnitudes. Remove points that are far from "
       "all others.");
+  }
+  if (guard.judged().metric == options.objectives[0].metric && !result.elements.after.empty())
+  {
+    result.elements.before = guard.takeValues();
+  }
+  else
+  {
+    result.elements.after.clear();
   }
   return result;
 }

@@ -16,6 +16,15 @@
 
 namespace tautline
 {
+/// What is measured to verify a result. Empty where it was not needed.
+struct VerifiedElements
+{
+  std::vector<signed char> validity; ///< of the result, as Mesh::classifyCells() gives it
+  /// The metric of the first objective, as evaluateMetric() gives it: of the mesh given, and of the
+  /// result.
+  std::vector<double> before, after;
+};
+
 struct OptimizeResult
 {
   std::vector<double> points; ///< 3 x numberOfPoints; the best found
@@ -34,6 +43,7 @@ struct OptimizeResult
   /// The points are those of the input, because what was found was worse in one of the three
   /// numbers.
   bool unchanged = false;
+  VerifiedElements elements; ///< at `points`
 };
 
 /**
@@ -47,7 +57,9 @@ struct OptimizeResult
  * the worst element (see OptimizeOptions::worstMetric and holdWorst) and the scalarized objective.
  * Throws Error on options that cannot be met and names the remedy.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
+ * @param validity of its cells, as Mesh::classifyCells() gives it; empty: it is computed
  */
-TAUTLINE_KERNEL_EXPORT OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options);
+TAUTLINE_KERNEL_EXPORT OptimizeResult optimize(
+  const Mesh& mesh, const OptimizeOptions& options, const std::vector<signed char>& validity = {});
 }
 #endif

@@ -1,7 +1,10 @@
 #include "QualityGuard.h"
 
+#include "tautline/Core/Parallel.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tautline
 {
@@ -15,26 +18,52 @@ bool isElement(const Mesh& mesh, CellType type)
   return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
 }
 
-/// Calls visit(cell, validity, value) for each element of the mesh's dimension; value is null where
-/// the metric is not defined.
-template <class Visit>
-void forEachElement(const Mesh& mesh, const Objective& judged, const Visit& visit)
+std::vector<signed char> validityOf(const Mesh& mesh, int threads)
 {
-  const Index cells = mesh.view().numberOfCells;
-  std::vector<signed char> validity(cells);
-  std::vector<double> values(cells);
-  mesh.classifyCells(validity.data(), judged.evaluation.threads);
+  std::vector<signed char> validity(mesh.view().numberOfCells);
+  mesh.classifyCells(validity.data(), threads);
+  return validity;
+}
+
+/**
+ * @brief Calls visit(found, cell, validity, value) for each element of the mesh's dimension, with
+ * one object for the elements of a chunk; value is null where the metric is not defined.
+ * @param values set to those of the metric
+ * @return the objects, in the order of the chunks
+ */
+template <class Found, class Visit>
+std::vector<Found> visitElements(const Mesh& mesh, const std::vector<signed char>& validity,
+  const Objective& judged, std::vector<double>& values, const Visit& visit)
+{
+  const int threads = judged.evaluation.threads;
+  values.resize(validity.size());
   evaluateMetric(mesh, judged.metric, judged.evaluation, values.data());
+  std::vector<Found> all;
   for (const CellBlock& block : mesh.blocks())
   {
     const bool measured = metricInfo(judged.metric).definedOn(block.type);
-    for (Index i = 0; isElement(mesh, block.type) && i < block.count; ++i)
-    {
-      const Index cell = block.cell(i);
-      visit(cell, validity[cell], measured ? &values[cell] : nullptr);
-    }
+    const Index count = isElement(mesh, block.type) ? block.count : 0;
+    std::vector<Found> ofChunk(numberOfChunks(count));
+    forEachChunk(count, threads,
+      [&](Index chunk, Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          const Index cell = block.cell(i);
+          visit(ofChunk[chunk], cell, validity[cell], measured ? &values[cell] : nullptr);
+        }
+      });
+    all.insert(all.end(), ofChunk.begin(), ofChunk.end());
   }
+  return all;
 }
+
+/// What a chunk of elements has.
+struct Extremes
+{
+  bool valid = true;
+  double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
+};
 }
 
 //------------------------------------------------------------------------------
@@ -56,7 +85,8 @@ Metric worstMetric(const Mesh& mesh, const OptimizeOptions& options)
 }
 
 //------------------------------------------------------------------------------
-QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
+QualityGuard::QualityGuard(
+  const Mesh& input, const std::vector<signed char>& validity, const OptimizeOptions& options)
   : Input(input)
   , Judged(options.objectives[0])
 {
@@ -74,22 +104,29 @@ QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
   {
     return;
   }
-  const double infinity = std::numeric_limits<double>::infinity();
-  this->Worst = this->Larger ? infinity : -infinity;
-  bool valid = true;
-  forEachElement(input, this->Judged,
-    [&](Index, signed char validity, const double* value)
-    {
-      valid = valid && validity == Valid;
-      if (value)
-      {
-        this->Worst = this->Larger ? std::min(this->Worst, *value) : std::max(this->Worst, *value);
-      }
-    });
-  this->ValidInput = this->Active = valid;
+  Extremes all;
+  for (const Extremes& of : visitElements<Extremes>(input, validity, this->Judged, this->Values,
+         [](Extremes&found, Index, signed char state, const double*value)
+         {
+           found.valid = found.valid && state == Valid;
+           found.smallest = value ? std::min(found.smallest, *value) : found.smallest;
+           found.largest = value ? std::max(found.largest, *value) : found.largest;
+         }))
+  {
+    all.valid = all.valid && of.valid;
+    all.smallest = std::min(all.smallest, of.smallest);
+    all.largest = std::max(all.largest, of.largest);
+  }
+  this->Worst = this->Larger ? all.smallest : all.largest;
+  this->ValidInput = this->Active = all.valid;
   // Elements that the metric does not judge stay valid nevertheless.
   this->HoldWorst =
     this->HoldWorst && info.direction != Direction::Neutral && std::isfinite(this->Worst);
+}
+
+QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
+  : QualityGuard(input, validityOf(input, options.threads), options)
+{
 }
 
 //------------------------------------------------------------------------------
@@ -104,26 +141,39 @@ bool QualityGuard::worse(double value) const
 }
 
 //------------------------------------------------------------------------------
-std::vector<char> QualityGuard::offenders(const Mesh& mesh) const
+std::vector<char> QualityGuard::offenders(
+  const Mesh& mesh, const std::vector<signed char>& validity, std::vector<double>& values) const
 {
-  std::vector<char> flags;
-  forEachElement(mesh, this->Judged,
-    [&](Index cell, signed char validity, const double* value)
-    {
-      if (validity != Valid || (value && this->worse(*value)))
+  const std::vector<std::vector<Index>> found =
+    visitElements<std::vector<Index>>(mesh, validity, this->Judged, values,
+      [this](std::vector<Index>& cells, Index cell, signed char state, const double* value)
       {
-        flags.resize(mesh.view().numberOfCells, 0);
-        flags[cell] = 1;
-      }
-    });
+        if (state != Valid || (value && this->worse(*value)))
+        {
+          cells.push_back(cell);
+        }
+      });
+  std::vector<char> flags;
+  for (const std::vector<Index>& cells : found)
+  {
+    flags.resize(cells.empty() ? flags.size() : mesh.view().numberOfCells, 0);
+    for (const Index cell : cells)
+    {
+      flags[cell] = 1;
+    }
+  }
   return flags;
 }
 
 //------------------------------------------------------------------------------
-bool QualityGuard::violated(OptimizationProblem& problem) const
+QualityGuard::State QualityGuard::check(OptimizationProblem& problem) const
 {
   problem.store();
-  return this->Active && !this->offenders(problem.moving()).empty();
+  State state;
+  state.validity = validityOf(problem.moving(), this->Judged.evaluation.threads);
+  state.violated =
+    this->Active && !this->offenders(problem.moving(), state.validity, state.values).empty();
+  return state;
 }
 
 //------------------------------------------------------------------------------
@@ -139,7 +189,10 @@ Index QualityGuard::restore(OptimizationProblem& problem) const
   for (bool more = this->Active; more; ++round)
   {
     more = false;
-    const std::vector<char> flags = this->offenders(problem.moving());
+    const Mesh& mesh = problem.moving();
+    std::vector<double> values;
+    const std::vector<char> flags =
+      this->offenders(mesh, validityOf(mesh, this->Judged.evaluation.threads), values);
     for (Index cell = 0; cell < static_cast<Index>(flags.size()); ++cell)
     {
       const bool back = flags[cell] || round >= maxRounds;

@@ -25,9 +25,28 @@ Metric worstMetric(const Mesh& mesh, const OptimizeOptions& options);
 class TAUTLINE_KERNEL_EXPORT QualityGuard
 {
 public:
-  /// @param input must outlive the guard
+  /// What check() finds at the points of a problem.
+  struct State
+  {
+    std::vector<signed char> validity; ///< as Mesh::classifyCells() gives it
+    std::vector<double> values;        ///< of judged(); empty unless active()
+    bool violated = false;             ///< an element is invalid, or worse than all of the input
+  };
+
+  /**
+   * @param input must outlive the guard
+   * @param validity of its cells, as Mesh::classifyCells() gives it
+   */
+  QualityGuard(
+    const Mesh& input, const std::vector<signed char>& validity, const OptimizeOptions& options);
+  /// Measures the validity of the cells itself.
   QualityGuard(const Mesh& input, const OptimizeOptions& options);
 
+  /// Tells which element is the worst.
+  const Objective& judged() const { return this->Judged; }
+  /// Its values on the input; empty if inversion is allowed.
+  const std::vector<double>& values() const { return this->Values; }
+  std::vector<double> takeValues() { return std::move(this->Values); }
   /// Whether there is something to hold: not where the input has invalid elements, which untangling
   /// answers for, nor where inversion is allowed. Elements the metric is not defined on stay valid.
   bool active() const { return this->Active; }
@@ -36,8 +55,9 @@ public:
   /// Whether a value of the metric is worse than that of the worst element of the input, beyond
   /// rounding; never if OptimizeOptions::holdWorst is off.
   bool worse(double value) const;
-  /// Whether an element of the problem's points is invalid, or worse than all of the input.
-  bool violated(OptimizationProblem& problem) const;
+  /// Stores the problem's points and measures the elements at them.
+  State check(OptimizationProblem& problem) const;
+  bool violated(OptimizationProblem& problem) const { return this->check(problem).violated; }
   /**
    * @brief Puts points back to where they were in the input, about the elements that are invalid or
    * worse than all of the input, until there is none.
@@ -47,10 +67,12 @@ public:
 
 private:
   /// One flag per cell: invalid, or worse than all of the input. Empty if there is none.
-  std::vector<char> offenders(const Mesh& mesh) const;
+  std::vector<char> offenders(
+    const Mesh& mesh, const std::vector<signed char>& validity, std::vector<double>& values) const;
 
   const Mesh& Input;
   Objective Judged;
+  std::vector<double> Values;
   bool Active = false, ValidInput = false;
   bool Larger = false;
   bool HoldWorst = true;
