@@ -16,6 +16,9 @@ constexpr double power = 32;
 /// How much more the elements near the worst one count where a round no longer pays, and at most.
 constexpr double stronger = 4;
 constexpr double strongest = 256;
+/// In closed form, sweeps begin at elements above this fraction of the worst value: the others have
+/// a share below 1e-5.
+constexpr double nearWorst = 0.7;
 
 /// What a round minimizes.
 class WorstObjectives
@@ -126,6 +129,12 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
     LocalSweeper sweeper(
       simplices, problem.moving(), problem.points().data(), objectives.terms(), options);
     const Scalarizer scalarizer = objectives.scalarizer();
+    // The simplices have the targets of the objective, the metric that judges may have none.
+    const bool ofSimplices = objectives.fast() && simplices.uniform();
+    if (ofSimplices)
+    {
+      sweeper.wakeOnly(problem.verticesAbove(nearWorst * worst));
+    }
     for (int i = 0; i < sweepsPerRound; ++i)
     {
       std::vector<double> values = objectives.values();
@@ -133,13 +142,13 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
     }
     problem.store();
     IterationRecord now = problem.record(0);
-    const double worstNow = problem.worstMovable(judged);
+    const double reached = ofSimplices ? problem.worstRatioMovable() : problem.worstMovable(judged);
     const bool affordable = sign * (now.mean[0] - bound) <= 0 || guard.worse(worst);
-    const bool kept = better(worstNow, worst) && affordable && now.inverted <= start.inverted;
-    const double gain = kept ? std::abs(worst - worstNow) / std::abs(worst) : 0.0;
+    const bool kept = better(reached, worst) && affordable && now.inverted <= start.inverted;
+    const double gain = kept ? std::abs(worst - reached) / std::abs(worst) : 0.0;
     if (kept)
     {
-      worst = worstNow;
+      worst = reached;
       std::copy_n(simplices.coordinates(), size, best.begin());
       if (!report(now) || (limits.onlyAsInput && !guard.worse(worst)))
       {

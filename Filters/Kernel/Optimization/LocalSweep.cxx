@@ -4,6 +4,7 @@
 #include "VertexOptimizer.h"
 
 #include <cmath>
+#include <utility>
 
 namespace tautline
 {
@@ -149,5 +150,9 @@ SweepResult LocalSweeper::sweep(const Scalarizer& scalarizer, std::vector<double
 void LocalSweeper::wakeAll()
 {
   std::fill(this->Impl->Active.begin(), this->Impl->Active.end(), 1);
+}
+void LocalSweeper::wakeOnly(std::vector<unsigned char> active)
+{
+  this->Impl->Active = std::move(active);
 }
 }

@@ -40,6 +40,9 @@ public:
 
   /// Lets all vertices move again, whatever was culled.
   void wakeAll();
+  /// The next sweep visits the vertices with a flag other than 0 only, one per free vertex; those
+  /// after it also what culling adds.
+  void wakeOnly(std::vector<unsigned char> active);
 
 private:
   struct Base;

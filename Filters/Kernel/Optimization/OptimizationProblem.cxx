@@ -1,11 +1,8 @@
 #include "OptimizationProblem.h"
 
-#include "PatchFunction.h"
-
-#include "tautline/Core/Parallel.h"
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tautline
 {
@@ -15,145 +12,6 @@ namespace
 bool isElement(const Mesh& mesh, CellType type)
 {
   return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
-}
-
-/// What a chunk of simplices adds to a record.
-struct SimplexTotals
-{
-  double shape = 0, shape2 = 0, worst = 0, size = 0, size2 = 0, largest = 0;
-  Index valid = 0, invalid = 0;
-
-  void add(const SimplexTotals& t)
-  {
-    this->shape += t.shape;
-    this->shape2 += t.shape2;
-    this->worst = std::max(this->worst, t.worst);
-    this->size += t.size;
-    this->size2 += t.size2;
-    this->largest = std::max(this->largest, t.largest);
-    this->valid += t.valid;
-    this->invalid += t.invalid;
-  }
-};
-
-/// N and D of the packet of simplices from `first` on, of which `lanes` are there.
-template <int Dim>
-void simplexInvariants(const SimplexMesh& mesh, std::int32_t first, int lanes, Packet& N, Packet& D)
-{
-  constexpr int corners = Dim + 1;
-  const std::int32_t* ids = mesh.corners() + static_cast<std::size_t>(corners) * first;
-  std::int32_t filled[corners * PacketWidth];
-  // The last lanes repeat a simplex.
-  if (lanes < PacketWidth)
-  {
-    for (int l = 0; l < PacketWidth; ++l)
-    {
-      std::copy_n(ids + corners * std::min(l, lanes - 1), corners, filled + corners * l);
-    }
-    ids = filled;
-  }
-  Packet x[corners][3];
-  for (int k = 0; k < corners; ++k)
-  {
-    loadVertices(mesh.coordinates(), ids + k, corners, x[k]);
-  }
-  Packet weight[6], det;
-  for (int e = 0; e < 6; ++e)
-  {
-    weight[e] = broadcast(mesh.target(first).edge[e]);
-  }
-  det = broadcast(mesh.target(first).det);
-  for (int l = 0; l < PacketWidth && !mesh.uniform(); ++l)
-  {
-    const TargetSimplex& t = mesh.target(first + std::min(l, lanes - 1));
-    for (int e = 0; e < 6; ++e)
-    {
-      weight[e][l] = t.edge[e];
-    }
-    det[l] = t.det;
-  }
-  N = Packet{};
-  int e = 0;
-  for (int i = 0; i < corners; ++i)
-  {
-    for (int j = i + 1; j < corners; ++j, ++e)
-    {
-      Packet d[3];
-      subtract(x[j], x[i], d);
-      N += weight[e] * dot(d, d);
-    }
-  }
-  Packet a[3], b[3], ab[3];
-  subtract(x[1], x[0], a);
-  subtract(x[2], x[0], b);
-  cross(a, b, ab);
-  if (Dim == 3)
-  {
-    Packet c[3];
-    subtract(x[corners - 1], x[0], c);
-    D = det * dot(ab, c);
-  }
-  else
-  {
-    D = det * (mesh.surface() ? sqrt(dot(ab, ab)) : ab[2]);
-  }
-}
-
-/// The totals of all simplices, of which those of weight 0 do not count.
-template <int Dim>
-SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weights, int threads)
-{
-  std::vector<SimplexTotals> ofChunk(numberOfChunks(mesh.simplices()));
-  forEachChunk(mesh.simplices(), threads,
-    [&](Index chunk, Index begin, Index end)
-    {
-      Packet shape = {}, shape2 = {}, worst = {}, size = {}, size2 = {}, largest = {};
-      SimplexTotals& total = ofChunk[chunk];
-      for (Index i = begin; i < end; i += PacketWidth)
-      {
-        const int lanes = static_cast<int>(std::min<Index>(PacketWidth, end - i));
-        Packet N, D;
-        simplexInvariants<Dim>(mesh, static_cast<std::int32_t>(i), lanes, N, D);
-        Packet w = broadcast(1.0);
-        for (int l = 0; l < PacketWidth && (lanes < PacketWidth || !weights.empty()); ++l)
-        {
-          w[l] = l >= lanes ? 0.0 : weights.empty() ? 1.0 : weights[i + l];
-        }
-        // As Mesh::classifyCells() has it, with |T|^n in place of the product of the edges.
-        const Packet scale = Dim == 2 ? N : N * sqrt(N);
-        const Mask valid = D > Mesh::degenerateTolerance() * scale;
-        if (any(~valid))
-        {
-          for (int l = 0; l < lanes; ++l)
-          {
-            total.invalid += valid[l] == 0;
-          }
-        }
-        const Packet s = inverseCbrt(D);
-        const Packet ratio = Dim == 2 ? 0.5 * N / D : (1.0 / 3.0) * N * s * s;
-        const Packet q = select(valid, ratio, Packet{});
-        shape += select(w > 0.0, q, Packet{});
-        shape2 += w * q * q;
-        worst = max(worst, select(w > 0.0, q, Packet{}));
-        const Packet V = select(w > 0.0, D, Packet{});
-        size += V;
-        size2 += w * V * V;
-        largest = max(largest, V);
-      }
-      total.valid = end - begin - total.invalid;
-      total.shape = sumOf(shape);
-      total.shape2 = sumOf(shape2);
-      total.worst = -minOf(-worst);
-      total.size = sumOf(size);
-      total.size2 = sumOf(size2);
-      total.largest = -minOf(-largest);
-    });
-  SimplexTotals total;
-  for (const SimplexTotals& t : ofChunk)
-  {
-    total.add(t);
-  }
-  return total;
 }
 }
 
@@ -234,10 +92,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   }
   else
   {
-    const SimplexTotals totals = this->Simplices->dimension() == 3
-      ? totalsOf<3>(*this->Simplices, {}, options.threads)
-      : totalsOf<2>(*this->Simplices, {}, options.threads);
-    if (totals.invalid > 0)
+    if (this->invalidSimplices() > 0)
     {
       std::vector<signed char> validity(view.numberOfCells);
       this->Moving->classifyCells(validity.data(), options.threads);
@@ -520,34 +375,6 @@ LocalOptions OptimizationProblem::localOptions() const
 void OptimizationProblem::store()
 {
   this->Simplices->store(this->Points.data(), this->Options.threads);
-}
-
-//------------------------------------------------------------------------------
-void OptimizationProblem::summarizeSimplices(IterationRecord& record) const
-{
-  std::vector<double> weights;
-  if (!this->Weights[0].empty())
-  {
-    for (std::int32_t i = 0; i < this->Simplices->simplices(); ++i)
-    {
-      weights.push_back(this->Weights[0][this->Simplices->cell(i)]);
-    }
-  }
-  const SimplexTotals t = this->Simplices->dimension() == 3
-    ? totalsOf<3>(*this->Simplices, weights, this->Options.threads)
-    : totalsOf<2>(*this->Simplices, weights, this->Options.threads);
-  const double valid = static_cast<double>(std::max<Index>(1, t.valid));
-  for (const LocalTerm& term : this->Terms)
-  {
-    const double size = std::sqrt(term.sizeSquared);
-    record.objectives.push_back(term.shapePower == 2 ? t.shape2
-        : term.shapePower == 1                       ? t.shape
-                                                     : term.sizeSquared * t.size2);
-    record.mean.push_back((term.shapePower > 0 ? t.shape : size * t.size) / valid);
-    record.worst.push_back(term.shapePower > 0 ? t.worst : size * t.largest);
-  }
-  // The metric of a mean ratio is the reciprocal; its mean is not known from these sums.
-  record.inverted = t.invalid;
 }
 
 //------------------------------------------------------------------------------

@@ -63,6 +63,10 @@ public:
   IterationRecord record(int iteration);
   /// The worst value of a metric among the valid elements with a free vertex.
   double worstMovable(const Objective& judged) const;
+  /// That of the inverse mean ratio, of simplices alone: where the coordinates are, stored or not.
+  double worstRatioMovable() const;
+  /// One flag per free vertex: it has a simplex whose inverse mean ratio exceeds a bound.
+  std::vector<unsigned char> verticesAbove(double ratio) const;
   /// Prepares the scalarization with the objectives of the start.
   void start(const IterationRecord& first);
   /// Whether the time limit is reached.
@@ -74,6 +78,7 @@ private:
   LocalTerm fastTerm(const Objective& objective) const;
   void leaveOut(std::vector<signed char> validity);
   void rescaleUntangling();
+  Index invalidSimplices() const;
   void summarizeSimplices(IterationRecord& record) const;
   void summarizeCells(IterationRecord& record);
 
