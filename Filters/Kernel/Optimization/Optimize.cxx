@@ -238,9 +238,12 @@ Index countInvalid(const std::vector<signed char>& validity)
 void takeHarmonicStart(
   OptimizationProblem& problem, const std::vector<double>& start, const OptimizeResult& result)
 {
+  // Of the mean ratio, 1 for ideal elements: below, the start is near the minimum.
+  constexpr double enoughToGain = 1.1;
   const OptimizeOptions& options = problem.options();
   if (options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets ||
-    options.objectives[0].metric != Metric::InverseMeanRatio || problem.outOfTime())
+    options.objectives[0].metric != Metric::InverseMeanRatio || problem.outOfTime() ||
+    result.history.front().mean[0] < enoughToGain)
   {
     return;
   }
@@ -258,9 +261,26 @@ void takeHarmonicStart(
 }
 
 /**
- * @brief Newton's method where sweeps converge too slowly: from the start, or near the minimum from
- * where they are. If its matrix does not fit into memory the sweeps go on; if it does not get as
- * far as they did, their points are kept.
+ * @brief Whether Newton's method costs less than the sweeps that would tell how they converge: for
+ * quadrilaterals, hexahedra and wedges, whose patches have no closed form.
+ */
+bool startsWithNewton(OptimizationProblem& problem, const IterationRecord& first)
+{
+  const Mesh& mesh = problem.moving();
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  Index simplices = 0, others = 0;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    (t.samples > 1 ? others : simplices) += t.dimension == dimension ? block.count : 0;
+  }
+  return others > simplices && first.inverted == 0 && HessianMatrix::hasConvexPart(problem.sum(0));
+}
+
+/**
+ * @brief Newton's method where sweeps cost too much or converge too slowly: from the start, or near
+ * the minimum from where they are. If its matrix does not fit into memory the sweeps go on; if it
+ * does not get as far as they did, their points are kept.
  */
 void useNewton(OptimizationProblem& problem, const StoppingTest& watch, Slowness slow,
   const std::vector<double>& start, OptimizeResult& result, bool& failed, bool& repaired)
@@ -272,7 +292,7 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch, Slowness
   bool fits = true;
   try
   {
-    if (slow == Slowness::Far)
+    if (slow != Slowness::Near)
     {
       problem.restart(start);
       takeHarmonicStart(problem, start, result);
@@ -303,7 +323,8 @@ void useNewton(OptimizationProblem& problem, const StoppingTest& watch, Slowness
   {
     problem.restart(swept);
     result.history.back() = problem.record(result.history.back().iteration);
-    if (slow == Slowness::Near && result.reason != StopReason::Aborted)
+    const bool stuck = slow == Slowness::Costly && result.reason == StopReason::NoProgress;
+    if (stuck || (slow == Slowness::Near && result.reason != StopReason::Aborted))
     {
       result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
     }
@@ -341,13 +362,15 @@ QualityGuard::State settleWorst(OptimizationProblem& problem, const StoppingTest
         return report(problem, watch, result, record);
       });
   }
-  result.restored = guard.restore(problem);
-  if (result.restored > 0)
+  QualityGuard::State state = guard.check(problem);
+  if (state.violated)
   {
+    result.restored = guard.restore(problem);
     IterationRecord record = problem.record(result.history.back().iteration + 1);
     report(problem, watch, result, record);
+    state = guard.check(problem);
   }
-  return guard.check(problem);
+  return state;
 }
 
 /**
@@ -419,8 +442,15 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
     Slowness slow = Slowness::None;
     const bool mayGoOver = !onlyLocal && mayUseNewton(options);
     const std::vector<double> start = mayGoOver ? result.points : std::vector<double>();
-    result.reason =
-      optimizeLocally(problem, watch, result, failed, repaired, mayGoOver ? &slow : nullptr);
+    if (mayGoOver && startsWithNewton(problem, first))
+    {
+      slow = Slowness::Costly;
+    }
+    else
+    {
+      result.reason =
+        optimizeLocally(problem, watch, result, failed, repaired, mayGoOver ? &slow : nullptr);
+    }
     if (failed && !onlyLocal)
     {
       result.reason = optimizeGlobally(problem, watch, Optimizer::LimitedMemoryBFGS, result);

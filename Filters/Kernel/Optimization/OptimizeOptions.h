@@ -19,12 +19,12 @@ namespace tautline
 enum class Optimizer : int
 {
   /**
-   * @brief LocalNewton. Where its sweeps of one objective converge slowly (seven, or four over
-   * cells with several corners, are judged by the ratio of their gains), NewtonConjugateGradient
-   * from the start, or from its harmonic map if that is valid and has a smaller sum of the inverse
-   * mean ratio; near the minimum, where more than 25 sweeps are to be expected, from where they
-   * are. Not on surfaces, with limits or with points that slide on the boundary. Should a sweep
-   * fail to reduce several objectives, LimitedMemoryBFGS from there.
+   * @brief LocalNewton. Sums of the inverse mean ratio on meshes mostly of quadrilaterals,
+   * hexahedra or wedges, and where its sweeps of one objective converge slowly (by the ratio of
+   * their gains): NewtonConjugateGradient from the start, or from its harmonic map if valid and
+   * the sum smaller there; near the minimum, where more than 25 sweeps are to be expected, from
+   * where they are. Not on surfaces, with limits or with points that slide on the boundary. Should
+   * a sweep fail to reduce several objectives, LimitedMemoryBFGS from there.
    */
   Automatic = 0,
   LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each

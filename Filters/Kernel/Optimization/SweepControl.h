@@ -193,9 +193,10 @@ private:
 /// How sweeps converge.
 enum class Slowness
 {
-  None, ///< fast enough
-  Far,  ///< too slowly, and the minimum is far away
-  Near  ///< too slowly near the minimum
+  None,   ///< fast enough
+  Costly, ///< each takes so long that none is tried
+  Far,    ///< too slowly, and the minimum is far away
+  Near    ///< too slowly near the minimum
 };
 
 /// Whether the sweeps have converged, and why; `all`: it visited every vertex.
