@@ -1,5 +1,5 @@
-// What is prepared before an optimization and measured after it: the same for any number of threads,
-// and what is handed on is what would be measured anew.
+// What is prepared before an optimization and measured after it: the same for any number of
+// threads, and what is handed on is what would be measured anew.
 #include "Optimizing.h"
 
 #include "tautline/Core/CountingSort.h"
