@@ -12,19 +12,24 @@
 #include "pqServerManagerModel.h"
 
 #include "vtkAbstractArray.h"
+#include "vtkAxis.h"
+#include "vtkChartXY.h"
 #include "vtkDataObject.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
+#include "vtkSMContextViewProxy.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkTable.h"
+#include "vtkTextProperty.h"
 #include "vtkVariant.h"
 
 #include <QPointer>
-#include <QString>
 #include <QTimer>
 
+#include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -141,13 +146,38 @@ void arrangeDistribution(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<
   }
 }
 
-/// The name of a combination on lines of its own: solver, preconditioner. Neighbours are shifted
-/// by two lines, since the bars are narrower than the names.
-QString barLabel(const std::string& name, int rank)
+/// The chart that a view draws on this computer.
+vtkChartXY* drawnChart(vtkSMProxy* view)
 {
-  constexpr int levels = 4, linesOfName = 2;
-  const QString shift(linesOfName * ((rank - 1) % levels), '\n');
-  return shift + QString::fromStdString(name).replace(" + ", "\n").replace(", ", "\n");
+  auto* context = vtkSMContextViewProxy::SafeDownCast(view);
+  return context ? vtkChartXY::SafeDownCast(context->GetContextItem()) : nullptr;
+}
+
+/**
+ * Names below the bars are read from below, since bars are narrower than names, and the bars have
+ * gaps: vtkChartXY makes them as wide as a fraction of the distance of the first two rows, which
+ * for ranks is any whole number.
+ */
+void drawStudy(vtkSMProxy* view, vtkAbstractArray* ranks)
+{
+  constexpr double upwards = 90.0; // degrees
+  constexpr double barWidth = 0.8; // of the distance of two bars
+  vtkChartXY* drawn = drawnChart(view);
+  if (!drawn)
+  {
+    return;
+  }
+  vtkTextProperty* labels = drawn->GetAxis(vtkAxis::BOTTOM)->GetLabelProperties();
+  labels->SetOrientation(upwards);
+  labels->SetJustificationToRight();
+  labels->SetVerticalJustificationToCentered();
+  if (ranks->GetNumberOfTuples() > 1)
+  {
+    const int distance =
+      std::abs(ranks->GetVariantValue(1).ToInt() - ranks->GetVariantValue(0).ToInt());
+    // Blocks have ranks of their own: the first two of different ones may be equal.
+    drawn->SetBarWidthFraction(static_cast<float>(barWidth / std::max(distance, 1)));
+  }
 }
 
 /// Bars in the order of the ranks, with the names of the combinations.
@@ -167,16 +197,16 @@ void arrangeStudy(vtkSMProxy* chart, vtkSMProxy* view, pqOutputPort* port)
   labels.SetNumberOfElements(0);
   for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
   {
-    const int rank = ranks->GetVariantValue(row).ToInt();
-    const std::string name = names->GetVariantValue(row).ToString();
     const auto place = static_cast<unsigned int>(2 * row);
-    labels.Set(place, std::to_string(rank).c_str());
-    labels.Set(place + 1, barLabel(name, rank).toUtf8().constData());
+    labels.Set(place, ranks->GetVariantValue(row).ToString().c_str());
+    labels.Set(place + 1, names->GetVariantValue(row).ToString().c_str());
   }
-  constexpr int fontSize = 8;
+  constexpr int fontSize = 10;
   vtkSMPropertyHelper(view, "BottomAxisUseCustomLabels").Set(1);
   vtkSMPropertyHelper(view, "BottomAxisLabelFontSize").Set(fontSize);
+  vtkSMPropertyHelper(view, "ShowLegend").Set(0); // one series, whose name is the axis title
   setTitle(view, "LeftAxisTitle", "Total time (s)");
+  drawStudy(view, ranks);
 }
 }
 
