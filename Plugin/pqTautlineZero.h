@@ -3,7 +3,8 @@
  * @brief Writes beside the field of a property what its value 0 stands for: "0 = no limit".
  *
  * The hint `<PropertyWidgetDecorator type="tautline_zero" text="no limit"/>` of a property selects
- * it. Labels do not have this text, since the names of properties in Python are made of them.
+ * it. Labels do not have this text, since the names of properties in Python are made of them. The
+ * panel is widened until the text is seen.
  */
 
 #ifndef pqTautlineZero_h
@@ -14,9 +15,16 @@
 class pqTautlineZero : public pqPropertyWidgetDecorator
 {
   Q_OBJECT
+  using Superclass = pqPropertyWidgetDecorator;
 
 public:
   pqTautlineZero(vtkPVXMLElement* hint, pqPropertyWidget* field);
+
+protected:
+  bool eventFilter(QObject* field, QEvent* event) override;
+
+private Q_SLOTS:
+  void fitWidth();
 };
 
 #endif
