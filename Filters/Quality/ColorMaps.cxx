@@ -29,6 +29,8 @@ constexpr const char* NanColor = "0.2, 0.2, 0.2";
 constexpr const char* EqualColor = "0.90, 0.90, 0.90";
 constexpr const char* BetterColor = "0.10, 0.52, 0.30";
 constexpr const char* WarningColor = "0.96, 0.55, 0.20";
+// Of the triangles of Horizon Neighbors: the more corners inside, the darker.
+constexpr const char* CaseColors[] = { "0.17, 0.42, 0.68", "0.49, 0.71, 0.87", "0.80, 0.89, 0.95" };
 
 /// The numbers of a colour.
 std::array<double, 3> parsed(const char* rgb)
@@ -186,6 +188,9 @@ std::vector<std::string> otherTables()
         { static_cast<int>(Grade::Passed), "passed", good },
         { static_cast<int>(Grade::Warning), "warning", WarningColor },
         { static_cast<int>(Grade::Failed), "failed", bad } }),
+    categoryTable("Case", "Case: corners inside",
+      { { 1, "1: all three", CaseColors[0] }, { 2, "2: two", CaseColors[1] },
+        { 3, "3: one", CaseColors[2] }, { 0, "0: none", EqualColor } }),
     warped, metricTable(shape), metricTable(excess), sequenceTable("QualityIndex", "Quality index"),
     sequenceTable("Energy", "Energy of the match"), sequenceTable("EdgeCost", "Edge cost"),
     sequenceTable("Deformation", "Deformation"), sequenceTable("Distortion", "Distortion"),
