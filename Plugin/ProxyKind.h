@@ -21,6 +21,9 @@ bool isTautline(vtkSMProxy* proxy);
 /// The output of Element Quality with the elements that are drawn inside the mesh.
 constexpr const char* BadElementsPort = "Bad";
 
+/// The output of Solve PDE with the sections that are drawn inside the mesh.
+constexpr const char* SectionsPort = "Sections";
+
 } // namespace tautline
 
 #endif

@@ -46,6 +46,13 @@ bool isSolid(pqDataRepresentation* mesh)
   return bounds[0] < bounds[1] && bounds[2] < bounds[3] && bounds[4] < bounds[5];
 }
 
+/// The output that is drawn inside the mesh; null if there is none.
+pqOutputPort* insideOf(pqPipelineSource* source)
+{
+  pqOutputPort* bad = source->getOutputPort(tautline::BadElementsPort);
+  return bad ? bad : source->getOutputPort(tautline::SectionsPort);
+}
+
 /// Draws points as spheres.
 void enlarge(pqDataRepresentation* points)
 {
@@ -77,7 +84,7 @@ void pqTautlineBadElements::shutdown()
 //------------------------------------------------------------------------------
 void pqTautlineBadElements::dataUpdated(pqPipelineSource* source)
 {
-  if (tautline::isTautline(source->getProxy()) && source->getOutputPort(tautline::BadElementsPort))
+  if (tautline::isTautline(source->getProxy()) && insideOf(source))
   {
     // The mesh is shown after the first execution, and may be hidden and shown again.
     QObject::connect(source, &pqPipelineSource::visibilityChanged, this,
@@ -106,12 +113,12 @@ void pqTautlineBadElements::arrange(pqPipelineSource* source)
 {
   pqOutputPort* worst = source->getOutputPort(WorstPort);
   constexpr int meshPort = 0;
-  pqOutputPort* bad = source->getOutputPort(tautline::BadElementsPort);
-  const bool some = bad->getDataInformation()->GetNumberOfCells() > 0;
+  pqOutputPort* inside = insideOf(source);
+  const bool some = inside->getDataInformation()->GetNumberOfCells() > 0;
   for (pqView* view : source->getViews())
   {
     pqDataRepresentation* mesh = source->getOutputPort(meshPort)->getRepresentation(view);
-    pqDataRepresentation* elements = bad->getRepresentation(view);
+    pqDataRepresentation* elements = inside->getRepresentation(view);
     if (!mesh || !mesh->getProxy()->GetProperty(Opacity))
     {
       continue;
@@ -120,8 +127,8 @@ void pqTautlineBadElements::arrange(pqPipelineSource* source)
     if (some && mesh->isVisible() && !elements)
     {
       vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
-      controller->Show(source->getSourceProxy(), bad->getPortNumber(), view->getViewProxy());
-      elements = bad->getRepresentation(view);
+      controller->Show(source->getSourceProxy(), inside->getPortNumber(), view->getViewProxy());
+      elements = inside->getRepresentation(view);
     }
     pqDataRepresentation* points = worst ? worst->getRepresentation(view) : nullptr;
     const bool pointsInside = points && points->isVisible() && isSolid(mesh);
@@ -142,7 +149,7 @@ void pqTautlineBadElements::arrange(pqPipelineSource* source)
 }
 
 //------------------------------------------------------------------------------
-void pqTautlineBadElements::fade(pqDataRepresentation* mesh, pqDataRepresentation* bad)
+void pqTautlineBadElements::fade(pqDataRepresentation* mesh, pqDataRepresentation* inside)
 {
   vtkSMPropertyHelper opacity(mesh->getProxy(), Opacity);
   if (mesh->property(Before).isValid() || opacity.GetAsDouble() < 1.0)
@@ -152,11 +159,13 @@ void pqTautlineBadElements::fade(pqDataRepresentation* mesh, pqDataRepresentatio
   mesh->setProperty(Before, opacity.GetAsDouble());
   opacity.Set(FadedOpacity);
   mesh->getProxy()->UpdateVTKObjects();
-  if (bad && bad->getProxy()->GetProperty(Style))
+  const bool elements =
+    inside && inside->getOutputPortFromInput()->getPortName() == tautline::BadElementsPort;
+  if (elements && inside->getProxy()->GetProperty(Style))
   {
-    vtkSMPropertyHelper(bad->getProxy(), Style).Set("Surface With Edges");
-    vtkSMPropertyHelper(bad->getProxy(), "EdgeColor").Set(EdgeColor, 3);
-    bad->getProxy()->UpdateVTKObjects();
+    vtkSMPropertyHelper(inside->getProxy(), Style).Set("Surface With Edges");
+    vtkSMPropertyHelper(inside->getProxy(), "EdgeColor").Set(EdgeColor, 3);
+    inside->getProxy()->UpdateVTKObjects();
   }
   mesh->renderViewEventually();
 }

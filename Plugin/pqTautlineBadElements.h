@@ -6,7 +6,8 @@
  * plugin in the GUI, draws it with the mesh and makes the mesh translucent when there are such
  * elements, and opaque again when there are none or the output is switched off. An opacity that the
  * user set is kept. The output Worst is drawn as spheres, in a translucent mesh, too. With
- * criteria, the legend of the mesh has labels at their limits.
+ * criteria, the legend of the mesh has labels at their limits. The sections of Solve PDE are shown
+ * in the same way.
  */
 
 #ifndef pqTautlineBadElements_h
@@ -34,7 +35,7 @@ private Q_SLOTS:
 
 private:
   void arrange(pqPipelineSource* source);
-  void fade(pqDataRepresentation* mesh, pqDataRepresentation* bad);
+  void fade(pqDataRepresentation* mesh, pqDataRepresentation* inside);
   void restore(pqDataRepresentation* mesh);
 };
 

@@ -2,6 +2,8 @@
 
 #include "EllipticInput.h"
 #include "EllipticOutput.h"
+#include "Processes.h"
+#include "Sections.h"
 #include "TableRows.h"
 
 #include "tautline/Elliptic/TimeStepping.h"
@@ -12,6 +14,7 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
@@ -24,7 +27,8 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-constexpr int MeshPort = 0, HistoryPort = 1, NumberOfPorts = 2;
+constexpr int MeshPort = 0, HistoryPort = 1, SectionsPort = 2, NumberOfPorts = 3;
+constexpr int NumberOfInputs = 2;
 constexpr int InitialArray = 5, VelocityArray = 6;
 constexpr double ReportInterval = 0.05; // of progress, in seconds
 
@@ -86,7 +90,10 @@ std::string summaryOf(const tautline::TimeSeries& series, double time, int steps
 }
 
 //------------------------------------------------------------------------------
-vtkEllipticSolver::vtkEllipticSolver() = default;
+vtkEllipticSolver::vtkEllipticSolver()
+{
+  this->SetNumberOfOutputPorts(NumberOfPorts);
+}
 
 //------------------------------------------------------------------------------
 vtkEllipticSolver::~vtkEllipticSolver() = default;
@@ -95,6 +102,23 @@ vtkEllipticSolver::~vtkEllipticSolver() = default;
 vtkTable* vtkEllipticSolver::GetHistory()
 {
   return this->GetOutputTable(HistoryPort);
+}
+
+//------------------------------------------------------------------------------
+vtkPolyData* vtkEllipticSolver::GetSections()
+{
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(SectionsPort));
+}
+
+//------------------------------------------------------------------------------
+int vtkEllipticSolver::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  this->Superclass::FillOutputPortInformation(port, info);
+  if (port == SectionsPort)
+  {
+    info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
+  }
+  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -167,7 +191,7 @@ int vtkEllipticSolver::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   // The time requested is that of the equation, which has no meaning upstream.
-  for (int port = 0; this->TimeScheme != STATIONARY && port < NumberOfPorts; ++port)
+  for (int port = 0; this->TimeScheme != STATIONARY && port < NumberOfInputs; ++port)
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
@@ -181,13 +205,33 @@ int vtkEllipticSolver::RequestUpdateExtent(
 int vtkEllipticSolver::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  if (!this->SolveOrShow(request, inputVector, outputVector))
+  {
+    return 0;
+  }
+  if (!this->ComputeSections)
+  {
+    return 1;
+  }
+  return this->Attempt(outputVector, "switch Sections off",
+    [&]
+    {
+      tautline::cutVolumes(vtkDataObject::GetData(outputVector, MeshPort), tautline::Processes(),
+        vtkPolyData::GetData(outputVector, SectionsPort));
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkEllipticSolver::SolveOrShow(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
   if (this->TimeScheme == STATIONARY)
   {
     this->Series.clear();
     return this->Superclass::RequestData(request, inputVector, outputVector);
   }
   vtkMTimeType latest = this->GetMTime();
-  for (int port = 0; port < NumberOfPorts; ++port)
+  for (int port = 0; port < NumberOfInputs; ++port)
   {
     vtkDataObject* data = vtkDataObject::GetData(inputVector[port]);
     latest = std::max(latest, data ? data->GetMTime() : 0);
@@ -391,4 +435,5 @@ void vtkEllipticSolver::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "VelocityType: " << this->VelocityType << "\n";
   os << indent << "SolutionName: " << this->SolutionName << "\n";
   os << indent << "ComputeGradient: " << this->ComputeGradient << "\n";
+  os << indent << "ComputeSections: " << this->ComputeSections << "\n";
 }

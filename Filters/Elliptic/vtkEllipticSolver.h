@@ -14,6 +14,11 @@
  * A vtkTable whose row i is iteration i (0 is the start): `Log10 residual`, relative to the first,
  * and `N residual`, its norm as the method measures it; of composite data sets also `Block`.
  *
+ * @par Output port 2 `Sections`:
+ * A vtkPolyData, filled if ComputeSections is on: sections of a volume mesh by three planes, normal
+ * to the axes, in the middle of where it has large sections, with the data of the mesh. They show
+ * the solution inside, of which the surface shows nothing where the whole boundary is fixed.
+ *
  * With a TimeScheme other than STATIONARY the filter solves the heat equation rho u_t + L u = f or
  * the wave equation rho u_tt + L u = f, where L u = f is the stationary equation: NumberOfTimeSteps
  * of length TimeStep from the initial values, which are the time steps of the pipeline. f and the
@@ -48,6 +53,7 @@
 #include <vector> // for Series
 
 class vtkDataSet;
+class vtkPolyData;
 
 namespace tautline
 {
@@ -130,6 +136,13 @@ public:
   vtkBooleanMacro(ComputeGradient, bool);
   ///@}
 
+  ///@{
+  /// Whether the output Sections is filled. The default is off.
+  vtkSetMacro(ComputeSections, bool);
+  vtkGetMacro(ComputeSections, bool);
+  vtkBooleanMacro(ComputeSections, bool);
+  ///@}
+
   /// Numbers of the schemes; those of tautline::TimeScheme.
   enum TimeSchemes
   {
@@ -206,8 +219,11 @@ public:
   vtkGetMacro(VelocityExpression, std::string);
   ///@}
 
-  /// The output other than the mesh.
+  ///@{
+  /// The outputs other than the mesh.
   vtkTable* GetHistory();
+  vtkPolyData* GetSections();
+  ///@}
 
   ///@{
   /**
@@ -227,6 +243,7 @@ protected:
   vtkEllipticSolver();
   ~vtkEllipticSolver() override;
 
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
@@ -242,6 +259,9 @@ private:
   void operator=(const vtkEllipticSolver&) = delete;
 
   tautline::SolverOptions GetSolverOptions() const;
+  /// Solves a stationary problem, or shows a time step.
+  int SolveOrShow(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   /// Computes all time steps of a mesh, unless they are known, and shows the requested one.
   void ComputeSteps(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
     const tautline::Processes& processes, tautline::TableRows& table);
@@ -260,6 +280,7 @@ private:
   bool FastMultigrid = true;
   std::string SolutionName;
   bool ComputeGradient = true;
+  bool ComputeSections = false;
   int TimeScheme = STATIONARY;
   double TimeStep = 0.01;
   int NumberOfTimeSteps = 100;
