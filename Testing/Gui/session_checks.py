@@ -15,7 +15,8 @@ from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposite face, of their height
-WORST_PORT = 4  # of Element Quality
+WORST_PORT, BAD_PORT = 4, 7  # of Element Quality
+SECTIONS_PORT = 2  # of Solve PDE
 TURN = 20  # degrees
 QUERY, RIGHT, WRONG = (120, 120, 120), (0, 150, 60), (215, 25, 30)  # frames on the sheet of Shape Retrieval
 WORST = (18.1, 3.82)  # of the bracket untangled, and optimized: inverse mean ratio
@@ -130,10 +131,15 @@ def solver_study():
     assert (numpy.diff(seconds[numpy.argsort(ranks)]) >= 0).all()
     assert (chart.XArrayName, chart.UseIndexForXAxis) == ("N rank", 0), chart.XArrayName
     labels = list(view.BottomAxisLabels)
-    shown = {int(rank): name.split() for rank, name in zip(labels[::2], labels[1::2])}
+    shown = {int(rank): name for rank, name in zip(labels[::2], labels[1::2])}
     names = table.GetColumnByName("Combination")
-    expected = {int(rank): names.GetValue(i).replace("+", "").split() for i, rank in enumerate(ranks)}
+    expected = {int(rank): names.GetValue(i) for i, rank in enumerate(ranks)}
     assert view.BottomAxisUseCustomLabels and shown == expected, shown
+    # VTK draws bars as wide as this fraction of the distance of the first two rows: there are gaps.
+    drawn = view.SMProxy.GetContextItem()
+    width = drawn.GetBarWidthFraction() * abs(ranks[1] - ranks[0])
+    assert abs(width - 0.8) < 1e-6, (width, ranks)
+    assert drawn.GetAxis(1).GetLabelProperties().GetOrientation() == 90  # of the bottom
 
 
 @check
@@ -502,3 +508,60 @@ def moved_in_plane():
     assert mesh.GetBounds()[4] == mesh.GetBounds()[5]
     moved = vtk_to_numpy(mesh.GetPointData().GetArray("Displacement"))
     assert numpy.allclose(moved[numpy.argmax(numpy.linalg.norm(moved, axis=1))], (x, y, 0), rtol=1e-6)
+
+
+@check
+def bad_inside():
+    """The elements outside of the acceptable range are drawn, in the mesh, which is translucent."""
+    quality = find("ElementQuality")
+    assert simple.GetDisplayProperties(quality).Opacity < 0.5
+    bad = simple.OutputPort(quality, BAD_PORT)
+    shown = simple.GetDisplayProperties(bad)
+    style = shown.Representation
+    assert shown.Visibility and shown.Opacity == 1 and style == "Surface With Edges", (shown.Opacity, style)
+    values = vtk_to_numpy(servermanager.Fetch(quality).GetCellData().GetArray("imr"))
+    outside = int(((values < 1) | (values > 3)).sum())
+    assert bad.GetDataInformation().GetNumberOfCells() == outside > 200, outside
+
+
+@check
+def sections_inside():
+    """On the surface the solution is 0; the sections have values of the inside, in three planes."""
+    solver = find("EllipticSolver")
+    mesh = servermanager.Fetch(solver)
+    low, high = mesh.GetPointData().GetArray("Solution").GetRange()
+    shown = simple.GetDisplayProperties(solver)
+    assert shown.Visibility and shown.Opacity < 0.5, shown.Opacity
+    port = simple.OutputPort(solver, SECTIONS_PORT)
+    drawn = simple.GetDisplayProperties(port)
+    assert drawn.Visibility and drawn.Opacity == 1, drawn.Opacity
+    assert list(drawn.ColorArrayName) == list(shown.ColorArrayName) == ["POINTS", "Solution"], drawn.ColorArrayName[:]
+    sections = servermanager.Fetch(solver, idx=SECTIONS_PORT)
+    values = vtk_to_numpy(sections.GetPointData().GetArray("Solution"))
+    assert low == 0 and 0.5 * high < values.max() <= high * (1 + 1e-12), (values.max(), high)
+    # Most points have one of three coordinates: x, y or z of a plane.
+    points = vtk_to_numpy(sections.GetPoints().GetData()).round(6)
+    planes = [max(zip(*numpy.unique(points[:, axis], return_counts=True)[::-1]))[1] for axis in range(3)]
+    assert (points == planes).any(axis=1).all() and (points == planes).any(axis=0).all(), planes
+
+
+@check
+def no_sections():
+    solver = find("EllipticSolver")
+    assert simple.GetDisplayProperties(solver).Opacity == 1
+    assert servermanager.Fetch(solver, idx=SECTIONS_PORT).GetNumberOfCells() == 0
+
+
+@check
+def cases():
+    """The legend has names for the cases; the edges are drawn, and what replaces cut triangles is not."""
+    neighbors = find("HorizonNeighbors")
+    shown = simple.GetDisplayProperties(neighbors)
+    assert shown.Representation == "Surface With Edges" and shown.ColorArrayName[1] == "Case", shown.Representation
+    colors = simple.GetColorTransferFunction("Case")
+    names = dict(zip(colors.Annotations[::2], colors.Annotations[1::2]))
+    values = numpy.unique(vtk_to_numpy(servermanager.Fetch(neighbors).GetCellData().GetArray("Case")))
+    assert colors.InterpretValuesAsCategories and {str(value) for value in values} <= set(names), (names, values)
+    assert [names[str(case)] for case in (1, 2, 3)] == ["1: all three", "2: two", "3: one"], names
+    drawn = [one for one in simple.GetActiveView().Representations if hasattr(one, "Input") and one.Visibility]
+    assert len(drawn) == 2, drawn  # and the circle
