@@ -114,8 +114,8 @@ vtkBoundingBox boundsOf(const std::vector<vtkDataSet*>& volumes, const Processes
 }
 
 /**
- * The area of the sections of slabs of the bounds, for each axis. The volume of a tetrahedron counts
- * evenly over its extent.
+ * The area of the sections of slabs of the bounds, for each axis. The volume of a tetrahedron
+ * counts evenly over its extent.
  */
 class SectionAreas
 {
