@@ -1,8 +1,9 @@
 #include "BoundaryParts.h"
 
-#include "tautline/Core/UnionFind.h"
 #include "FacetTable.h"
+#include "RankSets.h"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -91,6 +92,113 @@ BoundaryParts boundaryParts(const Mesh& mesh)
   {
     result.part[p] = onBoundary[p] ? number[facets.find(p)] : 0;
   }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+namespace
+{
+/// The boxes of the parts on all ranks: replaced, the same everywhere.
+void uniteBoxes(RankGroup& group, std::vector<Box>& boxes)
+{
+  for (const std::vector<Box>& list : group.gatherItems(boxes))
+  {
+    for (std::size_t i = 0; i < list.size(); ++i)
+    {
+      if (list[i].low[0] <= list[i].high[0]) // a rank may have no point of a part
+      {
+        boxes[i].add(list[i].low);
+        boxes[i].add(list[i].high);
+      }
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+BoundaryParts boundaryPartsOnRanks(const DistributedMesh& mesh)
+{
+  RankGroup& group = mesh.group();
+  const MeshView& view = mesh.view();
+  const Index n = mesh.localPoints();
+  UnionFind facets(n), pieces(n);
+  std::vector<unsigned char> onBoundary(n, 0), used(n, 0);
+  group.together(
+    [&]
+    {
+      if (view.numberOfCells == 0)
+      {
+        return;
+      }
+      const Mesh local(view);
+      FacetTable table(local);
+      table.forEachFacet(
+        [&](Index first, const FacetUse* use, Index count)
+        {
+          // Only of the facets at an own point all cells are here.
+          bool own = mesh.owned(first);
+          for (const Index other : use->others)
+          {
+            own = own || (other >= 0 && mesh.owned(other));
+          }
+          for (const Index other : use->others)
+          {
+            if (other >= 0)
+            {
+              pieces.join(first, other);
+              used[first] = used[other] = 1;
+            }
+            if (other >= 0 && count == 1 && own)
+            {
+              facets.join(first, other);
+              onBoundary[first] = onBoundary[other] = 1;
+            }
+          }
+        });
+    });
+  Index count = 0, components = 0;
+  const std::vector<Index> setOf = numberSetsOnRanks(mesh, facets, onBoundary, count);
+  const std::vector<Index> componentOf = numberSetsOnRanks(mesh, pieces, used, components);
+  std::vector<Box> boxes(count);
+  std::vector<Index> componentOfSet(count, 0);
+  for (Index p = 0; p < n; ++p)
+  {
+    if (setOf[p] >= 0 && mesh.owned(p))
+    {
+      boxes[setOf[p]].add(pointOf(view, p));
+      componentOfSet[setOf[p]] = componentOf[p];
+    }
+  }
+  uniteBoxes(group, boxes);
+  for (const std::vector<Index>& list : group.gatherItems(componentOfSet))
+  {
+    std::transform(list.begin(), list.end(), componentOfSet.begin(), componentOfSet.begin(),
+      [](Index a, Index b) { return std::max(a, b); });
+  }
+  std::vector<Part> parts;
+  for (Index set = 0; set < count; ++set)
+  {
+    parts.push_back({ set, boxes[set].diagonal() });
+  }
+  std::stable_sort(
+    parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.size > b.size; });
+  BoundaryParts result;
+  std::vector<char> seen(components, 0); // components whose largest part has been met
+  std::vector<double> number(count, 0.0);
+  for (const Part& part : parts)
+  {
+    number[part.root] = ++result.parts;
+    char& met = seen[componentOfSet[part.root]];
+    result.outer.push_back(!met);
+    met = 1;
+  }
+  std::vector<double> local(n, 0.0);
+  for (Index p = 0; p < n; ++p)
+  {
+    local[p] = setOf[p] >= 0 ? number[setOf[p]] : 0.0;
+  }
+  mesh.exchange(local.data(), 1);
+  result.part.assign(local.begin(), local.end());
   return result;
 }
 }

@@ -5,7 +5,7 @@
 #ifndef tautline_BoundaryParts_h
 #define tautline_BoundaryParts_h
 
-#include "Mesh.h"
+#include "DistributedMesh.h"
 
 namespace tautline
 {
@@ -26,5 +26,8 @@ struct BoundaryParts
  * dimension than others do not count.
  */
 TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryParts(const Mesh& mesh);
+
+/// The same of a mesh on several ranks, per local point. Collective.
+TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryPartsOnRanks(const DistributedMesh& mesh);
 }
 #endif

@@ -1,7 +1,6 @@
-#include "Perturb.h"
+#include "Perturber.h"
 
 #include "tautline/Core/Interruption.h"
-#include "tautline/Core/Random.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 
 #include <algorithm>
@@ -18,30 +17,6 @@ constexpr int TanglePasses = 16;
 constexpr Index VerticesPerReport = 1024;
 constexpr double Never = std::numeric_limits<double>::infinity();
 
-/// Purposes of the random numbers of a vertex; each has its own stream.
-enum Stream : std::uint64_t
-{
-  ChooseVertex = 1,
-  MoveVertex,
-  OrderTangling,
-  TangleVertex // and above: one stream per pass
-};
-
-/// A cell around the vertex that moves.
-struct Neighbour
-{
-  Index cell;
-  const CellTopology* topology;
-  Vec3 points[MaxNodes];
-  std::array<bool, MaxNodes> moves; ///< whether the node is the vertex
-};
-
-/// Determinant of a corner, value + slope t, where its vertex is t along a direction.
-struct Line
-{
-  double value, slope;
-};
-
 double determinant(const Vec3& a, const Vec3& b, const Vec3& c)
 {
   return dot(a, cross(b, c));
@@ -53,53 +28,7 @@ double roundedToFloat(double x)
   volatile float rounded = static_cast<float>(x);
   return rounded;
 }
-
-class Perturber
-{
-public:
-  Perturber(const Mesh& mesh, const unsigned char* fixed, const PerturbOptions& options);
-
-  /// Moves the chosen vertices short of inversion.
-  void move();
-  /// Moves vertices past it, until enough elements are inverted.
-  void tangle();
-  Perturbation finish();
-
-private:
-  void findNormals();
-  void findMovable(const unsigned char* fixed);
-  std::vector<Index> sortedByChance(std::uint64_t stream) const;
-  bool report(double done);
-
-  Validity stateOf(const Neighbour& n) const;
-  void gather(Index vertex);
-  Vec3 direction(SplitMix& random) const;
-  Line line(const Neighbour& n, int corner, const Vec3& along) const;
-  double distanceToInversion(const Vec3& along) const;
-  Vec3 position(double distance, const Vec3& along) const;
-  void place(const Vec3& p);
-  bool findStates();
-  void accept(Index vertex, const Vec3& p);
-
-  void moveVertex(Index vertex);
-  Index gain(Index limit);
-  Index tangleVertex(Index vertex, int pass, Index target, Index limit);
-
-  const Mesh& TheMesh;
-  const PerturbOptions& Options;
-  VertexCells Adjacency;
-  const bool Surface;
-  std::vector<Vec3> Normals; ///< of the cells of a surface, as they were
-  std::vector<signed char> States;
-  std::vector<Index> Movable;
-  Perturbation Result;
-
-  std::vector<Neighbour> Star; ///< the cells around the vertex at hand
-  double Radius = 0;           ///< distance of their farthest vertex
-  Vec3 Center = { 0, 0, 0 };   ///< where the vertex is
-  std::vector<signed char> NewStates;
-  std::vector<double> Crossings;
-};
+}
 
 //------------------------------------------------------------------------------
 Perturber::Perturber(const Mesh& mesh, const unsigned char* fixed, const PerturbOptions& options)
@@ -179,6 +108,11 @@ void Perturber::findMovable(const unsigned char* fixed)
       this->Movable.push_back(v);
     }
   }
+  if (this->Options.ids)
+  {
+    std::sort(this->Movable.begin(), this->Movable.end(),
+      [this](Index a, Index b) { return this->idOf(a) < this->idOf(b); });
+  }
   this->Result.movable = static_cast<Index>(this->Movable.size());
 }
 
@@ -186,18 +120,19 @@ void Perturber::findMovable(const unsigned char* fixed)
 /// The movable vertices in a random order that depends on the seed and the stream only.
 std::vector<Index> Perturber::sortedByChance(std::uint64_t stream) const
 {
-  std::vector<std::pair<std::uint64_t, Index>> keys;
+  std::vector<Key> keys;
   keys.reserve(this->Movable.size());
   for (Index v : this->Movable)
   {
-    keys.emplace_back(SplitMix(this->Options.seed, stream, v).next(), v);
+    keys.push_back(
+      { SplitMix(this->Options.seed, stream, this->idOf(v)).next(), this->idOf(v), v });
   }
   std::sort(keys.begin(), keys.end());
   std::vector<Index> sorted;
   sorted.reserve(keys.size());
-  for (const auto& key : keys)
+  for (const Key& key : keys)
   {
-    sorted.push_back(key.second);
+    sorted.push_back(key.vertex);
   }
   return sorted;
 }
@@ -373,10 +308,21 @@ void Perturber::accept(Index vertex, const Vec3& p)
 }
 
 //------------------------------------------------------------------------------
+void Perturber::follow(Index vertex, const double* p)
+{
+  std::copy_n(p, 3, &this->Result.points[3 * vertex]);
+  this->gather(vertex);
+  for (const Neighbour& n : this->Star)
+  {
+    this->States[n.cell] = this->stateOf(n);
+  }
+}
+
+//------------------------------------------------------------------------------
 void Perturber::moveVertex(Index vertex)
 {
   this->gather(vertex);
-  SplitMix random(this->Options.seed, MoveVertex, vertex);
+  SplitMix random(this->Options.seed, MoveVertex, this->idOf(vertex));
   for (int i = 0; i < DirectionsTried; ++i)
   {
     this->place(this->Center);
@@ -403,15 +349,15 @@ void Perturber::moveVertex(Index vertex)
 //------------------------------------------------------------------------------
 void Perturber::move()
 {
-  const double share = this->Options.percentage / 100.0 * static_cast<double>(this->Result.movable);
-  const Index count = this->Options.fraction > 0 ? static_cast<Index>(share + 0.5) : 0;
+  const Index count = countToMove(this->Result.movable, this->Options);
   if (count == 0)
   {
     return;
   }
   std::vector<Index> chosen = this->sortedByChance(ChooseVertex);
   chosen.resize(count);
-  std::sort(chosen.begin(), chosen.end());
+  std::sort(chosen.begin(), chosen.end(),
+    [this](Index a, Index b) { return this->idOf(a) < this->idOf(b); });
   for (Index i = 0; i < count; ++i)
   {
     if (i % VerticesPerReport == 0 && !this->report(static_cast<double>(i) / count))
@@ -445,7 +391,7 @@ Index Perturber::gain(Index limit)
 Index Perturber::tangleVertex(Index vertex, int pass, Index target, Index limit)
 {
   this->gather(vertex);
-  SplitMix random(this->Options.seed, TangleVertex + pass, vertex);
+  SplitMix random(this->Options.seed, TangleVertex + pass, this->idOf(vertex));
   Index best = 0;
   Vec3 bestPoint = this->Center;
   for (int i = 0; i < DirectionsTried && best != target; ++i)
@@ -541,7 +487,15 @@ Perturbation Perturber::finish()
   return std::move(this->Result);
 }
 
-void check(const Mesh& mesh, const PerturbOptions& options)
+//------------------------------------------------------------------------------
+Index countToMove(Index movable, const PerturbOptions& options)
+{
+  const double share = options.percentage / 100.0 * static_cast<double>(movable);
+  return options.fraction > 0 ? static_cast<Index>(share + 0.5) : 0;
+}
+
+//------------------------------------------------------------------------------
+void checkPerturbation(const Mesh& mesh, const PerturbOptions& options)
 {
   auto within = [](double x, double low, double high) { return x >= low && x <= high; };
   if (!within(options.percentage, 0, 100) || !within(options.fraction, 0, 1) ||
@@ -557,12 +511,11 @@ void check(const Mesh& mesh, const PerturbOptions& options)
       "first.");
   }
 }
-}
 
 //------------------------------------------------------------------------------
 Perturbation perturb(const Mesh& mesh, const unsigned char* fixed, const PerturbOptions& options)
 {
-  check(mesh, options);
+  checkPerturbation(mesh, options);
   requireOrdinaryScale(mesh.view(), "Perturbation");
   Perturber perturber(mesh, fixed, options);
   perturber.move();

@@ -31,6 +31,9 @@ struct PerturbOptions
   std::uint64_t seed = 0;
   bool singlePrecision = false; ///< new coordinates are rounded to float, and still do not invert
   int threads = 0;              ///< 0: all cores. The result does not depend on it.
+  /// One number per point, at least 0, by which its random numbers and its turn are chosen, so that
+  /// they do not depend on the order of the points; null: its index.
+  const Index* ids = nullptr;
   /// Called now and then with the fraction done, 0 to 1; returns whether to continue. May be empty.
   std::function<bool(double)> progress;
 };
@@ -49,7 +52,8 @@ struct Perturbation
 };
 
 /**
- * @brief Moves a percentage of the movable vertices, one after the other in order of their ids.
+ * @brief Moves a percentage of the movable vertices, one after the other in the order of
+ * PerturbOptions::ids.
  *
  * Movable are the vertices inside the mesh: those of the cells of its dimension, except vertices on
  * the boundary, on a cell of another kind (a 2D cell in a volume mesh is an interface; lines,

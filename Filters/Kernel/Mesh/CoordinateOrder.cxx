@@ -1,0 +1,114 @@
+#include "CoordinateOrder.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tautline
+{
+namespace
+{
+/// Samples per rank of each rank: ranges then differ by a few percent in length.
+constexpr std::size_t SamplesPerRank = 32;
+
+struct PlacedPoint
+{
+  std::array<double, 3> place;
+  Index number;
+  Index local;
+
+  bool operator<(const PlacedPoint& other) const
+  {
+    return this->place != other.place ? this->place < other.place : this->number < other.number;
+  }
+};
+
+/// The first point of each range but the first one; the same on all ranks.
+std::vector<PlacedPoint> rangesOf(RankGroup& group, const std::vector<PlacedPoint>& sorted)
+{
+  const std::size_t ranks = static_cast<std::size_t>(group.size());
+  const std::size_t wanted = std::min(sorted.size(), SamplesPerRank * ranks);
+  std::vector<PlacedPoint> samples, all;
+  for (std::size_t i = 0; i < wanted; ++i)
+  {
+    samples.push_back(sorted[i * sorted.size() / wanted]);
+  }
+  for (const std::vector<PlacedPoint>& list : group.gatherItems(samples))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<PlacedPoint> firsts;
+  for (std::size_t r = 1; r < ranks && !all.empty(); ++r)
+  {
+    firsts.push_back(all[r * all.size() / ranks]);
+  }
+  return firsts;
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> coordinateOrder(const DistributedMesh& mesh)
+{
+  RankGroup& group = mesh.group();
+  std::vector<PlacedPoint> own;
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    if (mesh.owned(p))
+    {
+      const double* x = &mesh.points()[3 * p];
+      // -0 is 0.
+      own.push_back({ { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 }, mesh.numbers()[p], p });
+    }
+  }
+  std::sort(own.begin(), own.end());
+  const std::vector<PlacedPoint> firsts = rangesOf(group, own);
+  std::vector<std::vector<PlacedPoint>> sent(group.size());
+  for (const PlacedPoint& point : own)
+  {
+    const auto range = std::upper_bound(firsts.begin(), firsts.end(), point) - firsts.begin();
+    sent[range].push_back(point);
+  }
+  const std::vector<std::vector<PlacedPoint>> received = group.exchangeItems(sent);
+
+  // The points of a range come from all ranks; their places go back in the order of arrival.
+  struct Arrival
+  {
+    PlacedPoint point;
+    int rank;
+    std::size_t at;
+  };
+  std::vector<Arrival> range;
+  std::vector<std::vector<Index>> places(group.size());
+  for (int rank = 0; rank < group.size(); ++rank)
+  {
+    for (std::size_t i = 0; i < received[rank].size(); ++i)
+    {
+      range.push_back({ received[rank][i], rank, i });
+    }
+    places[rank].resize(received[rank].size());
+  }
+  std::sort(range.begin(), range.end(),
+    [](const Arrival& a, const Arrival& b) { return a.point < b.point; });
+  Index before = 0;
+  const auto lengths = group.gatherItems(std::vector<Index>{ static_cast<Index>(range.size()) });
+  for (int rank = 0; rank < group.rank(); ++rank)
+  {
+    before += lengths[rank].front();
+  }
+  for (const Arrival& arrival : range)
+  {
+    places[arrival.rank][arrival.at] = before++;
+  }
+  const std::vector<std::vector<Index>> answers = group.exchangeItems(places);
+  std::vector<double> order(mesh.localPoints(), 0.0); // exact: there are fewer than 2^53 points
+  for (int rank = 0; rank < group.size(); ++rank)
+  {
+    for (std::size_t i = 0; i < sent[rank].size(); ++i)
+    {
+      order[sent[rank][i].local] = static_cast<double>(answers[rank][i]);
+    }
+  }
+  mesh.exchange(order.data(), 1);
+  return std::vector<Index>(order.begin(), order.end());
+}
+}

@@ -1,0 +1,61 @@
+#include "RankSets.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+std::vector<Index> numberSetsOnRanks(const DistributedMesh& mesh, UnionFind& sets,
+  const std::vector<unsigned char>& member, Index& count)
+{
+  const auto n = static_cast<Index>(member.size());
+  std::vector<Index> numbers(member.size(), -1);
+  // The smallest number of a point spreads over the parts of its set, from rank to rank.
+  std::vector<double> least(member.size(), 0.0), values(member.size());
+  for (Index i = 0; i < n; ++i)
+  {
+    least[i] = static_cast<double>(mesh.numbers()[i]);
+  }
+  for (bool changed = true; changed;)
+  {
+    changed = false;
+    for (Index i = 0; i < n; ++i)
+    {
+      values[i] = least[sets.find(i)];
+    }
+    mesh.exchange(values.data(), 1);
+    for (Index i = 0; i < n; ++i)
+    {
+      double& root = least[sets.find(i)];
+      changed = changed || values[i] < root;
+      root = std::min(root, values[i]);
+    }
+    changed = mesh.group().any(changed);
+  }
+  std::vector<double> own, all;
+  for (Index i = 0; i < n; ++i)
+  {
+    if (member[i] && mesh.owned(i))
+    {
+      own.push_back(least[sets.find(i)]);
+    }
+  }
+  const auto simplify = [](std::vector<double>& list)
+  {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  simplify(own);
+  for (const std::vector<double>& list : mesh.group().gatherItems(own))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  simplify(all);
+  count = static_cast<Index>(all.size());
+  for (Index i = 0; i < n; ++i)
+  {
+    const auto at = std::lower_bound(all.begin(), all.end(), least[sets.find(i)]);
+    numbers[i] = member[i] ? static_cast<Index>(at - all.begin()) : -1;
+  }
+  return numbers;
+}
+}

@@ -1,0 +1,118 @@
+/**
+ * @file Perturber.h
+ * @brief The state of a random motion of the points of a mesh. Internal: not installed.
+ */
+#ifndef tautline_Perturber_h
+#define tautline_Perturber_h
+
+#include "Perturb.h"
+
+#include "tautline/Core/Random.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+/// Purposes of the random numbers of a vertex; each has its own stream.
+enum Stream : std::uint64_t
+{
+  ChooseVertex = 1,
+  MoveVertex,
+  OrderTangling,
+  TangleVertex // and above: one stream per pass
+};
+
+/// Throws Error on options out of range and on cells of higher order.
+void checkPerturbation(const Mesh& mesh, const PerturbOptions& options);
+/// How many of the movable vertices move.
+Index countToMove(Index movable, const PerturbOptions& options);
+
+/// A cell around the vertex that moves.
+struct Neighbour
+{
+  Index cell;
+  const CellTopology* topology;
+  Vec3 points[MaxNodes];
+  std::array<bool, MaxNodes> moves; ///< whether the node is the vertex
+};
+
+/// Determinant of a corner, value + slope t, where its vertex is t along a direction.
+struct Line
+{
+  double value, slope;
+};
+
+/**
+ * @class tautline::Perturber
+ * @brief Moves vertices one by one, each short of inversion or past it, and keeps the validity of
+ * the cells around.
+ */
+class Perturber
+{
+public:
+  Perturber(const Mesh& mesh, const unsigned char* fixed, const PerturbOptions& options);
+
+  /// Moves the chosen vertices short of inversion.
+  void move();
+  /// Moves vertices past it, until enough elements are inverted.
+  void tangle();
+  Perturbation finish();
+
+  /// The number of a vertex by which its random numbers and its turn are chosen.
+  Index idOf(Index vertex) const { return this->Options.ids ? this->Options.ids[vertex] : vertex; }
+  const std::vector<Index>& movable() const { return this->Movable; }
+  const VertexCells& adjacency() const { return this->Adjacency; }
+  const std::vector<signed char>& states() const { return this->States; }
+  std::vector<double>& points() { return this->Result.points; }
+  /// Moves a vertex short of inversion, with the others where they are.
+  void moveVertex(Index vertex);
+  /// Takes over where another rank has moved a vertex to.
+  void follow(Index vertex, const double* p);
+
+private:
+  /// A vertex in a random order.
+  struct Key
+  {
+    std::uint64_t chance;
+    Index id, vertex;
+    bool operator<(const Key& other) const
+    {
+      return this->chance != other.chance ? this->chance < other.chance : this->id < other.id;
+    }
+  };
+
+  void findNormals();
+  void findMovable(const unsigned char* fixed);
+  std::vector<Index> sortedByChance(std::uint64_t stream) const;
+  bool report(double done);
+
+  Validity stateOf(const Neighbour& n) const;
+  void gather(Index vertex);
+  Vec3 direction(SplitMix& random) const;
+  Line line(const Neighbour& n, int corner, const Vec3& along) const;
+  double distanceToInversion(const Vec3& along) const;
+  Vec3 position(double distance, const Vec3& along) const;
+  void place(const Vec3& p);
+  bool findStates();
+  void accept(Index vertex, const Vec3& p);
+
+  Index gain(Index limit);
+  Index tangleVertex(Index vertex, int pass, Index target, Index limit);
+
+  const Mesh& TheMesh;
+  const PerturbOptions& Options;
+  VertexCells Adjacency;
+  const bool Surface;
+  std::vector<Vec3> Normals; ///< of the cells of a surface, as they were
+  std::vector<signed char> States;
+  std::vector<Index> Movable;
+  Perturbation Result;
+
+  std::vector<Neighbour> Star; ///< the cells around the vertex at hand
+  double Radius = 0;           ///< distance of their farthest vertex
+  Vec3 Center = { 0, 0, 0 };   ///< where the vertex is
+  std::vector<signed char> NewStates;
+  std::vector<double> Crossings;
+};
+}
+#endif

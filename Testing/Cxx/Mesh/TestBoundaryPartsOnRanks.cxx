@@ -1,0 +1,97 @@
+// The parts of the boundary on ranks are those of one process, however the mesh is cut.
+#include "Blocks.h"
+#include "Check.h"
+#include "ThreadRanks.h"
+#include "tautline/Mesh/BoundaryParts.h"
+
+using namespace tautline;
+
+namespace
+{
+/// Blocks side by side, apart from each other, each with as many holes as its number.
+MeshData holed(CellType type, Index blocks)
+{
+  constexpr Index side = 7;
+  const bool flat = topology(type).dimension == 2;
+  const MeshData block = blockMesh(type, side, side, flat ? 0 : side);
+  MeshData all;
+  for (Index b = 0; b < blocks; ++b)
+  {
+    const Index first = all.numberOfPoints();
+    for (Index p = 0; p < block.numberOfPoints(); ++p)
+    {
+      all.addPoint(block.point(p) + Vec3{ static_cast<double>(2 * b * side), 0, 0 });
+    }
+    for (Index cell = 0; cell < block.numberOfCells(); ++cell)
+    {
+      std::vector<Index> nodes;
+      Vec3 middle = { 0, 0, 0 };
+      for (Index n = block.offsets[cell]; n < block.offsets[cell + 1]; ++n)
+      {
+        nodes.push_back(first + block.connectivity[n]);
+        middle += block.point(block.connectivity[n]);
+      }
+      middle = (1.0 / static_cast<double>(nodes.size())) * middle;
+      bool hole = false;
+      for (Index h = 0; h < b; ++h)
+      {
+        // Holes of one block, apart from each other.
+        const double at = 2.5 + 2.0 * static_cast<double>(h);
+        hole = hole ||
+          (std::abs(middle[0] - at) < 0.5 && std::abs(middle[1] - at) < 0.5 &&
+            (flat || std::abs(middle[2] - 3.5) < 0.5));
+      }
+      if (!hole)
+      {
+        all.addCell(static_cast<int>(block.types[cell]), nodes);
+      }
+    }
+  }
+  return all;
+}
+
+void testCuts(const char* name, const MeshData& whole, int parts)
+{
+  const Context context(name);
+  const BoundaryParts one = boundaryParts(Mesh(whole.view()));
+  TAUTLINE_CHECK_EQUAL(one.parts, parts);
+  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
+  {
+    for (const int ranks : { 1, 2, 3, 4, 7 })
+    {
+      const Context inner(
+        "cut " + std::to_string(static_cast<int>(cut)) + ", " + std::to_string(ranks) + " ranks");
+      const auto rankOf = cutBy(whole, cut, ranks);
+      onRanks(ranks,
+        [&](RankGroup& group)
+        {
+          const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
+          const DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
+          const BoundaryParts found = boundaryPartsOnRanks(mesh);
+          TAUTLINE_CHECK_EQUAL(found.parts, one.parts);
+          TAUTLINE_CHECK_EQUAL(found.outer.size(), one.outer.size());
+          // Parts of the same size may be in another order: each has one number of the other.
+          std::map<int, int> numbers;
+          for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+          {
+            const int here = found.part[mesh.localOfPiece()[p]], there = one.part[part.pointOf[p]];
+            const int number = numbers.emplace(there, here).first->second;
+            TAUTLINE_CHECK_EQUAL(here, number);
+            TAUTLINE_CHECK_EQUAL(here == 0, there == 0);
+            TAUTLINE_CHECK(here == 0 || found.outer[here - 1] == one.outer[there - 1]);
+          }
+        });
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int TestBoundaryPartsOnRanks(int, char*[])
+{
+  testCuts("triangles", holed(CellType::Triangle, 3), 6);
+  testCuts("quadrilaterals", holed(CellType::Quadrilateral, 2), 3);
+  testCuts("hexahedra", holed(CellType::Hexahedron, 3), 6);
+  testCuts("tetrahedra", holed(CellType::Tetrahedron, 2), 3);
+  return exitCode();
+}
