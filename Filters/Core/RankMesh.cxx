@@ -2,7 +2,10 @@
 
 #include "Blocks.h"
 #include "MovableMesh.h"
+#include "ProcessGroup.h"
 #include "Processes.h"
+#include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
 
 #include "vtkCellData.h"
@@ -15,6 +18,8 @@
 #include "vtkSelection.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
 
 namespace tautline
@@ -46,6 +51,29 @@ bool isOnSeveralProcesses(vtkDataObject* input)
   const bool elsewhere =
     processes.rank() > 0 && input && input->GetNumberOfElements(vtkDataObject::CELL) > 0;
   return processes.maximum(static_cast<Index>(elsewhere)) > 0;
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<RankMesh> takePieces(
+  std::unique_ptr<RankGroup>& group, vtkDataObject* input, int threads, bool mergePoints)
+{
+  auto* piece = vtkDataSet::SafeDownCast(input);
+  std::unique_ptr<RankMesh> mesh;
+  try
+  {
+    group = makeProcessGroup();
+    if (group->any(!piece) || !isOnSeveralProcesses(input))
+    {
+      return nullptr;
+    }
+    mesh = std::make_unique<RankMesh>(*group, piece, threads, mergePoints);
+  }
+  catch (const Error&) // on all processes
+  {
+    return nullptr;
+  }
+  const bool framed = !CoordinateFrame(coordinateRange(mesh->mesh().view()), false).isIdentity();
+  return group->any(framed) || !mesh->inSpaceOrPlane() ? nullptr : std::move(mesh);
 }
 
 //------------------------------------------------------------------------------
@@ -202,24 +230,31 @@ void RankMesh::fixSelected(vtkDataObject* input, vtkSelection* selection)
 std::vector<unsigned char> RankMesh::fixed(bool boundary)
 {
   const DistributedMesh& mesh = *this->TheMesh;
-  std::vector<unsigned char> marked(mesh.localPoints(), 0), held = marked;
-  for (std::size_t p = 0; p < this->Marked.size(); ++p)
-  {
-    const Index local = mesh.localOfPiece()[p];
-    if (local >= 0)
-    {
-      marked[local] |= this->Marked[p];
-      held[local] |= this->Held[p];
-    }
-  }
-  mesh.either(marked.data());
-  mesh.either(held.data());
+  std::vector<unsigned char> marked = this->anyOf(this->Marked);
+  const std::vector<unsigned char> held = this->anyOf(this->Held);
   const std::vector<unsigned char> on = rankBoundary(mesh);
   for (std::size_t p = 0; p < marked.size(); ++p)
   {
     marked[p] |= (held[p] && !(this->volume() && on[p])) || (boundary && on[p]);
   }
   return marked;
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> RankMesh::anyOf(const std::vector<unsigned char>& ofPiece) const
+{
+  const DistributedMesh& mesh = *this->TheMesh;
+  std::vector<unsigned char> flags(mesh.localPoints(), 0);
+  for (std::size_t p = 0; p < ofPiece.size(); ++p)
+  {
+    const Index local = mesh.localOfPiece()[p];
+    if (local >= 0)
+    {
+      flags[local] |= ofPiece[p];
+    }
+  }
+  mesh.either(flags.data());
+  return flags;
 }
 
 //------------------------------------------------------------------------------
@@ -253,6 +288,56 @@ std::vector<double> RankMesh::leastOf(const std::vector<double>& ofPiece, double
   }
   mesh.exchange(values.data(), 1);
   return values;
+}
+
+//------------------------------------------------------------------------------
+bool RankMesh::inSpaceOrPlane() const
+{
+  const std::array<double, 6>& box = this->TheMesh->bounds();
+  return this->Dimension == 3 ||
+    (this->Dimension == 2 && (box[0] == box[3] || box[1] == box[4] || box[2] == box[5]));
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> RankMesh::pointIds() const
+{
+  const DistributedMesh& mesh = *this->TheMesh;
+  vtkDataArray* given = this->Input ? this->Input->GetPointData()->GetGlobalIds() : nullptr;
+  if (this->Group.any(this->piece().numberOfPoints > 0 && !given))
+  {
+    return coordinateOrder(mesh);
+  }
+  std::vector<double> ofPiece;
+  for (Index p = 0; p < this->piece().numberOfPoints; ++p)
+  {
+    ofPiece.push_back(given->GetComponent(p, 0));
+  }
+  const std::vector<double> least = this->leastOf(ofPiece, std::numeric_limits<double>::infinity());
+  std::vector<Index> ids(least.begin(), least.end());
+  // Each id goes to one process, which counts its points.
+  const auto ranks = static_cast<std::uint64_t>(this->Group.size());
+  std::vector<std::vector<Index>> sent(this->Group.size());
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    if (mesh.owned(p))
+    {
+      sent[static_cast<std::uint64_t>(ids[p]) % ranks].push_back(ids[p]);
+    }
+  }
+  std::vector<Index> received;
+  for (const std::vector<Index>& list : this->Group.exchangeItems(sent))
+  {
+    received.insert(received.end(), list.begin(), list.end());
+  }
+  std::sort(received.begin(), received.end());
+  const auto twice = std::adjacent_find(received.begin(), received.end());
+  const Index wrong = this->Group.maximum(twice == received.end() ? Index(-1) : *twice);
+  if (wrong >= 0)
+  {
+    throw Error("Points at different places have the global id " + std::to_string(wrong) +
+      ": run Generate Global Ids again.");
+  }
+  return ids;
 }
 
 //------------------------------------------------------------------------------

@@ -33,6 +33,18 @@ TAUTLINECORE_EXPORT bool isOnSeveralProcesses(vtkDataObject* input);
 /// composite data, with the remedy.
 TAUTLINECORE_EXPORT vtkDataSet* requirePiece(vtkDataObject* input);
 
+class RankMesh;
+
+/**
+ * @brief The input as a mesh that each process works on a piece of. Null, on all processes, where
+ * that is not possible and the mesh has to be gathered: composite data, all cells on the first
+ * process, surfaces in space, planes that are inclined, cells of extreme size, and what RankMesh
+ * refuses; and processes that do not communicate by MPI. Collective.
+ * @param group gets the processes, which outlive the mesh
+ */
+TAUTLINECORE_EXPORT std::unique_ptr<RankMesh> takePieces(
+  std::unique_ptr<RankGroup>& group, vtkDataObject* input, int threads, bool mergePoints);
+
 /**
  * @class tautline::RankMesh
  * @brief The counterpart of MovableMesh for a data set that each process has a piece of. All
@@ -56,6 +68,8 @@ public:
   /// Whether the mesh is reversed throughout, see Mesh::setMirrored().
   bool mirrored() const { return this->Mirrored; }
   bool volume() const { return this->Dimension == 3; }
+  /// Whether it is a volume mesh, or lies in a plane at right angles to an axis.
+  bool inSpaceOrPlane() const;
   /// The piece as it is given, with all cells.
   const MeshView& piece() const { return this->Adapter->inputView(); }
   /// One flag per cell of the piece: ghosts, and cells of lower dimension; they do not count.
@@ -70,8 +84,17 @@ public:
   void fixSelected(vtkDataObject* input, vtkSelection* selection);
   /// Per local point: marked on any process, or held.
   std::vector<unsigned char> fixed(bool boundary);
+  /// Flags per point of the piece as those of the local points: set on any process.
+  std::vector<unsigned char> anyOf(const std::vector<unsigned char>& ofPiece) const;
   /// Values per point of the piece as those of the local points: of points that are one the least.
   std::vector<double> leastOf(const std::vector<double>& ofPiece, double none) const;
+
+  /**
+   * @brief One number per local point that identifies it however the mesh is cut: the global ids if
+   * all pieces have them, of points that are one the least; else coordinateOrder(). Throws Error if
+   * one id is at two places.
+   */
+  std::vector<Index> pointIds() const;
 
   /// Coordinates of the piece's points, from those of local points; those without a cell stay.
   std::vector<double> ofPiece(const std::vector<double>& local) const;

@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -154,8 +155,8 @@ int vtkTautlineAlgorithm::ExecuteData(
   const std::string failure = vtkTautlineAlgorithm::FailureOf(
     "divide the mesh", [&] { problem = this->FindInputProblem(inputs); });
   problem = failure.empty() ? problem : failure;
-  const bool together =
-    this->ExecutesOnAllProcesses() || tautline::isGathered(this, this->GetGatheredResult());
+  const bool gathers = tautline::isGathered(this, this->GetGatheredResult());
+  const bool together = this->ExecutesOnAllProcesses() || gathers;
   if (together)
   {
     problem = tautline::firstProblem(problem);
@@ -179,7 +180,7 @@ int vtkTautlineAlgorithm::ExecuteData(
   {
     vtkWarningMacro(<< notice);
   }
-  const int executed = tautline::isGathered(this, this->GetGatheredResult())
+  const int executed = gathers && !this->TakesPieces(inputs)
     ? this->ExecuteGathered(request, inputs, outputs)
     : this->Superclass::ProcessRequest(request, inputs, outputs);
   if (executed && !empty.empty())
@@ -257,7 +258,7 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
   const int port = request->Get(vtkExecutive::FROM_OUTPUT_PORT());
   bool failed = false;
   vtkMTimeType time = 0;
-  double step = 0;
+  std::vector<double> steps;
   for (int i = 0; i < this->GetNumberOfInputPorts(); ++i)
   {
     for (int k = 0; k < this->GetNumberOfInputConnections(i); ++k)
@@ -273,16 +274,17 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
       vtkInformation* info =
         upstream->GetOutputInformation(this->GetInputConnection(i, k)->GetIndex());
       using Streaming = vtkStreamingDemandDrivenPipeline;
-      step +=
-        info->Has(Streaming::UPDATE_TIME_STEP()) ? info->Get(Streaming::UPDATE_TIME_STEP()) : 0.0;
+      steps.push_back(info->Has(Streaming::UPDATE_TIME_STEP())
+          ? info->Get(Streaming::UPDATE_TIME_STEP())
+          : std::numeric_limits<double>::lowest()); // NaN is not equal to itself
     }
   }
   request->Set(vtkExecutive::FROM_OUTPUT_PORT(), port);
   // What has failed once is taken for up to date, with empty outputs.
   failed =
-    failed || (this->FailedInputs > 0 && this->FailedInputs == time && this->FailedStep == step);
+    failed || (this->FailedInputs > 0 && this->FailedInputs == time && this->FailedSteps == steps);
   this->FailedInputs = failed ? time : 0;
-  this->FailedStep = step;
+  this->FailedSteps = steps;
   const std::string problem = tautline::firstProblem(failed
       ? "An input could not be computed, see the error of the filter or reader before this one."
       : "");
@@ -298,6 +300,12 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
 tautline::GatheredResult vtkTautlineAlgorithm::GetGatheredResult() const
 {
   return tautline::GatheredResult::None;
+}
+
+//------------------------------------------------------------------------------
+bool vtkTautlineAlgorithm::TakesPieces(vtkInformationVector**)
+{
+  return false;
 }
 
 //------------------------------------------------------------------------------

@@ -127,6 +127,14 @@ protected:
    */
   virtual tautline::GatheredResult GetGatheredResult() const;
 
+  /**
+   * Whether, instead, each process takes its piece of the mesh in this execution, with the settings
+   * and inputs at hand: RequestData() is then called on all of them at once. Collective, with the
+   * same answer everywhere; called if GetGatheredResult() is not None, before RequestData().
+   * Default: no.
+   */
+  virtual bool TakesPieces(vtkInformationVector** inputs);
+
   /// The input port whose mesh the output has. Default: 0.
   virtual int GetGatheredBase() const { return 0; }
 
@@ -215,8 +223,8 @@ private:
   int UpdateInputs(vtkInformation* request);
 
   std::vector<int> SelectionPorts;
-  vtkMTimeType FailedInputs = 0; ///< the time of inputs that could not be computed, or 0
-  double FailedStep = 0;         ///< the time step that was requested of them then
+  vtkMTimeType FailedInputs = 0;   ///< the time of inputs that could not be computed, or 0
+  std::vector<double> FailedSteps; ///< the time step that was requested of each then
   std::chrono::steady_clock::time_point Start; ///< of the execution
   bool Best = false;                           ///< whether HaveBest() was called in this execution
 };

@@ -1,6 +1,6 @@
 #include "BeforeAfter.h"
 
-#include "tautline/Quality/Statistics.h"
+#include "RankStatistics.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -17,14 +17,6 @@ namespace tautline
 {
 namespace
 {
-/// A metric on one state of the mesh.
-struct Measurement
-{
-  MetricStatistics statistics;
-  ValidityCounts counts;
-  double worst = 0;
-};
-
 /// @param unit the length that is 1 in the coordinates of the mesh
 /// @param known the values of the metric, or empty
 Measurement measure(const Mesh& mesh, double unit, const MeasuredMetric& what,
@@ -52,51 +44,6 @@ Measurement measure(const Mesh& mesh, double unit, const MeasuredMetric& what,
     info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data), false);
   result.counts = countValidity(validity, skip, cells);
   result.worst = worstValue(info, result.statistics, worstElements(info, data));
-  return result;
-}
-
-/// The same of the whole mesh, of which each process measures its piece.
-Measurement measureOnRanks(RankGroup& group, const Mesh& mesh, int dimension,
-  const MeasuredMetric& what, const signed char* validity, const unsigned char* skip,
-  double* values)
-{
-  const MetricInfo& info = metricInfo(what.metric);
-  const MeshView& view = mesh.view();
-  std::vector<double> own;
-  std::vector<WorstElement> worstOfOwn;
-  Measurement result;
-  group.together(
-    [&]
-    {
-      if (view.numberOfCells > 0)
-      {
-        evaluateMetric(mesh, what.metric, what.options, values);
-        const CellValues data = { view.numberOfCells, values, validity, view.cellTypes, skip };
-        own = measuredValues(info, data);
-        worstOfOwn = worstElements(info, data);
-        result.counts = countValidity(validity, skip, view.numberOfCells);
-      }
-    });
-  std::vector<double> measured;
-  for (const auto& list : group.gatherItems(own))
-  {
-    measured.insert(measured.end(), list.begin(), list.end());
-  }
-  std::vector<WorstElement> worst;
-  for (const auto& list : group.gatherItems(worstOfOwn))
-  {
-    worst.insert(worst.end(), list.begin(), list.end());
-  }
-  for (Index* count : { &result.counts.inverted, &result.counts.degenerate })
-  {
-    *count = group.sum(*count);
-  }
-  // Sums in an order that does not depend on the processes.
-  std::sort(measured.begin(), measured.end());
-  std::sort(worst.begin(), worst.end(),
-    [&](const WorstElement& a, const WorstElement& b) { return isWorse(info, a, b); });
-  result.statistics = summarize(info, dimension, measured, false);
-  result.worst = worstValue(info, result.statistics, worst);
   return result;
 }
 
@@ -233,10 +180,12 @@ std::string addBeforeAfterOnRanks(RankGroup& group, const RankMesh& mesh,
   const int dimension = mesh.volume() ? 3 : 2;
   for (const MeasuredMetric& what : metrics)
   {
-    const Measurement then = measureOnRanks(group, input, dimension, what, before.data(),
-      mesh.skipped().data(), addCellArray(output, what.name + "_before")->GetPointer(0));
-    const Measurement now = measureOnRanks(group, moved, dimension, what, validity->GetPointer(0),
-      mesh.skipped().data(), addCellArray(output, what.name)->GetPointer(0));
+    const Measurement then =
+      measureOnRanks(group, input, dimension, what.metric, what.options, before.data(),
+        mesh.skipped().data(), addCellArray(output, what.name + "_before")->GetPointer(0));
+    const Measurement now =
+      measureOnRanks(group, moved, dimension, what.metric, what.options, validity->GetPointer(0),
+        mesh.skipped().data(), addCellArray(output, what.name)->GetPointer(0));
     addRow(what, "", then, now, rows, text);
   }
   output->GetCellData()->AddArray(validity);
