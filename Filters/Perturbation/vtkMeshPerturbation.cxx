@@ -6,7 +6,8 @@
 #include "MovableMesh.h"
 #include "PointMerge.h"
 #include "GatheredExecution.h"
-#include "tautline/Perturbation/Perturb.h"
+#include "RankMesh.h"
+#include "tautline/Perturbation/PerturbOnRanks.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
@@ -49,6 +50,24 @@ std::vector<unsigned char> fixedPoints(
   }
   return fixed;
 }
+
+/// The global ids of the points, of points that are one the least; empty without ids.
+std::vector<tautline::Index> pointIds(
+  vtkDataSet* input, const std::vector<tautline::Index>& representative)
+{
+  std::vector<tautline::Index> ids;
+  vtkDataArray* given = input->GetPointData()->GetGlobalIds();
+  for (vtkIdType i = 0; given && i < input->GetNumberOfPoints(); ++i)
+  {
+    ids.push_back(static_cast<tautline::Index>(given->GetComponent(i, 0)));
+  }
+  for (std::size_t i = 0; i < ids.size() && i < representative.size(); ++i)
+  {
+    tautline::Index& id = ids[representative[i]];
+    id = std::min(id, ids[i]);
+  }
+  return ids;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -69,14 +88,22 @@ int vtkMeshPerturbation::RequestData(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   this->ClearResult();
+  const std::unique_ptr<tautline::RankMesh> pieces = std::move(this->Pieces);
   return this->Attempt(outputVector, "perturb the mesh in parts",
     [&]
     {
-      const std::string seams = this->MergeCoincidentPoints
+      const std::string seams = this->MergeCoincidentPoints && !pieces
         ? tautline::describeBlockSeams(input, this->Threads)
         : std::string();
       tautline::Perturbation total;
       std::string notices;
+      if (pieces)
+      {
+        this->PerturbPiece(*pieces, vtkDataObject::GetData(outputVector), total, notices);
+        this->Report(total);
+        this->AddToSummary(notices);
+        return;
+      }
       tautline::forEachBlock(input, nullptr, nullptr, vtkDataObject::GetData(outputVector),
         [&](const tautline::InputBlock& block) { this->Perturb(block, total, notices); });
       this->Report(total);
@@ -127,13 +154,9 @@ void vtkMeshPerturbation::Perturb(
   const int type = points->GetPoints()->GetDataType();
   const int blocks = tautline::countBlocks(this->GetInputDataObject(0, 0));
 
-  tautline::PerturbOptions options;
-  options.percentage = this->Percentage;
-  options.fraction = this->Fraction;
-  options.tangledFraction = this->TangledFraction;
-  options.seed = static_cast<std::uint64_t>(this->Seed);
-  options.singlePrecision = type == VTK_FLOAT;
-  options.threads = this->Threads;
+  const std::vector<tautline::Index> ids = pointIds(points, one);
+  tautline::PerturbOptions options = this->GetOptions(type == VTK_FLOAT);
+  options.ids = ids.empty() ? nullptr : ids.data();
   options.progress = [this, &block, blocks](double fraction)
   { return this->Proceed((block.number + fraction) / blocks); };
   tautline::Perturbation result = tautline::perturb(mesh, fixed.data(), options);
@@ -159,6 +182,58 @@ void vtkMeshPerturbation::Perturb(
     notices += (notices.empty() || notice.empty() ? "" : "\n") +
       (notice.empty() || block.name.empty() ? "" : "In " + block.name + ": ") + notice;
   }
+}
+
+//------------------------------------------------------------------------------
+tautline::PerturbOptions vtkMeshPerturbation::GetOptions(bool singlePrecision) const
+{
+  tautline::PerturbOptions options;
+  options.percentage = this->Percentage;
+  options.fraction = this->Fraction;
+  options.tangledFraction = this->TangledFraction;
+  options.seed = static_cast<std::uint64_t>(this->Seed);
+  options.singlePrecision = singlePrecision;
+  options.threads = this->Threads;
+  return options;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshPerturbation::TakesPieces(vtkInformationVector** inputs)
+{
+  this->Pieces.reset();
+  this->Group.reset();
+  if (this->TangledFraction > 0)
+  {
+    return false;
+  }
+  this->Pieces = tautline::takePieces(
+    this->Group, vtkDataObject::GetData(inputs[0]), this->Threads, this->MergeCoincidentPoints);
+  return this->Pieces != nullptr;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshPerturbation::PerturbPiece(tautline::RankMesh& mesh, vtkDataObject* output,
+  tautline::Perturbation& total, std::string& notices)
+{
+  auto* input = vtkPointSet::SafeDownCast(this->GetInputDataObject(0, 0));
+  const bool any = input && input->GetNumberOfPoints() > 0;
+  this->Group->together(
+    [&]
+    {
+      output->ShallowCopy(this->GetInputDataObject(0, 0));
+      if (any)
+      {
+        mesh.fix(tautline::chosenArray(this, FixedArray, input, "of fixed points"), false);
+      }
+    });
+  const std::vector<unsigned char> fixed = mesh.fixed(true);
+  const std::vector<tautline::Index> ids = mesh.pointIds();
+  const bool single = any && input->GetPoints()->GetDataType() == VTK_FLOAT;
+  tautline::PerturbOptions options = this->GetOptions(this->Group->any(single));
+  options.ids = ids.data();
+  options.progress = [this](double fraction) { return this->Proceed(fraction); };
+  total = tautline::perturbOnRanks(mesh.mesh(), mesh.mirrored(), fixed.data(), options);
+  notices = mesh.move(vtkPointSet::SafeDownCast(output), total.points);
 }
 
 //------------------------------------------------------------------------------

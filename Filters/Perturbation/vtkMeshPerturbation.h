@@ -44,8 +44,13 @@
  * position.
  *
  * @par Limitations:
- * Quadratic cells are refused. The pieces of several processes are gathered. Points shared by two
- * blocks are on the boundary of each and stay.
+ * Quadratic cells are refused. Points shared by two blocks are on the boundary of each and stay.
+ *
+ * @par Several processes:
+ * Each works on its piece of the mesh, with the points of one process, bitwise. With a
+ * TangledFraction above 0, composite data, surfaces in space and inclined planes the pieces are
+ * gathered on the first process. Random numbers are drawn by the global ids of the points; without
+ * ids, on one process by their indices, on several in the order of their coordinates.
  *
  * @par Example:
  * @code
@@ -68,11 +73,17 @@
 #include "vtkTautlineTimedAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
+#include <memory> // for the pieces
+#include <string> // for the notices
+
 class vtkDataSet;
 
 namespace tautline
 {
+class RankGroup;
+class RankMesh;
 struct InputBlock;
+struct PerturbOptions;
 struct Perturbation;
 }
 
@@ -152,6 +163,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   tautline::GatheredResult GetGatheredResult() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;
+  bool TakesPieces(vtkInformationVector** inputs) override;
   void ClearResult() override;
 
 private:
@@ -161,7 +173,15 @@ private:
   /// Perturbs a data set and adds its numbers and remarks.
   void Perturb(
     const tautline::InputBlock& block, tautline::Perturbation& total, std::string& notices);
+  /// The same for the piece of this process.
+  void PerturbPiece(tautline::RankMesh& mesh, vtkDataObject* output, tautline::Perturbation& total,
+    std::string& notices);
+  tautline::PerturbOptions GetOptions(bool singlePrecision) const;
   void Report(const tautline::Perturbation& result);
+
+  /// The mesh of an execution in which each process takes its piece; else null.
+  std::unique_ptr<tautline::RankGroup> Group;
+  std::unique_ptr<tautline::RankMesh> Pieces;
 
   double Percentage = 50.0;
   double Fraction = 0.5;
