@@ -297,6 +297,10 @@ void vtkMeshUntangler::UntangleOnRanks(
   this->Impossible = result.impossible;
   this->NotValid = static_cast<vtkIdType>(untangled.remaining.size());
   this->AddToSummary(verdict(untangled));
+  this->AddToSummary(untangled.exceededMemory
+      ? "The whole mesh did not fit into the memory of the first process, where the elements that "
+        "are left would have been untangled: take fewer cells, or more memory."
+      : "");
   this->AddToSummary(note);
   this->AddToSummary(mesh.notice());
   if (group->rank() > 0)

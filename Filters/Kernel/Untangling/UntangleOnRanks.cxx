@@ -152,6 +152,7 @@ public:
 
 private:
   Index examine();
+  bool fitsWhole();
   void untangleWithin(int width);
   Region gather(int width);
   void solve(const Region& region, int width);
@@ -213,8 +214,9 @@ Index RankUntangler::examine()
 }
 
 //------------------------------------------------------------------------------
-/// The cells with a point within `width` cells of an invalid one that can be repaired; all cells if
-/// width is negative. All ranks get it.
+/// The cells with a point within `width` cells of an invalid one that can be repaired, on all ranks;
+/// all cells if width is negative, on the first rank: they are one part as a rule, and each copy
+/// takes as much memory as the whole mesh.
 Region RankUntangler::gather(int width)
 {
   const MeshView& view = this->TheMesh.view();
@@ -266,6 +268,16 @@ Region RankUntangler::gather(int width)
       points.push_back(point);
     }
   }
+  const auto collect = [&](const auto& items)
+  {
+    if (width >= 0)
+    {
+      return this->Group.gatherItems(items);
+    }
+    std::vector<std::decay_t<decltype(items)>> sent(this->Group.size());
+    sent.front() = items;
+    return this->Group.exchangeItems(sent);
+  };
   const auto byNumber = [](const RegionPoint& a, const RegionPoint& b)
   { return a.number < b.number; };
   const auto same = [](const RegionPoint& a, const RegionPoint& b) { return a.number == b.number; };
@@ -276,12 +288,12 @@ Region RankUntangler::gather(int width)
   };
   unify(points);
   Region region;
-  for (const auto& list : this->Group.gatherItems(points))
+  for (const auto& list : collect(points))
   {
     region.points.insert(region.points.end(), list.begin(), list.end());
   }
   unify(region.points);
-  for (const auto& list : this->Group.gatherItems(cells))
+  for (const auto& list : collect(cells))
   {
     for (std::size_t i = 0; i < list.size();)
     {
@@ -301,7 +313,7 @@ Region RankUntangler::gather(int width)
 }
 
 //------------------------------------------------------------------------------
-/// Untangles the parts of a region, each on one rank.
+/// Untangles the parts of a region, each on one rank: those of the whole mesh on the first one.
 void RankUntangler::solve(const Region& region, int width)
 {
   std::vector<RegionPoint> moved;
@@ -311,7 +323,9 @@ void RankUntangler::solve(const Region& region, int width)
     [&]
     {
       const std::vector<std::vector<Index>> parts = connectedParts(region);
-      for (std::size_t i = this->Group.rank(); i < parts.size(); i += this->Group.size())
+      const bool whole = width < 0;
+      const std::size_t step = whole ? 1 : static_cast<std::size_t>(this->Group.size());
+      for (std::size_t i = whole ? 0 : this->Group.rank(); i < parts.size(); i += step)
       {
         const Part part = makePart(region, parts[i]);
         Mesh mesh(part.view(), this->Options.threads);
@@ -404,19 +418,34 @@ bool RankUntangler::report()
 }
 
 //------------------------------------------------------------------------------
+/// Whether the whole mesh can be untangled on the first rank. Where it cannot, what was repaired
+/// before is kept; Error if nothing was.
+bool RankUntangler::fitsWhole()
+{
+  const double bytes = bytesPerCell * static_cast<double>(this->TheMesh.globalCells());
+  const bool lacks = this->Group.rank() == 0 && !(bytes <= availableMemory());
+  this->Result.exceededMemory = this->Group.any(lacks);
+  this->Group.together(
+    [&]
+    {
+      if (lacks && this->Result.result.invertedAfter == this->Result.result.invertedBefore)
+      {
+        requireMemory(bytes,
+          "untangling the whole mesh on the first process, where what is about the invalid "
+          "elements is not enough,",
+          "choose the Effort Local");
+      }
+    });
+  return !this->Result.exceededMemory;
+}
+
+//------------------------------------------------------------------------------
 void RankUntangler::untangleWithin(int width)
 {
   UntangleResult& result = this->Result.result;
-  if (width < 0)
+  if (width < 0 && !this->fitsWhole())
   {
-    this->Group.together(
-      [&]
-      {
-        requireMemory(bytesPerCell * static_cast<double>(this->TheMesh.globalCells()),
-          "untangling the whole mesh on a process, where what is about the invalid elements is not "
-          "enough,",
-          "choose the Effort Local");
-      });
+    return;
   }
   const Index before = result.invertedAfter;
   const std::vector<double> kept = this->Points;

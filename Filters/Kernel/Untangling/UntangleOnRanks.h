@@ -25,6 +25,8 @@ struct RankUntangleResult
 {
   /// The points are those of the local points; obstacles is empty; all else is of the whole mesh.
   UntangleResult result;
+  /// The whole mesh, which would have been next, does not fit into the memory of the first rank.
+  bool exceededMemory = false;
   /// The invalid elements of the whole mesh, by the global numbers of their points in increasing
   /// order; the same on all ranks.
   std::map<std::vector<Index>, RemainingElement> remaining;
@@ -34,7 +36,8 @@ struct RankUntangleResult
  * @brief Untangles. The cells within some rings of the invalid elements are gathered, in the order
  * of their global numbers; their connected parts are untangled by untangle(), each on one rank,
  * with the points around held. Where elements stay invalid, wider rings follow, and, but for
- * Effort::Local, the whole mesh, if it fits into the memory of a rank. The method
+ * Effort::Local, the whole mesh on the first rank, if it fits into the memory there: Error if it
+ * does not and nothing was repaired before, else exceededMemory. The method
  * UntangleMethod::Simultaneous, which moves all points, takes the whole mesh. Collective.
  * @param mesh volume meshes and planar ones; its points are where it starts; not changed
  * @param mirrored see Mesh::setMirrored(); the same on all ranks
