@@ -63,12 +63,6 @@ void markWhere(
   }
 }
 
-bool hasNoInside(int type)
-{
-  return type == VTK_EMPTY_CELL || type == VTK_VERTEX || type == VTK_POLY_VERTEX ||
-    type == VTK_LINE || type == VTK_POLY_LINE;
-}
-
 PointFlags pointsOfParts(const PartChoice& choice)
 {
   const BoundaryParts& parts = choice.parts();
@@ -99,6 +93,24 @@ PointFlags pointsOfParts(const PartChoice& choice)
 }
 
 //------------------------------------------------------------------------------
+bool hasNoInside(int type)
+{
+  return type == VTK_EMPTY_CELL || type == VTK_VERTEX || type == VTK_POLY_VERTEX ||
+    type == VTK_LINE || type == VTK_POLY_LINE;
+}
+
+//------------------------------------------------------------------------------
+void requireShapes(Index shapeless)
+{
+  if (shapeless > 0)
+  {
+    throw Error("The mesh has " + text(shapeless) +
+      " polygons, polyhedra or other cells that cannot be warped: run Tetrahedralize first, "
+      "which cuts all cells into triangles or tetrahedra.");
+  }
+}
+
+//------------------------------------------------------------------------------
 void requireElements(const MovableMesh& mesh)
 {
   const MeshView& view = mesh.mesh().view();
@@ -120,12 +132,7 @@ void requireElements(const MovableMesh& mesh)
       " points have a coordinate that is NaN or infinite: repair them or leave them out "
       "(Threshold).");
   }
-  if (shapeless > 0)
-  {
-    throw Error("The mesh has " + text(shapeless) +
-      " polygons, polyhedra or other cells that cannot be warped: run Tetrahedralize first, "
-      "which cuts all cells into triangles or tetrahedra.");
-  }
+  requireShapes(shapeless);
   if (inverted > 0)
   {
     throw Error(text(inverted) +
@@ -150,7 +157,6 @@ PointFlags boundaryOf(const Mesh& mesh)
 //------------------------------------------------------------------------------
 PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartChoice& choice)
 {
-  PointFlags flags(boundary.size(), 0);
   switch (choice.part)
   {
     case MovedPart::Automatic:
@@ -166,37 +172,53 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
       }
       return pointsOfParts(choice);
     case MovedPart::Values:
-    {
-      if (!choice.array)
-      {
-        throw Error(
-          "No array is chosen for the part that moves: choose one, or another Moved Part.");
-      }
-      const std::set<double> values(choice.values.begin(), choice.values.end());
-      markWhere(mesh, choice.array, choice.ofCells, flags,
-        [&values](double value) { return values.empty() ? value != 0 : values.count(value) > 0; });
-      break;
-    }
     case MovedPart::Selection:
-      if (!choice.selected && !choice.elsewhere)
-      {
-        throw Error(
-          "Nothing is selected that could move: select points or cells and press Copy Active "
-          "Selection, or choose another Moved Part.");
-      }
-      markPoints(mesh, choice.selected, flags);
       break;
   }
+  PointFlags flags = markedPoints(mesh, choice);
   const Index chosen = count(flags);
   for (std::size_t i = 0; i < flags.size(); ++i)
   {
     flags[i] = flags[i] && boundary[i];
   }
-  if (count(flags) == 0 && !(chosen == 0 && choice.elsewhere))
+  if (!(chosen == 0 && choice.elsewhere))
+  {
+    requireMoved(count(flags), chosen);
+  }
+  return flags;
+}
+
+//------------------------------------------------------------------------------
+void requireMoved(Index moved, Index chosen)
+{
+  if (moved == 0)
   {
     throw Error("Of the " + text(chosen) +
       " points chosen to move none is on the boundary: choose others, or other values.");
   }
+}
+
+//------------------------------------------------------------------------------
+PointFlags markedPoints(const Mesh& mesh, const PartChoice& choice)
+{
+  PointFlags flags(mesh.view().numberOfPoints, 0);
+  if (choice.part == MovedPart::Values)
+  {
+    if (!choice.array)
+    {
+      throw Error("No array is chosen for the part that moves: choose one, or another Moved Part.");
+    }
+    const std::set<double> values(choice.values.begin(), choice.values.end());
+    markWhere(mesh, choice.array, choice.ofCells, flags,
+      [&values](double value) { return values.empty() ? value != 0 : values.count(value) > 0; });
+    return flags;
+  }
+  if (!choice.selected && !choice.elsewhere)
+  {
+    throw Error("Nothing is selected that could move: select points or cells and press Copy Active "
+                "Selection, or choose another Moved Part.");
+  }
+  markPoints(mesh, choice.selected, flags);
   return flags;
 }
 

@@ -45,11 +45,21 @@ struct PartChoice
  */
 void requireElements(const MovableMesh& mesh);
 
+/// Throws Error if there are cells without a shape to keep.
+void requireShapes(Index shapeless);
+/// Whether cells of a type (points and lines) have no inside that could be inverted.
+bool hasNoInside(int type);
+
 /// Points on the boundary.
 PointFlags boundaryOf(const Mesh& mesh);
 
 /// Points of the boundary that are chosen. Throws Error if there is none.
 PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartChoice& choice);
+
+/// The points that an array or a selection chooses, on the boundary or not.
+PointFlags markedPoints(const Mesh& mesh, const PartChoice& choice);
+/// Throws Error if of the chosen points none is on the boundary.
+void requireMoved(Index moved, Index chosen);
 
 /// Marks points, or the points of cells, where the array is not 0.
 void markPoints(const Mesh& mesh, vtkDataArray* array, bool ofCells, PointFlags& flags);

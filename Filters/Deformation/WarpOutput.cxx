@@ -22,13 +22,8 @@ namespace
 constexpr const char* ShapeArray = "TMP shape";
 constexpr double Rounding = 1e-13; // smaller values are those of the same shape
 
-struct Measurement
-{
-  double worst = 0, mean = 0;
-};
-
 /// A metric over the measured elements (Statistics.h); the values of all cells go to `values`.
-Measurement measure(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
+WarpMeasurement measure(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
   const signed char* validity, const unsigned char* skip, double* values)
 {
   const MetricInfo& info = metricInfo(metric);
@@ -65,13 +60,7 @@ void addHistory(const WarpResult& result, const std::string& block, TableRows& r
   }
 }
 
-struct Qualities
-{
-  Measurement shape, before, after;
-  Index elements = 0, inverted = 0;
-};
-
-void addStatistics(const WarpResult& result, const WarpFacts& facts, const Qualities& q,
+void addStatistics(const WarpResult& result, const WarpFacts& facts, const WarpQualities& q,
   const std::string& block, TableRows& rows)
 {
   rows.begin(block);
@@ -105,7 +94,7 @@ void addStatistics(const WarpResult& result, const WarpFacts& facts, const Quali
   rows.add("Total (s)", facts.seconds);
 }
 
-std::string describe(const WarpResult& result, const WarpFacts& facts, const Qualities& q)
+std::string describe(const WarpResult& result, const WarpFacts& facts, const WarpQualities& q)
 {
   std::ostringstream text;
   text << facts.method << ": ";
@@ -170,7 +159,7 @@ void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const Warp
   Mesh moved(view, facts.threads);
   moved.setMirrored(mesh.mirrored());
 
-  Qualities q;
+  WarpQualities q;
   std::vector<double> values(view.numberOfCells);
   EvaluationOptions ideal, similar;
   ideal.threads = similar.threads = facts.threads;
@@ -182,23 +171,39 @@ void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const Warp
   similar.targets = &targets;
   q.shape = measure(
     moved, Metric::ShapeSimilarity, similar, validity.data(), rest.skipped(), values.data());
-  std::replace_if(
-    values.begin(), values.end(), [](double shape) { return shape < Rounding; }, 0.0);
   const ValidityCounts counts = countValidity(validity.data(), rest.skipped(), view.numberOfCells);
   q.inverted = counts.inverted + counts.degenerate;
   q.elements = q.inverted + counts.valid;
-  addCellArray<vtkDoubleArray>(block.output, ShapeArray, values);
-  addCellArray<vtkSignedCharArray>(block.output, "Validity", validity);
-  // Without active point scalars, views colour by the shape.
-  block.output->GetPointData()->SetActiveScalars(nullptr);
-  block.output->GetCellData()->SetActiveScalars(ShapeArray);
+  addWarpArrays(block.output, values, validity);
+  addWarpReport(result, facts, q, block.name, { note, rest.notice() }, history, statistics, totals);
+}
 
-  addHistory(result, block.name, history);
-  addStatistics(result, facts, q, block.name, statistics);
+//------------------------------------------------------------------------------
+void addWarpArrays(
+  vtkDataSet* output, std::vector<double>& shape, const std::vector<signed char>& validity)
+{
+  std::replace_if(
+    shape.begin(), shape.end(), [](double value) { return value < Rounding; }, 0.0);
+  addCellArray<vtkDoubleArray>(output, ShapeArray, shape);
+  addCellArray<vtkSignedCharArray>(output, "Validity", validity);
+  // Without active point scalars, views colour by the shape.
+  output->GetPointData()->SetActiveScalars(nullptr);
+  output->GetCellData()->SetActiveScalars(ShapeArray);
+}
+
+//------------------------------------------------------------------------------
+void addWarpReport(const WarpResult& result, const WarpFacts& facts, const WarpQualities& q,
+  const std::string& block, const std::vector<std::string>& notes, TableRows& history,
+  TableRows& statistics, WarpTotals& totals)
+{
+  addHistory(result, block, history);
+  addStatistics(result, facts, q, block, statistics);
   std::ostringstream text;
-  text << (totals.summary.empty() ? "" : "\n")
-       << (block.name.empty() ? "" : "In " + block.name + ": ") << describe(result, facts, q);
-  for (const std::string& sentence : { result.message, note, rest.notice() })
+  text << (totals.summary.empty() ? "" : "\n") << (block.empty() ? "" : "In " + block + ": ")
+       << describe(result, facts, q);
+  std::vector<std::string> sentences = notes;
+  sentences.insert(sentences.begin(), result.message);
+  for (const std::string& sentence : sentences)
   {
     text << (sentence.empty() ? "" : "\n") << sentence;
   }

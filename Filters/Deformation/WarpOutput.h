@@ -26,6 +26,19 @@ struct WarpFacts
   int threads = 0;
 };
 
+/// A metric over a mesh.
+struct WarpMeasurement
+{
+  double worst = 0, mean = 0;
+};
+
+/// The elements before and after.
+struct WarpQualities
+{
+  WarpMeasurement shape, before, after;
+  Index elements = 0, inverted = 0;
+};
+
 /// Totals over the data sets.
 struct WarpTotals
 {
@@ -42,5 +55,17 @@ struct WarpTotals
  */
 void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const WarpFacts& facts,
   const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals);
+
+/// The part of it that adds the arrays; values of the shape are rounded to 0 in place.
+void addWarpArrays(
+  vtkDataSet* output, std::vector<double>& shape, const std::vector<signed char>& validity);
+
+/**
+ * @brief The part of it that adds rows and sentences.
+ * @param notes further sentences; empty ones are left out
+ */
+void addWarpReport(const WarpResult& result, const WarpFacts& facts, const WarpQualities& qualities,
+  const std::string& block, const std::vector<std::string>& notes, TableRows& history,
+  TableRows& statistics, WarpTotals& totals);
 }
 #endif

@@ -86,18 +86,6 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
   return only;
 }
 
-vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input)
-{
-  const char* name =
-    algorithm->GetInputArrayInformation(DisplacementArray)->Get(vtkDataObject::FIELD_NAME());
-  if (name && *name && std::string(name) != "Automatic")
-  {
-    return chosenArray(algorithm, DisplacementArray, input, "of displacements");
-  }
-  vtkDataArray* named = input->GetPointData()->GetArray("Displacement");
-  return named ? named : input->GetPointData()->GetVectors();
-}
-
 vtkDataArray* targetIds(vtkDataSet* target, const std::string& name)
 {
   if (name.empty() || name == "None")
@@ -124,6 +112,25 @@ bool staysAtRest(const WarpTask& task)
   constexpr double somewhere = 1.0 / 3;
   return allZero(task.displacement) && (!task.path || allZero(task.path(somewhere)));
 }
+}
+
+//------------------------------------------------------------------------------
+const char* nameOf(WarpMethod method)
+{
+  return MethodNames[static_cast<std::size_t>(method)];
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input)
+{
+  const char* name =
+    algorithm->GetInputArrayInformation(DisplacementArray)->Get(vtkDataObject::FIELD_NAME());
+  if (name && *name && std::string(name) != "Automatic")
+  {
+    return chosenArray(algorithm, DisplacementArray, input, "of displacements");
+  }
+  vtkDataArray* named = input->GetPointData()->GetArray("Displacement");
+  return named ? named : input->GetPointData()->GetVectors();
 }
 
 //------------------------------------------------------------------------------
@@ -290,7 +297,7 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
   {
     return;
   }
-  facts.method = MethodNames[static_cast<std::size_t>(this->settings.options.method)];
+  facts.method = nameOf(this->settings.options.method);
   facts.motion = todo.correspondence;
   facts.coefficients =
     this->settings.anisotropic() && todo.tensors.empty() && this->settings.amount > 0;

@@ -64,6 +64,12 @@ struct WarpSettings
   bool anisotropic() const { return isAnisotropic(this->options.method); }
 };
 
+/// The name of a method in the menu.
+const char* nameOf(WarpMethod method);
+/// The point array that moves the boundary: the chosen one, or `Displacement`, or the vectors; or
+/// null.
+vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input);
+
 /// A mesh at rest, and what was made of it.
 struct RestingMesh
 {

@@ -1,7 +1,8 @@
 #include "vtkMeshWarp.h"
 
 #include "GatheredExecution.h"
-#include "WarpSession.h"
+#include "RankMesh.h"
+#include "WarpPieces.h"
 
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
@@ -293,10 +294,22 @@ int vtkMeshWarp::RequestData(
   tautline::TableRows history, statistics;
   tautline::WarpTotals totals;
   this->ClearNumbers();
+  const std::unique_ptr<tautline::RankMesh> pieces = std::move(this->Pieces);
   std::string failure = FailureOf("choose conjugate gradients with BoomerAMG (Automatic Solver "
                                   "off), or warp the mesh in parts",
     [&]
     {
+      if (pieces)
+      {
+        session.clear();
+        output->ShallowCopy(input);
+        const tautline::WarpPiece piece = { vtkDataSet::SafeDownCast(input),
+          vtkSelection::GetData(inputVector[MovedPort]),
+          vtkSelection::GetData(inputVector[FixedPort]), vtkDataSet::SafeDownCast(output) };
+        tautline::warpPieces(
+          session.settings, *this->Group, *pieces, piece, history, statistics, totals);
+        return;
+      }
       const auto moved =
         tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
       this->ForEachBlock(inputVector, outputVector, nullptr, FixedPort, false,
@@ -332,7 +345,7 @@ int vtkMeshWarp::RequestData(
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Summary = totals.summary;
-  this->AddToSummary(this->GetBlockNotice());
+  this->AddToSummary(pieces ? "" : this->GetBlockNotice());
   this->InvertedAfterWarp = totals.invertedAfterWarp;
   this->Inverted = totals.inverted;
   this->Impossible = totals.impossible;
@@ -365,6 +378,21 @@ void vtkMeshWarp::ClearNumbers()
 tautline::GatheredResult vtkMeshWarp::GetGatheredResult() const
 {
   return tautline::GatheredResult::SameMesh;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
+{
+  this->Pieces.reset();
+  this->Group.reset();
+  this->Session->settings = this->GetSettings();
+  if (!tautline::warpsInPieces(*this->Session))
+  {
+    return false;
+  }
+  this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]),
+    this->Threads, this->MergeCoincidentPoints);
+  return this->Pieces != nullptr;
 }
 
 //------------------------------------------------------------------------------

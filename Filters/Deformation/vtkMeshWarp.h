@@ -52,7 +52,11 @@
  * options of the method are the same: animating Amount, or a target over time, computes them once.
  *
  * @par Several processes:
- * The first process has the whole mesh while it computes and sends the results to the pieces. Ghost
+ * With motions by an array or a transform, each process works on its piece, with the methods
+ * FEMWARP, anisotropic FEMWARP (but for coefficients per cell or region), small-step FEMWARP, the
+ * elastic ones, inverse distances and radial basis functions: the points are those of one process,
+ * to rounding. Matrices are not kept then. Otherwise, and for composite data and inclined planes,
+ * the first process has the whole mesh while it computes and sends the results to the pieces. Ghost
  * cells count as copies; on one process, their points stay.
  *
  * @par Example:
@@ -87,6 +91,8 @@ class vtkLinearTransform;
 
 namespace tautline
 {
+class RankGroup;
+class RankMesh;
 class WarpSession;
 struct WarpSettings;
 }
@@ -436,6 +442,7 @@ protected:
     vtkInformationVector* outputVector) override;
   tautline::GatheredResult GetGatheredResult() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;
+  bool TakesPieces(vtkInformationVector** inputs) override;
   void ClearResult() override;
 
   tautline::WarpSettings GetSettings();
@@ -444,6 +451,10 @@ protected:
 private:
   vtkMeshWarp(const vtkMeshWarp&) = delete;
   void operator=(const vtkMeshWarp&) = delete;
+
+  /// The mesh of an execution in which each process takes its piece; else null.
+  std::unique_ptr<tautline::RankGroup> Group;
+  std::unique_ptr<tautline::RankMesh> Pieces;
 
   void ClearNumbers();
   /// Whether the time of a request is a fraction of the way.

@@ -50,6 +50,7 @@ protected:
     vtkInformationVector* outputVector) override;
   /// The boundary stays on the first process.
   tautline::GatheredResult GetGatheredResult() const override;
+  bool TakesPieces(vtkInformationVector**) override { return false; }
   /// No error: the summary has the message.
   int Fail(vtkInformationVector* outputVector, const std::string& message) override;
 

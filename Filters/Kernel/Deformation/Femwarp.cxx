@@ -41,6 +41,20 @@ double largestOf(const SymmetricTensor& t)
   return *std::max_element(t.begin(), t.begin() + 3);
 }
 
+/// The matrix of the cells there are; a rank may have none.
+SparseMatrix matrixOf(
+  const Mesh& mesh, const DiffusionOperator& pde, const AssemblyOptions& options)
+{
+  if (mesh.view().numberOfCells > 0)
+  {
+    return stiffnessMatrix(mesh, pde, options);
+  }
+  SparseMatrix empty;
+  empty.size = mesh.view().numberOfPoints;
+  empty.offsets.assign(empty.size + 1, 0);
+  return empty;
+}
+
 /// K M^-1 K: M is diagonal. Points outside all cells have empty rows.
 SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass)
 {
@@ -92,7 +106,8 @@ Femwarp::Femwarp(const Mesh& mesh, const WarpParts& parts, Operator kind,
 {
   this->Pde.tensor = tensor;
   this->Pde.tensors = tensors;
-  this->Singular = kind == Operator::Harmonic && (tensors || isSingular(tensor, mesh));
+  this->Singular = kind == Operator::Harmonic &&
+    (tensors || parts.ranks().any(mesh.dimension() != Dimension::None && isSingular(tensor, mesh)));
   this->partition(control);
 }
 
@@ -128,7 +143,8 @@ SparseMatrix Femwarp::assemble(double regularization, WarpControl& control) cons
       }
     }
   }
-  SparseMatrix matrix = stiffnessMatrix(this->Input, pde, options);
+  SparseMatrix matrix;
+  this->Parts.ranks().together([&] { matrix = matrixOf(this->Input, pde, options); });
   if (this->Kind == Operator::Biharmonic)
   {
     const std::vector<double> one(this->Input.view().numberOfPoints, 1.0);
@@ -148,18 +164,17 @@ void Femwarp::partition(WarpControl& control)
   {
     this->findDecoupled(matrix, control);
   }
-  const int dimension = this->Input.dimension() == Dimension::Volume ? 3 : 2;
+  const int dimension = this->Parts.dimension() == Dimension::Volume ? 3 : 2;
   const double* points = this->Input.view().points;
-  this->System =
-    std::make_unique<WarpSystem>(matrix, 1, this->Held, points, dimension, control.options());
+  this->System = std::make_unique<WarpSystem>(
+    matrix, 1, this->Held, points, dimension, control.options(), this->Parts.ranks());
   this->Second.reset();
   if (this->Decoupled > 0)
   {
     AssemblyOptions options;
     options.threads = control.options().threads;
-    this->Second =
-      std::make_unique<WarpSystem>(stiffnessMatrix(this->Input, DiffusionOperator(), options), 1,
-        this->Others, points, dimension, control.options());
+    this->Second = std::make_unique<WarpSystem>(matrixOf(this->Input, DiffusionOperator(), options),
+      1, this->Others, points, dimension, control.options(), this->Parts.ranks());
   }
   control.result().assembleSeconds += control.elapsed() - before;
 }
@@ -170,7 +185,8 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
 {
   AssemblyOptions options;
   options.threads = control.options().threads;
-  const SparseMatrix isotropic = stiffnessMatrix(this->Input, DiffusionOperator(), options);
+  const SparseMatrix isotropic = matrixOf(this->Input, DiffusionOperator(), options);
+  const WarpRanks& ranks = this->Parts.ranks();
   const Index n = matrix.size;
   double size = this->Pde.tensors ? 0.0 : largestOf(this->Pde.tensor);
   for (Index i = 0; this->Pde.tensors && i < this->Input.view().numberOfCells; ++i)
@@ -183,8 +199,9 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
   {
     scale[i] = coupled * size * isotropic.at(i, i);
   }
+  ranks.exchange(scale.data(), 1);
   // Breadth-first from the held points along the couplings.
-  std::vector<char> reached(n, 0);
+  std::vector<unsigned char> reached(n, 0);
   std::vector<Index> front;
   for (Index i = 0; i < n; ++i)
   {
@@ -194,20 +211,33 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
       front.push_back(i);
     }
   }
-  while (!front.empty())
+  do
   {
-    const Index i = front.back();
-    front.pop_back();
-    for (Index e = matrix.offsets[i]; e < matrix.offsets[i + 1]; ++e)
+    while (!front.empty())
     {
-      const Index j = matrix.columns[e];
-      if (!reached[j] && std::abs(matrix.values[e]) > std::min(scale[i], scale[j]))
+      const Index i = front.back();
+      front.pop_back();
+      for (Index e = matrix.offsets[i]; ranks.owns(i) && e < matrix.offsets[i + 1]; ++e)
       {
-        reached[j] = 1;
-        front.push_back(j);
+        const Index j = matrix.columns[e];
+        if (!reached[j] && std::abs(matrix.values[e]) > std::min(scale[i], scale[j]))
+        {
+          reached[j] = 1;
+          front.push_back(j);
+        }
       }
     }
-  }
+    // What other ranks have reached goes on here.
+    const std::vector<unsigned char> before = reached;
+    ranks.either(reached.data());
+    for (Index i = 0; i < n; ++i)
+    {
+      if (reached[i] && !before[i])
+      {
+        front.push_back(i);
+      }
+    }
+  } while (ranks.any(!front.empty()));
   this->Others.assign(n, 1);
   for (Index i = 0; i < n; ++i)
   {
@@ -215,9 +245,10 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
     {
       this->Others[i] = 0;
       this->Held[i] = 1;
-      ++this->Decoupled;
+      this->Decoupled += ranks.owns(i);
     }
   }
+  this->Decoupled = ranks.sum(this->Decoupled);
 }
 
 //------------------------------------------------------------------------------
@@ -250,6 +281,8 @@ double Femwarp::splitAffine(
       }
     }
   }
+  largest = this->Parts.ranks().maximum(largest);
+  position = this->Parts.ranks().maximum(position);
   double slope = 0;
   for (const AffineMotion& motion : affine)
   {
@@ -281,6 +314,7 @@ Femwarp::Outcome Femwarp::solveComponents(
       values[i] = rest[3 * i + c];
       largest = std::max(largest, std::abs(values[i]));
     }
+    largest = this->Parts.ranks().maximum(largest);
     if (!(largest > nothing))
     {
       continue;
@@ -300,6 +334,7 @@ Femwarp::Outcome Femwarp::solveComponents(
       }
     }
   }
+  outcome.bounded = !this->Parts.ranks().any(!outcome.bounded);
   return outcome;
 }
 

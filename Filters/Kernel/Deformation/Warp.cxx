@@ -80,22 +80,31 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options)
 
 void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& options)
 {
-  if (mesh.dimension() == Dimension::None)
+  const WarpRanks& ranks = parts.ranks();
+  if (parts.dimension() == Dimension::None)
   {
     throw Error("The mesh has no cells that can be warped: triangles, quadrilaterals, tetrahedra, "
                 "hexahedra, wedges or pyramids.");
   }
-  if (mesh.dimension() == Dimension::Surface)
+  if (parts.dimension() == Dimension::Surface)
   {
     throw Error("Only planar and volume meshes can be deformed: this is a surface in space.");
   }
-  requireOrdinaryScale(mesh.view(), "Warping");
-  for (const CellBlock& block : mesh.blocks())
+  ranks.together([&] { requireOrdinaryScale(mesh.view(), "Warping"); });
+  for (const CellType type : { CellType::Wedge, CellType::Pyramid })
   {
-    const bool supported = block.type != CellType::Wedge && block.type != CellType::Pyramid;
-    if (!supported && usesFiniteElements(options.method))
+    Index count = 0;
+    for (const CellBlock& block : mesh.blocks())
     {
-      throw Error("There are " + std::to_string(block.count) + " " + topology(block.type).plural +
+      for (Index i = 0; block.type == type && i < block.count; ++i)
+      {
+        count += ranks.ownsCell(block.cell(i));
+      }
+    }
+    count = ranks.sum(count);
+    if (count > 0 && usesFiniteElements(options.method))
+    {
+      throw Error("There are " + std::to_string(count) + " " + topology(type).plural +
         ". This method takes triangles, quadrilaterals, tetrahedra and hexahedra: triangulate "
         "the mesh, or use inverse distance weighting, radial basis functions or weighted Laplacian "
         "smoothing.");
@@ -103,14 +112,21 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
   }
   std::vector<signed char> validity(mesh.view().numberOfCells);
   mesh.classifyCells(validity.data(), options.threads);
-  const auto wrong = [](signed char v) { return v != Valid && v != NotMeasured; };
-  const Index count = std::count_if(validity.begin(), validity.end(), wrong);
+  Index count = 0, first = -1;
+  for (Index cell = 0; cell < mesh.view().numberOfCells; ++cell)
+  {
+    if (validity[cell] != Valid && validity[cell] != NotMeasured && ranks.ownsCell(cell))
+    {
+      first = count++ == 0 ? cell : first;
+    }
+  }
+  count = ranks.sum(count);
   if (count > 0)
   {
-    const auto first = std::find_if(validity.begin(), validity.end(), wrong);
+    // The cells of a rank have numbers of its own.
     throw Error(counted(count, "element") + (count == 1 ? " is" : " are") +
-      " inverted or degenerate before anything moves, the first is cell " +
-      std::to_string(first - validity.begin()) +
+      " inverted or degenerate before anything moves" +
+      (ranks.several() ? "" : ", the first is cell " + std::to_string(first)) +
       ". Untangle the mesh first, or reverse the order of its cells' points.");
   }
   if (parts.prescribedPoints() == 0)
@@ -130,14 +146,14 @@ struct BoundaryState
 //------------------------------------------------------------------------------
 struct Warper::Implementation
 {
-  Implementation(const Mesh& mesh, const WarpOptions& options)
+  Implementation(const Mesh& mesh, const WarpOptions& options, const WarpRanks& ranks = {})
     : Input(mesh)
     , Options(options)
-    , Parts(mesh, options.prescribed)
+    , Parts(mesh, options.prescribed, ranks)
     , First(mesh, mesh, Parts)
-    , MovedBoundary(mesh, Parts.prescribed())
+    , MovedBoundary(mesh, Parts.prescribed(), ranks)
   {
-    checkOptions(mesh, options);
+    ranks.together([&] { checkOptions(mesh, options); });
     checkMesh(mesh, this->Parts, options);
   }
 
@@ -146,6 +162,8 @@ struct Warper::Implementation
   void followMotion(const WarpMotion& path, const double* displacement, WarpControl& control);
   BoundaryState examineBoundary(const double* points) const;
   void explain(WarpControl& control);
+
+  const WarpRanks& ranks() const { return this->Parts.ranks(); }
 
   const Mesh& Input;
   WarpOptions Options;
@@ -164,7 +182,7 @@ void Warper::Implementation::checkDisplacement(const double* displacement) const
   for (std::size_t i = 0; i < prescribed.size(); ++i)
   {
     const double* d = displacement + 3 * i;
-    if (!prescribed[i])
+    if (!prescribed[i] || !this->ranks().owns(static_cast<Index>(i)))
     {
       continue;
     }
@@ -177,12 +195,16 @@ void Warper::Implementation::checkDisplacement(const double* displacement) const
     largest = std::max(largest, norm(v));
     out = planar ? std::max(out, std::abs(dot(v, this->Input.normal()))) : 0.0;
   }
+  wrong = this->ranks().sum(wrong);
   if (wrong > 0)
   {
     throw Error("The displacements of " + std::to_string(wrong) +
-      " prescribed points are NaN or infinite, the first is that of point " +
-      std::to_string(first) + ".");
+      " prescribed points are NaN or infinite" +
+      (this->ranks().several() ? "" : ", the first is that of point " + std::to_string(first)) +
+      ".");
   }
+  out = this->ranks().maximum(out);
+  largest = this->ranks().maximum(largest);
   constexpr double rounding = 1e-9;
   if (out > rounding * largest)
   {
@@ -194,7 +216,7 @@ void Warper::Implementation::checkDisplacement(const double* displacement) const
 WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotion& path)
 {
   WarpResult result;
-  WarpControl control(this->Options, result);
+  WarpControl control(this->Options, result, this->ranks());
   const WarpMotion checked = [&](double amount, double* displacement)
   {
     path(amount, displacement);
@@ -220,6 +242,7 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
     }
   }
   this->explain(control);
+  this->ranks().exchange(result.points.data(), 3); // also to points without a cell here
   return result;
 }
 
@@ -281,12 +304,13 @@ BoundaryState Warper::Implementation::examineBoundary(const double* points) cons
         std::copy_n(points + 3 * node[k], 3, p[k].begin());
         all = this->Parts.prescribed()[node[k]] != 0;
       }
-      if (all && this->Input.classifyCell(t, p) != Valid)
+      if (all && this->ranks().ownsCell(cell) && this->Input.classifyCell(t, p) != Valid)
       {
         state.firstInverted = state.inverted++ == 0 ? cell : state.firstInverted;
       }
     }
   }
+  state.inverted = this->ranks().sum(state.inverted);
   state.crossing = this->MovedBoundary.crossings(points);
   if (state.crossing.pairs > 0)
   {
@@ -331,15 +355,17 @@ void Warper::Implementation::explain(WarpControl& control)
   if (boundary.inverted > 0)
   {
     control.addMessage("The moved boundary itself inverts " +
-      counted(boundary.inverted, "element") +
-      ", all of whose points are prescribed; the first is cell " +
-      std::to_string(boundary.firstInverted) + ".");
+      counted(boundary.inverted, "element") + ", all of whose points are prescribed" +
+      (this->ranks().several()
+          ? "."
+          : "; the first is cell " + std::to_string(boundary.firstInverted) + "."));
   }
   if (boundary.crossing.pairs > 0)
   {
-    control.addMessage("The moved boundary intersects itself, at points " +
-      std::to_string(boundary.crossing.first[0]) + " and " +
-      std::to_string(boundary.crossing.first[1]) + " for example: move it less far.");
+    const std::string where = ", at points " + std::to_string(boundary.crossing.first[0]) +
+      " and " + std::to_string(boundary.crossing.first[1]) + " for example";
+    control.addMessage("The moved boundary intersects itself" +
+      (this->ranks().several() ? "" : where) + ": move it less far.");
   }
   if (result.invertedAfter > 0)
   {
@@ -357,9 +383,67 @@ void Warper::Implementation::explain(WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
+/// What a mesh on several ranks is deformed by.
+struct Warper::Local
+{
+  Local(const DistributedMesh& spread, bool mirrored, std::vector<Index> ids, int threads)
+    : Ids(std::move(ids))
+    , Part(spread.view(), threads)
+  {
+    this->Part.setMirrored(mirrored);
+  }
+  std::vector<Index> Ids;
+  Mesh Part;
+};
+
+//------------------------------------------------------------------------------
+bool warpsOnRanks(const WarpOptions& options)
+{
+  switch (options.method)
+  {
+    case WarpMethod::AnisotropicFemwarp:
+      return options.coefficients != WarpCoefficients::PerCell;
+    case WarpMethod::Femwarp:
+    case WarpMethod::SmallStepFemwarp:
+    case WarpMethod::IterativeStiffening:
+    case WarpMethod::JacobianStiffening:
+    case WarpMethod::InverseDistance:
+    case WarpMethod::RadialBasis:
+      return true;
+    default:
+      return false;
+  }
+}
+
+//------------------------------------------------------------------------------
 Warper::Warper(const Mesh& mesh, const WarpOptions& options)
   : Impl(std::make_unique<Implementation>(mesh, options))
 {
+}
+
+Warper::Warper(const DistributedMesh& mesh, bool mirrored, std::vector<Index> ids,
+  Communicator communicator, const WarpOptions& options)
+{
+  mesh.group().together(
+    [&]
+    {
+      if (!warpsOnRanks(options))
+      {
+        throw Error(
+          "This method, or its coefficients, need the mesh in one place: gather it on one "
+          "process, or choose FEMWARP, inverse distances or radial basis functions.");
+      }
+      if (!options.prescribed && mesh.localPoints() > 0)
+      {
+        throw Error("The prescribed points of a mesh on several ranks must be given.");
+      }
+      this->Here = std::make_unique<Local>(mesh, mirrored, std::move(ids), options.threads);
+    });
+  static const unsigned char none = 0; // not null, which would be the boundary
+  WarpOptions own = options;
+  own.prescribed = options.prescribed ? options.prescribed : &none;
+  this->Impl = std::make_unique<Implementation>(
+    this->Here->Part, own, WarpRanks(mesh, this->Here->Ids, communicator));
 }
 
 Warper::~Warper() = default;
@@ -387,6 +471,8 @@ WarpResult Warper::warp(const double* displacement)
 
 WarpResult Warper::warp(const std::function<void(double, double*)>& motion)
 {
-  return this->Impl->run(motion, motion);
+  const WarpMotion together = [&](double amount, double* to)
+  { this->Impl->ranks().together([&] { motion(amount, to); }); };
+  return this->Impl->run(together, together);
 }
 }

@@ -12,7 +12,8 @@
 #define tautline_Warp_h
 
 #include "WarpOptions.h"
-#include "tautline/Mesh/Mesh.h"
+#include "tautline/Core/Communicator.h"
+#include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/SolversExport.h"
 
 #include <functional>
@@ -20,6 +21,13 @@
 
 namespace tautline
 {
+/**
+ * @brief Whether a mesh on several ranks is deformed by these options: FEMWARP, anisotropic FEMWARP
+ * but for coefficients per cell, small-step FEMWARP, the elastic methods, inverse distances and
+ * radial basis functions. The others need the mesh in one place.
+ */
+TAUTLINE_SOLVERS_EXPORT bool warpsOnRanks(const WarpOptions& options);
+
 /**
  * @class tautline::Warper
  * @brief Deforms a mesh; keeps matrices, preconditioners and former solutions for the next
@@ -35,6 +43,21 @@ public:
    * of range.
    */
   Warper(const Mesh& mesh, const WarpOptions& options);
+
+  /**
+   * @brief The same for a mesh on several ranks, see warpsOnRanks(). Collective, as warp() is then:
+   * points, displacements and flags are those of the local points, and a prescribed point is one,
+   * with the same displacement, on all ranks that have it. The numbers of the result are those of
+   * the whole mesh.
+   * @param mesh stays alive; volume, or planar at right angles to an axis; all cells of one
+   * dimension
+   * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks
+   * @param communicator of MPI, with the ranks of the mesh
+   * @param ids one per local point: the pointwise methods take the prescribed points in this order
+   * @param options prescribed must be given
+   */
+  Warper(const DistributedMesh& mesh, bool mirrored, std::vector<Index> ids,
+    Communicator communicator, const WarpOptions& options);
   ~Warper();
 
   /**
@@ -55,7 +78,9 @@ public:
   void setMaximumSeconds(double seconds);
 
 private:
+  struct Local;
   struct Implementation;
+  std::unique_ptr<Local> Here; ///< null on one rank
   std::unique_ptr<Implementation> Impl;
 };
 }

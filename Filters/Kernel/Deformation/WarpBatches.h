@@ -24,8 +24,7 @@ bool forEachBatch(std::size_t n, double from, WarpControl& control, const Work& 
   const Index run = std::max<Index>(ChunkSize, (size + Runs - 1) / Runs);
   for (Index begin = 0; begin < size; begin += run)
   {
-    if (!control.proceed(
-          from + (1 - from) * static_cast<double>(begin) / static_cast<double>(size)))
+    if (!control.watch(from + (1 - from) * static_cast<double>(begin) / static_cast<double>(size)))
     {
       return false;
     }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 namespace tautline
 {
-WarpBoundary::WarpBoundary(const Mesh& mesh, const std::vector<unsigned char>& prescribed)
+WarpBoundary::WarpBoundary(
+  const Mesh& mesh, const std::vector<unsigned char>& prescribed, const WarpRanks& ranks)
   : Input(mesh)
-  , Nodes(mesh.dimension() == Dimension::Volume ? 3 : 2)
+  , Ranks(ranks)
+  , Nodes(ranks.dimension(mesh) == Dimension::Volume ? 3 : 2)
 {
   // Equal facets have equal keys: their sorted nodes.
   struct Facet
@@ -62,7 +65,8 @@ WarpBoundary::WarpBoundary(const Mesh& mesh, const std::vector<unsigned char>& p
     for (j = i + 1; j < facets.size() && facets[j].key == facets[i].key; ++j)
     {
     }
-    if (j - i > 1)
+    // Of the facets at an own point all cells are here.
+    if (j - i > 1 || !ranks.owns(facets[i].key[0]))
     {
       continue;
     }
@@ -240,6 +244,61 @@ bool triangleEdgesPierce(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>
 
 WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
 {
+  if (!this->Ranks.several())
+  {
+    return this->crossingsAmong(this->Facets, points);
+  }
+  // The facets go to the first rank with cells, whose mesh has the plane of a planar one.
+  struct Corner
+  {
+    Index number;
+    Vec3 place;
+  };
+  const DistributedMesh& mesh = this->Ranks.mesh();
+  RankGroup& group = mesh.group();
+  const bool any = this->Input.dimension() != Dimension::None;
+  const Index last = group.size() - 1;
+  const Index root = last - group.maximum(any ? last - group.rank() : Index(0));
+  std::vector<std::vector<Corner>> sent(group.size());
+  for (const std::array<Index, 3>& facet : this->Facets)
+  {
+    for (int k = 0; k < this->Nodes; ++k)
+    {
+      const double* p = points + 3 * facet[k];
+      sent[root].push_back({ mesh.numbers()[facet[k]], { p[0], p[1], p[2] } });
+    }
+  }
+  std::vector<Corner> corners;
+  for (const std::vector<Corner>& list : group.exchangeItems(sent))
+  {
+    corners.insert(corners.end(), list.begin(), list.end());
+  }
+  Crossing result;
+  this->Ranks.together(
+    [&]
+    {
+      std::map<Index, Index> known; // by number
+      std::vector<double> places;
+      FacetList facets(corners.size() / this->Nodes);
+      for (std::size_t i = 0; i < corners.size(); ++i)
+      {
+        const auto [at, fresh] = known.emplace(corners[i].number, static_cast<Index>(known.size()));
+        if (fresh)
+        {
+          places.insert(places.end(), corners[i].place.begin(), corners[i].place.end());
+        }
+        facets[i / this->Nodes][i % this->Nodes] = at->second;
+      }
+      result = this->crossingsAmong(facets, places.data());
+    });
+  result.pairs = group.sum(result.pairs);
+  return result;
+}
+
+//------------------------------------------------------------------------------
+WarpBoundary::Crossing WarpBoundary::crossingsAmong(
+  const FacetList& facets, const double* points) const
+{
   const int nodes = this->Nodes;
   const auto at = [&](Index p) {
     return Vec3{ points[3 * p], points[3 * p + 1], points[3 * p + 2] };
@@ -247,12 +306,12 @@ WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
   const auto inPlane = [&](Index p) {
     return Vec2{ dot(this->Input.frame()[0], at(p)), dot(this->Input.frame()[1], at(p)) };
   };
-  std::vector<FacetGrid::Box> boxes(this->Facets.size(), FacetGrid::emptyBox());
+  std::vector<FacetGrid::Box> boxes(facets.size(), FacetGrid::emptyBox());
   for (std::size_t i = 0; i < boxes.size(); ++i)
   {
     for (int k = 0; k < nodes; ++k)
     {
-      const Vec3 x = at(this->Facets[i][k]);
+      const Vec3 x = at(facets[i][k]);
       for (int c = 0; c < 3; ++c)
       {
         boxes[i].low[c] = std::min(boxes[i].low[c], x[c]);
@@ -277,7 +336,7 @@ WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
     .forEachPair(
       [&](std::int32_t i, std::int32_t j)
       {
-        const auto &f = this->Facets[i], &g = this->Facets[j];
+        const auto &f = facets[i], &g = facets[j];
         if (cross(f, g) && result.pairs++ == 0)
         {
           result.first = { f[0], g[0] };

@@ -5,7 +5,7 @@
 #ifndef tautline_WarpBoundary_h
 #define tautline_WarpBoundary_h
 
-#include "tautline/Mesh/Mesh.h"
+#include "WarpRanks.h"
 
 namespace tautline
 {
@@ -17,7 +17,9 @@ class WarpBoundary
 {
 public:
   /// Finds the edges (2D) or faces (3D) of one cell alone whose points are all prescribed.
-  WarpBoundary(const Mesh& mesh, const std::vector<unsigned char>& prescribed);
+  /// On several ranks each facet is on that which owns its first point.
+  WarpBoundary(
+    const Mesh& mesh, const std::vector<unsigned char>& prescribed, const WarpRanks& ranks = {});
 
   struct Crossing
   {
@@ -27,14 +29,19 @@ public:
   /**
    * @brief Counts pairs without a common point that meet: edges that cross or touch, triangles that
    * an edge of the other goes right through.
+   * On several ranks one of them has all facets for it: collective.
    * @param points 3 per point of the mesh
    */
   Crossing crossings(const double* points) const;
 
 private:
+  using FacetList = std::vector<std::array<Index, 3>>;
+  Crossing crossingsAmong(const FacetList& facets, const double* points) const;
+
   const Mesh& Input;
+  WarpRanks Ranks;
   int Nodes; ///< of a facet: 2 or 3
-  std::vector<std::array<Index, 3>> Facets;
+  FacetList Facets;
 };
 }
 #endif

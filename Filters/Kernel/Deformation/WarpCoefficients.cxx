@@ -10,12 +10,12 @@ namespace
 constexpr double rounding = 1e-12;
 
 template <class Visit>
-void forEachPrescribed(
-  const std::vector<unsigned char>& prescribed, const double* displacement, const Visit& visit)
+void forEachPrescribed(const std::vector<unsigned char>& prescribed, const double* displacement,
+  const WarpRanks& ranks, const Visit& visit)
 {
   for (std::size_t i = 0; i < prescribed.size(); ++i)
   {
-    if (prescribed[i])
+    if (prescribed[i] && ranks.owns(static_cast<Index>(i)))
     {
       visit(Eigen::Map<const Eigen::Vector3d>(displacement + 3 * i));
     }
@@ -40,28 +40,32 @@ bool normalize(Eigen::Vector3d& sums)
 
 //------------------------------------------------------------------------------
 SymmetricTensor displacementSums(
-  const std::vector<unsigned char>& prescribed, const double* displacement)
+  const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks)
 {
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
-  forEachPrescribed(prescribed, displacement, [&sums](const auto& d) { sums += d.cwiseAbs(); });
+  forEachPrescribed(
+    prescribed, displacement, ranks, [&sums](const auto& d) { sums += d.cwiseAbs(); });
+  ranks.sum(sums.data(), sums.size());
   return normalize(sums) ? SymmetricTensor{ sums[0], sums[1], sums[2], 0, 0, 0 } : IdentityTensor;
 }
 
 //------------------------------------------------------------------------------
 SymmetricTensor principalDirections(
-  const std::vector<unsigned char>& prescribed, const double* displacement)
+  const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks)
 {
   // In units of the largest displacement, so that squares neither vanish nor overflow.
   double largest = 0;
-  forEachPrescribed(prescribed, displacement,
+  forEachPrescribed(prescribed, displacement, ranks,
     [&largest](const auto& d) { largest = std::max(largest, d.cwiseAbs().maxCoeff()); });
+  largest = ranks.maximum(largest);
   if (!(largest > 0))
   {
     return IdentityTensor;
   }
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  forEachPrescribed(prescribed, displacement,
+  forEachPrescribed(prescribed, displacement, ranks,
     [&](const auto& d) { moments += (d / largest) * (d / largest).transpose(); });
+  ranks.sum(moments.data(), moments.size());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
   const Eigen::Vector3d values = solver.eigenvalues(); // ascending
   const Eigen::Matrix3d axes = solver.eigenvectors();
@@ -78,7 +82,7 @@ SymmetricTensor principalDirections(
       ++end;
     }
     double sum = 0;
-    forEachPrescribed(prescribed, displacement,
+    forEachPrescribed(prescribed, displacement, ranks,
       [&](const auto& d)
       {
         double length2 = 0;
@@ -89,6 +93,7 @@ SymmetricTensor principalDirections(
         }
         sum += std::sqrt(length2);
       });
+    sum = ranks.sum(sum);
     for (int k = first; k < end; ++k)
     {
       sums[k] = average[end - first] * sum;

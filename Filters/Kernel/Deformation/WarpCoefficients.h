@@ -4,10 +4,12 @@
  * installed.
  *
  * Both functions take one flag per point and 3 displacements per point; only those of flagged
- * points are read.
+ * points are read, and the own ones counted.
  */
 #ifndef tautline_WarpCoefficients_h
 #define tautline_WarpCoefficients_h
+
+#include "WarpRanks.h"
 
 #include "tautline/Elliptic/Materials.h"
 
@@ -20,7 +22,7 @@ namespace tautline
  * largest scaled to 1. The identity where nothing moves.
  */
 SymmetricTensor displacementSums(
-  const std::vector<unsigned char>& prescribed, const double* displacement);
+  const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks);
 
 /**
  * @brief The same along the principal directions of the motion: the eigenvectors of the sum of d
@@ -29,6 +31,6 @@ SymmetricTensor displacementSums(
  * moves.
  */
 SymmetricTensor principalDirections(
-  const std::vector<unsigned char>& prescribed, const double* displacement);
+  const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks);
 }
 #endif

@@ -8,6 +8,7 @@
 
 #include "tautline/Core/Stopwatch.h"
 #include "WarpOptions.h"
+#include "WarpRanks.h"
 
 #include <algorithm>
 
@@ -22,9 +23,10 @@ class WarpControl
 {
 public:
   /// Both stay alive; the result gets the flags timeLimit and aborted, and the message.
-  WarpControl(const WarpOptions& options, WarpResult& result)
+  WarpControl(const WarpOptions& options, WarpResult& result, const WarpRanks& ranks = {})
     : Options(options)
     , Result(result)
+    , Ranks(ranks)
   {
   }
 
@@ -48,8 +50,17 @@ public:
     this->From = from;
     this->To = to;
   }
-  /// Reports progress; false when the deformation has to stop. The result then states why.
+  /// Reports progress; false when the deformation has to stop. The result then states why. The
+  /// ranks stop together: collective.
   bool proceed(double fraction)
+  {
+    this->watch(fraction);
+    this->Result.timeLimit = this->Ranks.any(this->Result.timeLimit);
+    this->Result.aborted = this->Ranks.any(this->Result.aborted);
+    return !this->stopped();
+  }
+  /// The same within work that does not communicate; proceed() follows on all ranks.
+  bool watch(double fraction)
   {
     if (this->Time.reached(this->Options.maximumSeconds))
     {
@@ -83,6 +94,7 @@ public:
 private:
   const WarpOptions& Options;
   WarpResult& Result;
+  WarpRanks Ranks;
   Stopwatch Time;
   double From = 0, To = 1, Reported = 0;
   int Iterations = 0;

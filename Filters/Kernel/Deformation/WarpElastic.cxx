@@ -2,12 +2,14 @@
 
 #include "tautline/Quality/Metrics.h"
 
+#include <limits>
+
 namespace tautline
 {
 ElasticWarp::ElasticWarp(const Mesh& mesh, const WarpParts& parts, WarpControl& control)
   : Input(mesh)
   , Parts(parts)
-  , Components(elasticComponents(mesh))
+  , Components(parts.dimension() == Dimension::Volume ? 3 : 2)
 {
   const Index cells = mesh.view().numberOfCells;
   this->Stiffening.assign(cells, 1.0);
@@ -21,11 +23,13 @@ ElasticWarp::ElasticWarp(const Mesh& mesh, const WarpParts& parts, WarpControl& 
   evaluateMetric(mesh, Metric::Size, evaluation, sizes.data());
   double sum = 0;
   Index count = 0;
-  for (double size : sizes)
+  for (Index i = 0; i < cells; ++i)
   {
-    sum += std::abs(size);
-    count += size != 0;
+    sum += parts.ranks().ownsCell(i) ? std::abs(sizes[i]) : 0.0;
+    count += parts.ranks().ownsCell(i) && sizes[i] != 0;
   }
+  sum = parts.ranks().sum(sum);
+  count = parts.ranks().sum(count);
   // The factor (J_0 / J)^chi of each element, J_0 the mean.
   const double mean = sum / std::max<double>(1.0, static_cast<double>(count));
   for (Index i = 0; i < cells; ++i)
@@ -46,11 +50,25 @@ void ElasticWarp::assemble(WarpControl& control)
   pde.stiffening = this->Stiffening.data();
   AssemblyOptions options;
   options.threads = control.options().threads;
-  this->System = std::make_unique<WarpSystem>(stiffnessMatrix(this->Input, pde, options),
-    this->Components, this->Parts.held(), this->Input.view().points,
-    this->Input.dimension() == Dimension::Volume ? 3 : 2, control.options());
-  this->Uniform = std::all_of(this->Stiffening.begin(), this->Stiffening.end(),
-    [&](double factor) { return factor == this->Stiffening.front(); });
+  const WarpRanks& ranks = this->Parts.ranks();
+  SparseMatrix matrix;
+  ranks.together(
+    [&]
+    {
+      if (this->Input.view().numberOfCells > 0)
+      {
+        matrix = stiffnessMatrix(this->Input, pde, options);
+        return;
+      }
+      matrix.size = this->Components * this->Input.view().numberOfPoints;
+      matrix.offsets.assign(matrix.size + 1, 0);
+    });
+  this->System = std::make_unique<WarpSystem>(matrix, this->Components, this->Parts.held(),
+    this->Input.view().points, this->Components, control.options(), ranks);
+  const auto range = std::minmax_element(this->Stiffening.begin(), this->Stiffening.end());
+  const bool none = this->Stiffening.empty(); // factors are at least 0
+  const double most = ranks.maximum(none ? 0.0 : *range.second);
+  this->Uniform = !ranks.any(!none && *range.first != most);
   control.result().assembleSeconds += control.elapsed() - before;
 }
 
@@ -116,7 +134,7 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
   }
   std::vector<double> best, moved, points(3 * view.numberOfPoints);
   std::vector<signed char> validity(view.numberOfCells);
-  Index fewest = view.numberOfCells + 1;
+  Index fewest = std::numeric_limits<Index>::max();
   constexpr double stiffest = 1e12; // nearly rigid, and the matrix can still be factored
   for (int round = 0;; ++round)
   {
@@ -151,10 +169,11 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
     {
       if (validity[i] != Valid && validity[i] != NotMeasured)
       {
-        ++inverted;
+        inverted += this->Parts.ranks().ownsCell(i);
         this->Stiffening[i] = std::min(stiffest, options.stiffeningFactor * this->Stiffening[i]);
       }
     }
+    inverted = this->Parts.ranks().sum(inverted);
     if (inverted < fewest)
     {
       fewest = inverted;

@@ -4,11 +4,14 @@
 
 #include <Eigen/Dense>
 
-#include <numeric>
+#include <algorithm>
+#include <array>
 
 namespace tautline
 {
-WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed)
+WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed, const WarpRanks& ranks)
+  : Ranks(ranks)
+  , Dim(ranks.dimension(mesh))
 {
   const MeshView& view = mesh.view();
   const Index n = view.numberOfPoints;
@@ -27,7 +30,7 @@ WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed)
 
   // Parts are numbered in the order of their smallest points.
   UnionFind sets(n);
-  std::vector<char> used(n, 0);
+  std::vector<unsigned char> used(n, 0);
   for (const CellBlock& block : mesh.blocks())
   {
     const int nodes = topology(block.type).nodes;
@@ -42,47 +45,45 @@ WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed)
       }
     }
   }
-  this->Part.assign(n, -1);
-  for (Index i = 0; i < n; ++i)
-  {
-    if (used[i])
-    {
-      const Index r = sets.find(i);
-      this->Part[i] = r == i ? this->Count++ : this->Part[r];
-    }
-  }
+  this->Part = ranks.numberSets(sets, used, this->Count);
 
   // Parts without a prescribed point are loose: their points are held where they are.
-  std::vector<char> hasPrescribed(this->Count, 0);
+  std::vector<double> prescribedOf(this->Count, 0.0); // points of each part
   for (Index i = 0; i < n; ++i)
   {
-    this->PrescribedPoints += this->Prescribed[i] && used[i];
-    if (this->Prescribed[i] && used[i])
+    if (this->Prescribed[i] && used[i] && ranks.owns(i))
     {
-      hasPrescribed[this->Part[i]] = 1;
+      ++this->PrescribedPoints;
+      ++prescribedOf[this->Part[i]];
     }
   }
-  this->Loose = this->Count - std::accumulate(hasPrescribed.begin(), hasPrescribed.end(), Index(0));
+  this->PrescribedPoints = ranks.sum(this->PrescribedPoints);
+  ranks.sum(prescribedOf.data(), this->Count);
+  this->Loose = std::count(prescribedOf.begin(), prescribedOf.end(), 0.0);
   this->Held.assign(n, 1);
   for (Index i = 0; i < n; ++i)
   {
-    this->Held[i] = this->Prescribed[i] || !used[i] || !hasPrescribed[this->Part[i]];
-    this->FreePoints += !this->Held[i];
+    this->Held[i] = this->Prescribed[i] || !used[i] || prescribedOf[this->Part[i]] == 0;
+    this->FreePoints += !this->Held[i] && ranks.owns(i);
   }
+  this->FreePoints = ranks.sum(this->FreePoints);
 }
 
 //------------------------------------------------------------------------------
 std::vector<char> WarpParts::moving(const double* displacement) const
 {
-  std::vector<char> moves(this->Count, 0);
+  std::vector<double> moving(this->Count, 0.0); // points of each part
   for (std::size_t i = 0; i < this->Part.size(); ++i)
   {
     const double* d = displacement + 3 * i;
     if (this->Prescribed[i] && this->Part[i] >= 0 && (d[0] != 0 || d[1] != 0 || d[2] != 0))
     {
-      moves[this->Part[i]] = 1;
+      ++moving[this->Part[i]];
     }
   }
+  this->Ranks.sum(moving.data(), this->Count);
+  std::vector<char> moves(moving.size());
+  std::transform(moving.begin(), moving.end(), moves.begin(), [](double n) { return n > 0; });
   return moves;
 }
 
@@ -95,14 +96,16 @@ using Vector = Eigen::Vector3d;
 /// A least squares fit of displacements by offset + linear (x - center).
 struct Fit
 {
-  Index count = 0;
+  double count = 0;
   Vector center = Vector::Zero();
   Matrix moments = Matrix::Zero(); ///< sum of x x^T from the center; later its pseudo-inverse
   Matrix linear = Matrix::Zero();  ///< its columns are derivatives
   Vector offset = Vector::Zero();
 
-  double size() const { return std::max<double>(1.0, static_cast<double>(this->count)); }
+  double size() const { return std::max(1.0, this->count); }
 };
+
+constexpr std::size_t Components = 3; // of a vector
 
 /// Replaces the second moments by their pseudo-inverse: directions in which the points extend by
 /// less than a small fraction of their extent count as not spanned.
@@ -142,7 +145,7 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
   {
     for (std::size_t i = 0; i < this->Part.size(); ++i)
     {
-      if (this->Prescribed[i] && this->Part[i] >= 0)
+      if (this->Prescribed[i] && this->Part[i] >= 0 && this->Ranks.owns(static_cast<Index>(i)))
       {
         visit(fits[this->Part[i]], Eigen::Map<const Vector>(points + 3 * i),
           Eigen::Map<const Vector>(displacement + 3 * i));
@@ -155,12 +158,19 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
       ++fit.count;
       fit.center += x;
     });
+  addUp(this->Ranks, fits,
+    [](Fit& fit) {
+      return std::array<double*, 2>{ &fit.count, fit.center.data() };
+    },
+    { 1, Components });
   for (Fit& fit : fits)
   {
     fit.center /= fit.size();
   }
   forEach([](Fit& fit, const auto& x, const auto&)
     { fit.moments += (x - fit.center) * (x - fit.center).transpose(); });
+  addUp(this->Ranks, fits, [](Fit& fit) { return std::array<double*, 1>{ fit.moments.data() }; },
+    { Components * Components });
   std::for_each(fits.begin(), fits.end(), invertMoments);
 
   // The second round fits what rounding left of the first.
@@ -182,6 +192,11 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
         sum.rest += rest;
         sum.mixed += rest * y.transpose();
       });
+    addUp(this->Ranks, sums,
+      [](Sums& sum) {
+        return std::array<double*, 2>{ sum.rest.data(), sum.mixed.data() };
+      },
+      { Components, Components * Components });
     for (std::size_t p = 0; p < fits.size(); ++p)
     {
       fits[p].offset += sums[p].rest / fits[p].size();

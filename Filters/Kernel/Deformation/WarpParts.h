@@ -6,6 +6,8 @@
 #ifndef tautline_WarpParts_h
 #define tautline_WarpParts_h
 
+#include "WarpRanks.h"
+
 #include "tautline/Mesh/Mesh.h"
 
 namespace tautline
@@ -32,8 +34,15 @@ struct AffineMotion
 class WarpParts
 {
 public:
-  /// @param prescribed one flag per point, or null: the points of the boundary
-  WarpParts(const Mesh& mesh, const unsigned char* prescribed);
+  /**
+   * @param prescribed one flag per point; null, on one rank only: the points of the boundary
+   * @param ranks what is counted here is that of all of them
+   */
+  WarpParts(const Mesh& mesh, const unsigned char* prescribed, const WarpRanks& ranks = {});
+
+  const WarpRanks& ranks() const { return this->Ranks; }
+  /// Of the whole mesh.
+  Dimension dimension() const { return this->Dim; }
 
   const std::vector<unsigned char>& prescribed() const { return this->Prescribed; }
   /// The connected part of a point; -1 outside all cells.
@@ -59,6 +68,8 @@ public:
   std::vector<AffineMotion> affine(const double* points, const double* displacement) const;
 
 private:
+  WarpRanks Ranks;
+  Dimension Dim;
   std::vector<unsigned char> Prescribed, Held;
   std::vector<Index> Part;
   Index Count = 0, Loose = 0, PrescribedPoints = 0, FreePoints = 0;

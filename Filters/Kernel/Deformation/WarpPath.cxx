@@ -19,9 +19,9 @@ constexpr double AffineResidual = 0.05;
 /// The connected component of each point, -1 where nothing is prescribed: points are joined by
 /// facets (edges of planar cells) all of whose points are prescribed. Components are numbered by
 /// their smallest points.
-std::vector<Index> findPieces(
-  const Mesh& mesh, const std::vector<unsigned char>& prescribed, std::size_t& pieces)
+std::vector<Index> findPieces(const Mesh& mesh, const WarpParts& parts, std::size_t& pieces)
 {
+  const std::vector<unsigned char>& prescribed = parts.prescribed();
   const MeshView& view = mesh.view();
   const Index n = view.numberOfPoints;
   UnionFind sets(n);
@@ -55,16 +55,9 @@ std::vector<Index> findPieces(
       }
     }
   }
-  std::vector<Index> pieceOf(n, -1);
-  pieces = 0;
-  for (Index i = 0; i < n; ++i)
-  {
-    if (prescribed[i])
-    {
-      const Index r = sets.find(i);
-      pieceOf[i] = r == i ? static_cast<Index>(pieces++) : pieceOf[r];
-    }
-  }
+  Index count = 0;
+  std::vector<Index> pieceOf = parts.ranks().numberSets(sets, prescribed, count);
+  pieces = static_cast<std::size_t>(count);
   return pieceOf;
 }
 
@@ -79,14 +72,14 @@ struct Moments
 };
 
 std::vector<Moments> momentsOf(const MeshView& view, const std::vector<Index>& pieceOf,
-  std::size_t pieces, const double* displacement)
+  std::size_t pieces, const double* displacement, const WarpRanks& ranks)
 {
   std::vector<Moments> moments(pieces);
   const auto forEach = [&](const auto& visit)
   {
     for (Index i = 0; i < view.numberOfPoints; ++i)
     {
-      if (pieceOf[i] >= 0)
+      if (pieceOf[i] >= 0 && ranks.owns(i))
       {
         visit(moments[pieceOf[i]], Eigen::Map<const Vector>(view.points + 3 * i),
           Eigen::Map<const Vector>(displacement + 3 * i));
@@ -100,6 +93,12 @@ std::vector<Moments> momentsOf(const MeshView& view, const std::vector<Index>& p
       m.center += x;
       m.shift += d;
     });
+  constexpr std::size_t components = 3;
+  addUp(ranks, moments,
+    [](Moments& m) {
+      return std::array<double*, 3>{ &m.count, m.center.data(), m.shift.data() };
+    },
+    { 1, components, components });
   for (Moments& m : moments)
   {
     m.center /= m.count;
@@ -113,6 +112,11 @@ std::vector<Moments> momentsOf(const MeshView& view, const std::vector<Index>& p
       m.mixed += b * a.transpose();
       m.moved += b.squaredNorm();
     });
+  addUp(ranks, moments,
+    [](Moments& m) {
+      return std::array<double*, 3>{ m.points.data(), m.mixed.data(), &m.moved };
+    },
+    { components * components, components * components, 1 });
   return moments;
 }
 
@@ -171,9 +175,10 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
   , Displacement(displacement, displacement + 3 * mesh.view().numberOfPoints)
 {
   std::size_t pieces = 0;
-  this->PieceOf = findPieces(mesh, parts.prescribed(), pieces);
+  this->PieceOf = findPieces(mesh, parts, pieces);
   this->Pieces.resize(pieces);
-  const std::vector<Moments> moments = momentsOf(mesh.view(), this->PieceOf, pieces, displacement);
+  const std::vector<Moments> moments =
+    momentsOf(mesh.view(), this->PieceOf, pieces, displacement, parts.ranks());
   for (std::size_t p = 0; p < pieces; ++p)
   {
     Piece& piece = this->Pieces[p];
@@ -184,7 +189,7 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
     }
     // The polar decomposition splits the map into a rotation and a stretch.
     Matrix map;
-    if (!fitMap(moments[p], mesh.dimension() == Dimension::Planar, map))
+    if (!fitMap(moments[p], parts.dimension() == Dimension::Planar, map))
     {
       continue;
     }

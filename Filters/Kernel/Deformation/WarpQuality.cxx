@@ -1,5 +1,7 @@
 #include "WarpQuality.h"
 
+#include "WarpRanks.h"
+
 #include "tautline/Core/Parallel.h"
 
 #include <Eigen/Dense>
@@ -103,6 +105,12 @@ std::vector<double> shapeSimilarity(const Mesh& mesh, const double* points, int 
 //------------------------------------------------------------------------------
 WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads)
 {
+  return qualityOf(mesh, points, threads, WarpRanks());
+}
+
+//------------------------------------------------------------------------------
+WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads, const WarpRanks& ranks)
+{
   struct Part
   {
     Index valid = 0, inverted = 0;
@@ -115,9 +123,13 @@ WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads)
   }
   std::vector<Part> parts(chunks);
   forEachElement(mesh, points, threads,
-    [&parts](Index chunk, Index, double value)
+    [&](Index chunk, Index cell, double value)
     {
       Part& part = parts[chunk];
+      if (!ranks.ownsCell(cell))
+      {
+        return;
+      }
       if (std::isnan(value))
       {
         ++part.inverted;
@@ -137,6 +149,10 @@ WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads)
     quality.worst = std::max(quality.worst, part.worst);
     quality.mean += part.sum;
   }
+  valid = ranks.sum(valid);
+  quality.inverted = ranks.sum(quality.inverted);
+  quality.worst = ranks.maximum(quality.worst);
+  quality.mean = ranks.sum(quality.mean);
   quality.mean /= std::max<double>(1.0, static_cast<double>(valid));
   return quality;
 }

@@ -91,7 +91,7 @@ public:
         return true;
       }
       if (this->Chosen.size() % ClockInterval == 0 &&
-        !control.proceed(0.5 * static_cast<double>(this->Chosen.size()) / MaxCenters))
+        !control.watch(0.5 * static_cast<double>(this->Chosen.size()) / MaxCenters))
       {
         return false;
       }

@@ -32,10 +32,10 @@ void WarpStep::updateFemwarp(const double* displacement, WarpControl& control)
     switch (options.coefficients)
     {
       case WarpCoefficients::DisplacementSums:
-        tensor = displacementSums(prescribed, displacement);
+        tensor = displacementSums(prescribed, displacement, this->Parts.ranks());
         break;
       case WarpCoefficients::PrincipalDirections:
-        tensor = principalDirections(prescribed, displacement);
+        tensor = principalDirections(prescribed, displacement, this->Parts.ranks());
         break;
       case WarpCoefficients::Manual:
         tensor = options.tensor;
@@ -72,10 +72,10 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
   switch (options.method)
   {
     case WarpMethod::InverseDistance:
-      moved = warpByInverseDistance(this->From, prescribed, displacement, control);
+      moved = this->warpPointwise(warpByInverseDistance, displacement, control);
       break;
     case WarpMethod::RadialBasis:
-      moved = warpByRadialBasis(this->From, prescribed, displacement, control);
+      moved = this->warpPointwise(warpByRadialBasis, displacement, control);
       break;
     case WarpMethod::WeightedLaplacian:
       moved = warpByWeightedLaplacian(this->From, prescribed, displacement, control);
@@ -92,7 +92,7 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
       this->updateFemwarp(displacement, control);
       moved = this->Scalar->warp(displacement, control);
   }
-  if (moved.empty())
+  if (this->Parts.ranks().any(moved.empty() && !prescribed.empty()))
   {
     // Stopped before there was a result: only the prescribed points have moved.
     control.proceed(1.0);
@@ -115,10 +115,89 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
 }
 
 //------------------------------------------------------------------------------
+/// By a method that takes each point by itself: on several ranks with the prescribed points of all
+/// of them, in the order of their ids, and the own free ones, without cells.
+std::vector<double> WarpStep::warpPointwise(
+  PointwiseMethod method, const double* displacement, WarpControl& control) const
+{
+  const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
+  const WarpRanks& ranks = this->Parts.ranks();
+  if (!ranks.several())
+  {
+    return method(this->From, prescribed, displacement, control);
+  }
+  struct Given
+  {
+    Index id;
+    std::array<double, 3> place, displacement;
+  };
+  const MeshView& local = this->From.view();
+  std::vector<Given> own, given;
+  for (Index i = 0; i < local.numberOfPoints; ++i)
+  {
+    if (prescribed[i] && ranks.owns(i))
+    {
+      own.push_back({ ranks.id(i), pointOf(local, i), {} });
+      std::copy_n(displacement + 3 * i, 3, own.back().displacement.begin());
+    }
+  }
+  for (const std::vector<Given>& list : ranks.mesh().group().gatherItems(own))
+  {
+    given.insert(given.end(), list.begin(), list.end());
+  }
+  std::sort(given.begin(), given.end(), [](const Given& a, const Given& b) { return a.id < b.id; });
+  std::vector<double> moved;
+  ranks.together(
+    [&]
+    {
+      std::vector<double> points, displacements;
+      for (const Given& one : given)
+      {
+        points.insert(points.end(), one.place.begin(), one.place.end());
+        displacements.insert(displacements.end(), one.displacement.begin(), one.displacement.end());
+      }
+      std::vector<Index> free;
+      for (Index i = 0; i < local.numberOfPoints; ++i)
+      {
+        if (!prescribed[i] && ranks.owns(i))
+        {
+          free.push_back(i);
+          points.insert(points.end(), local.points + 3 * i, local.points + 3 * i + 3);
+        }
+      }
+      displacements.resize(points.size(), 0.0);
+      std::vector<unsigned char> flags(points.size() / 3, 0);
+      std::fill_n(flags.begin(), given.size(), 1);
+      const Index start = 0;
+      MeshView cloud;
+      cloud.numberOfPoints = static_cast<Index>(flags.size());
+      cloud.points = points.data();
+      cloud.offsets = &start;
+      const std::vector<double> result = method(Mesh(cloud), flags, displacements.data(), control);
+      if (result.empty())
+      {
+        return;
+      }
+      moved.assign(3 * prescribed.size(), 0.0);
+      for (std::size_t k = 0; k < free.size(); ++k)
+      {
+        std::copy_n(&result[3 * (given.size() + k)], 3, &moved[3 * free[k]]);
+      }
+    });
+  if (!control.proceed(1.0) || ranks.any(moved.empty() && !prescribed.empty()))
+  {
+    return {};
+  }
+  ranks.exchange(moved.data(), 3);
+  return moved;
+}
+
+//------------------------------------------------------------------------------
 WarpQuality WarpStep::record(const char* stage, double amount, int iterations, const double* points,
   WarpControl& control) const
 {
-  const WarpQuality quality = qualityOf(this->Initial, points, control.options().threads);
+  const WarpQuality quality =
+    qualityOf(this->Initial, points, control.options().threads, this->Parts.ranks());
   WarpRecord record;
   record.amount = amount;
   record.inverted = quality.inverted;

@@ -51,6 +51,10 @@ public:
 private:
   void updateFemwarp(const double* displacement, WarpControl& control);
   void warp(const double* displacement, WarpControl& control, std::vector<double>& moved);
+  using PointwiseMethod = std::vector<double> (*)(
+    const Mesh&, const std::vector<unsigned char>&, const double*, WarpControl&);
+  std::vector<double> warpPointwise(
+    PointwiseMethod method, const double* displacement, WarpControl& control) const;
   int untangle(const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;
   enum class Aim

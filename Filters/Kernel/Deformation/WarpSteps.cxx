@@ -99,7 +99,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
   if (result.amount < 1.0)
   {
     result.invertedWarp = result.invertedAfter =
-      qualityOf(mesh, result.points.data(), options.threads).inverted;
+      qualityOf(mesh, result.points.data(), options.threads, parts.ranks()).inverted;
     control.addMessage("The mesh could follow only a part of the motion, " +
       std::to_string(result.amount) + " of it, without inverted elements.");
   }

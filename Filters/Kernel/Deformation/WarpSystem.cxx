@@ -54,8 +54,9 @@ void add(double s, const std::vector<double>& x, std::vector<double>& y, int thr
 
 //------------------------------------------------------------------------------
 WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<unsigned char>& held,
-  const double* points, int dimension, const WarpOptions& options)
+  const double* points, int dimension, const WarpOptions& options, const WarpRanks& ranks)
   : Options(options)
+  , Ranks(ranks)
   , Block(block)
 {
   const Index n = static_cast<Index>(held.size());
@@ -81,7 +82,9 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
   {
     for (Index row = p * block; row < (p + 1) * block; ++row)
     {
-      for (Index e = all.offsets[row]; e < all.offsets[row + 1]; ++e)
+      // Another rank has the row of a point that it owns.
+      const Index end = ranks.owns(p) ? all.offsets[row + 1] : all.offsets[row];
+      for (Index e = all.offsets[row]; e < end; ++e)
       {
         const std::int32_t column = unknown[all.columns[e]];
         if (column >= 0)
@@ -99,10 +102,23 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
       this->Starts.push_back(static_cast<Index>(this->Columns.size()));
     }
   }
+  this->Unknowns = this->Inner->matrix.size;
+  if (ranks.several())
+  {
+    std::vector<Index> ids;
+    for (const Index p : this->Free)
+    {
+      ids.push_back(ranks.mesh().numbers()[p]);
+    }
+    ids.reserve(1); // not null, which is for one rank
+    this->Numbering = std::make_unique<PointNumbering>(
+      ranks.communicator(), static_cast<Index>(this->Free.size()), ids.data());
+    this->Unknowns = this->Numbering->globalSize() * block;
+  }
   this->DirectLimit = dimension == 2 ? directPlanar : directVolume;
-  this->Method = !options.automaticSolver           ? options.solver.method
-    : this->Inner->matrix.size <= this->DirectLimit ? KrylovMethod::Direct
-                                                    : KrylovMethod::ConjugateGradient;
+  this->Method = !options.automaticSolver ? options.solver.method
+    : this->Unknowns <= this->DirectLimit ? KrylovMethod::Direct
+                                          : KrylovMethod::ConjugateGradient;
 }
 
 //------------------------------------------------------------------------------
@@ -130,8 +146,16 @@ void WarpSystem::makeSolver(KrylovMethod method, WarpControl& control)
   system.blockSize = this->Block;
   system.coordinates = this->Inner->coordinates.data();
   system.owner = this->Inner;
+  system.numbering = this->Numbering.get();
   this->Solver = std::make_unique<LinearSolver>(system, options);
   this->Method = method;
+}
+
+//------------------------------------------------------------------------------
+/// Over the unknowns of all ranks; one of the vectors is 0 at those of other ranks.
+double WarpSystem::product(const std::vector<double>& a, const std::vector<double>& b) const
+{
+  return this->Ranks.sum(tautline::product(a, b, this->Options.threads));
 }
 
 //------------------------------------------------------------------------------
@@ -164,12 +188,12 @@ double WarpSystem::project(std::vector<double>& right, std::vector<double>& solu
   {
     for (const Former& former : this->Basis)
     {
-      const double part = product(former.right, right, threads);
+      const double part = this->product(former.right, right);
       add(-part, former.right, right, threads);
       add(part, former.solution, solution, threads);
     }
   }
-  return std::sqrt(product(right, right, threads));
+  return std::sqrt(this->product(right, right));
 }
 
 /// Adds a solution and the right-hand side it is exact for to the orthonormal basis.
@@ -179,7 +203,7 @@ void WarpSystem::remember(const std::vector<double>& solution)
   Former former;
   former.right.resize(this->Inner->matrix.size);
   this->Inner->matrix.multiply(solution.data(), former.right.data(), threads);
-  const double before = std::sqrt(product(former.right, former.right, threads));
+  const double before = std::sqrt(this->product(former.right, former.right));
   std::vector<double> spanned(this->Inner->matrix.size, 0.0);
   const double length = this->project(former.right, spanned);
   constexpr double nothingNew = 1e-6;
@@ -221,10 +245,10 @@ bool WarpSystem::runSolver(const std::vector<double>& right, double tolerance,
     first = iteration == 0 ? residual : first;
     const bool known = first > residual && residual > 0.0;
     const double reduced = known ? std::log(first / residual) / -std::log(tolerance) : 0.0;
-    return control.proceed(share * std::clamp(reduced, 0.0, 1.0));
+    return control.watch(share * std::clamp(reduced, 0.0, 1.0));
   };
   this->Solver->options().observerSeconds = interval;
-  this->Solver->options().cancelled = [&control]() { return !control.proceed(0.0); };
+  this->Solver->options().cancelled = [&control]() { return !control.watch(0.0); };
   control.result().setupSeconds += this->Solver->setUp();
   solution.assign(this->Inner->matrix.size, 0.0);
   const LinearSolution done = this->Solver->solve(right.data(), solution.data());
@@ -249,7 +273,7 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
   const int threads = this->Options.threads;
   this->Failure.clear();
   std::vector<double> right = this->rightHandSide(values);
-  const double whole = std::sqrt(product(right, right, threads));
+  const double whole = std::sqrt(this->product(right, right));
   std::vector<double> x(this->Inner->matrix.size, 0.0);
   bool good = true;
   if (whole > 0)
@@ -263,14 +287,13 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
       std::vector<double> y;
       good = this->runSolver(right, std::min(loosest, tolerance * whole / rest), y, control);
       if (!good && !control.stopped() && this->Options.automaticSolver &&
-        this->Method != KrylovMethod::Direct &&
-        this->Inner->matrix.size <= largestFactor * this->DirectLimit)
+        this->Method != KrylovMethod::Direct && this->Unknowns <= largestFactor * this->DirectLimit)
       {
         this->makeSolver(KrylovMethod::Direct, control);
         good = this->runSolver(right, tolerance, y, control);
       }
-      const bool finite =
-        std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
+      const bool finite = !this->Ranks.any(
+        !std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); }));
       if (finite)
       {
         add(1.0, y, x, threads);

@@ -8,6 +8,7 @@
 
 #include "WarpControl.h"
 #include "tautline/Elliptic/FiniteElements.h"
+#include "tautline/Ranks/PointNumbering.h"
 #include "tautline/Solvers/LinearSolver.h"
 
 #include <deque>
@@ -28,6 +29,8 @@ class WarpSystem
 {
 public:
   /**
+   * @param ranks that solve together; of `all` the rows of own points count, and values are given
+   * and found at all local points
    * @param all the matrix of all points, symmetric and positive semidefinite
    * @param block unknowns per point
    * @param held one flag per point: its values are given
@@ -35,7 +38,7 @@ public:
    * @param dimension of the mesh, for the choice of the solver
    */
   WarpSystem(const SparseMatrix& all, int block, const std::vector<unsigned char>& held,
-    const double* points, int dimension, const WarpOptions& options);
+    const double* points, int dimension, const WarpOptions& options, const WarpRanks& ranks);
 
   /**
    * @brief Finds the values of the points that are not held from those that are; `values` has block
@@ -66,7 +69,12 @@ private:
     std::vector<double> coordinates; ///< of the free points
   };
 
+  double product(const std::vector<double>& a, const std::vector<double>& b) const;
+
   const WarpOptions& Options;
+  WarpRanks Ranks;
+  std::unique_ptr<PointNumbering> Numbering; ///< of the free points of several ranks
+  Index Unknowns = 0;                        ///< on all ranks
   int Block;
   std::vector<Index> Free; ///< points that are not held
   std::shared_ptr<InnerSystem> Inner = std::make_shared<InnerSystem>();

@@ -254,7 +254,7 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
     int runs = 0;
     do
     {
-      if (!control.proceed(0.5 + static_cast<double>(k) / 6))
+      if (!control.watch(0.5 + static_cast<double>(k) / 6))
       {
         return false;
       }

@@ -16,7 +16,7 @@ void setUp(vtkMeshWarp* filter)
   filter->SetAngle(20);
 }
 
-/// Every so-many-th cell, with all points.
+/// Every so-many-th cell, with all points: those without a cell stay.
 vtkSmartPointer<vtkUnstructuredGrid> piece(const MeshData& whole, Index number, Index count)
 {
   MeshData data;
@@ -49,7 +49,20 @@ void testRanks(int rank, int ranks)
   filter->Update();
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK(distance(expected, data) > 0.1);
-  TAUTLINE_CHECK(distance(withPointsOf(data, meshOf(filter)), expected) < 1e-10);
+  MeshData here = withPointsOf(data, meshOf(filter)), there = expected;
+  std::vector<char> used(data.numberOfPoints(), 0);
+  for (Index cell = rank; cell < data.numberOfCells(); cell += ranks)
+  {
+    for (Index n = data.offsets[cell]; n < data.offsets[cell + 1]; ++n)
+    {
+      used[data.connectivity[n]] = 1;
+    }
+  }
+  for (std::size_t i = 0; i < there.points.size(); ++i)
+  {
+    there.points[i] = used[i / 3] ? there.points[i] : data.points[i];
+  }
+  TAUTLINE_CHECK_NEAR(distance(here, there), 0, 1e-10);
   TAUTLINE_CHECK(contains(filter->GetSummary(), "elements are valid"));
   messages.clear();
 

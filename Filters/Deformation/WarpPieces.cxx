@@ -1,0 +1,434 @@
+#include "WarpPieces.h"
+
+#include "Processes.h"
+#include "RankMesh.h"
+#include "RankStatistics.h"
+#include "tautline/Core/Stopwatch.h"
+#include "tautline/Mesh/BoundaryParts.h"
+#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Quality/Targets.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// The points of one piece of a motion: the moved ones of all processes, in the order of their ids.
+struct MovedPoints
+{
+  std::vector<Index> ids;
+  std::vector<double> places; ///< 3 each
+};
+
+/**
+ * @class PieceWarp
+ * @brief The state of an execution.
+ */
+class PieceWarp
+{
+public:
+  PieceWarp(const WarpSettings& settings, RankGroup& group, RankMesh& mesh, const WarpPiece& piece);
+  void run(TableRows& history, TableRows& statistics, WarpTotals& totals);
+
+private:
+  DistributedMesh& local() { return this->Whole.mesh(); }
+  bool here() const { return this->Piece.input->GetNumberOfPoints() > 0; }
+  Index countOwned(const PointFlags& flags);
+  void requireElements();
+  PointFlags chosenToMove();
+  PointFlags staying();
+  void moveByArray();
+  void moveByTransform();
+  std::vector<double> transformed(double fraction);
+  WarpResult warp();
+  void report(const WarpResult& result, WarpFacts& facts, TableRows& history, TableRows& statistics,
+    WarpTotals& totals);
+
+  const WarpSettings& Settings;
+  RankGroup& Group;
+  RankMesh& Whole;
+  const WarpPiece& Piece;
+  std::vector<Index> Ids; ///< per local point
+  PointFlags Boundary, Moved, Stay, Prescribed;
+  std::vector<double> Displacement; ///< 3 per local point, at the amount
+  MovedPoints Cloud;                ///< of a transform
+};
+
+//------------------------------------------------------------------------------
+PieceWarp::PieceWarp(
+  const WarpSettings& settings, RankGroup& group, RankMesh& mesh, const WarpPiece& piece)
+  : Settings(settings)
+  , Group(group)
+  , Whole(mesh)
+  , Piece(piece)
+  , Ids(mesh.pointIds())
+{
+}
+
+//------------------------------------------------------------------------------
+Index PieceWarp::countOwned(const PointFlags& flags)
+{
+  Index count = 0;
+  for (Index p = 0; p < this->local().localPoints(); ++p)
+  {
+    count += flags[p] != 0 && this->local().owned(p);
+  }
+  return this->Group.sum(count);
+}
+
+//------------------------------------------------------------------------------
+/// As requireElements() of a mesh in one place.
+void PieceWarp::requireElements()
+{
+  const MeshView& view = this->Whole.piece();
+  Index shapeless = 0;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    shapeless += cornerType(view.cellTypes[cell]) == CellType::Unsupported &&
+      !hasNoInside(view.cellTypes[cell]);
+  }
+  requireShapes(this->Group.sum(shapeless));
+  const DistributedMesh& mesh = this->local();
+  const Index inverted = countInvalidOnRanks(
+    mesh, this->Whole.mirrored(), mesh.points(), this->Settings.options.threads);
+  if (inverted > 0)
+  {
+    throw Error(std::to_string(inverted) +
+      " elements are inverted or degenerate before anything moves: run Untangle Mesh first.");
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The points of the boundary that a transform moves, per local point.
+PointFlags PieceWarp::chosenToMove()
+{
+  const WarpSettings& set = this->Settings;
+  PartChoice choice;
+  choice.part = set.part == MovedPart::Automatic ? MovedPart::Inner : set.part;
+  choice.numbers = set.partNumbers;
+  choice.values = set.partValues;
+  const bool byPiece = choice.part == MovedPart::Values || choice.part == MovedPart::Selection;
+  BoundaryParts parts;
+  if (choice.part == MovedPart::Inner || choice.part == MovedPart::Numbered)
+  {
+    parts = boundaryPartsOnRanks(this->local());
+  }
+  choice.parts = [&parts]() -> const BoundaryParts& { return parts; };
+  if (!byPiece)
+  {
+    PointFlags moved;
+    this->Group.together(
+      [&] { moved = movedPoints(Mesh(this->local().view()), this->Boundary, choice); });
+    return moved;
+  }
+  PointFlags marked(this->Whole.piece().numberOfPoints, 0);
+  const bool selected = this->Group.any(this->Piece.moved != nullptr);
+  this->Group.together(
+    [&]
+    {
+      const auto copy = markSelected(this->Piece.input, this->Piece.moved);
+      choice.selected = vtkDataSet::SafeDownCast(copy);
+      choice.elsewhere = selected;
+      if (choice.part == MovedPart::Values && this->here())
+      {
+        choice.array =
+          chosenArray(set.arrays, MovedArray, this->Piece.input, "of the part that moves");
+        choice.ofCells = chosenOfCells(set.arrays, MovedArray);
+      }
+      if (this->here())
+      {
+        marked = markedPoints(Mesh(this->Whole.piece()), choice);
+      }
+    });
+  PointFlags moved = this->Whole.anyOf(marked);
+  const Index chosen = this->countOwned(moved);
+  std::transform(moved.begin(), moved.end(), this->Boundary.begin(), moved.begin(),
+    [](unsigned char a, unsigned char b) { return a && b; });
+  requireMoved(this->countOwned(moved), chosen);
+  return moved;
+}
+
+//------------------------------------------------------------------------------
+/// The points that are chosen to stay, per local point.
+PointFlags PieceWarp::staying()
+{
+  PointFlags marked(this->Whole.piece().numberOfPoints, 0);
+  this->Group.together(
+    [&]
+    {
+      if (!this->here())
+      {
+        return;
+      }
+      const Mesh piece(this->Whole.piece());
+      const auto copy = markSelected(this->Piece.input, this->Piece.fixed);
+      markPoints(piece,
+        chosenArray(this->Settings.arrays, FixedArray, this->Piece.input, "of fixed points"), false,
+        marked);
+      markPoints(piece, vtkDataSet::SafeDownCast(copy), marked);
+    });
+  return this->Whole.anyOf(marked);
+}
+
+//------------------------------------------------------------------------------
+void PieceWarp::moveByArray()
+{
+  const Index points = this->Whole.piece().numberOfPoints;
+  std::vector<double> given(3 * points, 0.0);
+  this->Group.together(
+    [&]
+    {
+      PointFlags boundary(points, 0);
+      for (Index p = 0; p < points; ++p)
+      {
+        const Index at = this->Whole.mesh().localOfPiece()[p];
+        boundary[p] = at >= 0 && this->Boundary[at];
+      }
+      if (this->here())
+      {
+        given =
+          displacementsOf(displacementArray(this->Settings.arrays, this->Piece.input), boundary);
+      }
+    });
+  // Of points that are one all pieces must have the same.
+  constexpr double none = std::numeric_limits<double>::infinity();
+  this->Displacement.assign(3 * this->local().localPoints(), 0.0);
+  bool differ = false;
+  for (int c = 0; c < 3; ++c)
+  {
+    std::vector<double> component(points), negative(points);
+    for (Index p = 0; p < points; ++p)
+    {
+      component[p] = given[3 * p + c];
+      negative[p] = -component[p];
+    }
+    const std::vector<double> least = this->Whole.leastOf(component, none);
+    const std::vector<double> most = this->Whole.leastOf(negative, none);
+    for (Index p = 0; p < this->local().localPoints(); ++p)
+    {
+      differ = differ || least[p] != -most[p];
+      this->Displacement[3 * p + c] = this->Settings.amount * least[p];
+    }
+  }
+  if (this->Group.any(differ))
+  {
+    throw Error("Points at the same place are treated as one, but have different displacements: "
+                "make them equal, or switch Merge Coincident Points off.");
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The displacements by a fraction of the transform, per local point.
+std::vector<double> PieceWarp::transformed(double fraction)
+{
+  const auto count = static_cast<Index>(this->Cloud.ids.size());
+  const PointFlags all(this->Cloud.ids.size() + 1, 1);
+  const std::vector<double> moved = displacements(this->Settings.transform,
+    fraction * this->Settings.amount, count, this->Cloud.places.data(), all.data());
+  std::vector<double> result(3 * this->Ids.size(), 0.0);
+  for (std::size_t p = 0; p < this->Ids.size(); ++p)
+  {
+    if (this->Moved[p])
+    {
+      const auto at =
+        std::lower_bound(this->Cloud.ids.begin(), this->Cloud.ids.end(), this->Ids[p]);
+      std::copy_n(&moved[3 * (at - this->Cloud.ids.begin())], 3, &result[3 * p]);
+    }
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+/// The motion depends on where all moved points are: every process has them.
+void PieceWarp::moveByTransform()
+{
+  struct MovedPoint
+  {
+    Index id;
+    Vec3 place;
+  };
+  this->Moved = this->chosenToMove();
+  std::vector<MovedPoint> own, all;
+  for (Index p = 0; p < this->local().localPoints(); ++p)
+  {
+    if (this->Moved[p] && this->local().owned(p))
+    {
+      own.push_back({ this->Ids[p], pointOf(this->local().view(), p) });
+    }
+  }
+  for (const std::vector<MovedPoint>& list : this->Group.gatherItems(own))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(
+    all.begin(), all.end(), [](const MovedPoint& a, const MovedPoint& b) { return a.id < b.id; });
+  for (const MovedPoint& point : all)
+  {
+    this->Cloud.ids.push_back(point.id);
+    this->Cloud.places.insert(this->Cloud.places.end(), point.place.begin(), point.place.end());
+  }
+  this->Group.together([&] { this->Displacement = this->transformed(1.0); });
+}
+
+//------------------------------------------------------------------------------
+WarpResult PieceWarp::warp()
+{
+  const WarpSettings& set = this->Settings;
+  const bool transform = set.motion == MotionSource::Transform;
+  const auto zero = [](const std::vector<double>& values)
+  { return std::all_of(values.begin(), values.end(), [](double d) { return d == 0; }); };
+  bool rests = false;
+  this->Group.together(
+    [&]
+    {
+      // Full turns end where they began, but not on the way.
+      constexpr double somewhere = 1.0 / 3;
+      rests = zero(this->Displacement) && (!transform || zero(this->transformed(somewhere)));
+    });
+  if (!this->Group.any(!rests))
+  {
+    WarpResult result;
+    result.points = this->local().points();
+    result.history.resize(1);
+    result.history[0].stage = "rest";
+    return result;
+  }
+  WarpOptions options = set.options;
+  options.prescribed = this->Prescribed.data();
+  options.maximumSeconds = set.secondsLeft();
+  options.progress = [&set](double fraction) { return set.progress(0, fraction); };
+  Warper warper(
+    this->local(), this->Whole.mirrored(), this->Ids, Processes().communicator(), options);
+  if (!transform)
+  {
+    return warper.warp(this->Displacement.data());
+  }
+  return warper.warp(
+    [this](double part, double* displacement)
+    {
+      const std::vector<double> d = this->transformed(part);
+      for (std::size_t i = 0; i < d.size(); ++i)
+      {
+        displacement[i] = this->Stay[i / 3] ? 0.0 : d[i];
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void PieceWarp::report(const WarpResult& result, WarpFacts& facts, TableRows& history,
+  TableRows& statistics, WarpTotals& totals)
+{
+  const int threads = this->Settings.options.threads;
+  const std::string note =
+    this->Whole.move(vtkPointSet::SafeDownCast(this->Piece.output), result.points);
+  const MeshView& view = this->Whole.piece();
+  const std::vector<double> start(view.points, view.points + 3 * view.numberOfPoints);
+  const std::vector<double> end = this->Whole.ofPiece(result.points);
+  const Mesh before = this->Whole.movedPiece(start), after = this->Whole.movedPiece(end);
+  std::vector<signed char> valid(view.numberOfCells), validity(view.numberOfCells);
+  before.classifyCells(valid.data(), threads);
+  after.classifyCells(validity.data(), threads);
+  std::vector<double> values(view.numberOfCells);
+  const auto measured = [&](const Mesh& mesh, Metric metric, const EvaluationOptions& options,
+                          const std::vector<signed char>& states, WarpMeasurement& to)
+  {
+    const Measurement m = measureOnRanks(this->Group, mesh, this->Whole.volume() ? 3 : 2, metric,
+      options, states.data(), this->Whole.skipped().data(), values.data());
+    to = { m.worst, m.statistics.mean };
+    return m.counts;
+  };
+  WarpQualities q;
+  EvaluationOptions ideal, similar;
+  ideal.threads = similar.threads = threads;
+  measured(before, Metric::InverseMeanRatio, ideal, valid, q.before);
+  measured(after, Metric::InverseMeanRatio, ideal, validity, q.after);
+  Targets targets;
+  this->Group.together(
+    [&]
+    {
+      if (view.numberOfCells > 0)
+      {
+        targets = referenceTargets(after, before);
+        similar.targets = &targets;
+      }
+    });
+  const ValidityCounts counts =
+    measured(after, Metric::ShapeSimilarity, similar, validity, q.shape);
+  q.inverted = counts.inverted + counts.degenerate;
+  q.elements = q.inverted + counts.valid;
+  addWarpArrays(this->Piece.output, values, validity);
+  TableRows unused;
+  const bool first = this->Group.rank() == 0; // tables of several processes would be joined
+  addWarpReport(result, facts, q, "", { note, this->Whole.notice() }, first ? history : unused,
+    first ? statistics : unused, totals);
+}
+
+//------------------------------------------------------------------------------
+void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& totals)
+{
+  const Stopwatch clock;
+  this->requireElements();
+  this->Boundary = rankBoundary(this->local());
+  if (this->countOwned(this->Boundary) == 0)
+  {
+    throw Error(
+      "The mesh has no boundary (it is closed), so there is nothing its points could follow.");
+  }
+  if (this->Settings.motion == MotionSource::Transform)
+  {
+    this->moveByTransform();
+  }
+  else
+  {
+    this->moveByArray();
+  }
+  this->Stay = this->staying();
+  this->Prescribed = this->Boundary;
+  WarpFacts facts;
+  for (Index p = 0; p < this->local().localPoints(); ++p)
+  {
+    double* d = &this->Displacement[3 * p];
+    if (this->Stay[p])
+    {
+      this->Prescribed[p] = 1;
+      std::fill_n(d, 3, 0.0);
+    }
+    const double length = norm({ d[0], d[1], d[2] });
+    facts.movedPoints += length > 0 && this->local().owned(p);
+    facts.largestDisplacement = std::max(facts.largestDisplacement, length);
+  }
+  facts.movedPoints = this->Group.sum(facts.movedPoints);
+  facts.largestDisplacement = this->Group.maximum(facts.largestDisplacement);
+  facts.boundaryPoints = this->countOwned(this->Prescribed);
+  const WarpResult result = this->warp();
+  facts.method = nameOf(this->Settings.options.method);
+  facts.coefficients = this->Settings.anisotropic() && this->Settings.amount > 0;
+  facts.amount = this->Settings.amount;
+  facts.threads = this->Settings.options.threads;
+  facts.seconds = clock.seconds();
+  this->report(result, facts, history, statistics, totals);
+}
+}
+
+//------------------------------------------------------------------------------
+bool warpsInPieces(const WarpSession& session)
+{
+  const MotionSource motion = session.settings.motion;
+  return (motion == MotionSource::Displacement || motion == MotionSource::Transform) &&
+    !session.sequence() && warpsOnRanks(session.settings.options);
+}
+
+//------------------------------------------------------------------------------
+void warpPieces(const WarpSettings& settings, RankGroup& group, RankMesh& mesh,
+  const WarpPiece& piece, TableRows& history, TableRows& statistics, WarpTotals& totals)
+{
+  PieceWarp(settings, group, mesh, piece).run(history, statistics, totals);
+}
+}

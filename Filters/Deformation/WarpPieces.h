@@ -1,0 +1,37 @@
+/**
+ * @file WarpPieces.h
+ * @brief Warp Mesh where each process of a parallel server takes its piece of the mesh.
+ */
+#ifndef tautline_WarpPieces_h
+#define tautline_WarpPieces_h
+
+#include "WarpSession.h"
+
+class vtkDataSet;
+class vtkSelection;
+
+namespace tautline
+{
+class RankMesh;
+
+/// Whether such a motion is distributed: by an array or a transform, by warpsOnRanks().
+bool warpsInPieces(const WarpSession& session);
+
+/// What a process has of the inputs and outputs.
+struct WarpPiece
+{
+  vtkDataSet* input;
+  vtkSelection* moved; ///< what is selected to move, or null
+  vtkSelection* fixed; ///< to stay, or null
+  vtkDataSet* output;
+};
+
+/**
+ * @brief Warps the mesh and gives each piece its points and arrays, as addWarpOutput() does; rows of
+ * the tables on the first process only. Throws Error, on all processes, as WarpSession::visit()
+ * does. Matrices are not kept for the next execution. Collective.
+ */
+void warpPieces(const WarpSettings& settings, RankGroup& group, RankMesh& mesh,
+  const WarpPiece& piece, TableRows& history, TableRows& statistics, WarpTotals& totals);
+}
+#endif

@@ -1,0 +1,118 @@
+/**
+ * @file WarpRanks.h
+ * @brief The ranks that deform a mesh together: sums over all of them, and who counts a point.
+ * Internal: not installed.
+ */
+#ifndef tautline_WarpRanks_h
+#define tautline_WarpRanks_h
+
+#include "WarpQuality.h"
+
+#include "tautline/Core/Communicator.h"
+#include "tautline/Mesh/RankSets.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace tautline
+{
+/**
+ * @class tautline::WarpRanks
+ * @brief The ranks of a distributed mesh; by default this process alone, where nothing is
+ * communicated and every sum is that of the caller, bitwise.
+ *
+ * The mesh of a deformation is then DistributedMesh::view(): about the points that a rank owns all
+ * cells are there. What the methods return is bitwise the same on all ranks, so that they take the
+ * same decisions. Methods are collective but for owns() and ownsCell().
+ */
+class WarpRanks
+{
+public:
+  WarpRanks() = default;
+  /// Mesh and ids, one per local point, stay alive; the communicator has the ranks of the mesh.
+  WarpRanks(const DistributedMesh& mesh, const std::vector<Index>& ids, Communicator communicator)
+    : Spread(&mesh)
+    , Ids(ids.data())
+    , Comm(communicator)
+  {
+  }
+
+  bool several() const { return this->Spread != nullptr; }
+  const DistributedMesh& mesh() const { return *this->Spread; }
+  Communicator communicator() const { return this->Comm; }
+  /// The order of points in sums over few of them, which then are those of one process, bitwise.
+  Index id(Index point) const { return this->Ids[point]; }
+  bool owns(Index point) const { return !this->Spread || this->Spread->owned(point); }
+  bool ownsCell(Index cell) const { return !this->Spread || this->Spread->ownedCells()[cell]; }
+
+  /// Replaces numbers by their sums, added in the order of the ranks.
+  void sum(double* values, Index count) const;
+  double sum(double value) const
+  {
+    this->sum(&value, 1);
+    return value;
+  }
+  Index sum(Index value) const { return this->Spread ? this->Spread->group().sum(value) : value; }
+  double maximum(double value) const
+  {
+    return this->Spread ? this->Spread->group().maximum(value) : value;
+  }
+  bool any(bool value) const { return this->Spread ? this->Spread->group().any(value) : value; }
+  /// Of the whole mesh; a rank may have no cells.
+  Dimension dimension(const Mesh& local) const;
+  /// Does work that does not communicate; what it throws on one rank is thrown on all.
+  void together(const std::function<void()>& work) const;
+
+  /// The values of the points that this rank owns, to all that have them.
+  void exchange(double* values, int components) const;
+  /// Flags that are set on any rank.
+  void either(unsigned char* flags) const;
+
+  /// numberSetsOnRanks(); on one rank in the order of the first members.
+  std::vector<Index> numberSets(
+    UnionFind& sets, const std::vector<unsigned char>& member, Index& count) const;
+
+private:
+  const DistributedMesh* Spread = nullptr;
+  const Index* Ids = nullptr;
+  Communicator Comm = nullptr;
+};
+
+/// Replaces members of items by their sums over all ranks.
+/// @param members the addresses of an item's members @param sizes of these, in numbers
+template <class Item, class Members, std::size_t Count>
+void addUp(const WarpRanks& ranks, std::vector<Item>& items, const Members& members,
+  const std::size_t (&sizes)[Count])
+{
+  if (!ranks.several())
+  {
+    return;
+  }
+  std::vector<double> values;
+  for (Item& item : items)
+  {
+    const auto from = members(item);
+    for (std::size_t m = 0; m < Count; ++m)
+    {
+      values.insert(values.end(), from[m], from[m] + sizes[m]);
+    }
+  }
+  ranks.sum(values.data(), static_cast<Index>(values.size()));
+  auto next = values.begin();
+  for (Item& item : items)
+  {
+    const auto to = members(item);
+    for (std::size_t m = 0; m < Count; ++m)
+    {
+      std::copy_n(next, sizes[m], to[m]);
+      next += static_cast<std::ptrdiff_t>(sizes[m]);
+    }
+  }
+}
+
+/// qualityOf() of the whole mesh.
+WarpQuality qualityOf(const Mesh& local, const double* points, int threads, const WarpRanks& ranks);
+}
+#endif
