@@ -17,7 +17,7 @@ from parallel_tools import columns, parts, update  # noqa: E402
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
-WARP_ANGLE, WARP_STEPS = 30, 2
+WARP_ANGLE, METHOD_ANGLE, WARP_STEPS = 30, 8, 2
 CRITERIA = """{"name": "test", "criteria": [{"metric": "mean_ratio", "weight": 2,
   "limits": {"all": {"ideal": 1, "good": 0.8, "warn": 0.72, "fail": 0.69, "worst": 0.5}}}]}"""
 results = {}
@@ -140,11 +140,14 @@ def motions(name, cut, **given):
     warped = update(WarpMesh(source, TransformKind="Rotation", Angle=WARP_ANGLE, Method="FEMWARP", AutomaticSolver=0))
     results[f"warp {name}"] = values(warped, ["points", "Displacement"])
     results[f"warp table {name}"] = table(warped, 2)
+    methods(name, source)
     pushed = update(WarpMesh(source, Motion="Displacement array", Displacement=["POINTS", "push"], Method="Hybrid"))
     results[f"hybrid {name}"] = [values(pushed, ["points"]), pushed.Summary.splitlines()[0]]
     options = {"Percentage": 80, "Fraction": 0.7, "TangledFraction": 0.02, "FixedPoints": ["POINTS", "stay"]}
     moved = update(PerturbMesh(source, **options))
-    results[f"perturb {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
+    results[f"tangle {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
+    pieces = update(PerturbMesh(source, **{**options, "TangledFraction": 0}))
+    results[f"perturb {name}"] = [values(pieces, ["points", "Displacement"]), pieces.Summary]
     graded = update(ElementQuality(source, Metrics=["Mean ratio"], Criteria=CRITERIA))
     # Ghost cells are not graded.
     results[f"criteria {name}"] = values(graded, ["Grade", "QualityIndex", "mean_ratio"], "cell number", ghosts=False)
@@ -155,6 +158,27 @@ def motions(name, cut, **given):
     improved = update(ImproveMesh(worse, Preset="Aggressive"))
     cells = np.concatenate([arrays["smallest"] for arrays in parts(quality_of(improved), sys.argv[1])])
     results[f"improve {name}"] = [sorted(cells.tolist()), table(improved, 1), improved.WorstAfter, improved.Summary]
+
+
+def methods(name, source):
+    """The ways of Warp Mesh that each rank works on by itself."""
+    stays = {"FixedPoints": ["POINTS", "stay"]}
+    turned = {"TransformKind": "Rotation", "Angle": METHOD_ANGLE, **stays}
+    pushed = {"Motion": "Displacement array", "Displacement": ["POINTS", "push"], **stays}
+    for case, options in {
+        "anisotropic": {**pushed, "Method": "Anisotropic FEMWARP"},  # singular: nothing moves along y and z
+        "principal": {**turned, "Method": "Anisotropic FEMWARP", "Coefficients": "From the motion, principal directions"},
+        "small steps": {**turned, "Method": "Small-step FEMWARP", "Steps": WARP_STEPS},
+        "stiffening": {**turned, "Method": "Elasticity, iterative stiffening"},
+        "jacobian": {**pushed, "Method": "Elasticity, Jacobian-based stiffening"},
+        "distances": {**pushed, "Method": "Inverse distance weighting"},
+        "radial": {**turned, "Method": "Radial basis functions"},
+        "part": {**turned, "Method": "FEMWARP", "MovedPart": "Boundary parts by number", "Parts": [1]},
+        "values": {**turned, "Method": "FEMWARP", "MovedPart": "Values of an array", "MovedArray": ["POINTS", "number"]},
+    }.items():
+        warped = update(WarpMesh(source, **options))
+        results[f"{case} {name}"] = [values(warped, ["points"]), values(warped, ["TMP shape"], "cell number"),
+                                     table(warped, 1), table(warped, 2)]  # fmt: skip
 
 
 def quality_of(filter_):

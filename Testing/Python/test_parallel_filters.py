@@ -61,8 +61,15 @@ one = run(1)
 for case in CASES:
     # Something has happened: points move, elements become inverted, cells change.
     assert np.abs(np.asarray(one[f"warp {case}"])[:, 3:]).max() > 0.1 and len(one[f"warp {case}"]) == 64
-    points, summary = one[f"perturb {case}"]
-    assert np.ptp(np.asarray(points)[:, 3:]) > 0.01 and "Inverted elements" in summary
+    for way in ("anisotropic", "principal", "small steps", "stiffening", "jacobian", "distances", "radial", "part",
+                "values"):  # fmt: skip
+        points, shapes, _, statistics = one[f"{way} {case}"]
+        assert len(points) == 64 and len(shapes) == 162 and statistics["Moved points"][0] > 8, (way, statistics)
+        assert statistics["Inverted"] == [0] and statistics["Largest displacement"][0] > 0.05, (way, statistics)
+        assert np.ptp(np.asarray(shapes)) > 1e-4, way
+    for way, inverted in (("tangle", "Inverted elements: 0 before, 3 after"), ("perturb", ": 0 before, 0 after")):
+        points, summary = one[f"{way} {case}"]
+        assert np.ptp(np.asarray(points)[:, 3:]) > 0.01 and inverted in summary, summary
     grades = np.asarray(one[f"criteria {case}"])
     assert len(grades) == 162 and len(set(grades[:, 0])) > 1 and np.ptp(grades[:, 1]) > 0.1, grades
     assert len(one[f"compare {case}"][0]) == 162 and np.ptp(np.asarray(one[f"compare {case}"][0])[:, 2]) > 0
