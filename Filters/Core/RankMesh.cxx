@@ -95,6 +95,7 @@ RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergeP
   , Threads(threads)
 {
   Elements elements;
+  bool copies = false;
   std::vector<Index> ids;
   group.together(
     [&]
@@ -125,6 +126,10 @@ RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergeP
       this->Held.assign(view.numberOfPoints, 0);
       this->Marked.assign(view.numberOfPoints, 0);
       this->Skip.assign(view.numberOfCells, 0);
+      // As a rule all cells are elements, and need not be copied.
+      copies = this->Dimension == 0 ||
+        std::any_of(view.cellTypes, view.cellTypes + view.numberOfCells,
+          [this](unsigned char type) { return dimensionOf(type) != this->Dimension; });
       for (Index cell = 0; cell < view.numberOfCells; ++cell)
       {
         const bool ghost = this->Adapter->ghostCells() && this->Adapter->ghostCells()[cell];
@@ -132,7 +137,7 @@ RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergeP
                    end = view.connectivity + view.offsets[cell + 1];
         const int dimension = dimensionOf(view.cellTypes[cell]);
         this->Skip[cell] = ghost || dimension < this->Dimension;
-        if (dimension == this->Dimension && dimension > 0)
+        if (copies && dimension == this->Dimension && dimension > 0)
         {
           elements.types.push_back(view.cellTypes[cell]);
           elements.ghosts.push_back(ghost);
@@ -156,12 +161,17 @@ RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergeP
       }
     });
   MeshView view = this->piece();
-  view.numberOfCells = static_cast<Index>(elements.types.size());
-  view.cellTypes = elements.types.data();
-  view.offsets = elements.offsets.data();
-  view.connectivity = elements.connectivity.data();
+  const unsigned char* ghosts = this->Adapter->ghostCells();
+  if (copies)
+  {
+    view.numberOfCells = static_cast<Index>(elements.types.size());
+    view.cellTypes = elements.types.data();
+    view.offsets = elements.offsets.data();
+    view.connectivity = elements.connectivity.data();
+    ghosts = elements.ghosts.data();
+  }
   this->TheMesh = std::make_unique<DistributedMesh>(
-    group, MeshPiece{ view, mergePoints ? nullptr : ids.data(), elements.ghosts.data() });
+    group, MeshPiece{ view, mergePoints ? nullptr : ids.data(), ghosts });
   this->checkOrder();
 }
 

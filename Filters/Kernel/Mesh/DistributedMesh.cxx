@@ -1,8 +1,12 @@
 #include "DistributedMesh.h"
 
+#include "TakenCells.h"
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <tuple>
 
@@ -333,30 +337,15 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
 
 namespace
 {
-/// A cell as it came, with the sorted numbers of its points as the key of the order.
-struct TakenCell
+/// exchangeItems() without copies of what stays on this rank.
+template <class Item>
+std::vector<std::vector<Item>> exchangeOthers(RankGroup& group, std::vector<std::vector<Item>> sent)
 {
-  unsigned char type;
-  int rank;
-  std::vector<Index> numbers, sorted;
-
-  auto key() const { return std::tie(this->sorted, this->type, this->numbers); }
-};
-
-void readCells(const std::vector<Index>& list, int rank, std::vector<TakenCell>& cells)
-{
-  for (std::size_t i = 0; i < list.size();)
-  {
-    TakenCell cell;
-    cell.type = static_cast<unsigned char>(list[i]);
-    cell.rank = rank;
-    const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 2, end = begin + list[i + 1];
-    cell.numbers.assign(begin, end);
-    cell.sorted = cell.numbers;
-    std::sort(cell.sorted.begin(), cell.sorted.end());
-    i += 2 + cell.numbers.size();
-    cells.push_back(std::move(cell));
-  }
+  std::vector<Item> own;
+  own.swap(sent[group.rank()]);
+  std::vector<std::vector<Item>> received = group.exchangeItems(sent);
+  received[group.rank()] = std::move(own);
+  return received;
 }
 }
 
@@ -390,7 +379,10 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
       for (Index n = begin; n < end; ++n)
       {
         sentCells[rank].push_back(this->PieceNumbers[view.connectivity[n]]);
-        needed[rank].push_back(view.connectivity[n]);
+        if (rank != group.rank()) // which needs all points that are used
+        {
+          needed[rank].push_back(view.connectivity[n]);
+        }
       }
     }
   }
@@ -413,25 +405,22 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
     }
   }
   std::vector<SentPoint> points;
-  for (const auto& list : group.exchangeItems(sentPoints))
+  for (const auto& list : exchangeOthers(group, std::move(sentPoints)))
   {
     points.insert(points.end(), list.begin(), list.end());
   }
-  std::vector<TakenCell> cells;
-  const auto lists = group.exchangeItems(sentCells);
+  std::vector<std::vector<Index>>().swap(needed);
+  auto lists = exchangeOthers(group, std::move(sentCells));
+  std::unique_ptr<TakenCells> taken;
   group.together(
     [&]
     {
-      for (int rank = 0; rank < group.size(); ++rank)
-      {
-        readCells(lists[rank], rank, cells);
-      }
-      std::sort(cells.begin(), cells.end(),
-        [](const TakenCell& a, const TakenCell& b) { return a.key() < b.key(); });
+      taken = std::make_unique<TakenCells>(std::move(lists));
+      const std::vector<TakenCells::Cell>& cells = taken->cells();
       for (std::size_t i = 1; i < cells.size(); ++i)
       {
-        if (cells[i].rank != cells[i - 1].rank && cells[i].sorted == cells[i - 1].sorted &&
-          cells[i].type == cells[i - 1].type)
+        if (cells[i].rank != cells[i - 1].rank && cells[i].least == cells[i - 1].least &&
+          taken->same(cells[i], cells[i - 1]))
         {
           throw Error("Processes " + std::to_string(std::min(cells[i].rank, cells[i - 1].rank)) +
             " and " + std::to_string(std::max(cells[i].rank, cells[i - 1].rank)) +
@@ -464,15 +453,22 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
   }
   this->Offsets.assign(1, 0);
   Index own = 0;
-  for (const TakenCell& cell : cells)
+  std::size_t nodes = 0;
+  for (const TakenCells::Cell& cell : taken->cells())
   {
-    this->CellTypes.push_back(cell.type);
-    for (const Index number : cell.numbers)
-    {
-      this->Connectivity.push_back(local(number));
-    }
+    nodes += static_cast<std::size_t>(taken->end(cell) - taken->begin(cell));
+  }
+  this->CellTypes.reserve(taken->cells().size());
+  this->OwnedCells.reserve(taken->cells().size());
+  this->Offsets.reserve(taken->cells().size() + 1);
+  this->Connectivity.reserve(nodes);
+  for (const TakenCells::Cell& cell : taken->cells())
+  {
+    this->CellTypes.push_back(static_cast<unsigned char>(taken->type(cell)));
+    std::transform(
+      taken->begin(cell), taken->end(cell), std::back_inserter(this->Connectivity), local);
     this->Offsets.push_back(static_cast<Index>(this->Connectivity.size()));
-    this->OwnedCells.push_back(this->owned(local(cell.sorted.front())));
+    this->OwnedCells.push_back(this->owned(local(cell.least)));
     own += this->OwnedCells.back();
   }
   this->GlobalCells = group.sum(own);
