@@ -27,8 +27,8 @@ struct WarpPiece
 };
 
 /**
- * @brief Warps the mesh and gives each piece its points and arrays, as addWarpOutput() does; rows of
- * the tables on the first process only. Throws Error, on all processes, as WarpSession::visit()
+ * @brief Warps the mesh and gives each piece its points and arrays, as addWarpOutput() does; rows
+ * of the tables on the first process only. Throws Error, on all processes, as WarpSession::visit()
  * does. Matrices are not kept for the next execution. Collective.
  */
 void warpPieces(const WarpSettings& settings, RankGroup& group, RankMesh& mesh,

@@ -19,8 +19,8 @@ simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 CONTROLLER = vtkMultiProcessController.GetGlobalController()
 RANK, RANKS = CONTROLLER.GetLocalProcessId(), CONTROLLER.GetNumberOfProcesses()
 
-# Runs on every rank: its slab of a cube of n^3 cubes of 6 tetrahedra each. Inner points are shifted by up to JITTER of an
-# edge, by a hash of their numbers; SPIKES of them, at most, by more than an edge, which inverts tetrahedra.
+# Runs on every rank: its slab of a cube of n^3 cubes of 6 tetrahedra each. Inner points are shifted by up to JITTER of
+# an edge, by a hash of their numbers; SPIKES of them, at most, by more than an edge, which inverts tetrahedra.
 SLAB = """
 import itertools
 import numpy as np

@@ -167,14 +167,16 @@ def methods(name, source):
     pushed = {"Motion": "Displacement array", "Displacement": ["POINTS", "push"], **stays}
     for case, options in {
         "anisotropic": {**pushed, "Method": "Anisotropic FEMWARP"},  # singular: nothing moves along y and z
-        "principal": {**turned, "Method": "Anisotropic FEMWARP", "Coefficients": "From the motion, principal directions"},
+        "principal": {**turned, "Method": "Anisotropic FEMWARP",
+                      "Coefficients": "From the motion, principal directions"},
         "small steps": {**turned, "Method": "Small-step FEMWARP", "Steps": WARP_STEPS},
         "stiffening": {**turned, "Method": "Elasticity, iterative stiffening"},
         "jacobian": {**pushed, "Method": "Elasticity, Jacobian-based stiffening"},
         "distances": {**pushed, "Method": "Inverse distance weighting"},
         "radial": {**turned, "Method": "Radial basis functions"},
         "part": {**turned, "Method": "FEMWARP", "MovedPart": "Boundary parts by number", "Parts": [1]},
-        "values": {**turned, "Method": "FEMWARP", "MovedPart": "Values of an array", "MovedArray": ["POINTS", "number"]},
+        "values": {**turned, "Method": "FEMWARP", "MovedPart": "Values of an array",
+                   "MovedArray": ["POINTS", "number"]},
     }.items():
         warped = update(WarpMesh(source, **options))
         results[f"{case} {name}"] = [values(warped, ["points"]), values(warped, ["TMP shape"], "cell number"),

@@ -6,8 +6,6 @@
 #ifndef tautline_WarpRanks_h
 #define tautline_WarpRanks_h
 
-#include "WarpQuality.h"
-
 #include "tautline/Core/Communicator.h"
 #include "tautline/Mesh/RankSets.h"
 
@@ -111,8 +109,5 @@ void addUp(const WarpRanks& ranks, std::vector<Item>& items, const Members& memb
     }
   }
 }
-
-/// qualityOf() of the whole mesh.
-WarpQuality qualityOf(const Mesh& local, const double* points, int threads, const WarpRanks& ranks);
 }
 #endif

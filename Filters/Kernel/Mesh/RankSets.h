@@ -14,8 +14,8 @@ namespace tautline
 {
 /**
  * @brief Numbers sets of points, each of which may go on on other ranks, in the order of their
- * smallest points. What joins two points must be known to the ranks that own them. Collective, in as
- * many rounds as a set has ranks one after the other.
+ * smallest points. What joins two points must be known to the ranks that own them. Collective, in
+ * as many rounds as a set has ranks one after the other.
  * @param sets of local points: the parts of the sets here
  * @param member one flag per local point; the others get -1
  * @param count the number of sets on all ranks

@@ -13,44 +13,11 @@
 #ifndef tautline_Perturb_h
 #define tautline_Perturb_h
 
+#include "PerturbOptions.h"
 #include "tautline/Mesh/Mesh.h"
-
-#include <functional>
-#include <vector>
 
 namespace tautline
 {
-/// How many vertices move, how far, and how many elements are to be inverted.
-struct PerturbOptions
-{
-  double percentage = 50.0; ///< of the movable vertices to move, 0 to 100
-  /// A vertex moves by a random fraction, evenly from 0 to this (0 to 1), of its distance to
-  /// inversion.
-  double fraction = 0.5;
-  double tangledFraction = 0.0; ///< of the elements to be inverted in the end, 0 to 1
-  std::uint64_t seed = 0;
-  bool singlePrecision = false; ///< new coordinates are rounded to float, and still do not invert
-  int threads = 0;              ///< 0: all cores. The result does not depend on it.
-  /// One number per point, at least 0, by which its random numbers and its turn are chosen, so that
-  /// they do not depend on the order of the points; null: its index.
-  const Index* ids = nullptr;
-  /// Called now and then with the fraction done, 0 to 1; returns whether to continue. May be empty.
-  std::function<bool(double)> progress;
-};
-
-/// The perturbed points, and a report.
-struct Perturbation
-{
-  std::vector<double> points; ///< 3 per point of the mesh
-  Index movable = 0;          ///< vertices that could move
-  Index moved = 0;            ///< vertices whose coordinates changed
-  Index elements = 0;         ///< elements with finite vertices, of which a fraction is tangled
-  Index invertedBefore = 0;
-  Index invertedAfter = 0;
-  double largestDisplacement = 0;
-  bool stopped = false; ///< progress() returned false; the points are those reached
-};
-
 /**
  * @brief Moves a percentage of the movable vertices, one after the other in the order of
  * PerturbOptions::ids.

@@ -5,9 +5,10 @@
 #ifndef tautline_Perturber_h
 #define tautline_Perturber_h
 
-#include "Perturb.h"
+#include "PerturbOptions.h"
 
 #include "tautline/Core/Random.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include <algorithm>
 
