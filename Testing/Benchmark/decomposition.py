@@ -1,4 +1,4 @@
-"""decomposition.py [--cells N] [--parts 2,4,...] [--graph 2,32]: halos, messages and bytes of divisions of a large mesh.
+"""decomposition.py [--cells N] [--parts 2,4,...] [--graph 2,32]: halos and messages of divisions of a large mesh.
 
 Divides a cube of tetrahedra by a k-d tree and by PT-Scotch and counts what ranks with these parts send in a sweep of
 Optimize Mesh, without ranks (vtkMeshDecomposition): the largest and the mean halo, neighbours, messages and bytes of a

@@ -1,9 +1,9 @@
 """ranks.py PVBATCH [--cells N] [--ranks 1,2] [--filters quality,...]: filters on MPI ranks against one process.
 
 Prints for each filter and number of ranks the peak memory of a rank (VmHWM of the filter's execution, with the input
-and ParaView itself), CPU seconds of all ranks, and both relative to one rank. CPU seconds count what a rank does while it
-waits for another, as MPI waits in a loop: the most of a rank is the time that an idle machine with as many cores would
-take. The environment names the plugin: eval "$(./run env)" sets PV_PLUGIN_PATH.
+and ParaView itself), CPU seconds of all ranks, and both relative to one rank. CPU seconds count what a rank does while
+it waits for another, as MPI waits in a loop: the most of a rank is the time that an idle machine with as many cores
+would take. The environment names the plugin: eval "$(./run env)" sets PV_PLUGIN_PATH.
 """
 
 import argparse

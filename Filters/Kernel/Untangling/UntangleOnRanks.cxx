@@ -215,8 +215,8 @@ Index RankUntangler::examine()
 
 //------------------------------------------------------------------------------
 /// The cells with a point within `width` cells of an invalid one that can be repaired, on all
-/// ranks; all cells if width is negative, on the first rank: they are one part as a rule, and each copy
-/// takes as much memory as the whole mesh.
+/// ranks; all cells if width is negative, on the first rank: they are one part as a rule, and each
+/// copy takes as much memory as the whole mesh.
 Region RankUntangler::gather(int width)
 {
   const MeshView& view = this->TheMesh.view();
