@@ -201,7 +201,8 @@ std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index si
   pass.leastGain = high ? HighTargetGain : TargetGain;
   passes.push_back(pass);
   const bool keepsCount = options.smallestCount == 1.0 && options.largestCount == 1.0;
-  if (options.insert && !keepsCount)
+  // For sums insertions gain little: on 50,000 tetrahedra half a percent, for nine times the time.
+  if (options.insert && !keepsCount && !sums)
   {
     pass.insert = true;
     pass.leastGain = high ? HighTargetGain : FineGain;

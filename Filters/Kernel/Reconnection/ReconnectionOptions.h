@@ -59,7 +59,8 @@ enum class ReconnectionObjective : int
   /**
    * @brief The sum over all tetrahedra of what their inverse mean ratios exceed 1: changes that
    * decrease it, while the smallest angle and the largest inverse mean ratio of the input are held.
-   * All tetrahedra are worked on, whatever the target; compound operations are not used.
+   * All tetrahedra are worked on, whatever the target; insertion and compound operations are not
+   * used.
    */
   Sum = 4
 };
