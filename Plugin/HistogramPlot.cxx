@@ -165,7 +165,7 @@ void HistogramPlot::mousePressEvent(QMouseEvent* event)
 {
   if (event->button() == Qt::LeftButton && this->number() > 0)
   {
-    this->Anchor = this->barAt(event->x());
+    this->Anchor = this->barAt(event->pos().x());
     this->choose(this->Anchor, this->Anchor);
   }
 }
@@ -173,7 +173,7 @@ void HistogramPlot::mousePressEvent(QMouseEvent* event)
 //------------------------------------------------------------------------------
 void HistogramPlot::mouseMoveEvent(QMouseEvent* event)
 {
-  const int bar = this->barAt(event->x());
+  const int bar = this->barAt(event->pos().x());
   if (this->Anchor >= 0 && bar >= 0)
   {
     this->choose(this->Anchor, bar);

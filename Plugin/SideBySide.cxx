@@ -1,6 +1,7 @@
 #include "SideBySide.h"
 
 #include "FetchOutput.h"
+#include "ParaViewCompatibility.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -15,7 +16,6 @@
 
 #include "vtkNew.h"
 #include "vtkPVDataInformation.h"
-#include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyManager.h"
@@ -91,8 +91,7 @@ void hideLegendLater(vtkSMProxy* shown, pqView* view)
   QTimer::singleShot(0, view,
     [representation, view]
     {
-      vtkSMPVRepresentationProxy::SetScalarBarVisibility(
-        representation, view->getViewProxy(), false);
+      tautline::ColorMaps::SetScalarBarVisibility(representation, view->getViewProxy(), false);
       view->render();
     });
 }
@@ -127,8 +126,8 @@ void fill(pqPipelineSource* quality, pqView* view, bool legend)
   if (shown && statistics && statistics->GetNumberOfRows() > 0)
   {
     const std::string metric = statistics->GetValueByName(0, "Metric").ToString();
-    vtkSMPVRepresentationProxy::SetScalarColoring(shown, metric.c_str(), vtkDataObject::CELL);
-    vtkSMPVRepresentationProxy::SetScalarBarVisibility(shown, viewProxy, legend);
+    tautline::ColorMaps::SetScalarColoring(shown, metric.c_str(), vtkDataObject::CELL);
+    tautline::ColorMaps::SetScalarBarVisibility(shown, viewProxy, legend);
     shown->UpdateVTKObjects();
     if (!legend)
     {

@@ -1,5 +1,6 @@
 #include "pqTautlinePictures.h"
 
+#include "ParaViewCompatibility.h"
 #include "ProxyKind.h"
 
 #include "pqApplicationCore.h"
@@ -15,7 +16,6 @@
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
-#include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -117,10 +117,8 @@ void pqTautlinePictures::arrange(pqDataRepresentation* mesh)
   if (view && port->getPortName() == SheetPort)
   {
     showColors(mesh->getProxy());
-    vtkSMPVRepresentationProxy::SetScalarColoring(
-      mesh->getProxy(), SheetPort, vtkDataObject::POINT);
-    vtkSMPVRepresentationProxy::SetScalarBarVisibility(
-      mesh->getProxy(), view->getViewProxy(), false);
+    tautline::ColorMaps::SetScalarColoring(mesh->getProxy(), SheetPort, vtkDataObject::POINT);
+    tautline::ColorMaps::SetScalarBarVisibility(mesh->getProxy(), view->getViewProxy(), false);
     view->resetDisplay();
     return;
   }

@@ -220,7 +220,8 @@ void vtkDomainSource::SetDomainByName(const char* name)
 {
   try
   {
-    const DomainInfo& info = tautline::findDomain(name ? name : "");
+    const std::string wanted = name ? name : "";
+    const DomainInfo& info = tautline::findDomain(wanted);
     this->SetDomain(static_cast<int>(&info - tautline::domains().data()));
   }
   catch (const Error& error)

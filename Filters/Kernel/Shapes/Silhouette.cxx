@@ -252,9 +252,9 @@ public:
     : Points(points)
     , Least(std::max(1, perSpacing / 2))
     , Most(perSpacing + perSpacing / 2)
-    , Costs(points.size() * (static_cast<std::size_t>(this->Most) + 1))
   {
     const std::size_t n = points.size();
+    this->Costs.assign(n * (static_cast<std::size_t>(this->Most) + 1), 0.0);
     for (std::size_t i = 0; i < n; ++i)
     {
       throwIfInterrupted();

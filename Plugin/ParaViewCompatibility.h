@@ -1,0 +1,26 @@
+/**
+ * @file ParaViewCompatibility.h
+ * @brief What differs between ParaView 5.11 and 5.13, in one place.
+ */
+#ifndef tautline_ParaViewCompatibility_h
+#define tautline_ParaViewCompatibility_h
+
+#include "vtkPVVersion.h"
+
+#if PARAVIEW_VERSION_NUMBER >= PARAVIEW_VERSION_CHECK(5, 13, 0)
+#include "vtkSMColorMapEditorHelper.h"
+#else
+#include "vtkSMPVRepresentationProxy.h"
+#endif
+
+namespace tautline
+{
+/// The static functions for the colours of a representation.
+#if PARAVIEW_VERSION_NUMBER >= PARAVIEW_VERSION_CHECK(5, 13, 0)
+using ColorMaps = vtkSMColorMapEditorHelper;
+#else
+using ColorMaps = vtkSMPVRepresentationProxy;
+#endif
+} // namespace tautline
+
+#endif
