@@ -7,6 +7,7 @@ files.
 
 import html
 import inspect
+import json
 import os
 import re
 import shutil
@@ -28,6 +29,23 @@ LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
 COMMENT = re.compile(r"^<!--.*?-->\n", re.MULTILINE)
 REFERENCE = re.compile(r'(?:href|src)="([^"]+)"')
 ANCHOR = re.compile(r'(?:id|name)="([^"]+)"')
+GALLERY = "python/examples"
+GALLERY_HEAD = """# Gallery
+
+Every example is a script in `python/examples`, which a test runs: `python3 02_untangle.py Data`. Pictures show the mesh
+before and after; blue is good, red is bad, and where nothing else is said the range of the colours is 1 to 3 of the inverse
+mean ratio. The seconds of processor time and the memory are those of the whole script on one machine, most of them for
+loading the libraries.
+"""
+LABEL = re.compile(r"^(Shell|Look at|State|Picture): (.*)$", re.MULTILINE)
+STATE = """# {title}
+from paraview.simple import *
+
+before = OpenDataFile("before.vtu")  # which the script below writes
+after = {call}
+Show(after)
+Render()
+"""
 WIDTH = 80  # of a signature in one line
 OUTSIDE = re.compile(r"[a-z]+:|//")
 
@@ -39,7 +57,7 @@ class Site:
         self.source, self.work = source, work
         shutil.rmtree(work, ignore_errors=True)
         (work / "extra").mkdir(parents=True)
-        for directory in (HELP, "Data"):
+        for directory in (HELP, "Data", f"{GALLERY}/pictures"):
             names = shutil.ignore_patterns("*.py", "*.in", "toc.xml", "*.cmake")
             shutil.copytree(source / directory, work / "extra" / directory, ignore=names)
 
@@ -118,14 +136,31 @@ def help_page(title: str, *pages: str) -> str:
 
 
 def gallery_page(source: Path) -> str:
-    """The examples: title and text of the docstring, and the script. A test runs each of them."""
-    parts = ["# Gallery\n\nEvery example is a script in `python/examples`; a test runs all of them.\n"]
-    for script in sorted((source / "python/examples").glob("[0-9]*.py")):
+    """The examples: title, picture and text of the docstring, cost, and the script. A test runs each of them."""
+    folder = source / GALLERY
+    facts = json.loads((folder / "measured.json").read_text(encoding="utf-8"))
+    parts = [GALLERY_HEAD]
+    for script in sorted(folder.glob("[0-9]*.py")):
         text = script.read_text(encoding="utf-8")
         title, _, rest = text.split('"""')[1].partition("\n")
         code = text.split('"""', 2)[2].strip()
-        head = f"## {title.rstrip('.')}\n\n{rest.strip()}\n\n`python/examples/{script.name}`"
-        parts.append(f"{head}\n\n```python\n{code}\n```\n")
+        lines = {key: value for key, value in LABEL.findall(rest)}
+        parts.append(f"## {title.rstrip('.')}\n")
+        if (folder / "pictures" / f"{script.stem}.png").exists():
+            name = html.escape(f"{title.rstrip('.')}: before and after")
+            parts.append(f'<img src="{GALLERY}/pictures/{script.stem}.png" alt="{name}">\n')
+        parts.append(LABEL.sub("", rest).strip() + "\n")
+        if "Look at" in lines:
+            parts.append(f"**What to look at.** {lines['Look at'][0].upper()}{lines['Look at'][1:]}\n")
+        if "Shell" in lines:
+            commands = "\n".join(command for key, line in LABEL.findall(rest) if key == "Shell" for command in line.split("; "))
+            parts.append(f"On the shell:\n\n```sh\n{commands}\n```\n")
+        if "State" in lines:
+            state = STATE.format(title=title, call=lines["State"])
+            parts.append(f"In ParaView, a file to open with *File > Load State*:\n\n```python\n{state}```\n")
+        cost = facts[script.stem]
+        parts.append(f"In Python, `{GALLERY}/{script.name}`, {cost['seconds']} s and {cost['memory']} MiB:\n")
+        parts.append(f"```python\n{code}\n```\n")
     return "\n".join(parts)
 
 

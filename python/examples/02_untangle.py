@@ -1,7 +1,11 @@
 """Untangle a bracket.
 
-41 of its 8,140 tetrahedra are inverted; afterwards none is. The boundary does not move. On the shell:
-tautline untangle bracket-tangled.vtu -o after.vtu
+41 of its 8,140 tetrahedra are inverted; afterwards none is. The boundary does not move.
+
+Shell: tautline untangle bracket-tangled.vtu -o after.vtu
+Look at: Validity, -1 where an element is inverted.
+State: UntangleMesh(Input=before)
+Picture: Validity clip
 """
 
 import sys
@@ -12,5 +16,6 @@ import tautline as tl
 data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
 result = tl.untangle(data / "bracket-tangled.vtu")
 print(result.inverted_before, "inverted before,", result.inverted, "after")
+tl.write(data / "bracket-tangled.vtu", "before.vtu")
 tl.write(result, "after.vtu")
 assert (result.inverted_before, result.inverted) == (41, 0)

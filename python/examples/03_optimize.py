@@ -1,7 +1,12 @@
 """Optimize a plate with a hole.
 
 Points of a perturbed mesh of triangles and quadrilaterals move until the mean shape is best; the worst element does not
-get worse. On the shell: tautline optimize before.vtu -o after.vtu
+get worse.
+
+Shell: tautline optimize before.vtu -o after.vtu
+Look at: the elements around the hole.
+State: OptimizeMesh(Input=before)
+Picture: imr
 """
 
 import sys

@@ -1,7 +1,11 @@
 """Turn a hole by 120 degrees.
 
-FEMWARP, a linear method, inverts elements near the hole; the hybrid method untangles and improves them. On the shell:
-tautline warp plate.vtu --rotate 120 -o after.vtu
+FEMWARP, a linear method, inverts elements near the hole; the hybrid method untangles and improves them.
+
+Shell: tautline warp plate.vtu --rotate 120 -o after.vtu
+Look at: the rings of quadrilaterals around the hole.
+State: WarpMesh(Input=before, Motion="Transform", TransformKind="Rotation", Angle=120)
+Picture: imr
 """
 
 import sys
@@ -13,5 +17,6 @@ data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
 plain = tl.warp(data / "plate.vtu", transform={"rotate": 120}, method="femwarp")
 hybrid = tl.warp(data / "plate.vtu", transform={"rotate": 120}, method="hybrid")
 print("inverted:", plain.inverted, "by FEMWARP,", hybrid.inverted, "by the hybrid method")
+tl.write(data / "plate.vtu", "before.vtu")
 tl.write(hybrid, "after.vtu")
 assert plain.inverted > hybrid.inverted == 0

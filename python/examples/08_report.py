@@ -1,7 +1,10 @@
 """A report to send.
 
-One HTML file with pictures, histograms and tables, before and after. It needs no display. On the shell: tautline report
-after.vtu --before before.vtu --out report.html
+One HTML file with pictures, histograms and tables, before and after. It needs no display.
+
+Shell: tautline report after.vtu --before before.vtu -o report.html
+Look at: the file in a browser.
+Picture: imr clip
 """
 
 import sys
@@ -11,6 +14,7 @@ import tautline as tl
 
 data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
 tangled = data / "bracket-tangled.vtu"
+tl.write(tangled, "before.vtu")
 tl.write(tl.optimize(tangled), "after.vtu")
 tl.report("after.vtu", "report.html", before=tangled)
 text = Path("report.html").read_text(encoding="utf-8")

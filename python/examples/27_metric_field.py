@@ -1,0 +1,16 @@
+"""What a metric looks like.
+
+The inverse mean ratio over the position of one corner of a triangle: flat near the ideal, infinite at the inversion.
+
+Shell: tautline metric-field --metrics imr -o after.vti
+Look at: the level sets around the corner of the equilateral triangle.
+Picture: imr
+"""
+
+import tautline as tl
+
+result = tl.metric_field("imr", bounds=(-1, 2, 0.05, 2), dimensions=(121, 79))
+valid = result.values["imr"][result.validity == 1]
+print("smallest value", valid.min())
+tl.write(result, "after.vti")
+assert 1 <= valid.min() < 1.001

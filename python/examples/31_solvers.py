@@ -1,0 +1,23 @@
+"""Which solver for this mesh?
+
+Four combinations of solver and preconditioner solve the same problem; the fastest one that converges is recommended.
+
+Shell: tautline solver-study plate.vtu --combinations 1,4,13,16
+Look at: the table that is printed.
+State: SolverStudy(Input=before)
+Picture: edges
+"""
+
+import sys
+from pathlib import Path
+
+import tautline as tl
+
+data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
+before = tl.read(data / "plate.vtu")
+study = tl.solver_study(before, combinations=[1, 4, 13, 16], conditions=False)
+for row in study.table():
+    print(row)
+print("recommended:", study.recommended, study.why)
+tl.write(before, "before.vtu")
+assert len(study.table()) == 4 and all(row["converged"] for row in study.table())

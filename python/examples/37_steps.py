@@ -1,0 +1,41 @@
+"""Steps in a file.
+
+Read, grade, untangle, optimize and write, as a file that is checked before it runs; the shell runs the same file.
+
+Shell: tautline run steps.toml
+Look at: the file; the arguments are those of the Python functions.
+Picture: imr
+"""
+
+import sys
+from pathlib import Path
+
+import tautline as tl
+
+data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
+steps = f"""
+[[step]]
+do = "read"
+file = "{(data / "bracket-tangled.vtu").resolve()}"
+
+[[step]]
+do = "untangle"
+
+[[step]]
+do = "optimize"
+preset = "best shape"
+
+[[step]]
+do = "criteria"
+criteria = "fem"
+stop = false
+
+[[step]]
+do = "write"
+file = "after.vtu"
+"""
+Path("steps.toml").write_text(steps)
+result = tl.run_steps("steps.toml")
+print(result.summary if hasattr(result, "summary") else result)
+tl.write(data / "bracket-tangled.vtu", "before.vtu")
+assert tl.quality("after.vtu").inverted == 0
