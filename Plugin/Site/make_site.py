@@ -33,9 +33,9 @@ GALLERY = "python/examples"
 GALLERY_HEAD = """# Gallery
 
 Every example is a script in `python/examples`, which a test runs: `python3 02_untangle.py Data`. Pictures show the mesh
-before and after; blue is good, red is bad, and where nothing else is said the range of the colours is 1 to 3 of the inverse
-mean ratio. The seconds of processor time and the memory are those of the whole script on one machine, most of them for
-loading the libraries.
+before and after; blue is good, red is bad, and where nothing else is said the range of the colours is 1 to 3 of the
+inverse mean ratio. The seconds of processor time and the memory are those of the whole script on one machine, most of
+them for loading the libraries.
 """
 LABEL = re.compile(r"^(Shell|Look at|State|Picture): (.*)$", re.MULTILINE)
 STATE = """# {title}
@@ -153,7 +153,8 @@ def gallery_page(source: Path) -> str:
         if "Look at" in lines:
             parts.append(f"**What to look at.** {lines['Look at'][0].upper()}{lines['Look at'][1:]}\n")
         if "Shell" in lines:
-            commands = "\n".join(command for key, line in LABEL.findall(rest) if key == "Shell" for command in line.split("; "))
+            found = [line for key, line in LABEL.findall(rest) if key == "Shell"]
+            commands = "\n".join("; ".join(found).split("; "))
             parts.append(f"On the shell:\n\n```sh\n{commands}\n```\n")
         if "State" in lines:
             state = STATE.format(title=title, call=lines["State"])

@@ -1,4 +1,4 @@
-"""gallery_commands.py EXAMPLES: the lines "Shell:" of the gallery are commands of the shell, with options that exist."""
+"""gallery_commands.py EXAMPLES: the lines "Shell:" of the gallery are commands, with options that exist."""
 
 import re
 import shlex

@@ -1,6 +1,6 @@
 """pvpython gallery_states.py PLUGIN EXAMPLES OUTPUT: the filters that the gallery names for ParaView take its meshes.
 
-EXAMPLES is python/examples, OUTPUT has a folder with before.vtu for each of them, which the tests of the examples write.
+EXAMPLES is python/examples, OUTPUT has a folder with before.vtu for each of them, which their tests write.
 """
 
 import re

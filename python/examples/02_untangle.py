@@ -3,7 +3,7 @@
 41 of its 8,140 tetrahedra are inverted; afterwards none is. The boundary does not move.
 
 Shell: tautline untangle bracket-tangled.vtu -o after.vtu
-Look at: Validity, -1 where an element is inverted.
+Look at: the counts that are printed; the inverted elements lie inside.
 State: UntangleMesh(Input=before)
 Picture: Validity clip
 """

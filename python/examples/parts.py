@@ -55,11 +55,12 @@ def turbine_blade(twist: float = 45.0, shape: tuple[int, int, int] = (24, 4, 30)
 
     def place(grid: np.ndarray) -> np.ndarray:
         along = 0.03 + 0.94 * grid[:, 0]
-        half = 0.6 * (0.2969 * np.sqrt(along) - 0.126 * along - 0.3516 * along**2 + 0.2843 * along**3 - 0.1015 * along**4)
+        half = 0.2969 * np.sqrt(along) - 0.126 * along - 0.3516 * along**2 + 0.2843 * along**3 - 0.1015 * along**4
         chord = 1 - 0.4 * grid[:, 2]
-        x, y = (along - 0.5) * chord, (2 * grid[:, 1] - 1) * (half + 0.01) * chord
+        x, y = (along - 0.5) * chord, (2 * grid[:, 1] - 1) * (0.6 * half + 0.01) * chord
         angle = np.radians(twist) * grid[:, 2]
-        return np.column_stack([x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle), 3 * grid[:, 2]])
+        turned = [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)]
+        return np.column_stack([*turned, 3 * grid[:, 2]])
 
     return block(shape, place)
 
