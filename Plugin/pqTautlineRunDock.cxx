@@ -1,5 +1,6 @@
 #include "pqTautlineRunDock.h"
 
+#include "FetchOutput.h"
 #include "ProxyKind.h"
 #include "QtCompatibility.h"
 #include "RunControl.h"
@@ -19,11 +20,15 @@
 #include "vtkSMProxyDefinitionManager.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSmartPointer.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
 
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QPointer>
 #include <QProgressBar>
 #include <QRegularExpression>
+#include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -50,6 +55,24 @@ bool isIterative(const QString& filter)
     }
   }
   return false;
+}
+
+/**
+ * The column of a table History that is drawn on the left axis (0) or on the right one (1):
+ * objective and worst element or inverted ones; of Improve Mesh a count and the worst element.
+ */
+vtkIdType columnOf(vtkTable* table, int axis)
+{
+  static const QRegularExpression left("^(Objective|N below target)$"),
+    right("( worst|^Worst .*|^Inverted)$");
+  for (vtkIdType column = 0; column < table->GetNumberOfColumns(); ++column)
+  {
+    if ((axis == 0 ? left : right).match(table->GetColumnName(column)).hasMatch())
+    {
+      return column;
+    }
+  }
+  return -1;
 }
 
 /// Shows what was drawn, though no event is processed.
@@ -106,6 +129,8 @@ pqTautlineRunDock::pqTautlineRunDock(QWidget* parentObject)
   QObject::connect(manager, &pqProgressManager::progress, this, &pqTautlineRunDock::progress);
   QObject::connect(manager, &pqProgressManager::progressEndEvent, this, &pqTautlineRunDock::end);
   auto* model = core->getServerManagerModel();
+  QObject::connect(
+    model, &pqServerManagerModel::dataUpdated, this, &pqTautlineRunDock::dataUpdated);
   QObject::connect(
     model, &pqServerManagerModel::sourceAdded, this, &pqTautlineRunDock::sourceAdded);
   QObject::connect(
@@ -288,10 +313,105 @@ void pqTautlineRunDock::end()
   }
   const bool stopped = tautline::isStopRequested();
   this->Filter->setText(this->Running + (stopped ? ": stopped" : ": finished"));
+  this->Ended = this->Running;
+  this->Live = true;
   this->Running.clear();
   this->Bar->reset();
   this->Cover->uncover();
   this->Sent = false;
   tautline::requestStop(false);
   this->setStop("Stop", IdleTip, false);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::dataUpdated(pqPipelineSource* source)
+{
+  if (!tautline::isTautline(source->getProxy()))
+  {
+    return;
+  }
+  const QString filter = source->getProxy()->GetXMLLabel();
+  if (this->Live && this->drawn() && (!isIterative(filter) || filter == this->Ended))
+  {
+    return; // an output of the run that was drawn, or of another filter in its pipeline
+  }
+  if (filter != this->Ended || !this->Live)
+  {
+    this->Filter->setText(filter + ": finished");
+    this->Values->clear();
+    this->Plot->clear();
+    this->Plot->update();
+  }
+  if (isIterative(filter) && !this->drawn())
+  {
+    this->showHistoryLater(source);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::stateChanged(pqServerManagerModelItem* item)
+{
+  auto* source = qobject_cast<pqPipelineSource*>(item);
+  if (source && source->modifiedState() == pqProxy::UNMODIFIED)
+  {
+    QObject::disconnect(
+      source, &pqPipelineSource::modifiedStateChanged, this, &pqTautlineRunDock::stateChanged);
+    this->showHistoryLater(source);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::showHistoryLater(pqPipelineSource* source)
+{
+  // Fetching updates a pipeline, which is not done within an update.
+  const QPointer<pqPipelineSource> updated = source;
+  QTimer::singleShot(0, this,
+    [this, updated]
+    {
+      if (updated && updated->modifiedState() == pqProxy::UNMODIFIED)
+      {
+        this->showHistory(updated);
+      }
+      else if (updated)
+      {
+        // During Apply the data cannot be fetched yet.
+        QObject::connect(updated.data(), &pqPipelineSource::modifiedStateChanged, this,
+          &pqTautlineRunDock::stateChanged, Qt::UniqueConnection);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineRunDock::showHistory(pqPipelineSource* source)
+{
+  const auto data = tautline::fetchOutput(source, "History");
+  vtkTable* table = vtkTable::SafeDownCast(data);
+  const vtkIdType rows = table ? table->GetNumberOfRows() : 0;
+  this->Live = false;
+  QStringList texts = { QString("iteration %1").arg(rows - 1) };
+  for (int curve = 0; rows > 0 && curve < 2; ++curve)
+  {
+    const vtkIdType column = columnOf(table, curve);
+    if (column < 0)
+    {
+      continue;
+    }
+    // As in the texts of the progress: "imr worst" and "Worst imr" are "worst".
+    QString name =
+      QString(table->GetColumnName(column)).remove(QRegularExpression("^N ")).toLower();
+    name = name.contains("worst") ? "worst" : name;
+    for (vtkIdType row = 0; row < rows; ++row)
+    {
+      const double value = table->GetValue(row, column).ToDouble();
+      this->Plot->add(static_cast<int>(row), name, value, curve);
+    }
+    constexpr int digits = 6;
+    const double last = table->GetValue(rows - 1, column).ToDouble();
+    texts.append(name + ' ' + QString::number(last, 'g', digits));
+  }
+  if (rows > 0)
+  {
+    this->Values->setText(texts.join('\n'));
+  }
+  this->Plot->update();
 }

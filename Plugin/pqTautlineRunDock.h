@@ -5,7 +5,8 @@
  * Of Optimize Mesh, Untangle Mesh and Improve Mesh it draws two values over the iterations, and the
  * button Stop ends the run with the best mesh so far. Of the other filters it shows the progress.
  * The values are those of the text of the progress, which also comes from a server; see
- * vtkTautlineAlgorithm::ShowIteration().
+ * vtkTautlineAlgorithm::ShowIteration(). ParaView drops texts that follow each other fast: a run
+ * that was too short to be drawn is drawn afterwards, from the filter's output History.
  *
  * Nothing is executed within a run but the drawing of this dock: no events are processed. The
  * clicks on Stop are noticed by tautline::StopWindow; see RunControl.h for how the run ends.
@@ -26,6 +27,7 @@ class QProgressBar;
 class QToolButton;
 class pqPipelineSource;
 class pqServer;
+class pqServerManagerModelItem;
 
 namespace tautline
 {
@@ -56,6 +58,8 @@ private Q_SLOTS:
   void serverAdded(pqServer* server);
   void progress(const QString& text, int percent);
   void end();
+  void dataUpdated(pqPipelineSource* source);
+  void stateChanged(pqServerManagerModelItem* item);
 
 private:
   /// The name in the menu of the filter that a text of the progress is of; "" if not Tautline's.
@@ -64,10 +68,15 @@ private:
   QString whyNoStop(const QString& filter) const;
   void begin(const QString& filter);
   void showValues(const QString& values);
+  /// Draws the iterations of a run that has ended, after Apply.
+  void showHistoryLater(pqPipelineSource* source);
+  void showHistory(pqPipelineSource* source);
   void setStop(const QString& text, const QString& tip, bool enabled);
 
   std::map<QString, QString> Filters; ///< name in the menu by name of class
   QString Running;                    ///< name in the menu; "" if no filter runs
+  QString Ended;                      ///< the filter whose run was just shown
+  bool Live = false;                  ///< what is drawn was drawn while the filter ran
   bool Shown = false;                 ///< the dock has appeared by itself
   bool Sent = false;                  ///< the request to stop was sent to the server
 
