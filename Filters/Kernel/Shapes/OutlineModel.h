@@ -1,0 +1,81 @@
+/**
+ * @file OutlineModel.h
+ * @brief A silhouette's outline, independent of its size, with descriptors along it: what
+ * matchOutlines() compares.
+ */
+#ifndef tautline_OutlineModel_h
+#define tautline_OutlineModel_h
+
+#include "Silhouette.h"
+
+#include <vector>
+
+namespace tautline
+{
+/**
+ * @brief The energy of outlines and their sampling. All lengths are fractions of the outline's.
+ *
+ * A vertex runs through the locations of the other outline in order: every edge advances by 1 /
+ * stretch to stretch times its own length.
+ */
+struct OutlineOptions
+{
+  double spacing = 0.05;    ///< of the polygon's vertices, 0.01 to 0.25
+  Index locations = 48;     ///< on the outline for the vertices, 16 to 512
+  double smoothing = 0.008; ///< standard deviation of the Gaussian along the outline, above 0
+  double stretch = 2.0;     ///< bound on how much an edge's part of the outline grows, above 1
+  double deformation = 1.0; ///< weight of log(alpha / beta)^2 of the triangles, at least 0
+  double distortion = 0.5;  ///< weight of |log| of the growth of their edge lengths, at least 0
+  double ordering = 1.0;    ///< weight of |log(advance / expected)| of the edges, at least 0
+  double descriptor = 20.0; ///< weight of the differences of descriptors, at least 0
+  double region = 0.3;      ///< share of the discs in a descriptor, the rest are heights; 0 to 1
+  bool mirrored = true;     ///< the better one of a shape and its mirror image counts
+  /// Bounds that skip placements which cannot be the best. The result is the same without.
+  bool bounds = true;
+};
+
+/// An outline to match. Vertices run counter-clockwise; locations are at equal distances.
+struct OutlineModel
+{
+  /// A triangulated polygon with descriptors along its edges.
+  struct Polygon
+  {
+    PolygonMesh mesh;
+    std::vector<double> advance;    ///< of each edge, in locations
+    std::vector<float> descriptors; ///< DescriptorSamples per edge
+  };
+  Polygon polygon, mirror;      ///< its mirror image, for `mirrored`
+  std::vector<float> x, y;      ///< of the locations, in units of the outline's length; twice round
+  std::vector<float> distances; ///< by advance, then by beginning: rows as long as x
+  /// At the locations and midway between them: one number at all of them, then the next.
+  std::vector<float> descriptors;
+  /// Mean standard deviation of the heights, relative to their maximum: small for a disc.
+  double complexity = 0;
+  std::vector<float> signature; ///< for a shortlist: quantiles of the descriptors
+};
+
+/// Numbers in a descriptor: 19 heights of the outline over its tangent, and areas in 4 discs and
+/// the distance from the centre of mass.
+constexpr Index OutlineHeights = 19, OutlineRegions = 5;
+constexpr Index OutlineChannels = OutlineHeights + OutlineRegions;
+/// Points of each edge of a polygon at which descriptors are compared.
+constexpr Index DescriptorSamples = 3;
+
+/**
+ * @brief Prepares a silhouette: smoothes the outline, scales its length to 1, lets it begin at the
+ * point farthest from the centre of mass, places the polygon's vertices and the locations.
+ *
+ * The heights are those of the other points of the outline over the tangent in a point, in order
+ * along the outline, averaged over twentieths of it and relative to their maximum (Wang, Bai, You,
+ * Liu, Latecki, Shape matching and classification using height functions, Pattern Recognition
+ * Letters 33, 2012). They and the discs do not change if the shape is moved, turned or scaled.
+ *
+ * Throws Error on options out of range and on an outline without area.
+ */
+TAUTLINE_KERNEL_EXPORT OutlineModel prepareOutline(
+  const Silhouette& shape, const OutlineOptions& options);
+
+/// A distance of signatures, for shortlists: a sum of |differences|, at no cost. Symmetric.
+TAUTLINE_KERNEL_EXPORT double signatureDistance(const OutlineModel& a, const OutlineModel& b);
+}
+#endif

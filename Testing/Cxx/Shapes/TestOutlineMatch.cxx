@@ -1,0 +1,161 @@
+// Outlines: the same energy whatever the size, direction and mirroring; exact by comparison with a
+// program without bounds; a shape is nearest to itself; errors.
+
+#include "Check.h"
+#include "Shapes.h"
+
+#include "tautline/Shapes/OutlineMatch.h"
+
+#include <cstdio>
+
+using namespace tautline;
+
+namespace
+{
+/// A figure with limbs of different lengths and directions, about `extent` pixels wide.
+Silhouette figure(double extent, double angle, bool mirrored, int kind)
+{
+  const double unit = extent / 1.7, c = std::cos(angle), s = std::sin(angle);
+  const Index size = static_cast<Index>(2.0 * extent) + 8;
+  const double middle = 0.5 * static_cast<double>(size - 1);
+  const auto limb = [](double x, double y, double tx, double ty, double r0, double r1)
+  {
+    const double t = std::clamp((x * tx + y * ty) / (tx * tx + ty * ty), 0.0, 1.0);
+    return r0 + t * (r1 - r0) - std::hypot(x - t * tx, y - t * ty);
+  };
+  return traceSilhouette(paint(size, size,
+    [=](double px, double py)
+    {
+      const double dx = (mirrored ? middle - px : px - middle) / unit, dy = (py - middle) / unit;
+      const double x = c * dx + s * dy, y = c * dy - s * dx;
+      if (kind == 1)
+      {
+        return std::max({ 0.35 - std::hypot(x, 1.5 * y), limb(x, y, 0.9, 0.1, 0.2, 0.1),
+          limb(x, y, -0.4, 0.5, 0.15, 0.15) });
+      }
+      return std::max({ 0.3 - std::hypot(x, y), limb(x, y, 0.9, 0.2, 0.14, 0.08),
+        limb(x, y, -0.6, 0.6, 0.18, 0.1), limb(x, y, -0.7, -0.4, 0.12, 0.1),
+        limb(x, y, 0.35, -0.75, 0.14, 0.12) });
+    }).view());
+}
+
+/// Energies of copies of one shape with another, relative to those of the first copy.
+void testInvariance()
+{
+  const OutlineOptions options;
+  const OutlineModel other = prepareOutline(figure(180.0, 0.0, false, 1), options);
+  const OutlineModel first = prepareOutline(figure(200.0, 0.0, false, 0), options);
+  const double there = matchOutlines(first, other, options).energy;
+  const double back = matchOutlines(other, first, options).energy;
+  double worst = 0.0;
+  for (double extent : { 46.0, 130.0, 1124.0 })
+  {
+    for (double angle : { 0.0, 0.4, 2.1 })
+    {
+      for (bool mirrored : { false, true })
+      {
+        const OutlineModel copy = prepareOutline(figure(extent, angle, mirrored, 0), options);
+        const OutlineMatch forward = matchOutlines(copy, other, options);
+        const double backward = matchOutlines(other, copy, options).energy;
+        const double difference = std::abs(forward.energy + backward - there - back);
+        std::printf("extent %.0f angle %.1f mirrored %d: %.4f %.4f\n", extent, angle, mirrored,
+          forward.energy, backward);
+        worst = std::max(worst, difference / (there + back));
+      }
+    }
+  }
+  std::printf("worst difference %.4f\n", worst);
+  constexpr double tolerance = 0.02;
+  TAUTLINE_CHECK(worst < tolerance);
+}
+
+/// The bounds leave out nothing; a shape fits itself best.
+void testExact()
+{
+  OutlineOptions options;
+  OutlineOptions plain = options;
+  plain.bounds = false;
+  const std::vector<Picture> pictures = { blob(120, 60, 60, 30), blob(120, 60, 60, 34, 0.8, true),
+    disc(120, 60, 60, 40),
+    paint(120, 120,
+      [](double x, double y)
+      { return std::abs(x - 60) < 45 && std::abs(y - 60) < 14 ? 1.0 : -1.0; }) };
+  std::vector<OutlineModel> models;
+  for (const Picture& picture : pictures)
+  {
+    models.push_back(prepareOutline(traceSilhouette(picture.view()), options));
+  }
+  Index withBounds = 0, without = 0;
+  for (std::size_t s = 0; s < models.size(); ++s)
+  {
+    std::vector<double> row;
+    for (const OutlineModel& target : models)
+    {
+      const OutlineMatch match = matchOutlines(models[s], target, options);
+      const OutlineMatch reference = matchOutlines(models[s], target, plain);
+      TAUTLINE_CHECK_NEAR(match.energy, reference.energy, 1e-5 * reference.energy);
+      TAUTLINE_CHECK(match.mirrored == reference.mirrored || s >= 2); // 2 and 3 are symmetric
+      withBounds += match.triangles;
+      without += reference.triangles;
+      row.push_back(match.energy);
+    }
+    TAUTLINE_CHECK(
+      std::min_element(row.begin(), row.end()) - row.begin() == static_cast<std::ptrdiff_t>(s) ||
+      s < 2);
+    TAUTLINE_CHECK(row[s] < 2.0);
+  }
+  // The first two are one shape; the mirror image is recognised.
+  const OutlineMatch twins = matchOutlines(models[0], models[1], options);
+  TAUTLINE_CHECK(twins.mirrored);
+  TAUTLINE_CHECK(twins.energy < 0.5 * matchOutlines(models[0], models[3], options).energy);
+  TAUTLINE_CHECK(3 * withBounds < 2 * without);
+}
+
+/// The energy with all weights but one at 0, of a shape and itself on all its locations.
+void testTerms()
+{
+  OutlineOptions options;
+  options.deformation = options.distortion = options.descriptor = 0.0;
+  options.mirrored = false;
+  const OutlineModel model = prepareOutline(traceSilhouette(blob(120, 60, 60, 30).view()), options);
+  // Only the ordering is left: advances are rounded, each to one of its neighbours.
+  const OutlineMatch match = matchOutlines(model, model, options);
+  double least = 0.0;
+  for (double advance : model.polygon.advance)
+  {
+    const double down = std::max(1.0, std::floor(advance)), up = std::ceil(advance);
+    least += std::min(std::log(advance / down), std::log(up / advance));
+  }
+  least /= static_cast<double>(model.polygon.advance.size());
+  TAUTLINE_CHECK(match.energy >= least - 1e-6);
+  TAUTLINE_CHECK(match.energy < 0.4);
+}
+
+void testErrors()
+{
+  const Silhouette shape = traceSilhouette(blob(120, 60, 60, 30).view());
+  OutlineOptions options;
+  const OutlineModel model = prepareOutline(shape, options);
+  OutlineOptions wrong = options;
+  wrong.spacing = std::nan("");
+  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), "spacing from 0.01");
+  wrong = options;
+  wrong.stretch = 1.0;
+  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), "stretch above 1");
+  wrong = options;
+  wrong.locations = 20;
+  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), "locations or more");
+  wrong.locations = 64;
+  TAUTLINE_CHECK_THROWS(matchOutlines(model, model, wrong), "prepared with");
+  TAUTLINE_CHECK_THROWS(prepareOutline(Silhouette(), options), "no area");
+}
+}
+
+int TestOutlineMatch(int, char*[])
+{
+  testInvariance();
+  testExact();
+  testTerms();
+  testErrors();
+  return exitCode();
+}
