@@ -1,10 +1,14 @@
 #include "ShapeRetrieval.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
+#include <Eigen/SparseCore>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -21,14 +25,7 @@ RetrievalOptions RetrievalOptions::felzenszwalb()
 RetrievalOptions RetrievalOptions::highest()
 {
   RetrievalOptions options;
-  options.spacing = 15.0;
-  options.locations.kind = Locations::Contour;
-  options.locations.contour = 80;
-  options.match.energy.directedEdges = true;
-  options.match.energy.ordering = 1.0;
-  options.match.energy.descriptor = 100.0;
-  options.match.energy.rotation = 1.0;
-  options.match.centreTolerance = 0.0;
+  options.method = RetrievalMethod::Outline;
   options.symmetric = true;
   return options;
 }
@@ -99,6 +96,12 @@ Recognition recognize(
 //------------------------------------------------------------------------------
 namespace
 {
+/// The energy of outlines that cannot be placed on each other.
+constexpr double FarApart = 1e6;
+/// Steps of diffusion, and the share of the identity that keeps each shape its own nearest.
+constexpr int DiffusionSteps = 10;
+constexpr double DiffusionIdentity = 1e-3;
+
 /// Compares each shape with each other one, on several threads.
 class Comparison
 {
@@ -111,6 +114,7 @@ public:
     , Work(Count + Count * Count)
     , Sources(shapes.size())
     , Targets(shapes.size())
+    , Outlines(shapes.size())
   {
     this->Match.threads = 1;
     this->Match.timeLimit = 0;
@@ -127,24 +131,31 @@ public:
   std::vector<double> run()
   {
     std::vector<double> energies(static_cast<std::size_t>(this->Count * this->Count), -1.0);
+    std::vector<char> done(energies.size(), 0);
     const int threads = this->Options.match.threads;
     runChunks(
       this->Count, threads, [&](Index s) { this->named(s, [&] { this->prepare(s); }); },
       [this](double fraction) { return this->proceed(0, this->Count, fraction); });
     if (this->Stop == MatchStop::Complete)
     {
+      const std::vector<char> chosen = this->shortlisted();
+      this->Matches = std::count(chosen.begin(), chosen.end(), 1);
       runChunks(
         this->Count * this->Count, threads,
         [&](Index pair)
         {
           const Index s = pair / this->Count, t = pair % this->Count;
-          this->named(s, [&] { energies[pair] = s == t ? 0.0 : this->energy(s, t); });
+          const bool matched = chosen[pair] != 0;
+          this->named(
+            s, [&] { energies[pair] = s == t ? 0.0
+                       : matched             ? this->energy(s, t)
+                                             : -1.0; });
+          done[pair] = s == t || !matched || energies[pair] >= 0.0;
         },
         [this](double fraction)
         { return this->proceed(this->Count, this->Count * this->Count, fraction); });
       // Pairs that the limit stopped may have been the last ones.
-      const bool whole =
-        std::none_of(energies.begin(), energies.end(), [](double energy) { return energy < 0.0; });
+      const bool whole = std::all_of(done.begin(), done.end(), [](char each) { return each != 0; });
       this->Stop = whole || this->Stop != MatchStop::Complete ? this->Stop : MatchStop::TimeLimit;
     }
     return energies;
@@ -155,24 +166,75 @@ public:
   std::vector<Index> vertices() const
   {
     std::vector<Index> numbers;
-    for (const ShapeSource& source : this->Sources)
+    for (std::size_t s = 0; s < this->Sources.size(); ++s)
     {
-      numbers.push_back(static_cast<Index>(source.mesh.points.size()));
+      const PolygonMesh& mesh =
+        this->outlines() ? this->Outlines[s].polygon.mesh : this->Sources[s].mesh;
+      numbers.push_back(static_cast<Index>(mesh.points.size()));
     }
     return numbers;
   }
 
+  Index matches() const { return this->Matches; }
+  const std::vector<OutlineModel>& models() const { return this->Outlines; }
+
 private:
+  bool outlines() const { return this->Options.method == RetrievalMethod::Outline; }
+
   void prepare(Index s)
   {
+    if (this->outlines())
+    {
+      this->Outlines[s] = prepareOutline(this->Shapes[s], this->Options.outline);
+      return;
+    }
     this->Sources[s] = makeShapeSource(this->Shapes[s], this->Options.spacing);
     this->Targets[s] =
       std::make_unique<ShapeTarget>(this->Shapes[s], this->Options.locations, this->Match.energy);
   }
 
+  /// For each pair whether it is matched.
+  std::vector<char> shortlisted() const
+  {
+    const Index n = this->Count;
+    const bool all =
+      !this->outlines() || this->Options.shortlist == 0 || this->Options.shortlist >= n - 1;
+    std::vector<char> chosen(static_cast<std::size_t>(n * n), all ? 1 : 0);
+    for (Index s = 0; s < n; ++s)
+    {
+      throwIfInterrupted();
+      chosen[s * n + s] = 0;
+      std::vector<std::pair<double, Index>> others;
+      for (Index t = 0; t < n && !all; ++t)
+      {
+        if (t != s)
+        {
+          others.emplace_back(signatureDistance(this->Outlines[s], this->Outlines[t]), t);
+        }
+      }
+      std::sort(others.begin(), others.end());
+      for (Index k = 0; k < this->Options.shortlist && !all; ++k)
+      {
+        // In both directions, so that the distance is symmetric.
+        chosen[s * n + others[k].second] = chosen[others[k].second * n + s] = 1;
+      }
+    }
+    return chosen;
+  }
+
   /// Negative if the comparison was stopped.
   double energy(Index s, Index t) const
   {
+    if (this->outlines())
+    {
+      if (this->Time.reached(this->Options.match.timeLimit))
+      {
+        return -1.0;
+      }
+      const OutlineMatch match =
+        matchOutlines(this->Outlines[s], this->Outlines[t], this->Options.outline);
+      return std::min(match.energy, FarApart);
+    }
     const ShapeMatch match = matchShape(this->Sources[s], *this->Targets[t], this->Match);
     return match.stop == MatchStop::Complete ? match.energy : -1.0;
   }
@@ -214,6 +276,8 @@ private:
   Index Work; ///< items: the shapes and the pairs
   std::vector<ShapeSource> Sources;
   std::vector<std::unique_ptr<ShapeTarget>> Targets;
+  std::vector<OutlineModel> Outlines;
+  Index Matches = 0;
   Stopwatch Time;
   MatchStop Stop = MatchStop::Complete;
 };
@@ -240,6 +304,93 @@ std::vector<double> symmetrized(
 }
 }
 
+namespace
+{
+/// Energies of outlines, which are per vertex: both directions, in units of the complexity.
+void combine(const std::vector<OutlineModel>& models, const RetrievalOptions& options,
+  std::vector<double>& energies)
+{
+  const std::vector<double> one = energies;
+  const std::size_t n = models.size();
+  for (std::size_t s = 0; s < n; ++s)
+  {
+    for (std::size_t t = 0; t < n; ++t)
+    {
+      const double there = one[s * n + t], back = one[t * n + s];
+      const bool known = there >= 0.0 && (back >= 0.0 || !options.symmetric);
+      energies[s * n + t] = !known ? -1.0
+                                   : (there + (options.symmetric ? back : 0.0)) /
+          (options.complexity + (models[s].complexity + models[t].complexity));
+    }
+  }
+}
+}
+
+std::vector<double> rerank(const std::vector<double>& distances, Index count, Index neighbours)
+{
+  if (count < 2 || neighbours < 1 || static_cast<Index>(distances.size()) != count * count)
+  {
+    throw Error("Diffusion needs the distances of 2 shapes or more, and at least 1 neighbour.");
+  }
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Index k = std::min(neighbours, count - 1);
+  const std::vector<Index> ranking = rankShapes(distances, count);
+  const auto known = [&](Index s, Index t) { return distances[s * count + t] >= 0.0; };
+  std::vector<double> scale(static_cast<std::size_t>(count), 0.0);
+  for (Index s = 0; s < count; ++s)
+  {
+    for (Index i = 0; i < k; ++i)
+    {
+      const Index t = ranking[s * (count - 1) + i];
+      scale[s] += known(s, t) ? distances[s * count + t] / static_cast<double>(k) : 0.0;
+    }
+  }
+  Matrix affinity = Matrix::Identity(count, count);
+  for (Index s = 0; s < count; ++s)
+  {
+    for (Index t = 0; t < count; ++t)
+    {
+      if (s != t && known(s, t))
+      {
+        const double unit = std::max(0.5 * (scale[s] + scale[t]), 1e-300);
+        const double ratio = distances[s * count + t] / unit;
+        affinity(s, t) = std::exp(-2.0 * ratio * ratio);
+      }
+    }
+    affinity.row(s) /= affinity.row(s).sum();
+  }
+  // Transitions to the shape itself and its nearest neighbours only.
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index s = 0; s < count; ++s)
+  {
+    entries.emplace_back(s, s, affinity(s, s));
+    for (Index i = 0; i + 1 < k; ++i)
+    {
+      const Index t = ranking[s * (count - 1) + i];
+      entries.emplace_back(s, t, affinity(s, t));
+    }
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> local(count, count);
+  local.setFromTriplets(entries.begin(), entries.end());
+  for (int step = 0; step < DiffusionSteps; ++step)
+  {
+    throwIfInterrupted();
+    const Matrix half = local * affinity;
+    affinity = (local * half.transpose()).transpose();
+    affinity.diagonal().array() += DiffusionIdentity;
+  }
+  const double largest = affinity.maxCoeff();
+  std::vector<double> result(distances.size(), 0.0);
+  for (Index s = 0; s < count; ++s)
+  {
+    for (Index t = 0; t < count; ++t)
+    {
+      result[s * count + t] = s == t ? 0.0 : 1.0 - affinity(s, t) / largest;
+    }
+  }
+  return result;
+}
+
 Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vector<Index>& labels,
   const RetrievalOptions& options)
 {
@@ -252,6 +403,11 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
   {
     throw Error("A label per shape and at least 1 best match are needed.");
   }
+  if (!(options.complexity > 0.0) || !std::isfinite(options.complexity) || options.shortlist < 0 ||
+    options.neighbours < 0)
+  {
+    throw Error("The complexity must be above 0, shortlist and neighbours at least 0.");
+  }
   // Distances in both directions, their sums, and the ranking.
   constexpr double bytesPerPair = 3 * sizeof(double) + sizeof(Index);
   requireMemory(bytesPerPair * static_cast<double>(count) * static_cast<double>(count),
@@ -262,9 +418,18 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
   result.distances = comparison.run();
   result.stop = comparison.stop();
   result.vertices = comparison.vertices();
-  if (options.symmetric)
+  result.matches = comparison.matches();
+  if (options.method == RetrievalMethod::Outline)
+  {
+    combine(comparison.models(), options, result.distances);
+  }
+  else if (options.symmetric)
   {
     result.distances = symmetrized(result.distances, result.vertices);
+  }
+  if (options.neighbours > 0 && result.stop == MatchStop::Complete)
+  {
+    result.distances = rerank(result.distances, count, options.neighbours);
   }
   result.ranking = rankShapes(result.distances, count);
   result.recognition = recognize(result.ranking, labels, options.best);

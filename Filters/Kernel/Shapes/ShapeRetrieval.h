@@ -10,13 +10,32 @@
 #ifndef tautline_ShapeRetrieval_h
 #define tautline_ShapeRetrieval_h
 
+#include "OutlineMatch.h"
 #include "ShapeMatch.h"
 
 namespace tautline
 {
+/// What is matched with what.
+enum class RetrievalMethod
+{
+  Image = 0,  ///< polygons with images: matchShape()
+  Outline = 1 ///< polygons with outlines, all lengths relative to these: matchOutlines()
+};
+
 /// How shapes are compared.
 struct RetrievalOptions
 {
+  RetrievalMethod method = RetrievalMethod::Image;
+  OutlineOptions outline; ///< for the method Outline
+  /// The sum of both energies of the method Outline is divided by this and the complexities of both
+  /// outlines, as simple shapes differ by less. Above 0.
+  double complexity = 0.3;
+  /// Per shape, the number of others with the nearest signatures that it is matched with; also with
+  /// those that have it among theirs. 0: all. For the method Outline.
+  Index shortlist = 0;
+  /// Distances are replaced by 1 - the shapes' affinity after diffusion over graphs of so many
+  /// nearest neighbours (rerank()); 0: they are not. The result then depends on the whole set.
+  Index neighbours = 0;
   double spacing = 25.0; ///< of the polygons' vertices, pixels, above 0
   LocationOptions locations;
   MatchOptions match; ///< its threads, timeLimit and progress are those of the whole run
@@ -29,9 +48,8 @@ struct RetrievalOptions
   static RetrievalOptions dissertation() { return {}; }
   /// The same with Felzenszwalb's energy and without the centre of mass.
   TAUTLINE_KERNEL_EXPORT static RetrievalOptions felzenszwalb();
-  /// The setting with the highest recognition rate: vertices 15 pixels apart, 80 locations on the
-  /// contour, directed edges, ordering 1, descriptors 100, rotation 1, both directions. The help
-  /// page explains how it was chosen.
+  /// The setting with the highest recognition rate, and the fastest: outlines, both directions. The
+  /// help page explains how it was chosen.
   TAUTLINE_KERNEL_EXPORT static RetrievalOptions highest();
 };
 
@@ -59,6 +77,7 @@ struct Retrieval
   std::vector<Index> ranking;
   Recognition recognition;
   std::vector<Index> vertices; ///< of each shape's polygon
+  Index matches = 0;           ///< pairs that were matched, each direction counted
   MatchStop stop = MatchStop::Complete;
 };
 
@@ -71,6 +90,18 @@ struct Retrieval
  */
 TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(const std::vector<Silhouette>& shapes,
   const std::vector<Index>& labels, const RetrievalOptions& options);
+
+/**
+ * @brief Distances after diffusion over the graphs of nearest neighbours (Yang, Koknar-Tezel,
+ * Latecki, Locally constrained diffusion process, CVPR 2009).
+ *
+ * Affinities exp(-(d / s)^2), s from the mean distances to the neighbours of both shapes, are
+ * passed on ten times among the neighbours. Uses no labels.
+ * @param distances symmetric, row after row; -1 where not computed: no affinity
+ * @param neighbours per shape, at least 1; itself is one of them
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<double> rerank(
+  const std::vector<double>& distances, Index count, Index neighbours);
 
 /// The others in order of a row of distances; equal ones in their order, those not computed (-1)
 /// last.
