@@ -261,6 +261,8 @@ int vtkShapeRetrieval::RequestData(
         options.match.timeLimit = this->GetRemainingSeconds();
       }
       options.best = this->BestMatches;
+      options.shortlist = this->Shortlist;
+      options.neighbours = this->Neighbors;
       this->Matching = true;
       const tautline::Retrieval result = tautline::retrieveShapes(set.shapes, set.numbers, options);
       fillTables(set, result, vtkTable::GetData(outputVector, 0),
@@ -271,7 +273,13 @@ int vtkShapeRetrieval::RequestData(
       std::ostringstream text;
       text << result.count << " shapes of " << set.classes.size()
            << " classes: " << result.recognition.hits << " of " << result.recognition.possible
-           << " best matches are of the query's class, " << this->RecognitionRate << " %.";
+           << " best matches are of the query's class, " << this->RecognitionRate << " %"
+           << (this->Neighbors > 0 ? " after diffusion." : ".");
+      if (result.matches < result.count * (result.count - 1))
+      {
+        text << " " << result.matches << " of " << result.count * (result.count - 1)
+             << " pairs were matched.";
+      }
       if (result.stop != tautline::MatchStop::Complete)
       {
         text << " Ended early: distances of -1 were not computed.";
@@ -307,6 +315,8 @@ void vtkShapeRetrieval::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Setting: " << this->Setting << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Symmetric: " << this->Symmetric << "\n";
+  os << indent << "Shortlist: " << this->Shortlist << "\n";
+  os << indent << "Neighbors: " << this->Neighbors << "\n";
   os << indent << "BestMatches: " << this->BestMatches << "\n";
   os << indent << "SheetSize: " << this->SheetSize << "\n";
 }

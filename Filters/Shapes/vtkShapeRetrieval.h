@@ -57,8 +57,9 @@ public:
   /**
    * CUSTOM (0): the properties as they are. DISSERTATION (1): spacing 25, 30 x 30 grid, a = 4 b,
    * theta = d_max / 3. FELZENSZWALB (2): the same without the distortion and the centre of mass.
-   * HIGHEST (3, the default): contour locations, denser vertices, directed edges, ordering,
-   * descriptors, a weight of turning, both directions. All but CUSTOM override the properties of
+   * HIGHEST (3, the default): polygons are placed on outlines rather than in images, in order
+   * (tautline/Shapes/OutlineMatch.h), whatever the sizes, directions and mirroring of the shapes.
+   * All but CUSTOM override the properties of
    * the energy, the locations, the spacing, the rule and Symmetric.
    */
   vtkTautlineSetRangeMacro(Setting, int, CUSTOM, HIGHEST);
@@ -80,6 +81,26 @@ public:
   vtkSetMacro(Symmetric, bool);
   vtkGetMacro(Symmetric, bool);
   vtkBooleanMacro(Symmetric, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Of each shape, the number of others that it is matched with, those whose descriptors are
+   * distributed most alike, at least 0; 0, the default: all. With HIGHEST only. Distances that are
+   * not computed are -1.
+   */
+  vtkSetMacro(Shortlist, int);
+  vtkGetMacro(Shortlist, int);
+  ///@}
+
+  ///@{
+  /**
+   * Distances are replaced by those after diffusion over graphs of so many nearest neighbours, at
+   * least 0; 0, the default: they are not. They then depend on the whole set, so rates with and
+   * without it do not compare.
+   */
+  vtkSetMacro(Neighbors, int);
+  vtkGetMacro(Neighbors, int);
   ///@}
 
   ///@{
@@ -124,6 +145,8 @@ private:
   int Setting = HIGHEST;
   double Spacing = 25.0;
   bool Symmetric = false;
+  int Shortlist = 0;
+  int Neighbors = 0;
   int BestMatches = 10;
   int SheetSize = 1200;
   double RecognitionRate = 0.0;

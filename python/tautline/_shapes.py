@@ -317,6 +317,8 @@ def retrieval(
     setting: Setting = "highest",
     spacing: float = 25.0,
     symmetric: bool = False,
+    shortlist: int = 0,
+    neighbors: int = 0,
     best: int = 10,
     sheet_size: int = 1200,
     locations: Locations = "grid",
@@ -334,6 +336,10 @@ def retrieval(
         uses the arguments below.
     spacing: see match().
     symmetric: whether the distance is the sum of both directions.
+    shortlist: with "highest", how many others each shape is matched with, those whose descriptors are distributed
+        most alike; 0: all. Other distances are -1.
+    neighbors: replace the distances by those after diffusion over graphs of so many nearest neighbours, which depend
+        on the whole set; 0: do not.
     best: number of matches per query that count, at least 1.
     sheet_size: width and height of the sheet of pictures, pixels, 64 to 20,000.
     locations, grid, reflection, foreground, options: see match().
@@ -348,6 +354,8 @@ def retrieval(
     found.SetSetting(pick("setting", setting, SETTINGS))
     found.SetSpacing(number("spacing", spacing))
     found.SetSymmetric(bool(symmetric))
+    found.SetShortlist(_count("shortlist", shortlist))
+    found.SetNeighbors(_count("neighbors", neighbors))
     found.SetBestMatches(int(number("best", best)))
     found.SetSheetSize(int(number("sheet_size", sheet_size)))
     _configure(found, locations, grid, reflection, foreground, options)
@@ -372,6 +380,13 @@ def retrieval(
         sheet=_sheet(found.GetOutputDataObject(len(tables))),
         summary=found.GetSummary(),
     )
+
+
+def _count(name: str, value: Any) -> int:
+    count = int(number(name, value))
+    if count < 0:
+        raise Error(f"{name} is {count}; it must be at least 0")
+    return count
 
 
 def _check_sheet(file: str | PathLike[str]) -> None:
@@ -486,6 +501,10 @@ def add_commands(commands: Any) -> None:
     )
     parser.add_argument("shapes", help="a folder of images, or a list (.csv) with the columns file and class")
     parser.add_argument("--setting", choices=SETTINGS, default="highest")
+    parser.add_argument("--shortlist", type=int, default=0,
+                        help="match each shape with so many others only; 0: all (default: 0)")  # fmt: skip
+    parser.add_argument("--neighbors", type=int, default=0,
+                        help="neighbours for the diffusion of distances; 0: none (default: 0)")  # fmt: skip
     parser.add_argument("--best", type=int, default=10, help="number of matches per query that count (default: 10)")
     parser.add_argument("--csv", metavar="FILE", help="write the best matches of each shape")
     parser.add_argument("--sheet", metavar="FILE.png", help="write a picture of the shapes with their best matches")
@@ -511,7 +530,8 @@ def _run_match(arguments: argparse.Namespace) -> None:
 def _run_retrieval(arguments: argparse.Namespace) -> None:
     if arguments.sheet:
         _check_sheet(arguments.sheet)
-    result = retrieval(arguments.shapes, **_commands.given(arguments, ("setting", "best", "time_limit", "threads")))
+    names = ("setting", "shortlist", "neighbors", "best", "time_limit", "threads")
+    result = retrieval(arguments.shapes, **_commands.given(arguments, names))
     ranks = "right at rank " + ", ".join(f"{k}: {n}" for k, n in enumerate(result.correct_at, 1))
     rows = table_rows(columns(result.tables["Ranking"]))
     _commands.finish(arguments, result, f"{result.summary}\n{ranks}", rows)
