@@ -6,6 +6,7 @@
 #include "TableRows.h"
 
 #include "vtkDataObject.h"
+#include "vtkDataSet.h"
 #include "vtkInformationVector.h"
 #include "vtkSelection.h"
 #include "vtkTable.h"
@@ -46,6 +47,43 @@ vtkEllipticAlgorithm::vtkEllipticAlgorithm()
 vtkEllipticAlgorithm::~vtkEllipticAlgorithm() = default;
 
 //------------------------------------------------------------------------------
+/// A system and the mesh it was assembled on, without the output of that execution.
+struct vtkEllipticAlgorithm::KeptSystem
+{
+  KeptSystem(const tautline::LocalMesh& mesh, const tautline::EllipticChoice& choice,
+    vtkAlgorithm* algorithm, const tautline::Processes& processes, int threads)
+    : Mesh(mesh)
+    , Input(this->Mesh, choice, algorithm, processes, threads)
+  {
+    this->Mesh.output = nullptr;
+  }
+
+  tautline::LocalMesh Mesh;
+  tautline::EllipticInput Input;
+};
+
+//------------------------------------------------------------------------------
+void vtkEllipticAlgorithm::ForgetSystems()
+{
+  this->Systems.clear();
+}
+
+//------------------------------------------------------------------------------
+const tautline::EllipticInput& vtkEllipticAlgorithm::Assembled(const tautline::LocalMesh& mesh,
+  const tautline::EllipticChoice& choice, const tautline::Processes& processes)
+{
+  const std::size_t number = static_cast<std::size_t>(mesh.number);
+  this->Systems.resize(std::max(this->Systems.size(), number + 1));
+  std::shared_ptr<KeptSystem>& kept = this->Systems[number];
+  if (!kept)
+  {
+    kept = std::make_shared<KeptSystem>(mesh, choice, this, processes, this->Threads);
+    ++this->Assemblies;
+  }
+  return kept->Input;
+}
+
+//------------------------------------------------------------------------------
 tautline::EllipticChoice vtkEllipticAlgorithm::GetChoice() const
 {
   const auto vector = [](const double* v) { return tautline::Vec3{ v[0], v[1], v[2] }; };
@@ -83,6 +121,10 @@ int vtkEllipticAlgorithm::RequestData(
   this->Fraction = 0.0;
   this->Unknowns = 0;
   this->AssemblySeconds = 0.0;
+  if (!this->KeepsSystems())
+  {
+    this->ForgetSystems();
+  }
   const int succeeded = this->Attempt(outputVector, "solve on a coarser mesh, or on more processes",
     [&]
     {
@@ -101,19 +143,27 @@ int vtkEllipticAlgorithm::RequestData(
           std::optional<tautline::ProgressStep> assembly(std::in_place, this,
             static_cast<double>(mesh.number) / mesh.meshes,
             (mesh.number + AssemblyShare) / mesh.meshes);
-          const tautline::EllipticInput problem(mesh, choice, this, processes, this->Threads);
+          const tautline::EllipticInput& problem = this->Assembled(mesh, choice, processes);
           assembly.reset();
           this->Unknowns += problem.system().unknowns();
           this->AssemblySeconds += problem.system().assembleSeconds();
           this->HaveBest();
           this->Compute(problem, mesh, processes, rows);
           this->Describe(mesh, problem.notice());
+          if (!this->KeepsSystems())
+          {
+            this->Systems[mesh.number].reset(); // its memory, before the next one's
+          }
         });
       if (processes.rank() == 0)
       {
         rows.fill(vtkTable::GetData(outputVector, TablePort));
       }
     });
+  if (!succeeded)
+  {
+    this->ForgetSystems();
+  }
   if (succeeded && this->Failed)
   {
     vtkWarningMacro(<< this->Summary);

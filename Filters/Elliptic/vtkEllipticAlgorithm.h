@@ -38,7 +38,9 @@
 #include "vtkTautlineTimedAlgorithm.h"
 
 #include <functional> // for Cancelled()
+#include <memory>     // for systems that are kept
 #include <string>     // for expressions
+#include <vector>
 
 namespace tautline
 {
@@ -225,6 +227,9 @@ public:
   vtkIdType GetUnknowns() const { return this->Unknowns; }
   /// Seconds the last assembly took, of all blocks together.
   double GetAssemblySeconds() const { return this->AssemblySeconds; }
+  /// Systems assembled since this filter was made: a time step that is shown takes that of the
+  /// others.
+  int GetAssemblies() const { return this->Assemblies; }
 
 protected:
   vtkEllipticAlgorithm();
@@ -239,6 +244,11 @@ protected:
   /// Computes the result on a mesh. Collective. Throws tautline::Error.
   virtual void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
     const tautline::Processes& processes, tautline::TableRows& table) = 0;
+
+  /// Whether systems are kept for the next execution. The derived class calls ForgetSystems() if
+  /// the input or a property has changed.
+  virtual bool KeepsSystems() const { return false; }
+  void ForgetSystems();
 
   /// Adds a paragraph to the summary, which begins with the block's name.
   void Describe(const tautline::LocalMesh& mesh, const std::string& text);
@@ -259,7 +269,14 @@ private:
   vtkEllipticAlgorithm(const vtkEllipticAlgorithm&) = delete;
   void operator=(const vtkEllipticAlgorithm&) = delete;
 
+  struct KeptSystem;
+
   tautline::EllipticChoice GetChoice() const;
+  const tautline::EllipticInput& Assembled(const tautline::LocalMesh& mesh,
+    const tautline::EllipticChoice& choice, const tautline::Processes& processes);
+
+  std::vector<std::shared_ptr<KeptSystem>> Systems; ///< by the number of the mesh
+  int Assemblies = 0;
 
   double Alpha = 1.0;
   double Beta = 1.0;

@@ -239,6 +239,7 @@ int vtkEllipticSolver::SolveOrShow(
   if (this->SeriesTime.GetMTime() < latest)
   {
     this->Series.clear();
+    this->ForgetSystems();
   }
   vtkInformation* info = outputVector->GetInformationObject(MeshPort);
   this->RequestedTime = info->Has(Pipeline::UPDATE_TIME_STEP())
@@ -248,6 +249,7 @@ int vtkEllipticSolver::SolveOrShow(
   if (!succeeded)
   {
     this->Series.clear();
+    this->ForgetSystems();
     return 0;
   }
   this->SeriesTime.Modified();

@@ -251,6 +251,8 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void Reset() override;
+  /// The time steps of one solution have one system.
+  bool KeepsSystems() const override { return this->TimeScheme != STATIONARY; }
   void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
     const tautline::Processes& processes, tautline::TableRows& table) override;
 
