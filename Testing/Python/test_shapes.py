@@ -85,6 +85,16 @@ def test_retrieval():
     assert found.sheet.shape == (1200, 1200, 3) and found.sheet.dtype == np.uint8
     assert frames[0] > 0 and frames == [frames[0], frames[0] * hits / 12, frames[0] * (24 - hits) / 12], frames
     assert tl.retrieval(images, labels, best=2, sheet_size=300).sheet.shape == (300, 300, 3)
+    # Some pairs only, with the same distances; and the rates after diffusion.
+    some = tl.retrieval(images, labels, best=2, shortlist=4)
+    known = some.distances >= 0
+    assert 12 < known.sum() < 144 and (some.distances[known] == found.distances[known]).all()
+    assert f"{known.sum() - 12} of 132 pairs were matched" in some.summary, some.summary
+    passed = tl.retrieval(images, labels, best=2, neighbors=3)
+    assert passed.rate >= 80 and "after diffusion" in passed.summary, passed.summary
+    assert passed.distances.min() == 0 and passed.distances.max() <= 1
+    refused("shortlist", tl.retrieval, images, labels, shortlist=-1)
+    refused("neighbors", tl.retrieval, images, labels, neighbors=float("nan"))
     refused("SheetSize", tl.retrieval, images, labels, sheet_size=0)
     refused("labels for", tl.retrieval, images, labels[:3])
     refused("setting", tl.retrieval, images, labels, setting="best")
@@ -104,7 +114,7 @@ def test_commands():
     assert (OUTPUT / "bean.vtu").is_file()
     told = run("match", folder / "2.png", folder / "3.png", "--locations", "contour", "-o", "found.vtu")
     assert "Energy" in told and (OUTPUT / "found.vtu").is_file()
-    told = run("retrieval", folder.parent, "--best", 1, "--csv", "best.csv", "--sheet", "sheet.png")
+    told = run("retrieval", folder.parent, "--best", 1, "--csv", "best.csv", "--sheet", "sheet.png", "--neighbors", 0)
     assert "6 shapes of 3 classes" in told, told
     expected = tl.retrieval(folder.parent, best=1).sheet
     written = tl._shapes.as_image(OUTPUT / "sheet.png")
@@ -121,18 +131,19 @@ def test_commands():
 def test_study():
     studies = Studies(OUTPUT / "study")
     told = studies.run("shapes", "--locations", "contour", "--no-pictures")
-    studies.check("shapes", 2, (), {"table_5_1": 3})
+    studies.check("shapes", 5, (), {"table_5_1": 4})
     rows = {row["method"]: row for row in studies.rows("shapes", "table_5_1")}
     assert rows["dissertation"]["dissertation"] == "72.2" and rows["felzenszwalb"]["dissertation"] == "64.4"
     assert 100 > float(rows["dissertation"]["rate"]) > float(rows["felzenszwalb"]["rate"]) > 30, rows
     assert "synthetic silhouettes" in told
     assert "labels.csv" in run("study", "shapes", "--data", "nowhere", code=1)
     function, (rates, halves, _, _), _ = studies.calls["shapes"][0]
-    of_kimia = function, ({**rates, **shapes.PRINTED}, (97.1, 97.0), True, {"theta = 0.5 d_max": 72.2}), {}
+    high = {**rates, **shapes.PRINTED, "highest": 99.0, "diffusion": 100.0}
+    of_kimia = function, (high, (97.1, 97.0), True, {"theta = 0.5 d_max": 72.2}), {}
     found = verdicts([of_kimia], OUTPUT / "study")
-    assert len(found) == 5 and set(found.values()) == {"holds"}, found
-    other = function, ({**rates, "felzenszwalb": 80.0, "dissertation": 70.0}, (97.1, 80.0), True,
-                       {"theta = 0.5 d_max": 60.0}), {}
+    assert len(found) == 8 and set(found.values()) == {"holds"}, found
+    low = {"felzenszwalb": 80.0, "dissertation": 70.0, "highest": 97.6, "diffusion": 97.0}
+    other = function, ({**rates, **low}, (97.1, 80.0), True, {"theta = 0.5 d_max": 60.0}), {}
     assert set(verdicts([other], OUTPUT / "study").values()) == {"does not hold"}
 
 
