@@ -299,8 +299,9 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
   }
   facts.method = nameOf(this->settings.options.method);
   facts.motion = todo.correspondence;
-  facts.coefficients =
-    this->settings.anisotropic() && todo.tensors.empty() && this->settings.amount > 0;
+  facts.coefficients = this->settings.anisotropic() && todo.tensors.empty() &&
+    this->settings.amount > 0 &&
+    this->settings.options.coefficients != WarpCoefficients::LocalGradients;
   facts.amount = this->settings.amount;
   facts.threads = this->settings.options.threads;
   for (Index i = 0; i < view.numberOfPoints; ++i)

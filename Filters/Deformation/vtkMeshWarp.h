@@ -301,11 +301,12 @@ public:
     PRINCIPAL_DIRECTIONS = 1, ///< the same along the principal directions of the motion
     MANUAL = 2,               ///< SetTensor()
     PER_CELL = 3,             ///< the array at index 3
-    PER_REGION = 4 ///< AddRegion() by the array at index 4, SetTensor() for all other regions
+    PER_REGION = 4,     ///< AddRegion() by the array at index 4, SetTensor() for all other regions
+    LOCAL_GRADIENTS = 5 ///< a tensor per cell, from the displacements of a first solve
   };
   ///@{
   /// The coefficients of HYBRID and ANISOTROPIC_FEMWARP. The default is DISPLACEMENT_SUMS.
-  vtkTautlineSetRangeMacro(Coefficients, int, DISPLACEMENT_SUMS, PER_REGION);
+  vtkTautlineSetRangeMacro(Coefficients, int, DISPLACEMENT_SUMS, LOCAL_GRADIENTS);
   vtkGetMacro(Coefficients, int);
   ///@}
 

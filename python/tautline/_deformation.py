@@ -44,7 +44,8 @@ Method = Literal[
     "weighted laplacian",
 ]
 METHODS: tuple[Method, ...] = get_args(Method)
-COEFFICIENTS = ("displacement sums", "principal directions")
+#: Names of coefficients, and their numbers in vtkMeshWarp.
+COEFFICIENTS = {"displacement sums": 0, "principal directions": 1, "local gradients": 5}
 Correspondence = Literal["automatic", "same mesh", "same boundary", "point ids", "closest point"]
 CORRESPONDENCES: tuple[Correspondence, ...] = get_args(Correspondence)
 PARTS = ("automatic", "whole boundary", "inner boundaries")
@@ -152,7 +153,8 @@ def warp(
         boundary parts, of which 1 is the largest; the name of a point or cell array; or one value per point.
     values: values of the array `moved` on the moved part; the default is all but 0.
     fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
-    coefficients: of "hybrid" and "anisotropic femwarp": "displacement sums", "principal directions", 3 or 6 numbers
+    coefficients: of "hybrid" and "anisotropic femwarp": "displacement sums", "principal directions", "local gradients"
+        (they vary in space, from the gradients of the displacements that FEMWARP gives), 3 or 6 numbers
         (alpha beta gamma, or xx yy zz xy yz xz), the name of a cell array of tensors, or one row of 1, 3, 6 or 9
         numbers per cell.
     regions: (cell array, {value: (alpha, beta, gamma)}), the array by name or by one value per cell. Cells with other
@@ -331,7 +333,7 @@ def _set_moved(filter_: Any, inputs: InputArrays, moved: Any, values: Sequence[f
 
 def _set_coefficients(filter_: Any, inputs: InputArrays, coefficients: Any, regions: Any) -> None:
     if isinstance(coefficients, str) and coefficients in COEFFICIENTS:
-        filter_.SetCoefficients(COEFFICIENTS.index(coefficients))
+        filter_.SetCoefficients(COEFFICIENTS[coefficients])
     elif isinstance(coefficients, str) or np.ndim(coefficients) > 1 or np.size(coefficients) not in (3, 6):
         filter_.SetCoefficients(_PER_CELL)
         inputs.use(_TENSORS, coefficients, "coefficients", ANY)
@@ -413,8 +415,8 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--method", choices=METHODS, default="hybrid")
     parser.add_argument("--amount", type=float, default=1.0, help="fraction of the motion (default: 1)")
     parser.add_argument("--coefficients", metavar="VALUES", default="displacement sums",
-                        help="'displacement sums' (the default), 'principal directions', alpha,beta,gamma, six numbers "
-                        "of a tensor, or a cell array")  # fmt: skip
+                        help="'displacement sums' (the default), 'principal directions', 'local gradients', "
+                        "alpha,beta,gamma, six numbers of a tensor, or a cell array")  # fmt: skip
     parser.add_argument("--steps", type=int, default=1, help="0: as many as are needed (default: 1)")
     parser.add_argument("--solver", choices=SOLVERS, default="automatic")
     parser.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")

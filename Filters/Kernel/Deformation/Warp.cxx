@@ -402,7 +402,8 @@ bool warpsOnRanks(const WarpOptions& options)
   switch (options.method)
   {
     case WarpMethod::AnisotropicFemwarp:
-      return options.coefficients != WarpCoefficients::PerCell;
+      return options.coefficients != WarpCoefficients::PerCell &&
+        options.coefficients != WarpCoefficients::LocalGradients;
     case WarpMethod::Femwarp:
     case WarpMethod::SmallStepFemwarp:
     case WarpMethod::IterativeStiffening:

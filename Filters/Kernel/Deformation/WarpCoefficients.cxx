@@ -1,6 +1,10 @@
 #include "WarpCoefficients.h"
 
+#include "tautline/Core/Interruption.h"
+
 #include <Eigen/Dense>
+
+#include <algorithm>
 
 namespace tautline
 {
@@ -8,6 +12,53 @@ namespace
 {
 /// Sums below this fraction of the largest are rounding: nothing moves along their axis.
 constexpr double rounding = 1e-12;
+
+/// Share of the isotropic operator in localGradients().
+constexpr double isotropicShare = 1.0 / 20.0;
+/// Directions in which a cell extends by less than this fraction have no gradient: the normal of
+/// planar cells.
+constexpr double flat = 1e-12;
+
+/// The mean displacement of a cell's points, and the squared norm of the gradient.
+struct CellMotion
+{
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double gradient = 0.0;
+
+  CellMotion(const MeshView& mesh, Index cell, const double* displacement)
+  {
+    const auto pointAt = [&mesh](Index at) { return mesh.connectivity[at]; };
+    const Index first = mesh.offsets[cell], last = mesh.offsets[cell + 1];
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (Index i = first; i < last; ++i)
+    {
+      centre += Eigen::Map<const Eigen::Vector3d>(mesh.points + 3 * pointAt(i));
+      this->mean += Eigen::Map<const Eigen::Vector3d>(displacement + 3 * pointAt(i));
+    }
+    const double count = static_cast<double>(std::max<Index>(1, last - first));
+    centre /= count;
+    this->mean /= count;
+    Eigen::Matrix3d extent = Eigen::Matrix3d::Zero(), both = Eigen::Matrix3d::Zero();
+    for (Index i = first; i < last; ++i)
+    {
+      const Eigen::Vector3d x =
+        Eigen::Map<const Eigen::Vector3d>(mesh.points + 3 * pointAt(i)) - centre;
+      const Eigen::Vector3d u =
+        Eigen::Map<const Eigen::Vector3d>(displacement + 3 * pointAt(i)) - this->mean;
+      extent += x * x.transpose();
+      both += u * x.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(extent);
+    for (int k = 0; k < 3; ++k)
+    {
+      const double size = axes.eigenvalues()[k];
+      if (size > flat * axes.eigenvalues()[2])
+      {
+        this->gradient += (both * axes.eigenvectors().col(k) / size).squaredNorm();
+      }
+    }
+  }
+};
 
 template <class Visit>
 void forEachPrescribed(const std::vector<unsigned char>& prescribed, const double* displacement,
@@ -108,5 +159,40 @@ SymmetricTensor principalDirections(
   normalize(sums);
   const Eigen::Matrix3d tensor = axes * sums.asDiagonal() * axes.transpose();
   return { tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(1, 2), tensor(0, 2) };
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> localGradients(const MeshView& mesh, const double* displacement)
+{
+  const Index n = mesh.numberOfCells;
+  std::vector<double> tensors(6 * n, 0.0), gradients(n, 0.0);
+  double mean = 0.0;
+  for (Index cell = 0; cell < n; ++cell)
+  {
+    pollInterruption(cell);
+    const CellMotion motion(mesh, cell, displacement);
+    double* t = &tensors[6 * cell];
+    std::fill_n(t, 3, 1.0);
+    const double length = motion.mean.norm();
+    if (length > 0.0)
+    {
+      const Eigen::Vector3d d = motion.mean / length;
+      for (int k = 0; k < 3; ++k)
+      {
+        t[k] = isotropicShare + d[k] * d[k];
+      }
+      t[3] = d[0] * d[1];
+      t[4] = d[1] * d[2];
+      t[5] = d[0] * d[2];
+    }
+    gradients[cell] = motion.gradient;
+    mean += motion.gradient / static_cast<double>(n);
+  }
+  for (Index cell = 0; cell < n && mean > 0.0; ++cell)
+  {
+    const double factor = 1.0 + gradients[cell] / mean;
+    std::for_each_n(&tensors[6 * cell], 6, [factor](double& x) { x *= factor; });
+  }
+  return tensors;
 }
 }

@@ -3,8 +3,8 @@
  * @brief The coefficients of anisotropic FEMWARP, section 4.9.1, from a motion. Internal: not
  * installed.
  *
- * Both functions take one flag per point and 3 displacements per point; only those of flagged
- * points are read, and the own ones counted.
+ * The first two functions take one flag per point and 3 displacements per point; only those of
+ * flagged points are read, and the own ones counted.
  */
 #ifndef tautline_WarpCoefficients_h
 #define tautline_WarpCoefficients_h
@@ -12,6 +12,7 @@
 #include "WarpRanks.h"
 
 #include "tautline/Elliptic/Materials.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include <vector>
 
@@ -32,5 +33,16 @@ SymmetricTensor displacementSums(
  */
 SymmetricTensor principalDirections(
   const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks);
+
+/**
+ * @brief A tensor per cell, 6 numbers each, from the displacements u of all points, 3 each:
+ *
+ *     (1 + |grad u|^2 / mean |grad u|^2) (I / 20 + d d^T / |d|^2)
+ *
+ * d is the mean displacement of the cell's points; grad u is the linear map that fits their
+ * displacements best, which is exact for simplices. Cells that deform much get stiff along the
+ * motion, and the motion spreads to those around them. The identity where nothing moves.
+ */
+std::vector<double> localGradients(const MeshView& mesh, const double* displacement);
 }
 #endif

@@ -74,6 +74,7 @@ bool isKnown(WarpCoefficients coefficients)
     case WarpCoefficients::PrincipalDirections:
     case WarpCoefficients::Manual:
     case WarpCoefficients::PerCell:
+    case WarpCoefficients::LocalGradients:
       return true;
   }
   return false;

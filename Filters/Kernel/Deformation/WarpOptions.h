@@ -46,7 +46,10 @@ enum class WarpCoefficients : int
   DisplacementSums = 0,    ///< (4.19), (4.21): sums of the absolute displacements along the axes
   PrincipalDirections = 1, ///< a tensor along the principal directions of the motion
   Manual = 2,              ///< `tensor`
-  PerCell = 3              ///< `tensors`
+  PerCell = 3,             ///< `tensors`
+  /// A tensor per cell: large along the displacement that FEMWARP gives the cell, the larger, the
+  /// larger the gradient of the displacements there. Not in the dissertation, which asks for it.
+  LocalGradients = 5 ///< 4 is the filter's choice by regions
 };
 
 /// Whether a number names a choice of coefficients.
@@ -131,7 +134,7 @@ struct WarpResult
   std::vector<double> points; ///< 3 x numberOfPoints
   std::vector<WarpRecord> history;
   double amount = 1.0;                     ///< of the motion that was reached
-  SymmetricTensor tensor = IdentityTensor; ///< the coefficients used, unless PerCell
+  SymmetricTensor tensor = IdentityTensor; ///< the coefficients used, unless they vary
   Index invertedWarp = 0;                  ///< after the warp itself
   Index invertedAfter = 0;                 ///< at the end
   /// Inverted elements that no position of the interior points makes valid, since the moved

@@ -43,6 +43,16 @@ void WarpStep::updateFemwarp(const double* displacement, WarpControl& control)
       case WarpCoefficients::PerCell:
         tensors = options.tensors;
         break;
+      case WarpCoefficients::LocalGradients:
+      {
+        // The motion of the interior, by FEMWARP, gives the coefficients of the second solve.
+        Femwarp first(
+          this->From, this->Parts, Femwarp::Operator::Harmonic, IdentityTensor, nullptr, control);
+        this->Tensors = localGradients(this->From.view(), first.warp(displacement, control).data());
+        tensors = this->Tensors.data();
+        this->Scalar.reset();
+        break;
+      }
     }
   }
   // Coefficients that differ by rounding only give the same matrix.

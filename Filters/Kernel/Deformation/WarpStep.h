@@ -72,6 +72,7 @@ private:
   const WarpParts& Parts;
   std::unique_ptr<Femwarp> Scalar; ///< with the coefficients Tensor
   SymmetricTensor Tensor = IdentityTensor;
+  std::vector<double> Tensors; ///< of LocalGradients
   std::unique_ptr<ElasticWarp> Elastic;
   bool Following = false;
 };

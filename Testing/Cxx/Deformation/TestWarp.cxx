@@ -171,7 +171,7 @@ void testAffine()
       }
       for (const WarpCoefficients choice :
         { WarpCoefficients::DisplacementSums, WarpCoefficients::PrincipalDirections,
-          WarpCoefficients::Manual, WarpCoefficients::PerCell })
+          WarpCoefficients::Manual, WarpCoefficients::PerCell, WarpCoefficients::LocalGradients })
       {
         const Context context(std::string(topology(type).name) + " coefficients " +
           std::to_string(int(choice)) + " scale " + std::to_string(scale));
