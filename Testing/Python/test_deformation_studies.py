@@ -14,6 +14,7 @@ STUDIES = {
     "deformation": (24, ("strip_cylinder", "strip_sphere", "inverted", "iterations", "seconds", "quality"),
                     {"sweep_cylinder": 2, "sweep_bar": 2, "sweep_sphere": 2, "quality_sphere": 9}),
     "deformation_methods": (9, ("strip", "inverted"), {"inverted": 13, "worst": 13, "mean": 13, "reached": 13}),
+    "local_coefficients": (6, ("strip", "inverted"), {"inverted": 4, "worst": 4, "seconds": 4}),
     "box_rotation": (7, ("strip", "inverted"), {"inverted": 18, "imr_worst": 13, "imr_mean": 13, "seconds": 14}),
 }
 
@@ -60,6 +61,14 @@ def check_methods():
     assert all(float(turned["hybrid"][angle]) == 0 for angle in ("30", "60", "90")), turned["hybrid"]
     assert float(turned["FEMWARP"]["90"]) > 2 * float(turned["radial basis"]["90"]) > 0, turned
     assert float(turned["OpenFOAM, displacementLaplacian"]["120"]) == 591
+
+
+def check_local_coefficients():
+    rows = {row["coefficients"]: row for row in studies.rows("local_coefficients", "inverted")}
+    total = {name: sum(float(n) for column, n in row.items() if column.endswith(" 1")) for name, row in rows.items()}
+    assert 2 * total["local gradients"] < total["constant, (4.19)"] < total["FEMWARP"], total
+    found = {row["finding"]: row["verdict"] for row in studies.rows("local_coefficients", "findings")}
+    assert next(verdict for text, verdict in found.items() if "at 1 times the motion, in all" in text) == "holds", found
 
 
 def check_similarity():
@@ -109,4 +118,5 @@ if __name__ == "__main__":
     check_rectangle()
     check_examples()
     check_methods()
+    check_local_coefficients()
     print(pictures())
