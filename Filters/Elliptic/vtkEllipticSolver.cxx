@@ -1,5 +1,6 @@
 #include "vtkEllipticSolver.h"
 
+#include "ContentStamp.h"
 #include "EllipticInput.h"
 #include "EllipticOutput.h"
 #include "Processes.h"
@@ -230,13 +231,18 @@ int vtkEllipticSolver::SolveOrShow(
     this->Series.clear();
     return this->Superclass::RequestData(request, inputVector, outputVector);
   }
-  vtkMTimeType latest = this->GetMTime();
+  tautline::ContentStamp inputs;
   for (int port = 0; port < NumberOfInputs; ++port)
   {
-    vtkDataObject* data = vtkDataObject::GetData(inputVector[port]);
-    latest = std::max(latest, data ? data->GetMTime() : 0);
+    const tautline::ContentStamp stamp =
+      tautline::contentStamp(vtkDataObject::GetData(inputVector[port]));
+    inputs.push_back(static_cast<vtkMTimeType>(stamp.size()));
+    inputs.insert(inputs.end(), stamp.begin(), stamp.end());
   }
-  if (this->SeriesTime.GetMTime() < latest)
+  const bool same = this->SeriesTime.GetMTime() > this->GetMTime() && inputs == this->SeriesInputs;
+  this->SeriesInputs = std::move(inputs);
+  // A process whose piece is the old one solves again with the others.
+  if (!tautline::Processes().everywhere(same))
   {
     this->Series.clear();
     this->ForgetSystems();

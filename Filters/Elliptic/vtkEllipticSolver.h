@@ -299,6 +299,7 @@ private:
   double RequestedTime = 0.0;
   std::vector<std::shared_ptr<tautline::TimeSeries>> Series; ///< by the number of the mesh
   vtkTimeStamp SeriesTime;                                   ///< of Series
+  std::vector<vtkMTimeType> SeriesInputs;                    ///< their content, for Series
   bool Converged = false;
   std::string Reason;
   int Iterations = 0;

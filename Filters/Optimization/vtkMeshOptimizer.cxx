@@ -1,6 +1,7 @@
 #include "vtkMeshOptimizer.h"
 
 #include "BeforeAfter.h"
+#include "ContentStamp.h"
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
 #include "Processes.h"
@@ -317,12 +318,16 @@ int vtkMeshOptimizer::RequestUpdateExtent(
 //------------------------------------------------------------------------------
 bool vtkMeshOptimizer::HasRunFor(const std::vector<vtkDataObject*>& inputs)
 {
-  vtkMTimeType latest = this->GetMTime();
+  tautline::ContentStamp content;
   for (vtkDataObject* data : inputs)
   {
-    latest = std::max(latest, data ? data->GetMTime() : 0);
+    const tautline::ContentStamp stamp = tautline::contentStamp(data);
+    content.push_back(static_cast<vtkMTimeType>(stamp.size()));
+    content.insert(content.end(), stamp.begin(), stamp.end());
   }
-  return !this->Runs.empty() && this->RunTime.GetMTime() > latest;
+  const bool same = content == this->RunInputs;
+  this->RunInputs = std::move(content);
+  return same && !this->Runs.empty() && this->RunTime.GetMTime() > this->GetMTime();
 }
 
 //------------------------------------------------------------------------------

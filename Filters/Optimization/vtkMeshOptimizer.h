@@ -632,6 +632,7 @@ private:
 
   std::vector<std::unique_ptr<tautline::OptimizerRun>> Runs; ///< per data set of the last execution
   vtkTimeStamp RunTime;                                      ///< of Runs that can be shown again
+  std::vector<vtkMTimeType> RunInputs;                       ///< the content of the inputs of Runs
   std::string Reason;
   int StopReason = -1;
   int Iterations = 0;

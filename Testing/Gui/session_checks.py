@@ -25,9 +25,9 @@ ALL_FIXED = 2  # of the array Obstacle: all points of the element are fixed
 
 def check(function):
     @functools.wraps(function)
-    def checked():
+    def checked(*arguments):
         try:
-            function()
+            function(*arguments)
         except BaseException:  # the shell would print it in its window, and the session go on
             traceback.print_exc(file=sys.__stderr__)
             os._exit(1)
@@ -176,6 +176,31 @@ def constant_kernel():
 @check
 def switch_animation_on():
     find("MeshOptimizer").Animation = 1
+
+
+@check
+def choose_heat():
+    """From 1 inside, 0 on the boundary."""
+    heat = find("EllipticSolver")
+    heat.SourceValue, heat.InitialValue = 0, 1
+    heat.TimeScheme, heat.TimeStep, heat.NumberOfTimeSteps = "Heat: Backward Euler", 1, 4
+
+
+HEAT: list[tuple[str, float]] = []  # the history of the residuals and the maximum of the steps that were shown
+
+
+@check
+def heat_at(step):
+    """The time controls show this step; it is cooler than those before, the solution is the same run."""
+    heat = find("EllipticSolver")
+    assert list(heat.TimestepValues) == [0, 1, 2, 3, 4], heat.TimestepValues
+    assert simple.GetAnimationScene().AnimationTime == step, simple.GetAnimationScene().AnimationTime
+    warmest = servermanager.Fetch(heat).GetPointData().GetArray("Solution").GetRange()[1]
+    run = heat.Summary[heat.Summary.index("Seconds:") :]
+    assert f"time {step} is shown" in heat.Summary, heat.Summary
+    assert all(run == seconds and warmest < before for seconds, before in HEAT), (HEAT, run, warmest)
+    assert warmest == 1 if step == 0 else 0 < warmest < 1, warmest
+    HEAT.append((run, warmest))
 
 
 @check

@@ -594,47 +594,6 @@ void testRefusals()
 }
 
 //------------------------------------------------------------------------------
-/// Another time step is shown without an assembly; a change of a property or the input is not.
-void testTimeSteps()
-{
-  vtkNew<vtkMultiBlockDataSet> blocks; // a system each
-  blocks->SetBlock(0, toGrid(block(CellType::Triangle, 6)));
-  MeshData far = block(CellType::Triangle, 4);
-  for (double& x : far.points)
-  {
-    x += 5.0;
-  }
-  blocks->SetBlock(1, toGrid(far));
-  const auto at = [](vtkEllipticSolver* filter, double time)
-  {
-    filter->UpdateTimeStep(time);
-    auto* data = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-    std::vector<double> both = values(vtkDataSet::SafeDownCast(data->GetBlock(0)));
-    for (double x : values(vtkDataSet::SafeDownCast(data->GetBlock(1))))
-    {
-      both.push_back(x);
-    }
-    return both;
-  };
-  vtkNew<vtkEllipticSolver> filter;
-  filter->SetInputData(blocks);
-  filter->SetTimeScheme(vtkEllipticSolver::BDF2);
-  filter->SetTimeStep(0.01);
-  filter->SetNumberOfTimeSteps(4);
-  const std::vector<double> last = at(filter, 0.04), first = at(filter, 0.01);
-  TAUTLINE_CHECK_EQUAL(filter->GetAssemblies(), 2);
-  TAUTLINE_CHECK(last != first && at(filter, 0.04) == last);
-  TAUTLINE_CHECK_EQUAL(filter->GetAssemblies(), 2);
-  filter->SetSourceValue(2.0);
-  const std::vector<double> doubled = at(filter, 0.01);
-  TAUTLINE_CHECK_EQUAL(filter->GetAssemblies(), 4);
-  TAUTLINE_CHECK_NEAR(doubled[24] / first[24], 2.0, 1e-5);
-  blocks->Modified();
-  at(filter, 0.01);
-  TAUTLINE_CHECK_EQUAL(filter->GetAssemblies(), 6);
-}
-
-//------------------------------------------------------------------------------
 void testNotices()
 {
   MeshData data = block(CellType::Triangle, 4);
@@ -694,7 +653,6 @@ int TestEllipticSolver(int, char*[])
   testSolvers();
   testBlocks();
   testRefusals();
-  testTimeSteps();
   testNotices();
   return exitCode();
 }
