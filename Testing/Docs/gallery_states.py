@@ -28,7 +28,7 @@ for script in scripts:
     if state is None:
         continue
     before = simple.OpenDataFile(str(output / script.stem / "before.vtu"))
-    after = eval(state[1], {"before": before, **vars(simple)})
+    after = eval(state[1], {**globals(), **vars(simple), "before": before})
     after.UpdatePipeline()
     cells = after.GetDataInformation().GetNumberOfCells()
     print(script.stem, state[1], cells, flush=True)

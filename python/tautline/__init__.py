@@ -12,7 +12,7 @@ The compiled VTK classes (vtkElementQuality, ...) are attributes of the package,
 """
 
 import sys
-from importlib import import_module
+from importlib import import_module as _import_module
 from typing import TYPE_CHECKING
 
 from . import _build
@@ -103,4 +103,4 @@ if _vtk.available("_peridynamics"):
 globals()["__all__"] += sorted(_vtk.CLASSES)
 
 if "pyvista" in sys.modules and hasattr(sys.modules["pyvista"], "DataObject"):
-    import_module(".pyvista", __name__)
+    _import_module(".pyvista", __name__)
