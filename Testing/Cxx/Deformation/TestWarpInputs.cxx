@@ -3,6 +3,7 @@
 #include "Warping.h"
 
 #include <limits>
+#include <set>
 
 using namespace tautline;
 
@@ -39,11 +40,12 @@ void testMethodClasses()
     TAUTLINE_CHECK_EQUAL(isAnisotropic(e.method), e.anisotropic);
     TAUTLINE_CHECK_EQUAL(untangles(e.method), e.untangles);
   }
-  const int coefficients = 4;
+  // Of the coefficients, 4 is a choice of the filter that the kernel does not have.
+  const std::set<int> coefficients = { 0, 1, 2, 3, 5 };
   for (int number = -2; number < 2 * count; ++number)
   {
     TAUTLINE_CHECK_EQUAL(isKnown(WarpMethod(number)), number >= 0 && number < count);
-    TAUTLINE_CHECK_EQUAL(isKnown(WarpCoefficients(number)), number >= 0 && number < coefficients);
+    TAUTLINE_CHECK_EQUAL(isKnown(WarpCoefficients(number)), coefficients.count(number) == 1);
   }
 }
 
