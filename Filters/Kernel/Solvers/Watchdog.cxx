@@ -11,6 +11,7 @@
 #include <exception>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -66,6 +67,7 @@ private:
   std::exception_ptr Thrown, CallThrown;
   std::atomic<bool> Abandoned{ false };
   bool Done = false;
+  bool Answered = false; // the work has called back
 };
 
 //------------------------------------------------------------------------------
@@ -135,6 +137,7 @@ void Task::answer(std::unique_lock<std::mutex>& lock)
   lock.lock();
   callOf = outer;
   this->Call = nullptr;
+  this->Answered = true;
   this->Shared.Wake.notify_all();
 }
 
@@ -162,6 +165,7 @@ WatchResult Task::wait(std::unique_lock<std::mutex>& lock, const WatchLimits& li
   Stopwatch sinceAsked;
   const bool polls = limits.polls && interruptible();
   const bool asks = polls || limits.cancelled;
+  std::optional<Stopwatch> sinceCancelled;
   while (!this->Done)
   {
     if (this->Call)
@@ -195,7 +199,15 @@ WatchResult Task::wait(std::unique_lock<std::mutex>& lock, const WatchLimits& li
       sinceAsked = Stopwatch();
       if (stop && !this->Done)
       {
-        return this->abandon(WatchResult::Cancelled);
+        // Work that calls back is told so at its next call, and ends with its best result.
+        if (!sinceCancelled)
+        {
+          sinceCancelled.emplace();
+        }
+        if (!this->Answered || sinceCancelled->reached(CancelGrace))
+        {
+          return this->abandon(WatchResult::Cancelled);
+        }
       }
       continue;
     }

@@ -28,7 +28,7 @@ struct WatchLimits
 {
   double seconds = 0.0; ///< wall time from the call on; 0: no limit
   /// Whether the user has cancelled. Asked every WatchInterval seconds, from the waiting thread;
-  /// what it throws ends the waiting, too.
+  /// what it throws ends the waiting, too. Work that has called back gets CancelGrace to end.
   std::function<bool()> cancelled;
   /// Whether the waiting thread calls throwIfInterrupted(), which ends the waiting, too.
   bool polls = true;
@@ -41,6 +41,9 @@ struct WatchLimits
 
 /// Seconds between two questions whether the user has cancelled.
 constexpr double WatchInterval = 0.05;
+
+/// Seconds that work which has called back may take to end by itself after the user has cancelled.
+constexpr double CancelGrace = 0.5;
 
 /// How waiting ended.
 enum class WatchResult
