@@ -1,6 +1,7 @@
 #include "Parallel.h"
 
 #include "Interruption.h"
+#include "LoopInterruption.h"
 #include "LoopProgress.h"
 #include "MachineLoad.h"
 
@@ -19,6 +20,7 @@
 #include <system_error>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 
 #include <ctime>
 
@@ -29,6 +31,9 @@ namespace
 /// How long the caller looks for the end of the last chunks before it sleeps: about the time that
 /// waking up takes.
 constexpr std::chrono::microseconds SpinTime(20);
+constexpr std::chrono::milliseconds PollInterval(50); // of a caller that waits for a long chunk
+/// Of the loop that this thread, a worker, helps with; null on other threads.
+thread_local const std::atomic<bool>* interruptedCaller = nullptr;
 constexpr int PausesPerLook = 16;
 
 void pauseBriefly()
@@ -172,9 +177,11 @@ public:
   /// What a worker does.
   void help() noexcept
   {
+    const std::atomic<bool>* before = std::exchange(interruptedCaller, &this->Interrupted);
     while (this->runNext())
     {
     }
+    interruptedCaller = before;
   }
 
   /// What the caller does; returns the number of chunks it ran.
@@ -191,6 +198,7 @@ public:
     catch (...)
     {
       this->fail(-1, std::current_exception()); // of `proceed`, or an interruption
+      this->Interrupted = true;
     }
     this->close();
     return run;
@@ -284,7 +292,31 @@ private:
       }
     }
     std::unique_lock<std::mutex> lock(this->Mutex);
-    this->Finished.wait(lock, [this] { return this->Done == this->Chunks; });
+    const auto done = [this] { return this->Done == this->Chunks; };
+    while (!this->Finished.wait_for(lock, PollInterval, done))
+    {
+      lock.unlock();
+      this->poll();
+      lock.lock();
+    }
+  }
+
+  /// Chunks of workers may take long: they see by the flag that the caller is interrupted.
+  void poll() noexcept
+  {
+    if (this->Interrupted)
+    {
+      return;
+    }
+    try
+    {
+      throwIfInterrupted();
+    }
+    catch (...)
+    {
+      this->fail(-1, std::current_exception());
+      this->Interrupted = true;
+    }
   }
 
   const Index Chunks;
@@ -292,6 +324,7 @@ private:
   std::atomic<Index> Next{ 0 }, Done{ 0 };
   std::mutex Mutex;
   std::condition_variable Finished;
+  std::atomic<bool> Interrupted{ false };
   std::exception_ptr Caught;
   Index Failed = 0;
   bool Stopped = false; ///< by `proceed`
@@ -435,5 +468,11 @@ bool runChunks(Index chunks, int threads, ChunkWork work, const Proceed& proceed
   experience.addChunks(work.function(), run, computed);
   experience.addTime(computed, seconds(Clock::now() - start));
   return loop->join();
+}
+
+//------------------------------------------------------------------------------
+bool callerIsInterrupted()
+{
+  return interruptedCaller && *interruptedCaller;
 }
 }

@@ -6,6 +6,7 @@
 #include "ReconnectionOutput.h"
 #include "Schedule.h"
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/LoopInterruption.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
@@ -493,8 +494,9 @@ bool Run::runBlocks(
   const auto proceed = [&]()
   {
     const bool goesOn = !stop &&
-      (std::this_thread::get_id() == caller ? this->proceed()
-                                            : !this->Clock.reached(this->Options.maximumSeconds));
+      (std::this_thread::get_id() == caller
+          ? this->proceed()
+          : !callerIsInterrupted() && !this->Clock.reached(this->Options.maximumSeconds));
     if (!goesOn)
     {
       stop = true;

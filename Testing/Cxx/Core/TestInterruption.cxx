@@ -7,6 +7,7 @@
 #include "VtkMeshes.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/LoopInterruption.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Solvers/LinearSolver.h"
@@ -368,6 +369,51 @@ void testBlocksShareTheTime()
   std::cout << ofLast << " of " << rows << " rows of the history are of the last block\n";
   TAUTLINE_CHECK(ofLast >= 1 && ofLast <= 2);
 }
+
+/// A caller that waits for a long chunk of a worker is interrupted, and the worker sees it.
+void testWaitingCaller()
+{
+  const InterruptScope scope;
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<bool> begun{ false }, seen{ false };
+  const Stopwatch time;
+  bool interrupted = false;
+  std::thread user;
+  try
+  {
+    runChunks(2, 2,
+      [&](Index)
+      {
+        if (std::this_thread::get_id() == caller)
+        {
+          const Stopwatch patience; // a worker need not come
+          while (!begun && !patience.reached(1.0))
+          {
+            std::this_thread::yield();
+          }
+          return;
+        }
+        begun = true;
+        user = std::thread([] { std::raise(SIGINT); });
+        while (!callerIsInterrupted() && !time.reached(2 * Soon))
+        {
+          std::this_thread::yield();
+        }
+        seen = callerIsInterrupted();
+      });
+  }
+  catch (const Interrupted&)
+  {
+    interrupted = true;
+  }
+  if (user.joinable())
+  {
+    user.join();
+  }
+  TAUTLINE_CHECK_EQUAL(seen.load(), begun.load());
+  TAUTLINE_CHECK_EQUAL(interrupted, begun.load());
+  TAUTLINE_CHECK(time.seconds() < Soon);
+}
 }
 
 int TestInterruption(int, char*[])
@@ -375,6 +421,7 @@ int TestInterruption(int, char*[])
   testScopes();
   testPolls();
   testLoop();
+  testWaitingCaller();
   testSolver();
   testAbort();
   testHorizonNeighbors();

@@ -1,0 +1,20 @@
+/**
+ * @file LoopInterruption.h
+ * @brief Whether the thread that waits for a chunk of a parallel loop is interrupted.
+ */
+#ifndef tautline_LoopInterruption_h
+#define tautline_LoopInterruption_h
+
+#include "Types.h" // for the export macro
+
+namespace tautline
+{
+/**
+ * @brief Whether the caller of the loop that this worker helps with is interrupted.
+ *
+ * A worker cannot call throwIfInterrupted(). Chunks that take longer than a tenth of a second ask
+ * this, and end soon. False on threads that are no workers.
+ */
+TAUTLINE_KERNEL_EXPORT bool callerIsInterrupted();
+}
+#endif
