@@ -82,21 +82,9 @@ void addDataSet(ContentStamp& stamp, vtkDataObject* data)
   addAttributes(stamp, points->GetPointData());
   addAttributes(stamp, points->GetCellData());
 }
-}
 
-//------------------------------------------------------------------------------
-ContentStamp contentStamp(vtkDataObject* data)
+void addLeaves(ContentStamp& stamp, vtkCompositeDataSet* blocks)
 {
-  ContentStamp stamp;
-  auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
-  if (!blocks)
-  {
-    if (data)
-    {
-      addDataSet(stamp, data);
-    }
-    return stamp;
-  }
   const auto at = vtk::TakeSmartPointer(blocks->NewIterator());
   at->SkipEmptyNodesOff();
   for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem())
@@ -104,6 +92,27 @@ ContentStamp contentStamp(vtkDataObject* data)
     // The place in the tree: a block that moves is another content.
     stamp.push_back(static_cast<vtkMTimeType>(at->GetCurrentFlatIndex()));
     addDataSet(stamp, at->GetCurrentDataObject());
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+ContentStamp contentStamp(const std::vector<vtkDataObject*>& inputs)
+{
+  ContentStamp stamp;
+  for (vtkDataObject* data : inputs)
+  {
+    const std::size_t length = stamp.size();
+    stamp.push_back(0); // becomes the number of entries of this input
+    if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
+    {
+      addLeaves(stamp, blocks);
+    }
+    else if (data)
+    {
+      addDataSet(stamp, data);
+    }
+    stamp[length] = static_cast<vtkMTimeType>(stamp.size() - length);
   }
   return stamp;
 }

@@ -19,13 +19,13 @@ namespace tautline
 using ContentStamp = std::vector<vtkMTimeType>;
 
 /**
- * @brief The stamp of a data object; of null it is empty.
+ * @brief The stamp of the inputs of a filter, some of which may be null.
  *
  * A shallow copy has the stamp of its original, though its own modification time is later: ParaView
  * copies the input of a filter at each time step. Equal stamps mean equal content, because no two
  * modifications in a process have the same time. A data set that is not an unstructured grid or
  * polygonal data counts with its own time.
  */
-TAUTLINECORE_EXPORT ContentStamp contentStamp(vtkDataObject* data);
+TAUTLINECORE_EXPORT ContentStamp contentStamp(const std::vector<vtkDataObject*>& inputs);
 }
 #endif

@@ -231,14 +231,12 @@ int vtkEllipticSolver::SolveOrShow(
     this->Series.clear();
     return this->Superclass::RequestData(request, inputVector, outputVector);
   }
-  tautline::ContentStamp inputs;
+  std::vector<vtkDataObject*> data;
   for (int port = 0; port < NumberOfInputs; ++port)
   {
-    const tautline::ContentStamp stamp =
-      tautline::contentStamp(vtkDataObject::GetData(inputVector[port]));
-    inputs.push_back(static_cast<vtkMTimeType>(stamp.size()));
-    inputs.insert(inputs.end(), stamp.begin(), stamp.end());
+    data.push_back(vtkDataObject::GetData(inputVector[port]));
   }
+  tautline::ContentStamp inputs = tautline::contentStamp(data);
   const bool same = this->SeriesTime.GetMTime() > this->GetMTime() && inputs == this->SeriesInputs;
   this->SeriesInputs = std::move(inputs);
   // A process whose piece is the old one solves again with the others.

@@ -318,13 +318,7 @@ int vtkMeshOptimizer::RequestUpdateExtent(
 //------------------------------------------------------------------------------
 bool vtkMeshOptimizer::HasRunFor(const std::vector<vtkDataObject*>& inputs)
 {
-  tautline::ContentStamp content;
-  for (vtkDataObject* data : inputs)
-  {
-    const tautline::ContentStamp stamp = tautline::contentStamp(data);
-    content.push_back(static_cast<vtkMTimeType>(stamp.size()));
-    content.insert(content.end(), stamp.begin(), stamp.end());
-  }
+  tautline::ContentStamp content = tautline::contentStamp(inputs);
   const bool same = content == this->RunInputs;
   this->RunInputs = std::move(content);
   return same && !this->Runs.empty() && this->RunTime.GetMTime() > this->GetMTime();
