@@ -143,6 +143,21 @@ void testWatchdog()
   TAUTLINE_CHECK(ran && *going);
   TAUTLINE_CHECK(time.seconds() >= 1.5);
 
+  // Work that has called back may end by itself after it is cancelled, within CancelGrace.
+  for (const double needed : { 4 * WatchInterval, 3 * CancelGrace })
+  {
+    const auto called = std::make_shared<std::atomic<bool>>(false);
+    result = runWatched(
+      [called, needed](WatchedWork& work)
+      {
+        work.inCaller([&]() { *called = true; });
+        sleepFor(needed);
+      },
+      { 0.0, [called]() { return called->load(); } });
+    TAUTLINE_CHECK(
+      result == (needed < CancelGrace ? WatchResult::Finished : WatchResult::Cancelled));
+  }
+
   // What the cancelling function throws ends the waiting.
   TAUTLINE_CHECK_THROWS(runWatched([](WatchedWork&) { sleepFor(0.4); },
                           { 0.0, []() -> bool { throw std::runtime_error("of the user"); } }),
