@@ -1,5 +1,6 @@
 #include "OutlineModel.h"
 
+#include "PlaneDistance.h"
 #include "ShapeDescriptors.h"
 #include "ShapeModel.h"
 #include "tautline/Core/Interruption.h"
@@ -23,11 +24,6 @@ constexpr double RegionScale = 0.6;
 /// Locations have descriptors in steps of one half.
 constexpr Index DescriptorsPerLocation = 2;
 constexpr int SignatureQuantiles = 8;
-
-double distance(const Vec2& a, const Vec2& b)
-{
-  return std::hypot(a[0] - b[0], a[1] - b[1]);
-}
 
 double fraction(double s)
 {

@@ -1,5 +1,6 @@
 #include "ShapeMatch.h"
 
+#include "PlaneDistance.h"
 #include "ShapeDynamicProgram.h"
 #include "ShapeEnergy.h"
 #include "tautline/Core/Interruption.h"
@@ -27,11 +28,6 @@ constexpr int RefineLevels = 3;
 /// A first solution on a contour is improved by moves of so many locations either way, so often.
 constexpr Index LocalReach = 3;
 constexpr int LocalPasses = 2;
-
-double distance(const Vec2& a, const Vec2& b)
-{
-  return std::hypot(a[0] - b[0], a[1] - b[1]);
-}
 
 void check(const MatchOptions& options)
 {

@@ -1,5 +1,6 @@
 #include "ShapeModel.h"
 
+#include "PlaneDistance.h"
 #include "ShapeDescriptors.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Mesh/CoordinateFrame.h"
@@ -11,11 +12,6 @@ namespace tautline
 {
 namespace
 {
-double distance(const Vec2& a, const Vec2& b)
-{
-  return std::hypot(a[0] - b[0], a[1] - b[1]);
-}
-
 Vec2 turned(const Vec2& p, double angle, bool mirrored)
 {
   const double x = mirrored ? -p[0] : p[0], c = std::cos(angle), s = std::sin(angle);

@@ -1,5 +1,6 @@
 #include "Silhouette.h"
 
+#include "PlaneDistance.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/LoopProgress.h"
 
@@ -18,11 +19,6 @@ constexpr int PointsPerSpacing = 20;
 /// The spacing shrinks by this factor until the polygon is simple, at most so many times.
 constexpr double SpacingReduction = 0.8;
 constexpr int SpacingAttempts = 40;
-
-double distance(const Vec2& a, const Vec2& b)
-{
-  return std::hypot(a[0] - b[0], a[1] - b[1]);
-}
 
 /// Pixels with a frame of background around, so that every outline closes.
 class Framed

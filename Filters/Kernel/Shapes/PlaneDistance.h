@@ -1,0 +1,19 @@
+/**
+ * @file PlaneDistance.h
+ * @brief The distance of two points of an image.
+ */
+#ifndef tautline_PlaneDistance_h
+#define tautline_PlaneDistance_h
+
+#include "tautline/Core/Types.h"
+
+#include <cmath>
+
+namespace tautline
+{
+inline double distance(const Vec2& a, const Vec2& b)
+{
+  return std::hypot(a[0] - b[0], a[1] - b[1]);
+}
+}
+#endif
