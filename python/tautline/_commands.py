@@ -16,7 +16,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
 from ._errors import Error, run as update
 from ._files import check_stream_or_target, replace_bytes, replace_text
-from ._groups import Groups, with_groups
+from ._groups import Groups
 from ._io import as_mesh, check_output, write
 from ._names import find_name, nearest_name
 from ._results import Result
@@ -241,7 +241,7 @@ def _facts(result: Any) -> dict[str, Any]:
 
 def _write_stream(result: Any, groups: Groups | None) -> None:
     """Write a mesh as .vtu to the standard output."""
-    data = as_mesh(result) if groups is None else with_groups(as_mesh(result), groups)
+    data = as_mesh(result)
     if isinstance(data, vtkDataSet) and not isinstance(data, vtkUnstructuredGrid):
         append = vtkAppendFilter()
         append.AddInputData(data)
@@ -249,7 +249,7 @@ def _write_stream(result: Any, groups: Groups | None) -> None:
         data = append.GetOutput()
     with TemporaryDirectory() as folder:
         file = os.path.join(folder, "standard-output.vtu")
-        write(data, file)
+        write(data, file, groups=groups)
         with open(file, "rb") as content:
             shutil.copyfileobj(content, sys.stdout.buffer)
     sys.stdout.flush()
