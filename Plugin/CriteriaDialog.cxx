@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "CriteriaDialog.h"
 
 #include "tautline/Quality/Criteria.h"

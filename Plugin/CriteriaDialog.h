@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::CriteriaDialog
  * @brief Edits quality criteria in a table: a row per metric and cell type.

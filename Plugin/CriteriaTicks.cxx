@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "CriteriaTicks.h"
 
 #include "tautline/Quality/Criteria.h"

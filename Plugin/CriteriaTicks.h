@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CriteriaTicks.h
  * @brief The limits of the quality criteria as labels of a legend.

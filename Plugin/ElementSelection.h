@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementSelection.h
  * @brief Selects cells of an output as a selection of ParaView, and moves the camera to them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FetchOutput.h
  * @brief Brings a small output of a filter from the server to the client.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HistogramBars.h
  * @brief The elements in the bars of the quality histogram.

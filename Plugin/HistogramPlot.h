@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::HistogramPlot
  * @brief Draws the bars of a histogram; dragging over bars chooses them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ObjectiveRules.h
  * @brief What applies to an objective of Optimize Mesh, and why the rest does not.

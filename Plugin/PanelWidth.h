@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PanelWidth.h
  * @brief Widens the dock of the Properties panel until its content fits.

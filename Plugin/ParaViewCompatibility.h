@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ParaViewCompatibility.h
  * @brief What differs between ParaView 5.11 and 5.13, in one place.

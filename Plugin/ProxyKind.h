@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ProxyKind.h
  * @brief Whether a proxy is one of Tautline's, and the names of outputs.

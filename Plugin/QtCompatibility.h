@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file QtCompatibility.h
  * @brief What differs between Qt 5 and Qt 6, in one place.

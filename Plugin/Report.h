@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Report.h
  * @brief The result of a filter as one HTML file that needs no other file.

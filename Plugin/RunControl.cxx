@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "RunControl.h"
 
 #include "ExecutionScope.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RunControl.h
  * @brief Stops a run of a filter of Tautline, in the process of the client or on a server.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::RunPlot
  * @brief Draws two values over the iterations of a run: the first on the left axis, the second on

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SideBySide.h
  * @brief The quality of a mesh before and after a filter, in two views beside each other.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Startup.h
  * @brief What the plugin does when ParaView loads it, in the GUI, in pvpython and on a server

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file StopWindow.h
  * @brief Notices clicks on a widget while the application processes no events.

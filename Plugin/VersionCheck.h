@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VersionCheck.h
  * @brief Compares the ParaView a plugin was built for with the one that loads it.

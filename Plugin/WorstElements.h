@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WorstElements.h
  * @brief The elements of a filter's output that a user should look at, the worst first.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython list_proxies.py PLUGIN: loads the plugin and prints the proxies it adds, in one line."""
 
 import sys

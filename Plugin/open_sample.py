@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Script of `./run gui` without arguments: opens the mesh TAUTLINE_SAMPLE with Element Quality applied."""
 
 import os

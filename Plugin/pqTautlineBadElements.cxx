@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "pqTautlineBadElements.h"
 
 #include "CriteriaTicks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineBadElements
  * @brief Shows the bad elements inside a mesh: the mesh around them becomes translucent.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineCharts
  * @brief Sets up the charts of Tautline's outputs when they are shown for the first time.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineCriteria
  * @brief Chooses the quality criteria of a filter: none, a preset, or one's own.

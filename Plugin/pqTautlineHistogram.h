@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineHistogram
  * @brief The quality histogram of Element Quality, in which ranges are chosen to select elements.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineMovingBoundary
  * @brief Highlights the part of the boundary that Warp Mesh will move, before Apply.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineNavigator
  * @brief The tool bar that goes from one bad element to the next.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineObjectives
  * @brief The objectives of Optimize Mesh as a table: metric, template, target and weight in a row.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlinePictures
  * @brief Shows the image behind a mesh that was found in it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlinePlanarBox
  * @brief Keeps the interactive box of a planar mesh in its plane.

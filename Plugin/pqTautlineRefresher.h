@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineRefresher
  * @brief Shows the results of the run just made: Summary, Notice and the numbers of a panel.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineResultPanel
  * @brief Shows the property Summary of a filter: text to read, to follow and to copy.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineRunDock
  * @brief Shows the run of a filter of Tautline while it lasts, and stops it.

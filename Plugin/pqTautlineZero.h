@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineZero
  * @brief Writes beside the field of a property what its value 0 stands for: "0 = no limit".

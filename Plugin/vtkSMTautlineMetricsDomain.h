@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSMTautlineMetricsDomain
  * @brief The metrics a property may have: those of the XML, and those registered on the server.

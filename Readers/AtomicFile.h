@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file AtomicFile.h
  * @brief Files that are replaced whole: after a failure there is the older file or the new one.

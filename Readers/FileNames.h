@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FileNames.h
  * @brief Splitting file names and finding companion files.

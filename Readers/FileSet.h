@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FileSet.h
  * @brief Files that belong together: the same mark in each tells a reader that one write made them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GmshFile.h
  * @brief Gmsh's .msh 1, 2, 4.0 and 4.1, text and binary, and FreeFem++'s .msh, which has the same

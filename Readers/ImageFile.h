@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ImageFile.h
  * @brief Which image format a file has, and whether it is complete, before VTK reads it.

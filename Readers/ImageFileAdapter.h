@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ImageFileAdapter.h
  * @brief An image file as vtkImageData: its header is checked, then VTK's reader reads it.

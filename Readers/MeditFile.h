@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeditFile.h
  * @brief Medit's ASCII .mesh (versions 1 and 2) and .sol files.

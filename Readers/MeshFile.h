@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshFile.h
  * @brief What a mesh file holds, in plain C++ arrays, between a format's parser and VTK.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshFileAdapter.h
  * @brief A MeshFile as a VTK data set, and a VTK data set as a MeshFile.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OffFile.h
  * @brief Geomview's text OFF, COFF, NOFF and CNOFF files of polygons.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetGenFile.h
  * @brief The file sets of TetGen and Triangle: .node .ele .face .edge, .poly and .smesh.

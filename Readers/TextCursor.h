@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TextCursor.h
  * @brief A file in memory and a place in it: numbers, words, lines and raw bytes, checked.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TextOutput.h
  * @brief Text written through one large buffer, numbers in the fewest digits that read back the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkGmshWriter
  * @brief Writes Gmsh's .msh 4.1, text or binary, and its .pos.

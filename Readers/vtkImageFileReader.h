@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkImageFileReader
  * @brief Reads one image: PNG, JPEG, TIFF, BMP, binary PGM or PPM.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeditReader
  * @brief Reads Medit's ASCII .mesh (versions 1 and 2) and .sol files.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeditWriter
  * @brief Writes Medit's ASCII .mesh (version 2), and a .sol for the arrays a .mesh cannot hold.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshFileReader
  * @brief Base class of Tautline's mesh readers: the file name, lower-dimensional cells, errors.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshFileWriter
  * @brief What Tautline's mesh writers share: a file name, the input, errors.

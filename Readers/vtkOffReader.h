@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkOffReader
  * @brief Reads Geomview's OFF, COFF, NOFF and CNOFF files.

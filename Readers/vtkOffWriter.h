@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkOffWriter
  * @brief Writes OFF, with `Color` (bytes, or doubles up to 1) and `Normals` COFF, NOFF and CNOFF.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSilhouetteSetReader
  * @brief Reads a set of labelled images: a list of them in a .csv file, or all images of a folder.

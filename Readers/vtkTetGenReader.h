@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkTetGenReader
  * @brief Reads the file sets of TetGen and Triangle: .node .ele .face .edge .poly .smesh.

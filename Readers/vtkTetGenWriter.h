@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkTetGenWriter
  * @brief Writes the file sets of TetGen and Triangle.

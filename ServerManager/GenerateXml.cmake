@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The XML of ParaView's proxies is generated from ServerManager/<Capability>.xml.in when CMake configures. What
 # repeats is written once, in ServerManager/Snippets:
 #

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Runs a command on a virtual screen of its own. The server picks a free number itself, so that several
 # can start at once; and it does not reset when its last client leaves (-noreset), so that a program that
 # closes its only window and opens another is not turned away. xvfb-run -a has both weaknesses.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockSeams.h
  * @brief Seams between the data sets of composite data: points at the same place on boundaries that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Blocks.h
  * @brief The data sets of a data object with their counterparts in other inputs, what is selected

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ContentStamp.h
  * @brief Whether a data object has the content of another one, without a look at the values.

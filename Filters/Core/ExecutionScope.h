@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ExecutionScope.h
  * @brief Ends the execution of a filter from outside: on abort, on interruption, at a time limit.

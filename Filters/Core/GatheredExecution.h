@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GatheredExecution.h
  * @brief A filter on many processes, whose numbers are those of one: the first process has the

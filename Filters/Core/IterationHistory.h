@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file IterationHistory.h
  * @brief The iterations of filters that move points, as rows of a table and as sentences.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MenuNames.h
  * @brief The names that filters and sources have in menus, for the text of the progress.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::MeshAdapter
  * @brief Shows a vtkDataSet to the kernel as a tautline::Mesh, copying only what it must.

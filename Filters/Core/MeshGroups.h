@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshGroups.h
  * @brief The meshes of a data object, each of which may be in pieces.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshOutput.h
  * @brief Plain vectors of points, simplices and markers as VTK data sets.

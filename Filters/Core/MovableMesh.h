@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MovableMesh.h
  * @brief The mesh of a filter that moves points: its orientation, its fixed points and its new

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PieceResults.h
  * @brief Sends what the first process has computed for a whole mesh to the pieces it came from.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointMerge.h
  * @brief Coincident points on the seams of a mesh in pieces: what is done with them, in words, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ProcessGroup.h
  * @brief The processes of VTK's global controller as the ranks of the kernel.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Processes.h"
 
 #include "Blocks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Processes.h
  * @brief The processes of a parallel ParaView server (MPI ranks) that each have a part of the data.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ProgressStep.h
  * @brief The progress of a filter while the kernel computes a part of its result.

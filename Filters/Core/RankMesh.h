@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankMesh.h
  * @brief A data set in pieces on several processes as one mesh whose points can move.

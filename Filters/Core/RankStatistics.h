@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankStatistics.h
  * @brief Statistics of a metric over a mesh in pieces on several processes.

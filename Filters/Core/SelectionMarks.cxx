@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "SelectionMarks.h"
 
 #include "Blocks.h"

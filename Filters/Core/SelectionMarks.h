@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SelectionMarks.h
  * @brief What is selected of the pieces of a mesh, as arrays that can be put together, and as a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::TableRows
  * @brief A table that is built row by row; the first row defines the columns.

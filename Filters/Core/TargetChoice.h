@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TargetChoice.h
  * @brief The targets of a filter, from a reference mesh or from arrays of its input.

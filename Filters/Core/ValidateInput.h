@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ValidateInput.h
  * @brief Checks what VTK hands over before any filter or writer touches it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VtkCompatibility.h
  * @brief What differs between VTK 9.1 and 9.6, in one place. Not a public header.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WholeMesh.h
  * @brief One mesh of its pieces, and pieces of a mesh.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkInterruption
  * @brief Lets Ctrl-C and callbacks end the computations of filters, for languages other than C++.

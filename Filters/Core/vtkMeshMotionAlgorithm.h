@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshMotionAlgorithm
  * @brief Base class of the filters that move the points of a mesh: fixed points, blocks, history.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkTautlineAlgorithm
  * @brief Base class of Tautline's filters: ports, threads, the summary, errors and progress.

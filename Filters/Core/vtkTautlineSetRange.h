@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkTautlineSetRange.h
  * @brief A setter of a number with a range; a value outside is refused with a message.

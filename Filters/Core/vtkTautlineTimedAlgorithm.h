@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkTautlineTimedAlgorithm
  * @brief Base class of Tautline's filters whose work can be ended by a time limit.

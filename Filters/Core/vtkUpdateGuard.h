@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkUpdateGuard
  * @brief Updates algorithms for languages that C++ exceptions would end.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MovedBoundary.h
  * @brief Which points of a mesh move, which stay, by how much; and tensors per cell. From arrays

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TargetMatch.h
  * @brief The correspondence between the points of a mesh and the places of a target data set.

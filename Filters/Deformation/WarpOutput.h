@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpOutput.h
  * @brief The results of Warp Mesh as arrays, rows of tables and sentences.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpPieces.h
  * @brief Warp Mesh where each process of a parallel server takes its piece of the mesh.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpSession.h
  * @brief What Warp Mesh keeps between executions: meshes at rest, matrices, time steps.

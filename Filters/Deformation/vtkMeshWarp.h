@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshWarp
  * @brief Deforms the interior of a mesh to follow a prescribed boundary motion.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMovingBoundary
  * @brief Shows which part of a mesh's boundary vtkMeshWarp would move, without warping it.

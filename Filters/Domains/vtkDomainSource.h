@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkDomainSource
  * @brief The geometric domains of the dissertation, meshed with as many cells as asked for.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticInput.h
  * @brief A boundary value problem as a user describes it, and the system it gives on a data set.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticOutput.h
  * @brief Solutions, stresses and tables of linear systems as VTK arrays.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MergedPieces.h
  * @brief Partitions of a mesh put together, and results handed back to them. Internal.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshParts.h
  * @brief The meshes in a data object, each as this process has it: with its ghost cells, its global

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointFunction.h
  * @brief A function on the points of a data set: a constant, a point array, or an expression.

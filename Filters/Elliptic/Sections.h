@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Sections.h
  * @brief Planar sections of volume meshes, which show a solution inside.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vtkConditionEstimator.h"
 
 #include "EllipticInput.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkConditionEstimator
  * @brief Condition number of the linear system of an elliptic problem on a mesh, and which elements

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkEllipticAlgorithm
  * @brief Base class of the filters for elliptic partial differential equations: the boundary value

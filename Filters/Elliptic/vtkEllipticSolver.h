@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkEllipticSolver
  * @brief Solves an elliptic partial differential equation on a mesh, or a heat or wave equation.

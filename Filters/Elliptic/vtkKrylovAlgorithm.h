@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkKrylovAlgorithm
  * @brief Base class of the filters that run Krylov methods: when these stop.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshDecomposition
  * @brief Divides a mesh into parts for several processes, and counts what a division costs them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSolverStudy
  * @brief Solves an elliptic problem by many combinations of solver and preconditioner and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkBoundaryMesher
  * @brief Base class of the meshers: a boundary becomes a mesh of what it surrounds.

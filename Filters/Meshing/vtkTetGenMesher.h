@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkTetGenMesher
  * @brief Quality tetrahedra in a closed surface with TetGen (AGPL).

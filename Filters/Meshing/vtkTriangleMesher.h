@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkTriangleMesher
  * @brief Quality triangles in planar outlines with holes and inner constraints (CGAL, GPL).

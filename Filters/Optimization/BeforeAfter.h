@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeforeAfter.h
  * @brief Quality before and after points moved: cell arrays, rows of a table, sentences.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The features of a mesh and how points slide on them.
 #include "OptimizerSetup.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh for a mesh on several processes, and in the order that does not depend on these.
 #include "vtkMeshOptimizer.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizerSetup.h
  * @brief From the properties of Optimize Mesh to the options of the kernel for one data set, and

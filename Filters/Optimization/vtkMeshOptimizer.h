@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshOptimizer
  * @brief Moves the points of a mesh so that one or several quality metrics improve.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HorizonInput.h
  * @brief A vtkDataSet of planar triangles as the kernel's HorizonMesh, and back.

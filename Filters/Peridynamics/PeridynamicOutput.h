@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicOutput.h
  * @brief Numbers per row of a nonlocal matrix as VTK arrays, tables and pictures.

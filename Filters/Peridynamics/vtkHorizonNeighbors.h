@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkHorizonNeighbors
  * @brief Draws the horizon of a point and the triangles that meet it, by the cases of dissertation

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkInteractionLayer
  * @brief Puts an interaction layer of triangles around a planar mesh, for the volume constraint of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkPeridynamicStiffness
  * @brief The stiffness matrix of a nonlocal (peridynamic) model: its condition number, its rows,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshPerturbation
  * @brief Moves interior vertices at random, short of inverting an element or past it.

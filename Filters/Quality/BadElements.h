@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BadElements.h
  * @brief Collects the bad elements of volume meshes, which lie inside and are hidden by others.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ColorMaps.h
  * @brief Default colour maps for the cell arrays that Tautline's filters write.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::CriteriaGrader
  * @brief Grades what vtkElementQuality measures by quality criteria, on blocks and processes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricHistogram.h
  * @brief The bars of a histogram of quality: bins over the acceptable range, what is beyond it, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::MetricSelection
  * @brief The metrics requested of a filter, in order and without repeats.

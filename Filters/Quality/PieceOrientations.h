@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PieceOrientations.h
  * @brief Whether the pieces of a mesh on several processes tell which of its cells are reversed.

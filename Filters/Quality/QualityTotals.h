@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::QualityTotals
  * @brief Gathers what vtkElementQuality measures on blocks and processes, and makes its tables.

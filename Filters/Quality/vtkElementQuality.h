@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkElementQuality
  * @brief Measures every element of a mesh by any number of quality metrics.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkHtmlReport
  * @brief Writes results as one HTML file that needs no other file.

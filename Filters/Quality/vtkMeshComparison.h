@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshComparison
  * @brief What changed, element by element, between two meshes of equal connectivity.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMetricAlgorithm
  * @brief Base class of the filters that evaluate quality metrics: the list of metrics.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMetricField
  * @brief A quality metric of a triangle or tetrahedron as a function of its last vertex.

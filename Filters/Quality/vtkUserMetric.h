@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkUserMetric
  * @brief A metric whose values an observer computes: how Python registers a metric of its own.

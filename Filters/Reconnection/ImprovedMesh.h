@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ImprovedMesh.h
  * @brief The output of Improve Mesh: the result of the kernel as a data set with the data of the

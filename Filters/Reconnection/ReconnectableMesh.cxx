@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ReconnectableMesh.h"
 
 #include "PointMerge.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectableMesh.h
  * @brief The input of Improve Mesh as the kernel takes it: its tetrahedra or triangles, fixed

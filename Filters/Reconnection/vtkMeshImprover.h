@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshImprover
  * @brief Improves the worst tetrahedra or triangles of a mesh by changing its connectivity and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RetrievalSheet.h
  * @brief A picture of the queries of a retrieval with their best matches. Not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeAdapter.h
  * @brief Between VTK's images and meshes and the kernel's silhouettes and polygons. Not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "vtkShapeAlgorithm.h"
 
 #include "tautline/Shapes/ShapeMatch.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkShapeAlgorithm
  * @brief Base class of Match Shape and Shape Retrieval: the energy, the locations and the search.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkShapeMatcher
  * @brief "Match Shape": finds a deformable shape in an image.

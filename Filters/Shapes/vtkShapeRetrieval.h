@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkShapeRetrieval
  * @brief "Shape Retrieval": matches each of a set of silhouettes with each other one, and ranks

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSilhouetteMesher
  * @brief "Silhouette to Mesh": the triangulated polygon around what an image shows.

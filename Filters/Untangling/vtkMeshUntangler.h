@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshUntangler
  * @brief Makes the elements of a mesh valid by moving its points.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """make_metrics.py [--write] [--pictures]: what is generated from the registry of metrics.
 
 The table of the help page metrics.html (from metrics.html.in) and the list of metrics that the panels include,

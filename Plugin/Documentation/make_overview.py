@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython make_overview.py PLUGIN: draws overview.png, the picture of README.md and of the help's first page.
 
 Left the sample plate after Perturb Mesh, right the tangled sample bracket, both coloured by their quality.

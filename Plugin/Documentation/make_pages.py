@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Inserts the tables of properties in the help pages, and makes the pages of ParaView's help.
 
 python3 make_pages.py BUILD [--write]    checks that the tables of the pages are those of the build tree's XML;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython make_pictures.py PLUGIN [NAME...]: draws the pictures of the help pages, NAME.png, or those named.
 
 Each function below draws the picture of its name, mostly that of the page of this name; what it returns is saved.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython make_strips.py FOLDER: makes the picture strips of jobs.html from the screenshots that the sessions save.
 
     TAUTLINE_SCREENSHOTS=FOLDER ctest --test-dir build -R 'Gui.Job'

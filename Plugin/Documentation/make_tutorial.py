@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython make_tutorial.py PLUGIN [--write]: tests the steps of the tutorial; --write makes pictures and states.
 
 Each step is a function that makes what tutorial.html describes, checks its numbers, and returns the view to show.

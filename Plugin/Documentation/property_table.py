@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The table of a proxy's properties as HTML, from the XML of ParaView's server manager.
 
 A table has the properties in the order of the XML, with the titles of the panel's groups.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Small PNG files: pictures with at most 256 colours, written with a palette."""
 
 import struct

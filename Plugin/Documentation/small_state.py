@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Small ParaView state files: of representations and views only the properties that our pictures set."""
 
 import xml.etree.ElementTree as ElementTree

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Packages for Debian, made by ./run package (cpack -G DEB): libtautline, python3-tautline, paraview-tautline,
 # libtautline-dev and tautline-doc, one for each install component.
 install(DIRECTORY Data/ DESTINATION "${CMAKE_INSTALL_DATADIR}/tautline/samples" COMPONENT doc

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # paraview-dev of Debian 13 and later exports its Python modules as targets whose files do not exist under these names:
 # vtkCommonCore.so is vtkCommonCore.cpython-313-x86_64-linux-gnu.so there. CMake 3.28 and later stops at such a target.
 # Where a file is missing, the targets are made here, without the places of their files, which nothing links;

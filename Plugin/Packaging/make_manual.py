@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """make_manual.py OUTPUT: writes the manual page tautline.1.gz and the completion of bash, tautline.bash.
 
 Both are made from the parser of the command line, so that they have every command and option.

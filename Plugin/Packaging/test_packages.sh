@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # test_packages.sh PACKAGES VERSION SOURCE_TREE [SUITE [MIRROR]]: installs the packages of a directory in a fresh chroot of
 # a Debian release, uses what they bring as its users would, removes them, and looks for what is left. Needs root,
 # debootstrap and the network; takes about 2 GB in TMPDIR. TAUTLINE_CHROOT names a chroot to use again.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # test_platform.sh SOURCE_TREE SUITE LOG [MIRROR]: builds and tests the committed files in a bare chroot of a Debian release.
 # The last line that it prints is a row of a table: suite, ParaView, compiler, packages, build, tests. Needs root,
 # debootstrap, the network, and about 7 GB in TMPDIR. TAUTLINE_PLATFORM_ROOT names a chroot that is kept, and used again

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """make_ratios.py README [--write]: measures the ratios that README.md states, on the samples, and compares.
 
 The table stands between the comments <!-- ratios --> and <!-- end of ratios -->; --write inserts it. Iterations, angles

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """make_site.py SOURCE WORK OUTPUT VERSION: makes the site of all documents with Sphinx, and checks its links.
 
 The pages are README.md, Plugin/Site, CONTRIBUTING.md, CHANGELOG.md, SECURITY.md and the help pages of the plugin, which

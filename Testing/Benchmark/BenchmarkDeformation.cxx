@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // BenchmarkDeformation PART ...: times the warping of meshes on one thread. Prints lines
 // "key<tab>number"; times are seconds of CPU unless the key states another unit. Run by
 // deformation.py. PARTs:

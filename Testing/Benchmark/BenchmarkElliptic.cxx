@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Assembly of finite element matrices: seconds, the best of several turns, CPU time on one thread
 // and wall time on one and on two; what BoomerAMG takes for its set-up on the same matrix; and what
 // small solves take with and without a time limit, for which they run in another thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // BenchmarkOptimization PART ...: times the optimizer, in passes of the yardstick (see Yardstick.h)
 // of the CPU time of one thread, from the filter's input to its output. Prints lines
 // "key<tab>number". Run by optimization.py. PARTs:

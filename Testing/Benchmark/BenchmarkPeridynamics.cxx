@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Assembly and condition number of nonlocal matrices, h = 1/N, delta = 0.2: CPU seconds of one
 // thread, the best of several turns, and wall seconds of one and of two. Lines `key<tab>number`.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // BenchmarkQuality PART N REPEATS: times element quality on an N x N x N grid of perturbed cells
 // and prints lines "key<tab>nanoseconds per element" (other units as stated below). Run by run.py.
 // PARTs:

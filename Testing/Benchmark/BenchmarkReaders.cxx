@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reading a mesh of a million tetrahedra from text, one thread: megabytes per second, and the time
 // of ParaView's own reader of legacy ASCII files on the same mesh, divided by Tautline's.
 //

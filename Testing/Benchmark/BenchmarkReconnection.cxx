@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reconnection of a mesh of tetrahedra and one of triangles, one thread: CPU time per element, the
 // worst values, and the number of operations, by preset and boundary.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shape matching: nanoseconds of one match, for the ratios of run.py. Single-thread times are CPU
 // time.
 //

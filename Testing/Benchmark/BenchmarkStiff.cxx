@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // BenchmarkStiff PART ...: what meshes of stretched elements cost to optimize: CPU seconds of one
 // thread, passes of the yardstick (see Yardstick.h) and iterations. Prints lines
 // "key<tab>number". Run by stiff.py. PARTs:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // BenchmarkUserMetric N REPEATS: sums of squares with gradient of built-in metrics and of the same
 // metrics as a user writes them (UserMetric.h), by automatic differentiation, on an N x N x N grid
 // of perturbed cells. Prints lines "name<tab>built-in<tab>user's<tab>ratio": nanoseconds of one

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Clocks.h
  * @brief What the benchmarks measure with.

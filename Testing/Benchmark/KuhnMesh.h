@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file KuhnMesh.h
  * @brief Cubes of tetrahedra for the benchmarks.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Yardstick.h
  * @brief The unit of computing time that carries figures from one machine to another.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """decomposition.py [--cells N] [--parts 2,4,...] [--graph 2,32]: halos and messages of divisions of a large mesh.
 
 Divides a cube of tetrahedra by a k-d tree and by PT-Scotch and counts what ranks with these parts send in a sweep of

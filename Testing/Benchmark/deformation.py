@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The benchmark of warping: what BenchmarkDeformation measures, against what it must reach."""
 
 import os

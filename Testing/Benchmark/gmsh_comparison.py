@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """gmsh_comparison.py [--preset NAME]: improve() against the optimizer of Gmsh, on ten meshes.
 
 Both get the same mesh and keep its surface. Smallest dihedral angle in degrees and worst inverse mean ratio of each,

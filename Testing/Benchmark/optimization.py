@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The benchmark of the optimizer: what BenchmarkOptimization measures, against what it must reach.
 
 Figures are passes of CPU time of one thread (see Yardstick.h) unless their name states another unit. The environment

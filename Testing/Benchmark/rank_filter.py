@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """rank_filter.py FILTER CELLS FILE: for pvbatch on any number of MPI ranks, see ranks.py.
 
 Every rank makes a slab of a cube of tetrahedra, and the filter runs on it; what each rank needed goes to FILE as JSON:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """ranks.py PVBATCH [--cells N] [--ranks 1,2] [--filters quality,...]: filters on MPI ranks against one process.
 
 Prints for each filter and number of ranks the peak memory of a rank (VmHWM of the filter's execution, with the input

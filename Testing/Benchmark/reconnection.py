@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The benchmark of reconnection: what BenchmarkReconnection measures, against what it must reach."""
 
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """run.py --build DIR [--only PART] [--repeats N] [--output DIR]: runs the benchmarks and reports ratios.
 
 Every time is the best of several turns, and every ratio is between times of one run. Single-thread times

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The study of stretched meshes: what BenchmarkStiff measures, against what it must reach.
 
 Grids on the unit square or cube whose inner points are moved, and the meshes of the directory in the environment

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_run.py BUILD OUTPUT: builds the benchmarks, runs them on a tiny mesh and reads what they wrote."""
 
 import csv

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Blocks.h
  * @brief Blocks of cells that fit each other, of any type, and meshes in a random order.

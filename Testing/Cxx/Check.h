@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Check.h
  * @brief Counts and prints failed checks, so that one run of a test shows all of them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Meshes.h
  * @brief Meshes in memory for the tests of the kernel: single cells and scattered ones. See also

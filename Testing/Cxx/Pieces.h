@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Pieces.h
  * @brief Meshes in pieces, with several points at each place of their seams, for tests.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Sanitized.h
  * @brief Whether a test runs under AddressSanitizer, whose allocator does not live with limits of

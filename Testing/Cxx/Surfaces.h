@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Surfaces.h
  * @brief Closed surfaces of triangles or quadrilaterals for the tests of the kernel.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Systems.h
  * @brief Sparse matrices with known properties for the tests of solvers.

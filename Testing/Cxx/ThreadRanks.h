@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ThreadRanks.h
  * @brief Ranks that are threads of this process, and meshes cut for them, for tests of the kernel.

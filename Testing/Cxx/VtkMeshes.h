@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VtkMeshes.h
  * @brief What the tests of the filters share: meshes as VTK data sets, and the errors of an

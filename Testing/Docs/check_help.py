@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_help.py DOCUMENTATION HELP QCH XML...: ParaView's help of the plugin has our pages, as they are now.
 
 The .qch file is an SQLite data base; a file's data are compressed, after four bytes with their length. ParaView's

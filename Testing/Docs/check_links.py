@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_links.py SOURCE_TREE: links and pictures of the documents and help pages lead to something in the tree."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """gallery_commands.py EXAMPLES: the lines "Shell:" of the gallery are commands, with options that exist."""
 
 import re

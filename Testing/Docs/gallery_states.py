@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython gallery_states.py PLUGIN EXAMPLES OUTPUT: the filters that the gallery names for ParaView take its meshes.
 
 EXAMPLES is python/examples, OUTPUT has a folder with before.vtu for each of them, which their tests write.

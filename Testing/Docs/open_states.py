@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython open_states.py PLUGIN DATA [STATES]: opens every state file elsewhere, and checks what it shows.
 
 The state files are those in DATA, or those in any directory of STATES, of which each has the states of one version.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """run_examples.py KIND DOCUMENTATION WORK [--write]: runs the examples of the help pages and compares what they print.
 
 KIND is pvpython or python3, and so is the interpreter that runs this. An example is a <pre> after the comment

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_readme.py SOURCE BUILD WORK PVPYTHON...: runs every example of README.md and Plugin/Site.
 
 A comment before each block of code says how: <!-- test: sh -->, python3, pvpython (PVPYTHON and its arguments run

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Images of arbitrary bytes, lists of images, and the outline of arbitrary pixels.
 
 #include "Readers/MeshFileChecks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Elements and meshes of arbitrary numbers: finite metrics, statistics, points; no element becomes
 // inverted that was valid.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mesh files of arbitrary bytes: a reader returns a consistent mesh or throws FileError with the
 // name of the file; what it returns can be written, and reads back the same.
 

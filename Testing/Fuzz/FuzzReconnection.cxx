@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Random operations on meshes whose connectivity changes.
 
 #include "FuzzTargets.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Option strings for PETSc: what is permitted neither names a file nor displays anything, a solver
 // refuses the rest before PETSc sees it, and whatever it takes ends with a checked solution or an
 // error.

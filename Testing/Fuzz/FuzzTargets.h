@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FuzzTargets.h
  * @brief The functions that the fuzzers call with arbitrary bytes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The driver of libFuzzer: TAUTLINE_FUZZ_TARGET names the target; the arguments are libFuzzer's.
 
 #include "FuzzTargets.h"

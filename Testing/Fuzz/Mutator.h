@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Mutator.h
  * @brief Runs a target on the files of a corpus and on seeded mutations of them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The driver without libFuzzer: TautlineFuzzer TARGET CORPUS SECONDS SEED INPUT. The file INPUT has
 // the bytes that failed.
 

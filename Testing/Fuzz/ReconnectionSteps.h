@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionSteps.h
  * @brief Random operations on changing meshes, each checked: for the fuzzer and a test of many.

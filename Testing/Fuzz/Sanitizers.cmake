@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # TAUTLINE_SANITIZE: everything is compiled with AddressSanitizer and UndefinedBehaviorSanitizer; any finding ends the
 # program. (-g1: file and line in its report.) Clang also counts the branches that libFuzzer needs to find new paths.
 set(TAUTLINE_LIBFUZZER OFF)

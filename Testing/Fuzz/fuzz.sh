@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # fuzz.sh BUILD SECONDS [SEED]: runs every fuzz target for so many seconds, two at a time, and fails on any finding.
 # SEED: that of the random numbers, so that a run can be repeated; 0, the default: another one each time.
 # New inputs that reach new code are kept in BUILD/corpus; an input that fails is saved in BUILD/findings. To keep

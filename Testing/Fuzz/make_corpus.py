@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Makes the first inputs of the fuzzers, Corpus/TARGET/*: one small file of each kind.
 
 Inputs that failed once are added beside them by hand. usage: make_corpus.py

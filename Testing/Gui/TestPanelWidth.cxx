@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The dock of the Properties panel is widened until a page fits: to the width that the page needs,
 // not beyond half the window, and not again after the user has made it narrower.
 #include "PanelWidth.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_clicks.py SESSION.xml LIMIT: a recorded job takes at most so many clicks, and it has the check of its result.
 
 A click is an event of the mouse. Not counted: Ctrl+O, which is recorded as two entries of the menu File; the Python

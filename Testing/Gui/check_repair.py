@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_repair.py MESH REPORT: the report of the session JobRepair has the quality that the package tautline finds."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_report.py FILE: the report that the test ResultPanel saved has everything, and needs no other file."""
 
 import base64

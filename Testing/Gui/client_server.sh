@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Plays a session in a client, with a pvserver on this computer that executes the filters: of one process, or of as many
 # as the environment variable TAUTLINE_SERVER_RANKS has, started by mpirun (without it the test is skipped, with 77).
 # usage: client_server.sh PVSERVER PLUGIN_DIRECTORY PARAVIEW [ARGUMENT...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Clicks on the button Stop of a run, from another process, as ParaView processes no events within a run.
 
 usage: press_stop.py SECONDS: waits until the window over the button is there, then this long, and clicks. It is sent to

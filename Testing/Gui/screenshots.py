@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures of the steps of a session, for the documentation: session_checks.shot("name") in ParaView's Python shell.
 
 Where the environment variable TAUTLINE_SCREENSHOTS names a directory, the whole screen is saved there as name.png.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks of the data and charts of a session, called in ParaView's Python shell: a failed one ends ParaView with 1.
 
 The numbers are computed here, from the points and cells, or are those of numpy.

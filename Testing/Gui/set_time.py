@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """set_time.py JUNIT [PROCESSES]: how long the tests of ParaView's window take, from the file of `ctest --output-junit`.
 
 Prints the sum of their times, and its part for each of the PROCESSES that `ctest -j` ran at a time (2 if not given).

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # test_install.sh CMAKE BUILD_TREE WORK_DIRECTORY COMPILER PYTHON
 # The install tree must work wherever it is moved to, so it is moved before it is used.
 set -euo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Operations that take much longer than test_interrupts.py waits for their end."""
 
 from functools import lru_cache

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """lost_server.py PORT: for pvpython, see test_lost_server.py; a long filter on a pvserver that will be killed."""
 
 import os

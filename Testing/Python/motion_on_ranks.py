@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """motion_on_ranks.py FILE: for pvbatch on any number of MPI ranks, see test_motion_on_ranks.py.
 
 Optimizes and untangles a cube whose parts are on all ranks, cut in slabs or at random, and writes points, summaries and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """parallel_filters.py FILE: for pvbatch on any number of MPI ranks, see test_parallel_filters.py.
 
 Every filter that gathers its mesh, on a mesh in pieces, cut in several ways; the results go to FILE as JSON.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """parallel_solve.py FILE: for pvbatch on any number of MPI ranks, see test_parallel_solve.py.
 
 Solves on a cube whose parts are on all ranks (of more than two, the last has nothing) and writes the results to FILE

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the scripts for pvbatch on MPI ranks share."""
 
 import numpy as np

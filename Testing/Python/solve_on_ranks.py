@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """solve_on_ranks.py FILE: for pvbatch --sym on any number of MPI ranks, see test_solve_on_ranks.py.
 
 Solves on a cube whose pieces are on the ranks: fewer pieces than ranks, as many, and more; cut in slabs, by a k-d tree

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs studies in the small size and checks the files that they write."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Wrong arguments raise tautline.Error with a remedy, in every function: never TypeError, AttributeError or OSError."""
 
 import os

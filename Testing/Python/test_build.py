@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The version stands in one place; a Python that cannot use the compiled modules gets one sentence; the command works.
 
 test_build.py VERSION COMMAND MANUAL: the project's version, the command tautline, the directory of its manual.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """python3 -m tautline: exit codes, tables and files against the results of the functions."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function compare against the two meshes' qualities, and its errors."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The command convert: formats, options, errors."""
 
 import tautline as tl

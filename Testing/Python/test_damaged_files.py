@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Truncated and malformed files are errors: VTK's readers return what they have, or memory that nobody filled."""
 
 import os

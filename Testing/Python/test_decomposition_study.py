@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The study of divisions for ranks in the small size: divisions, counts, the model, verdicts."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function warp and its command: motions, targets, coefficients, results, errors."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Warp Mesh through ParaView: properties by name, transforms, selections, targets, time, animation, state file."""
 
 import os

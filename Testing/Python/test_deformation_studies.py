@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The studies of mesh deformation in the small size: their tables, findings, pictures and numbers."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_demo.py MODULE...: the demo writes mesh, table and a picture that shows something.
 
 It does so without the plugin, and with these compiled modules only: the target demo builds no more.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions domain and domains, the command domain: sizes, motions, errors."""
 
 import tautline as tl

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions solve, condition and solver_study, and their commands."""
 
 import csv

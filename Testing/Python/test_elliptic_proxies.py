@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Solve PDE, Condition Estimator and Solver Study in ParaView: menus, defaults, outputs, errors, state."""
 
 import os

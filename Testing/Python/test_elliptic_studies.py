@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The studies of linear solvers and condition numbers in the small size: their files and numbers."""
 
 import math

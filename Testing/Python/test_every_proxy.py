@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What every proxy of the plugin guarantees: the time limit, the meaning of 0, empty inputs, summaries of blocks."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Files of solvers through VTK's readers and meshio, time steps, meshio's objects, the table of formats."""
 
 import sys

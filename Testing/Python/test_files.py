@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """No failure leaves a part of a file: killed processes, full disks, links, directories without permission, two writers.
 
 Every writer of the package and every own writer that ParaView uses is tried. After each failure the file, and every

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The compiled classes and the functions are in the package tautline, in python3 and in pvpython."""
 
 import tautline

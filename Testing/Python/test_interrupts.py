@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Ctrl-C, progress callbacks and time limits end every long function, and leave no partial file.
 
 test_interrupts.py PART [NAME], where PART is signal, cancel, limit, shell or some, and NAME an operation. Every

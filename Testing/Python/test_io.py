@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions read and write: formats, options, errors."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_lost_server.py PVSERVER PVPYTHON: a server killed in a long filter ends its client with a message, not a hang.
 
 A pvserver, and one of the two of mpirun -np 2 pvserver (skipped without mpirun).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Where the memory of the process is limited (ulimit -v), a command succeeds or ends with one line that says why.
 
 The smallest limits are those under which Python just imports the package: below, the interpreter itself fails. No

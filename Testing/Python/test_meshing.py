@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions triangle_mesh and tet_mesh, and horizon_neighbors, in numbers."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random outlines and random polygon soups: a mesher gives a mesh or an error, and goes on to the next one."""
 
 import random

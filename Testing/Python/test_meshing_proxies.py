@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The domains and the meshers as a ParaView user meets them."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function metric_field on a triangle and a tetrahedron, and its errors."""
 
 import numpy as np

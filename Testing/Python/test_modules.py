@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Files of the package import from lower floors only; a missing optional module is skipped, a broken one raises."""
 
 import os

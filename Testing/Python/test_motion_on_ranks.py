@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_motion_on_ranks.py PVBATCH: on 1 to 4 MPI ranks points move to the same places; skipped without mpirun."""
 
 import json

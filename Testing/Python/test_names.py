@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Names of methods and presets: in any case, as ParaView's labels have them, with the nearest one if they are wrong.
 
 test_names.py SERVER_MANAGER_XML...

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions optimize and untangle, and their commands."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function untangle on every mesh of the folder tangled of TAUTLINE_TEST_DATA, and the preset for the worst element
 on meshes of the folder hex; skipped where they are absent."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Optimize Mesh and Untangle Mesh through ParaView: properties by name, tables, state file, animation, colours."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The studies of mesh optimization in the small size: their tables, findings, pictures and numbers."""
 
 from importlib import import_module

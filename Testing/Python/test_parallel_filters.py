@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_parallel_filters.py PVBATCH: on 2, 3 and 4 MPI ranks filters find what they find on one; skipped without mpirun.
 
 A mesh is cut into slabs, by a k-d tree and at random, with and without ghost cells and global ids.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_parallel_solve.py PVBATCH: pvbatch on 1, 2 and 4 MPI ranks finds the same numbers; skipped without mpirun."""
 
 import json

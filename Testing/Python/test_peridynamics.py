@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions peridynamics and interaction_layer, their commands, and small runs of the studies."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The filters of nonlocal models as ParaView users have them: from the menus, with their outputs and errors."""
 
 import os

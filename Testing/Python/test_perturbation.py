@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function perturb: displacements, seeds, tangled and fixed points, errors."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The plugin loads in pvpython, adds its proxies and the colour maps of its arrays."""
 
 import os

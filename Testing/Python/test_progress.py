@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The progress of every filter, source and reader moves while it computes, and carries its name in the menu."""
 
 import os

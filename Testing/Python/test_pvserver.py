@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The plugin loads in a pvserver, which has no Qt, and its filter runs there."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes of PyVista have Tautline's functions as methods; skipped where PyVista cannot be imported."""
 
 import subprocess

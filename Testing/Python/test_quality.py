@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions quality and metrics, meshes given as arguments, errors."""
 
 import json

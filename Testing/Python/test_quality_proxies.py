@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Element Quality through ParaView: properties by name, outputs by name, coloured by itself, in numbers."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Numbers with a range: every setter of every class refuses values outside with a message and keeps the older value."""
 
 import math

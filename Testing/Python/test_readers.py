@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_readers.py PROGRAM: files of Debian's tetgen or gmsh are read, Tautline's by it; skipped if it is absent."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Opening and saving each format as ParaView users do, a series of files, an error with an empty output."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Improve Mesh through ParaView: properties by name, tables, state file, colours."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The study of reconnection in the small size; its verdicts follow from its numbers."""
 
 from checks import OUT

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function and the command report: the numbers, what the file has, and that it needs no other file."""
 
 import base64

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The studies `figures` and `peridynamics_local` in the small size, and the report of `study all`."""
 
 import base64

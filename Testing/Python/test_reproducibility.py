@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Every filter gives bitwise the same with one thread and with two.
 
     test_reproducibility.py                  each operation with one and with two threads: the digests are equal

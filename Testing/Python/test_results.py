@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Results: how they print, copies, pickle, comparison, help, tables."""
 
 import base64

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A mesh in pieces (.pvtu, appended parts) gives what the whole mesh gives, in the functions and on the shell."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions silhouette, match and retrieval, their commands, and the study on a small synthetic set."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Retrieval on Kimia's 99 silhouettes, the folder kimia99 of TAUTLINE_TEST_DATA; skipped where that is absent.
 
 The dissertation's energy on part of them: every class is there, with four of its eleven shapes.

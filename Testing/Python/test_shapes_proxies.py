@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The proxies of the module Shapes and the reader of silhouette sets, as scripts and the GUI use them."""
 
 import os

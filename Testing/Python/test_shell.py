@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What all commands share: help with an example that runs, --json, --quiet, pipes, the progress bar, exit codes."""
 
 import json

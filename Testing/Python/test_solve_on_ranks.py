@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_solve_on_ranks.py PVBATCH: any number of pieces on 1 to 4 MPI ranks gives the same numbers; needs mpirun.
 
 Solve PDE, Condition Estimator and Solver Study, on pieces with and without ghost cells, cut in three ways.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A state file with Tautline's filter loads again once the plugin is loaded."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """run_steps and the command run: files of steps are checked before they run, and give what the functions give."""
 
 import json

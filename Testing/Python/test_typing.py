@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_typing.py SOURCE: the types of the package, by mypy, where it is installed."""
 
 import shutil

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Metrics of the user: a numpy function, and a compiled library (argument 1), in Python and in the shell."""
 
 import json

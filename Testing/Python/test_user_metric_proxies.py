@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The menus of ParaView have registered metrics: those of a library (TAUTLINE_METRICS), and those of Python."""
 
 import os

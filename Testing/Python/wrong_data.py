@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs the functions of a study that state its findings again, with wrong numbers, and checks that verdicts change."""
 
 import copy

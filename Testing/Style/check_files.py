@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_files.py SOURCE_TREE: line ends, tabs, trailing space, lengths of files and lines, clang-format."""
 
 import shutil

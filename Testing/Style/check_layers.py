@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_layers.py SOURCE_TREE: headers are included downwards only.
 
 Layers: Plugin -> Filters, Readers -> Filters/Kernel. The kernel includes nothing of VTK, the filters nothing of

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """check_licence.py SOURCE_TREE [--write]: every source file names its licence in its first lines, as SPDX has it.
 
 --write inserts the line where it is missing: after #! and <?xml ...?>, before everything else.

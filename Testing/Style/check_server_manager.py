@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_server_manager.py SERVER_MANAGER [GENERATED_XML...]: what repeats in ServerManager is written once.
 
 At most MAX_REPEATED of the lines that are not blank may stand in repeated blocks: runs of BLOCK or more lines that

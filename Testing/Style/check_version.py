@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """check_version.py SOURCE_TREE VERSION: documents that have to state the version state that of the project."""
 
 import re

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # The command line of ./run gui: ParaView must not take a file for the name of a plugin, which is what
 # it does with a file after --plugins. ParaView, CMake and the packages are replaced by stand-ins.
 # usage: run_gui.sh TOP

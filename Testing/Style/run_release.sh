@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # run_release.sh SOURCE_TREE WORK_DIRECTORY VERSION: ./run release makes the same bytes twice, also with another mask and
 # in another time zone, of a tree that configures.
 set -euo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """test_check_layers.py SOURCE_TREE: check_layers.py finds includes that break the layers, the floors or make circles.
 
 Each violation is written into a copy of the sources.

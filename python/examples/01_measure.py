@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Measure a mesh: which elements are bad, and by how much?
 
 The inverse mean ratio of an equilateral tetrahedron is 1, large values are bad, and an inverted element is counted by

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Untangle a bracket.
 
 41 of its 8,140 tetrahedra are inverted; afterwards none is. The boundary does not move.

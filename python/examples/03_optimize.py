@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Optimize a plate with a hole.
 
 Points of a perturbed mesh of triangles and quadrilaterals move until the mean shape is best; the worst element does not

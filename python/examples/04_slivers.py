@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Remove slivers.
 
 Improve Mesh changes which points are joined: afterwards no dihedral angle of the bracket is below 15 degrees.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Turn a hole by 120 degrees.
 
 FEMWARP, a linear method, inverts elements near the hole; the hybrid method untangles and improves them.

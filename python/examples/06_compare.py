@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Compare two meshes.
 
 Which elements became worse? The difference is a cell array, to be coloured.

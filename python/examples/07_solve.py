@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What bad elements cost a solver.
 
 The same equation on the bracket before and after the optimization: the conjugate gradients take fewer iterations.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A report to send.
 
 One HTML file with pictures, histograms and tables, before and after. It needs no display.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Find a fish in a picture.
 
 The shape of one fish, triangulated, is deformed to match the picture of another.

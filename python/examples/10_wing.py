@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pitch a wing by 25 degrees.
 
 The mesh around the section follows it: FEMWARP inverts elements at the trailing edge, the hybrid method does not.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Repair a turbine blade of hexahedra.
 
 A tenth of the hexahedra is folded, some of them between valid corners: the exact test finds these, too.

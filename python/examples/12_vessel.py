@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Widen a vessel to an aneurysm.
 
 The wall of a bent artery moves outwards in its middle; the tetrahedra inside follow. The displacement is an

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Even out a terrain.
 
 Points slide on the surface, which keeps its shape: hills are not flattened.

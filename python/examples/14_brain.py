@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A brain whose ventricles move.
 
 The dissertation's planar section of a brain: the boundary moves as measured in images, the mesh follows.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The one worst element.
 
 A solver's time step depends on the worst element of a wrench. The preset "worst element" makes it as good as it gets,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Elements of equal size.
 
 The target of every triangle of a wrench is the mean area; shape and size are optimized together.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Stretch elements by a metric tensor.
 
 In the tensor's metric the wanted edges have length 1: short ones across the lower wall of a channel, long

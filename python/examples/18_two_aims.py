@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Two aims at once.
 
 Shape and size of the elements of a barrier contradict each other; a scalarization decides. The table has both

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Let boundary points slide.
 
 With the boundary "sliding", points on flat and straight parts of the boundary move along them; corners stay.

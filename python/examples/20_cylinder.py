@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Move a cylinder through a channel.
 
 Ten positions of the cylinder, each deformed from the first mesh; a .pvd file has them as time steps.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Open a gate.
 
 The boundary motion of a gate in a channel is large for its mesh. All methods of deformation, with the inverted elements

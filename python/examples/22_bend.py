@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Bend a bar.
 
 The bar bends by the domain's displacement; the fluid around it is what is meshed.

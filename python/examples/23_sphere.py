@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Move a ball in a box.
 
 Tetrahedra between a cube and a ball that moves and shrinks: the same method in space.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Does the mesh pass?
 
 Limits of a finite-element program grade every element; the failed ones go to other programs as sets.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """From one program to another.
 
 Gmsh's mesh with its regions to Medit, TetGen and VTK, and the metric as a view for Gmsh.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A metric of your own.
 
 The longest edge of each element by the shortest one, as a function of numpy; everything else knows it by its name.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a metric looks like.
 
 The inverse mean ratio over the position of one corner of a triangle: flat near the ideal, infinite at the inversion.

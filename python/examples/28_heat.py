@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Heat a plate.
 
 The heat equation on a plate with a hole: the left edge is hot, the right one cold.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Load a bracket.
 
 Linear elasticity: one face is held, the weight acts downwards; the displacement is the input of Warp Mesh or

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Which element spoils the matrix?
 
 The condition number of the stiffness matrix, and the share of each element in the largest eigenvalue: a flat element

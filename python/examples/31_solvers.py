@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Which solver for this mesh?
 
 Four combinations of solver and preconditioner solve the same problem; the fastest one that converges is recommended.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A nonlocal model.
 
 The matrix of a peridynamic model on a square with its interaction layer, its condition number and the solution.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """An interaction layer around a wrench.
 
 Triangles of the width of the horizon are added around the wrench and in its holes.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Find similar silhouettes.
 
 Each silhouette of a list is matched with every other one; the most similar one is of the same class.

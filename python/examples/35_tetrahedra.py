@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Fill a surface with tetrahedra.
 
 TetGen fills the facets of a file, and Improve Mesh removes the slivers that are left.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Better angles on a narrow terrain.
 
 Improve Mesh on a surface: edges are swapped, split and contracted, and all points stay on the surface.

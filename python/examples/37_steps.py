@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Steps in a file.
 
 Read, grade, untangle, optimize and write, as a file that is checked before it runs; the shell runs the same file.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """make_gallery.py DATA [NAME...]: runs the examples and makes their pictures, and the table of their time and memory.
 
 Each example writes before.vtu and after.vtu (or .vti), which the picture pictures/NAME.png shows side by

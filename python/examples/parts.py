@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Parts for the examples: surfaces and meshes of a wing, a blade, a vessel and a terrain, from formulas."""
 
 import numpy as np

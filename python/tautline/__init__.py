@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Measure, repair, deform and match meshes with VTK, and solve equations on them.
 
 >>> import tautline as tl

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions of the package from a shell: python3 -m tautline COMMAND ..."""
 
 from __future__ import annotations

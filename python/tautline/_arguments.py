@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Arguments of the functions: checks, enumerations, keyword options of filters."""
 
 from __future__ import annotations

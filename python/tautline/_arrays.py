@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Arrays and tables of VTK as numpy arrays, and numpy arrays as input arrays of filters."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The build this package belongs to: its version, and the Python and VTK that its compiled modules need.
 
 The file build.json beside this one is written when the package is built. It is the only place in which the package

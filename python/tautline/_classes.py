@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The compiled VTK classes by name, for type checkers; see _vtk."""
 
 from __future__ import annotations

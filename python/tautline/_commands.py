@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the commands of the shell share: options, types of their values, input and output."""
 
 from __future__ import annotations

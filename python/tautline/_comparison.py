@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function compare: the changes of quality between two meshes with the same cells."""
 
 from __future__ import annotations

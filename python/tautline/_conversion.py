@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function formats; the commands convert and formats: read() and write() from a shell."""
 
 from __future__ import annotations

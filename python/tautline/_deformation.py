@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function warp: deforms the interior of a mesh to follow a prescribed boundary motion."""
 
 from __future__ import annotations

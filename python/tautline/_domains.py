@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions domain and domains: meshes of the dissertation's domains."""
 
 from __future__ import annotations

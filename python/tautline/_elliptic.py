@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions solve, condition and solver_study: elliptic partial differential equations on a mesh."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Errors of VTK objects as Python exceptions."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Files that are replaced whole: after a failure there is the older file or the complete new one, never a part.
 
 A file is written under a temporary name with a random part, `.tautline-....part`, in the directory where it will be;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The table of file formats: reader, writer and contents by the ending of the file name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Sets of cells by name: cell arrays of 0 and 1, element sets of Abaqus, groups of MED."""
 
 from __future__ import annotations

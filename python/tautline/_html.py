@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The HTML of a report on the quality of a mesh, from the filters that have measured it."""
 
 from __future__ import annotations

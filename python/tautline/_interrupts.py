@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Ctrl-C and progress callbacks: how they end what the compiled filters compute.
 
 A filter runs inside updating(): there Ctrl-C, and a progress callback that returns False, end it within a moment. The

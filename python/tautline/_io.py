@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes as arguments, from files and to files."""
 
 from __future__ import annotations

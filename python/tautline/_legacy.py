@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Legacy .vtk files are checked before VTK reads them.
 
 VTK's reader returns a mesh from a truncated file, with memory that nobody filled, or aborts the program. The scanner

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes from numpy arrays."""
 
 from __future__ import annotations

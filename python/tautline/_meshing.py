@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions triangle_mesh and tet_mesh: meshes of what a boundary surrounds."""
 
 from __future__ import annotations

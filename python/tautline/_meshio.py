@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes of meshio as meshes of VTK and back, where meshio is installed; its formats."""
 
 from __future__ import annotations

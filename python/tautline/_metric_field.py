@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function metric_field: metrics of one cell over the position of its free vertex."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions metrics, register_metric, unregister_metric and load_metrics: all quality metrics and their facts."""
 
 from __future__ import annotations

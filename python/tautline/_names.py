@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Names of methods and presets as users write them: in any case, and as ParaView's panels have them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function optimize: move points so that elements become better."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions peridynamics and interaction_layer: nonlocal models on planar triangle meshes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function perturb: moves interior points at random."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A picture of a mesh for notebooks."""
 
 from __future__ import annotations

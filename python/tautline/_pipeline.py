@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function run_steps: a file of steps (read, criteria, untangle, warp, report, ...) is checked, then run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function quality: measures every element of a mesh."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function improve: change the connectivity of tetrahedra or triangles so that the worst elements become better."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function report: the quality of a mesh, and of the mesh before, as one HTML file."""
 
 from __future__ import annotations

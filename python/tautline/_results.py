@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The base of all results: printing, copies, pickle, comparison, tables."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions silhouette, match and retrieval: deformable shapes in images."""
 
 from __future__ import annotations

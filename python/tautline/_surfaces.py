@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Files .ply and .stl are checked before VTK reads them: its readers abort the program on some that are truncated."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Results as tables: aligned text, CSV, Markdown."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The function untangle: move points so that elements become valid."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The compiled modules of the package and their VTK classes.
 
 Every compiled module that was built (TautlineQuality, ...) stands beside this file. Its classes become attributes of

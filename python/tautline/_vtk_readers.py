@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Reading of the formats of solvers that VTK reads: blocks, time steps."""
 
 from __future__ import annotations

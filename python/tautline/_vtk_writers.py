@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """VTK's writers: what they write is collected in memory and replaces the file as a whole.
 
 VTK does not notice every failure of a disk, removes the older file after some and aborts the program after others.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The demo: measure a mesh, untangle and optimize it, write the meshes, a table and pictures colored by quality.
 
 usage: pvpython demo.py OUTPUT_DIRECTORY [MESH]

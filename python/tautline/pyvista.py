@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The functions of the package as methods of PyVista's meshes: mesh.tautline.untangle().
 
 >>> import pyvista, tautline.pyvista

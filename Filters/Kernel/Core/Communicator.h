@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Communicator.h
  * @brief The MPI communicator as the public headers show it.

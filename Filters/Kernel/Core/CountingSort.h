@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CountingSort.h
  * @brief A stable counting sort by several threads. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EigenCompatibility.h
  * @brief What differs between Eigen 3.4 and 5, in one place. Not a public header.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Interruption.h
  * @brief How long computations are ended from outside: by Ctrl-C, on request, by a time limit.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Iteration.h
  * @brief What iterative methods have in common: why they stopped, a record per iteration, what

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LimitedMemory.h
  * @brief The history and the two-loop recursion of limited-memory BFGS (J. Nocedal and S. J.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LineSearch.h
  * @brief What all line searches of the kernel share. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LoopInterruption.h
  * @brief Whether the thread that waits for a chunk of a parallel loop is interrupted.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LoopProgress.h
  * @brief How far the loops of a computation are, for those that show it. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MachineLoad.h
  * @brief How busy the machine is. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Memory.h
  * @brief The memory that is available, and the check before large allocations. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Packet.h
  * @brief A packet of doubles, one per element of a batch, with the functions metrics need.

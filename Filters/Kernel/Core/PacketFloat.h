@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PacketFloat.h
  * @brief A packet of floats with the functions shape matching needs; twice as many as of doubles.

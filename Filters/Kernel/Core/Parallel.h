@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Parallel.h
  * @brief Threaded loops whose result does not depend on the number of threads. Internal: not

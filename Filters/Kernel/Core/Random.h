@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Random.h
  * @brief Random numbers that are the same everywhere. Internal: not installed.

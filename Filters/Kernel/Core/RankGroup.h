@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankGroup.h
  * @brief The ranks that work on one mesh, as the kernel sees them: MPI processes, threads of a

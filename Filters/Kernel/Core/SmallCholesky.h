@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SmallCholesky.h
  * @brief Cholesky factors of small dense matrices, with a shift that makes them positive definite.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Stopwatch.h
  * @brief Wall time since a start, for time limits and records. Internal: not installed.

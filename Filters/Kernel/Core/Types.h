@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Types.h
  * @brief Small types every part of the kernel shares: indices, vectors, errors.

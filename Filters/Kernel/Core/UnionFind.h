@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UnionFind.h
  * @brief Disjoint sets of the numbers 0 to n - 1 (R. E. Tarjan, "Efficiency of a good but not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VectorAlgebra.h
  * @brief Threaded operations on long vectors, bitwise the same for any number of threads. Internal:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef tautline_Version_h
 #define tautline_Version_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Femwarp.h
  * @brief FEMWARP and anisotropic FEMWARP, sections 4.8 and 4.9.1: the harmonic solve, the

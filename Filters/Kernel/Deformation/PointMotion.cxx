@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "PointMotion.h"
 
 #include <Eigen/Eigenvalues>

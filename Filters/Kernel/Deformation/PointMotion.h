@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointMotion.h
  * @brief Motions of points along their exact paths: an arc for a rotation, a screw for a rigid

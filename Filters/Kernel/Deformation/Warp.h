@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Warp.h
  * @brief Deforms the interior of a mesh to follow a prescribed boundary motion: FEMWARP,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpBatches.h
  * @brief A loop over many points that reports progress and can be stopped. Internal: not installed.

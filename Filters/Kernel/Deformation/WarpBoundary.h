@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpBoundary.h
  * @brief Where a moved boundary runs into itself. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpCoefficients.h
  * @brief The coefficients of anisotropic FEMWARP, section 4.9.1, from a motion. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpControl.h
  * @brief The time limit, the observer and the running totals of one deformation. Internal: not

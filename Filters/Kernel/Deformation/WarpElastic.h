@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpElastic.h
  * @brief Deforms a mesh as an elastic body whose small or inverted elements are stiffer. Internal:

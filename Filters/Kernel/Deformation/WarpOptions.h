@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpOptions.h
  * @brief The options of a mesh deformation, and its result.

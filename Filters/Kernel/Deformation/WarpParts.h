@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpParts.h
  * @brief The prescribed points of a mesh, its connected parts, and the affine motion of each.

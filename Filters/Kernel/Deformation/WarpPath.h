@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpPath.h
  * @brief The path of the prescribed points, where only its end is given.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpPointwise.h
  * @brief The methods of deformation that are compared with FEMWARP and need no partial differential

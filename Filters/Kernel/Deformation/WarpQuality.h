@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpQuality.h
  * @brief How much a deformation has changed the shapes of the elements.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpRanks.h
  * @brief The ranks that deform a mesh together: sums over all of them, and who counts a point.

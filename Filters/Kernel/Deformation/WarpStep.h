@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpStep.h
  * @brief One step of a motion: from a mesh and the displacements of its prescribed points to the

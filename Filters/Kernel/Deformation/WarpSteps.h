@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpSteps.h
  * @brief A motion in steps, each from the mesh of the one before. Internal: not installed.

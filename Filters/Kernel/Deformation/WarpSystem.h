@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpSystem.h
  * @brief The partition (4.8) of a matrix by points whose values are given and points whose values

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Domains.h
  * @brief The geometric domains of the dissertation: boundaries for a mesher, structured meshes,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementContributions.h
  * @brief The contribution of each element to the largest eigenvalue and the condition number.

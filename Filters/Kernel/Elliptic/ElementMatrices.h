@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementMatrices.h
  * @brief Stiffness matrices of single elements, of the diffusion operator and of linear elasticity.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementShapes.h
  * @brief Shape functions of the six linear cell types with quadrature, and their gradients in

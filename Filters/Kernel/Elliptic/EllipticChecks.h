@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticChecks.h
  * @brief Checks that a boundary value problem has a solution. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticFields.h
  * @brief Fields derived from the values of a solution: gradients and stresses. Internal: not

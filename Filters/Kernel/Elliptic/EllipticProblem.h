@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticProblem.h
  * @brief The boundary value problems of chapter 2: Poisson (2.2), general second order (2.3),

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticSolution.h
  * @brief The solution of a boundary value problem on the points and cells of a mesh.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticSystem.h
  * @brief A boundary value problem assembled on a mesh, and its solution.

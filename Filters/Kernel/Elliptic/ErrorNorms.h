@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ErrorNorms.h
  * @brief The distance of a finite element solution from a known function.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FiniteElements.h
  * @brief Stiffness matrices and load vectors of linear finite elements: P1 on triangles and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Materials.h
  * @brief The coefficients of diffusion and of linear elasticity.

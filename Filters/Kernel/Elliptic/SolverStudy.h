@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SolverStudy.h
  * @brief Solves one system by many combinations of solver and preconditioner (Table 2.5) and

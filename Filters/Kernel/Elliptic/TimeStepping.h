@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TimeStepping.h
  * @brief The heat equation u_t + L u = f and the wave equation u_tt + L u = f, with the elliptic

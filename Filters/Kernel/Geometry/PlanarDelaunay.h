@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlanarDelaunay.h
  * @brief A constrained Delaunay triangulation of points in the plane. Internal to the kernel: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointTree.h
  * @brief Points in boxes in boxes: a binary tree by medians along the longest side. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Polygon.h
  * @brief Constrained Delaunay triangulation of a simple polygon, without interior points.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Predicates.h
  * @brief Signs of the orientation and in-circle determinants, exact for finite doubles.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SegmentDistance.h
  * @brief Squared distances of segments in the plane. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ArrayChecks.h"
 
 #include "tautline/Core/Parallel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ArrayChecks.h
  * @brief Searches the raw arrays of a mesh for what must not be in them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryParts.h
  * @brief The connected parts of the boundary of a mesh: its outside, and each hole.

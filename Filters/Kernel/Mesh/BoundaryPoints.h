@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryPoints.h
  * @brief The points on the boundary of a mesh, found without sorting its facets. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryShape.h
  * @brief Where the boundary of a mesh is flat or straight, so that its points can slide along it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellBatch.h
  * @brief The vertices of several cells of one type, gathered into packets. Internal: not installed.

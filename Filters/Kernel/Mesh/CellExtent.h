@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellExtent.h
  * @brief The sizes of cells that are computed with as they are, and the unit of others.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellOrder.h
  * @brief Which cells of a mesh to list in the opposite order so that all agree.

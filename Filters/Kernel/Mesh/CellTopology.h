@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellTopology.h
  * @brief The cell types Tautline computes with: local numbering, edges, faces, corners, ideal

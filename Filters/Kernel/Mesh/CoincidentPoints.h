@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoincidentPoints.h
  * @brief Points at the same place that separate neighbouring cells: the seams of a mesh in pieces.

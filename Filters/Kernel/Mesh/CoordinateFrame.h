@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoordinateFrame.h
  * @brief Coordinates of extreme size or far from the origin, and the frame that they are computed

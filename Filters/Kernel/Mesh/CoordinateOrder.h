@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoordinateOrder.h
  * @brief The order of the points of a mesh on several ranks by their coordinates.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DecompositionCounts.h
  * @brief What a division of a mesh into parts costs the ranks that would have them: halos, messages

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DistributedMesh.h
  * @brief One mesh whose cells are spread over ranks: global numbers, owners, halos, exchange.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetTable.h
  * @brief The edges of 2D cells, or the faces of 3D cells, with the cells that use each. Internal.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Features.h
  * @brief The features of a geometry as a mesh shows it: corners, curves (sharp edges, borders,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file JacobianBounds.h
  * @brief The Jacobian determinant inside hexahedra and wedges: its Bernstein coefficients, its sign

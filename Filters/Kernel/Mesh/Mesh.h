@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Mesh.h
  * @brief A view of a caller's mesh and what the kernel derives from it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankSets.h
  * @brief Connected sets of the points of a mesh on several ranks. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TakenCells.h
  * @brief The cells that a rank gets of a mesh on several ranks. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Aggregation.h
  * @brief Graphs of rows and the aggregates of multigrid. Internal: not installed.

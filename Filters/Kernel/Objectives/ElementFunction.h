@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementFunction.h
  * @brief What an objective makes of one element's metric, with its derivative. Internal: not

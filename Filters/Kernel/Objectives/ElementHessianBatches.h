@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementHessianBatches.h
  * @brief The second derivatives of the terms of an objective, for batches of elements of one type.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HessianMatrix.h
  * @brief The Hessian of objectives over the free points of a mesh, as a sparse matrix of small

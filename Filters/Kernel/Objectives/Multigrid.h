@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Multigrid.h
  * @brief A preconditioner for sparse symmetric positive definite matrices of small blocks:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Objective.h
  * @brief Objective functions: a metric of the registry, aggregated over the elements by a template.

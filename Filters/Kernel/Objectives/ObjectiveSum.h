@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ObjectiveSum.h
  * @brief The value and the gradient of an objective on a mesh whose points move.

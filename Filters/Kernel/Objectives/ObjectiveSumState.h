@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ObjectiveSumState.h
  * @brief What an ObjectiveSum holds. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Scalarization.h
  * @brief Combines n objective values F_i into one F, with dF/dF_i.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GeometryMatch.h
  * @brief Matches the features of a mesh with those of the geometry it approximates.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GlobalFunction.h
  * @brief The scalarized objective of an optimization as a function of all free points at once.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "HarmonicStart.h"
 
 #include "tautline/Core/VectorAlgebra.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HarmonicStart.h
  * @brief A start for Newton's method on stretched meshes. Internal: not installed.

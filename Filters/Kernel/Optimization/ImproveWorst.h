@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ImproveWorst.h
  * @brief Improves the worst element at little cost to the mean. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LocalOptions.h
  * @brief The terms and the options of the local sweeps. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "LocalSweep.h"
 
 #include "tautline/Core/Parallel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LocalSweep.h
  * @brief Sweeps over the free vertices that move one after the other, given where the others are by

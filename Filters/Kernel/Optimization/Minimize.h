@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Minimize.h
  * @brief Minimizes a smooth function of many variables: nonlinear conjugate gradients, L-BFGS,

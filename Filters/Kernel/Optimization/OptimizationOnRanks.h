@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizationOnRanks.h
  * @brief The state of an optimization of a mesh on several ranks. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizationProblem.h
  * @brief The state of an optimization: the moving points, the objectives on them, and their records

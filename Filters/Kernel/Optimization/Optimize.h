@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Optimize.h
  * @brief Moves the free vertices of a mesh so that one or several objectives become smaller.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizeOnRanks.h
  * @brief optimize() for a mesh on several ranks, with a result that does not depend on how the mesh

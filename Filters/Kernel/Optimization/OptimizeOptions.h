@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizeOptions.h
  * @brief The options of optimize(): objectives, algorithm, constraints, stopping criteria, presets.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptionChecks.h
  * @brief What is wrong with the options of optimize(). Internal: not installed.

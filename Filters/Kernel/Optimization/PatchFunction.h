@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PatchFunction.h
  * @brief What one objective is as a function of one free vertex: in closed form where it is an

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file QualityGuard.h
  * @brief Holds what an optimization must not make worse: the number of invalid elements, the worst

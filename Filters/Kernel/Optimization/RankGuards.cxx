@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What an optimization on ranks must not make worse: validity, the worst element, the objective.
 #include "OptimizationOnRanks.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankSweep.h
  * @brief Sweeps over the free vertices of a mesh on several ranks, in an order that does not depend

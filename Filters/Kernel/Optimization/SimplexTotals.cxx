@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the simplices of an optimization add up to, in packets, and which of them are the worst.
 #include "OptimizationProblem.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceModel.h
  * @brief The patches and curves that the points of a mesh slide on.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceProjection.h
  * @brief The closest point of a surface mesh. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SweepControl.h
  * @brief When sweeps and other iterations end. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ValidityLevels.h
  * @brief How much of each element is valid. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where a vertex may go: on its surface or curve, or in its plane or line.
 #include "VertexOptimizer.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VertexOptimizer.h
  * @brief Moves one free vertex so that the scalarized objective becomes smaller, given where the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Energies.h
  * @brief Energies f(N, D) of a simplex, N = |T|^2 and D = det T (see SimplexMesh.h): what the fast

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Patch.h
  * @brief The simplices around one free vertex, in packets, as functions of its displacement d:

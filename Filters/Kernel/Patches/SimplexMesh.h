@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SimplexMesh.h
  * @brief A mesh made ready for optimization: the simplices at the corners of its cells, renumbered

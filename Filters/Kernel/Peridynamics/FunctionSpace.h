@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FunctionSpace.h
  * @brief The basis functions of a nonlocal discretization. Internal to the kernel: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Horizon.h
  * @brief Meshes with an interaction layer, and the geometry of the horizon: the disc of radius

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LocalLimit.h
  * @brief The local operator that a nonlocal one tends to as the horizon tends to 0, in linear

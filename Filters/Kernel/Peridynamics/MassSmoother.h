@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MassSmoother.h
  * @brief An approximate inverse of a nonlocal matrix on waves shorter than the horizon. Internal to

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicOptions.h
  * @brief The options and the result of a peridynamic assembly.

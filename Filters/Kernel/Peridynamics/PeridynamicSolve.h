@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicSolve.h
  * @brief Solves nonlocal (peridynamic) systems by conjugate gradients with preconditioners that are

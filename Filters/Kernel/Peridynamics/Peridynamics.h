@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Peridynamics.h
  * @brief Stiffness matrices of bond-based nonlocal (peridynamic) models on triangle meshes.

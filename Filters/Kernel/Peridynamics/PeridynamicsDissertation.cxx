@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// The discretization of the dissertation, section 4.3: low-order rules, cut triangles by their
 /// chords.
 #include "TriangleAssembler.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// The exact discretization: which pairs of triangles are integrated, and where their integrals go.
 #include "PeridynamicsPair.h"
 

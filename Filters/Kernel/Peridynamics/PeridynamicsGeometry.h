@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsGeometry.h
  * @brief Triangles with boxes around them, and the search for those near another. Internal to the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsKernel.h
  * @brief A radial kernel and its radial integrals. Internal to the kernel: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsPair.h
  * @brief The bilinear form over one pair of triangles, to a tolerance. Internal to the kernel: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleAssembler.h
  * @brief What the two discretizations of the peridynamic integrals share. Internal to the kernel:

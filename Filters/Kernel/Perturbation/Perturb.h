@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Perturb.h
  * @brief Moves vertices at random, with or without inverting elements.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PerturbOnRanks.h
  * @brief perturb() for a mesh on several ranks: the same points, bitwise, however it is cut.

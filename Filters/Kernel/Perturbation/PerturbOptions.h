@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PerturbOptions.h
  * @brief The options of a random motion of the points of a mesh, and its result.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Perturber.h
  * @brief The state of a random motion of the points of a mesh. Internal: not installed.

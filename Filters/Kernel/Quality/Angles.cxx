@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Angles.cxx
  * @brief The distribution of the angles of a mesh, counted in batches without a single arc cosine.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Batch.h
  * @brief Evaluation of one metric on batches of cells of one type. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellMetrics.cxx
  * @brief Metrics of whole cells: lengths, angles, sizes. Scalar code, one function a metric.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Compare.h
  * @brief What changed between two meshes of equal connectivity.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Criteria.h
  * @brief Quality criteria: limits per metric and cell type, grades of elements, one index, a

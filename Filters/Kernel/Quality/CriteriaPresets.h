@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CriteriaPresets.h
  * @brief The texts of the preset criteria.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DualNumber.h
  * @brief A number with its derivatives: the formulas of a user's own metric are written in it.

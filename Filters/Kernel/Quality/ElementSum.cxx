@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ElementSum.h"
 
 #include "tautline/Mesh/CoordinateFrame.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementSum.h
  * @brief Sums a function of a metric over the elements of a mesh, with its gradient. Internal: not

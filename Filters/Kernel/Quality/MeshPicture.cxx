@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "MeshPicture.h"
 
 #include "tautline/Mesh/FacetTable.h"

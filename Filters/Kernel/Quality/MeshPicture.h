@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshPicture.h
  * @brief A picture of a mesh in the colours of its cells, drawn without a display.

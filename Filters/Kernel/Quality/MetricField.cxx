@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "MetricField.h"
 
 #include "tautline/Core/LoopProgress.h"

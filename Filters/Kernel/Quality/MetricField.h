@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricField.h
  * @brief A metric of a triangle or tetrahedron as a function of its last vertex.

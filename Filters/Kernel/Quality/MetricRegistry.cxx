@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricRegistry.cxx
  * @brief The table of facts on every metric.

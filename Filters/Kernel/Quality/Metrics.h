@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Metrics.h
  * @brief Element quality metrics: what there is, what each means, and how to evaluate it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RegisteredMetrics.h
  * @brief The list of all metrics, built-in and registered. Internal: not installed.

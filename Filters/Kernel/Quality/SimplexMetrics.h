@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SimplexMetrics.h
  * @brief Metrics of triangles and tetrahedra that are functions of their edge lengths, face areas

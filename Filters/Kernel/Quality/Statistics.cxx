@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Statistics.h"
 
 #include "tautline/Core/Parallel.h"

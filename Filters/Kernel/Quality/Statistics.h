@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Statistics.h
  * @brief Summaries of a metric over a mesh: moments, quantiles, worst elements, histogram, angles.

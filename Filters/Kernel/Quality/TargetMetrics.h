@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TargetMetrics.h
  * @brief Metrics that are functions of T = A W^-1 at the corners of a cell.

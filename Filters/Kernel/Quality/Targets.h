@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Targets.h
  * @brief Target elements: the matrix W of T = A W^-1, for every cell.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TryMetric.cxx
  * @brief A user's metric is tried before it is registered: its values, derivatives and claims.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UserMetric.h
  * @brief A metric of one's own: written as a formula, registered by name.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointNumbering.h
  * @brief Global numbers of the points of a mesh distributed over MPI ranks, and sums over ranks.

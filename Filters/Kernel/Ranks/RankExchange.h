@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankExchange.h
  * @brief Lists sent from every MPI rank to every other, and agreement on errors. Not a public

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryFreedom.h
  * @brief What the points of the boundary and of interfaces may do. Internal: not installed.

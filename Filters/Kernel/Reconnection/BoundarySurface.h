@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundarySurface.h
  * @brief The boundary of the input that the boundary of a changing tetrahedral mesh stays close to.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CavityOperations.h
  * @brief The operations of reconnection on a mesh, each accepted only if it improves the

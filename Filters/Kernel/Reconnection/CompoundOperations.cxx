@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Operations that pay only after the vertices around have moved.
 #include "CavityOperations.h"
 

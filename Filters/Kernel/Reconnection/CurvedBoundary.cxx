@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What operations may do on a boundary that is kept within a distance.
 #include "CavityOperations.h"
 

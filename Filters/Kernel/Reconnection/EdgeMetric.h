@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EdgeMetric.h
  * @brief The metric in which edges have the length 1, of each point. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetBound.h
  * @brief What a facet that stays allows: the best quality of a tetrahedron on it. Internal: not

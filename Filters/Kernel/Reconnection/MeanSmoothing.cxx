@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Motion of a vertex that improves the mean of the inverse mean ratios around.
 #include "CavityOperations.h"
 

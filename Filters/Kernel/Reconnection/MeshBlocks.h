@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshBlocks.h
  * @brief A large mesh cut into blocks that are changed independently, and joined again. Internal:

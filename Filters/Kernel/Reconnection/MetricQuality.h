@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricQuality.h
  * @brief A metric of the registry as the quality that reconnection maximizes. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Obstacles.h
  * @brief Why tetrahedra are still below the target, and what the walls force. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Insertion of points into cavities.
 #include "CavityOperations.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Reconnection.h
  * @brief Improves the worst tetrahedra of a mesh by changing its connectivity and moving points.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ReconnectionInput.h"
 
 #include "tautline/Core/Memory.h"

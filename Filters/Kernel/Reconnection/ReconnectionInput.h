@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionInput.h
  * @brief Checks the input of reconnection, and converts it. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionOptions.h
  * @brief The options of improveConnectivity(): presets, what is kept, targets and limits.

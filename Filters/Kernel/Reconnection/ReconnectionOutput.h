@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionOutput.h
  * @brief The result of reconnection as arrays, and how it follows from the input. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionResult.h
  * @brief What improveConnectivity() returns: the mesh, how it follows from the input, a history,

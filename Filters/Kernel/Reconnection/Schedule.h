@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Schedule.h
  * @brief The order in which reconnection works on tetrahedra: the worst first. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file StarSmoothing.h
  * @brief The position of one point that maximizes the smallest quality of the tetrahedra around.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Removal of edges and of faces.
 #include "CavityOperations.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronMesh.h
  * @brief A tetrahedral mesh whose connectivity changes. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronQuality.h
  * @brief The quality that reconnection maximizes, of one tetrahedron. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleInput.h
  * @brief Checks the input of the reconnection of triangles, and converts it. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleMesh.h
  * @brief A triangle mesh whose connectivity changes. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleOperations.h
  * @brief The operations of the reconnection of triangles, each accepted only if it improves the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Areas that triangles of the output share with those of the input.
 #include "ReconnectionOutput.h"
 #include "TriangleInput.h"

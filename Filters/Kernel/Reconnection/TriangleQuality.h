@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleQuality.h
  * @brief The quality that reconnection maximizes, of one triangle. Internal: not installed.

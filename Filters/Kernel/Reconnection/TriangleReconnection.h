@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleReconnection.h
  * @brief Improves the worst triangles of a planar mesh or a surface by changing its connectivity

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleStar.h
  * @brief The position of one point that maximizes the smallest angle of the triangles around.

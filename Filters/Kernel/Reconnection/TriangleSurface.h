@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleSurface.h
  * @brief The surface that a changing triangle mesh stays on: that of the input. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OutlineMatch.h
  * @brief How well a polygon fits on another shape's outline, whatever the sizes and directions.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OutlineModel.h
  * @brief A silhouette's outline, independent of its size, with descriptors along it: what

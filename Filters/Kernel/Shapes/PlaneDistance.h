@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlaneDistance.h
  * @brief The distance of two points of an image.

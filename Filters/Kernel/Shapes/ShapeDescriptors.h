@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeDescriptors.h
  * @brief Descriptors of the surroundings of points in a silhouette. Internal to the kernel: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeDynamicProgram.h
  * @brief The placement of a polygon of minimum energy, by dynamic programming over its triangles.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeEnergy.h
  * @brief The energy of one triangle of a shape match, for a packet of places of its last vertex.

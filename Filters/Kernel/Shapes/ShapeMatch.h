@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeMatch.h
  * @brief Finds a deformable shape in an image: the placement of a triangulated polygon with the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeModel.h
  * @brief The source, the target, the energy and the options of shape matching.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeRetrieval.h
  * @brief Which of a set of labelled silhouettes are alike: all matches, the ranking and the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeTarget.h
  * @brief The tables that a target prepares for its matches. Internal to the kernel: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Silhouette.h
  * @brief From an image to the outline of what it shows, and to a polygon close to that.

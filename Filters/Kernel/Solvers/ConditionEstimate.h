@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ConditionEstimate.h
  * @brief Extreme eigenvalues and 2-norm condition numbers of A and of P^-1 A.

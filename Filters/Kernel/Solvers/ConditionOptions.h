@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ConditionOptions.h
  * @brief The options of estimateCondition().

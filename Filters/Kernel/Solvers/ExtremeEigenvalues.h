@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ExtremeEigenvalues.h
  * @brief The smallest and the largest eigenvalue of A, or of P^-1 A, for a matrix that PETSc holds.

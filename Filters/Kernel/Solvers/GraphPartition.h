@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GraphPartition.h
  * @brief Parts of a mesh with few neighbouring cells in different parts, by PT-Scotch.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InnerSolver.h
  * @brief A cycle of multigrid or a factorization of PETSc inside a method of Tautline's own. Not a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Lanczos.h
  * @brief Extreme eigenvalues of a sparse symmetric matrix, and the conjugate gradient method.

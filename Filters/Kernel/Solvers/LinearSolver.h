@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LinearSolver.h
  * @brief Sparse linear systems solved by PETSc: Krylov methods and preconditioners of chapter 2,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LinearSolverState.h
  * @brief PETSc's objects and the state of a LinearSolver. Not a public header.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LinearSystem.h
  * @brief A sparse linear system as the solvers take it, on one MPI rank or several.

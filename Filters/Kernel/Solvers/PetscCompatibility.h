@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscCompatibility.h
  * @brief What differs between PETSc 3.18 and 3.25, in one place. Not a public header.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscObjects.h
  * @brief PETSc's matrix of a linear system, how this rank's unknowns map to it, and options. Not a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "PetscOptionRules.h"
 
 #include "tautline/Core/Types.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscOptionRules.h
  * @brief Which options of PETSc a user may give as text. Not a public header.

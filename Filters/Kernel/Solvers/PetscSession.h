@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscSession.h
  * @brief PETSc inside a process that may use it, too: initialized at first use, one thread at a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Residual.h
  * @brief What a vector leaves of a linear system. Not a public header.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SmallEigenvalues.h
  * @brief Eigenvalues of matrices as small as those of elements. Not a public header.

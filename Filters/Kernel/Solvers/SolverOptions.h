@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SolverOptions.h
  * @brief The options of linear solvers, and the result of a solve.

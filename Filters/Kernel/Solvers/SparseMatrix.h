@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SparseMatrix.h
  * @brief A sparse square matrix by compressed rows, and its product with a vector.

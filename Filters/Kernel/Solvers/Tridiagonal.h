@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Tridiagonal.h
  * @brief Extreme eigenvalues of symmetric tridiagonal matrices, for methods of Lanczos. Not a

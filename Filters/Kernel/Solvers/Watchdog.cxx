@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Watchdog.h"
 
 #include "tautline/Core/Stopwatch.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Watchdog.h
  * @brief Work that cannot be interrupted, under a time limit: it runs in a thread of its own while

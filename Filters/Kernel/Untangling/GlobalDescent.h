@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GlobalDescent.h
  * @brief Limited-memory BFGS on all free vertices of a tangled mesh, preconditioned by the Hessian

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HarmonicMap.h
  * @brief The harmonic map of a mesh: every free vertex at the mean of its neighbours. Internal: not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InfeasibleSimplices.h
  * @brief The simplices that no place of their one free vertex makes valid. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LinearProgram.h
  * @brief Linear programs in a few variables (R. Seidel, "Small-dimensional linear programming and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RotationContinuation.h
  * @brief A start for untangling a mesh around holes that were rotated: there, energies lead into a

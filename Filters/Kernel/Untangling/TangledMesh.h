@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TangledMesh.h
  * @brief A SimplexMesh with the simplices that are not valid, and the moves of one vertex that make

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Unfold.h"
 
 #include "tautline/Mesh/JacobianBounds.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Unfold.h
  * @brief Makes hexahedra and wedges valid between their corners. Internal: not installed.

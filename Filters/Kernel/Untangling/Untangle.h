@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Untangle.h
  * @brief Makes the elements of a mesh valid by moving its free vertices.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UntangleOptions.h
  * @brief The options of untangle(), and its result.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UntangleProgress.h
  * @brief The history, the observer and the limits of an untangling. Internal: not installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Untangler.h
  * @brief The phases of untangling: sweeps around the inverted simplices; all vertices at once;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlanarMesher.h
  * @brief Quality triangulation of a planar region with CGAL (GPL); no VTK, and no CGAL in this

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "SolidMesher.h"
 
 #include "tautline/Core/Interruption.h"

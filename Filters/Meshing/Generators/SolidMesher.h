@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SolidMesher.h
  * @brief Quality tetrahedralization of a region with TetGen (AGPL); no VTK, and no TetGen in this

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Seams.h
  * @brief A mesh in pieces beside the whole one, as data sets, and comparisons of what filters make

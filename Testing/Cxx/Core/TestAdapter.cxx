@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Data sets of VTK through MeshAdapter: what is copied, what becomes of the cells, the messages.
 #include "Check.h"
 #include "VtkMeshes.h"

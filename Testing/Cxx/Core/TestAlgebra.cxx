@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The small tools of Core: disjoint sets, Cholesky factors, sums of vectors, the memory of L-BFGS,
 // the stopwatch.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes and composite data on several processes: the numbers of Element Quality are those of the
 // whole mesh on one process, also where pieces are inverted; a block that is wrong on one process
 // is an error on all, as is a seam between blocks on different processes, and none waits for

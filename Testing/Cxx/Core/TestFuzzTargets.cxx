@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The targets of the fuzzers on their corpus, which holds every input that once failed, and on
 // seeded mutations of it for TAUTLINE_FUZZ_SECONDS (0.3 by default) each.
 

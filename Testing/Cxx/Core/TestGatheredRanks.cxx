@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Filters that gather their mesh on the first process: pieces of it on several processes, blocks,
 // in partitions, on another process than the first; what is selected of them; results, summary and
 // numbers on all processes; errors on all. Python-parallel-filters compares values.

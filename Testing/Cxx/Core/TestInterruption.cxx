@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Interruption.h and the limits of an execution: scopes nest and restore the handler of SIGINT, a
 // loop, an iteration and a factorization of a linear solver end, filters end on abort and at the
 // time limit, which blocks share.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The memory that is available, under the limits of a process, and the errors where it does not
 // suffice.
 #include "Check.h"

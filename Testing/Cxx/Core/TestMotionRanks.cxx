@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh and Untangle Mesh on processes: points, tables and summaries are those of one
 // process, however the mesh is cut.
 #include "Blocks.h"

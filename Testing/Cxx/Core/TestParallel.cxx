@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The loops of Parallel.h: every chunk once, errors of the first chunk, nested loops, loops of
 // several callers and of the child of a fork, callbacks on the calling thread, threads that wait
 // asleep.

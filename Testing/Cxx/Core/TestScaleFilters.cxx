@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Filters on meshes of extreme size or far from the origin: the result is that of the mesh of
 // ordinary size, or an error or a warning names the problem and the remedy.
 #include "Check.h"

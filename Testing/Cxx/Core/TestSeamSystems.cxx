@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes in pieces, with several points at each place of their seams: linear systems and nonlocal
 // models on them are those of the whole mesh; blocks with seams between them.
 #include "Seams.h"

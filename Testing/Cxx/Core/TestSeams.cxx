@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes in pieces, with several points at each place of their seams: filters that move or measure
 // points take them as the whole mesh; duplicate cells; why no point is free.
 #include "Seams.h"

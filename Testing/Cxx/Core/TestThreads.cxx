@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Results are bitwise the same for any number of threads; sums over the mesh are what adding up its
 // cells gives, with the gradient that finite differences give.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the check of VTK's data objects finds, and how it names it. What filters do with such data
 // is tested by TestHostileInput.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Check.h"
 
 #include "tautline/Core/Version.h"

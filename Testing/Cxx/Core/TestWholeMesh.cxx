@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One mesh of its pieces: the same whatever the pieces; with ghost cells, global ids, cracks and
 // points that only ghost cells have; images, surfaces; what cannot be put together.
 #include "Check.h"

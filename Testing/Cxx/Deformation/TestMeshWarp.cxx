@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh: what is exact, what is kept between executions, what comes out.
 #include "WarpingMeshes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh: targets and which of their points belong to which, time steps, and what is refused, by
 // name.
 #include "WarpingMeshes.h"

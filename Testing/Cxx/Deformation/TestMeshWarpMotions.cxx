@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh: the paths of transforms, steps along them, and which part of the boundary they move.
 #include "WarpingMeshes.h"
 

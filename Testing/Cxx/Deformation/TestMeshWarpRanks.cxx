@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh on several processes: a distributed mesh moves as it does on one process.
 #include "Processes.h"
 #include "WarpingMeshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The part of the boundary that Warp Mesh moves, shown before it moves: edges or faces of the hole,
 // parts of blocks, what is chosen by arrays, by displacements, by a target; what Warp Mesh would
 // refuse.

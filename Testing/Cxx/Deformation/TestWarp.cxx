@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // FEMWARP and its anisotropic forms: the propositions of section 4.9.1, the coefficients, the
 // limits in which they vanish, and what is kept for the next boundary position.
 

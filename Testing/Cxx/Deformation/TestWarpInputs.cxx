@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mesh deformation: what is refused and how, what is reported, and how it is stopped.
 
 #include "Warping.h"

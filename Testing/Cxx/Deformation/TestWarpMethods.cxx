@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The methods beyond one harmonic solve: the hybrid algorithm, untangling, elasticity, the
 // biharmonic equation, steps.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Inverse distances, radial basis functions, weighted Laplacian: exact motions, known values,
 // invariances, limits.
 #include "Blocks.h"

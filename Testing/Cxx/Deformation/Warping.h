@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Warping.h
  * @brief Meshes and boundaries that move, for the tests of warping.

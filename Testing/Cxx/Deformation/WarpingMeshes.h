@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpingMeshes.h
  * @brief Blocks with a hole, and checks of the output of Warp Mesh.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every domain: number of cells, valid cells, exact size, markers, motion; structured ones exactly.
 
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Condition Estimator: eigenvalues that are known, which element hurts, tables and messages.
 #include "Check.h"
 #include "VtkMeshes.h"

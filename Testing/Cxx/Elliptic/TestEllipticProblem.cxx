@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Boundary value problems: orders of convergence against manufactured solutions, exactness for
 // linear fields, plane strain and plane stress against a known solution, stresses, parts left free,
 // threads, whatever is refused.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms,
 // steps in time and the study of solvers are those of the whole mesh in one process; what one rank
 // rejects all reject. Runs on any number of ranks.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Solve PDE: known solutions by every way a problem can be described, blocks and partitions,
 // rejected input.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Stiffness matrices and load vectors: known small matrices, patch test, null spaces, invariances,
 // symmetry, threads, degenerate and inverted elements, and whatever is refused.
 #include "Blocks.h"

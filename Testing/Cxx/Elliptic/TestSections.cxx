@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Solve PDE: the sections of volume meshes, by their areas and the values on them.
 #include "Check.h"
 #include "VtkMeshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Time steps of Solve PDE that are shown one after the other: one assembly for all of them.
 #include "Check.h"
 #include "VtkMeshes.h"

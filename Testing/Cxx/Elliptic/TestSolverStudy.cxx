@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The study of solvers: the sixteen combinations, condition numbers that are known, the
 // recommendation and what it warns of, limits, stopping, PETSc options.
 #include "Blocks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Solver Study, the filter: combinations by number, the table, the recommendation, limits.
 #include "Check.h"
 #include "VtkMeshes.h"

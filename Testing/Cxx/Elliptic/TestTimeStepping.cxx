@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Heat and wave equations: the amplification of a discrete eigenmode by each scheme in closed form,
 // orders of convergence in time and in space, mass matrices, conservation of energy, elastic waves,
 // what is refused and what stops.

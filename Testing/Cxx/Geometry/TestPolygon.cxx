@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Constrained Delaunay triangulation of simple polygons: known ones, random ones, degenerate ones,
 // refused ones.
 

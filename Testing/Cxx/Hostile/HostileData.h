@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HostileData.h
  * @brief Data that a filter may meet but was not written for: empty, degenerate, of other types,

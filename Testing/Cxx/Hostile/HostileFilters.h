@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HostileFilters.h
  * @brief Every class of the modules that takes data, ready to be fed with hostile data.

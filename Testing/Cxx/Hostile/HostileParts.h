@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HostileParts.h
  * @brief What the sources of the hostile data share.

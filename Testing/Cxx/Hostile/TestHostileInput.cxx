@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every filter and writer with hostile data: no crash, no hang; an error of Tautline, or a result
 // that is finite, has the points, cells and arrays of the input, and leaves the input as it was.
 //

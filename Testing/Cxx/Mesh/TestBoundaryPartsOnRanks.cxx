@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of the boundary on ranks are those of one process, however the mesh is cut.
 #include "Blocks.h"
 #include "Check.h"

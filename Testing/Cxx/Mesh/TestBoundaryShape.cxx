@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which points of a boundary may slide, and where.
 #include "Blocks.h"
 #include "Check.h"

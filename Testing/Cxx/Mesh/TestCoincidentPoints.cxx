@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points at the same place on the seams of meshes in pieces: which are one, and which stay apart.
 // Duplicate cells, and the boundary of meshes that have some.
 #include "Check.h"

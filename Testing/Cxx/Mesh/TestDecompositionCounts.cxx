@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is counted for parts of a mesh is what ranks with these parts have and send.
 #include "Blocks.h"
 #include "Check.h"

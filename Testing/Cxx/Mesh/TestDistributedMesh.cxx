@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mesh on ranks: numbers, owners, halos and sets are those of the mesh, however it is cut.
 #include "Blocks.h"
 #include "Check.h"

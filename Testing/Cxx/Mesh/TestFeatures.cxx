@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Corners, curves and patches of surfaces, of boundaries and of regions.
 #include "Check.h"
 #include "Surfaces.h"

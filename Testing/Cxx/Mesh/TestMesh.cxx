@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is derived from a mesh: dimension and plane, boundary, adjacency; rejected meshes.
 #include "Check.h"
 #include "Blocks.h"

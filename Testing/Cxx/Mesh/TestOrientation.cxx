@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which way round the cells are listed: consistently, all reversed, or mixed; and tangled is not
 // mixed.
 #include "Check.h"

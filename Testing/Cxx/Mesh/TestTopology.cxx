@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tables of the cell types, and every metric on the ideal cell of each.
 #include "Check.h"
 #include "Meshes.h"

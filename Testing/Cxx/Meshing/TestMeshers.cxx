@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The meshers: bounds kept, sizes exact, markers and regions, failures that are errors and not
 // exits.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hessians over the free points: against differences of the whole gradient, finite on tangled
 // meshes, with their preconditioners, and at work in a truncated Newton method.
 #include "Blocks.h"

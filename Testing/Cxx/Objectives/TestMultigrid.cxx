@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The positive semidefinite part of Hessians, and multigrid as a preconditioner for it.
 
 #include "Blocks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Objectives: every metric by every template against sums by hand, their gradients against
 // fourth-order differences; weights, scales, elements at fault, threads, moving points, errors.
 #include "Blocks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scalarizations: values against closed forms in long double, slopes against fourth-order
 // differences, extreme values, errors.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Optimizing.h
  * @brief Meshes to be optimized, and checks of the result.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The points of a mesh are placed on the geometry before the first iteration, but for those of
 // elements that this would invert.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What became worse goes back to where it was, element by element: what that makes worse in turn
 // follows. After 20 rounds everything goes back.
 #include "Optimizing.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rounds that improve the worst element: each that counts improves it, costs the mean no more than
 // allowed and inverts nothing; the points are those of the last such round.
 #include "Optimizing.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The directions in which the local optimizers move a vertex.
 #include "Optimizing.h"
 

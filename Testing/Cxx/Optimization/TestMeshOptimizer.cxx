@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh against the kernel: every option arrives, arrays and tables report what happened.
 #include "Check.h"
 #include "VtkMeshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh on inputs of all kinds: refused by name, or taken as they are; blocks, precision,
 // iterations as time steps, abort.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The global minimizers on functions whose minima are known.
 #include "Check.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Two thousand random meshes of all cell types, valid and tangled, with every preset and boundary:
 // neither the number of invalid elements, nor the worst element, nor the objective gets worse.
 #include "Optimizing.h"

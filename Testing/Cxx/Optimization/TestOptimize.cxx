@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The optimizer: minima, invariances, objectives, stopping, faulty input.
 #include "Optimizing.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the optimizer must keep: fixed points, limits, planes, lines, surfaces.
 #include "Optimizing.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Optimization keeps the features of surfaces and the smooth shape between them.
 #include "Optimizing.h"
 #include "Surfaces.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hexahedra and wedges stay valid between their corners when a mesh is optimized, and become so
 // when it is untangled.
 #include "Optimizing.h"

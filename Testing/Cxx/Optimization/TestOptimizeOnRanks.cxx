@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Optimization and untangling on ranks: the points do not depend on how the mesh is cut, and are as
 // good as those of one process in its own order.
 #include "Optimizing.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is prepared before an optimization and measured after it: the same for any number of
 // threads, and what is handed on is what would be measured anew.
 #include "Optimizing.h"

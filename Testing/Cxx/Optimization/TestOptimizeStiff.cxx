@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // optimize() on sheared and strongly stretched meshes.
 #include "Optimizing.h"
 #include "Sanitized.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Steps of one vertex that are shortened or refused: before an element inverts, and where the way
 // back to a surface would invert, fold, turn over or worsen the elements.
 #include "Optimizing.h"

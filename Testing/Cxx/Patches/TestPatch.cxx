@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Simplices, patches and energies against the metrics and against differences.
 #include "Blocks.h"
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HorizonMeshes.h
  * @brief Meshes with an interaction layer, and the values of the notes, for the tests of nonlocal

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The filters of nonlocal models: arrays, tables and pictures they make, input of every kind,
 // errors in words.
 #include "Check.h"

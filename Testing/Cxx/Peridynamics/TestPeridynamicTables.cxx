@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Condition numbers of Tables 4.1 to 4.3 (h = 0.1 and 0.05) in both discretizations, against the
 // printed values and against the columns and references of an independent prototype; what the
 // text's own rules give; that unstructured meshes converge to the same limits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The nonlocal matrices: formulas, symmetry, definiteness, null spaces, the local limit, kernels,
 // threads, whatever is refused; the interaction layer, the disc, the eigenvalues and the solver
 // they need.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Perturbation: nothing inverts, steps are within the fraction, tangling meets its fraction, and
 // the same seed gives the same mesh.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Perturbation on ranks: bitwise the points of one process, however the mesh is cut.
 #include "Blocks.h"
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the plugin does when it is loaded, as far as it needs no ParaView.
 #include "Check.h"
 

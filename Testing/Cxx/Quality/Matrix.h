@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Matrix.h
  * @brief 2 x 2 and 3 x 3 matrices for the second evaluation of the metrics: plain and slow on

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Quality criteria: grades and penalties against their definition, the index and the verdict by
 // hand, and what the reader refuses.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The filter: its arrays, tables and notices, on every kind of data set, in numbers known
 // beforehand.
 #include "Check.h"

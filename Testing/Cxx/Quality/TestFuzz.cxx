@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Random cells with random, repeated, enormous, tiny and non-finite coordinates, and random views:
 // never a crash, never a NaN, and what a cell gets does not depend on the cells beside it.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Reports: text is escaped, elements are closed, tables and histograms have the numbers.
 #include "Check.h"
 #include "VtkMeshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The comparison of two meshes: what is better, worse and equal, in numbers known beforehand.
 #include "Check.h"
 #include "VtkMeshes.h"

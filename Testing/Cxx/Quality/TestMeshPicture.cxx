@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Pictures of meshes: where cells are, which are in front, which are seen through others.
 #include "Check.h"
 #include "Meshes.h"

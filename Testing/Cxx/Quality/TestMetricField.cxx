@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The field of a metric: ideal at the apex of the ideal cell, symmetric, negative below the base,
 // the same when streamed in pieces, and smooth enough to contour.
 #include "Check.h"

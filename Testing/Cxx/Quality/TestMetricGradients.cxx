@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Analytic gradients of every metric against fourth-order central differences.
 //
 // A cloud is a mesh of cells that share no point, so that node k of all of them is moved at once.

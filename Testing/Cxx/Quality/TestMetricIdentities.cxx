@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Published values of particular elements, and identities that tie the metrics to each other.
 #include "Check.h"
 #include "Meshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What must not change a value: moving, turning, renumbering, scaling; and what a mirror must do.
 #include "Check.h"
 #include "Meshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A second evaluation of the metrics of whole cells, in plain double precision and as the
 // literature states them: circumcentres, signed sizes by quadrature, angles by arc cosine.
 // TestTargetValues has the metrics of T = A W^-1.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cells of extreme size: metrics without a unit do not depend on it, to the last bit for powers of
 // two; those with a unit or relative to a target follow it, or are counted as beyond the range.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Summaries of a metric against sums done by hand and by brute force.
 #include "Check.h"
 #include "Meshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Targets: an element that is its target has every target metric's ideal value, and only then.
 #include "Check.h"
 #include "Meshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Metrics that are registered at run time: copies of built-in ones have their values and, by
 // automatic differentiation, their gradients; they take part in every objective and are optimized
 // to the same mesh. What registration refuses; numbers, names and lists.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The cells VTK itself makes are valid in Tautline: local numbering, orientation and corners of
 // every type, linear and of higher order. The wedge is the one to watch: in VTK's linear and
 // quadratic wedges the corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Values against ParaView's own Mesh Quality (the Verdict library), for every measure both define.
 //
 // Verdict takes the corners of a wedge the other way round than VTK does: its volume of a wedge

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes spread over MPI ranks: numbering, sums, boundaries, and linear systems whose solution does
 // not depend on the number of ranks. Runs on however many ranks it is started on.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshFileChecks.h
  * @brief What the tests of readers and writers share: files from text, comparison of meshes.

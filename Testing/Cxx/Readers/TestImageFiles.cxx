@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Image files: every format is read with the pixels that were written; a file that is cut anywhere,
 // damaged, of another kind or no file at all is an error that names it, for one image and for a
 // folder.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Malformed files: the message names file, line and problem. Sets with files of two writes are
 // refused. (Mutations of samples: TestFuzzTargets.)
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Read-write-read is the identity, arrays and their types included, directly and through VTK.
 
 #include "MeshFileAdapter.h"

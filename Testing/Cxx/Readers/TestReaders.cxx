@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is in the sample files arrives, with the documented array names.
 
 #include "MeshFileChecks.h"

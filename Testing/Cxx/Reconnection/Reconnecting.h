@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Reconnecting.h
  * @brief Meshes of tetrahedra to be reconnected, and what the checks of results compare.

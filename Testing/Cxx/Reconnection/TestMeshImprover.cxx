@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Improve Mesh: the kernel's result as a data set, data of points and cells, tables, refusals.
 #include "Reconnecting.h"
 #include "VtkMeshes.h"

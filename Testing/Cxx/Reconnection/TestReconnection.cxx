@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity(): what is kept, what improves, where the output follows from the input.
 
 #include "Reconnecting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What improveConnectivity() improves (objectives), what the boundary allows, and memory.
 
 #include "Reconnecting.h"

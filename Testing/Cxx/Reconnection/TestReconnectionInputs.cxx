@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() with input it refuses, and with input at the limits of what it takes.
 
 #include "Reconnecting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() for the worst values of a metric, and for the sum over all tetrahedra.
 
 #include "Reconnecting.h"

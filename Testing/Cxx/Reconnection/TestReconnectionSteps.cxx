@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // 100,000 accepted operations on changing meshes, adjacency, orientation, area and volume checked
 // after each.
 

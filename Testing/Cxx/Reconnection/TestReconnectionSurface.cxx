@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() with a boundary that stays within a distance of that of the input.
 
 #include "Reconnecting.h"

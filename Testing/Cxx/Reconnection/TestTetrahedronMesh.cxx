@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The changing tetrahedral mesh and its operations: small known cases, brute force, and thousands
 // of random operations with all invariants checked after each.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // improveTriangles() of planar meshes: known optima, invariances, what is kept.
 
 #include "Triangulating.h"

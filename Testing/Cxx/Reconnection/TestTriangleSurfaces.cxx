@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // improveTriangles() of surfaces in space, and input that is hard to take.
 
 #include "Triangulating.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // improveTriangles(): target lengths of edges, and overlaps for conservative transfer.
 
 #include "Triangulating.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Triangulating.h
  * @brief Meshes of triangles to be reconnected, and what the checks of results compare.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Shapes.h
  * @brief Images of simple shapes for the tests of silhouettes and matching.

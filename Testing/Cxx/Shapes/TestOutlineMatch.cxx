@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Outlines: the same energy whatever the size, direction and mirroring; exact by comparison with a
 // program without bounds; a shape is nearest to itself; errors.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The filters of the module Shapes: the documented arrays and tables, images of all kinds, errors,
 // the reader.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The energy's terms, the exact search against brute force and against the plain loop, invariances,
 // reliability.
 

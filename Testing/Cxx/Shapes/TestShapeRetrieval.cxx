@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rankings and rates counted by hand; families of shapes are distinguished; threads, stops, errors.
 
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From images to outlines and polygons: known areas, sub-pixel places, what is ignored and what is
 // refused.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Extreme eigenvalues and condition numbers of A and of P^-1 A: known values, dense eigenvalues,
 // bounds that hold, limits and matrices that have no condition number.
 #include "Check.h"

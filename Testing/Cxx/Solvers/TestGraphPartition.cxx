@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PT-Scotch divides the graph of the cells: parts of about equal size with a short border.
 #include "Blocks.h"
 #include "Check.h"

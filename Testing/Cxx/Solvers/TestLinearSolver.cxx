@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Linear systems through PETSc: every method with every preconditioner against a direct solve, why
 // a solve fails, options and their databases, limits, reuse, and whatever is refused.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Linear solvers as guests of a program that uses PETSc itself: it initializes PETSc first, with
 // arguments, options and an error handler, ends it while solvers exist, and ends MPI.
 #include "Check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PETSc options given as text: what is permitted, what is refused before PETSc sees it, files that
 // nothing reads or writes, and every method and preconditioner that this PETSc has.
 #include "Check.h"

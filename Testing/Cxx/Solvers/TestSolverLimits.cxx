@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Time limits and cancelling of work that cannot be interrupted: the watchdog itself, and set-ups
 // and factorizations that are given up. The process ends while one is still running.
 #include "Check.h"

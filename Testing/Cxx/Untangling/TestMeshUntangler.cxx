@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Untangle Mesh: valid, or a report of which elements remain, where and why.
 #include "Check.h"
 #include "VtkMeshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Simultaneous untangling and smoothing as published by Escobar et al. 2003: the optimum of one
  * vertex, tangled meshes of all simplices, the smoothing of what was valid, threads, limits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Untangling: meshes with a few and with many inverted elements, of all cell types; Mesquite's
  * tangled meshes; what cannot be untangled and why; limits; the same result in any frame and with

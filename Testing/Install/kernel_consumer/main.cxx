@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tautline/Core/Version.h"
 #include "tautline/Quality/Metrics.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Loads a library of metrics and optimizes by one: metric_consumer LIBRARY.
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Quality/UserMetric.h"

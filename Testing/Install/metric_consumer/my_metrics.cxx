@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Two metrics, registered when the library is loaded. The shell, Python and ParaView load it by
 //   export TAUTLINE_METRICS=/path/to/libmy_metrics.so
 #include "tautline/Quality/UserMetric.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <vtkCellType.h>
 #include <vtkCellTypeSource.h>
 #include <vtkDataSet.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Studies that regenerate the tables and figures of the dissertation: python3 -m tautline study NAME.
 
 A study is a module of this package with `main(arguments)`; its name is that of the module, and the first line of its

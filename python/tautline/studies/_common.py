@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shared by the studies of mesh optimization: methods, runs measured iteration by iteration, reports."""
 
 from __future__ import annotations

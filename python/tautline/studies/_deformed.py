@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shared by the studies of chapter 4: moving domains, deformed meshes, their measures and pictures."""
 
 from __future__ import annotations

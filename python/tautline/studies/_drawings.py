@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures of meshes in the plane and in space, and images of silhouettes, for the study `figures`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shared by the studies of nonlocal models: the dissertation's numbers, its meshes, tables and charts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The intersection of a triangle with the horizon and its approximation: Figures 4.4 and 4.5."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The dissertation's tables, figures and sections, and where they are in this package, for the study `all`."""
 
 from __future__ import annotations

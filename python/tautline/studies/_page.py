@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The HTML report of the study `all`: one file with its pictures."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shared by the studies of two goals without inverted elements (sections 3.4.1 and 3.4.2)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Sets of silhouettes for the studies: a set from the user's folder, or families generated from a seed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The dissertation's numbers on solvers: Tables 2.4 to 2.12 and 3.8 to 3.10. None is a failure, printed as '*'."""
 
 from __future__ import annotations

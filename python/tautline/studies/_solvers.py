@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shared by the studies of linear solvers: meshes of chapter 2, the combinations of Table 2.5, tables and charts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shared by the studies of tangled meshes (sections 3.3.3, 3.4.3, 3.4.4 and 3.5)."""
 
 from __future__ import annotations

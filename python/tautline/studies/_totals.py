@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Claims of section 2.7.3 on the solver time, the total time (smoothing and solver) and the sensitivity to metrics."""
 
 from __future__ import annotations

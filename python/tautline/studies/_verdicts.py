@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Verdicts of the studies: a finding holds, does not hold, or is not decided by the numbers at hand."""
 
 from __future__ import annotations

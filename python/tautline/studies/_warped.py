@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shared by the studies of section 3.5: meshes deformed by the motion of their boundary, and their untangling."""
 
 from __future__ import annotations

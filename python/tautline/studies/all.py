@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """All studies, and one HTML report of them: per table and figure the dissertation's numbers, ours, verdict, picture."""
 
 from __future__ import annotations

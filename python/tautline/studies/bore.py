@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Untangling a deformed block with a bore: section 3.5.2, Figure 3.12."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A box that rotates in a box by 30 to 180 degrees: all methods, and published numbers of other programs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Condition numbers after multiobjective optimization: sections 3.5.1 to 3.5.3, Tables 3.8, 3.9 and 3.10."""
 
 from __future__ import annotations

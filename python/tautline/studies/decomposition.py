@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Divisions of a mesh for MPI ranks: halos, messages and balance by partitioner, and a model of weak scaling."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """FEMWARP, anisotropic FEMWARP and the hybrid algorithm on six moving domains: section 4.10, Figures 4.24 to 4.39."""
 
 from __future__ import annotations

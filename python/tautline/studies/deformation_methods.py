@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """All methods of mesh deformation on the six moving domains of section 4.10."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Figures of meshes, metrics and constructions: 2.1, 2.2, 3.1, 3.3, 3.12, 4.2, 4.4 to 4.8, 4.37 (a), 5.1, 5.2, 5.4."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Untangling a deformed brain with ventricles: section 3.5.1, Table 3.7, Figure 3.11."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Anisotropic FEMWARP with coefficients that vary in space, from the displacement gradients, on six moving domains."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Independence of the solution from mesh size, metric and solver: section 2.7.1, accuracy of the solution."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Preconditioners for nonlocal matrices: iterations by h, delta and p beside Jacobi; open question of section 4.6."""
 
 from __future__ import annotations

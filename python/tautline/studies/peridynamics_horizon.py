@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Figures 4.9 to 4.18: condition numbers over the horizon, the element size and the aspect ratio, with fits.
 
 Both discretizations; findings are judged by the exact one. Fits: c in cond = c delta^-2 (p = 1); the exponent of h and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Figure 4.19: condition number over the exponent p of the kernel, linear basis, with fits of its growth."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Nonlocal beside local condition numbers, h^-2 and 1 / sin 2 theta, and times: sections 4.1, 4.4.2 and 4.5."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Tables 4.1, 4.2 and 4.3: condition numbers of nonlocal stiffness matrices, printed and ours by both discretizations.
 
 Discretization (a) is the dissertation's rules: three outer points, and one inner point (linear basis) or three

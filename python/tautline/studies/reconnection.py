@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What slivers cost a solver, what Improve Mesh gives back, and how far it comes on the domains."""
 
 from __future__ import annotations

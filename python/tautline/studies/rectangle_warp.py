@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The rectangle whose top sinks: Figures 4.20 and 4.22, Propositions 1 to 4 in numbers."""
 
 from __future__ import annotations

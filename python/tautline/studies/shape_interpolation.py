@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shape and interpolation error simultaneously: section 3.4.2, Table 3.3, Figures 3.6 and 3.7."""
 
 from __future__ import annotations

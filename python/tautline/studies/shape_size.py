@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shape and size simultaneously: section 3.4.1, Table 3.2, Figures 3.4 and 3.5."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shape, size and untangling simultaneously: section 3.4.4, Table 3.6, Figure 3.10."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shape and untangling simultaneously: section 3.4.3, Tables 3.4 and 3.5, Figures 3.8 and 3.9."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Chapter 5: Table 5.1 (recognition rates), Figures 5.3, 5.5 to 5.7, and a sweep of the parameters."""
 
 from __future__ import annotations

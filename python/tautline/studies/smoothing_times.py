@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Times and angles of smoothing by IMR, RR, SI and SS: section 2.4, Tables 2.6 and 2.7."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Errors in L2 and H1 against known solutions by metric, preconditioner and solver: open question of 2.7.1, 2.8."""
 
 from __future__ import annotations

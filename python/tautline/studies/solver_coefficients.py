@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Efficiency of the combinations when the coefficients C, f and a are varied: section 2.7.3.3."""
 
 from __future__ import annotations

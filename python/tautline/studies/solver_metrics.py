@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Solvers and preconditioners on meshes smoothed by four metrics, total times: Tables 2.8, 2.10 and 2.11."""
 
 from __future__ import annotations

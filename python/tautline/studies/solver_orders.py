@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Order of the iterations and of the time in the number of vertices: Figures 2.5, 2.6, 2.8, 2.9, 2.11 and 2.12."""
 
 from __future__ import annotations

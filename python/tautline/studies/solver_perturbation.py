@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Solvers and preconditioners against vertex perturbation: Tables 2.9 and 2.12, Figures 2.4, 2.7 and 2.10."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The restart of GMRES: section 2.7.3.1, Figure 2.3."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Heat and wave equations: orders of the schemes, and solvers over many steps; open question of section 2.8."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Untangling a structured mesh with one vertex out of place: section 3.3.3, Figure 3.2."""
 
 from __future__ import annotations
