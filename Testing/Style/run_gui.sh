@@ -1,13 +1,16 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # The command line of ./run gui: ParaView must not take a file for the name of a plugin, which is what
-# it does with a file after --plugins. ParaView, CMake and the packages are replaced by stand-ins.
+# it does with a file after --plugins; and its welcome does not cover the mesh, without a change of the user's settings.
+# ParaView, CMake and the packages are replaced by stand-ins.
 # usage: run_gui.sh TOP
 set -eu
 top="$1"
 scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
-printf '#!/bin/sh\nfor a in "$@"; do printf "[%%s]" "$a"; done; printf " %%s\\n" "${TAUTLINE_SAMPLE:-}"\n' >"$scratch/paraview"
+printf '#!/bin/sh\nfor a in "$@"; do printf "[%%s]" "$a"; done; printf " %%s\\n" "${TAUTLINE_SAMPLE:-}"
+cat "${XDG_CONFIG_DIRS%%%%:*}/ParaView/ParaView5.11.0.ini" >"$(dirname "$0")/welcome" 2>/dev/null || true\n' >"$scratch/paraview"
+printf '#!/bin/sh\necho "paraview version 5.11.0-RC1"\n' >"$scratch/pvpython"
 printf '#!/bin/sh\nexit 0\n' >"$scratch/cmake"
 # All packages are installed: nothing must be installed by a test.
 printf '#!/bin/sh\nfor a in "$@"; do printf "installed=%%s " "$a"; done\n' >"$scratch/dpkg-query"
@@ -24,3 +27,5 @@ expect "[part.vtu][--plugins=Tautline] " part.vtu
 expect "[a b.vtu][--dr][--plugins=Tautline] " "a b.vtu" --dr
 expect "[--script=$top/Plugin/open_sample.py][--plugins=Tautline] $top/Data/bracket-tangled.vtu"
 [[ -f $top/Plugin/open_sample.py && -f $top/Data/bracket-tangled.vtu ]]
+grep -q '^GeneralSettings.ShowWelcomeDialog=false$' "$scratch/welcome" ||
+  { echo "run gui: the welcome of ParaView is shown" >&2; exit 1; }
