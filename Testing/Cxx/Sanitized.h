@@ -2,7 +2,7 @@
 /**
  * @file Sanitized.h
  * @brief Whether a test runs under AddressSanitizer, whose allocator does not live with limits of
- * the address space.
+ * the address space, and the objects that LeakSanitizer must not miss.
  */
 #ifndef tautline_Sanitized_h
 #define tautline_Sanitized_h
@@ -17,5 +17,35 @@
 #ifndef TAUTLINE_ADDRESS_SANITIZER
 #define TAUTLINE_ADDRESS_SANITIZER 0
 #endif
+
+#if TAUTLINE_ADDRESS_SANITIZER
+#include <sanitizer/lsan_interface.h>
+#endif
+
+namespace tautline
+{
+/// What is allocated while one exists may be left behind: its library was shut down by other code.
+class LeakAllowed
+{
+public:
+#if TAUTLINE_ADDRESS_SANITIZER
+  LeakAllowed()
+  {
+    __lsan_disable();
+  }
+  ~LeakAllowed()
+  {
+    __lsan_enable();
+  }
+#else
+  LeakAllowed() = default;
+  ~LeakAllowed()
+  {
+  }
+#endif
+  LeakAllowed(const LeakAllowed&) = delete;
+  LeakAllowed& operator=(const LeakAllowed&) = delete;
+};
+}
 
 #endif
