@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshFileAdapter.h"
 
+#include "MeshPart.h"
 #include "VtkCompatibility.h"
 
 #include "vtkCellArray.h"
@@ -11,6 +12,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -90,6 +92,21 @@ vtkSmartPointer<vtkDataArray> toArray(const MeshArray& array, const std::vector<
   return result;
 }
 
+/// Adds an array to the points or cells; the numbers of a part's points or cells become global ids.
+void addArray(vtkDataSetAttributes* to, const MeshArray& array, const char* ids,
+  const std::vector<Index>& order = {})
+{
+  const auto* numbers = std::get_if<MeshArray::Integers>(&array.values);
+  if (array.name == ids && numbers && array.components == 1)
+  {
+    const auto globalIds = copyValues<vtkIdTypeArray>(*numbers, 1, order);
+    globalIds->SetName(ids);
+    to->SetGlobalIds(globalIds);
+    return;
+  }
+  to->AddArray(toArray(array, order));
+}
+
 /// Points, point arrays and field arrays.
 void setPoints(MeshFile& mesh, vtkPointSet* output)
 {
@@ -99,7 +116,7 @@ void setPoints(MeshFile& mesh, vtkPointSet* output)
   output->SetPoints(points);
   for (const MeshArray& array : mesh.pointArrays)
   {
-    output->GetPointData()->AddArray(toArray(array));
+    addArray(output->GetPointData(), array, PartPointIds);
     if (array.name == "Normals" && array.components == 3)
     {
       output->GetPointData()->SetActiveNormals("Normals");
@@ -282,7 +299,7 @@ void toGrid(MeshFile mesh, vtkUnstructuredGrid* grid)
   grid->SetCells(takeValues<vtkUnsignedCharArray>(std::move(mesh.cellTypes), 1), cells);
   for (const MeshArray& array : mesh.cellArrays)
   {
-    grid->GetCellData()->AddArray(toArray(array));
+    addArray(grid->GetCellData(), array, PartCellIds);
   }
 }
 
@@ -313,7 +330,7 @@ void toSurface(MeshFile mesh, vtkPolyData* surface)
   surface->SetPolys(cells[2]);
   for (const MeshArray& array : mesh.cellArrays)
   {
-    surface->GetCellData()->AddArray(toArray(array, order));
+    addArray(surface->GetCellData(), array, PartCellIds, order);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "ExecutionScope.h"
 #include "MeshFileAdapter.h"
+#include "MeshPart.h"
 #include "ProgressStep.h"
 #include "tautline/Core/Memory.h"
 
@@ -13,9 +14,29 @@
 #include "vtkInformationVector.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <new>
+
+namespace
+{
+/// The piece that is asked for; the whole mesh where nothing is.
+tautline::PartRequest requestedPart(vtkInformation* info)
+{
+  using Executive = vtkStreamingDemandDrivenPipeline;
+  tautline::PartRequest request;
+  if (info->Has(Executive::UPDATE_PIECE_NUMBER()) &&
+    info->Has(Executive::UPDATE_NUMBER_OF_PIECES()))
+  {
+    request.part = std::max(info->Get(Executive::UPDATE_PIECE_NUMBER()), 0);
+    request.parts = std::max(info->Get(Executive::UPDATE_NUMBER_OF_PIECES()), 1);
+    request.ghostLayers = std::max(info->Get(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS()), 0);
+  }
+  return request;
+}
+}
 
 //------------------------------------------------------------------------------
 vtkMeshFileReader::vtkMeshFileReader()
@@ -50,6 +71,11 @@ vtkTypeBool vtkMeshFileReader::ProcessRequest(
   return tautline::processInScope(this, {}, request, outputs,
     [&]
     {
+      if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
+      {
+        outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+        return 1;
+      }
       return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA())
         ? this->RequestData(outputs)
         : this->Superclass::ProcessRequest(request, inputs, outputs);
@@ -75,6 +101,11 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
       const tautline::ProgressStep progress(this, 0.0, readingShare);
       return this->ReadMesh();
     }();
+    const tautline::PartRequest request = requestedPart(outputs->GetInformationObject(0));
+    if (request.parts > 1)
+    {
+      mesh = tautline::partOf(mesh, request);
+    }
     for (const std::string& warning : mesh.warnings)
     {
       vtkWarningMacro(<< this->FileName << ": " << warning);

@@ -8,6 +8,10 @@
  * Array names are the same for all formats (see MeshFile.h): `Fixed`, `BoundaryMarker`,
  * `Reference`.
  *
+ * On several MPI ranks each rank reads the file and keeps its own compact part of it (recursive
+ * bisection, see MeshPart.h), with global ids of points and cells and as many layers of ghost cells
+ * as are asked for. While it reads, each rank needs memory for the whole mesh.
+ *
  * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkOffReader vtkMeshFileWriter
  */
 #ifndef vtkMeshFileReader_h

@@ -5,6 +5,8 @@ import numpy as np
 from paraview import simple
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
+RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
+
 
 def update(filter_):
     filter_.UpdatePipeline()
@@ -39,9 +41,8 @@ controller.Barrier()  # the first rank reads the files
 
 def parts(filter_, file):
     """The arrays of each rank that has a part; files with the name `file` and more are written."""
-    ranks = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
     simple.ProgrammableFilter(filter_, Script=DUMP.format(file=file)).UpdatePipeline()
-    found = (np.load(f"{file}.{rank}.npz") for rank in range(ranks))
+    found = (np.load(f"{file}.{rank}.npz") for rank in range(RANKS))
     return [arrays for arrays in found if len(arrays["points"])]
 
 

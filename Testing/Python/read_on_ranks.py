@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""read_on_ranks.py FILE DATA: for pvbatch on any number of MPI ranks, see test_read_on_ranks.py.
+
+Reads files of each format on all ranks, measures them and optimizes one, and writes counts, statistics and points to
+FILE as JSON.
+"""
+
+import json
+import os
+import sys
+
+import numpy as np
+from paraview import servermanager, simple
+from parallel_tools import RANKS, parts, update
+
+simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
+FILE, DATA = sys.argv[1:3]
+results = {"ranks": RANKS}
+
+
+def opened(name: str):
+    return update(simple.OpenDataFile(os.path.join(DATA, name)))
+
+
+def mean_quality(mesh) -> float:
+    table = servermanager.Fetch(update(ElementQuality(Input=mesh)), idx=1)
+    return table.GetValueByName(0, "Mean").ToDouble()
+
+
+for name in ("cube.1.ele", "part.msh", "cylinder.msh", "house.off"):
+    mesh = opened(name)
+    found = parts(mesh, FILE)
+    if RANKS > 1:  # some cells are ghosts on other ranks
+        cells = len(set(np.concatenate([part["GlobalCellIds"] for part in found]).tolist()))
+    else:
+        cells = mesh.GetDataInformation().GetNumberOfCells()
+    results[name] = {"cells": cells, "parts": len(found), "mean": mean_quality(mesh)}
+
+mesh = opened("cube.1.ele")
+optimized = OptimizeMesh(Input=mesh, ReproducibleOrder=1)
+found = parts(update(optimized), FILE)
+points = np.concatenate([part["points"] for part in found])
+if RANKS > 1:
+    ids = np.concatenate([part["GlobalPointIds"] for part in found])
+    whole = np.full((ids.max() + 1, 3), np.nan)
+    whole[ids] = points
+    assert np.array_equal(whole[ids], points), "the ranks disagree about a point"
+    points = whole
+results["optimized"] = points.tolist()
+
+with open(FILE, "w") as file:
+    json.dump(results, file)
