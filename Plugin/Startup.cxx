@@ -3,13 +3,11 @@
 
 #include "VersionCheck.h"
 
-#include "vtkClientServerInterpreterInitializer.h"
 #include "vtkElementQuality.h"
 #include "vtkOutputWindow.h"
 #include "vtkPVVersion.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSettings.h"
-#include "vtkSMTautlineMetricsDomain.h"
 #include "vtkVersion.h"
 
 //------------------------------------------------------------------------------
@@ -33,11 +31,4 @@ void tautlineInstallColorMaps()
   constexpr double belowSiteAndUser = -1.0;
   vtkSMSettings::GetInstance()->AddCollectionFromString(
     vtkElementQuality::GetColorMapSettings(), belowSiteAndUser);
-}
-
-//------------------------------------------------------------------------------
-void tautlineRegisterDomains()
-{
-  vtkClientServerInterpreterInitializer::GetInitializer()->RegisterCallback(
-    vtkSMTautlineMetricsDomain::Register);
 }

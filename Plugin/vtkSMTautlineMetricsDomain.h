@@ -5,16 +5,17 @@
  *
  * An enumeration whose further entries come from an information property, a line "number<tab>label"
  * for each (vtkElementQuality::GetUserMetrics()). The list is read when the proxy is created, so
- * that a metric that was registered before is in the menu.
+ * that a metric that was registered before is in the menu. In the XML it is an EnumerationDomain,
+ * which MetricDomains.h replaces in the client:
  *
- *     <TautlineMetricsDomain name="enum">
+ *     <EnumerationDomain name="enum">
  *       <Entry value="0" text="Inverse mean ratio"/>
  *       <RequiredProperties>
  *         <Property name="UserMetrics" function="List"/>
  *       </RequiredProperties>
- *     </TautlineMetricsDomain>
+ *     </EnumerationDomain>
  *
- * @sa tautline/Quality/UserMetric.h
+ * @sa MetricDomains.h, tautline/Quality/UserMetric.h
  */
 
 #ifndef vtkSMTautlineMetricsDomain_h

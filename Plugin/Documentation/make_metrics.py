@@ -88,12 +88,12 @@ def domain(metrics: list) -> str:
     entries = "".join(f'    <Entry value="{m["number"]}" text="{html.escape(m["label"])}"/>\n' for m in metrics)
     return f"""<!-- Written by Plugin/Documentation/make_metrics.py from the registry of metrics. -->
 <Snippet automatic="">
-  <TautlineMetricsDomain name="enum">
+  <EnumerationDomain name="enum">
 <?if automatic?>    <Entry value="-1" text="@automatic@"/><?end?>
 {entries}    <RequiredProperties>
       <Property name="UserMetrics" function="List"/>
     </RequiredProperties>
-  </TautlineMetricsDomain>
+  </EnumerationDomain>
 </Snippet>
 """
 
