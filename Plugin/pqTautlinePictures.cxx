@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqTautlinePictures.h"
 
-#include "ParaViewCompatibility.h"
 #include "ProxyKind.h"
+#include "Recolor.h"
+#include "RegionLegend.h"
 
 #include "pqApplicationCore.h"
 #include "pqDataRepresentation.h"
@@ -36,6 +37,7 @@ namespace
 {
 constexpr int MeshPort = 0;
 constexpr const char* SheetPort = "Sheet"; // of Shape Retrieval
+constexpr const char* ListReader = "SilhouetteSetReader";
 constexpr double MeshOpacity = 0.6;
 constexpr double Behind = 1e-3; // distance of the image from the mesh, of its size
 
@@ -43,6 +45,12 @@ pqServerManagerModel* model()
 {
   pqApplicationCore* core = pqApplicationCore::instance();
   return core ? core->getServerManagerModel() : nullptr;
+}
+
+/// Whether the display of a proxy is changed: the reader is no entry of our menu.
+bool isArranged(vtkSMProxy* proxy)
+{
+  return tautline::isTautline(proxy) || std::string(proxy->GetXMLName()) == ListReader;
 }
 
 /// The port of the filter that has the image in which the mesh was found, or null.
@@ -55,12 +63,26 @@ pqOutputPort* imageOf(pqPipelineFilter* filter)
   return ports.isEmpty() ? nullptr : ports.front();
 }
 
-/// Draws the colours of a picture as they are.
-void showColors(vtkSMProxy* picture)
+/// The array of the pixels, or null; of several images the first array, as they have no scalars.
+vtkPVArrayInformation* pixelsOf(pqOutputPort* image)
 {
-  vtkSMPropertyHelper(picture, "Representation").Set("Slice");
+  auto* arrays = image->getDataInformation()->GetPointDataInformation();
+  vtkPVArrayInformation* scalars = arrays->GetAttributeInformation(vtkDataSetAttributes::SCALARS);
+  return scalars || arrays->GetNumberOfArrays() == 0 ? scalars : arrays->GetArrayInformation(0);
+}
+
+/// Draws the colours of a picture as they are, without a legend.
+void showColors(pqDataRepresentation* shown, const char* representation, const char* array)
+{
+  vtkSMProxy* picture = shown->getProxy();
+  vtkSMPropertyHelper(picture, "Representation").Set(representation);
   vtkSMPropertyHelper(picture, "MapScalars", true).Set(0);
   picture->UpdateVTKObjects();
+  tautline::recolor(shown, array, vtkDataObject::POINT, false);
+  if (auto* view = qobject_cast<pqRenderView*>(shown->getView()))
+  {
+    view->resetDisplay();
+  }
 }
 
 /// Bytes are drawn as they are, grey values or colours; other `pixels` by a colour map.
@@ -102,7 +124,7 @@ void pqTautlinePictures::added(pqRepresentation* shown)
   QTimer::singleShot(0, this,
     [this, mesh]
     {
-      if (mesh && mesh->getInput() && tautline::isTautline(mesh->getInput()->getProxy()))
+      if (mesh && mesh->getInput() && isArranged(mesh->getInput()->getProxy()))
       {
         this->arrange(mesh);
       }
@@ -115,12 +137,24 @@ void pqTautlinePictures::arrange(pqDataRepresentation* mesh)
   auto* view = qobject_cast<pqRenderView*>(mesh->getView());
   auto* filter = qobject_cast<pqPipelineFilter*>(mesh->getInput());
   pqOutputPort* port = mesh->getOutputPortFromInput();
+  const std::string name = mesh->getInput()->getProxy()->GetXMLName();
   if (view && port->getPortName() == SheetPort)
   {
-    showColors(mesh->getProxy());
-    tautline::ColorMaps::SetScalarColoring(mesh->getProxy(), SheetPort, vtkDataObject::POINT);
-    tautline::ColorMaps::SetScalarBarVisibility(mesh->getProxy(), view->getViewProxy(), false);
-    view->resetDisplay();
+    showColors(mesh, "Slice", SheetPort);
+    return;
+  }
+  if (view && name == ListReader)
+  {
+    if (vtkPVArrayInformation* pixels = pixelsOf(port))
+    {
+      showColors(mesh, "Surface", pixels->GetName());
+    }
+    return;
+  }
+  if (view && port->getPortNumber() == MeshPort &&
+    (name == "InteractionLayer" || name == "MeshDomain"))
+  {
+    tautline::showRegions(mesh);
     return;
   }
   if (!view || !filter || port->getPortNumber() != MeshPort)
@@ -141,9 +175,7 @@ void pqTautlinePictures::arrange(pqDataRepresentation* mesh)
   }
   double bounds[6];
   image->getDataInformation()->GetBounds(bounds);
-  vtkPVArrayInformation* pixels =
-    image->getDataInformation()->GetPointDataInformation()->GetAttributeInformation(
-      vtkDataSetAttributes::SCALARS);
+  vtkPVArrayInformation* pixels = pixelsOf(image);
   moveBehind(picture, bounds, pixels ? pixels->GetDataType() : VTK_VOID);
   vtkSMPropertyHelper(mesh->getProxy(), "Opacity").Set(MeshOpacity);
   mesh->getProxy()->UpdateVTKObjects();

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlinePictures
- * @brief Shows the image behind a mesh that was found in it.
+ * @brief Shows images in their colours, behind a mesh that was found in them, and regions by name.
  *
  * When the output of Match Shape or Silhouette to Mesh is shown for the first time, its image is
  * shown, too, in the grey values or colours of its pixels and a little behind the mesh, which is
- * translucent. The sheet of Shape Retrieval is shown in its colours, without a legend. Only the
- * displays are changed, not the data. The plugin starts the object in the GUI.
+ * translucent. The sheet of Shape Retrieval and a list of silhouettes are shown in their colours,
+ * without a legend. A domain and its interaction layer have the colours and names of categories
+ * (RegionLegend.h). Only the displays are changed, not the data. The plugin starts the object in
+ * the GUI.
  */
 
 #ifndef pqTautlinePictures_h

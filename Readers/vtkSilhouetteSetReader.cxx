@@ -19,6 +19,8 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -150,6 +152,32 @@ void addText(vtkImageData* image, const char* name, const std::string& text)
   array->InsertNextValue(text);
   image->GetFieldData()->AddArray(array);
 }
+
+/// Whole pixels, so that the coordinates within an image are those at the origin, exactly.
+void placeSideBySide(vtkMultiBlockDataSet* images)
+{
+  constexpr double gap = 0.1; // of the largest image
+  const unsigned int count = images->GetNumberOfBlocks();
+  std::array<double, 2> cell = { 0.0, 0.0 };
+  for (unsigned int i = 0; i < count; ++i)
+  {
+    double bounds[6];
+    vtkImageData::SafeDownCast(images->GetBlock(i))->GetBounds(bounds);
+    cell = { std::max(cell[0], bounds[1] - bounds[0]), std::max(cell[1], bounds[3] - bounds[2]) };
+  }
+  for (double& length : cell)
+  {
+    length = std::ceil((1.0 + gap) * length);
+  }
+  // As many columns as make the whole about square.
+  const double columns = std::ceil(std::sqrt(count * cell[1] / std::max(cell[0], 1.0)));
+  for (unsigned int i = 0; i < count; ++i)
+  {
+    const double row = std::floor(i / columns);
+    auto* image = vtkImageData::SafeDownCast(images->GetBlock(i));
+    image->SetOrigin((i - columns * row) * cell[0], -row * cell[1], 0.0);
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -219,6 +247,10 @@ int vtkSilhouetteSetReader::RequestData(
         vtkCompositeDataSet::NAME(), entries[i].file.stem().string().c_str());
       this->UpdateProgress(static_cast<double>(i + 1) / static_cast<double>(entries.size()));
     }
+    if (this->SideBySide && !this->GetAbortExecute())
+    {
+      placeSideBySide(output);
+    }
   }
   catch (const std::exception& error)
   {
@@ -234,4 +266,5 @@ void vtkSilhouetteSetReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "SideBySide: " << this->SideBySide << "\n";
 }

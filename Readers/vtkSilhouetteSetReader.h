@@ -40,6 +40,17 @@ public:
   vtkGetFilePathMacro(FileName);
   ///@}
 
+  ///@{
+  /**
+   * Whether the images are placed side by side, by their origins: in rows from the top left, in the
+   * order of the list. Otherwise they lie on top of each other, with their origins in 0. The
+   * default is on.
+   */
+  vtkSetMacro(SideBySide, bool);
+  vtkGetMacro(SideBySide, bool);
+  vtkBooleanMacro(SideBySide, bool);
+  ///@}
+
   /**
    * Whether the name is that of a folder, or of a list with a column `file`.
    */
@@ -56,6 +67,7 @@ private:
   void operator=(const vtkSilhouetteSetReader&) = delete;
 
   char* FileName = nullptr;
+  bool SideBySide = true;
 };
 
 #endif

@@ -120,6 +120,15 @@ def interaction_layer():
         assert outside[:, axis].min() <= inside[:, axis].min() - width * (1 - 1e-9)
 
 
+    shown = simple.GetDisplayProperties(layer)
+    assert list(shown.ColorArrayName) == ["CELLS", "Reference"], shown.ColorArrayName[:]
+    colors = shown.LookupTable
+    bars = legends(simple.GetActiveView())
+    assert colors.InterpretValuesAsCategories and bars == 1, (colors.InterpretValuesAsCategories, bars)
+    names = list(colors.Annotations)
+    assert names == ["1", "1: domain", "2", "2: interaction layer"], names
+
+
 @check
 def solver_study():
     """The bars are in the order of their times, and the axis has the names in this order."""
@@ -216,9 +225,19 @@ def open_clovers():
 
 
 @check
-def open_silhouettes():
-    data = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
-    simple.SetActiveSource(simple.SilhouetteSetReader(FileName=os.path.join(data, "silhouettes.csv")))
+def silhouettes_shown():
+    """The four pictures are drawn in their own colours, beside each other, without a legend."""
+    reader = find("SilhouetteSetReader")
+    shown = simple.GetDisplayProperties(reader)
+    assert (shown.Visibility, shown.Representation, shown.MapScalars) == (1, "Surface", 0), shown.Representation
+    assert shown.ColorArrayName[0] == "POINTS" and legends(simple.GetActiveView()) == 0, shown.ColorArrayName[:]
+    images = servermanager.Fetch(reader)
+    bounds = [images.GetBlock(i).GetBounds() for i in range(images.GetNumberOfBlocks())]
+    assert len(bounds) == 4 and len({(box[0], box[2]) for box in bounds}) == 4, bounds
+    for i, one in enumerate(bounds):
+        for other in bounds[:i]:
+            apart = any(one[low] > other[low + 1] or other[low] > one[low + 1] for low in (0, 2))
+            assert apart, (one, other)
 
 
 @check

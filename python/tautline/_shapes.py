@@ -296,8 +296,8 @@ def read_silhouettes(
         folder images beside it) and class. Images are PNG, JPEG, TIFF, BMP, binary PGM and PPM files; other files of
         a folder are skipped.
 
-    Returns a block per image, with the field arrays `Label` and `File`. Raises Error for a list or an image that cannot
-    be read.
+    Returns a block per image, with the field arrays `Label` and `File`; the images are placed side by side, by their
+    origins. Raises Error for a list or an image that cannot be read.
     """
     path = Path(file_name(folder))
     if path.is_dir() and (path / "labels.csv").is_file():

@@ -342,6 +342,24 @@ void testRetrieval(const std::string& output)
   TAUTLINE_CHECK_NEAR(confusion->GetValueByName(0, "lobed").ToDouble(), 100.0, 1e-9);
   TAUTLINE_CHECK_NEAR(confusion->GetValueByName(0, "round").ToDouble(), 0.0, 1e-9);
   checkSheet(retrieval);
+  // The images are beside each other, and where they are has no effect.
+  for (unsigned int i = 1; i < blocks->GetNumberOfBlocks(); ++i)
+  {
+    const auto originOf = [&](unsigned int block)
+    { return vtkImageData::SafeDownCast(blocks->GetBlock(block))->GetOrigin(); };
+    const double* left = originOf(i - 1);
+    const double* right = originOf(i);
+    TAUTLINE_CHECK(right[1] < left[1] || (right[1] == left[1] && right[0] - left[0] > 90));
+  }
+  const double beside = distances->GetValueByName(0, "disc1").ToDouble();
+  reader->SideBySideOff();
+  retrieval->Update();
+  blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(vtkImageData::SafeDownCast(blocks->GetBlock(5))->GetOrigin()[0], 0.0);
+  distances = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(0));
+  TAUTLINE_CHECK(beside > 0);
+  TAUTLINE_CHECK_EQUAL(distances->GetValueByName(0, "disc1").ToDouble(), beside);
+  reader->SideBySideOn();
   // A folder needs no list: classes from the names.
   reader->SetFileName((folder / "images").string().c_str());
   retrieval->Update();
