@@ -30,13 +30,17 @@
 #include <QTimer>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
 namespace
 {
-constexpr const char* RightAxis = "1"; // vtkChart: BOTTOM_RIGHT
+constexpr const char *LeftAxis = "0", *RightAxis = "1"; // vtkChart: BOTTOM_LEFT, BOTTOM_RIGHT
+/// As in the dock of the run.
+constexpr std::array<const char*, 3> LeftColor = { "0.12", "0.47", "0.71" };
+constexpr std::array<const char*, 3> RightColor = { "0.84", "0.38", "0.06" };
 constexpr const char* Visibility = "SeriesVisibility";
 constexpr const char* Corner = "SeriesPlotCorner";
 
@@ -84,9 +88,64 @@ void setSeries(vtkSMProxy* chart, const char* property, const std::string& name,
   }
 }
 
+/// The colour of a series: red, green and blue from 0 to 1, as the property has them.
+void setColor(vtkSMProxy* chart, const std::string& name, const std::array<const char*, 3>& rgb)
+{
+  constexpr unsigned int perSeries = 4; // the name and the three values
+  vtkSMPropertyHelper colors(chart, "SeriesColor", true);
+  for (unsigned int i = 0; i + perSeries <= colors.GetNumberOfElements(); i += perSeries)
+  {
+    if (colors.GetAsString(i) == name)
+    {
+      for (unsigned int c = 0; c < rgb.size(); ++c)
+      {
+        colors.Set(i + 1 + c, rgb[c]);
+      }
+    }
+  }
+}
+
 void setTitle(vtkSMProxy* view, const char* axis, const char* title)
 {
   vtkSMPropertyHelper(view, axis).Set(title);
+}
+
+/// The objective on the left; on the right the worst element of each metric, or the inverted ones.
+void arrangeObjective(
+  vtkSMProxy* chart, vtkSMProxy* view, const std::vector<Column>& columns, const Column& objective)
+{
+  const std::string worst = " worst";
+  std::vector<std::string> onTheRight;
+  for (const Column& column : columns)
+  {
+    if (endsWith(column.name, worst))
+    {
+      onTheRight.push_back(column.name);
+    }
+  }
+  if (onTheRight.empty())
+  {
+    onTheRight = { "Inverted" };
+  }
+  std::string title;
+  for (const Column& column : columns)
+  {
+    const bool right =
+      std::find(onTheRight.begin(), onTheRight.end(), column.name) != onTheRight.end();
+    const bool left = column.name == objective.name;
+    setSeries(chart, Corner, column.name, left ? LeftAxis : RightAxis);
+    setSeries(chart, Visibility, column.name, left || right ? "1" : "0");
+    if (left || (right && onTheRight.size() == 1))
+    {
+      setColor(chart, column.name, left ? LeftColor : RightColor);
+    }
+    title += right ? (title.empty() ? "" : ", ") + column.name : "";
+  }
+  // An objective of untangling ends at 0.
+  vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(objective.smallest > 0 ? 1 : 0);
+  setTitle(view, "LeftAxisTitle", objective.name.c_str());
+  setTitle(view, "RightAxisTitle", title.c_str());
+  setTitle(view, "BottomAxisTitle", "Iteration");
 }
 
 void arrangeHistory(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<Column>& columns)
@@ -109,18 +168,7 @@ void arrangeHistory(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<Colum
     }
     if (column.name == "Objective")
     {
-      for (const Column& other : columns)
-      {
-        if (other.name != column.name)
-        {
-          setSeries(chart, Corner, other.name, RightAxis);
-        }
-      }
-      // An objective of untangling ends at 0.
-      vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(column.smallest > 0 ? 1 : 0);
-      setTitle(view, "LeftAxisTitle", column.name.c_str());
-      setTitle(view, "RightAxisTitle", "Other series");
-      setTitle(view, "BottomAxisTitle", "Iteration");
+      arrangeObjective(chart, view, columns, column);
       return;
     }
   }

@@ -152,6 +152,13 @@ bool pqTautlineRunDock::drawn() const
 }
 
 //------------------------------------------------------------------------------
+int pqTautlineRunDock::iterations() const
+{
+  const auto& points = this->Plot->curves()[0].points;
+  return points.empty() ? 0 : points.back().first;
+}
+
+//------------------------------------------------------------------------------
 QString pqTautlineRunDock::axes() const
 {
   return this->Plot->curves()[0].name + ", " + this->Plot->curves()[1].name;
@@ -315,7 +322,6 @@ void pqTautlineRunDock::end()
   const bool stopped = tautline::isStopRequested();
   this->Filter->setText(this->Running + (stopped ? ": stopped" : ": finished"));
   this->Ended = this->Running;
-  this->Live = true;
   this->Running.clear();
   this->Bar->reset();
   this->Cover->uncover();
@@ -332,20 +338,14 @@ void pqTautlineRunDock::dataUpdated(pqPipelineSource* source)
     return;
   }
   const QString filter = source->getProxy()->GetXMLLabel();
-  if (this->Live && this->drawn() && (!isIterative(filter) || filter == this->Ended))
+  if (isIterative(filter))
   {
-    return; // an output of the run that was drawn, or of another filter in its pipeline
+    this->showHistoryLater(source);
   }
-  if (filter != this->Ended || !this->Live)
+  else if (!this->drawn()) // a curve stays until there is another
   {
     this->Filter->setText(filter + ": finished");
     this->Values->clear();
-    this->Plot->clear();
-    this->Plot->update();
-  }
-  if (isIterative(filter) && !this->drawn())
-  {
-    this->showHistoryLater(source);
   }
 }
 
@@ -388,11 +388,15 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
   const auto data = tautline::fetchOutput(source, "History");
   vtkTable* table = vtkTable::SafeDownCast(data);
   const vtkIdType rows = table ? table->GetNumberOfRows() : 0;
-  this->Live = false;
-  QStringList texts = { QString("iteration %1").arg(rows - 1) };
-  for (int curve = 0; rows > 0 && curve < 2; ++curve)
+  if (rows == 0)
   {
-    const vtkIdType column = columnOf(table, curve);
+    return;
+  }
+  History history;
+  QStringList texts = { QString("iteration %1").arg(rows - 1) };
+  for (std::size_t curve = 0; curve < history.size(); ++curve)
+  {
+    const vtkIdType column = columnOf(table, static_cast<int>(curve));
     if (column < 0)
     {
       continue;
@@ -400,19 +404,40 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
     // As in the texts of the progress: "imr worst" and "Worst imr" are "worst".
     QString name =
       QString(table->GetColumnName(column)).remove(QRegularExpression("^N ")).toLower();
-    name = name.contains("worst") ? "worst" : name;
+    history[curve].first = name.contains("worst") ? "worst" : name;
     for (vtkIdType row = 0; row < rows; ++row)
     {
-      const double value = table->GetValue(row, column).ToDouble();
-      this->Plot->add(static_cast<int>(row), name, value, curve);
+      history[curve].second.push_back(table->GetValue(row, column).ToDouble());
     }
     constexpr int digits = 6;
-    const double last = table->GetValue(rows - 1, column).ToDouble();
-    texts.append(name + ' ' + QString::number(last, 'g', digits));
+    texts.append(
+      history[curve].first + ' ' + QString::number(history[curve].second.back(), 'g', digits));
   }
-  if (rows > 0)
+
+  // ParaView reports updates without a run, too; of a run that was shown live, the text stands.
+  const QString filter = source->getProxy()->GetXMLLabel();
+  if (filter == this->Ended)
   {
-    this->Values->setText(texts.join('\n'));
+    this->Ended.clear();
   }
+  else if (history == this->Last)
+  {
+    return;
+  }
+  else
+  {
+    this->Filter->setText(filter + ": finished");
+  }
+  this->Last = history;
+  this->Plot->clear();
+  for (std::size_t curve = 0; curve < history.size(); ++curve)
+  {
+    const auto& [name, values] = history[curve];
+    for (std::size_t row = 0; row < values.size(); ++row)
+    {
+      this->Plot->add(static_cast<int>(row), name, values[row], static_cast<int>(curve));
+    }
+  }
+  this->Values->setText(texts.join('\n'));
   this->Plot->update();
 }
