@@ -71,7 +71,7 @@ Block& entry(Row& row, Index column)
 
 /// Adds the products of the gradients of a triangle's functions.
 void addTriangle(const PlanarTriangles& triangles, Index t, const std::vector<Index>& numbers,
-  bool elastic, double modulus, std::vector<Row>& rows)
+  bool elastic, double modulus, double ratio, std::vector<Row>& rows)
 {
   Vec2 gradients[3];
   const double area = triangles.areas[t];
@@ -98,13 +98,13 @@ void addTriangle(const PlanarTriangles& triangles, Index t, const std::vector<In
         block[0] += modulus * area * product;
         continue;
       }
-      // lambda = mu: g_i h_j + h_i g_j, and g.h on the diagonal.
+      // lambda / mu g_i h_j + h_i g_j, and g.h on the diagonal.
       for (int i = 0; i < 2; ++i)
       {
         for (int j = 0; j < 2; ++j)
         {
           block[2 * i + j] +=
-            modulus * area * (g[i] * h[j] + h[i] * g[j] + (i == j ? product : 0.0));
+            modulus * area * (ratio * g[i] * h[j] + h[i] * g[j] + (i == j ? product : 0.0));
         }
       }
     }
@@ -174,7 +174,7 @@ double localModulus(const PeridynamicOptions& options)
 {
   const RadialKernel kernel(options.kernel, options.horizon);
   constexpr bool fromOrigin = true;
-  const bool elastic = options.model == PeridynamicModel::Elastic;
+  const bool elastic = isElastic(options.model);
   // F_m is the integral of r^(m+1) k.
   return kernelScale(options) *
     (elastic ? M_PI / 8.0 * kernel.atHorizon(4, fromOrigin)
@@ -186,15 +186,15 @@ LocalLimit localLimit(
   const HorizonMesh& mesh, const PeridynamicOptions& options, const PeridynamicSystem& system)
 {
   const PlanarTriangles triangles(mesh);
-  const bool elastic = options.model == PeridynamicModel::Elastic;
-  const double modulus = localModulus(options);
+  const bool elastic = isElastic(options.model);
+  const double modulus = localModulus(options), ratio = lameRatio(options);
   Index count = 0;
   const std::vector<Index> numbers = freeVertices(mesh, options.basis, system, count);
   std::vector<Row> rows(count);
   for (Index t = 0; t < triangles.size(); ++t)
   {
     pollInterruption(t);
-    addTriangle(triangles, t, numbers, elastic, modulus, rows);
+    addTriangle(triangles, t, numbers, elastic, modulus, ratio, rows);
   }
   LocalLimit limit;
   limit.matrix = compressed(rows, system.components);

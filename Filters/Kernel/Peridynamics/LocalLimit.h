@@ -11,7 +11,8 @@
  *     mu (2 eps:eps + (tr eps)^2),  mu = s pi / 8 int_0^delta r^5 k(r) dr      (elastic)
  *
  * with eps the strain: Lame's constants are equal, as in every bond-based model (a Poisson ratio of
- * 1/3 in plane stress). With k = r^-p the scalar factor is pi / (2 (4-p)).
+ * 1/3 in plane stress). The state-based model has the same mu, and lambda (tr eps)^2 with lambda /
+ * mu of lameRatio(). With k = r^-p the scalar factor is pi / (2 (4-p)).
  *
  * Source: S. A. Silling, R. B. Lehoucq, J. Elasticity 93 (2008) 13-37; dissertation, sections 4.2
  * and 4.5.3.

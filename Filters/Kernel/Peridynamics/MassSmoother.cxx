@@ -24,7 +24,7 @@ double formOrder(const PeridynamicOptions& options)
   {
     return -2.0; // as p = 0
   }
-  return options.kernel.exponent - (options.model == PeridynamicModel::Elastic ? 4.0 : 2.0);
+  return options.kernel.exponent - (isElastic(options.model) ? 4.0 : 2.0);
 }
 
 //------------------------------------------------------------------------------

@@ -46,8 +46,22 @@ enum class PeridynamicBasis
 /// The model, by its equations in the dissertation.
 enum class PeridynamicModel
 {
-  Scalar = 0, ///< diffusion, (4.6)
-  Elastic = 1 ///< linearized elasticity, (4.4)-(4.5): two components per function
+  Scalar = 0,    ///< diffusion, (4.6)
+  Elastic = 1,   ///< bond-based linearized elasticity, (4.4)-(4.5): two components per function
+  StateBased = 2 ///< linear ordinary state-based elasticity, see Dilatation.h: two components
+};
+
+/// Whether the model has two components per function.
+constexpr bool isElastic(PeridynamicModel model)
+{
+  return model != PeridynamicModel::Scalar;
+}
+
+/// How the third dimension deforms; of the state-based model.
+enum class PlaneState
+{
+  Strain = 0, ///< not at all: a long body
+  Stress = 1  ///< freely: a thin plate
 };
 
 /// How the double integrals are discretized, see Peridynamics.h.
@@ -80,10 +94,17 @@ struct PeridynamicOptions
   PeridynamicModel model = PeridynamicModel::Scalar;
   Discretization discretization = Discretization::Exact;
   RuleSet rules = RuleSet::Tables;
+  /// StateBased: Poisson's ratio, above -1 and below 0.5. The bond-based model has 1/4 in plane
+  /// strain and 1/3 in plane stress.
+  double poissonRatio = 0.25;
+  PlaneState planeState = PlaneState::Strain; ///< of StateBased
+  /// Whether triangles do not interact where the mesh ends between them, as across a hole or a
+  /// crack (BondCut.h). Has no effect with an interaction layer that is wide enough.
+  bool cutBonds = true;
   /// Exact: target relative error of the integral over each pair of triangles, 1e-10 to 0.1.
   double tolerance = 1e-5;
   /// Whether functions of the interaction layer are given. False: all are unknown, nothing is
-  /// constrained, and constants (Elastic: rigid motions) are in the null space.
+  /// constrained, and constants (elasticity: rigid motions) are in the null space.
   bool constrained = true;
   /// Whether an interaction layer that is too thin is accepted: what lies beyond the mesh then does
   /// not count.
@@ -99,10 +120,17 @@ struct PeridynamicOptions
 
 /**
  * @brief The limit that the exponent p has to stay below: for r^-p the form is finite on continuous
- * functions below 4, on discontinuous ones below 3; the tensor kernel of Elastic adds 2. The bound
+ * functions below 4, on discontinuous ones below 3; the tensor kernel of elasticity adds 2. The bound
  * p < 2 of (4.7) is about integrability of the kernel alone.
  */
 TAUTLINE_SOLVERS_EXPORT double singularLimit(PeridynamicBasis basis, PeridynamicModel model);
+
+/// How far functions interact beyond their supports, and how wide the interaction layer has to be:
+/// the horizon, StateBased: twice the horizon.
+TAUTLINE_SOLVERS_EXPORT double interactionReach(const PeridynamicOptions& options);
+
+/// Lame's lambda over mu; 1 of the bond-based model.
+TAUTLINE_SOLVERS_EXPORT double lameRatio(const PeridynamicOptions& options);
 
 /// The number of functions of a basis.
 TAUTLINE_SOLVERS_EXPORT Index numberOfFunctions(const HorizonMesh& mesh, PeridynamicBasis basis);
@@ -111,7 +139,7 @@ TAUTLINE_SOLVERS_EXPORT Index numberOfFunctions(const HorizonMesh& mesh, Peridyn
 struct PeridynamicSystem
 {
   SparseMatrix matrix;  ///< symmetric
-  Index components = 1; ///< 1, Elastic: 2; row of function f, component c: components * f + c
+  Index components = 1; ///< 1, elasticity: 2; row of function f, component c: components * f + c
   /// Per function of the basis (triangle, vertex, or 3 x triangle + corner): its number among the
   /// unknown ones, -1 where it is given, -2 where no triangle has it.
   std::vector<Index> unknownOf;
@@ -121,7 +149,7 @@ struct PeridynamicSystem
   /// Of the dissertation's discretization: Frobenius norm of the unsymmetric part, which is
   /// dropped, over all.
   double asymmetry = 0.0;
-  /// By how much the interaction layer is narrower than the horizon; 0 if it is wide enough.
+  /// By how much the interaction layer is narrower than interactionReach(); 0 if it is wide enough.
   double layerDeficit = 0.0;
   double memory = 0.0;       ///< bytes, estimated before starting
   Index integratedPairs = 0; ///< Exact: pairs of triangles integrated (not reused)

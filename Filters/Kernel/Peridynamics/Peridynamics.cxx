@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Peridynamics.h"
 
+#include "Dilatation.h"
 #include "PeridynamicsKernel.h"
 #include "TriangleAssembler.h"
 
@@ -15,6 +16,8 @@ namespace tautline
 namespace
 {
 constexpr Index SampledRows = 200; // of the estimate of memory
+// Fraction of the progress at which the bonds of the state-based model are in the matrix.
+constexpr double StateBasedShare = 0.7;
 
 std::string number(double value)
 {
@@ -32,6 +35,20 @@ void checkOptions(const PeridynamicOptions& o)
   if (!(o.tolerance >= 1e-10) || !(o.tolerance <= 0.1))
   {
     throw Error("the tolerance is " + number(o.tolerance) + "; 1e-10 to 0.1 are possible");
+  }
+  if (o.model == PeridynamicModel::StateBased)
+  {
+    if (!(o.poissonRatio > -1.0) || !(o.poissonRatio < 0.5))
+    {
+      throw Error(
+        "Poisson's ratio is " + number(o.poissonRatio) + "; it has to be above -1 and below 0.5");
+    }
+    if (o.discretization != Discretization::Exact)
+    {
+      throw Error(
+        "the dissertation's rules are of bond-based models; take the exact discretization "
+        "for the state-based one");
+    }
   }
   const KernelFunction& k = o.kernel;
   const double limit = singularLimit(o.basis, o.model);
@@ -156,10 +173,10 @@ double bytesFor(const HorizonMesh& mesh, const FunctionSpace& space, const BoxGr
   double entries = 0.0;
   for (Index s = 0; s < sampled; ++s)
   {
-    neighbours(space, supports, options.horizon, s * space.unknowns / sampled, found);
+    neighbours(space, supports, interactionReach(options), s * space.unknowns / sampled, found);
     entries += static_cast<double>(found.size());
   }
-  const double c = options.model == PeridynamicModel::Elastic ? 2.0 : 1.0;
+  const double c = isElastic(options.model) ? 2.0 : 1.0;
   const double nonzeros =
     c * c * entries / static_cast<double>(sampled) * static_cast<double>(space.unknowns);
   // Values twice, as they are mirrored once; columns; the mesh with its boxes and grid; sums per
@@ -190,11 +207,15 @@ void checkLayer(const HorizonMesh& mesh, const PeridynamicOptions& options, doub
   }
   const bool none =
     std::all_of(mesh.layer.begin(), mesh.layer.end(), [](unsigned char c) { return c == 0; });
-  throw Error(none ? "the mesh has no interaction layer; one of width " + number(options.horizon) +
+  const double reach = interactionReach(options);
+  const std::string twice = options.model == PeridynamicModel::StateBased
+    ? " (twice the horizon, as the model is state-based)"
+    : "";
+  throw Error(none ? "the mesh has no interaction layer; one of width " + number(reach) + twice +
         " around the domain is needed: add it with Interaction Layer"
-                   : "the interaction layer is " + number(options.horizon - deficit) +
+                   : "the interaction layer is " + number(reach - deficit) +
         " wide and the horizon is " + number(options.horizon) + ": an interaction layer of width " +
-        number(options.horizon) + " is needed (Interaction Layer makes it), or allow a thin one");
+        number(reach) + twice + " is needed (Interaction Layer makes it), or allow a thin one");
 }
 
 /// Time limit, observer and progress of an assembly; the first reason to stop counts. For the
@@ -376,9 +397,9 @@ PeridynamicSystem assemblePeridynamics(
   const PlanarTriangles triangles(mesh);
   checkHorizon(mesh, options.horizon);
   PeridynamicSystem system;
-  system.components = options.model == PeridynamicModel::Elastic ? 2 : 1;
+  system.components = isElastic(options.model) ? 2 : 1;
   system.layerDeficit =
-    options.constrained ? layerDeficit(mesh, options.horizon, options.threads) : 0.0;
+    options.constrained ? layerDeficit(mesh, interactionReach(options), options.threads) : 0.0;
   checkLayer(mesh, options, system.layerDeficit);
   const FunctionSpace space(mesh, triangles, options);
   if (given && static_cast<Index>(given->size()) != space.functions * system.components)
@@ -390,7 +411,8 @@ PeridynamicSystem assemblePeridynamics(
   system.memory = bytesFor(mesh, space, supports, options);
   checkMemory(system.memory, options);
 
-  const PeridynamicWork work = { triangles, grid, space, options };
+  const BondCut cut(triangles, options.horizon, options.cutBonds);
+  const PeridynamicWork work = { triangles, grid, space, options, cut };
   AssemblyControl control(options, 0.0, 0.5);
   const bool exact = options.discretization == Discretization::Exact;
   std::shared_ptr<PairIntegrals> integrals;
@@ -400,8 +422,10 @@ PeridynamicSystem assemblePeridynamics(
     control.throwIfStopped();
     system.integratedPairs = numberOfIntegratedPairs(*integrals);
   }
-  control.setRange(exact ? 0.5 : 0.0, 1.0);
-  system.matrix = makePattern(space, supports, options.horizon, system.components, options.threads);
+  const bool stateBased = options.model == PeridynamicModel::StateBased;
+  control.setRange(exact ? 0.5 : 0.0, stateBased ? StateBasedShare : 1.0);
+  system.matrix =
+    makePattern(space, supports, interactionReach(options), system.components, options.threads);
   system.constraintLoad.assign(given ? system.matrix.size : 0, 0.0);
 
   const auto colours = colourTriangles(triangles, space, space.trianglesWithUnknowns(triangles));
@@ -429,7 +453,7 @@ PeridynamicSystem assemblePeridynamics(
       [&](Scratch& scratch, Index k)
       {
         const Index t = colour[k];
-        grid.near(triangles.low[t], triangles.high[t], options.horizon, scratch.near);
+        work.neighboursOf(t, scratch.near);
         scratch.assembler->assemble(t, scratch.near, scratch.sums);
         flush(work, t, scratch.near, scratch.sums, scale, given, system);
       },
@@ -440,6 +464,12 @@ PeridynamicSystem assemblePeridynamics(
       });
     control.throwIfStopped();
     done += size;
+  }
+  if (stateBased)
+  {
+    control.setRange(StateBasedShare, 1.0);
+    addDilatation(work, given, system, [&](double fraction) { return control.proceed(fraction); });
+    control.throwIfStopped();
   }
   system.asymmetry = symmetrize(system.matrix, options.threads);
   dropZeros(system.matrix);

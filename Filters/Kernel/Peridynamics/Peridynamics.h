@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Peridynamics.h
- * @brief Stiffness matrices of bond-based nonlocal (peridynamic) models on triangle meshes.
+ * @brief Stiffness matrices of nonlocal (peridynamic) models on triangle meshes.
  *
  * The bilinear form is that of dissertation (4.6),
  *
@@ -10,8 +10,9 @@
  * with B the disc of radius delta, the horizon. The kernel k is r^-p with s = 1 / delta^(4-p), or
  * one of the others of KernelShape with s = 1 / delta^4. The linearized elastic model (4.4)-(4.5)
  * has the tensor kernel (y-x) (y-x)^T k(|x - y|) and s divided by delta^2 once more, so that both
- * have a local limit: s a -> pi / (2 (4-p)) times the Laplacian's form. The solution is given in an
- * interaction layer of width delta around the domain Omega (the volume constraint); unknowns are
+ * have a local limit: s a -> pi / (2 (4-p)) times the Laplacian's form. The state-based model adds
+ * a term in the dilatation to the elastic one, for any Poisson's ratio: Dilatation.h. The solution is given in an
+ * interaction layer of width delta (state-based: 2 delta) around the domain Omega (the volume constraint); unknowns are
  * those of Omega.
  *
  * Two discretizations of the integrals:

@@ -65,7 +65,7 @@ public:
   explicit DissertationAssembler(const PeridynamicWork& work)
     : Work(work)
     , Kernel(work.options.kernel, work.options.horizon)
-    , Elastic(work.options.model == PeridynamicModel::Elastic)
+    , Elastic(isElastic(work.options.model))
     , Functions(work.space.perTriangle())
     , Outer(outerPoints(work.options.rules))
     , Inner(innerPoints(work.options.rules, work.options.basis))

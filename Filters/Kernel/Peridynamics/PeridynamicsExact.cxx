@@ -128,7 +128,7 @@ PairIntegrals::PairIntegrals(
   const PeridynamicWork& work, const std::function<bool(double)>& proceed)
   : Work(work)
   , Functions(work.space.perTriangle())
-  , Components(work.options.model == PeridynamicModel::Elastic ? 2 : 1)
+  , Components(isElastic(work.options.model) ? 2 : 1)
   , RowSize(2 * this->Functions * this->Functions * this->Components * this->Components)
 {
   // A power of two, so that the rounding of exact coordinates is exact, far below every length.
@@ -287,7 +287,7 @@ void PairIntegrals::findPairs(const std::vector<char>& needed)
         {
           continue;
         }
-        this->Work.grid.near(mesh.low[t], mesh.high[t], this->Work.options.horizon, near);
+        this->Work.neighboursOf(t, near);
         // Triangles with equal surroundings have the same rows, up to a translation.
         Signature signature;
         for (const std::int32_t other : near)
@@ -311,7 +311,7 @@ void PairIntegrals::findPairs(const std::vector<char>& needed)
       {
         continue;
       }
-      this->Work.grid.near(mesh.low[t], mesh.high[t], this->Work.options.horizon, near);
+      this->Work.neighboursOf(t, near);
       for (const std::int32_t other : near)
       {
         bool exchanged;
@@ -478,7 +478,7 @@ private:
   void add(Index t, Index other, const double* rows, RowSums& sums)
   {
     const int functions = this->Work.space.perTriangle();
-    const int c = this->Work.options.model == PeridynamicModel::Elastic ? 4 : 1;
+    const int c = isElastic(this->Work.options.model) ? 4 : 1;
     for (int a = 0; a < functions; ++a)
     {
       for (int b = 0; b < 2 * functions; ++b)

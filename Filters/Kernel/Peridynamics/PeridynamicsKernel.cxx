@@ -213,7 +213,7 @@ void RadialKernel::ratios(
 double kernelScale(const PeridynamicOptions& options)
 {
   const double p = options.kernel.shape == KernelShape::Power ? options.kernel.exponent : 0.0;
-  const double more = options.model == PeridynamicModel::Elastic ? 2.0 : 0.0;
+  const double more = isElastic(options.model) ? 2.0 : 0.0;
   return std::pow(options.horizon, p - 4.0 - more);
 }
 }

@@ -45,7 +45,7 @@ PairIntegrator::PairIntegrator(const PeridynamicOptions& options, int functions)
   , Horizon(options.horizon)
   , Tolerance(options.tolerance)
   , Functions(functions)
-  , Components(options.model == PeridynamicModel::Elastic ? 3 : 1)
+  , Components(isElastic(options.model) ? 3 : 1)
 {
   this->FirstDegree = this->Components == 3 ? 2 : 0;
   this->LastDegree = this->FirstDegree + (functions == 1 ? 0 : 2);
@@ -143,7 +143,7 @@ void PairIntegrator::alongEdge(Vec2 a, Vec2 b, double* m) const
     [&](const Nodes& x, const Nodes& y, const Nodes& squares, const Nodes& weights)
     {
       Nodes ratios[5], left, right;
-      this->Kernel.ratios(squares, this->FirstDegree, this->LastDegree, ratios);
+      this->Kernel.ratios(squares, this->FirstDegree, this->LastDegree, ratios, this->FromOrigin);
       for (int degree = this->FirstDegree; degree <= this->LastDegree; ++degree)
       {
         for (int power = 0; power <= degree; ++power)
@@ -176,7 +176,7 @@ void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
   const Vec2 p = (1.0 / std::sqrt(dot(a, a))) * a, q = (1.0 / std::sqrt(dot(b, b))) * b;
   const auto change = [&](auto f) { return f(q[0], q[1]) - f(p[0], p[1]); };
   const auto add = [&](int degree, int power, double value)
-  { m[momentAt(degree, power)] += this->Kernel.atHorizon(degree) * value; };
+  { m[momentAt(degree, power)] += this->Kernel.atHorizon(degree, this->FromOrigin) * value; };
   const double xy = change([](double x, double y) { return x * y; });
   if (this->FirstDegree == 0)
   {
@@ -209,11 +209,10 @@ void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
 //------------------------------------------------------------------------------
 /// Moments of z = y - x over the part of the second triangle in the disc around x; false if there
 /// is none.
-bool PairIntegrator::moments(Vec2 x, double* m)
+bool PairIntegrator::moments(const Vec2* corners, Vec2 x, double* m)
 {
   // In polar coordinates the integral is a sum over the edges: along the part of each inside the
   // disc, and along the arcs of the circle beside it.
-  const Vec2* corners = this->Pair->second;
   const Vec2 z[3] = { corners[0] - x, corners[1] - x, corners[2] - x };
   double t0[3], t1[3];
   bool inside[3], any = false, all = true;
@@ -252,11 +251,20 @@ bool PairIntegrator::moments(Vec2 x, double* m)
 }
 
 //------------------------------------------------------------------------------
+bool PairIntegrator::momentsAround(const Vec2* corners, Vec2 x, bool inside, double* m)
+{
+  this->FromOrigin = inside;
+  const bool found = this->moments(corners, x, m);
+  this->FromOrigin = false;
+  return found;
+}
+
+//------------------------------------------------------------------------------
 /// Adds the integrand at x to both rules.
 void PairIntegrator::sample(Vec2 x, double weight, double coarseWeight)
 {
   double m[Moments];
-  if (!this->moments(x, m))
+  if (!this->moments(this->Pair->second, x, m))
   {
     return;
   }

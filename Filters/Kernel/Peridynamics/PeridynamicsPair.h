@@ -61,9 +61,16 @@ public:
    */
   void integrate(const TrianglePair& pair, double* block);
 
-private:
   /// x^(d-b) y^b of degree d is at d (d + 1) / 2 + b.
   static constexpr int Moments = 15;
+  /**
+   * @brief Moments of y - x, times k, over the part of a triangle in the disc around x, of the
+   * degrees that the model needs (elastic, three functions: 2 to 4); false if there is no such part.
+   * @param inside whether x is in the triangle: then only moments that exist are right
+   */
+  bool momentsAround(const Vec2* corners, Vec2 x, bool inside, double* m);
+
+private:
   struct Corner
   {
     Vec2 at = {};
@@ -75,7 +82,7 @@ private:
   void refine(const Triangle& part, int depth);
   bool applyRules(const Triangle& part, bool cut);
   void sample(Vec2 x, double weight, double coarseWeight);
-  bool moments(Vec2 x, double* m);
+  bool moments(const Vec2* corners, Vec2 x, double* m);
   bool isCut(const Triangle& part, bool& apart) const;
   void alongEdge(Vec2 a, Vec2 b, double* m) const;
   void alongCircle(Vec2 a, Vec2 b, double* m) const;
@@ -95,6 +102,7 @@ private:
   int Used[6], NumberUsed = 0; ///< functions with entries
   Vec2 Gradients[6] = {};      ///< of the second triangle's part of each function
   double Scale = 0.0;
+  bool FromOrigin = false; ///< of radial integrals, see RadialKernel
   int Parts = 0, CutSamples = 0;
   int
     BlindDepth; ///< down to which a part is quartered if the circle cuts the second triangle unseen

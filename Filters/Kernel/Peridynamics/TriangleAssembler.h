@@ -7,6 +7,7 @@
 #ifndef tautline_TriangleAssembler_h
 #define tautline_TriangleAssembler_h
 
+#include "BondCut.h"
 #include "FunctionSpace.h"
 
 #include <memory>
@@ -20,6 +21,14 @@ struct PeridynamicWork
   const BoxGrid& grid;
   const FunctionSpace& space;
   const PeridynamicOptions& options;
+  const BondCut& cut;
+
+  /// The triangles that triangle t interacts with, itself included.
+  void neighboursOf(Index t, std::vector<std::int32_t>& near) const
+  {
+    this->grid.near(this->triangles.low[t], this->triangles.high[t], this->options.horizon, near);
+    this->cut.keepVisible(t, near);
+  }
 };
 
 /**
@@ -70,5 +79,14 @@ Index numberOfIntegratedPairs(const PairIntegrals& integrals);
 std::unique_ptr<TriangleAssembler> makeExactAssembler(
   const PeridynamicWork& work, const PairIntegrals& integrals);
 
+/**
+ * @brief Of the state-based model: adds (lambda - mu) int theta(u) theta(w) to the matrix and the load of the given values, see
+ * Dilatation.h.
+ *
+ * The integral over x is by a rule of degree 5 on each triangle, the one over y is exact.
+ * @param proceed gets the fraction done and returns whether to continue
+ */
+void addDilatation(const PeridynamicWork& work, const std::vector<double>* given,
+  PeridynamicSystem& system, const std::function<bool(double)>& proceed);
 }
 #endif

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BondCut.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// A boundary vertex this near to a bond, in the lengths of bond and edge, is on it.
+constexpr double Touching = 1e-12;
+
+Vec2 centroid(const PlanarTriangles& triangles, Index t)
+{
+  return (1.0 / 3.0) * (triangles.corner(t, 0) + triangles.corner(t, 1) + triangles.corner(t, 2));
+}
+
+bool shareVertex(const PlanarTriangles& triangles, Index t, Index other)
+{
+  for (const std::int32_t p : triangles.triangles[t])
+  {
+    for (const std::int32_t q : triangles.triangles[other])
+    {
+      if (p == q)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+}
+
+//------------------------------------------------------------------------------
+BondCut::BondCut(const PlanarTriangles& triangles, double horizon, bool cut)
+  : Triangles(triangles)
+  , Horizon(horizon)
+{
+  if (!cut)
+  {
+    return;
+  }
+  // Edges that one triangle has, sorted by their vertices.
+  std::vector<std::array<std::int32_t, 2>> edges;
+  for (const auto& triangle : triangles.triangles)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      edges.push_back({ std::min(triangle[k], triangle[(k + 1) % 3]),
+        std::max(triangle[k], triangle[(k + 1) % 3]) });
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();)
+  {
+    std::size_t next = i + 1;
+    while (next < edges.size() && edges[next] == edges[i])
+    {
+      ++next;
+    }
+    if (next == i + 1)
+    {
+      const Vec2 p = triangles.points[edges[i][0]], q = triangles.points[edges[i][1]];
+      this->Edges.push_back({ p, q });
+      this->Low.push_back({ std::min(p[0], q[0]), std::min(p[1], q[1]) });
+      this->High.push_back({ std::max(p[0], q[0]), std::max(p[1], q[1]) });
+    }
+    i = next;
+  }
+  if (!this->Edges.empty())
+  {
+    this->Grid = std::make_unique<BoxGrid>(this->Low, this->High);
+  }
+}
+
+//------------------------------------------------------------------------------
+bool BondCut::isCut(Index t, Index other, const std::vector<std::int32_t>& edges) const
+{
+  // The same arithmetic for both orders of a pair, so that the matrix is symmetric.
+  const Vec2 a = centroid(this->Triangles, std::min(t, other));
+  const Vec2 b = centroid(this->Triangles, std::max(t, other));
+  const Vec2 bond = b - a;
+  const double length = std::sqrt(dot(bond, bond));
+  const Vec2 low = { std::min(a[0], b[0]), std::min(a[1], b[1]) };
+  const Vec2 high = { std::max(a[0], b[0]), std::max(a[1], b[1]) };
+  for (const std::int32_t edge : edges)
+  {
+    if (this->Low[edge][0] > high[0] || this->High[edge][0] < low[0] ||
+      this->Low[edge][1] > high[1] || this->High[edge][1] < low[1])
+    {
+      continue;
+    }
+    const Vec2 p = this->Edges[edge][0], q = this->Edges[edge][1];
+    const Vec2 along = q - p;
+    const double touching = Touching * length * (length + std::sqrt(dot(along, along)));
+    const double sideP = cross(bond, p - a), sideQ = cross(bond, q - a);
+    const double sideA = cross(along, a - p), sideB = cross(along, b - p);
+    if ((sideP > touching && sideQ > touching) || (sideP < -touching && sideQ < -touching) ||
+      !(sideA * sideB < 0.0))
+    {
+      continue;
+    }
+    // Beyond the horizon the boundary does not matter: no bond reaches it there.
+    const double at = sideA / (sideA - sideB) * length;
+    if (at < this->Horizon && length - at < this->Horizon)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+void BondCut::keepVisible(Index t, std::vector<std::int32_t>& near) const
+{
+  if (!this->Grid)
+  {
+    return;
+  }
+  std::vector<std::int32_t> edges;
+  this->Grid->near(this->Triangles.low[t], this->Triangles.high[t], this->Horizon, edges);
+  if (edges.empty())
+  {
+    return;
+  }
+  near.erase(std::remove_if(near.begin(), near.end(),
+               [&](std::int32_t other)
+               { return !shareVertex(this->Triangles, t, other) && this->isCut(t, other, edges); }),
+    near.end());
+}
+}
