@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PeridynamicOutput.h"
 
+#include "tautline/Peridynamics/Dilatation.h"
+
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
@@ -175,6 +177,34 @@ void addRowVector(const PeridynamicResult& result, const std::vector<double>& va
   if (onPoints(result.basis))
   {
     result.input.spread(array);
+  }
+}
+
+//------------------------------------------------------------------------------
+void addStrain(const PeridynamicResult& result, const PeridynamicOptions& options,
+  const std::vector<double>& solution, const std::vector<double>* given, vtkDataSet* output)
+{
+  constexpr std::size_t components = 2;
+  std::vector<double> values(components * result.system.unknownOf.size(), 0.0);
+  if (given)
+  {
+    values = *given;
+  }
+  for (std::size_t u = 0; u < result.system.functionOf.size(); ++u)
+  {
+    const auto f = static_cast<std::size_t>(result.system.functionOf[u]);
+    std::copy_n(&solution[components * u], components, &values[components * f]);
+  }
+  const PeridynamicStrain strain = peridynamicStrain(result.input.mesh(), options, values);
+  const auto dilatation =
+    makeArray<vtkDoubleArray>("Dilatation", PeridynamicBasis::Constant, 1, output);
+  const auto energy =
+    makeArray<vtkDoubleArray>("EnergyDensity", PeridynamicBasis::Constant, 1, output);
+  for (std::size_t t = 0; t < strain.dilatation.size(); ++t)
+  {
+    const vtkIdType cell = result.input.cell(static_cast<Index>(t));
+    dilatation->SetValue(cell, strain.dilatation[t]);
+    energy->SetValue(cell, strain.energyDensity[t]);
   }
 }
 

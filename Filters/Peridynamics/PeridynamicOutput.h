@@ -38,6 +38,10 @@ void addRowData(const PeridynamicResult& result, vtkDataSet* output);
 void addRowVector(const PeridynamicResult& result, const std::vector<double>& values,
   const char* name, const std::vector<double>* given, vtkDataSet* output);
 
+/// Adds `Dilatation` and `EnergyDensity` of the solution of an elastic model to the cells.
+void addStrain(const PeridynamicResult& result, const PeridynamicOptions& options,
+  const std::vector<double>& solution, const std::vector<double>* given, vtkDataSet* output);
+
 /// Values of an array on the functions of the basis, `components` each; of vectors in space, those
 /// in the plane.
 std::vector<double> onFunctions(const HorizonInput& input, PeridynamicBasis basis, Index components,

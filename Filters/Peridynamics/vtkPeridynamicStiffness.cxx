@@ -131,8 +131,13 @@ tautline::PeridynamicOptions vtkPeridynamicStiffness::GetOptions()
   options.kernel.width = this->GaussianWidth;
   options.kernel.table = this->KernelValues;
   options.basis = static_cast<tautline::PeridynamicBasis>(this->Basis);
-  options.model =
-    this->Elastic ? tautline::PeridynamicModel::Elastic : tautline::PeridynamicModel::Scalar;
+  options.model = !this->Elastic ? tautline::PeridynamicModel::Scalar
+    : this->StateBased           ? tautline::PeridynamicModel::StateBased
+                                 : tautline::PeridynamicModel::Elastic;
+  options.poissonRatio = this->PoissonRatio;
+  options.planeState =
+    this->PlaneStress ? tautline::PlaneState::Stress : tautline::PlaneState::Strain;
+  options.cutBonds = this->CutBonds;
   options.discretization = static_cast<tautline::Discretization>(this->Discretization);
   options.rules = static_cast<tautline::RuleSet>(this->Rules);
   options.tolerance = this->Tolerance;
@@ -317,8 +322,13 @@ tautline::SolveReport vtkPeridynamicStiffness::SolveSystem(const tautline::Horiz
   {
     vtkWarningMacro("The solution is not converged: its relative residual is " << report.residual);
   }
-  tautline::addRowVector(
-    { input, basis, system }, solution, "Solution", given.empty() ? nullptr : &given, output);
+  const tautline::PeridynamicResult result = { input, basis, system };
+  const std::vector<double>* prescribed = given.empty() ? nullptr : &given;
+  tautline::addRowVector(result, solution, "Solution", prescribed, output);
+  if (this->Elastic)
+  {
+    tautline::addStrain(result, this->GetOptions(), solution, prescribed, output);
+  }
   return report;
 }
 
@@ -392,6 +402,10 @@ void vtkPeridynamicStiffness::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "KernelValues: " << this->KernelValues.size() << "\n";
   os << indent << "Basis: " << this->Basis << "\n";
   os << indent << "Elastic: " << this->Elastic << "\n";
+  os << indent << "StateBased: " << this->StateBased << "\n";
+  os << indent << "PoissonRatio: " << this->PoissonRatio << "\n";
+  os << indent << "PlaneStress: " << this->PlaneStress << "\n";
+  os << indent << "CutBonds: " << this->CutBonds << "\n";
   os << indent << "Discretization: " << this->Discretization << "\n";
   os << indent << "Rules: " << this->Rules << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";

@@ -10,8 +10,9 @@
  *     a(u, w) = s int w(x) int_{|x - y| < delta} (u(x) - u(y)) k(|x - y|) dy dx,
  *     k(r) = r^-p,  s = 1 / delta^(4-p)
  *
- * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel. The
- * solution is given in the interaction layer, the cells whose region is LayerValue. Two
+ * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel, or the
+ * linear ordinary state-based model, which has any Poisson's ratio
+ * (tautline/Peridynamics/Dilatation.h). The solution is given in the interaction layer, the cells whose region is LayerValue. Two
  * discretizations of the integrals:
  * - EXACT: geometry and singularity of the inner integral are exact; converges; symmetric.
  * - DISSERTATION: the rules of section 4.3. With Rules at TABLES it reproduces Tables 4.1 to 4.3.
@@ -36,7 +37,8 @@
  * linear one has a component per corner): `Unknown` (1 or 0), `Neighbors` (unknown functions a row
  * couples with), `RowSum` (of the unknown part: what of the diagonal goes to the interaction
  * layer), `Diagonal`; `SmallestMode` and `LargestMode`, eigenvectors of norm 1, if ComputeSpectrum;
- * `Solution` if Solve. Elastic vectors have three components per function, in space.
+ * `Solution` if Solve. Elastic vectors have three components per function, in space. If Elastic and
+ * Solve, cells have `Dilatation` and `EnergyDensity` of the solution, 0 in the interaction layer.
  *
  * @par Output port 1 `Spectrum`:
  * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`,
@@ -185,6 +187,46 @@ public:
   vtkSetMacro(Elastic, bool);
   vtkGetMacro(Elastic, bool);
   vtkBooleanMacro(Elastic, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Of the elastic model: 0, the default: bond-based. 1: linear, ordinary state-based; it needs an
+   * interaction layer of twice the horizon and the exact discretization.
+   */
+  vtkSetMacro(StateBased, bool);
+  vtkGetMacro(StateBased, bool);
+  vtkBooleanMacro(StateBased, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Poisson's ratio of the state-based model, above -1 and below 0.5. At the default, 0.25, it is in
+   * plane strain the bond-based one.
+   */
+  vtkSetMacro(PoissonRatio, double);
+  vtkGetMacro(PoissonRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of the state-based model: 0, the default: plane strain. 1: plane stress, in which the bond-based
+   * model has a Poisson's ratio of 1/3.
+   */
+  vtkSetMacro(PlaneStress, bool);
+  vtkGetMacro(PlaneStress, bool);
+  vtkBooleanMacro(PlaneStress, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether triangles do not interact where the mesh ends between them, as across a hole or a crack:
+   * decided by the segment between their centroids. Has no effect where the interaction layer is
+   * wide enough. The default is true.
+   */
+  vtkSetMacro(CutBonds, bool);
+  vtkGetMacro(CutBonds, bool);
+  vtkBooleanMacro(CutBonds, bool);
   ///@}
 
   enum Discretizations
@@ -385,6 +427,10 @@ private:
   std::vector<double> KernelValues;
   int Basis = PIECEWISE_LINEAR;
   bool Elastic = false;
+  bool StateBased = false;
+  double PoissonRatio = 0.25;
+  bool PlaneStress = false;
+  bool CutBonds = true;
   int Discretization = EXACT;
   int Rules = TABLES;
   double Tolerance = 1e-5;

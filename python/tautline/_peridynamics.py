@@ -23,8 +23,10 @@ Basis = Literal["constant", "linear", "discontinuous linear"]
 BASES: tuple[Basis, ...] = get_args(Basis)
 Kernel = Literal["power", "constant", "gaussian", "conical", "table"]
 KERNELS: tuple[Kernel, ...] = get_args(Kernel)
-Model = Literal["scalar", "elastic"]
+Model = Literal["scalar", "elastic", "state-based"]
 MODELS: tuple[Model, ...] = get_args(Model)
+PlaneState = Literal["strain", "stress"]
+PLANE_STATES: tuple[PlaneState, ...] = get_args(PlaneState)
 Discretization = Literal["dissertation", "exact"]
 DISCRETIZATIONS: tuple[Discretization, ...] = get_args(Discretization)
 Rules = Literal["tables", "literal", "1/1", "3/3", "3/1"]
@@ -53,6 +55,8 @@ class PeridynamicsResult(Result):
     layer_deficit: horizon minus width of the interaction layer, where the layer is narrower; else 0.
     statistics: all columns of the table `Spectrum` by name in snake case.
     solution: the solution per point (linear basis) or cell, elastic with 3 components; None if not computed.
+    dilatation, energy_density: of the solution of an elastic model, per cell at the centroid, 0 in the layer; None if
+        not computed.
     iterations: of the solution; 0 if not computed.
     residual: relative, of the solution.
     preconditioned_condition: condition number of the preconditioned matrix, estimated from the iterations, from below;
@@ -61,7 +65,7 @@ class PeridynamicsResult(Result):
     summary: the result in words.
     """
 
-    _per_element: ClassVar[tuple[str, ...]] = ("solution", "sparsity")
+    _per_element: ClassVar[tuple[str, ...]] = ("solution", "dilatation", "energy_density", "sparsity")
     mesh: vtkDataSet
     condition: float
     smallest: float
@@ -76,6 +80,8 @@ class PeridynamicsResult(Result):
     layer_deficit: float
     statistics: dict[str, Any]
     solution: Array | None
+    dilatation: Array | None
+    energy_density: Array | None
     iterations: int
     residual: float
     preconditioned_condition: float
@@ -94,6 +100,8 @@ def peridynamics(
     width: float = 0.5,
     values: Sequence[float] = (),
     model: Model = "scalar",
+    poisson_ratio: float = 0.25,
+    plane: PlaneState = "strain",
     discretization: Discretization = "exact",
     rules: Rules = "tables",
     tolerance: float = 1e-5,
@@ -102,6 +110,7 @@ def peridynamics(
     given_points: Values | None = None,
     constrained: bool = True,
     allow_thin_layer: bool = False,
+    cut_bonds: bool = True,
     spectrum: bool = True,
     spectrum_tolerance: float = 1e-8,
     solve: bool = False,
@@ -115,7 +124,7 @@ def peridynamics(
     merge_coincident_points: bool = True,
     progress: Progress | bool | None = None,
 ) -> PeridynamicsResult:
-    """Assemble the matrix of a nonlocal (bond-based peridynamic) model, compute its condition number, and solve.
+    """Assemble the matrix of a nonlocal (peridynamic) model, compute its condition number, and solve.
 
     mesh: triangles in a plane with an interaction layer (collar) of width delta, where the solution is given, see
         interaction_layer(): a vtkDataSet, a composite data set, a file name or (points, cells). It is not changed. The
@@ -127,7 +136,12 @@ def peridynamics(
         between `values`.
     width: of the Gaussian kernel, in horizons.
     values: of the kernel "table", at equal distances from 0 to delta.
-    model: "scalar" (diffusion, dissertation (4.6)) or "elastic" ((4.4) with its tensor kernel).
+    model: "scalar" (diffusion, dissertation (4.6)); "elastic" (bond-based, (4.4) with its tensor kernel); "state-based"
+        (linear, ordinary; Silling et al., J. Elasticity 88 (2007)), which needs a layer of width 2 delta and the exact
+        discretization.
+    poisson_ratio: of the state-based model, above -1 and below 0.5. The bond-based one has 1/4 (plane strain), 1/3
+        (plane stress).
+    plane: of the state-based model: "strain" (a long body) or "stress" (a thin plate).
     discretization: "exact" (each pair of triangles is integrated to the tolerance) or "dissertation" (by
         the quadrature `rules`).
     rules: "tables" reproduces the dissertation's tables, "literal" is what its text says, or the numbers of outer/inner
@@ -138,6 +152,8 @@ def peridynamics(
         points of the layer's cells.
     constrained: whether the solution in the layer is given; False: all values are unknown.
     allow_thin_layer: whether the layer may be narrower than delta; what lies beyond the mesh is then left out.
+    cut_bonds: whether triangles do not interact where the mesh ends between them, as across a hole or a crack without a
+        layer.
     spectrum: whether to compute the extreme eigenvalues.
     spectrum_tolerance: relative, of the eigenvalues, 1e-14 to 0.1.
     solve: whether to solve for `source` and the solution `given` in the layer.
@@ -170,13 +186,18 @@ def peridynamics(
     filter_.SetGaussianWidth(float(width))
     for value in values:
         filter_.AddKernelValue(float(value))
-    filter_.SetElastic(bool(pick("model", model, MODELS)))
+    model = picked("model", model, MODELS)
+    filter_.SetElastic(model != "scalar")
+    filter_.SetStateBased(model == "state-based")
+    filter_.SetPoissonRatio(number("poisson_ratio", poisson_ratio))
+    filter_.SetPlaneStress(bool(pick("plane", plane, PLANE_STATES)))
     filter_.SetDiscretization(pick("discretization", discretization, DISCRETIZATIONS))
     filter_.SetRules(pick("rules", rules, RULES))
     filter_.SetTolerance(float(tolerance))
     filter_.SetLayerValue(float(layer_value))
     filter_.SetConstrained(bool(constrained))
     filter_.SetAllowThinLayer(bool(allow_thin_layer))
+    filter_.SetCutBonds(bool(cut_bonds))
     filter_.SetComputeSpectrum(bool(spectrum))
     filter_.SetSpectrumTolerance(within("spectrum_tolerance", spectrum_tolerance, 1e-14, 0.1))
     filter_.SetSolve(bool(solve))
@@ -201,10 +222,12 @@ def peridynamics(
     output = inputs.remove_from(filter_.GetOutputDataObject(0))
     if output.GetNumberOfCells() == 0:
         raise Error("the mesh has no triangle")
-    return _result(filter_, output, basis, solve, sparsity)
+    return _result(filter_, output, basis, solve and model != "scalar", solve, sparsity)
 
 
-def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity: int) -> PeridynamicsResult:
+def _result(
+    filter_: Any, output: vtkDataSet, basis: str, strained: bool, solve: bool, sparsity: int
+) -> PeridynamicsResult:
     table = columns(filter_.GetOutputDataObject(1))
     facts = {name: values[0].item() for name, values in zip(map(snake, table), table.values())}
     solution = picture = None
@@ -230,6 +253,8 @@ def _result(filter_: Any, output: vtkDataSet, basis: str, solve: bool, sparsity:
         layer_deficit=facts["layer_deficit"],
         statistics=facts,
         solution=solution,
+        dilatation=cell_array(output, "Dilatation") if strained else None,
+        energy_density=cell_array(output, "EnergyDensity") if strained else None,
         iterations=facts["solver_iterations"],
         residual=facts["solver_residual"],
         preconditioned_condition=facts["preconditioned_condition"] or float("nan"),
@@ -364,6 +389,8 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--kernel", choices=KERNELS[:-1], default="power")
     made.add_argument("--width", type=float, default=0.5, help="of the Gaussian, in horizons (default: 0.5)")
     made.add_argument("--model", choices=MODELS, default="scalar")
+    made.add_argument("--poisson-ratio", type=float, default=0.25, help="of the state-based model (default: 0.25)")
+    made.add_argument("--plane", choices=PLANE_STATES, default="strain", help="of the state-based model")
     made.add_argument("--discretization", choices=DISCRETIZATIONS, default="exact",
                       help="exact integration, or the rules of the dissertation")  # fmt: skip
     made.add_argument("--rules", choices=RULES, default="tables", help="of the dissertation's discretization")
@@ -371,8 +398,10 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--region", default=_DEFAULT_REGION, metavar="ARRAY",
                       help="cell array, 2 in the interaction layer (default: %(default)s)")  # fmt: skip
     made.add_argument("--add-layer", action="store_true",
-                      help="first add an interaction layer of width delta around the mesh")  # fmt: skip
+                      help="first add an interaction layer of width delta (state-based: 2 delta)")  # fmt: skip
     made.add_argument("--allow-thin-layer", action="store_true", help="the layer may be narrower than delta")
+    made.add_argument("--no-cut-bonds", dest="cut_bonds", action="store_false",
+                      help="triangles interact across holes and cracks")  # fmt: skip
     made.add_argument("--solve", action="store_true", help="solve for a source of 1, and 0 in the layer")
     made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="jacobi", help="of the solution")
     made.add_argument("--memory-limit", type=float, default=0.0, metavar="MIB",
@@ -418,10 +447,11 @@ def _run_peridynamics(arguments: argparse.Namespace) -> None:
     mesh = as_mesh(arguments.mesh)
     if arguments.add_layer:
         options = _commands.given(arguments, ("time_limit", "threads", "merge_coincident_points"))
-        mesh = interaction_layer(mesh, arguments.delta, **options)
-    names = ("delta", "p", "basis", "kernel", "width", "model", "discretization", "rules", "tolerance", "region",
-             "allow_thin_layer", "solve", "preconditioner", "memory_limit", "time_limit", "threads",
-             "merge_coincident_points")  # fmt: skip
+        width = (2 if arguments.model == "state-based" else 1) * arguments.delta
+        mesh = interaction_layer(mesh, width, **options)
+    names = ("delta", "p", "basis", "kernel", "width", "model", "poisson_ratio", "plane", "discretization", "rules",
+             "tolerance", "region", "allow_thin_layer", "cut_bonds", "solve", "preconditioner", "memory_limit",
+             "time_limit", "threads", "merge_coincident_points")  # fmt: skip
     result = peridynamics(mesh, **_commands.given(arguments, names))
     _commands.finish(arguments, result, result.summary)
 
