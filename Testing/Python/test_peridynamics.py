@@ -9,7 +9,7 @@ import tautline as tl
 from checks import points, refused, run_tests, shell, square
 from study_checks import Studies
 from tautline import _peridynamics
-from tautline.studies import _horizon, names, nonlocal_preconditioner
+from tautline.studies import _horizon, names, nonlocal_preconditioner, state_based
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from wrong_data import verdicts
 
@@ -77,6 +77,62 @@ def test_preconditioners():
         refused("choose Jacobi", tl.peridynamics, mesh, solve=True, preconditioner=name, constrained=False)
 
 
+def test_state_based():
+    """Patch test through the function; the bond-based model at its Poisson's ratio; refusals."""
+    mesh = tl.interaction_layer(square(10), 0.4)
+    at = vtk_to_numpy(mesh.GetPoints().GetData())
+    moved = np.column_stack([0.3 * at[:, 0] + 0.1 * at[:, 1], 0.5 * at[:, 1], 0 * at[:, 0]])
+    options = {"solve": True, "source": 0 * moved, "given": moved, "tolerance": 1e-4}
+    mu = np.pi / (8 * (6 - 1))  # of the kernel 1 / r
+    inside = vtk_to_numpy(mesh.GetCellData().GetArray("Reference")) != 2
+    for ratio, plane in ((0.4, "strain"), (0.0, "strain"), (0.4, "stress")):
+        result = tl.peridynamics(mesh, model="state-based", poisson_ratio=ratio, plane=plane, **options)
+        lame = mu * (2 * ratio / (1 - 2 * ratio) if plane == "strain" else 2 * ratio / (1 - ratio))
+        energy = lame / 2 * 0.8**2 + mu * (0.3**2 + 0.5**2 + 2 * 0.05**2)
+        assert np.abs(result.solution - moved).max() < 2e-3, (ratio, plane)
+        assert np.abs(result.dilatation[inside] - 0.8).max() < 0.01 and not result.dilatation[~inside].any()
+        assert np.abs(result.energy_density[inside] / energy - 1).max() < 0.02, (ratio, plane)
+    bonds = tl.peridynamics(mesh, model="elastic", **options)
+    assert abs(tl.peridynamics(mesh, model="state-based").condition / bonds.condition - 1) < 1e-3
+    assert tl.peridynamics(mesh, model="state-based", poisson_ratio=0.45).condition > 1.2 * bonds.condition
+    assert bonds.dilatation is not None and tl.peridynamics(mesh, solve=True).dilatation is None
+    refused("twice the horizon", tl.peridynamics, tl.interaction_layer(square(10), 0.2), model="state-based")
+    refused("below 0.5", tl.peridynamics, mesh, model="state-based", poisson_ratio=0.5)
+    refused("take the exact", tl.peridynamics, mesh, model="state-based", discretization="dissertation")
+    refused("plane is 'both'", tl.peridynamics, mesh, plane="both")
+
+
+def test_cut_bonds():
+    """Two squares that a gap narrower than the horizon separates interact only where bonds are not cut."""
+    left, right = square(4), square(4)
+    at = vtk_to_numpy(left.GetPoints().GetData())
+    cells = left.GetCells().GetConnectivityArray()
+    triangles = vtk_to_numpy(cells).reshape(-1, 3)
+    both = np.vstack([at, at + [1.1, 0, 0]]), {"triangle": np.vstack([triangles, triangles + len(at)])}
+    mesh = tl.from_arrays(*both)
+    options = {"constrained": False, "region": None, "tolerance": 1e-3, "spectrum": False}
+    cut = tl.peridynamics(mesh, 0.3, **options)
+    whole = tl.peridynamics(mesh, 0.3, cut_bonds=False, **options)
+    single = tl.peridynamics(right, 0.3, **options)
+    assert cut.nonzeros == 2 * single.nonzeros < whole.nonzeros, (cut.nonzeros, single.nonzeros, whole.nonzeros)
+
+
+def test_state_based_study():
+    """Numbers of the study, and wrong ones that change its verdicts."""
+    studies = Studies(OUT / "studies")
+    studies.run("state_based", "--threads", "1")
+    studies.check("state_based", 16, ("state_based",), {"ratios": 7, "sizes": 3, "deltas": 3, "plate": 2, "slot": 1})
+    rows = {row["model"]: row for row in studies.rows("state_based", "ratios")}
+    assert abs(float(rows["nu = 0.25"]["condition"]) / float(rows["bond-based"]["condition"]) - 1) < 1e-4
+    plate = {row["model"]: [float(v) for name, v in row.items() if name != "model"]
+             for row in studies.rows("state_based", "plate")}  # fmt: skip
+    assert plate["state-based"][-1] < plate["state-based"][0], plate
+    points = np.array([[2.0, 0, 0], [0, 3.0, 0], [1.5, 1.5, 0]])
+    # The displacement of Kirsch's plate far away is that of a uniform tension.
+    far = state_based.kirsch(1e6 * points, 0.3) / 1e6
+    assert np.abs(far - points * [2 * 1.4, -2 * 0.6, 0]).max() < 1e-5, far
+
+
 def test_commands():
     tl.write(square(10), OUT / "square.vtu")
 
@@ -90,6 +146,9 @@ def test_commands():
     assert "(preconditioner: two-level)" in text, text
     listed = shell("study", "list")
     assert all(name in listed for name in names()) and "peridynamics_tables" in names()
+    text = shell("peridynamics", OUT / "square.vtu", "--add-layer", "--model", "state-based", "--poisson-ratio", 0.4,
+                 "--plane", "stress", "--no-cut-bonds", "--tolerance", 1e-3)  # fmt: skip
+    assert "Condition number" in text, text
     assert "there is no study" in shell("study", "absent", code=1)
 
 

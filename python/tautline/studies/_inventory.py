@@ -135,6 +135,8 @@ SECTIONS = (
      "peridynamics_tables, peridynamics_horizon, peridynamics_kernel, peridynamics_local"),
     ("4.6", "preconditioners of nonlocal models", "Peridynamic Condition with a Preconditioner; peridynamics()",
      "nonlocal_preconditioner"),
+    ("4.6", "state-based models, unstructured domains with holes",
+     "Peridynamic Condition with State Based; peridynamics(model=\"state-based\")", "state_based"),
     ("4.7 to 4.9", "FEMWARP and the hybrid algorithm", "Warp Mesh; warp()", "rectangle_warp"),
     ("4.9.1, 6", "coefficients of FEMWARP that vary in space",
      "Warp Mesh with Coefficients From the motion, local gradients; warp(coefficients=\"local gradients\")",
