@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shape matching: nanoseconds of one match, for the ratios of run.py. Single-thread times are CPU
-// time.
+// Shape matching: nanoseconds of one match, for the ratios of run.py: of outlines (the retrieval's
+// default) and of polygons with images. Single-thread times are CPU time.
 //
 // usage: BenchmarkShapes shapes SIZE REPEATS    the grid has min(SIZE, 30) columns and rows
 
-#include "tautline/Shapes/ShapeMatch.h"
+#include "tautline/Shapes/ShapeRetrieval.h"
 
 #include <algorithm>
 #include <chrono>
@@ -62,6 +62,40 @@ double fastest(int repeats, const Clock& clock, const Work& work)
   }
   return 1e9 * best;
 }
+
+/// The retrieval's default, outlines with outlines: preparation of one, and the mean of all pairs of
+/// different shapes, one direction each.
+void measureOutlines(const std::vector<Silhouette>& shapes, int repeats)
+{
+  const OutlineOptions options = RetrievalOptions::highest().outline;
+  std::vector<OutlineModel> models;
+  const double prepared = fastest(repeats, cpuSeconds,
+    [&]
+    {
+      models.clear();
+      for (const Silhouette& shape : shapes)
+      {
+        models.push_back(prepareOutline(shape, options));
+      }
+    });
+  const auto count = static_cast<double>(shapes.size());
+  std::printf("shapes outline prepared\t%.0f\n", prepared / count);
+  const double all = fastest(repeats, cpuSeconds,
+    [&]
+    {
+      for (const OutlineModel& source : models)
+      {
+        for (const OutlineModel& target : models)
+        {
+          if (&source != &target)
+          {
+            matchOutlines(source, target, options);
+          }
+        }
+      }
+    });
+  std::printf("shapes outline mean\t%.0f\n", all / (count * (count - 1.0)));
+}
 }
 
 int main(int argc, char* argv[])
@@ -71,17 +105,19 @@ int main(int argc, char* argv[])
   const int gridRepeats = std::min(repeats, 3);
   std::vector<ShapeSource> sources;
   std::vector<ShapeTarget> contours;
+  std::vector<Silhouette> shapes;
   LocationOptions contour;
   contour.kind = Locations::Contour;
   for (int kind = 2; kind <= 5; ++kind)
   {
     for (double phase : { 0.1, 0.4 })
     {
-      const Silhouette shape = makeShape(kind, phase);
+      const Silhouette& shape = shapes.emplace_back(makeShape(kind, phase));
       sources.push_back(makeShapeSource(shape, 25.0));
       contours.emplace_back(shape, contour);
     }
   }
+  measureOutlines(shapes, repeats);
   MatchOptions options;
   options.threads = 1;
   std::printf("shapes contour like\t%.0f\n",

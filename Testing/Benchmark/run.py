@@ -73,8 +73,10 @@ def shape_ratios(t: dict[str, float]) -> list[tuple[str, float, str]]:
     """Shape matching, in units of the yardstick: IMR and gradient of one tetrahedron in a plain loop (Yardstick.h)."""
     unit = t["yardstick"]
     return [
-        ("contour match of two similar shapes / yardstick", t["shapes contour like"] / unit, "<= 20000"),
-        ("contour match, mean over shapes / yardstick", t["shapes contour mean"] / unit, ""),
+        ("match of two outlines, mean over shapes / yardstick", t["shapes outline mean"] / unit, "<= 6000"),
+        ("preparation of an outline / yardstick", t["shapes outline prepared"] / unit, ""),
+        ("match with an image, near the outline, similar shapes / yardstick", t["shapes contour like"] / unit, ""),
+        ("match with an image, near the outline, mean / yardstick", t["shapes contour mean"] / unit, ""),
         ("exact grid match [s]", t["shapes grid"] / 1e9, "<= 3"),
         ("two threads over one, exact grid match", t["shapes grid wall 1"] / t["shapes grid wall 2"], ">= 1.7"),
         ("exact grid match without bounds / with", t["shapes grid plain"] / t["shapes grid"], ""),
