@@ -148,4 +148,31 @@ def test_study():
     assert set(verdicts([other], OUTPUT / "study").values()) == {"does not hold"}
 
 
+def test_unseen_study():
+    """A folder of images named by their class: the rate of the nearest members, and its verdicts."""
+    folder = OUTPUT / "unseen"
+    folder.mkdir(parents=True, exist_ok=True)
+    images, labels = _silhouettes.families(4, 3, seed=2)
+    for i, (image, label) in enumerate(zip(images, labels)):
+        write_png(folder / f"{label}-{i}.png", image)
+    studies = Studies(OUTPUT / "study_unseen")
+    told = studies.run("shapes", "--data", str(folder), "--unseen", "--per-class", "3")
+    assert "9 silhouettes of 3 classes" in told, told
+    function, (rates, seconds, count, real), _ = studies.calls["shapes"][0]
+    large = [(function, (rates, time, 1400, True), {}) for time in (1.0, 1e6)]
+    studies.check("shapes", 3, (), {"unseen": 2}, large)
+    for row in studies.rows("shapes", "unseen"):
+        assert 50 < float(row["rate"]) <= 100, row
+    assert count == 9 and real and 0 < seconds < 100
+    result = tl.retrieval(images, labels, setting="highest")
+    ranked = np.array(result.labels)[result.ranking[:, :3]]
+    expected = 100 * (ranked == np.array(result.labels)[:, None]).mean()
+    assert abs(shapes.nearest_of_class(result) - expected) < 1e-9
+    for rate, time, verdict in ((88.0, 3000.0, "holds"), (87.9, 4000.0, "does not hold")):
+        call = function, (dict.fromkeys(rates, rate), time, 1400, True), {}
+        assert set(verdicts([call], OUTPUT / "study_unseen").values()) == {verdict}
+    call = function, (rates, seconds, 1399, False), {}
+    assert set(verdicts([call], OUTPUT / "study_unseen").values()) == {"not decided"}
+
+
 run_tests(globals())

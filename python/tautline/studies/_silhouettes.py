@@ -13,7 +13,8 @@ from .._errors import Error
 
 _NOTE = (
     "The dissertation's set are the 99 silhouettes of T. Sebastian, P. Klein and B. Kimia (Brown University). Give a "
-    "folder with them by --data: it has a list labels.csv with the columns file and class, and a folder images."
+    "folder with them by --data: it has a list labels.csv with the columns file and class, and a folder images. "
+    "--unseen is for sets of other classes."
 )
 _SIZE = 128
 _BEST = 10  # matches of a query that count
@@ -79,11 +80,12 @@ def families(per_class: int = 11, classes: int = 9, seed: int = 1) -> tuple[list
 def data_set(folder: str | None, small: bool, seed: int):
     """Shapes, labels or None, number of matches that count, description: those of a folder, or the families if None.
 
-    folder: has a list labels.csv, see tautline.read_silhouettes(). small: fewer families of fewer members.
+    folder: has a list labels.csv, or images named by their class, see tautline.read_silhouettes().
+    small: fewer families of fewer members.
     """
     if folder is not None:
-        if not (Path(folder) / "labels.csv").is_file():
-            raise Error(f"{folder}: there is no list labels.csv in it")
+        if not Path(folder).is_dir():
+            raise Error(f"{folder}: there is no such folder; it needs a list labels.csv, or images")
         return tautline.read_silhouettes(folder), None, _BEST, f"The silhouettes in {Path(folder).name}"
     per_class, classes = (4, 5) if small else (11, 9)
     shapes, labels = families(per_class, classes, seed)

@@ -77,4 +77,13 @@ def main(arguments: list[str]) -> int:
         f"coefficients {fewer[1]}, local gradients {fewer[2]}; they take {local / constant:.2g} times the CPU time of "
         "constant ones, for the first solve. The table has the larger motion."
     )
+    worse = [
+        f"{domain} at {amount:g} times the motion ({of['local'][i].inverted} instead of {of[name][i].inverted} with "
+        f"{CHOICES[name][0]})"
+        for i, (domain, amount) in enumerate(cases)
+        for name in ("femwarp", "constant")
+        if of["local"][i].inverted > of[name][i].inverted
+    ]
+    report.text("Local gradients are not always better. They invert more elements in: " + "; ".join(worse) + "."
+                if worse else "Local gradients never invert more elements here.")  # fmt: skip
     return report.finish()
