@@ -12,8 +12,8 @@
  *
  * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel, or the
  * linear ordinary state-based model, which has any Poisson's ratio
- * (tautline/Peridynamics/Dilatation.h). The solution is given in the interaction layer, the cells whose region is LayerValue. Two
- * discretizations of the integrals:
+ * (tautline/Peridynamics/Dilatation.h). The solution is given in the interaction layer, the cells
+ * whose region is LayerValue. Two discretizations of the integrals:
  * - EXACT: geometry and singularity of the inner integral are exact; converges; symmetric.
  * - DISSERTATION: the rules of section 4.3. With Rules at TABLES it reproduces Tables 4.1 to 4.3.
  *
@@ -201,8 +201,8 @@ public:
 
   ///@{
   /**
-   * Poisson's ratio of the state-based model, above -1 and below 0.5. At the default, 0.25, it is in
-   * plane strain the bond-based one.
+   * Poisson's ratio of the state-based model, above -1 and below 0.5. At the default, 0.25, it is
+   * in plane strain the bond-based one.
    */
   vtkSetMacro(PoissonRatio, double);
   vtkGetMacro(PoissonRatio, double);
@@ -210,8 +210,8 @@ public:
 
   ///@{
   /**
-   * Of the state-based model: 0, the default: plane strain. 1: plane stress, in which the bond-based
-   * model has a Poisson's ratio of 1/3.
+   * Of the state-based model: 0, the default: plane strain. 1: plane stress, in which the
+   * bond-based model has a Poisson's ratio of 1/3.
    */
   vtkSetMacro(PlaneStress, bool);
   vtkGetMacro(PlaneStress, bool);
@@ -220,9 +220,9 @@ public:
 
   ///@{
   /**
-   * Whether triangles do not interact where the mesh ends between them, as across a hole or a crack:
-   * decided by the segment between their centroids. Has no effect where the interaction layer is
-   * wide enough. The default is true.
+   * Whether triangles do not interact where the mesh ends between them, as across a hole or a
+   * crack: decided by the segment between their centroids (BondCut.h). Has no effect where the
+   * interaction layer is wide enough. The default is true.
    */
   vtkSetMacro(CutBonds, bool);
   vtkGetMacro(CutBonds, bool);

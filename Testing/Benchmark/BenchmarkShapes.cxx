@@ -63,8 +63,8 @@ double fastest(int repeats, const Clock& clock, const Work& work)
   return 1e9 * best;
 }
 
-/// The retrieval's default, outlines with outlines: preparation of one, and the mean of all pairs of
-/// different shapes, one direction each.
+/// The retrieval's default, outlines with outlines: preparation of one, and the mean of all pairs
+/// of different shapes, one direction each.
 void measureOutlines(const std::vector<Silhouette>& shapes, int repeats)
 {
   const OutlineOptions options = RetrievalOptions::highest().outline;

@@ -94,7 +94,7 @@ def test_state_based():
         assert np.abs(result.energy_density[inside] / energy - 1).max() < 0.02, (ratio, plane)
     bonds = tl.peridynamics(mesh, model="elastic", **options)
     assert abs(tl.peridynamics(mesh, model="state-based").condition / bonds.condition - 1) < 1e-3
-    assert tl.peridynamics(mesh, model="state-based", poisson_ratio=0.45).condition > 1.2 * bonds.condition
+    assert tl.peridynamics(mesh, model="state-based", poisson_ratio=0.49).condition > 3 * bonds.condition
     assert bonds.dilatation is not None and tl.peridynamics(mesh, solve=True).dilatation is None
     refused("twice the horizon", tl.peridynamics, tl.interaction_layer(square(10), 0.2), model="state-based")
     refused("below 0.5", tl.peridynamics, mesh, model="state-based", poisson_ratio=0.5)

@@ -30,6 +30,35 @@ bool shareVertex(const PlanarTriangles& triangles, Index t, Index other)
   }
   return false;
 }
+
+/// The points of two triangles that are nearest to each other; the triangles are disjoint.
+double nearestPoints(
+  const PlanarTriangles& triangles, Index t, Index other, Vec2& nearestOfT, Vec2& nearestOfOther)
+{
+  double nearest = 1e300; // of the squares
+  const auto toSegment = [&](Vec2 p, Vec2 a, Vec2 b, Vec2& ofPoint, Vec2& ofSegment)
+  {
+    const Vec2 e = b - a;
+    const Vec2 q = a + std::clamp(dot(p - a, e) / dot(e, e), 0.0, 1.0) * e;
+    if (dot(q - p, q - p) < nearest)
+    {
+      nearest = dot(q - p, q - p);
+      ofPoint = p;
+      ofSegment = q;
+    }
+  };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      toSegment(triangles.corner(t, i), triangles.corner(other, k),
+        triangles.corner(other, (k + 1) % 3), nearestOfT, nearestOfOther);
+      toSegment(triangles.corner(other, i), triangles.corner(t, k),
+        triangles.corner(t, (k + 1) % 3), nearestOfOther, nearestOfT);
+    }
+  }
+  return std::sqrt(nearest);
+}
 }
 
 //------------------------------------------------------------------------------
@@ -78,8 +107,24 @@ BondCut::BondCut(const PlanarTriangles& triangles, double horizon, bool cut)
 bool BondCut::isCut(Index t, Index other, const std::vector<std::int32_t>& edges) const
 {
   // The same arithmetic for both orders of a pair, so that the matrix is symmetric.
-  const Vec2 a = centroid(this->Triangles, std::min(t, other));
-  const Vec2 b = centroid(this->Triangles, std::max(t, other));
+  const Index first = std::min(t, other), second = std::max(t, other);
+  Vec2 a = centroid(this->Triangles, first), b = centroid(this->Triangles, second);
+  const double apart = std::sqrt(dot(b - a, b - a));
+  if (apart >= this->Horizon)
+  {
+    // From the nearest points as far towards the centroids as the horizon allows: distances are
+    // convex along the way.
+    Vec2 p = a, q = b;
+    const double nearest = nearestPoints(this->Triangles, first, second, p, q);
+    if (nearest >= this->Horizon)
+    {
+      return false; // they do not interact anyway
+    }
+    constexpr double within = 0.999;
+    const double part = within * (this->Horizon - nearest) / (apart - nearest);
+    a = p + part * (a - p);
+    b = q + part * (b - q);
+  }
   const Vec2 bond = b - a;
   const double length = std::sqrt(dot(bond, bond));
   const Vec2 low = { std::min(a[0], b[0]), std::min(a[1], b[1]) };
@@ -96,14 +141,9 @@ bool BondCut::isCut(Index t, Index other, const std::vector<std::int32_t>& edges
     const double touching = Touching * length * (length + std::sqrt(dot(along, along)));
     const double sideP = cross(bond, p - a), sideQ = cross(bond, q - a);
     const double sideA = cross(along, a - p), sideB = cross(along, b - p);
-    if ((sideP > touching && sideQ > touching) || (sideP < -touching && sideQ < -touching) ||
-      !(sideA * sideB < 0.0))
-    {
-      continue;
-    }
-    // Beyond the horizon the boundary does not matter: no bond reaches it there.
-    const double at = sideA / (sideA - sideB) * length;
-    if (at < this->Horizon && length - at < this->Horizon)
+    const bool beside =
+      (sideP > touching && sideQ > touching) || (sideP < -touching && sideQ < -touching);
+    if (!beside && sideA * sideB < 0.0)
     {
       return true;
     }

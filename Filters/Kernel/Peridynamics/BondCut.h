@@ -6,7 +6,8 @@
  *
  * A bond, the segment between two points that interact, is cut if it leaves the mesh: material on
  * both sides of a hole does not interact across it. That is decided for pairs of triangles as a
- * whole, by the segment between their centroids, so that the form stays symmetric; what one
+ * whole, by the segment between their centroids, so that the form stays symmetric; where that is
+ * longer than the horizon, between points of the triangles that are nearer to each other. What one
  * triangle sees of another only in part is an error of the order of the element size. Triangles
  * that share a vertex always interact. With an interaction layer of the width of the reach nothing
  * is cut, as every bond of the domain is in the mesh.

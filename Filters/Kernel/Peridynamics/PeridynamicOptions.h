@@ -120,8 +120,8 @@ struct PeridynamicOptions
 
 /**
  * @brief The limit that the exponent p has to stay below: for r^-p the form is finite on continuous
- * functions below 4, on discontinuous ones below 3; the tensor kernel of elasticity adds 2. The bound
- * p < 2 of (4.7) is about integrability of the kernel alone.
+ * functions below 4, on discontinuous ones below 3; the tensor kernel of elasticity adds 2. The
+ * bound p < 2 of (4.7) is about integrability of the kernel alone.
  */
 TAUTLINE_SOLVERS_EXPORT double singularLimit(PeridynamicBasis basis, PeridynamicModel model);
 

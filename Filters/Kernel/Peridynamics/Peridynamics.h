@@ -11,9 +11,9 @@
  * one of the others of KernelShape with s = 1 / delta^4. The linearized elastic model (4.4)-(4.5)
  * has the tensor kernel (y-x) (y-x)^T k(|x - y|) and s divided by delta^2 once more, so that both
  * have a local limit: s a -> pi / (2 (4-p)) times the Laplacian's form. The state-based model adds
- * a term in the dilatation to the elastic one, for any Poisson's ratio: Dilatation.h. The solution is given in an
- * interaction layer of width delta (state-based: 2 delta) around the domain Omega (the volume constraint); unknowns are
- * those of Omega.
+ * a term in the dilatation to the elastic one, for any Poisson's ratio: Dilatation.h. The solution
+ * is given in an interaction layer of width delta (state-based: 2 delta) around the domain Omega
+ * (the volume constraint); unknowns are those of Omega.
  *
  * Two discretizations of the integrals:
  * - Dissertation: the rules of its section 4.3. The disc is centred at each outer quadrature point,

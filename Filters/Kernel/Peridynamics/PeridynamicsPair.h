@@ -65,7 +65,8 @@ public:
   static constexpr int Moments = 15;
   /**
    * @brief Moments of y - x, times k, over the part of a triangle in the disc around x, of the
-   * degrees that the model needs (elastic, three functions: 2 to 4); false if there is no such part.
+   * degrees that the model needs (elastic, three functions: 2 to 4); false if there is no such
+   * part.
    * @param inside whether x is in the triangle: then only moments that exist are right
    */
   bool momentsAround(const Vec2* corners, Vec2 x, bool inside, double* m);

@@ -80,8 +80,8 @@ std::unique_ptr<TriangleAssembler> makeExactAssembler(
   const PeridynamicWork& work, const PairIntegrals& integrals);
 
 /**
- * @brief Of the state-based model: adds (lambda - mu) int theta(u) theta(w) to the matrix and the load of the given values, see
- * Dilatation.h.
+ * @brief Of the state-based model: adds (lambda - mu) int theta(u) theta(w) to the matrix and the
+ * load of the given values, see Dilatation.h.
  *
  * The integral over x is by a rule of degree 5 on each triangle, the one over y is exact.
  * @param proceed gets the fraction done and returns whether to continue

@@ -432,6 +432,20 @@ void addFilters(std::vector<HostileFilter>& list)
       return filter;
     },
     triangles);
+  add(
+    "Peridynamics", "vtkPeridynamicStiffness", "state-based",
+    []
+    {
+      auto filter = peridynamics();
+      filter->SetConstrained(true);
+      filter->SetAllowThinLayer(true);
+      filter->SetDiscretization(vtkPeridynamicStiffness::EXACT);
+      filter->SetElastic(true);
+      filter->SetStateBased(true);
+      filter->SetSolve(true);
+      return filter;
+    },
+    triangles);
   const auto preconditioned = [](int preconditioner)
   {
     auto filter = peridynamics();
