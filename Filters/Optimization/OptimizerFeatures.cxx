@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tautline
 {
@@ -187,6 +188,33 @@ void OptimizerSetup::placePoints()
   placed.points = points.data();
   this->Placed = std::make_unique<Mesh>(placed, this->Options.threads);
   this->Placed->setMirrored(mesh.mirrored());
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::setSurfaceTolerance(const OptimizerSettings& settings)
+{
+  this->Options.onGeometry = this->HasGeometry;
+  if (settings.boundary != BoundaryMotion::OnSurface || !(settings.surfaceTolerance > 0) ||
+    this->TheMesh.mesh().dimension() == Dimension::Surface)
+  {
+    return;
+  }
+  const MeshView& view = this->TheMesh.mesh().view();
+  const double infinity = std::numeric_limits<double>::infinity();
+  Vec3 low = { infinity, infinity, infinity }, high = { -infinity, -infinity, -infinity };
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    pollInterruption(p);
+    const Vec3 x = pointOf(view, p);
+    for (int c = 0; c < 3 && std::isfinite(dot(x, x)); ++c)
+    {
+      low[c] = std::min(low[c], x[c]);
+      high[c] = std::max(high[c], x[c]);
+    }
+  }
+  const double diagonal = norm(high - low);
+  this->Options.surfaceTolerance =
+    std::isfinite(diagonal) ? settings.surfaceTolerance * diagonal : 0.0;
 }
 
 //------------------------------------------------------------------------------

@@ -52,10 +52,11 @@ struct OptimizerSettings
   double beta = 0.0;                    ///< of the untangling metric
   Combination combination = Combination::Mean;
   BoundaryMotion boundary = BoundaryMotion::Fixed;
-  double flatAngle = 1.0;     ///< degrees
-  double featureAngle = 40.0; ///< degrees
-  bool keepFeatures = true;   ///< of surfaces, and where points slide on the boundary
-  bool smoothSurface = true;  ///< slide on a smooth surface through the points, not on facets
+  double flatAngle = 1.0;        ///< degrees
+  double featureAngle = 40.0;    ///< degrees
+  bool keepFeatures = true;      ///< of surfaces, and where points slide on the boundary
+  bool smoothSurface = true;     ///< slide on a smooth surface through the points, not on facets
+  double surfaceTolerance = 0.0; ///< of OnSurface, a fraction of the diagonal; 0: any distance
   vtkDataObject* geometry = nullptr; ///< what points slide on instead of the input, or null
   bool showFeatures = false;         ///< add the arrays of the features to the output
   double maximumDisplacement = 0.0;  ///< 0: any distance
@@ -108,6 +109,7 @@ private:
   void slideOnGeometry(const OptimizerSettings& settings, vtkDataSet* geometry);
   void placePoints();
   void holdPoints(const OptimizerSettings& settings);
+  void setSurfaceTolerance(const OptimizerSettings& settings);
   void setLimits(const OptimizerSettings& settings, const InputBlock& block);
   void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
   void setUnit(Objective& objective) const;

@@ -339,6 +339,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
   settings.featureAngle = this->FeatureAngle;
   settings.keepFeatures = this->KeepFeatures;
   settings.smoothSurface = this->SmoothSurface;
+  settings.surfaceTolerance = this->SurfaceTolerance;
   settings.showFeatures = this->ShowFeatures;
   settings.maximumDisplacement = this->MaximumDisplacement;
   settings.mergePoints = this->MergeCoincidentPoints;
@@ -613,6 +614,7 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "KeepFeatures: " << this->KeepFeatures << "\n";
   os << indent << "SmoothSurface: " << this->SmoothSurface << "\n";
+  os << indent << "SurfaceTolerance: " << this->SurfaceTolerance << "\n";
   os << indent << "ShowFeatures: " << this->ShowFeatures << "\n";
   os << indent << "MaximumDisplacement: " << this->MaximumDisplacement << "\n";
   os << indent << "ProjectToSurface: " << this->ProjectToSurface << "\n";

@@ -400,6 +400,19 @@ public:
 
   ///@{
   /**
+   * With the boundary ON_SURFACE: how far the new boundary may be from the old one, and the old one
+   * from the new one, as a fraction of the diagonal of the bounding box, 0 to 1; 0: any distance.
+   * Steps that would take it farther are shortened or left out. The distance is measured at the
+   * corners, middles of edges and centres of the boundary's triangles (quadrilaterals are two).
+   * With a Geometry it is that of the boundary from the geometry; what is farther at the start may
+   * stay so. The default is 0.001.
+   */
+  vtkTautlineSetRangeMacro(SurfaceTolerance, double, 0.0, 1.0);
+  vtkGetMacro(SurfaceTolerance, double);
+  ///@}
+
+  ///@{
+  /**
    * Add the features to the output: the point array `FeatureKind` (0 within a patch or the mesh, 1
    * on a curve, 2 corner) and `PatchId`, of the points within a patch and of the cells of a
    * surface (-1: none). The default is off.
@@ -553,8 +566,8 @@ public:
   vtkIdType GetFreePoints() const { return this->FreePoints; }
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
   vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
-  /// Largest distance of the output's surface from the facets of the input or the geometry, where
-  /// points slide on them.
+  /// Largest distance between the output's surface, where points slide on it, and that of the
+  /// input, from either to the other; or from it to the geometry. Measured as SurfaceTolerance is.
   double GetSurfaceError() const { return this->SurfaceError; }
   ///@}
 
@@ -615,6 +628,7 @@ private:
   double FeatureAngle = 40.0;
   bool KeepFeatures = true;
   bool SmoothSurface = true;
+  double SurfaceTolerance = 0.001;
   bool ShowFeatures = false;
   double MaximumDisplacement = 0.0;
   bool ProjectToSurface = true;

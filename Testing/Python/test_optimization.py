@@ -208,6 +208,9 @@ def test_points_that_stay():
     on_surface = tl.optimize(mesh, boundary="on surface")  # the hole is round
     assert tl.optimize(mesh).free < free < on_surface.free < tl.optimize(mesh, boundary="free").free == len(fixed)
     assert 0 < on_surface.surface_error < 0.05 * np.ptp(points(mesh)) and on_surface.inverted == 0
+    near = tl.optimize(mesh, boundary="on surface", surface_tolerance=2e-5)
+    assert 0 < near.surface_error <= 2e-5 * mesh.GetLength() < on_surface.surface_error
+    refused("surface_tolerance", tl.optimize, mesh, boundary="on surface", surface_tolerance=-1)
     refused("needs a local optimizer", tl.optimize, mesh, optimizer="l-bfgs", boundary="on surface")
     weights = np.zeros(mesh.GetNumberOfCells())
     weights[0] = 1

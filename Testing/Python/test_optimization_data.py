@@ -12,18 +12,24 @@ for file in files:
     assert result.inverted_before > 0 == result.inverted == tl.quality(result).inverted, (file, result.summary)
     print(f"{file.name}: {result.inverted_before} inverted, now none")
 
-# The worst scaled Jacobian of the input, what HexOpt reaches (arXiv 2410.11656, to two decimals), the boundary fixed:
-# there the facets bound it.
-HEXAHEDRA = {"CAD4": (0.069, 0.12, 0.07), "rkm012": (0.467, 0.60, 0.57)}
+# The worst scaled Jacobian of the input; what it must be at least with the boundary fixed, where the facets bound it,
+# with points that slide on the surface and keep it within so many diagonals, and with no limit. HexOpt reaches 0.12 and
+# 0.60 (arXiv 2410.11656).
+HEXAHEDRA = {"CAD4": (0.069, {"fixed": 0.07, 0.001: 0.115, "unlimited": 0.12}),
+             "rkm012": (0.467, {"fixed": 0.57, 0.001: 0.49, 0.0003: 0.57, "unlimited": 0.57})}
 folder = test_data("hex")
-for name, (before, published, fixed) in HEXAHEDRA.items():
+for name, (before, least) in HEXAHEDRA.items():
     mesh = tl.read(folder / f"{name}.vtk")
-    worst = {"input": tl.quality(mesh, ["scaled_jacobian"]).values["scaled_jacobian"].min()}
-    assert abs(worst["input"] - before) < 1e-3, worst
-    for boundary in ("fixed", "on surface"):
-        result = tl.optimize(mesh, preset="worst element", boundary=boundary)
-        worst[boundary] = tl.quality(result.mesh, ["scaled_jacobian"]).values["scaled_jacobian"].min()
+    found = tl.quality(mesh, ["scaled_jacobian"]).values["scaled_jacobian"].min()
+    assert abs(found - before) < 1e-3, found
+    for run, aim in least.items():
+        tolerance = run if isinstance(run, float) else 0.0
+        boundary = "fixed" if run == "fixed" else "on surface"
+        result = tl.optimize(mesh, preset="worst element", boundary=boundary, surface_tolerance=tolerance)
+        worst = tl.quality(result.mesh, ["scaled_jacobian"]).values["scaled_jacobian"].min()
         assert result.inverted == 0, result.summary
         assert result.statistics["imr"]["mean_after"] < result.statistics["imr"]["mean_before"], result.summary
-        print(name, boundary, worst[boundary], result.surface_error)
-    assert worst["fixed"] > fixed and worst["on surface"] > published - 0.005, worst
+        error = result.surface_error / mesh.GetLength()
+        print(name, run, worst, error)
+        assert worst > aim, (name, run, worst)
+        assert error <= tolerance or (run == "unlimited" and error > 0.001), (name, run, error)

@@ -112,8 +112,8 @@ class OptimizeResult(Result):
     free: number of points that were free to move.
     displacement: new minus old position, n x 3.
     validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
-    surface_error: largest distance of the elements of a surface in space (of the boundary, where its points slide) from
-        the facets of the input or of the geometry, in the mesh's unit.
+    surface_error: largest distance between the facets of a surface in space (of the boundary, where its points slide)
+        and those of the input, measured from either to the other, or from them to the geometry; in the mesh's unit.
     summary: the result in words.
     """
 
@@ -149,6 +149,7 @@ def optimize(
     feature_angle: float = 40.0,
     keep_features: bool = True,
     smooth_surface: bool = True,
+    surface_tolerance: float = 0.001,
     show_features: bool = False,
     feature_kinds: Values | None = None,
     regions: Values | None = None,
@@ -193,6 +194,9 @@ def optimize(
     keep_features: whether corners, sharp edges, borders and patches of a surface in space are kept, and with the
         boundary "on surface" those of the boundary: corners stay, other points slide on their curve or patch.
     smooth_surface: whether they slide on a smooth surface through the points of the input, or on its facets.
+    surface_tolerance: with the boundary "on surface", how far the new boundary may be from the old one, and the old one
+        from the new one (with a geometry, only the new one from that), as a fraction of the diagonal of the bounding
+        box, 0 to 1; 0: any distance.
     show_features: whether the result has the point array `FeatureKind` (0 within a patch, 1 on a curve, 2 corner) and
         the point and cell array `PatchId`.
     feature_kinds: kinds of the points instead of those found: 0, 1, 2, or -1 as found; one per point, or the name of a
@@ -241,6 +245,7 @@ def optimize(
     filter_.SetFeatureAngle(within("feature_angle", feature_angle, 0, 180))
     filter_.SetKeepFeatures(bool(keep_features))
     filter_.SetSmoothSurface(bool(smooth_surface))
+    filter_.SetSurfaceTolerance(within("surface_tolerance", surface_tolerance, 0, 1))
     filter_.SetShowFeatures(bool(show_features))
     filter_.SetProjectToSurface(bool(project_to_surface))
     filter_.SetUntangleFirst(bool(untangle_first))
@@ -413,6 +418,8 @@ def add_commands(commands: Any) -> None:
                         help="edges that bend more are sharp (default: 40)")  # fmt: skip
     _commands.add_flag(parser, "keep_features", "whether points of a surface stay on sharp edges", "--no-features")
     _commands.add_flag(parser, "smooth_surface", "whether points slide on a smooth surface, not on facets", "--facets")
+    parser.add_argument("--surface-tolerance", type=float, metavar="FRACTION", default=0.001,
+                        help="how far, in diagonals, a boundary may slide off itself (default: 0.001)")  # fmt: skip
     parser.add_argument("--show-features", action="store_true", help="add the arrays FeatureKind and PatchId")
     parser.add_argument("--feature-kinds", metavar="ARRAY", help="point array: 0 patch, 1 curve, 2 corner, -1 as found")
     parser.add_argument("--regions", metavar="ARRAY", help="cell array of regions, whose interfaces are kept")
@@ -436,7 +443,7 @@ def _objective(text: str) -> Objective:
 def _run_optimize(arguments: argparse.Namespace) -> None:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
              "boundary", "flat_angle", "worst_metric", "hold_worst", "feature_angle", "keep_features", "smooth_surface",
-             "show_features", "feature_kinds", "regions", "geometry", "time_limit", "threads",
+             "surface_tolerance", "show_features", "feature_kinds", "regions", "geometry", "time_limit", "threads",
              "merge_coincident_points", "reproducible_order")  # fmt: skip
     result = optimize(arguments.mesh, arguments.objectives, **_commands.given(arguments, names))
     _commands.finish(arguments, result, result.summary, table_rows(result.history))

@@ -7,7 +7,7 @@
 #define tautline_LocalOptions_h
 
 #include "OptimizeOptions.h"
-#include "SurfaceProjection.h"
+#include "SurfaceLimit.h"
 #include "tautline/Objectives/ObjectiveSum.h"
 
 namespace tautline
@@ -40,6 +40,8 @@ struct LocalOptions
   std::vector<double> limits, start;
   /// Per vertex, or empty: what it slides on, or null.
   std::vector<const SurfaceProjection*> surfaces;
+  /// How far these steps may take the surface; or null.
+  SurfaceLimit* surfaceLimit = nullptr;
   /// Per simplex, or empty; of the fast terms. Needs SimplexMesh::indexPatches().
   std::vector<double> weights;
 };

@@ -47,24 +47,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   }
   this->Simplices =
     std::make_unique<SimplexMesh>(*this->Moving, options.fixed, targets, options.threads, frame);
-  if (options.model)
-  {
-    for (const SurfacePart& part : options.model->parts)
-    {
-      this->Parts.emplace_back(part, this->Simplices.get());
-    }
-    this->Surface = std::make_unique<SurfaceProjection>(
-      SurfaceProjection::ofFacets(*options.model, this->Simplices.get()));
-  }
-  else if (mesh.dimension() == Dimension::Surface && options.surface.project)
-  {
-    this->Surface = std::make_unique<SurfaceProjection>(mesh, *this->Simplices);
-  }
-  else if (mesh.dimension() != Dimension::Surface && options.slideSurface)
-  {
-    this->Surface =
-      std::make_unique<SurfaceProjection>(SurfaceProjection::ofBoundary(mesh, *this->Simplices));
-  }
+  this->makeSurface();
   this->Start.assign(this->Simplices->coordinates(),
     this->Simplices->coordinates() +
       VertexStride * static_cast<std::size_t>(this->Simplices->vertices()));
@@ -106,6 +89,53 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   {
     this->Terms.assign(this->Terms.size(), LocalTerm()); // weights of cells differ by objective
   }
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::makeSurface()
+{
+  const OptimizeOptions& options = this->Options;
+  if (options.model)
+  {
+    for (const SurfacePart& part : options.model->parts)
+    {
+      this->Parts.emplace_back(part, this->Simplices.get());
+    }
+  }
+  const bool slides = this->TheMesh.dimension() == Dimension::Surface
+    ? options.surface.project
+    : options.slideSurface != nullptr;
+  if (options.model && options.onGeometry)
+  {
+    this->Surface = std::make_unique<SurfaceProjection>(
+      SurfaceProjection::ofFacets(*options.model, this->Simplices.get()));
+  }
+  else if (options.model || slides)
+  {
+    this->Surface = std::make_unique<SurfaceProjection>(this->TheMesh, *this->Simplices);
+  }
+  if (this->Surface && options.surfaceTolerance > 0)
+  {
+    this->Limit = std::make_unique<SurfaceLimit>(this->TheMesh, *this->Simplices, *this->Surface,
+      options.surfaceTolerance / this->Simplices->scale(), !options.onGeometry);
+  }
+}
+
+//------------------------------------------------------------------------------
+double OptimizationProblem::surfaceError() const
+{
+  if (!this->Surface)
+  {
+    return 0.0;
+  }
+  const int threads = this->Options.threads;
+  const int divisions = this->Limit ? SurfaceLimit::divisions : 2;
+  const SurfaceProjection now(*this->Moving, *this->Simplices);
+  const double there = now.distanceTo(*this->Surface, threads, divisions);
+  // A mesh may be of a part of a geometry.
+  const double back =
+    this->Options.onGeometry ? 0.0 : this->Surface->distanceTo(now, threads, divisions);
+  return this->Simplices->scale() * std::max(there, back);
 }
 
 //------------------------------------------------------------------------------
@@ -353,6 +383,7 @@ LocalOptions OptimizationProblem::localOptions() const
         : slides                                 ? this->Surface.get()
                                                  : nullptr);
   }
+  local.surfaceLimit = this->Limit.get();
   if (this->Options.limits)
   {
     local.start = this->Start;

@@ -33,6 +33,8 @@ public:
   SimplexMesh& simplices() { return *this->Simplices; }
   /// The facets of the surface that points are kept on, or null.
   const SurfaceProjection* surface() const { return this->Surface.get(); }
+  /// The distance between it and the surface at the stored points, see OptimizeOptions.
+  double surfaceError() const;
   std::size_t objectives() const { return this->Resolved.size(); }
   /// The objectives with their templates, and weights of 0 for the cells that are left out.
   const std::vector<Objective>& resolved() const { return this->Resolved; }
@@ -76,6 +78,7 @@ public:
   std::vector<double>& points() { return this->Points; }
 
 private:
+  void makeSurface();
   LocalTerm fastTerm(const Objective& objective) const;
   void leaveOut(std::vector<signed char> validity);
   void rescaleUntangling();
@@ -89,6 +92,7 @@ private:
   std::unique_ptr<Mesh> Moving;
   std::unique_ptr<SimplexMesh> Simplices;
   std::unique_ptr<SurfaceProjection> Surface;
+  std::unique_ptr<SurfaceLimit> Limit;  ///< of steps on it
   std::vector<SurfaceProjection> Parts; ///< of the model
   std::vector<Objective> Resolved;
   std::vector<LocalTerm> Terms; ///< of each objective; with the metric's sum only once it was used

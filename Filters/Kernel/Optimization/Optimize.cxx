@@ -476,17 +476,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   result.invertedAfter = countInvalid(state.validity);
   result.elements.validity = std::move(state.validity);
   result.elements.after = std::move(state.values);
-  if (problem.surface() && mesh.dimension() == Dimension::Surface)
-  {
-    result.surfaceError =
-      problem.surface()->distance(mesh, problem.simplices(), result.points.data(), options.threads);
-  }
-  else if (problem.surface())
-  {
-    const SurfaceProjection now =
-      SurfaceProjection::ofBoundary(problem.moving(), problem.simplices());
-    result.surfaceError = problem.simplices().scale() * now.distanceTo(*problem.surface());
-  }
+  result.surfaceError = problem.surfaceError();
   return repaired;
 }
 

@@ -34,8 +34,8 @@ struct OptimizeResult
   int iterations = 0;
   Index freeVertices = 0;
   Index invertedBefore = 0, invertedAfter = 0;
-  /// Largest distance of the output's surface (of a surface mesh, or of points that slide) from the
-  /// input's; else 0.
+  /// Largest distance between the output's surface (of a surface mesh, or of points that slide) and
+  /// the input's, from either to the other, or from it to the geometry; else 0.
   double surfaceError = 0;
   bool untangled = false; ///< untangle() was run first
   /// Points that went back to their place in the input, because an element there would otherwise be

@@ -124,6 +124,15 @@ struct OptimizeOptions
   /// caller's to fix, and all points to be on their parts at the start.
   const std::int32_t* parts = nullptr;
   SurfaceConstraint surface;
+  /**
+   * @brief The largest distance that steps may leave between a surface whose points slide (of a
+   * volume or planar mesh, the boundary) and the surface as it was, at points of either; 0: any.
+   * With onGeometry, from the surface to the model. What is farther at the start does not go
+   * farther.
+   */
+  double surfaceTolerance = 0.0;
+  /// Whether the model was made of another surface than that of the mesh.
+  bool onGeometry = false;
   /// Lets steps invert elements that are valid. Off: they are shortened.
   bool allowInversion = false;
   /**

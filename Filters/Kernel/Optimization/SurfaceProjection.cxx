@@ -34,48 +34,22 @@ Vec3 closestOnSegment(const Vec3& a, const Vec3& b, const Vec3& x)
   const double t = length2 > 0 ? std::clamp(dot(x - a, ab) / length2, 0.0, 1.0) : 0.0;
   return a + t * ab;
 }
-}
 
 //------------------------------------------------------------------------------
-SurfaceProjection::SurfaceProjection(const Mesh& mesh, const SimplexMesh& simplices)
-{
-  const MeshView& view = mesh.view();
-  for (const CellBlock& block : mesh.blocks())
-  {
-    const CellTopology& t = topology(block.type);
-    for (Index i = 0; t.dimension == 2 && i < block.count; ++i)
-    {
-      const Index* node = view.connectivity + view.offsets[block.cell(i)];
-      Vec3 p[4];
-      bool finite = true;
-      for (int k = 0; k < t.nodes; ++k)
-      {
-        p[k] = simplices.transform(pointOf(view, node[k]));
-        finite = finite && std::isfinite(dot(p[k], p[k]));
-      }
-      for (int k = 2; finite && k < t.nodes; ++k)
-      {
-        this->Pieces.push_back({ { p[0], p[k - 1], p[k] }, -1 });
-      }
-    }
-  }
-  this->build();
-}
-
-//------------------------------------------------------------------------------
-SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexMesh& simplices)
+/// The boundary of a volume or planar mesh.
+std::vector<SurfaceFacet> boundaryFacets(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
   const std::vector<char> boundary = boundaryPoints(mesh);
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
 
   // Facets of boundary points only are few; those that occur once are the boundary.
-  struct Facet
+  struct Found
   {
-    std::array<Index, MaxFaceNodes> sorted, nodes;
-    int size;
+    std::array<Index, MaxFaceNodes> sorted;
+    SurfaceFacet facet;
   };
-  std::vector<Facet> facets;
+  std::vector<Found> found;
   for (const CellBlock& block : mesh.blocks())
   {
     const CellTopology& t = topology(block.type);
@@ -84,7 +58,7 @@ SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexM
       const Index* node = view.connectivity + view.offsets[block.cell(i)];
       for (int f = 0; f < (dimension == 3 ? t.faces : t.edges); ++f)
       {
-        Facet facet;
+        SurfaceFacet facet;
         facet.size = dimension == 3 ? t.faceSizes[f] : 2;
         facet.nodes.fill(-1);
         bool all = true;
@@ -95,45 +69,80 @@ SurfaceProjection SurfaceProjection::ofBoundary(const Mesh& mesh, const SimplexM
         }
         if (all)
         {
-          facet.sorted = facet.nodes;
-          std::sort(facet.sorted.begin(), facet.sorted.end());
-          facets.push_back(facet);
+          found.push_back({ facet.nodes, facet });
+          std::sort(found.back().sorted.begin(), found.back().sorted.end());
         }
       }
     }
   }
-  std::sort(facets.begin(), facets.end(),
-    [](const Facet& a, const Facet& b) { return a.sorted < b.sorted; });
-  SurfaceProjection result;
-  result.Curve = dimension == 2;
-  for (std::size_t i = 0; i < facets.size();)
+  std::sort(
+    found.begin(), found.end(), [](const Found& a, const Found& b) { return a.sorted < b.sorted; });
+  std::vector<SurfaceFacet> facets;
+  for (std::size_t i = 0; i < found.size();)
   {
     std::size_t same = i + 1;
-    while (same < facets.size() && facets[same].sorted == facets[i].sorted)
+    while (same < found.size() && found[same].sorted == found[i].sorted)
     {
       ++same;
     }
-    const Facet& facet = facets[i];
-    Vec3 p[MaxFaceNodes];
-    bool finite = same == i + 1;
-    for (int k = 0; finite && k < facet.size; ++k)
+    if (same == i + 1)
     {
-      p[k] = simplices.transform(pointOf(view, facet.nodes[k]));
-      finite = std::isfinite(dot(p[k], p[k]));
+      facets.push_back(found[i].facet);
+    }
+    i = same;
+  }
+  return facets;
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<SurfaceFacet> surfaceFacets(const Mesh& mesh)
+{
+  if (mesh.dimension() != Dimension::Surface)
+  {
+    return boundaryFacets(mesh);
+  }
+  const MeshView& view = mesh.view();
+  std::vector<SurfaceFacet> facets;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; t.dimension == 2 && i < block.count; ++i)
+    {
+      SurfaceFacet facet;
+      facet.size = t.nodes;
+      facet.nodes.fill(-1);
+      std::copy_n(view.connectivity + view.offsets[block.cell(i)], facet.size, facet.nodes.begin());
+      facets.push_back(facet);
+    }
+  }
+  return facets;
+}
+
+//------------------------------------------------------------------------------
+SurfaceProjection::SurfaceProjection(const Mesh& mesh, const SimplexMesh& simplices)
+  : Curve(mesh.dimension() == Dimension::Planar)
+{
+  for (const SurfaceFacet& facet : surfaceFacets(mesh))
+  {
+    Vec3 p[MaxFaceNodes];
+    bool finite = true;
+    for (int k = 0; k < facet.size; ++k)
+    {
+      p[k] = simplices.transform(pointOf(mesh.view(), facet.nodes[k]));
+      finite = finite && std::isfinite(dot(p[k], p[k]));
     }
     // An edge is a triangle with two equal corners.
     if (finite && facet.size == 2)
     {
-      result.Pieces.push_back({ { p[0], p[1], p[1] }, -1 });
+      this->Pieces.push_back({ { p[0], p[1], p[1] }, -1 });
     }
     for (int k = 2; finite && k < facet.size; ++k)
     {
-      result.Pieces.push_back({ { p[0], p[k - 1], p[k] }, -1 });
+      this->Pieces.push_back({ { p[0], p[k - 1], p[k] }, -1 });
     }
-    i = same;
   }
-  result.build();
-  return result;
+  this->build();
 }
 
 //------------------------------------------------------------------------------
@@ -240,9 +249,9 @@ void SurfaceProjection::build(std::int32_t node, std::int32_t first, std::int32_
 }
 
 //------------------------------------------------------------------------------
-Vec3 SurfaceProjection::closestOf(std::int32_t piece, const Vec3& x) const
+Vec3 closestOnTriangle(const std::array<Vec3, 3>& corner, const Vec3& x)
 {
-  const auto& [a, b, c] = this->Pieces[piece].corner;
+  const auto& [a, b, c] = corner;
   // Inside, the foot of the perpendicular; else the closest point of an edge.
   // That of edges, and of needles, is noise of rounding.
   constexpr double needle2 = 1e-20; // sine of an angle, squared
@@ -424,67 +433,95 @@ std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
 }
 
 //------------------------------------------------------------------------------
-double SurfaceProjection::distanceTo(const SurfaceProjection& other) const
+bool SurfaceProjection::isWithin(const Vec3& x, double distance) const
 {
-  // At the corners, the middles of the edges and the centre of each triangle.
-  double largest2 = 0;
-  for (const Piece& piece : this->Pieces)
+  const double most2 = distance * distance;
+  constexpr int deepest = 64;
+  std::int32_t stack[deepest];
+  int top = 0;
+  if (!this->Nodes.empty())
   {
-    const auto& [a, b, c] = piece.corner;
-    for (const Vec3& p :
-      { a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), (1.0 / 3.0) * (a + b + c) })
+    stack[top++] = 0;
+  }
+  while (top > 0)
+  {
+    const Node& node = this->Nodes[stack[--top]];
+    for (std::int32_t i = node.first; i < node.first + node.count; ++i)
     {
-      const Vec3 d = other.closest(p) - p;
-      largest2 = std::max(largest2, dot(d, d));
+      const Vec3 d = this->closestOf(i, x) - x;
+      if (dot(d, d) <= most2)
+      {
+        return true;
+      }
+    }
+    if (node.count == 0)
+    {
+      // The nearer child is searched first, those that are too far not at all.
+      const Node &left = this->Nodes[node.first], &right = this->Nodes[node.first + 1];
+      const double toLeft = squareDistance(left.low, left.high, x),
+                   toRight = squareDistance(right.low, right.high, x);
+      const bool leftFirst = toLeft <= toRight;
+      if (std::max(toLeft, toRight) <= most2)
+      {
+        stack[top++] = node.first + (leftFirst ? 1 : 0);
+      }
+      if (std::min(toLeft, toRight) <= most2)
+      {
+        stack[top++] = node.first + (leftFirst ? 0 : 1);
+      }
     }
   }
-  return std::sqrt(largest2);
+  return false;
 }
 
 //------------------------------------------------------------------------------
-double SurfaceProjection::distance(
-  const Mesh& mesh, const SimplexMesh& simplices, const double* points, int threads) const
+void addSamples(const std::array<Vec3, 3>& corner, int divisions, std::vector<Vec3>& places)
 {
-  const MeshView& view = mesh.view();
-  double largest2 = 0;
-  for (const CellBlock& block : mesh.blocks())
+  const auto& [a, b, c] = corner;
+  const double part = 1.0 / divisions;
+  for (int i = 0; i <= divisions; ++i)
   {
-    const CellTopology& t = topology(block.type);
-    if (t.dimension != 2)
+    for (int j = 0; i + j <= divisions && (j == 0 || b != c); ++j)
     {
-      continue;
-    }
-    std::vector<double> ofChunk(numberOfChunks(block.count), 0.0);
-    forEachChunk(block.count, threads,
-      [&](Index chunk, Index begin, Index end)
-      {
-        for (Index i = begin; i < end; ++i)
-        {
-          const Index* node = view.connectivity + view.offsets[block.cell(i)];
-          Vec3 center = { 0, 0, 0 };
-          const auto at = [&](int k)
-          {
-            const double* p = points + 3 * node[k % t.nodes];
-            return simplices.transform({ p[0], p[1], p[2] });
-          };
-          for (int k = 0; k < t.nodes; ++k)
-          {
-            center += (1.0 / t.nodes) * at(k);
-            for (const Vec3& p : { at(k), 0.5 * (at(k) + at(k + 1)) })
-            {
-              const Vec3 d = this->closest(p) - p;
-              ofChunk[chunk] = std::max(ofChunk[chunk], dot(d, d));
-            }
-          }
-          const Vec3 d = this->closest(center) - center;
-          ofChunk[chunk] = std::max(ofChunk[chunk], dot(d, d));
-        }
-      });
-    for (double d2 : ofChunk)
-    {
-      largest2 = std::max(largest2, d2);
+      places.push_back(
+        part * ((divisions - i - j) * a + static_cast<double>(i) * b + static_cast<double>(j) * c));
     }
   }
-  return simplices.scale() * std::sqrt(largest2);
+  if (b != c)
+  {
+    places.push_back((1.0 / 3.0) * (a + b + c));
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<Vec3> SurfaceProjection::samples(int divisions) const
+{
+  std::vector<Vec3> places;
+  for (const Piece& piece : this->Pieces)
+  {
+    addSamples(piece.corner, divisions, places);
+  }
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
+//------------------------------------------------------------------------------
+double SurfaceProjection::distanceTo(
+  const SurfaceProjection& other, int threads, int divisions) const
+{
+  const std::vector<Vec3> places = this->samples(divisions);
+  const auto count = static_cast<Index>(places.size());
+  std::vector<double> ofChunk(numberOfChunks(count), 0.0);
+  forEachChunk(count, threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        const Vec3 d = other.closest(places[i]) - places[i];
+        ofChunk[chunk] = std::max(ofChunk[chunk], dot(d, d));
+      }
+    });
+  return ofChunk.empty() ? 0.0 : std::sqrt(*std::max_element(ofChunk.begin(), ofChunk.end()));
 }
 }

@@ -11,6 +11,27 @@
 
 namespace tautline
 {
+/// A facet of the surface of a mesh: a cell of a surface, a face of a volume, an edge of a planar
+/// mesh.
+struct SurfaceFacet
+{
+  std::array<Index, MaxFaceNodes> nodes;
+  int size;
+};
+
+/// The cells of a surface mesh, or the boundary facets of a volume or planar one.
+TAUTLINE_KERNEL_EXPORT std::vector<SurfaceFacet> surfaceFacets(const Mesh& mesh);
+
+/// The point closest to x of a triangle, or of an edge, which has the last corner twice.
+Vec3 closestOnTriangle(const std::array<Vec3, 3>& corner, const Vec3& x);
+
+/**
+ * @brief Adds the places at which distances of a triangle, or of an edge, are measured: the corners
+ * of the parts into which its edges are divided, and the centre.
+ * @param divisions of each edge
+ */
+void addSamples(const std::array<Vec3, 3>& corner, int divisions, std::vector<Vec3>& places);
+
 /**
  * @brief Triangles in a bounding volume hierarchy. Quadrilaterals are two triangles, edges are flat
  * ones.
@@ -22,11 +43,9 @@ namespace tautline
 class TAUTLINE_KERNEL_EXPORT SurfaceProjection
 {
 public:
-  /// The 2D cells of a mesh, in the coordinates of `simplices` (see SimplexMesh::transform()).
+  /// The facets of a mesh, see surfaceFacets(), in the coordinates of `simplices` (see
+  /// SimplexMesh::transform()).
   SurfaceProjection(const Mesh& mesh, const SimplexMesh& simplices);
-
-  /// The boundary of a volume mesh (its faces) or of a planar one (its edges).
-  static SurfaceProjection ofBoundary(const Mesh& mesh, const SimplexMesh& simplices);
 
   /// A patch or curve in the coordinates of `simplices`; null: in those of the model.
   SurfaceProjection(const SurfacePart& part, const SimplexMesh* simplices);
@@ -44,14 +63,13 @@ public:
   /// The unit normal there, of a curve the unit tangent; zero if there is none.
   Vec3 direction(const Vec3& x) const;
 
-  /// The largest distance of the corners, edge midpoints and centres of the cells of `mesh` at
-  /// these coordinates.
-  double distance(
-    const Mesh& mesh, const SimplexMesh& simplices, const double* points, int threads) const;
+  /// Whether x is at most so far from the facets.
+  bool isWithin(const Vec3& x, double distance) const;
 
-  /// The largest distance of the corners, edge midpoints and centres of these triangles from
-  /// another surface.
-  double distanceTo(const SurfaceProjection& other) const;
+  /// The samples of the facets, see addSamples(), each once.
+  std::vector<Vec3> samples(int divisions) const;
+  /// The largest distance of the samples from another surface.
+  double distanceTo(const SurfaceProjection& other, int threads = 1, int divisions = 2) const;
 
 private:
   /// A triangle, or an edge with the last corner twice.
@@ -76,7 +94,10 @@ private:
   void build();
   void build(std::int32_t node, std::int32_t first, std::int32_t count);
   std::int32_t nearest(const Vec3& x, Vec3& point) const;
-  Vec3 closestOf(std::int32_t piece, const Vec3& x) const;
+  Vec3 closestOf(std::int32_t piece, const Vec3& x) const
+  {
+    return closestOnTriangle(this->Pieces[piece].corner, x);
+  }
   bool isOver(std::int32_t piece, const Vec3& x, Vec3& foot) const;
   Place lift(std::int32_t piece, const Vec3& foot) const;
   Place find(const Vec3& x) const;

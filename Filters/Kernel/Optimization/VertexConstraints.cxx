@@ -8,6 +8,9 @@ namespace tautline
 {
 namespace
 {
+/// Steps on a surface with a limit are tried as they are, then with a half, a quarter, ...
+constexpr int maxTrials = 3;
+
 /// A unit vector at a right angle to n, and the third.
 void tangentsOf(const Vec3& n, Vec3* tangents)
 {
@@ -156,7 +159,8 @@ int VertexOptimizer<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
 }
 
 //------------------------------------------------------------------------------
-/// Goes along the tangents and back to the surface, and stays there if that is better than before.
+/// Goes along the tangents and back to the surface, and stays there if that is better than before;
+/// less far where that would take the surface too far.
 template <int Dim>
 bool VertexOptimizer<Dim>::placeOnSurface(
   std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
@@ -170,37 +174,30 @@ bool VertexOptimizer<Dim>::placeOnSurface(
   {
     old[i] = this->Functions[i]->value(w.patch, zero);
   }
-  Vec3 x = before;
+  Vec3 step = { 0, 0, 0 };
   for (int c = 0; c < Dim; ++c)
   {
-    x += (d[c] / this->Simplices.scale()) * w.patch.axes[c];
+    step += (d[c] / this->Simplices.scale()) * w.patch.axes[c];
   }
   const std::vector<Vec3> normals =
     Dim == 2 && this->isOnCurve(v) ? this->normalsAt(v) : std::vector<Vec3>();
   const SurfaceProjection* surface = this->surfaceOf(v);
-  this->place(v, surface ? surface->closest(x) : x);
-  this->gather(v, w.patch);
-  for (std::size_t i = 0; i < n; ++i)
+  const int trials = this->Options.surfaceLimit ? maxTrials : 1;
+  bool placed = false;
+  for (int trial = 0; trial < trials && !placed; ++trial, step = 0.5 * step)
   {
-    w.sums[i].f = old[i];
+    this->place(v, surface ? surface->closest(before + step) : before + step);
+    this->gather(v, w.patch);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      w.sums[i].f = old[i];
+    }
+    const bool upright = this->Options.allowInversion ||
+      (this->isUpright(v, w.patch, normals) && this->staysValidInside(w.patch, zero));
+    placed = upright && this->changeAt(scalarizer, w, zero) < 0 &&
+      (!this->Options.surfaceLimit || this->Options.surfaceLimit->allows(v, before));
   }
-  const double infinity = std::numeric_limits<double>::infinity();
-  double smallest = infinity;
-  for (int i = 0; i < w.patch.simplices.count; ++i)
-  {
-    const PatchPacket<Dim>& p = w.patch.simplices.packets[i];
-    smallest = std::min(smallest, minOf(p.D0));
-  }
-  // Unfolded triangles are always positive: they must not turn over.
-  const std::vector<Vec3> turned = normals.empty() ? normals : this->normalsAt(v);
-  for (std::size_t i = 0; i < normals.size(); ++i)
-  {
-    const bool kept = dot(turned[i], normals[i]) > 0 || !(dot(normals[i], normals[i]) > 0);
-    smallest = kept ? smallest : -1.0;
-  }
-  const bool upright =
-    this->Options.allowInversion || (smallest > 0 && this->staysValidInside(w.patch, zero));
-  if (!upright || !(this->changeAt(scalarizer, w, zero) < 0))
+  if (!placed)
   {
     this->place(v, before);
     return false;
@@ -212,12 +209,41 @@ bool VertexOptimizer<Dim>::placeOnSurface(
   return true;
 }
 
+//------------------------------------------------------------------------------
+/// Whether no simplex at v is inverted. Unfolded triangles never are: they must not have turned
+/// over against the normals before, if there are any.
+template <int Dim>
+bool VertexOptimizer<Dim>::isUpright(
+  std::int32_t v, const VertexPatch<Dim>& patch, const std::vector<Vec3>& normals) const
+{
+  for (int i = 0; i < patch.simplices.count; ++i)
+  {
+    if (!(minOf(patch.simplices.packets[i].D0) > 0))
+    {
+      return false;
+    }
+  }
+  const std::vector<Vec3> turned = normals.empty() ? normals : this->normalsAt(v);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+  {
+    if (!(dot(turned[i], normals[i]) > 0) && dot(normals[i], normals[i]) > 0)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 template void VertexOptimizer<2>::findTangents(std::int32_t, Vec3*) const;
 template void VertexOptimizer<3>::findTangents(std::int32_t, Vec3*) const;
 template std::vector<Vec3> VertexOptimizer<2>::normalsAt(std::int32_t) const;
 template std::vector<Vec3> VertexOptimizer<3>::normalsAt(std::int32_t) const;
 template int VertexOptimizer<2>::allowed(std::int32_t, double (*)[2]) const;
 template int VertexOptimizer<3>::allowed(std::int32_t, double (*)[3]) const;
+template bool VertexOptimizer<2>::isUpright(
+  std::int32_t, const VertexPatch<2>&, const std::vector<Vec3>&) const;
+template bool VertexOptimizer<3>::isUpright(
+  std::int32_t, const VertexPatch<3>&, const std::vector<Vec3>&) const;
 template bool VertexOptimizer<2>::placeOnSurface(
   std::int32_t, const double*, const Scalarizer&, PatchWorker<2>&);
 template bool VertexOptimizer<3>::placeOnSurface(

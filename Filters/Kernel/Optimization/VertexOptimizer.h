@@ -76,6 +76,8 @@ private:
     return (Dim == 2 && this->Simplices.surface()) || this->surfaceOf(v);
   }
   std::vector<Vec3> normalsAt(std::int32_t v) const;
+  bool isUpright(
+    std::int32_t v, const VertexPatch<Dim>& patch, const std::vector<Vec3>& normals) const;
   bool search(const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d,
     const double* direction, double t, double slope, double* to);
   bool staysValidInside(const VertexPatch<Dim>& patch, const double* d) const;

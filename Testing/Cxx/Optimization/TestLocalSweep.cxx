@@ -59,7 +59,7 @@ void testValues(CellType type, bool slides)
   }
   const Mesh mesh(data.view());
   SimplexMesh simplices(mesh, fixed.data(), nullptr, 1);
-  const SurfaceProjection surface = SurfaceProjection::ofBoundary(mesh, simplices);
+  const SurfaceProjection surface(mesh, simplices);
   LocalOptions options;
   for (std::int32_t v = 0; slides && v < simplices.freeVertices(); ++v)
   {

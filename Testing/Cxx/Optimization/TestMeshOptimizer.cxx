@@ -504,6 +504,7 @@ void testOnSurface()
   const double fixed = sumOfSquares(withPointsOf(ball, meshOf(filter)));
   filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
   filter->SetFeatureAngle(90);
+  filter->SetSurfaceTolerance(0); // the ball is so coarse that its points could hardly slide
   filter->Update();
   const MeshData slid = withPointsOf(ball, meshOf(filter));
   TAUTLINE_CHECK(sumOfSquares(slid) < 0.98 * fixed);

@@ -163,7 +163,7 @@ void testSlidingSurface()
     TAUTLINE_CHECK(result.surfaceError > 0 && result.surfaceError < 0.05);
     const Mesh mesh(data.view());
     const SimplexMesh simplices(mesh, fixed.data(), nullptr, 1);
-    const SurfaceProjection surface = SurfaceProjection::ofBoundary(mesh, simplices);
+    const SurfaceProjection surface(mesh, simplices);
     for (Index i = 0; i < n; ++i)
     {
       const Vec3 x = simplices.transform(

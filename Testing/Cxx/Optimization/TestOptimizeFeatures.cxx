@@ -349,6 +349,7 @@ void testGeometry()
   OptimizeOptions options;
   options.model = &onSphere.model;
   options.parts = onSphere.parts.data();
+  options.onGeometry = true;
   const OptimizeResult result = run(placed, options);
   double off = 0;
   for (Index p = 0; p < sphere.numberOfPoints(); ++p)

@@ -215,7 +215,7 @@ void testProjection()
   const Mesh mesh(data.view());
   const SimplexMesh simplices(mesh, nullptr, nullptr, 1);
   const SurfaceProjection surface(mesh, simplices);
-  TAUTLINE_CHECK_NEAR(surface.distance(mesh, simplices, data.points.data(), 1), 0.0, 1e-12);
+  TAUTLINE_CHECK_NEAR(SurfaceProjection(mesh, simplices).distanceTo(surface), 0.0, 1e-12);
   Random random(5);
   for (int i = 0; i < 100; ++i)
   {

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfaceLimit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+/// Of the distance: places between those that are looked at may be farther.
+constexpr double margin = 0.85;
+/// Of the distance: what is nearer counts as so far, which is found faster.
+constexpr double near = 0.1;
+/// Places in a leaf of their tree, at most.
+constexpr std::size_t leafSize = 8;
+
+/// Or anything below `enough`, if it is below that.
+double squareDistanceTo(
+  const std::vector<std::array<Vec3, 3>>& triangles, const Vec3& x, double enough)
+{
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < triangles.size() && least > enough; ++i)
+  {
+    const Vec3 d = closestOnTriangle(triangles[i], x) - x;
+    least = std::min(least, dot(d, d));
+  }
+  return least;
+}
+}
+
+//------------------------------------------------------------------------------
+SurfaceLimit::SurfaceLimit(const Mesh& mesh, const SimplexMesh& simplices,
+  const SurfaceProjection& surface, double distance, bool bothWays)
+  : Simplices(simplices)
+  , Surface(surface)
+  , Distance(margin * distance)
+{
+  this->findFacets(mesh);
+  if (bothWays)
+  {
+    this->Places = surface.samples(divisions);
+    this->Tree = std::make_unique<PointTree>(this->Places, leafSize);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The facets that can move, and those of each free vertex.
+void SurfaceLimit::findFacets(const Mesh& mesh)
+{
+  std::vector<std::int32_t> vertexOf(mesh.view().numberOfPoints, -1);
+  for (std::int32_t v = 0; v < this->Simplices.vertices(); ++v)
+  {
+    vertexOf[this->Simplices.point(v)] = v;
+  }
+  const std::int32_t free = this->Simplices.freeVertices();
+  const auto isFree = [free](std::int32_t v) { return v >= 0 && v < free; };
+  this->Starts.assign(static_cast<std::size_t>(free) + 1, 0);
+  for (const SurfaceFacet& found : surfaceFacets(mesh))
+  {
+    Facet facet;
+    facet.vertices.fill(-1);
+    for (int k = 0; k < found.size; ++k)
+    {
+      facet.vertices[k] = vertexOf[found.nodes[k]];
+    }
+    const auto* vertices = facet.vertices.data();
+    if (std::any_of(vertices, vertices + found.size, isFree) &&
+      std::all_of(vertices, vertices + found.size, [](std::int32_t v) { return v >= 0; }))
+    {
+      this->Facets.push_back(facet);
+      for (int k = 0; k < found.size; ++k)
+      {
+        if (isFree(vertices[k]))
+        {
+          ++this->Starts[vertices[k] + 1];
+        }
+      }
+    }
+  }
+  for (std::int32_t v = 0; v < free; ++v)
+  {
+    this->Starts[v + 1] += this->Starts[v];
+  }
+  this->FacetsAt.resize(this->Starts.back());
+  std::vector<std::int32_t> next(this->Starts.begin(), this->Starts.end() - 1);
+  for (std::size_t f = 0; f < this->Facets.size(); ++f)
+  {
+    for (std::int32_t v : this->Facets[f].vertices)
+    {
+      if (isFree(v))
+      {
+        this->FacetsAt[next[v]++] = static_cast<std::int32_t>(f);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Whether the corners are where the facet cannot be too far. No point of it moves farther than
+/// the corner that moves farthest.
+bool SurfaceLimit::isLeft(const Facet& facet) const
+{
+  for (int k = 0; k < MaxFaceNodes && facet.vertices[k] >= 0; ++k)
+  {
+    const Vec3 d = this->at(facet.vertices[k]) - facet.measuredAt[k];
+    if (facet.left < 0 || dot(d, d) > facet.left * facet.left)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+/// The facets of v, with v at a place, as triangles (an edge has its last corner twice).
+std::vector<SurfaceLimit::Triangle> SurfaceLimit::trianglesAt(
+  std::int32_t v, const Vec3& place) const
+{
+  const auto corner = [&](std::int32_t i) { return i == v ? place : this->at(i); };
+  std::vector<Triangle> triangles;
+  for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1]; ++i)
+  {
+    const auto& nodes = this->Facets[this->FacetsAt[i]].vertices;
+    if (nodes[2] < 0)
+    {
+      triangles.push_back({ corner(nodes[0]), corner(nodes[1]), corner(nodes[1]) });
+    }
+    for (int k = 2; k < MaxFaceNodes && nodes[k] >= 0; ++k)
+    {
+      triangles.push_back({ corner(nodes[0]), corner(nodes[k - 1]), corner(nodes[k]) });
+    }
+  }
+  return triangles;
+}
+
+//------------------------------------------------------------------------------
+/// The largest distance of triangles from the surface; if it is above `most`, anything above that.
+double SurfaceLimit::farthest(const std::vector<Triangle>& triangles, double most) const
+{
+  std::vector<Vec3> places;
+  double largest = near * this->Distance;
+  for (std::size_t i = 0; i < triangles.size() && largest <= most; ++i)
+  {
+    places.clear();
+    addSamples(triangles[i], divisions, places);
+    for (const Vec3& x : places)
+    {
+      if (!this->Surface.isWithin(x, largest))
+      {
+        largest = std::max(largest, norm(this->Surface.closest(x) - x));
+      }
+    }
+  }
+  return largest;
+}
+
+//------------------------------------------------------------------------------
+/// The largest distance from the facets after, of the places of the surface that are near to the
+/// facets before.
+double SurfaceLimit::farthestPlace(
+  const Vec3& center, const std::vector<Triangle>& before, const std::vector<Triangle>& after) const
+{
+  double radius2 = 0;
+  for (const Triangle& triangle : before)
+  {
+    for (const Vec3& x : triangle)
+    {
+      radius2 = std::max(radius2, dot(x - center, x - center));
+    }
+  }
+  const double reach = std::sqrt(radius2) + this->Distance, most2 = this->Distance * this->Distance;
+  double largest2 = near * near * most2;
+  const auto& nodes = this->Tree->nodes();
+  for (std::size_t i = 0; i < nodes.size();)
+  {
+    const PointTree::Node& node = nodes[i];
+    if (norm(node.center - center) > reach + node.radius)
+    {
+      i = node.next;
+      continue;
+    }
+    for (std::size_t k = node.begin; node.leaf && k < node.end; ++k)
+    {
+      const Vec3& x = this->Places[this->Tree->order()[k]];
+      if (norm(x - center) <= reach && squareDistanceTo(before, x, most2) <= most2)
+      {
+        largest2 = std::max(largest2, squareDistanceTo(after, x, largest2));
+      }
+    }
+    ++i;
+  }
+  return std::sqrt(largest2);
+}
+
+//------------------------------------------------------------------------------
+bool SurfaceLimit::allows(std::int32_t v, const Vec3& before)
+{
+  bool left = true;
+  for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1] && left; ++i)
+  {
+    left = this->isLeft(this->Facets[this->FacetsAt[i]]);
+  }
+  if (left)
+  {
+    return true;
+  }
+  const std::vector<Triangle> old = this->trianglesAt(v, before);
+  const std::vector<Triangle> now = this->trianglesAt(v, this->at(v));
+  double distance = this->farthest(now, this->Distance);
+  if (distance > this->Distance)
+  {
+    // The input is on its own surface, but may be far from another one.
+    const double most = this->Tree ? 0 : this->farthest(old, std::numeric_limits<double>::max());
+    return most > this->Distance && this->farthest(now, most) <= most;
+  }
+  distance = this->Tree ? std::max(distance, this->farthestPlace(before, old, now)) : distance;
+  if (distance > this->Distance)
+  {
+    return false;
+  }
+  for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1]; ++i)
+  {
+    Facet& facet = this->Facets[this->FacetsAt[i]];
+    facet.left = this->Distance - distance;
+    for (int k = 0; k < MaxFaceNodes && facet.vertices[k] >= 0; ++k)
+    {
+      facet.measuredAt[k] = this->at(facet.vertices[k]);
+    }
+  }
+  return true;
+}
+}

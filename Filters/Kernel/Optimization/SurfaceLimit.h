@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SurfaceLimit.h
+ * @brief Keeps a surface whose vertices slide near to where it was. Internal: not installed.
+ */
+#ifndef tautline_SurfaceLimit_h
+#define tautline_SurfaceLimit_h
+
+#include "SurfaceProjection.h"
+#include "tautline/Geometry/PointTree.h"
+
+#include <memory>
+
+namespace tautline
+{
+/**
+ * @class tautline::SurfaceLimit
+ * @brief Tells of a step of one vertex whether its facets stay within a distance of a surface, and
+ * the surface within that distance of its facets.
+ *
+ * Vertices may be on the surface and the facets between them cut off its bends. So distances are
+ * measured at places all over both. A place of the surface counts to the facets of a vertex if it
+ * was within the distance of them: as each step keeps these places near, all that are near at the
+ * start stay near.
+ *
+ * What is left of the distance is kept with the corners of each facet: as long as none of these is
+ * farther from there than that, nothing needs to be measured again.
+ */
+class TAUTLINE_KERNEL_EXPORT SurfaceLimit
+{
+public:
+  /// Edges are divided into so many parts for the places at which distances are measured.
+  static constexpr int divisions = 4;
+
+  /**
+   * @param surface that the facets are kept near to; must outlive the limit
+   * @param distance in the coordinates of `simplices`, above 0
+   * @param bothWays whether the surface is to stay near to the facets, too
+   */
+  SurfaceLimit(const Mesh& mesh, const SimplexMesh& simplices, const SurfaceProjection& surface,
+    double distance, bool bothWays);
+
+  /**
+   * @brief Whether free vertex v of the simplices may be where it is, if it was at `before`. At the
+   * same time only for vertices without a common facet.
+   */
+  bool allows(std::int32_t v, const Vec3& before);
+
+private:
+  using Triangle = std::array<Vec3, 3>;
+  /// A facet by its vertices, -1 after the last.
+  struct Facet
+  {
+    std::array<std::int32_t, MaxFaceNodes> vertices;
+    std::array<Vec3, MaxFaceNodes> measuredAt = {};
+    double left = -1; ///< how far its corners may be from there; below 0: not measured
+  };
+  Vec3 at(std::int32_t v) const
+  {
+    const double* p = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
+    return { p[0], p[1], p[2] };
+  }
+  void findFacets(const Mesh& mesh);
+  bool isLeft(const Facet& facet) const;
+  std::vector<Triangle> trianglesAt(std::int32_t v, const Vec3& place) const;
+  double farthest(const std::vector<Triangle>& triangles, double most) const;
+  double farthestPlace(const Vec3& center, const std::vector<Triangle>& before,
+    const std::vector<Triangle>& after) const;
+
+  const SimplexMesh& Simplices;
+  const SurfaceProjection& Surface;
+  double Distance;
+  std::vector<Facet> Facets;
+  std::vector<std::int32_t> Starts, FacetsAt; ///< of each free vertex
+  std::vector<Vec3> Places;                   ///< of the surface
+  std::unique_ptr<PointTree> Tree;            ///< of these, if they are to stay near
+};
+}
+#endif
