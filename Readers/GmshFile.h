@@ -35,9 +35,12 @@ TAUTLINEREADERS_EXPORT std::vector<std::string> writeGmsh(
  * An element has the values of its corners, or its own at each of them; one with a value that is
  * not finite is left out of the view. Arrays of 1, 3 and 9 components are a view each, of others
  * each component, NAME_0 and so on. Throws FileError if there is no array.
+ *
+ * @param warnings if given, gets a sentence for each view without all elements: how many are left
+ * out, and which is the first
  */
 TAUTLINEREADERS_EXPORT std::vector<std::string> writeGmshViews(
-  const MeshFile& mesh, const std::string& name);
+  const MeshFile& mesh, const std::string& name, std::vector<std::string>* warnings = nullptr);
 
 /// FreeFem++'s "points triangles edges" files in 2D and "points tetrahedra triangles" files in 3D.
 MeshFile readFreeFem(const FileContent& file);

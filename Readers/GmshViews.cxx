@@ -66,8 +66,9 @@ struct View
   char letter() const { return this->count == 1 ? 'S' : this->count == 3 ? 'V' : 'T'; }
 };
 
-/// Adds an element with its values, unless one of them is not finite, which Gmsh cannot read.
-void writeElement(TextOutput& out, const MeshFile& mesh, const View& view, std::size_t cell)
+/// Adds an element with its values, unless one of them is not finite, which Gmsh cannot read: then
+/// nothing is added, and the result is false.
+bool writeElement(TextOutput& out, const MeshFile& mesh, const View& view, std::size_t cell)
 {
   const unsigned char type = linearType(mesh.cellTypes[cell]);
   const ViewCell& form = viewCell(type);
@@ -84,7 +85,7 @@ void writeElement(TextOutput& out, const MeshFile& mesh, const View& view, std::
       if (!std::isfinite(
             view.array.at((view.ofPoints ? nodes[i] : cell) * stride + view.first + c)))
       {
-        return;
+        return false;
       }
     }
   }
@@ -102,37 +103,54 @@ void writeElement(TextOutput& out, const MeshFile& mesh, const View& view, std::
   }
   out << "};";
   out.endLine();
+  return true;
 }
 
-void writeView(TextOutput& out, const MeshFile& mesh, const View& view, std::string name)
+void writeView(TextOutput& out, const MeshFile& mesh, const View& view, std::string name,
+  std::vector<std::string>* warnings)
 {
   std::replace(name.begin(), name.end(), '"', '\'');
   out << "View \"" << name << "\" {\n";
-  for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
+  const std::size_t cells = mesh.cellTypes.size();
+  std::size_t omitted = 0, first = 0;
+  for (std::size_t cell = 0; cell < cells; ++cell)
   {
-    writeElement(out, mesh, view, cell);
+    if (!writeElement(out, mesh, view, cell))
+    {
+      first = omitted == 0 ? cell : first;
+      ++omitted;
+    }
   }
   out << "};\n";
+  if (omitted > 0 && warnings)
+  {
+    warnings->push_back("view \"" + name + "\": " + std::to_string(omitted) + " of " +
+      std::to_string(cells) + " elements are left out, as Gmsh cannot read values that are not " +
+      "finite (the first is cell " + std::to_string(first) + ")");
+  }
 }
 
-void writeViews(TextOutput& out, const MeshFile& mesh, const MeshArray& array, bool ofPoints)
+void writeViews(TextOutput& out, const MeshFile& mesh, const MeshArray& array, bool ofPoints,
+  std::vector<std::string>* warnings)
 {
   constexpr std::size_t scalar = 1, vector = 3, tensor = 9;
   const auto components = static_cast<std::size_t>(array.components);
   if (components == scalar || components == vector || components == tensor)
   {
-    writeView(out, mesh, { array, ofPoints, 0, components }, array.name);
+    writeView(out, mesh, { array, ofPoints, 0, components }, array.name, warnings);
     return;
   }
   for (std::size_t c = 0; c < components; ++c)
   {
-    writeView(out, mesh, { array, ofPoints, c, scalar }, array.name + "_" + std::to_string(c));
+    writeView(
+      out, mesh, { array, ofPoints, c, scalar }, array.name + "_" + std::to_string(c), warnings);
   }
 }
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::string> writeGmshViews(const MeshFile& mesh, const std::string& name)
+std::vector<std::string> writeGmshViews(
+  const MeshFile& mesh, const std::string& name, std::vector<std::string>* warnings)
 {
   for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
   {
@@ -151,11 +169,11 @@ std::vector<std::string> writeGmshViews(const MeshFile& mesh, const std::string&
   TextOutput out(name);
   for (const MeshArray& array : mesh.pointArrays)
   {
-    writeViews(out, mesh, array, true);
+    writeViews(out, mesh, array, true, warnings);
   }
   for (const MeshArray& array : mesh.cellArrays)
   {
-    writeViews(out, mesh, array, false);
+    writeViews(out, mesh, array, false, warnings);
   }
   out.close();
   return { name };

@@ -20,5 +20,11 @@ std::vector<std::string> vtkGmshWriter::WriteMesh(
   {
     throw tautline::FileError(name + ": views are written as text; switch Binary off");
   }
-  return tautline::writeGmshViews(mesh, name);
+  std::vector<std::string> warnings;
+  std::vector<std::string> files = tautline::writeGmshViews(mesh, name, &warnings);
+  for (const std::string& warning : warnings)
+  {
+    vtkWarningMacro(<< name << ": " << warning);
+  }
+  return files;
 }

@@ -2,6 +2,7 @@
 """Files of solvers through VTK's readers and meshio, time steps, meshio's objects, the table of formats."""
 
 import sys
+import warnings
 
 import numpy as np
 import tautline as tl
@@ -248,6 +249,18 @@ def test_views():
     value = float(last.split("){", 1)[1].split(",", 1)[0])
     assert value == measured.values["imr"][-1], (value, measured.values["imr"][-1])
     refused("write .msh", tl.read, FOLDER / "bracket.pos")
+    values = measured.values["imr"].copy()
+    values[[3, 5]] = np.nan
+    gaps = vtkUnstructuredGrid()
+    gaps.CopyStructure(measured.mesh)
+    gaps.GetCellData().AddArray(numpy_to_vtk(values, deep=True))
+    gaps.GetCellData().GetArray(0).SetName("gaps")
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        tl.write(gaps, FOLDER / "gaps.pos")
+    expected = f'gaps.pos: view "gaps": 2 of {len(values)} elements are left out'
+    assert len(told) == 1 and expected in str(told[0].message), [str(each.message) for each in told]
+    assert told[0].filename == __file__, told[0].filename
     refused("this mesh has none", tl.write, BRACKET, FOLDER / "none.pos")
     refused("views are written as text", tl.write, measured, FOLDER / "none.pos", binary=True)
     assert not (FOLDER / "none.pos").exists()

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import argparse
 import sys
+import warnings
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from . import _build, _vtk
 from ._commands import EXIT_CODES, Parser, check_outputs, standard_input
@@ -52,6 +54,11 @@ def _run_study(arguments: argparse.Namespace) -> int:
     return int(import_module(".studies", __package__).main(arguments.arguments))
 
 
+def _show_warning(message: Warning | str, *_place: Any, **_options: Any) -> None:
+    """A warning as a sentence, without the line of the source that gave it."""
+    print(f"tautline: warning: {message}", file=sys.stderr)
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run a command. Returns 0, 1 after an error, which is printed to stderr, or 130 after Ctrl-C.
 
@@ -61,7 +68,8 @@ def main(arguments: list[str] | None = None) -> int:
     _vtk.CLASSES["vtkUpdateGuard"].EndWithMessage()
     try:
         check_outputs(parsed)
-        with standard_input(parsed), reporting(not parsed.quiet):
+        with warnings.catch_warnings(), standard_input(parsed), reporting(not parsed.quiet):
+            warnings.showwarning = _show_warning
             return parsed.run(parsed) or 0
     except Error as error:
         print(f"tautline: {error}", file=sys.stderr)

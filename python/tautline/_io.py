@@ -115,7 +115,7 @@ def read(
         reader.SetLowerCells(options.get("lower_cells", False))
         reader.SetFileName(name)
         for text in dict.fromkeys(run(reader).warnings):
-            warnings.warn(text, stacklevel=2)
+            warnings.warn(text, stacklevel=4)  # the caller of read()
         return reader.GetOutput()
     return _read_vtk(name, form)
 
@@ -327,6 +327,8 @@ def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[
     with updating(writer):
         written = writer.Write()
     messages.raise_errors()
+    for text in dict.fromkeys(messages.warnings):
+        warnings.warn(text, stacklevel=5)  # the caller of write()
     if not written:
         raise Error(f"{name}: cannot be written")
     return [writer.GetFileWritten(i) for i in range(writer.GetNumberOfFilesWritten())]
