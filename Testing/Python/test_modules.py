@@ -26,7 +26,7 @@ FLOORS = (
     ("_meshio",),
     ("_io", "_results"),
     ("_commands",),
-    ("_html", "_metrics"),
+    ("_html", "_metrics", "_state", "_state_runner"),  # the runner is a script that imports the whole package
     ("_quality",),
 )
 TYPE_CHECKING = re.compile(r"^if TYPE_CHECKING:\n(    .*\n)+", re.MULTILINE)

@@ -31,13 +31,14 @@ from ._metrics import load_metrics, metrics, register_metric, unregister_metric
 from ._pipeline import StepsResult, run_steps
 from ._quality import QualityResult, criteria, quality
 from ._report import report
+from ._state import StateResult, run_state
 
 __version__ = _build.VERSION
 
 __all__ = [
     "CompareResult", "compare", "Aborted", "Error", "Mesh", "read", "write", "from_arrays", "MetricFieldResult",
     "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric", "QualityResult", "criteria",
-    "quality", "report", "StepsResult", "run_steps",
+    "quality", "report", "StepsResult", "run_steps", "StateResult", "run_state",
     "formats", "times", "to_meshio",
 ]
 

@@ -24,6 +24,7 @@ from ._metrics import choose
 from ._names import find_name, nearest_name
 from ._quality import _criteria_presets
 from ._results import Result
+from ._state import STATE, run_state
 
 #: The functions that a step can call, by the file of the capability. Each takes the mesh of the steps before.
 _FUNCTIONS = {
@@ -281,14 +282,29 @@ def _run_all(steps: list[_Step]) -> StepsResult:
 def add_commands(commands: Any) -> None:
     """Add `run` to the subparsers of the command line."""
     parser = _commands.add_command(
-        commands, "run", _run, "run the steps of a TOML file", threads=False, example="steps.toml",
-        details="All steps are checked before the first one runs; exits with 3 if the mesh fails the criteria.",
+        commands, "run", _run, "run the steps of a TOML file, or the filters of a ParaView state", threads=False,
+        example="steps.toml",
+        details="All steps are checked before the first one runs; exits with 3 if the mesh fails the criteria. A state "
+                "(.pvsm) needs ParaView with the plugin, but no display.",
     )  # fmt: skip
-    parser.add_argument("steps", metavar="FILE", help="tables [[step]], each with the key do; see tautline.run_steps")
+    text = "tables [[step]], each with the key do, see tautline.run_steps; or a state of ParaView"
+    parser.add_argument("steps", metavar="FILE", help=text)
     parser.add_argument("--check", action="store_true", help="check the steps only")
+    parser.add_argument("--mesh", metavar="FILE", help="of a state: another mesh in the place of the one that it reads")
+    parser.add_argument("--filter", metavar="NAME", help="of a state with several ends: the filter whose mesh is taken")
+    _commands.add_output(parser, "of a state: where to write the mesh", required=False)
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    if Path(arguments.steps).suffix.lower() == STATE:
+        if arguments.check:
+            raise Error("a state is not checked; --check is for files of steps")
+        state = run_state(arguments.steps, mesh=arguments.mesh, filter=arguments.filter or "")
+        _commands.finish(arguments, state, state.summary, facts={"filters": state.filters})
+        return 0
+    for name in ("mesh", "filter", "output"):
+        if getattr(arguments, name) is not None:
+            raise Error(f"--{name} is for states of ParaView (.pvsm); a file of steps has read and write")
     result = run_steps(arguments.steps, check_only=arguments.check)
     if result is None:
         _commands.finish(arguments, None, "the steps are correct", facts={"correct": True})
