@@ -89,6 +89,11 @@ for program in kernel_consumer solvers_consumer module_consumer; do
   inside "/tmp/$program/$program"
 done
 
+inside 'cd /tmp && cmake -S /usr/share/doc/tautline/examples/cxx -B gallery -G Ninja -DCMAKE_BUILD_TYPE=Release && cmake --build gallery' \
+  >"$root/gallery.log" 2>&1 || { tail -n 20 "$root/gallery.log" >&2; fail "the C++ programs of the gallery"; }
+inside 'cd /tmp; for source in /usr/share/doc/tautline/examples/cxx/[0-9]*.cxx; do
+  gallery/$(basename $source .cxx) /usr/share/tautline/samples; done'
+
 echo "--- help pages, samples"
 for file in share/doc/tautline/help/index.html share/tautline/samples/bracket.vtu share/doc/tautline/CHANGELOG.md; do
   [[ -s $root/usr/$file ]] || fail "no /usr/$file"

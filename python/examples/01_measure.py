@@ -5,9 +5,9 @@ The inverse mean ratio of an equilateral tetrahedron is 1, large values are bad,
 itself.
 
 Shell: tautline quality bracket-tangled.vtu --metrics imr,min_angle
-Look at: the picture: a valid bracket, and the one with 41 inverted elements.
+Look at: the elements beyond 3 (red) and inverted ones (blue, on the right) inside the translucent surface.
 State: ElementQuality(Input=before)
-Picture: imr clip
+Picture: imr inside
 """
 
 import sys

@@ -4,9 +4,9 @@
 41 of its 8,140 tetrahedra are inverted; afterwards none is. The boundary does not move.
 
 Shell: tautline untangle bracket-tangled.vtu -o after.vtu
-Look at: the counts that are printed; the inverted elements lie inside.
+Look at: the red elements inside the translucent surface: they are inverted, and gone afterwards.
 State: UntangleMesh(Input=before)
-Picture: Validity clip
+Picture: Validity inside
 """
 
 import sys

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """make_gallery.py DATA [NAME...]: runs the examples and makes their pictures, and the table of their time and memory.
 
-Each example writes before.vtu and after.vtu (or .vti), which the picture pictures/NAME.png shows side by
-side, coloured by
-the array that the line "Picture:" of its docstring names; "edges" has no colours, "clip" shows the half
-behind the middle.
+Each example writes before.vtu and after.vtu (or .vti), which the picture pictures/NAME.png shows side by side, coloured
+by the array that the line "Picture:" of its docstring names; "edges" has no colours, "clip" shows the half behind the
+middle, "inside" the elements that fail (invalid, or beyond the range of the colours) inside a translucent surface.
 measured.json has the CPU seconds and the memory, MiB, of the process. Needs a display; Testing/headless.sh gives one.
 """
 
@@ -18,8 +17,9 @@ from pathlib import Path
 
 import tautline as tl
 from PIL import Image
-from vtkmodules.vtkCommonCore import vtkLookupTable
-from vtkmodules.vtkCommonDataModel import vtkPlane
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdList, vtkLookupTable
+from vtkmodules.vtkCommonDataModel import vtkPlane, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersExtraction import vtkExtractGeometry
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOImage import vtkPNGWriter
@@ -39,6 +39,8 @@ sys.path.insert(0, os.path.dirname(sys.argv[0]))
 runpy.run_path(sys.argv[0])
 print(next(line for line in open("/proc/self/status") if line.startswith("VmHWM")))
 """
+VALID = 1  # of the array Validity
+TRANSLUCENT = 0.12  # opacity of the surface around the elements inside
 HUES = (0.62, 0.0)  # blue is good, red is bad
 
 
@@ -75,9 +77,48 @@ def surface(mesh, clip: bool):
     return outside.GetOutput()
 
 
-def draw(window, mesh, array: str, clip: bool, span, place) -> None:
+def failing(mesh, array: str, most: float):
+    """The surfaces of the elements that are not valid or whose value is beyond `most`."""
+    bad = vtk_to_numpy(tl.quality(mesh, "imr").mesh.GetCellData().GetArray("Validity")) < VALID
+    if array != "Validity":
+        bad |= vtk_to_numpy(array_of(mesh, array)) > most
+    cells, values, nodes = vtkUnstructuredGrid(), mesh.GetCellData(), vtkIdList()
+    cells.SetPoints(mesh.GetPoints())
+    cells.GetCellData().CopyAllocate(values)
+    for cell in bad.nonzero()[0].tolist():
+        mesh.GetCellPoints(cell, nodes)
+        cells.GetCellData().CopyData(values, cell, cells.InsertNextCell(mesh.GetCellType(cell), nodes))
+    return cells
+
+
+def draw(window, mesh, array: str, how: str, span, place) -> None:
+    renderer = vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
+    renderer.SetViewport(*place)
+    if how == "inside":
+        inside = failing(mesh, array, span[1])
+        if inside.GetNumberOfCells():
+            renderer.AddActor(actor_of(inside, surface(inside, False), array, span))
+        whole = actor_of(mesh, surface(mesh, False), "edges", None)
+        whole.GetProperty().SetOpacity(TRANSLUCENT)
+        whole.GetProperty().EdgeVisibilityOff()
+        renderer.AddActor(whole)
+    else:
+        renderer.AddActor(actor_of(mesh, surface(mesh, how == "clip"), array, span))
+    bounds = mesh.GetBounds()
+    camera = renderer.GetActiveCamera()
+    camera.ParallelProjectionOn()
+    if bounds[5] > bounds[4]:
+        camera.SetPosition(0.7, -1, 0.7)
+        camera.SetViewUp(0, 0, 1)
+    renderer.ResetCamera()
+    camera.Zoom(1.15)
+    window.AddRenderer(renderer)
+
+
+def actor_of(mesh, shown, array: str, span) -> vtkActor:
+    """The surface of (a part of) a mesh, with its colours and edges."""
     mapper = vtkPolyDataMapper()
-    shown = surface(mesh, clip)
     mapper.SetInputData(shown)
     if span and array_of(mesh, array):
         table = vtkLookupTable()
@@ -102,23 +143,11 @@ def draw(window, mesh, array: str, clip: bool, span, place) -> None:
     actor.GetProperty().SetEdgeColor(0.2, 0.2, 0.25)
     actor.GetProperty().SetLineWidth(0.6)
     actor.GetProperty().SetAmbient(0.3)
-    renderer = vtkRenderer()
-    renderer.SetBackground(1, 1, 1)
-    renderer.SetViewport(*place)
-    renderer.AddActor(actor)
-    bounds = mesh.GetBounds()
-    camera = renderer.GetActiveCamera()
-    camera.ParallelProjectionOn()
-    if bounds[5] > bounds[4]:
-        camera.SetPosition(0.7, -1, 0.7)
-        camera.SetViewUp(0, 0, 1)
-    renderer.ResetCamera()
-    camera.Zoom(1.15)
-    window.AddRenderer(renderer)
+    return actor
 
 
 def make_picture(folder: Path, what: str, file: Path) -> None:
-    array, _, clip = what.partition(" ")
+    array, _, how = what.partition(" ")
     files = [folder / name for name in ("before.vtu", "after.vtu", "after.vti")]
     meshes = [measured(tl.read(name), array) for name in files if name.exists()]
     arrays = [array_of(mesh, array) for mesh in meshes]
@@ -131,7 +160,7 @@ def make_picture(folder: Path, what: str, file: Path) -> None:
     window.SetMultiSamples(0)
     window.SetSize(*SIZE)
     for i, mesh in enumerate(meshes):
-        draw(window, mesh, array, clip == "clip", span, (i / len(meshes), 0, (i + 1) / len(meshes), 1))
+        draw(window, mesh, array, how, span, (i / len(meshes), 0, (i + 1) / len(meshes), 1))
     window.Render()
     image = vtkWindowToImageFilter()
     image.SetInput(window)
