@@ -17,6 +17,8 @@ import sys
 from pathlib import Path
 from urllib.parse import unquote
 
+from cxx_pages import cxx_pages
+
 HELP = "Plugin/Documentation"
 #: Files outside Plugin/Site, and the names of their pages.
 PAGES = {
@@ -36,7 +38,8 @@ GALLERY_HEAD = """# Gallery
 Every example is a script in `python/examples`, which a test runs: `python3 02_untangle.py Data`. Pictures show the mesh
 before and after; blue is good, red is bad, and where nothing else is said the range of the colours is 1 to 3 of the
 inverse mean ratio. The seconds of processor time and the memory are those of the whole script on one machine, most of
-them for loading the libraries.
+them for loading the libraries. Some examples are C++ programs, too, in `python/examples/cxx`; a test builds and runs
+these.
 """
 LABEL = re.compile(r"^(Shell|Look at|State|Picture): (.*)$", re.MULTILINE)
 STATE = """# {title}
@@ -101,6 +104,8 @@ class Site:
         (self.work / "index.md").write_text(f"{readme}\n```{{toctree}}{toctrees}", encoding="utf-8")
         (self.work / "readme.md").unlink()
         (self.work / "python.md").write_text(python_page(), encoding="utf-8")
+        for name, text in cxx_pages(self.source).items():
+            (self.work / f"{name}.md").write_text(text, encoding="utf-8")
         (self.work / "tutorial.md").write_text(help_page("Tutorial", "tutorial.html", "index.html", "jobs.html"))
         (self.work / "gallery.md").write_text(gallery_page(self.source), encoding="utf-8")
         shutil.copyfile(self.source / "Plugin/Site/conf.py", self.work / "conf.py")
@@ -163,6 +168,11 @@ def gallery_page(source: Path) -> str:
         cost = facts[script.stem]
         parts.append(f"In Python, `{GALLERY}/{script.name}`, {cost['seconds']} s and {cost['memory']} MiB:\n")
         parts.append(f"```python\n{code}\n```\n")
+        program = folder / "cxx" / f"{script.stem}.cxx"
+        if program.exists():
+            body = program.read_text(encoding="utf-8").split("\n", 1)[1].strip()
+            parts.append(f"In C++, `{GALLERY}/cxx/{program.name}`, with the CMake file beside it:\n")
+            parts.append(f"```cpp\n{body}\n```\n")
     return "\n".join(parts)
 
 

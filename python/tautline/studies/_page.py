@@ -24,7 +24,7 @@ _CLASSES = {HOLDS: "yes", DOES_NOT_HOLD: "no", NOT_DECIDED: "open", TOO_SMALL: "
 _SHADES = 6
 _STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #202020 }
-table { border-collapse: collapse; margin: 0.5em 0 }
+table { border-collapse: collapse; margin: 0.5em 0; display: block; overflow-x: auto }
 td, th { border: 1px solid #ccc; padding: 2px 8px; text-align: left; vertical-align: top }
 pre { overflow-x: auto; font-size: 12px; background: #f6f6f6; padding: 6px }
 img { max-width: 100%; display: block; margin: 0.5em 0 } h3 { margin: 1.5em 0 0.3em }
