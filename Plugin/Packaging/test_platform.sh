@@ -3,7 +3,7 @@
 # test_platform.sh SOURCE_TREE SUITE LOG [MIRROR]: builds and tests the committed files in a bare chroot of a Debian release.
 # The last line that it prints is a row of a table: suite, ParaView, compiler, packages, build, tests. Needs root,
 # debootstrap, the network, and about 7 GB in TMPDIR. TAUTLINE_PLATFORM_ROOT names a chroot that is kept, and used again
-# if it is there: packages and objects of the last time stay.
+# if it is there: packages and objects of the last time stay, and ccache is used where it is installed in it.
 set -uo pipefail
 source="$1" suite="$2" log="$3" mirror="${4:-http://deb.debian.org/debian}"
 fail() { echo "test_platform.sh: $*; see $log" >&2; row; exit 1; }
@@ -15,16 +15,23 @@ command -v debootstrap >/dev/null || fail "no debootstrap: apt-get install deboo
 root="${TAUTLINE_PLATFORM_ROOT:-$(mktemp -d)}"
 mounted=()
 cleanup() {
-  for directory in "${mounted[@]}"; do umount "$directory"; done
+  for ((i = ${#mounted[@]} - 1; i >= 0; --i)); do umount "${mounted[i]}"; done
   [[ -n ${TAUTLINE_PLATFORM_ROOT:-} ]] || rm -rf --one-file-system "$root"
 }
 trap cleanup EXIT
 : >"$log"
 [[ -x $root/usr/bin/apt-get ]] || debootstrap --variant=minbase "$suite" "$root" "$mirror" >>"$log" 2>&1 || fail "debootstrap"
-if mount -t proc proc "$root/proc" 2>>"$log"; then mounted=("$root/proc"); fi
-# Nothing of this machine's environment, but the cache of the compiler where there is one.
+# What programs expect: hwloc prints a message without /sys, the tests of progress bars open terminals, MPI shares memory.
+for place in proc:proc sysfs:sys devpts:dev/pts tmpfs:dev/shm; do
+  mkdir -p "$root/${place#*:}"
+  if mount -t "${place%:*}" "${place%:*}" "$root/${place#*:}" 2>>"$log"; then mounted+=("$root/${place#*:}"); fi
+done
+# Nothing of this machine's environment. One process a core: ninja's two more need memory that small machines lack.
+launcher=()
+[[ ! -x $root/usr/bin/ccache ]] || launcher=(CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache)
 inside() {
   chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive CI=true \
+    CMAKE_BUILD_PARALLEL_LEVEL="$(nproc)" "${launcher[@]}" \
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin bash -c "$1"
 }
 mkdir -p "$root/tautline"

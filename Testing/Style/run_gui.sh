@@ -26,6 +26,18 @@ expect() { # EXPECTED ARGUMENT...
 expect "[part.vtu][--plugins=Tautline] " part.vtu
 expect "[a b.vtu][--dr][--plugins=Tautline] " "a b.vtu" --dr
 expect "[--script=$top/Plugin/open_sample.py][--plugins=Tautline] $top/Data/bracket-tangled.vtu"
+# An old ParaView is named before CMake is asked; of a newer one nothing is said.
+rm -rf "$scratch/build"
+for version in 5.9.1 5.10.0 5.11.0 5.13.2 6.1.1; do
+  printf '#!/bin/sh\necho paraview version %s\n' "$version" >"$scratch/pvpython"
+  chmod +x "$scratch/pvpython"
+  told="$("$top/run" build 2>&1)" && old=no || old=yes
+  [[ $version == 5.9.1 || $version == 5.10.0 ]] && wanted=yes || wanted=no
+  [[ $old == "$wanted" && ($old == no || $told == *"ParaView $version is too old, 5.11 or later"*) ]] ||
+    { echo "run build with ParaView $version: '$told'" >&2; exit 1; }
+  [[ $old == no || ! -e $scratch/build ]] || { echo "something was configured with ParaView $version" >&2; exit 1; }
+  rm -rf "$scratch/build"
+done
 [[ -f $top/Plugin/open_sample.py && -f $top/Data/bracket-tangled.vtu ]]
 grep -q '^GeneralSettings.ShowWelcomeDialog=false$' "$scratch/welcome" ||
   { echo "run gui: the welcome of ParaView is shown" >&2; exit 1; }
