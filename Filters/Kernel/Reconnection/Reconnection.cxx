@@ -4,6 +4,7 @@
 #include "BoundaryFreedom.h"
 #include "MeshBlocks.h"
 #include "Obstacles.h"
+#include "PassPlan.h"
 #include "ReconnectionOutput.h"
 #include "Schedule.h"
 #include "tautline/Core/Interruption.h"
@@ -19,28 +20,11 @@ namespace tautline
 {
 namespace
 {
-/// Qualities of the first passes: the worst tetrahedra first, also of the whole mesh.
-constexpr double FirstTargets[] = { 0.3, 0.45, 0.55 };
-/// What a motion of a point has to gain in the passes for the target, and after these. Smaller
-/// gains cost time and, at 50,000 tetrahedra, no longer improve the worst.
-constexpr double TargetGain = 1e-3, FineGain = 5e-4;
-/// Instead of both up to the last pass, for targets above this quality: half of all tetrahedra are
-/// worked on then.
-constexpr double HighTarget = 0.57, HighTargetGain = 4e-3;
-/// Steps of a point, each time, in the last pass; the others have two.
-constexpr int CompoundSteps = 4;
-/// Swaps and insertions that may follow a tentative change, in the last pass.
-constexpr int Repairs = 4;
-/// It ends after so many tetrahedra tried in vain, and one more of so many of the mesh: these take
-/// some milliseconds each.
-constexpr Index MaxFailures = 100, TetrahedraPerFailure = 10000;
 /// The same on the whole mesh after its blocks.
 constexpr Index WholeFailures = 50;
 /// The last pass is repeated, at most so often, as long as the worst quality gains so much by it.
 constexpr int Repetitions = 3;
 constexpr double RepetitionGain = 2e-3;
-/// Angle of the preset RemoveSlivers; that of the others is the default of the options.
-constexpr double SliverAngle = 15.0;
 /// The largest number of times that blocks are halved, and of partitions in different directions.
 constexpr int MaxLevels = 8, Partitions = 3;
 /// How far beyond the faces between blocks the next partition starts, in rings of tetrahedra.
@@ -178,77 +162,6 @@ void copyCounts(const OperationCounts& counts, ReconnectionRecord& record)
   record.contractions = counts.contractions;
   record.insertions = counts.insertions;
   record.moves = counts.moves;
-}
-
-/// First swaps and smoothing, for ever better tetrahedra; then insertion, then what is costly.
-std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index size)
-{
-  const bool sums = options.objective == ReconnectionObjective::Sum;
-  const double target = sums ? 1.0 : std::sin(radians(options.targetAngle));
-  PassOptions pass;
-  pass.swap = options.swap;
-  pass.smooth = options.smooth;
-  pass.skipsBound = options.boundary == ReconnectionBoundary::Fixed && !sums;
-  std::vector<PassOptions> passes;
-  for (double first : FirstTargets)
-  {
-    if (first < target && !sums)
-    {
-      pass.target = first;
-      passes.push_back(pass);
-    }
-  }
-  pass.target = target;
-  const bool high = target > HighTarget;
-  pass.leastGain = high ? HighTargetGain : TargetGain;
-  passes.push_back(pass);
-  const bool keepsCount = options.smallestCount == 1.0 && options.largestCount == 1.0;
-  // For sums insertions gain little: on 50,000 tetrahedra half a percent, for nine times the time.
-  if (options.insert && !keepsCount && !sums)
-  {
-    pass.insert = true;
-    pass.leastGain = high ? HighTargetGain : FineGain;
-    passes.push_back(pass);
-  }
-  if (options.contract && !keepsCount)
-  {
-    pass.contract = true;
-    passes.push_back(pass);
-  }
-  if (options.compound && options.smooth && !sums)
-  {
-    pass.compound = true;
-    pass.leastGain = FineGain;
-    pass.smoothingSteps = CompoundSteps;
-    passes.push_back(pass);
-    pass.repairs = Repairs;
-    pass.maxFailures = MaxFailures + size / TetrahedraPerFailure;
-    passes.push_back(pass);
-  }
-  return passes;
-}
-
-/// For what repairs that were ended early left below the target.
-PassOptions withoutCompound(PassOptions pass)
-{
-  pass.compound = false;
-  pass.maxFailures = 0;
-  return pass;
-}
-
-/// Those that what blocks left needs: the compound ones, and the one before these that does most.
-std::vector<PassOptions> lastPasses(const std::vector<PassOptions>& passes)
-{
-  std::vector<PassOptions> last;
-  for (const PassOptions& pass : passes)
-  {
-    if (!last.empty() && !last.back().compound)
-    {
-      last.pop_back();
-    }
-    last.push_back(pass);
-  }
-  return last;
 }
 
 /// How often a mesh is halved until the next half would be smaller than a block.
@@ -600,21 +513,6 @@ bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels)
 }
 
 //------------------------------------------------------------------------------
-void applyPreset(ReconnectionPreset preset, ReconnectionOptions& options)
-{
-  if (preset == ReconnectionPreset::Custom)
-  {
-    return;
-  }
-  const bool all =
-    preset == ReconnectionPreset::RemoveSlivers || preset == ReconnectionPreset::Aggressive;
-  options.swap = true;
-  options.smooth = preset != ReconnectionPreset::SwapOnly;
-  options.contract = options.insert = options.compound = all;
-  options.targetAngle =
-    preset == ReconnectionPreset::RemoveSlivers ? SliverAngle : ReconnectionOptions().targetAngle;
-}
-
 ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptions& options)
 {
   checkReconnectionOptions(options);

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PassPlan.h"
+
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+/// Qualities of the first passes: the worst tetrahedra first, also of the whole mesh.
+constexpr double FirstTargets[] = { 0.3, 0.45, 0.55 };
+/// What a motion of a point has to gain in the passes for the target, and after these. Smaller
+/// gains cost time and, at 50,000 tetrahedra, no longer improve the worst.
+constexpr double TargetGain = 1e-3, FineGain = 5e-4;
+/// Instead of both up to the last pass, for targets above this quality: half of all tetrahedra are
+/// worked on then.
+constexpr double HighTarget = 0.57, HighTargetGain = 4e-3;
+/// Steps of a point, each time, in the last pass; the others have two.
+constexpr int CompoundSteps = 4;
+/// Swaps and insertions that may follow a tentative change, in the last pass.
+constexpr int Repairs = 4;
+/// It ends after so many tetrahedra tried in vain, and one more of so many of the mesh: these take
+/// some milliseconds each.
+constexpr Index MaxFailures = 100, TetrahedraPerFailure = 10000;
+/// Angle of the preset RemoveSlivers; that of the others is the default of the options.
+constexpr double SliverAngle = 15.0;
+
+double radians(double degrees)
+{
+  return degrees * (Pi / 180.0);
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index size)
+{
+  const bool sums = options.objective == ReconnectionObjective::Sum;
+  const double target = sums ? 1.0 : std::sin(radians(options.targetAngle));
+  PassOptions pass;
+  pass.swap = options.swap;
+  pass.smooth = options.smooth;
+  pass.skipsBound = options.boundary == ReconnectionBoundary::Fixed && !sums;
+  std::vector<PassOptions> passes;
+  for (double first : FirstTargets)
+  {
+    if (first < target && !sums)
+    {
+      pass.target = first;
+      passes.push_back(pass);
+    }
+  }
+  pass.target = target;
+  const bool high = target > HighTarget;
+  pass.leastGain = high ? HighTargetGain : TargetGain;
+  passes.push_back(pass);
+  const bool keepsCount = options.smallestCount == 1.0 && options.largestCount == 1.0;
+  // For sums insertions gain little: on 50,000 tetrahedra half a percent, for nine times the time.
+  if (options.insert && !keepsCount && !sums)
+  {
+    pass.insert = true;
+    pass.leastGain = high ? HighTargetGain : FineGain;
+    passes.push_back(pass);
+  }
+  if (options.contract && !keepsCount)
+  {
+    pass.contract = true;
+    passes.push_back(pass);
+  }
+  if (options.compound && options.smooth && !sums)
+  {
+    pass.compound = true;
+    pass.leastGain = FineGain;
+    pass.smoothingSteps = CompoundSteps;
+    passes.push_back(pass);
+    pass.repairs = Repairs;
+    pass.maxFailures = MaxFailures + size / TetrahedraPerFailure;
+    passes.push_back(pass);
+  }
+  return passes;
+}
+
+PassOptions withoutCompound(PassOptions pass)
+{
+  pass.compound = false;
+  pass.maxFailures = 0;
+  return pass;
+}
+
+std::vector<PassOptions> lastPasses(const std::vector<PassOptions>& passes)
+{
+  std::vector<PassOptions> last;
+  for (const PassOptions& pass : passes)
+  {
+    if (!last.empty() && !last.back().compound)
+    {
+      last.pop_back();
+    }
+    last.push_back(pass);
+  }
+  return last;
+}
+
+void applyPreset(ReconnectionPreset preset, ReconnectionOptions& options)
+{
+  if (preset == ReconnectionPreset::Custom)
+  {
+    return;
+  }
+  const bool all =
+    preset == ReconnectionPreset::RemoveSlivers || preset == ReconnectionPreset::Aggressive;
+  options.swap = true;
+  options.smooth = preset != ReconnectionPreset::SwapOnly;
+  options.contract = options.insert = options.compound = all;
+  options.targetAngle =
+    preset == ReconnectionPreset::RemoveSlivers ? SliverAngle : ReconnectionOptions().targetAngle;
+}
+}
