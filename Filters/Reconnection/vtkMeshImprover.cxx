@@ -43,9 +43,9 @@ constexpr Reasons obstacles = { "it is not below the target",
 
 /// What would help, in the same order.
 constexpr Reasons remedies = { "", "try the preset Aggressive, a larger time limit or other counts",
-  "let the boundary slide in flat parts or on the surface, or repair the surface mesh",
+  "let the boundary slide on flat parts or on the surface, or repair the surface mesh",
   "fix fewer points", "choose fewer regions",
-  "let the boundary slide in flat parts or on the surface" };
+  "let the boundary slide on flat parts or on the surface" };
 
 /// The same for triangles.
 constexpr Reasons edgeObstacles = { "it is not below the target",
@@ -56,8 +56,8 @@ constexpr Reasons edgeRemedies = { "",
   "try the preset Aggressive, a larger time limit, other counts or, on a surface, a larger surface "
   "distance",
   "change the geometry", "fix fewer points",
-  "let the boundary slide in flat parts, choose fewer regions or a larger feature angle",
-  "let the boundary slide in flat parts" };
+  "let the boundary slide on flat parts, choose fewer regions or a larger feature angle",
+  "let the boundary slide on flat parts" };
 
 /// How the elements and their angles are called.
 struct Words
@@ -360,7 +360,7 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
   options.objective = static_cast<tautline::ReconnectionObjective>(this->Objective);
   options.metric = static_cast<tautline::Metric>(this->Metric);
   options.boundary = static_cast<tautline::ReconnectionBoundary>(this->Boundary);
-  options.flatTolerance = this->FlatTolerance;
+  options.flatAngle = this->FlatAngle;
   options.featureAngle = this->FeatureAngle;
   options.surfaceAngle = this->SurfaceAngle;
   options.surfaceDistance = this->SurfaceDistance;
@@ -555,7 +555,7 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Objective: " << this->Objective << "\n";
   os << indent << "Metric: " << this->Metric << "\n";
   os << indent << "Boundary: " << this->Boundary << "\n";
-  os << indent << "FlatTolerance: " << this->FlatTolerance << "\n";
+  os << indent << "FlatAngle: " << this->FlatAngle << "\n";
   os << indent << "SmallestCount: " << this->SmallestCount << "\n";
   os << indent << "LargestCount: " << this->LargestCount << "\n";
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";

@@ -184,12 +184,12 @@ public:
   enum Boundaries
   {
     FIXED = 0,
-    FLAT = 1,
+    SLIDING = 1,
     ON_SURFACE = 2
   };
   ///@{
   /**
-   * FIXED, the default: the points and facets of the boundary and between regions stay. FLAT:
+   * FIXED, the default: the points and facets of the boundary and between regions stay. SLIDING:
    * points slide within flat parts of the boundary and along straight edges, and are contracted
    * there; edges between coplanar facets are swapped. The shape and the volumes stay. ON_SURFACE
    * (tetrahedra only): the same on curved parts; facets stay within SurfaceDistance and
@@ -202,10 +202,10 @@ public:
   ///@}
 
   ///@{
-  /// With FLAT: facets whose normals differ by at most so many degrees, 0 to 1, are coplanar. The
-  /// default is 0.01.
-  vtkTautlineSetRangeMacro(FlatTolerance, double, 0.0, 1.0);
-  vtkGetMacro(FlatTolerance, double);
+  /// With SLIDING: facets whose normals differ by at most so many degrees, 0 to 1, are coplanar.
+  /// The default is 0.01.
+  vtkTautlineSetRangeMacro(FlatAngle, double, 0.0, 1.0);
+  vtkGetMacro(FlatAngle, double);
   ///@}
 
   ///@{
@@ -380,7 +380,7 @@ private:
   int Objective = ANGLES_AND_SHAPE;
   int Metric = 0;
   int Boundary = FIXED;
-  double FlatTolerance = 0.01;
+  double FlatAngle = 0.01;
   double SmallestCount = 0.9;
   double LargestCount = 1.1;
   double FeatureAngle = 40.0;

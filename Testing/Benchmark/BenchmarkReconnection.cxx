@@ -41,8 +41,9 @@ constexpr Case cases[] = {
   { "swap", ReconnectionPreset::SwapOnly, ReconnectionBoundary::Fixed, 0.0 },
   { "swap and smooth", ReconnectionPreset::SwapAndSmooth, ReconnectionBoundary::Fixed, 0.0 },
   { "aggressive", ReconnectionPreset::Aggressive, ReconnectionBoundary::Fixed, 0.0 },
-  { "flat", ReconnectionPreset::Aggressive, ReconnectionBoundary::Flat, 0.0 },
-  { "flat, high target", ReconnectionPreset::Aggressive, ReconnectionBoundary::Flat, FlatTarget },
+  { "flat", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding, 0.0 },
+  { "flat, high target", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding,
+    FlatTarget },
 };
 
 MeshData readMesh(const char* name)
@@ -92,7 +93,7 @@ constexpr Case triangleCases[] = {
   { "triangles, swap and smooth", ReconnectionPreset::SwapAndSmooth, ReconnectionBoundary::Fixed,
     0.0 },
   { "triangles", ReconnectionPreset::Aggressive, ReconnectionBoundary::Fixed, 0.0 },
-  { "triangles, flat", ReconnectionPreset::Aggressive, ReconnectionBoundary::Flat, 0.0 },
+  { "triangles, flat", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding, 0.0 },
 };
 
 /// The points inside a square moved at random by up to a third of the spacing.

@@ -155,7 +155,7 @@ def test_inputs():
     blocks = vtkMultiBlockDataSet()
     for i in range(2):
         blocks.SetBlock(i, tl.from_arrays(points(mesh), cells[region == i]))
-    refused("blocks would come apart", tl.improve, blocks, boundary="flat")
+    refused("blocks would come apart", tl.improve, blocks, boundary="sliding")
     both = tl.improve(blocks)
     assert both.elements_before == len(cells) and set(both.history["block"]) == {"block 1", "block 2"}
     assert np.isclose(both.smallest_angle, both.min_angle.min()) and "In block 2: " in both.summary
@@ -163,7 +163,7 @@ def test_inputs():
     assert tl.improve(([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], cells)).elements == 1
     custom = tl.improve(slivers(), "custom", smooth=False, insert=False, contract=False, compound=False)
     assert custom.history["moves"][-1] == 0 and custom.history["edge_removals"][-1] > 0
-    flat = tl.improve(slivers(), boundary="flat", time_limit=60)
+    flat = tl.improve(slivers(), boundary="sliding", time_limit=60)
     assert flat.smallest_angle >= flat.smallest_angle_before
 
 
@@ -260,7 +260,7 @@ def test_triangles():
     mesh = sheet()
     region = vtk_to_numpy(mesh.GetCellData().GetArray("region"))
     for preset, angle in (("remove slivers", 15), ("swap only", 0.8), ("swap and smooth", 5), ("aggressive", 15)):
-        for boundary in ("fixed", "flat"):
+        for boundary in ("fixed", "sliding"):
             result = tl.improve(mesh, preset, boundary=boundary, regions="region")
             after = tl.quality(result, ["min_angle", "imr"])
             assert after.inverted == 0 and np.allclose(result.min_angle, after.values["min_angle"])
@@ -280,7 +280,7 @@ def test_triangles():
             if preset == "aggressive":  # moved points keep their values, inserted ones interpolate
                 field = vtk_to_numpy(result.mesh.GetPointData().GetArray("field"))
                 assert np.isfinite(field).all() and len(field) == result.mesh.GetNumberOfPoints()
-    free = tl.improve(mesh, "aggressive", boundary="flat")
+    free = tl.improve(mesh, "aggressive", boundary="sliding")
     assert free.smallest_angle > 38, free.summary
 
 
@@ -329,7 +329,7 @@ def test_refused():
         ("cell_transfer is 'x'", {"cell_transfer": "x"}),
         ("smallest_count is 2", {"smallest_count": 2}),
         ("largest_count is 0.5", {"largest_count": 0.5}),
-        ("flat_tolerance is 2", {"flat_tolerance": 2}),
+        ("flat_angle is 2", {"flat_angle": 2}),
         ("no option 'speed'", {"speed": 1}),
         ("with preset='custom' only", {"swap": False}),
         ("no cell array 'x'", {"regions": "x"}),

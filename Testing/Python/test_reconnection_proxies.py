@@ -37,7 +37,7 @@ for preset in ("Swap only", "Swap and smooth", "Aggressive"):
     assert preset != "Swap only" or column(best, 1, "N moves")[-1] == 0
     assert best.CellData["min_angle"].GetRange()[0] >= best.SmallestAngleBefore, preset
 best.Preset, best.Smooth, best.Insert, best.Contract, best.Compound = "Custom", 0, 0, 0, 0
-best.TargetAngle, best.Boundary, best.FlatTolerance = 20, "Slide in flat parts", 1e-6
+best.TargetAngle, best.Boundary, best.FlatAngle = 20, "Slide on flat parts", 1e-6
 best.SmallestCount, best.LargestCount, best.Objective = 0.8, 1.3, "Shape"
 best.FeatureAngle, best.SurfaceAngle, best.SurfaceDistance = 30, 15, 0.01
 best.RegionArray = ["CELLS", "region"]
@@ -68,7 +68,7 @@ assert column(averaged, 1, "N moves")[-1] > column(plain, 1, "N moves")[-1]
 
 # a metric; a boundary that changes within a distance
 named = ImproveMesh(Input=worse, Preset="Aggressive", Objective="Metric", Metric="Radius ratio")  # noqa: F821
-named.Boundary, named.SurfaceDistance = "On surface", 0.01
+named.Boundary, named.SurfaceDistance = "Slide on smooth parts", 0.01
 named.UpdatePipeline()
 named.UpdatePropertyInformation()
 assert "Radius ratio of the worst tetrahedron: " in named.Summary, named.Summary
@@ -92,7 +92,7 @@ simple.LoadState(STATE)
 again = simple.FindSource("Improved")
 assert (again.Preset, again.Boundary, again.TargetAngle, again.LargestCount) == (
     "Custom",
-    "Slide in flat parts",
+    "Slide on flat parts",
     20,
     1.3,
 )

@@ -55,7 +55,7 @@ def test_reach():
         assert row[4] > (15 if "Delaunay" in name else 25), (name, row)
     for column, value, wrong in ((4, 35.0, 1), (4, 0.0, 0), (5, 1e3, 0)):
         bad = {key: list(row) for key, row in rows.items()}
-        bad["bore, flat"][column] = value
+        bad["bore, sliding"][column] = value
         assert not holds(reconnection.reach_findings, bad)[wrong]
 
 

@@ -381,7 +381,7 @@ OPERATIONS = {
         TANGLED, "local", fixed=half(tl.read(TANGLED)), fix_boundary=False, threads=t),
     **each("improve mesh, {}", ("remove slivers", "swap only", "swap and smooth", "aggressive"),
            lambda preset, t: tl.improve(BRACKET, preset, threads=t)),
-    "improve mesh, flat": lambda t: tl.improve(BRACKET, boundary="flat", threads=t),
+    "improve mesh, sliding": lambda t: tl.improve(BRACKET, boundary="sliding", threads=t),
     # deformation
     **each("warp by {}, 50,000 triangles", (
         "hybrid", "femwarp", "anisotropic femwarp", "small-step femwarp", "femwarp and untangling",

@@ -21,7 +21,7 @@ from ._results import Result
 #: In the filter's numbering.
 Preset = Literal["custom", "remove slivers", "swap only", "swap and smooth", "aggressive"]
 PRESETS: tuple[Preset, ...] = get_args(Preset)
-Boundary = Literal["fixed", "flat", "on surface"]
+Boundary = Literal["fixed", "sliding", "on surface"]
 BOUNDARIES: tuple[Boundary, ...] = get_args(Boundary)
 Objective = Literal["angles and shape", "angles", "shape", "sum"]
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
@@ -29,7 +29,7 @@ CellTransfer = Literal["copy", "conservative"]
 CELL_TRANSFERS: tuple[CellTransfer, ...] = get_args(CellTransfer)
 _FIXED, _REGIONS, _SIZES = 0, 1, 2  # input arrays of vtkMeshImprover
 _MAX_ANGLE = 60.0
-_MAX_FLAT_TOLERANCE = 1.0
+_MAX_FLAT_ANGLE = 1.0
 _MAX_FEATURE_ANGLE, _MAX_SURFACE_ANGLE = 180.0, 90.0
 _OPERATIONS = {name: flag_option("Set" + name.title()) for name in ("swap", "smooth", "contract", "insert", "compound")}
 
@@ -87,7 +87,7 @@ def improve(
     target_angle: float | None = None,
     smallest_count: float = 0.9,
     largest_count: float = 1.1,
-    flat_tolerance: float = 0.01,
+    flat_angle: float = 0.01,
     feature_angle: float = 40.0,
     surface_angle: float = 20.0,
     surface_distance: float = 5e-3,
@@ -113,7 +113,7 @@ def improve(
     preset: "remove slivers" (changes only neighbourhoods of elements with dihedral angles below 15 or above 165
         degrees, of triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is
         inserted or removed), "aggressive" (every operation everywhere) or "custom" (the operations given).
-    boundary: "fixed" (same points and facets), "flat" (points slide in flat parts and along straight edges, facets
+    boundary: "fixed" (same points and facets), "sliding" (points slide in flat parts and along straight edges, facets
         there change; the shape stays) or, of tetrahedra, "on surface" (the same on curved parts: the boundary stays
         within surface_distance and surface_angle of that of the input, corners and sharp edges stay; the volume
         changes a little).
@@ -128,7 +128,7 @@ def improve(
         preset, 15 for "remove slivers" and 33.4 (triangles: 40) for the others.
     smallest_count, largest_count: bounds of the number of elements as multiples of that of the input. Both 1: no
         point is inserted or removed.
-    flat_tolerance: angle in degrees, 0 to 1, up to which facets are coplanar, with boundary "flat".
+    flat_angle: angle in degrees, 0 to 1, up to which facets are coplanar, with boundary "sliding".
     feature_angle: of a surface, and of a boundary "on surface": edges between facets that differ by more degrees, 0 to
         180, stay, and so do corners.
     surface_angle, surface_distance: of the same: how far the normals of changed facets turn from the input below, in
@@ -180,7 +180,7 @@ def improve(
         filter_.SetTargetAngle(within("target_angle", target_angle, 0, _MAX_ANGLE))
     filter_.SetSmallestCount(within("smallest_count", smallest_count, 0, 1))
     filter_.SetLargestCount(within("largest_count", largest_count, 1, np.inf))
-    filter_.SetFlatTolerance(within("flat_tolerance", flat_tolerance, 0, _MAX_FLAT_TOLERANCE))
+    filter_.SetFlatAngle(within("flat_angle", flat_angle, 0, _MAX_FLAT_ANGLE))
     filter_.SetFeatureAngle(within("feature_angle", feature_angle, 0, _MAX_FEATURE_ANGLE))
     filter_.SetSurfaceAngle(within("surface_angle", surface_angle, 0, _MAX_SURFACE_ANGLE))
     filter_.SetSurfaceDistance(within("surface_distance", surface_distance, 0, 1))
@@ -259,7 +259,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--preset", choices=PRESETS, default="remove slivers")
     for name in _OPERATIONS:
         parser.add_argument(f"--no-{name}", action="store_false", dest=name, help="with --preset custom")
-    parser.add_argument("--flat-tolerance", type=float, metavar="DEGREES", default=0.01,
+    parser.add_argument("--flat-angle", type=float, metavar="DEGREES", default=0.01,
                         help="up to which facets are coplanar, with --boundary flat (default: 0.01)")  # fmt: skip
     parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
     parser.add_argument("--objective", choices=OBJECTIVES, default=OBJECTIVES[0],
@@ -298,7 +298,7 @@ def _length_or_name(text: str) -> float | str:
 def _run_improve(arguments: argparse.Namespace) -> None:
     names = (
         *("preset", "boundary", "objective", "metric", "target_angle", "regions", "smallest_count", "largest_count"),
-        *("fixed", "edge_length", "edge_factor", "then_best_shape", "cell_transfer", "flat_tolerance", "feature_angle"),
+        *("fixed", "edge_length", "edge_factor", "then_best_shape", "cell_transfer", "flat_angle", "feature_angle"),
         *("surface_angle", "surface_distance", "time_limit", "threads", "merge_coincident_points"),
     )
     left_out: dict[str, Any] = {name: False for name in _OPERATIONS if not getattr(arguments, name)}

@@ -290,7 +290,7 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   this->Operations.swapsBoundary =
     this->Options.swap && this->Options.boundary != ReconnectionBoundary::Fixed;
   this->Operations.flatTolerance = std::max(
-    std::sin(radians(this->Options.flatTolerance)), 4.0 * std::numeric_limits<double>::epsilon());
+    std::sin(radians(this->Options.flatAngle)), 4.0 * std::numeric_limits<double>::epsilon());
   this->setBounds();
   this->Result.reason = StopReason::NoProgress;
   const bool started = this->record(0, 0.0);
@@ -536,9 +536,8 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   }
   else
   {
-    freedoms = findFreedoms(changing, options.boundary == ReconnectionBoundary::Flat,
-      std::max(
-        std::sin(radians(options.flatTolerance)), 4.0 * std::numeric_limits<double>::epsilon()));
+    freedoms = findFreedoms(changing, options.boundary == ReconnectionBoundary::Sliding,
+      std::max(std::sin(radians(options.flatAngle)), 4.0 * std::numeric_limits<double>::epsilon()));
   }
   std::vector<char> fixedPoints(freedoms.size(), 0);
   for (std::size_t v = 0; v < freedoms.size(); ++v)

@@ -15,7 +15,7 @@ namespace
 constexpr double BytesPerTetrahedron = 250.0;
 /// Of the blocks beside these.
 constexpr double BlockBytesPerTetrahedron = 110.0;
-constexpr double LargestTargetAngle = 60.0, LargestFlatTolerance = 1.0;
+constexpr double LargestTargetAngle = 60.0, LargestFlatAngle = 1.0;
 constexpr double LargestFeatureAngle = 180.0, LargestSurfaceAngle = 90.0;
 
 void checkCells(const Mesh& mesh)
@@ -81,8 +81,8 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
   };
   check(options.targetAngle > 0.0 && options.targetAngle <= LargestTargetAngle,
     "the target angle must be above 0 and at most 60 degrees");
-  check(options.flatTolerance >= 0.0 && options.flatTolerance <= LargestFlatTolerance,
-    "the flat tolerance must be from 0 to 1 degree");
+  check(options.flatAngle >= 0.0 && options.flatAngle <= LargestFlatAngle,
+    "the flat angle must be from 0 to 1 degree");
   check(options.featureAngle >= 0.0 && options.featureAngle <= LargestFeatureAngle,
     "the feature angle must be 0 to 180 degrees");
   check(options.surfaceAngle >= 0.0 && options.surfaceAngle <= LargestSurfaceAngle,

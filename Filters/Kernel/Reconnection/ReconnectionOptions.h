@@ -30,10 +30,10 @@ enum class ReconnectionBoundary : int
   /**
    * @brief Points of the boundary move within flat parts and along straight edges, and are
    * contracted there; edges between coplanar facets of the boundary are removed. The shape, the
-   * volume and the volume of each region stay, within the flat tolerance. Facets between regions
+   * volume and the volume of each region stay, within the flat angle. Facets between regions
    * are not swapped or contracted.
    */
-  Flat = 1,
+  Sliding = 1,
   /**
    * @brief Also on curved parts: points of the boundary move on it, or along its sharp edges, and
    * are contracted, inserted and swapped there; facets stay within surfaceDistance and surfaceAngle
@@ -113,7 +113,7 @@ struct ReconnectionOptions
    * @brief Degrees, above 0 and at most 60. Tetrahedra are worked on while their quality is below
    * the sine of this angle; when none is, all dihedral angles are between it and 180 degrees minus
    * it, and the run ends. The default is about what fixed boundaries of good facets allow; with
-   * Flat, 38 to 39 is in reach, at some ten times the cost.
+   * Sliding, 38 to 39 is in reach, at some ten times the cost.
    */
   double targetAngle = 33.4;
   ReconnectionObjective objective = ReconnectionObjective::AnglesAndShape;
@@ -121,9 +121,9 @@ struct ReconnectionOptions
   /// larger or smaller, and does not depend on the orientation in space.
   Metric metric = Metric::InverseMeanRatio;
   ReconnectionBoundary boundary = ReconnectionBoundary::Fixed;
-  /// With Flat: facets whose normals differ by at most so many degrees are coplanar; 0 to 1. The
+  /// With Sliding: facets whose normals differ by at most so many degrees are coplanar; 0 to 1. The
   /// default allows for coordinates in single precision, or with six decimals in a file.
-  double flatTolerance = 0.01;
+  double flatAngle = 0.01;
   ///@{ With Surface, and of triangles of surfaces in space.
   /// Degrees, 0 to 180: edges between facets that differ by more are kept.
   double featureAngle = 40.0;

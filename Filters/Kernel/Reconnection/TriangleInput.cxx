@@ -219,8 +219,8 @@ std::vector<PointFreedom> findFreedoms(
   const TriangleMesh& mesh, const TriangleInput& input, const TriangleOptions& options)
 {
   const double tolerance = std::max(
-    std::sin(options.flatTolerance * (Pi / 180.0)), 4.0 * std::numeric_limits<double>::epsilon());
-  const bool slide = options.boundary == ReconnectionBoundary::Flat;
+    std::sin(options.flatAngle * (Pi / 180.0)), 4.0 * std::numeric_limits<double>::epsilon());
+  const bool slide = options.boundary == ReconnectionBoundary::Sliding;
   std::vector<PointFreedom> freedoms(mesh.pointSlots());
   std::vector<TriId> around;
   for (VertexId v = 0; v < mesh.pointSlots(); ++v)
@@ -294,7 +294,7 @@ void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoint
   const TriangleOptions& options, ReconnectionResult& result)
 {
   const double target = std::sin(options.targetAngle * (Pi / 180.0));
-  const bool divides = options.boundary == ReconnectionBoundary::Flat && options.insert;
+  const bool divides = options.boundary == ReconnectionBoundary::Sliding && options.insert;
   std::vector<char> atBorder(mesh.pointSlots(), 0), atInterface(atBorder);
   double forced = 1.0, smallestCorner = Pi;
   std::vector<double> bounds(mesh.slots(), RegularSine);

@@ -14,7 +14,7 @@ namespace tautline
 {
 /**
  * @brief The options; those of tetrahedra hold for triangles, with these remarks. `boundary` is
- * that of borders, edges between regions and sharp edges: with Flat, their points move along
+ * that of borders, edges between regions and sharp edges: with Sliding, their points move along
  * straight parts and are contracted there, and their edges are divided. `targetAngle` is of the
  * angles of triangles, 40 degrees by default; counts are of triangles.
  */

@@ -369,7 +369,7 @@ void addFilters(std::vector<HostileFilter>& list)
     {
       auto filter = improver();
       filter->SetPreset(vtkMeshImprover::AGGRESSIVE);
-      filter->SetBoundary(vtkMeshImprover::FLAT);
+      filter->SetBoundary(vtkMeshImprover::SLIDING);
       filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Material");
       return filter;
     },

@@ -232,7 +232,8 @@ void testRegions()
     const Vec3 m = Mesh(data.view()).center(c, CellType::Tetrahedron);
     regions.push_back(m[0] < 3 ? -7 : (m[1] < 3 ? 100 : 4));
   }
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     ReconnectionOptions options;
     options.regions = regions.data();
@@ -293,7 +294,7 @@ void testDividedBoundary()
   ReconnectionOptions options;
   options.largestCount = 100.0;
   const ReconnectionResult fixed = reconnect(data, options);
-  options.boundary = ReconnectionBoundary::Flat;
+  options.boundary = ReconnectionBoundary::Sliding;
   const ReconnectionResult flat = reconnect(data, options);
   checkResult(data, flat);
   checkOrigins(data, flat);
@@ -337,7 +338,7 @@ void testFlat()
   ReconnectionOptions options;
   const ReconnectionResult fixed = reconnect(data, options);
   checkResult(data, fixed);
-  options.boundary = ReconnectionBoundary::Flat;
+  options.boundary = ReconnectionBoundary::Sliding;
   const ReconnectionResult flat = reconnect(data, options);
   checkResult(data, flat);
   checkOrigins(data, flat);
@@ -462,7 +463,8 @@ void testBlocks()
   {
     TAUTLINE_CHECK(outerFacets(output, regionsAfter, region) == outerFacets(data, regions, region));
   }
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     options.boundary = boundary;
     options.threads = 1;
@@ -594,7 +596,8 @@ void testMean()
     const std::vector<double> values = valuesOf(mesh, Metric::InverseMeanRatio);
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     ReconnectionOptions options = optionsOf(Kind::Aggressive);
     options.boundary = boundary;
@@ -627,7 +630,8 @@ void testOverlaps()
   {
     field.push_back(random.vector(-1.0, 3.0)[0]);
   }
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     ReconnectionOptions options = optionsOf(Kind::Aggressive);
     options.boundary = boundary;

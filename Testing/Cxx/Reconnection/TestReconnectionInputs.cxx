@@ -75,7 +75,7 @@ void testOptions()
   }
   for (double angle : { -0.1, 1.1, nan })
   {
-    refused([&](ReconnectionOptions& o) { o.flatTolerance = angle; }, "flat tolerance");
+    refused([&](ReconnectionOptions& o) { o.flatAngle = angle; }, "flat angle");
   }
   refused([](ReconnectionOptions& o) { o.maximumSeconds = -1; }, "time limit");
 }
@@ -85,7 +85,8 @@ void testSmall()
   ReconnectionOptions options;
   options.smallestCount = 0.0;
   options.largestCount = 100.0;
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     options.boundary = boundary;
     const ReconnectionResult empty = reconnect(MeshData(), options);
@@ -145,7 +146,7 @@ void testNonManifold()
         CellType::Tetrahedron, std::vector<Index>{ ids[v[0]], ids[v[1]], ids[v[2]], ids[v[3]] });
     }
     for (ReconnectionBoundary boundary :
-      { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+      { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
     {
       ReconnectionOptions options;
       options.boundary = boundary;
@@ -214,7 +215,8 @@ void testThinPlate()
       const Vec3 d = random.vector(-0.2, 0.2);
       return rim ? p : p + Vec3{ d[0], d[1], 0.0 };
     });
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     ReconnectionOptions options;
     options.boundary = boundary;

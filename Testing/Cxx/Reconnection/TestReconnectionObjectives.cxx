@@ -104,7 +104,8 @@ double excessOf(const MeshData& data)
 void testSum()
 {
   const MeshData data = sliverBlock(6, 9, 0.9);
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
     options.boundary = boundary;

@@ -268,7 +268,7 @@ void testRegions()
   {
     regions[c] = (c / 2 % 14 < 6 ? 4 : -1) + (c / 28 < 5 ? 7 : 0);
   }
-  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);
     options.regions = regions.data();
@@ -301,7 +301,7 @@ void testFlat()
     });
   TriangleOptions options = triangleOptions(Preset::Aggressive);
   const double kept = reconnect(data, options).history.back().smallestAngle;
-  options.boundary = ReconnectionBoundary::Flat;
+  options.boundary = ReconnectionBoundary::Sliding;
   options.smallestCount = 0.5;
   const ReconnectionResult result = reconnect(data, options);
   const MeshData output = trianglesOf(result);
@@ -322,7 +322,8 @@ void testFlat()
 /// Then best shape: the mean becomes better, the worst does not become worse, the shape stays.
 void testMean()
 {
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     const MeshData data = sliverSheet(12);
     TriangleOptions options = triangleOptions(Preset::Aggressive);

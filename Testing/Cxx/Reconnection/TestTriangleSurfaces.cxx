@@ -187,7 +187,7 @@ void testMean()
 void testCube()
 {
   const MeshData data = slid(cubeSurface(CellType::Triangle, 8), 5, 0.95, false);
-  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);
     options.boundary = boundary;
@@ -284,7 +284,7 @@ void testNonManifold()
       sheets.addCell(CellType::Triangle, { ids[v[0]], ids[v[1]], ids[v[2]] });
     }
   }
-  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);
     options.boundary = boundary;

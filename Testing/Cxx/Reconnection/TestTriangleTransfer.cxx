@@ -175,7 +175,8 @@ std::vector<double> averages(const ReconnectionResult& result, const std::vector
 void testPlanarOverlaps()
 {
   const Context context("planar overlaps");
-  for (ReconnectionBoundary boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Flat })
+  for (ReconnectionBoundary boundary :
+    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     const MeshData data = sliverSheet(8);
     std::vector<Index> regions;
