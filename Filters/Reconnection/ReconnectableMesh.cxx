@@ -117,6 +117,7 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
     this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
   }
   this->takeLines();
+  this->takeFacets();
 }
 
 //------------------------------------------------------------------------------
@@ -166,8 +167,7 @@ void ReconnectableMesh::findKind()
   }
   this->LeftOut = listOf(counts) + " beside the " + cells + " are left out of the output. " +
     (this->isTriangles() ? "Edges of the mesh that lines join are kept."
-                         : "To keep facets inside the mesh, choose a region array of the "
-                           "tetrahedra.");
+                         : "Facets inside the mesh that triangles mark are kept.");
   vtkNew<vtkUnstructuredGrid> grid;
   grid->SetPoints(this->Input->GetPoints());
   grid->AllocateExact(taken, this->Corners * taken);
@@ -204,6 +204,27 @@ void ReconnectableMesh::takeLines()
     for (vtkIdType i = 0; i + 1 < points->GetNumberOfIds(); ++i)
     {
       this->Lines.push_back({ id(i), id(i + 1) });
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The facets that triangles beside tetrahedra mark.
+void ReconnectableMesh::takeFacets()
+{
+  vtkNew<vtkIdList> points;
+  const std::vector<Index>& one = this->Adapter->coincident().representative;
+  for (vtkIdType cell = 0;
+       !this->isTriangles() && !this->Cells.empty() && cell < this->Input->GetNumberOfCells();
+       ++cell)
+  {
+    pollInterruption(cell);
+    if (this->Input->GetCellType(cell) == VTK_TRIANGLE)
+    {
+      this->Input->GetCellPoints(cell, points);
+      const auto id = [&](vtkIdType i)
+      { return one.empty() ? points->GetId(i) : one[points->GetId(i)]; };
+      this->Facets.push_back({ id(0), id(1), id(2) });
     }
   }
 }

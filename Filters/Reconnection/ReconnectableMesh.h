@@ -47,6 +47,8 @@ public:
   int corners() const { return this->Corners; }
   /// Of triangles: the pairs of points that lines of the input join.
   const std::vector<std::array<Index, 2>>& lines() const { return this->Lines; }
+  /// Of tetrahedra: the points of triangles of the input.
+  const std::vector<std::array<Index, 3>>& facets() const { return this->Facets; }
   const Mesh& mesh() const { return this->Adapter->mesh(); }
   /// The cell of the input that a cell of mesh() is.
   Index inputCell(Index cell) const { return this->Cells.empty() ? cell : this->Cells[cell]; }
@@ -77,12 +79,14 @@ public:
 private:
   void findKind();
   void takeLines();
+  void takeFacets();
 
   vtkPointSet* Input;
   int Corners = 4;
   vtkSmartPointer<vtkPointSet> Taken; ///< the input, or a grid of its tetrahedra or triangles
   std::vector<Index> Cells;           ///< empty if all cells are taken
   std::vector<std::array<Index, 2>> Lines;
+  std::vector<std::array<Index, 3>> Facets;
   std::unique_ptr<MeshAdapter> Adapter;
   std::vector<unsigned char> Fixed;
   std::vector<Index> Regions;

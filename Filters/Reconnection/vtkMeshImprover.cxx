@@ -236,6 +236,11 @@ std::string describeResult(const tautline::ReconnectionResult& result, const Wor
     text << " Mean: " << result.meanBefore << " to " << result.meanAfter << ".";
   }
   text << "\nOperations: " << describeOperations(last) << ".";
+  if (result.markedFacets > 0)
+  {
+    text << "\nFacets inside the mesh that triangles mark, and that are kept: "
+         << result.markedFacets << ".";
+  }
   if (result.volumeBefore > 0.0)
   {
     text << "\nLargest distance between the boundary and that of the input: "
@@ -405,6 +410,7 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
     prepare(options);
     sizes = this->SetSize(block.input, options);
     options.sizes = sizes.data();
+    options.markedFacets = mesh.facets();
     return tautline::improveConnectivity(mesh.mesh(), options);
   }
   if (this->Objective != ANGLES_AND_SHAPE)

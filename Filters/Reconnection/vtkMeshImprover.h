@@ -18,8 +18,10 @@
  *
  * Other cells of volume (of area, where there are none of volume), ghost cells and inverted
  * elements are refused (run vtkMeshUntangler first); cells of lower dimension are left out with a
- * warning. A mesh reversed throughout is treated as its mirror image; in one of mixed orientation,
- * the cells in the opposite order are listed in that of the others. vtkMeshOptimizer improves the
+ * warning, and keep what they mark: lines edges between triangles, triangles facets between
+ * tetrahedra (not with a boundary ON_SURFACE). A mesh reversed throughout is treated as its mirror
+ * image; in one of mixed orientation, the cells in the opposite order are listed in that of the
+ * others. vtkMeshOptimizer improves the
  * average element and keeps the connectivity.
  *
  * @par Input ports:

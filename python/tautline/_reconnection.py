@@ -109,7 +109,7 @@ def improve(
 
     mesh: tetrahedra or triangles: a vtkUnstructuredGrid, vtkPolyData of triangles, a composite data set of these, a
         file name or (points, cells). It is not changed. Cells of lower dimension are left out; lines beside triangles
-        mark edges that stay.
+        mark edges that stay, triangles beside tetrahedra facets inside the mesh that stay.
     preset: "remove slivers" (changes only neighbourhoods of elements with dihedral angles below 15 or above 165
         degrees, of triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is
         inserted or removed), "aggressive" (every operation everywhere) or "custom" (the operations given).

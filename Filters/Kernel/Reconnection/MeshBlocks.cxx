@@ -194,7 +194,7 @@ void MeshBlock::addOutside(
   {
     arrays.tets.push_back({ whole.tet(t).vertices, { NoId, NoId, NoId, NoId } });
     arrays.quality.push_back(whole.quality(t));
-    arrays.region.push_back(OutsideBlock);
+    arrays.region.push_back(OutsideRegion);
     arrays.origin.push_back(NoId);
   }
   for (SharedFace& f : this->Faces)
@@ -228,6 +228,15 @@ void MeshBlock::numberPoints(const TetrahedronMesh& whole, TetrahedronArrays& ar
   for (PointId v : this->Points)
   {
     arrays.points.push_back(whole.point(v));
+  }
+  const auto has = [this](PointId v)
+  { return std::binary_search(this->Points.begin(), this->Points.end(), v); };
+  for (const TriangleVertices& f : whole.keptFaces()) // local numbers have the same order
+  {
+    if (std::all_of(f.begin(), f.end(), has))
+    {
+      arrays.kept.push_back({ localOf(f[0]), localOf(f[1]), localOf(f[2]) });
+    }
   }
   arrays.inputPoints = localOf(whole.inputPoints());
 }

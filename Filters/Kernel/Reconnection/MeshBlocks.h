@@ -5,7 +5,7 @@
  * not installed.
  *
  * A block is a mesh of its own: its tetrahedra, and as a wall the tetrahedra that they meet in the
- * rest of the mesh (region OutsideBlock). The points of the latter are fixed, so that the faces
+ * rest of the mesh (OutsideRegion). The points of the latter are fixed, so that the faces
  * between blocks stay and the changed blocks fit together:
  *
  *        block 0   |   block 1            the points on the line | stay; in the next partition,
@@ -23,9 +23,6 @@
 
 namespace tautline
 {
-/// The region of tetrahedra that are not of the block.
-constexpr std::int32_t OutsideBlock = -1;
-
 /**
  * @brief The block of each slot of a mesh: planes cut the mesh in halves, these in halves, and so
  * on, always across their longest extent in a frame.

@@ -18,6 +18,13 @@ struct Walls
   double meanRatio = 1, quality = 1;
 };
 
+/// Whether face i is a wall, other than those towards what is around a part of a mesh.
+bool isOwnWall(const TetrahedronMesh& mesh, TetId t, int i)
+{
+  const std::int32_t n = mesh.tet(t).neighbors[i];
+  return mesh.isWall(t, i) && (n == NoId || mesh.region(n >> 2) != OutsideRegion);
+}
+
 Walls findWalls(const TetrahedronMesh& mesh, const Schedule& schedule)
 {
   Walls walls;
@@ -27,14 +34,15 @@ Walls findWalls(const TetrahedronMesh& mesh, const Schedule& schedule)
   for (TetId t = 0; t < mesh.slots(); ++t)
   {
     pollInterruption(static_cast<Index>(t));
-    for (int i = 0; i < 4 && mesh.alive(t); ++i)
+    const bool own = mesh.alive(t) && mesh.region(t) != OutsideRegion;
+    for (int i = 0; i < 4 && own; ++i)
     {
-      if (!mesh.isWall(t, i))
+      if (!isOwnWall(mesh, t, i))
       {
         continue;
       }
       const TriangleVertices f = mesh.face(t, i);
-      const bool outer = mesh.tet(t).neighbors[i] == NoId;
+      const bool outer = mesh.tet(t).neighbors[i] == NoId && !mesh.isKept(t, i);
       for (PointId v : f)
       {
         (outer ? walls.atSurface : walls.atInterface)[v] = 1;
@@ -48,7 +56,7 @@ Walls findWalls(const TetrahedronMesh& mesh, const Schedule& schedule)
         walls.quality = std::min(walls.quality, facetQuality(a, b, c, mesh.weights(), smoothing));
       }
     }
-    if (mesh.alive(t))
+    if (own)
     {
       walls.quality = std::min(walls.quality, schedule.bound(t));
     }
@@ -63,7 +71,7 @@ double boundOf(
   double bound = schedule.bound(t);
   for (int i = 0; i < 4; ++i)
   {
-    if (mesh.isWall(t, i))
+    if (isOwnWall(mesh, t, i))
     {
       const TriangleVertices f = mesh.face(t, i);
       bound = std::min(bound,

@@ -85,15 +85,16 @@ std::unique_ptr<MetricQuality> metricOf(
 void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord& record)
 {
   double quality = 1.0, smallest = 180.0, largest = 0.0, meanRatio = 1.0, sufficient = 2.0;
-  record.belowTarget = 0;
+  record.belowTarget = record.tetrahedra = 0;
   for (TetId t = 0; t < mesh.slots(); ++t)
   {
     pollInterruption(static_cast<Index>(t));
-    if (!mesh.alive(t))
+    if (!mesh.alive(t) || mesh.region(t) == OutsideRegion)
     {
       continue;
     }
     const double q = mesh.quality(t);
+    ++record.tetrahedra;
     quality = std::min(quality, q);
     record.belowTarget += q < target;
     if (q >= sufficient)
@@ -116,7 +117,6 @@ void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord
       std::max({ w.meanRatio * meanRatio, w.sine * std::sin(radians(std::min(smallest, 90.0))),
         w.sine * std::sin(radians(std::max(largest, 90.0))) });
   }
-  record.tetrahedra = mesh.size();
   record.worstQuality = quality;
   record.smallestAngle = smallest;
   record.largestAngle = largest;
@@ -201,7 +201,8 @@ private:
   bool improveMean();
   void setBounds();
   bool runPasses(std::vector<PassOptions> passes);
-  bool runInBlocks(const std::vector<PassOptions>& passes, int levels);
+  bool runInBlocks(const std::vector<PassOptions>& passes, int levels, std::vector<char> starts);
+  std::vector<char> startsOfOptions() const;
   bool paysInBlocks(const std::vector<char>& starts) const;
   bool runBlocks(
     MeshBlockList& blocks, const std::vector<PassOptions>& passes, const std::vector<char>& starts);
@@ -298,8 +299,10 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   this->Passes.proceed = [this]() { return this->proceed(); };
   std::vector<PassOptions> passes = planPasses(this->Options, this->Mesh.size());
   this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
+  const std::vector<char> starts = this->startsOfOptions();
+  this->Passes.starts = starts;
   const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
-  const bool goesOn = started && (levels == 0 || this->runInBlocks(passes, levels));
+  const bool goesOn = started && (levels == 0 || this->runInBlocks(passes, levels, starts));
   if (!this->Passes.starts.empty())
   {
     passes = lastPasses(passes);
@@ -310,6 +313,13 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   {
     this->Result.reason = StopReason::Reduction;
   }
+}
+
+/// One flag per point, or empty: all.
+std::vector<char> Run::startsOfOptions() const
+{
+  const unsigned char* flags = this->Options.starts;
+  return flags ? std::vector<char>(flags, flags + this->Mesh.inputPoints()) : std::vector<char>();
 }
 
 /// Runs the passes, the last one repeatedly; false if stopped.
@@ -478,9 +488,9 @@ bool Run::paysInBlocks(const std::vector<char>& starts) const
 
 /// Runs the passes in blocks of several partitions; false if stopped. Where a partition has its
 /// faces between blocks, the next one goes on; what then is left, the passes of the whole have.
-bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels)
+/// @param starts one flag per point, or empty: all
+bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels, std::vector<char> starts)
 {
-  std::vector<char> starts;
   for (int k = 0; k < Partitions && this->paysInBlocks(starts); ++k)
   {
     MeshBlockList blocks =
@@ -510,6 +520,57 @@ bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels)
   this->Passes.starts = starts;
   return true;
 }
+
+/// Cuts the mesh at the facets that are marked. @return per point of it whether it is on one
+std::vector<char> keepMarked(
+  const std::vector<std::array<Index, 3>>& marked, TetrahedronMesh& changing)
+{
+  std::vector<TriangleVertices> faces;
+  for (const std::array<Index, 3>& f : marked)
+  {
+    if (std::any_of(f.begin(), f.end(),
+          [&](Index v) { return v < 0 || v >= static_cast<Index>(changing.pointSlots()); }))
+    {
+      throw Error("a marked facet has a point that the mesh does not have");
+    }
+    faces.push_back(
+      { static_cast<PointId>(f[0]), static_cast<PointId>(f[1]), static_cast<PointId>(f[2]) });
+  }
+  std::vector<char> points(changing.pointSlots(), 0);
+  changing.keepFaces(std::move(faces));
+  for (const TriangleVertices& f : changing.keptFaces())
+  {
+    std::for_each(f.begin(), f.end(), [&](PointId v) { points[v] = 1; });
+  }
+  return points;
+}
+
+/// Fixes the points of marked facets, those around a part, and those of the options. @return one
+/// flag per point for the latter
+std::vector<char> fixPoints(const TetrahedronMesh& mesh, const ReconnectionOptions& options,
+  const std::vector<char>& marked, std::vector<PointFreedom>& freedoms)
+{
+  std::vector<char> fixed(freedoms.size(), 0);
+  for (std::size_t v = 0; v < freedoms.size(); ++v)
+  {
+    fixed[v] = options.fixed && options.fixed[v];
+    if (fixed[v] || marked[v])
+    {
+      freedoms[v].fix();
+    }
+  }
+  for (TetId t = 0; options.outside && t < mesh.slots(); ++t)
+  {
+    for (PointId v : mesh.tet(t).vertices)
+    {
+      if (mesh.region(t) == OutsideRegion)
+      {
+        freedoms[v].fix();
+      }
+    }
+  }
+  return fixed;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -522,9 +583,16 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   const std::unique_ptr<MetricQuality> metric = metricOf(mesh, input, options);
   changing.setWeights(weightsOf(options.objective, metric.get()));
   checkFaces(changing);
-  const InputLocator locator(changing, input);
+  const InputLocator locator(changing, input); // before the cut: it walks across marked facets
+  const std::vector<char> marked = keepMarked(options.markedFacets, changing);
+  result.markedFacets = static_cast<Index>(changing.keptFaces().size());
   std::shared_ptr<const BoundarySurface> surface;
   std::vector<PointFreedom> freedoms;
+  if (result.markedFacets > 0 && options.boundary == ReconnectionBoundary::Surface)
+  {
+    throw Error("facets inside the mesh are marked, which works with a fixed or sliding boundary "
+                "only: choose one of these, or a region array instead of the marks");
+  }
   if (options.boundary == ReconnectionBoundary::Surface && changing.size() > 0)
   {
     MeshView scaled = mesh.view();
@@ -539,16 +607,11 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
     freedoms = findFreedoms(changing, options.boundary == ReconnectionBoundary::Sliding,
       std::max(std::sin(radians(options.flatAngle)), 4.0 * std::numeric_limits<double>::epsilon()));
   }
-  std::vector<char> fixedPoints(freedoms.size(), 0);
-  for (std::size_t v = 0; v < freedoms.size(); ++v)
+  const std::vector<char> fixedPoints = fixPoints(changing, options, marked, freedoms);
+  for (const PointFreedom& freedom : freedoms)
   {
-    if (options.fixed && options.fixed[v])
-    {
-      freedoms[v].fix();
-      fixedPoints[v] = 1;
-    }
-    result.pointsInPlanes += freedoms[v].kind == PointFreedom::InPlane;
-    result.pointsOnLines += freedoms[v].kind == PointFreedom::OnLine;
+    result.pointsInPlanes += freedom.kind == PointFreedom::InPlane;
+    result.pointsOnLines += freedom.kind == PointFreedom::OnLine;
   }
   Run run(changing, options, result);
   if (changing.size() > 0)

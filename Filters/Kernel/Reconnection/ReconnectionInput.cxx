@@ -146,6 +146,14 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
     }
   }
   input.regions = renumberRegions(options.regions, view.numberOfCells);
+  if (options.outside)
+  {
+    input.regions.resize(view.numberOfCells, 0);
+    for (Index c = 0; c < view.numberOfCells; ++c)
+    {
+      input.regions[c] = options.outside[c] ? OutsideRegion : input.regions[c];
+    }
+  }
   return input;
 }
 

@@ -18,7 +18,7 @@ struct ReconnectionInput
 {
   std::vector<Vec3> points;
   std::vector<TetVertices> cells;    ///< positive, also those of a mirrored mesh
-  std::vector<std::int32_t> regions; ///< renumbered from 0; empty: one region
+  std::vector<std::int32_t> regions; ///< renumbered from 0, or OutsideRegion; empty: one region
   int exponent = 0;                  ///< point = input's times 2^-exponent
 };
 

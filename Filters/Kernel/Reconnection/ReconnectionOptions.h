@@ -9,6 +9,8 @@
 #include "tautline/Core/Iteration.h"
 #include "tautline/Quality/Metrics.h"
 
+#include <vector>
+
 namespace tautline
 {
 /// Ready-made options. The numbers are stable: ParaView state files hold them.
@@ -137,6 +139,21 @@ struct ReconnectionOptions
   const unsigned char* fixed = nullptr;
   /// One region per cell; facets between regions are kept as the boundary is. Null: one region.
   const Index* regions = nullptr;
+  /**
+   * @brief Triples of points: facets that are kept as those between regions are, and their points
+   * stay. Of tetrahedra; those that are not between two of these have no effect. Refused with
+   * ReconnectionBoundary::Surface.
+   */
+  std::vector<std::array<Index, 3>> markedFacets;
+  /**
+   * @brief Of a part of a mesh: one flag per cell, nonzero for those around it. They stay as they
+   * are, so do their points and the facets between them and the part. The figures of the history
+   * are without them. Null: none.
+   */
+  const unsigned char* outside = nullptr;
+  /// One flag per point: passes start with the tetrahedra that have one that is nonzero, and reach
+  /// others from there. Null: with all.
+  const unsigned char* starts = nullptr;
   /**
    * @brief The number of tetrahedra stays within these multiples of the input's, at most 1 and at
    * least 1. Both 1: no point is inserted or removed, and the number is what the removal of edges

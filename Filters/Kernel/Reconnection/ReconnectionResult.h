@@ -89,6 +89,7 @@ struct ReconnectionResult
   std::vector<double> qualities, bounds;
   std::vector<ReconnectionRecord> history;
   StopReason reason = StopReason::NoProgress;  ///< or Reduction (target), TimeLimit, Aborted
+  Index markedFacets = 0;                      ///< of tetrahedra: those that were kept
   Index pointsInPlanes = 0, pointsOnLines = 0; ///< points of the boundary that may slide
   /// With ReconnectionBoundary::Surface: the largest distance of the boundary from that of the
   /// input, or back, at corners, middles of edges and centres of facets; and the volumes.

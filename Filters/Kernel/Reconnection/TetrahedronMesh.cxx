@@ -66,6 +66,7 @@ TetrahedronMesh::TetrahedronMesh(TetrahedronArrays arrays)
   , PointTet(Points.size(), NoId)
   , InputPoints(arrays.inputPoints)
   , Weights(arrays.weights)
+  , Kept(std::move(arrays.kept))
 {
   for (TetId t = this->slots() - 1; t >= 0; --t) // the next to be used is the first
   {
@@ -99,7 +100,43 @@ TetrahedronArrays TetrahedronMesh::release()
   arrays.points = std::move(this->Points);
   arrays.inputPoints = this->InputPoints;
   arrays.weights = this->Weights;
+  arrays.kept = std::move(this->Kept);
   return arrays;
+}
+
+Index TetrahedronMesh::keepFaces(std::vector<TriangleVertices> faces)
+{
+  std::for_each(faces.begin(), faces.end(), sortKey);
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  for (TetId t = 0; t < this->slots() && !faces.empty(); ++t)
+  {
+    pollInterruption(static_cast<Index>(t));
+    for (int i = 0; i < 4; ++i)
+    {
+      const std::int32_t n = this->Tets[t].neighbors[i];
+      TriangleVertices key = this->face(t, i);
+      sortKey(key);
+      if (n != NoId && std::binary_search(faces.begin(), faces.end(), key))
+      {
+        this->Tets[t].neighbors[i] = this->Tets[n >> 2].neighbors[n & 3] = NoId;
+        this->Kept.push_back(key);
+      }
+    }
+  }
+  std::sort(this->Kept.begin(), this->Kept.end());
+  return static_cast<Index>(this->Kept.size());
+}
+
+bool TetrahedronMesh::isKept(TetId t, int i) const
+{
+  if (this->Kept.empty() || this->Tets[t].neighbors[i] != NoId)
+  {
+    return false;
+  }
+  TriangleVertices key = this->face(t, i);
+  sortKey(key);
+  return std::binary_search(this->Kept.begin(), this->Kept.end(), key);
 }
 
 /// Finds the neighbours: faces are filed by their smallest vertex, then compared.
@@ -437,7 +474,9 @@ bool TetrahedronMesh::match(const Replacement& replacement)
   for (std::size_t i = 0; i < this->Faces.filled().size(); ++i)
   {
     const FaceEntry& entry = this->Faces.at(this->Faces.filled()[i]);
-    const bool boundary = i < outer ? entry.code == NoId : true;
+    const bool boundary = i < outer
+      ? entry.code == NoId && !std::binary_search(this->Kept.begin(), this->Kept.end(), entry.key)
+      : true;
     if (!entry.matched && !(replacement.opensBoundary && boundary))
     {
       return false;

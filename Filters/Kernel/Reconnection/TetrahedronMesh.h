@@ -23,6 +23,8 @@ using TetId = std::int32_t;
 using PointId = std::int32_t;
 
 constexpr std::int32_t NoId = -1;
+/// The region of tetrahedra around a part of a mesh, which are not changed.
+constexpr std::int32_t OutsideRegion = -1;
 
 /// The vertices of the face opposite each vertex, so that (vertex, face) is a positive order.
 constexpr int OppositeFace[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 3, 0, 1 }, { 2, 1, 0 } };
@@ -99,6 +101,7 @@ struct TetrahedronArrays
   std::vector<Vec3> points;
   PointId inputPoints = 0; ///< the first points are the input's: their ids are not used again
   QualityWeights weights;
+  std::vector<TriangleVertices> kept; ///< see TetrahedronMesh::keepFaces()
 };
 
 class TAUTLINE_KERNEL_EXPORT TetrahedronMesh
@@ -134,6 +137,17 @@ public:
 
   /// Faces that are used by three or more tetrahedra; these are walls on all sides.
   Index nonManifoldFaces() const { return this->NonManifoldFaces; }
+  /**
+   * @brief Keeps faces between two tetrahedra, whatever is around them: both sides are boundary
+   * that no replacement opens. Others are ignored. To be called before any replacement.
+   * @return how many are kept
+   */
+  Index keepFaces(std::vector<TriangleVertices> faces);
+  /// The faces that are kept, each with its vertices sorted, in increasing order.
+  const std::vector<TriangleVertices>& keptFaces() const { return this->Kept; }
+  /// Whether face i is kept.
+  bool isKept(TetId t, int i) const;
+
   /// Whether face i is on the boundary or between two regions.
   bool isWall(TetId t, int i) const
   {
@@ -232,6 +246,7 @@ private:
   PointId InputPoints = 0;
   Index NonManifoldFaces = 0;
   QualityWeights Weights;
+  std::vector<TriangleVertices> Kept; ///< sorted
   // Of replace(), kept to save allocations.
   FaceTable Faces;
   std::vector<std::array<std::int32_t, 4>> Links;

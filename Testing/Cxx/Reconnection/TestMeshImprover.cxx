@@ -316,12 +316,68 @@ void testSurfaceCells()
   plain->SetInputData(toGrid(data));
   plain->Update();
   TAUTLINE_CHECK(messages.has("1 triangles beside the tetrahedra are left out"));
+  TAUTLINE_CHECK(messages.has("that triangles mark are kept"));
+  TAUTLINE_CHECK(!contains(filter->GetSummary(), "that triangles mark, and")); // of the boundary
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), meshOf(plain)->GetNumberOfCells());
   for (Index i = 0; i < meshOf(filter)->GetNumberOfCells(); ++i)
   {
     TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "OriginalCellId", i),
       component(meshOf(plain)->GetCellData(), "OriginalCellId", i) + 1);
   }
+}
+
+/// A facet inside the mesh that is lost without a mark stays where a triangle marks it.
+void testMarkedFacet()
+{
+  const MeshData data = sliverBlock(3, 3, 1.0);
+  const auto facetsOf = [](vtkUnstructuredGrid* mesh)
+  {
+    std::set<std::array<vtkIdType, 3>> facets;
+    for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+    {
+      const vtkIdType* v = nullptr;
+      vtkIdType size = 0;
+      mesh->GetCellPoints(cell, size, v);
+      for (int k = 0; size == 4 && k < 4; ++k)
+      {
+        std::array<vtkIdType, 3> f = { v[(k + 1) % 4], v[(k + 2) % 4], v[(k + 3) % 4] };
+        std::sort(f.begin(), f.end());
+        facets.insert(f);
+      }
+    }
+    return facets;
+  };
+  const auto improved = [&](const std::array<vtkIdType, 3>* marked, std::string* summary)
+  {
+    MeshData mixed = data;
+    if (marked)
+    {
+      mixed.addCell(CellType::Triangle, { (*marked)[2], (*marked)[0], (*marked)[1] });
+    }
+    vtkNew<vtkMeshImprover> filter;
+    filter->SetInputData(toGrid(mixed));
+    filter->SetPreset(vtkMeshImprover::SWAP_ONLY); // the ids of points stay
+    const Messages messages(filter);
+    filter->Update();
+    if (summary)
+    {
+      *summary = filter->GetSummary();
+    }
+    return facetsOf(vtkUnstructuredGrid::SafeDownCast(meshOf(filter)));
+  };
+  const auto before = facetsOf(toGrid(data)), after = improved(nullptr, nullptr);
+  int lost = 0;
+  for (const auto& facet : before)
+  {
+    if (after.count(facet) == 0)
+    {
+      ++lost;
+      std::string summary;
+      TAUTLINE_CHECK(improved(&facet, &summary).count(facet) == 1);
+      TAUTLINE_CHECK(contains(summary, "that triangles mark, and that are kept: 1."));
+    }
+  }
+  TAUTLINE_CHECK(lost > 5);
 }
 
 /// Each tetrahedron with points of its own: one mesh if merged, else all facets are boundary.
@@ -447,6 +503,7 @@ int TestMeshImprover(int, char*[])
   testFixed();
   testRefusals();
   testSurfaceCells();
+  testMarkedFacet();
   testSeams();
   testInputs();
   testStops();

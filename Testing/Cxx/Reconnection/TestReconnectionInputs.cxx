@@ -203,6 +203,89 @@ void testRegionsAtPoint()
   }
 }
 
+/// How many cells have each facet, by the coordinates of its corners.
+std::map<std::array<Vec3, 3>, int> usesOfFacets(const MeshData& data)
+{
+  constexpr int faces[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 } };
+  std::map<std::array<Vec3, 3>, int> uses;
+  for (Index n = 0; n < 4 * data.numberOfCells(); ++n)
+  {
+    const Index* v = &data.connectivity[4 * (n / 4)];
+    const int* f = faces[n % 4];
+    std::array<Vec3, 3> key = { data.point(v[f[0]]), data.point(v[f[1]]), data.point(v[f[2]]) };
+    std::sort(key.begin(), key.end());
+    ++uses[key];
+  }
+  return uses;
+}
+
+/// Facets of the plane x = 2 that are marked are kept, whether they divide the mesh, end inside it
+/// or reach its surface; without marks some of them are lost.
+void testMarkedFacets()
+{
+  const MeshData plain = blockMesh(CellType::Tetrahedron, 4, 4, 4), data = sliverBlock(4, 6, 1.0);
+  constexpr int faces[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 } };
+  for (double low : { 0.0, 1.0 })
+  {
+    for (double high : { 3.0, 4.0 })
+    {
+      std::vector<std::array<Index, 3>> marked;
+      std::set<std::array<Vec3, 3>> keys;
+      for (Index n = 0; n < 4 * data.numberOfCells(); ++n)
+      {
+        const Index* v = &data.connectivity[4 * (n / 4)];
+        const std::array<Index, 3> f = { v[faces[n % 4][0]], v[faces[n % 4][1]],
+          v[faces[n % 4][2]] };
+        const bool within = std::all_of(f.begin(), f.end(),
+          [&](Index p)
+          {
+            const Vec3 x = plain.point(p);
+            return x[0] == 2.0 && x[1] >= low && x[1] <= high && x[2] >= low && x[2] <= high;
+          });
+        std::array<Vec3, 3> key = { data.point(f[0]), data.point(f[1]), data.point(f[2]) };
+        std::sort(key.begin(), key.end());
+        if (within && keys.insert(key).second)
+        {
+          marked.push_back(f);
+        }
+      }
+      const auto lostOf = [&](const ReconnectionResult& result)
+      {
+        const auto uses = usesOfFacets(outputOf(result));
+        return std::count_if(keys.begin(), keys.end(),
+          [&](const auto& key)
+          {
+            const auto found = uses.find(key);
+            return found == uses.end() || found->second != 2;
+          });
+      };
+      for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+      {
+        for (Index blockSize : { data.numberOfCells(), data.numberOfCells() / 4 })
+        {
+          ReconnectionOptions options;
+          options.boundary = boundary;
+          options.blockSize = blockSize;
+          TAUTLINE_CHECK(lostOf(reconnect(data, options)) > 0);
+          options.markedFacets = marked;
+          options.markedFacets.push_back({ 0, 1, 124 }); // no facet: without effect
+          const ReconnectionResult result = reconnect(data, options);
+          checkResult(data, result);
+          TAUTLINE_CHECK_EQUAL(result.markedFacets, static_cast<Index>(keys.size()));
+          TAUTLINE_CHECK_EQUAL(lostOf(result), 0);
+          TAUTLINE_CHECK(result.history.back().edgeRemovals > 0);
+        }
+      }
+      ReconnectionOptions options;
+      options.markedFacets = marked;
+      options.boundary = ReconnectionBoundary::Surface;
+      TAUTLINE_CHECK_THROWS(reconnect(data, options), "marked");
+      options.markedFacets = { { 0, 1, data.numberOfPoints() } };
+      TAUTLINE_CHECK_THROWS(reconnect(data, options), "does not have");
+    }
+  }
+}
+
 /// One layer of cells: every cavity touches the boundary on two sides.
 void testThinPlate()
 {
@@ -284,6 +367,7 @@ int TestReconnectionInputs(int, char*[])
   testSmall();
   testNonManifold();
   testRegionsAtPoint();
+  testMarkedFacets();
   testThinPlate();
   testDuplicatePoints();
   testMirrored();
