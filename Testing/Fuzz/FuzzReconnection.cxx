@@ -7,8 +7,14 @@
 #include "Reconnection/Reconnecting.h"
 #include "Reconnection/Triangulating.h"
 
+#include "tautline/Reconnection/BoundaryFreedom.h"
+#include "tautline/Reconnection/BoundarySurface.h"
 #include "tautline/Reconnection/CavityOperations.h"
 #include "tautline/Reconnection/TriangleOperations.h"
+
+#include <iterator>
+#include <map>
+#include <set>
 
 namespace tautline
 {
@@ -302,6 +308,159 @@ bool operate(CavityOperations& operations, TetrahedronMesh& mesh, TetId t, Choic
       return shake(mesh, operations, t, choices);
   }
 }
+
+/// The outer boundary: its area, points less edges plus facets, and whether each edge has two.
+struct BoundaryTotals
+{
+  double area = 0;
+  Index euler = 0;
+  bool closed = true;
+};
+
+BoundaryTotals boundaryOf(const TetrahedronMesh& mesh)
+{
+  std::map<std::array<PointId, 2>, int> edges;
+  std::set<PointId> points;
+  BoundaryTotals totals;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    for (int i = 0; mesh.alive(t) && i < 4; ++i)
+    {
+      if (mesh.tet(t).neighbors[i] != NoId)
+      {
+        continue;
+      }
+      const TriangleVertices f = mesh.face(t, i);
+      const Vec3& a = mesh.point(f[0]);
+      totals.area += 0.5 * norm(cross(mesh.point(f[1]) - a, mesh.point(f[2]) - a));
+      ++totals.euler;
+      for (int k = 0; k < 3; ++k)
+      {
+        ++edges[{ std::min(f[k], f[(k + 1) % 3]), std::max(f[k], f[(k + 1) % 3]) }];
+        points.insert(f[k]);
+      }
+    }
+  }
+  totals.euler += static_cast<Index>(points.size()) - static_cast<Index>(edges.size());
+  totals.closed =
+    std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second == 2; });
+  return totals;
+}
+
+/// A mesh of tetrahedra under random operations, with what its boundary keeps to.
+class TetrahedronSteps
+{
+public:
+  TetrahedronSteps(const MeshData& data, ReconnectionBoundary boundary, Choices& choices)
+    : Choose(choices)
+    , Changing(pointsOf(data), cellsOf(data))
+    , Operations(this->Changing)
+    , Boundary(boundary)
+  {
+    ReconnectionOptions options;
+    options.boundary = boundary;
+    this->Operations.flatTolerance = std::sin(options.flatAngle * (Pi / 180.0));
+    this->Operations.swapsBoundary = boundary != ReconnectionBoundary::Fixed;
+    if (boundary == ReconnectionBoundary::Surface)
+    {
+      const Mesh mesh(data.view());
+      this->Operations.surface = std::make_shared<BoundarySurface>(mesh, this->Changing, options);
+      this->Operations.freedoms = this->Operations.surface->freedoms();
+      this->Distance = options.surfaceDistance * diagonalOf(data);
+    }
+    else
+    {
+      this->Operations.freedoms = findFreedoms(
+        this->Changing, boundary == ReconnectionBoundary::Sliding, this->Operations.flatTolerance);
+    }
+    this->Operations.smallestSize = this->Changing.size() / 2;
+    this->Operations.largestSize = 2 * this->Changing.size();
+    this->Operations.prepareStamps();
+    this->Volume = volumeOf(this->Changing);
+    this->First = boundaryOf(this->Changing);
+  }
+
+  long run(long attempts)
+  {
+    long accepted = 0;
+    for (long k = 0; k < attempts && this->Choose.left(); ++k)
+    {
+      const TetId t = this->Choose(this->Changing.slots());
+      if (this->Changing.alive(t) && operate(this->Operations, this->Changing, t, this->Choose))
+      {
+        ++accepted;
+        this->check();
+      }
+    }
+    if (this->Boundary == ReconnectionBoundary::Surface)
+    {
+      // Of facets the centre and the middles of edges are within the distance.
+      constexpr double Twice = 2.0; // the way back, from the facets of the input, is longer
+      expectThat(this->Operations.surface->distance(this->Changing) <= Twice * this->Distance,
+        "the boundary stays within the distance");
+    }
+    return accepted;
+  }
+
+private:
+  static std::vector<Vec3> pointsOf(const MeshData& data)
+  {
+    std::vector<Vec3> points;
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      points.push_back(data.point(i));
+    }
+    return points;
+  }
+
+  static std::vector<TetVertices> cellsOf(const MeshData& data)
+  {
+    std::vector<TetVertices> cells;
+    for (Index c = 0; c < data.numberOfCells(); ++c)
+    {
+      TetVertices v;
+      for (int k = 0; k < 4; ++k)
+      {
+        v[k] = static_cast<PointId>(data.connectivity[4 * c + k]);
+      }
+      cells.push_back(v);
+    }
+    return cells;
+  }
+
+  static double diagonalOf(const MeshData& data)
+  {
+    Vec3 low = data.point(0), high = low;
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        low[k] = std::min(low[k], data.point(i)[k]);
+        high[k] = std::max(high[k], data.point(i)[k]);
+      }
+    }
+    return norm(high - low);
+  }
+
+  void check() const
+  {
+    const std::string violation = this->Changing.findViolation();
+    expectThat(violation.empty(), "the mesh is consistent: " + violation);
+    const BoundaryTotals now = boundaryOf(this->Changing);
+    expectThat(now.closed && now.euler == this->First.euler, "the boundary stays closed");
+    // A boundary that moves by at most the distance sweeps at most so much, on either side.
+    const double swept = this->Distance * (now.area + this->First.area);
+    expectThat(std::abs(volumeOf(this->Changing) - this->Volume) <= swept + Rounding * this->Volume,
+      "the volume stays");
+  }
+
+  Choices& Choose;
+  TetrahedronMesh Changing;
+  CavityOperations Operations;
+  ReconnectionBoundary Boundary;
+  double Distance = 0, Volume = 0;
+  BoundaryTotals First;
+};
 }
 
 //------------------------------------------------------------------------------
@@ -317,48 +476,24 @@ long changeTriangles(Choices& choices, long attempts)
 
 long changeTetrahedra(Choices& choices, long attempts)
 {
-  const MeshData data = sliverBlock(3, 1 + choices.next() % 1000, 0.9);
-  std::vector<Vec3> points;
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    points.push_back((1.0 / 4.0) * data.point(i));
-  }
-  std::vector<TetVertices> cells;
-  for (Index c = 0; c < data.numberOfCells(); ++c)
-  {
-    TetVertices v;
-    for (int k = 0; k < 4; ++k)
-    {
-      v[k] = static_cast<PointId>(data.connectivity[4 * c + k]);
-    }
-    cells.push_back(v);
-  }
-  TetrahedronMesh mesh(points, cells);
-  CavityOperations operations(mesh);
-  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
-  operations.freedoms.resize(mesh.pointSlots());
-  for (std::size_t v = 0; v < boundary.size(); ++v)
-  {
-    operations.freedoms[v].kind = boundary[v] ? PointFreedom::Fixed : PointFreedom::Free;
-  }
-  operations.smallestSize = mesh.size() / 2;
-  operations.largestSize = 2 * mesh.size();
-  operations.prepareStamps();
-  const double volume = volumeOf(mesh);
-  long accepted = 0;
-  for (long k = 0; k < attempts && choices.left(); ++k)
-  {
-    const TetId t = choices(mesh.slots());
-    if (!mesh.alive(t) || !operate(operations, mesh, t, choices))
-    {
-      continue;
-    }
-    ++accepted;
-    const std::string violation = mesh.findViolation();
-    expectThat(violation.empty(), "the mesh is consistent: " + violation);
-    expectThat(std::abs(volumeOf(mesh) - volume) <= Rounding * volume, "the volume stays");
-  }
-  return accepted;
+  MeshData data = sliverBlock(3, 1 + choices.next() % 1000, 0.9);
+  data.transform([](const Vec3& p) { return (1.0 / 4.0) * p; });
+  return TetrahedronSteps(data, ReconnectionBoundary::Fixed, choices).run(attempts);
+}
+
+long changeSliding(Choices& choices, long attempts)
+{
+  MeshData data = sliverBlock(3, 1 + choices.next() % 1000, 0.9);
+  data.transform([](const Vec3& p) { return (1.0 / 4.0) * p; });
+  return TetrahedronSteps(data, ReconnectionBoundary::Sliding, choices).run(attempts);
+}
+
+long changeSurface(Choices& choices, long attempts)
+{
+  constexpr Index Cubes = 4;
+  const int directions = 2 + choices(2); // a cylinder or a ball
+  const MeshData data = roundMesh(directions, 1 + choices.next() % 1000, Cubes);
+  return TetrahedronSteps(data, ReconnectionBoundary::Surface, choices).run(attempts);
 }
 
 void fuzzReconnection(std::string_view bytes)
@@ -366,13 +501,8 @@ void fuzzReconnection(std::string_view bytes)
   ByteReader input(bytes);
   Choices choices = { [&] { return input.next<std::uint16_t>() * 65537U; },
     [&] { return !input.atEnd(); } };
-  if (choices(2) == 0)
-  {
-    changeTriangles(choices, FuzzAttempts);
-  }
-  else
-  {
-    changeTetrahedra(choices, FuzzAttempts);
-  }
+  constexpr long (*changes[])(
+    Choices&, long) = { changeTriangles, changeTetrahedra, changeSliding, changeSurface };
+  changes[choices(static_cast<int>(std::size(changes)))](choices, FuzzAttempts);
 }
 }

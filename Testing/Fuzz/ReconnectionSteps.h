@@ -29,8 +29,15 @@ struct Choices
  */
 long changeTriangles(Choices& choices, long attempts);
 
-/// The same for tetrahedra, by the operations of CavityOperations and random motions; the volume is
-/// checked.
+/// The same for tetrahedra, by the operations of CavityOperations and random motions; the volume
+/// and whether the boundary is closed are checked.
 long changeTetrahedra(Choices& choices, long attempts);
+
+/// The same where points slide on flat parts of the boundary, which changes, too.
+long changeSliding(Choices& choices, long attempts);
+
+/// The same of a ball or a cylinder, with a boundary that stays within a distance; the volume stays
+/// within what that allows.
+long changeSurface(Choices& choices, long attempts);
 }
 #endif

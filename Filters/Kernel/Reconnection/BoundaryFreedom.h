@@ -17,7 +17,8 @@ namespace tautline
  * fixed.
  * @param tolerance sine of the largest angle between normals of coplanar walls
  */
-std::vector<PointFreedom> findFreedoms(TetrahedronMesh& mesh, bool slide, double tolerance);
+TAUTLINE_KERNEL_EXPORT std::vector<PointFreedom> findFreedoms(
+  TetrahedronMesh& mesh, bool slide, double tolerance);
 
 /// Fixes points whose tetrahedra are not one fan, so that moving one would not take all along.
 void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms);

@@ -60,6 +60,53 @@ inline MeshData sliverBlock(Index n, unsigned seed = 3, double amplitude = 0.6)
   return data;
 }
 
+/// Along an edge of roundMesh().
+constexpr Index RoundCubes = 8;
+
+/// A block of cubes made round: in three directions a ball, in two a cylinder of height 2, both of
+/// radius 1; inner points moved at random.
+inline MeshData roundMesh(int directions, unsigned seed = 7, Index cubes = RoundCubes)
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, cubes, cubes, cubes);
+  const double half = 0.5 * static_cast<double>(cubes);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Vec3 x = (1.0 / half) * (data.point(i) - Vec3{ half, half, half });
+    double largest = 0.0, square = 0.0;
+    for (int k = 0; k < directions; ++k)
+    {
+      largest = std::max(largest, std::abs(x[k]));
+      square += x[k] * x[k];
+    }
+    Vec3 y = x;
+    for (int k = 0; k < directions && square > 0.0; ++k)
+    {
+      y[k] = x[k] * largest / std::sqrt(square);
+    }
+    data.setPoint(i, y);
+  }
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  const VertexCells cells = Mesh(data.view()).vertexCells();
+  Random random(seed);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Vec3 start = data.point(i);
+    Vec3 d = random.vector(-0.6 / half, 0.6 / half);
+    bool valid = boundary[i] != 0;
+    while (!valid)
+    {
+      data.setPoint(i, start + d);
+      valid = true;
+      for (Index k = cells.offsets[i]; k < cells.offsets[i + 1]; ++k)
+      {
+        valid = valid && volumeOf(data, cells.cells[k]) > 1e-6;
+      }
+      d = 0.7 * d;
+    }
+  }
+  return data;
+}
+
 inline MeshData outputOf(const ReconnectionResult& result)
 {
   MeshData data;

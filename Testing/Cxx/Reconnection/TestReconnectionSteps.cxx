@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// 100,000 accepted operations on changing meshes, adjacency, orientation, area and volume checked
+// 200,000 accepted operations on changing meshes, adjacency, orientation, area and volume checked
 // after each.
 
 #include "Check.h"
@@ -43,5 +43,7 @@ int TestReconnectionSteps(int, char*[])
 {
   testOperations("triangles", changeTriangles);
   testOperations("tetrahedra", changeTetrahedra);
+  testOperations("sliding boundary", changeSliding);
+  testOperations("boundary on the surface", changeSurface);
   return exitCode();
 }
