@@ -239,13 +239,15 @@ def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> No
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parts = ("quality", "optimization", "deformation", "reconnection", "stiff", "user-metric", "gmsh")
+    parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "user-metric",
+             "gmsh")
     parser.add_argument("--only", choices=parts, help="one part; all otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
     parser.add_argument("--quick", action="store_true", help="tiny meshes only, but for quality")
     parser.add_argument("--huge", action="store_true",
-                        help="optimization: also 10,000,000 tetrahedra; stiff: also 1,000,000 cells")
+                        help="optimization: also 10,000,000 tetrahedra; stiff: also 1,000,000 cells; "
+                        "reconnection-aims: also 1,000,000 tetrahedra")
     parser.add_argument("--output", type=Path, help="where the results go")
     options = parser.parse_args()
     output = options.output or options.build / "benchmark"
@@ -255,6 +257,10 @@ def main() -> int:
         run_deformation(options.build, output, options.repeats or 3, options.quick)
     if options.only in (None, "reconnection"):
         run_reconnection(options.build, output, options.repeats or 3, options.quick)
+    if options.only in (None, "reconnection-aims"):
+        flags = [flag for flag, given in (("--quick", options.quick), ("--large", options.huge)) if given]
+        command = [sys.executable, str(Path(__file__).with_name("reconnection_aims.py")), *flags]
+        subprocess.run(command, check=True)
     if options.only in (None, "optimization"):
         run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
     if options.only in (None, "stiff"):
