@@ -355,7 +355,6 @@ public:
     : Choose(choices)
     , Changing(pointsOf(data), cellsOf(data))
     , Operations(this->Changing)
-    , Boundary(boundary)
   {
     ReconnectionOptions options;
     options.boundary = boundary;
@@ -391,13 +390,6 @@ public:
         ++accepted;
         this->check();
       }
-    }
-    if (this->Boundary == ReconnectionBoundary::Surface)
-    {
-      // Of facets the centre and the middles of edges are within the distance.
-      constexpr double Twice = 2.0; // the way back, from the facets of the input, is longer
-      expectThat(this->Operations.surface->distance(this->Changing) <= Twice * this->Distance,
-        "the boundary stays within the distance");
     }
     return accepted;
   }
@@ -457,7 +449,6 @@ private:
   Choices& Choose;
   TetrahedronMesh Changing;
   CavityOperations Operations;
-  ReconnectionBoundary Boundary;
   double Distance = 0, Volume = 0;
   BoundaryTotals First;
 };
