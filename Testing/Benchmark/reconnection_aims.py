@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """reconnection_aims.py [--quick] [--large]: what Improve Mesh is to reach, mesh by mesh.
 
-Prints a row per figure with its aim, and the number of aims missed. One thread, CPU seconds, unless stated otherwise. The
-tire and the disks are those in the folder `meshes` of the directory TAUTLINE_TEST_DATA, left out without it. --large:
-also the disk of a million tetrahedra. --quick: small generated meshes only, without aims.
+Prints a row per figure with its aim, and the number of aims missed. One thread, CPU seconds, unless stated otherwise.
+The tire and the disks are those in the folder `meshes` of the directory TAUTLINE_TEST_DATA, left out without it.
+--large: also the disk of a million tetrahedra. --quick: small generated meshes only, without aims.
 """
 
 from __future__ import annotations
