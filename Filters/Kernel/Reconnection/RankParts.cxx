@@ -14,9 +14,16 @@ constexpr int OppositeFacet[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0
 /// So many centroids for each rank decide where the planes are.
 constexpr Index SamplesOfRank = 2000;
 /// The three frames of directions are used in turn; each time after that the planes are moved by
-/// this part of the cells, to the one side and to the other.
-constexpr int Frames = 3;
+/// so much more of the cells, to the one side and to the other, in so many steps.
+constexpr int Frames = 3, Shifts = 7;
 constexpr double Shift = 0.08;
+
+/// By which part of the cells the planes of a round are moved.
+double shiftOf(int round)
+{
+  const int turn = (round / Frames) % Shifts;
+  return (turn % 2 == 1 ? Shift : -Shift) * ((turn + 1) / 2);
+}
 
 Facet facetOf(const PartCell& cell, int i)
 {
@@ -101,9 +108,7 @@ class RankTree
 public:
   RankTree(std::vector<Vec3> sample, int ranks, int round)
     : Directions(directionsOf(round % Frames))
-    , Moved(round < Frames            ? 0.0
-          : (round / Frames) % 2 == 1 ? Shift
-                                      : -Shift)
+    , Moved(shiftOf(round))
   {
     this->split(0, ranks, sample.begin(), sample.end());
   }

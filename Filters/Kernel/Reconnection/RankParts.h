@@ -6,7 +6,11 @@
 #ifndef tautline_RankParts_h
 #define tautline_RankParts_h
 
-#include "ReconnectOnRanks.h"
+#include "tautline/Core/RankGroup.h"
+#include "tautline/Core/VectorAlgebra.h"
+
+#include <array>
+#include <vector>
 
 namespace tautline
 {

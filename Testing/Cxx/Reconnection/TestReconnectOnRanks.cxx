@@ -30,7 +30,7 @@ struct Given
 
 /// Runs on ranks, checks what they agree on, and that inserted points are where their shares say.
 Joined reconnectOnRanks(
-  const Given& given, int ranks, Cut cut, const ReconnectionOptions& options, int rounds = 6)
+  const Given& given, int ranks, Cut cut, const ReconnectionOptions& options, int rounds = 12)
 {
   const auto rankOf = cutBy(given.data, cut, ranks);
   std::vector<RankReconnection> results(ranks);
@@ -186,7 +186,7 @@ void testSeams()
   const ReconnectionOptions options;
   const Given given = { data, {}, {}, {} };
   const double once = worstOf(reconnectOnRanks(given, 4, Cut::Slabs, options, 1));
-  const double repeated = worstOf(reconnectOnRanks(given, 4, Cut::Slabs, options, 6));
+  const double repeated = worstOf(reconnectOnRanks(given, 4, Cut::Slabs, options, 12));
   std::cout << "worst after one round " << once << ", after several " << repeated << "\n";
   TAUTLINE_CHECK(repeated < 0.9 * once);
 }
@@ -299,8 +299,9 @@ void testBounds()
     for (Index p = 0; p < joined.data.numberOfPoints(); ++p)
     {
       const Vec3 x = joined.data.point(p);
-      TAUTLINE_CHECK(*std::min_element(x.begin(), x.end()) >= 0.0);
-      TAUTLINE_CHECK(*std::max_element(x.begin(), x.end()) <= 6.0);
+      constexpr double Rounding = 1e-13; // points slide in planes to rounding
+      TAUTLINE_CHECK(*std::min_element(x.begin(), x.end()) >= -Rounding);
+      TAUTLINE_CHECK(*std::max_element(x.begin(), x.end()) <= 6.0 + Rounding);
     }
   }
 }
