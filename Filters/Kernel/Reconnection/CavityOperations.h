@@ -46,7 +46,8 @@ struct OperationRules
   std::vector<EdgeMetric> metrics;
   /// How much longer or shorter new edges may be.
   double edgeFactor = 2.0;
-  bool sums = false; ///< ReconnectionObjective::Sum decides, not the worst qualities
+  bool inserts = true; ///< whether repairs may insert points
+  bool sums = false;   ///< ReconnectionObjective::Sum decides, not the worst qualities
   QualityFloor floor;
   Index smallestSize = 0, largestSize = 0; ///< bounds of the number of tetrahedra
   /// Edges between coplanar facets may be removed, facets and edges of the boundary divided.

@@ -80,7 +80,7 @@ bool CavityOperations::repair(TetId t)
   }
   Insertion best;
   best.quality = q;
-  return this->findInsertion(t, best) && this->applyInsertion(best);
+  return this->inserts && this->findInsertion(t, best) && this->applyInsertion(best);
 }
 
 /// After a change that smoothing did not make an improvement: repairs the worst of the affected

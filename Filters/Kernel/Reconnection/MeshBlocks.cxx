@@ -140,6 +140,7 @@ MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
   this->Operations.flatTolerance = rules.flatTolerance;
   this->Operations.surface = rules.surface;
   this->Operations.sums = rules.sums;
+  this->Operations.inserts = rules.inserts;
   const double share = static_cast<double>(this->Own.size()) / static_cast<double>(whole.size());
   const auto shareOf = [share](Index count) {
     return static_cast<Index>(std::floor(share * static_cast<double>(std::max<Index>(count, 0))));

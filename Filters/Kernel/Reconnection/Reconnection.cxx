@@ -272,6 +272,7 @@ void Run::setBounds()
 {
   const double size = static_cast<double>(this->Mesh.size());
   const bool keepsCount = this->Options.smallestCount == 1.0 && this->Options.largestCount == 1.0;
+  this->Operations.inserts = this->Options.insert && !keepsCount;
   this->Operations.smallestSize =
     keepsCount ? 0 : static_cast<Index>(std::ceil(this->Options.smallestCount * size));
   this->Operations.largestSize = keepsCount

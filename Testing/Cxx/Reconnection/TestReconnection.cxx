@@ -164,13 +164,21 @@ void testCount()
         static_cast<double>(record.tetrahedra) <= bounds[1] * n);
     }
   }
-  ReconnectionOptions options;
-  options.smallestCount = options.largestCount = 1.0;
-  const ReconnectionResult result = reconnect(data, options);
-  TAUTLINE_CHECK_EQUAL(result.history.back().insertions, Index(0));
-  TAUTLINE_CHECK_EQUAL(result.history.back().contractions, Index(0));
-  TAUTLINE_CHECK(result.history.back().edgeRemovals > 0);
-  TAUTLINE_CHECK_EQUAL(result.points.size(), data.points.size());
+  ReconnectionOptions none; // nor by repairs, which are tried for high targets
+  none.smallestCount = none.largestCount = 1.0;
+  ReconnectionOptions high = none;
+  high.boundary = ReconnectionBoundary::Sliding;
+  high.targetAngle = 38.8;
+  ReconnectionOptions off;
+  off.insert = off.contract = false;
+  for (const ReconnectionOptions& options : { none, high, off })
+  {
+    const ReconnectionResult result = reconnect(data, options);
+    TAUTLINE_CHECK_EQUAL(result.history.back().insertions, Index(0));
+    TAUTLINE_CHECK_EQUAL(result.history.back().contractions, Index(0));
+    TAUTLINE_CHECK(result.history.back().edgeRemovals > 0);
+    TAUTLINE_CHECK_EQUAL(result.points.size(), data.points.size());
+  }
 }
 
 /// Scales that are powers of two change nothing but the scale. Others, and rotations, round the
