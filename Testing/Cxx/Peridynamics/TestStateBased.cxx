@@ -544,6 +544,28 @@ void testCuts()
   }
 }
 
+/// Two triangles beside a notch: where they share the vertex at its end they interact, though the
+/// segment between them leaves the mesh; a little apart they do not.
+void testSharedVertex()
+{
+  PeridynamicOptions options;
+  options.horizon = 1.2;
+  options.basis = PeridynamicBasis::Constant;
+  options.constrained = false;
+  HorizonMesh notch;
+  notch.points = { 0, 0, 1, 0.2, 0.6, 0.8, 0.6, -0.8, 1, -0.2 };
+  notch.triangles = { 0, 1, 2, 0, 3, 4 };
+  notch.layer = { 0, 0 };
+  TAUTLINE_CHECK(std::abs(assemblePeridynamics(notch, options).matrix.at(0, 1)) > 1e-3);
+  HorizonMesh apart = notch;
+  const double below[] = { 0, -0.01 };
+  apart.points.insert(apart.points.end(), below, below + 2);
+  apart.triangles[3] = 5;
+  TAUTLINE_CHECK_THROWS(assemblePeridynamics(apart, options), "row 0 of the matrix is empty");
+  options.cutBonds = false;
+  TAUTLINE_CHECK(std::abs(assemblePeridynamics(apart, options).matrix.at(0, 1)) > 1e-3);
+}
+
 /// The energy of a free ring tends to that of a body whose bonds are cut at a circle: sums over
 /// pairs of points that see each other.
 double energyOfVisiblePoints(double inner, double outer, double delta, int n, double* whole)
@@ -642,6 +664,7 @@ int TestStateBased(int, char*[])
   testMatrix();
   testSolutions();
   testCuts();
+  testSharedVertex();
   testCutEnergy();
   testRefusals();
   return exitCode();
