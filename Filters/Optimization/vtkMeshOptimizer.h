@@ -48,7 +48,9 @@
  * `Inverted`, `Degenerate`; over the elements of the statistics of vtkElementQuality.
  *
  * @par Several processes:
- * The mesh has to be on the first process; otherwise an error.
+ * Each may have pieces of the mesh. Volume meshes and planar ones are worked on where they are, in
+ * the reproducible order; what that does not cover is gathered on the first process or refused by
+ * name.
  *
  * @par Example:
  * @code

@@ -30,7 +30,9 @@
  * also `Block`.
  *
  * @par Several processes:
- * The mesh has to be on the first process; otherwise an error.
+ * Each may have pieces of the mesh. Volume meshes and planar ones are worked on where they are, in
+ * the reproducible order; what that does not cover is gathered on the first process or refused by
+ * name.
  *
  * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see
  * tautline/Untangling/Untangle.h.
