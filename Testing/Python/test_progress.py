@@ -86,9 +86,10 @@ def cases():
     yield "sources", "MeshDomain", {}, {"NumberOfCells": 30000}
     yield "sources", "MeshDomain", {}, {"Domain": "Rectangle, Structured", "NumberOfCells": 200000}
     yield "sources", "MeshDomain", {}, {"Domain": "Disk (2D)", "NumberOfCells": 30000}
-    for extension, name in ((".mesh", "Medit"), (".msh", "Gmsh"), (".off", "Off"), (".ele", "TetGen")):
-        file = written(extension, triangles if name == "Off" else cube)
-        yield "sources", f"Tautline{name}Reader", {}, {"FileNames": [file]}
+    readers = {".mesh": "TautlineMeditReader", ".msh": "AnyGmshReader", ".ele": "TautlineTetGenReader"}
+    for extension, name in {**readers, ".off": "TautlineOffReader"}.items():
+        file = written(extension, triangles if extension == ".off" else cube)
+        yield "sources", name, {}, {"FileNames": [file]}
     yield "sources", "SilhouetteSetReader", {}, {"FileName": str(DATA / "silhouettes.csv")}
     yield "filters", "ElementQuality", {"Input": cube}, {}
     yield "filters", "MeshComparison", {"Input": cube, "Other": cube}, {}
