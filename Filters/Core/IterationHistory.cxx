@@ -95,6 +95,13 @@ std::string summarize(
             "points with a smaller objective were found.";
   }
   text << surfaceErrorSentence(result.surfaceError);
+  if (result.heldOnSurface > 0)
+  {
+    text << "\nSurface Tolerance holds " << result.heldOnSurface
+         << (result.heldOnSurface == 1 ? " point" : " points")
+         << " of the boundary: their last steps went too far from the surface. A larger one, or 0, "
+            "lets them slide on.";
+  }
   return text.str();
 }
 

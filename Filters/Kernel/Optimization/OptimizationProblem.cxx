@@ -139,6 +139,12 @@ double OptimizationProblem::surfaceError() const
 }
 
 //------------------------------------------------------------------------------
+Index OptimizationProblem::heldOnSurface() const
+{
+  return this->Limit ? this->Limit->held() : 0;
+}
+
+//------------------------------------------------------------------------------
 std::vector<unsigned char> OptimizationProblem::closedForms() const
 {
   std::vector<unsigned char> flags;

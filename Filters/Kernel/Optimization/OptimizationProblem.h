@@ -35,6 +35,8 @@ public:
   const SurfaceProjection* surface() const { return this->Surface.get(); }
   /// The distance between it and the surface at the stored points, see OptimizeOptions.
   double surfaceError() const;
+  /// Points that the surface tolerance holds: their last steps were refused.
+  Index heldOnSurface() const;
   std::size_t objectives() const { return this->Resolved.size(); }
   /// The objectives with their templates, and weights of 0 for the cells that are left out.
   const std::vector<Objective>& resolved() const { return this->Resolved; }

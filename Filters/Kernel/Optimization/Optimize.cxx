@@ -477,6 +477,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   result.elements.validity = std::move(state.validity);
   result.elements.after = std::move(state.values);
   result.surfaceError = problem.surfaceError();
+  result.heldOnSurface = problem.heldOnSurface();
   return repaired;
 }
 

@@ -37,7 +37,8 @@ struct OptimizeResult
   /// Largest distance between the output's surface (of a surface mesh, or of points that slide) and
   /// the input's, from either to the other, or from it to the geometry; else 0.
   double surfaceError = 0;
-  bool untangled = false; ///< untangle() was run first
+  Index heldOnSurface = 0; ///< points whose last steps surfaceTolerance refused
+  bool untangled = false;  ///< untangle() was run first
   /// Points that went back to their place in the input, because an element there would otherwise be
   /// worse than the worst one of the input.
   Index restored = 0;

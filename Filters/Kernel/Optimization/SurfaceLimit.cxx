@@ -56,6 +56,7 @@ void SurfaceLimit::findFacets(const Mesh& mesh)
   }
   const std::int32_t free = this->Simplices.freeVertices();
   const auto isFree = [free](std::int32_t v) { return v >= 0 && v < free; };
+  this->Refused.assign(free, 0);
   this->Starts.assign(static_cast<std::size_t>(free) + 1, 0);
   for (const SurfaceFacet& found : surfaceFacets(mesh))
   {
@@ -196,6 +197,20 @@ double SurfaceLimit::farthestPlace(
 
 //------------------------------------------------------------------------------
 bool SurfaceLimit::allows(std::int32_t v, const Vec3& before)
+{
+  const bool near = this->staysNear(v, before);
+  this->Refused[v] = !near;
+  return near;
+}
+
+//------------------------------------------------------------------------------
+Index SurfaceLimit::held() const
+{
+  return std::count(this->Refused.begin(), this->Refused.end(), 1);
+}
+
+//------------------------------------------------------------------------------
+bool SurfaceLimit::staysNear(std::int32_t v, const Vec3& before)
 {
   bool left = true;
   for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1] && left; ++i)

@@ -45,6 +45,8 @@ public:
    * same time only for vertices without a common facet.
    */
   bool allows(std::int32_t v, const Vec3& before);
+  /// Free vertices whose last step was refused.
+  Index held() const;
 
 private:
   using Triangle = std::array<Vec3, 3>;
@@ -61,6 +63,7 @@ private:
     return { p[0], p[1], p[2] };
   }
   void findFacets(const Mesh& mesh);
+  bool staysNear(std::int32_t v, const Vec3& before);
   bool isLeft(const Facet& facet) const;
   std::vector<Triangle> trianglesAt(std::int32_t v, const Vec3& place) const;
   double farthest(const std::vector<Triangle>& triangles, double most) const;
@@ -72,6 +75,7 @@ private:
   double Distance;
   std::vector<Facet> Facets;
   std::vector<std::int32_t> Starts, FacetsAt; ///< of each free vertex
+  std::vector<unsigned char> Refused;         ///< of each free vertex: its last step
   std::vector<Vec3> Places;                   ///< of the surface
   std::unique_ptr<PointTree> Tree;            ///< of these, if they are to stay near
 };

@@ -156,6 +156,7 @@ void testLimit()
   TAUTLINE_CHECK(free.result.surfaceError > 0.8 * off && free.result.surfaceError < 1.05 * off);
   const double start = free.result.history.front().objective,
                unlimited = start - free.result.history.back().objective;
+  TAUTLINE_CHECK_EQUAL(free.result.heldOnSurface, Index(0));
   double last = 0;
   for (double tolerance : { 1e-4, 1e-3, 5e-3 })
   {
@@ -164,6 +165,8 @@ void testLimit()
     TAUTLINE_CHECK(limited.there <= tolerance);
     TAUTLINE_CHECK(limited.back <= tolerance);
     TAUTLINE_CHECK(limited.result.surfaceError <= tolerance);
+    const Index held = limited.result.heldOnSurface;
+    TAUTLINE_CHECK(held > 0 && held < limited.result.freeVertices);
     // The mesh improves all the same, the more the wider the limit.
     const double lowered = start - limited.result.history.back().objective;
     TAUTLINE_CHECK(lowered > last && lowered > 0.3 * unlimited);
@@ -192,6 +195,9 @@ void testFilter()
       filter->SetSurfaceTolerance(limited ? 0.001 : 0.0);
       filter->Update();
       errors[limited] = filter->GetSurfaceError() / diagonal;
+      const std::string summary = filter->GetSummary();
+      const bool says = summary.find("Surface Tolerance holds") != std::string::npos;
+      TAUTLINE_CHECK_EQUAL(says, limited == 1);
     }
     TAUTLINE_CHECK(errors[0] > 0.005);
     TAUTLINE_CHECK(errors[1] <= 0.001 && errors[1] > 0.0003);
