@@ -80,8 +80,6 @@ public:
   Index cells() const { return this->Cells; }
   /// At most: with those of points that are not finite.
   Index simplices() const { return this->Simplices; }
-  /// Whether each cell has one.
-  bool onePerCell() const { return this->Simplices == this->Cells; }
 
   /// Of a cell of the dimension.
   const CellTopology& topologyOf(Index cell) const
@@ -223,22 +221,6 @@ void SimplexMesh::cutInto(const Mesh& mesh, const std::vector<std::int32_t>& ver
     [&](Index cell, const auto& use)
     { source.visit(cell, [&](Index, int, const std::int32_t* v) { use(first(v)); }); });
   this->Simplices = places.starts().back();
-  this->Cell.resize(this->Simplices);
-  std::vector<unsigned char> cornerOf(source.onePerCell() ? 0 : this->Simplices, 0);
-  places.place(
-    [&](Index cellPlace, const auto& placeOf)
-    {
-      source.visit(cellPlace,
-        [&](Index cell, int s, const std::int32_t* v)
-        {
-          const std::int32_t place = placeOf(first(v));
-          this->Cell[place] = static_cast<std::int32_t>(cell);
-          if (!cornerOf.empty())
-          {
-            cornerOf[place] = static_cast<unsigned char>(s);
-          }
-        });
-    });
   this->Scale = frame ? frame->scale : powerOfTwo(source.meanLength(this->Point));
 
   // The shapes of ideal corners are few; one for all simplices needs no index.
@@ -252,32 +234,37 @@ void SimplexMesh::cutInto(const Mesh& mesh, const std::vector<std::int32_t>& ver
     this->Shapes = idealShapes(mesh, Dim, firstShape);
   }
   const bool several = targets || this->Shapes.size() > 1;
+  this->Cell.resize(this->Simplices);
   this->Corners.resize(static_cast<std::size_t>(corners) * this->Simplices);
   this->Shape.resize(several ? this->Simplices : 0);
-  forEachChunk(this->Simplices, threads,
-    [&](Index, Index begin, Index end)
+  // Cells are read in their order and written to their places: the processor need not wait for a
+  // write as it would for a read.
+  places.place(
+    [&](Index cellPlace, const auto& placeOf)
     {
-      for (Index place = begin; place < end; ++place)
-      {
-        const Index cell = this->Cell[place], s = cornerOf.empty() ? 0 : cornerOf[place];
-        const CellTopology& t = source.topologyOf(cell);
-        std::int32_t* corner = this->Corners.data() + corners * place;
-        source.find(t, cell, s, corner);
-        if (this->Mirrored)
+      source.visit(cellPlace,
+        [&](Index cell, int s, const std::int32_t* v)
         {
-          std::swap(corner[0], corner[1]);
-        }
-        if (targets)
-        {
-          this->Shape[place] = static_cast<std::int32_t>(place);
-          this->Shapes[place] = targetFrom(
-            targets->inverse.data() + 9 * (targets->offsets[cell] + s), Dim, this->Scale);
-        }
-        else if (several)
-        {
-          this->Shape[place] = firstShape[topologyIndex(t.type)] + static_cast<int>(s);
-        }
-      }
+          const std::int32_t place = placeOf(first(v));
+          this->Cell[place] = static_cast<std::int32_t>(cell);
+          std::int32_t* corner = this->Corners.data() + corners * static_cast<std::size_t>(place);
+          std::copy_n(v, corners, corner);
+          if (this->Mirrored)
+          {
+            std::swap(corner[0], corner[1]);
+          }
+          if (targets)
+          {
+            this->Shape[place] = place;
+            this->Shapes[place] = targetFrom(
+              targets->inverse.data() + 9 * (targets->offsets[cell] + s), Dim, this->Scale);
+          }
+          else if (several)
+          {
+            const CellTopology& t = source.topologyOf(cell);
+            this->Shape[place] = firstShape[topologyIndex(t.type)] + s;
+          }
+        });
     });
   if (this->Mirrored && several)
   {
