@@ -16,18 +16,55 @@ constexpr double near = 0.1;
 /// Places in a leaf of their tree, at most.
 constexpr std::size_t leafSize = 8;
 
-/// Or anything below `enough`, if it is below that.
-double squareDistanceTo(
-  const std::vector<std::array<Vec3, 3>>& triangles, const Vec3& x, double enough)
+/// Triangles in the balls round their centres: what is far from a ball is far from its triangle.
+class BalledTriangles
 {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < triangles.size() && least > enough; ++i)
+public:
+  explicit BalledTriangles(const std::vector<std::array<Vec3, 3>>& triangles)
+    : Triangles(triangles)
   {
-    const Vec3 d = closestOnTriangle(triangles[i], x) - x;
-    least = std::min(least, dot(d, d));
+    for (const auto& [a, b, c] : triangles)
+    {
+      const Vec3 center = (1.0 / 3.0) * (a + b + c);
+      const double radius = std::max({ norm(a - center), norm(b - center), norm(c - center) });
+      this->Balls.push_back({ center, slack * radius });
+    }
   }
-  return least;
-}
+
+  /// Of x from the triangles, squared. Anything up to `enough` if it is that, and anything beyond
+  /// `most` if it is that.
+  double squareDistanceTo(const Vec3& x, double enough, double most) const
+  {
+    double least = std::numeric_limits<double>::infinity(), reach = slack * std::sqrt(most);
+    for (std::size_t i = 0; i < this->Balls.size() && least > enough; ++i)
+    {
+      const Vec3 toCenter = this->Balls[i].center - x;
+      const double far = this->Balls[i].radius + reach;
+      if (dot(toCenter, toCenter) > far * far)
+      {
+        continue;
+      }
+      const Vec3 d = closestOnTriangle(this->Triangles[i], x) - x;
+      if (dot(d, d) < least)
+      {
+        least = dot(d, d);
+        reach = std::min(reach, slack * std::sqrt(least));
+      }
+    }
+    return least;
+  }
+
+private:
+  static constexpr double slack = 1 + 1e-6; ///< far more than rounding
+  struct Ball
+  {
+    Vec3 center;
+    double radius;
+  };
+
+  const std::vector<std::array<Vec3, 3>>& Triangles;
+  std::vector<Ball> Balls;
+};
 }
 
 //------------------------------------------------------------------------------
@@ -159,7 +196,7 @@ double SurfaceLimit::farthest(const std::vector<Triangle>& triangles, double mos
 
 //------------------------------------------------------------------------------
 /// The largest distance from the facets after, of the places of the surface that are near to the
-/// facets before.
+/// facets before; if it is above the limit, anything above that.
 double SurfaceLimit::farthestPlace(
   const Vec3& center, const std::vector<Triangle>& before, const std::vector<Triangle>& after) const
 {
@@ -173,8 +210,9 @@ double SurfaceLimit::farthestPlace(
   }
   const double reach = std::sqrt(radius2) + this->Distance, most2 = this->Distance * this->Distance;
   double largest2 = near * near * most2;
+  const BalledTriangles old(before), now(after);
   const auto& nodes = this->Tree->nodes();
-  for (std::size_t i = 0; i < nodes.size();)
+  for (std::size_t i = 0; i < nodes.size() && largest2 <= most2;)
   {
     const PointTree::Node& node = nodes[i];
     if (norm(node.center - center) > reach + node.radius)
@@ -185,9 +223,9 @@ double SurfaceLimit::farthestPlace(
     for (std::size_t k = node.begin; node.leaf && k < node.end; ++k)
     {
       const Vec3& x = this->Places[this->Tree->order()[k]];
-      if (norm(x - center) <= reach && squareDistanceTo(before, x, most2) <= most2)
+      if (norm(x - center) <= reach && old.squareDistanceTo(x, most2, most2) <= most2)
       {
-        largest2 = std::max(largest2, squareDistanceTo(after, x, largest2));
+        largest2 = std::max(largest2, now.squareDistanceTo(x, largest2, most2));
       }
     }
     ++i;

@@ -257,19 +257,32 @@ Vec3 closestOnTriangle(const std::array<Vec3, 3>& corner, const Vec3& x)
   constexpr double needle2 = 1e-20; // sine of an angle, squared
   const Vec3 n = cross(b - a, c - a);
   const double n2 = dot(n, n);
+  bool beyond[3] = { true, true, true };
   if (b != c && n2 > needle2 * dot(b - a, b - a) * dot(c - a, c - a))
   {
     const Vec3 foot = x - (dot(x - a, n) / n2) * n;
-    if (dot(cross(b - a, foot - a), n) >= 0 && dot(cross(c - b, foot - b), n) >= 0 &&
-      dot(cross(a - c, foot - c), n) >= 0)
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vec3& start = corner[k];
+      beyond[k] = dot(cross(corner[(k + 1) % 3] - start, foot - start), n) < 0;
+    }
+    if (!beyond[0] && !beyond[1] && !beyond[2])
     {
       return foot;
     }
   }
-  Vec3 best = closestOnSegment(a, b, x);
-  for (const Vec3& p : { closestOnSegment(b, c, x), closestOnSegment(c, a, x) })
+  // The closest edge is one that the foot is beyond.
+  Vec3 best = a;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
   {
-    best = dot(p - x, p - x) < dot(best - x, best - x) ? p : best;
+    if (beyond[k])
+    {
+      const Vec3 p = closestOnSegment(corner[k], corner[(k + 1) % 3], x);
+      const double d2 = dot(p - x, p - x);
+      best = d2 < least ? p : best;
+      least = std::min(least, d2);
+    }
   }
   return best;
 }
