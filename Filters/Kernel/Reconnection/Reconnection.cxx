@@ -14,6 +14,7 @@
 
 #include <atomic>
 #include <limits>
+#include <numeric>
 #include <thread>
 
 namespace tautline
@@ -80,22 +81,21 @@ std::unique_ptr<MetricQuality> metricOf(
   return std::make_unique<MetricQuality>(options.metric, input.exponent, sum);
 }
 
-/// Sets the worst values of the record; only tetrahedra that may be worse than those before are
-/// measured.
-void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord& record)
+/// Adds the worst values of some tetrahedra to the record; only those that may be worse than those
+/// before are measured.
+void addWorst(
+  const TetrahedronMesh& mesh, TetId begin, TetId end, double target, ReconnectionRecord& record)
 {
-  double quality = 1.0, smallest = 180.0, largest = 0.0, meanRatio = 1.0, sufficient = 2.0;
-  record.belowTarget = record.tetrahedra = 0;
-  for (TetId t = 0; t < mesh.slots(); ++t)
+  double meanRatio = 1.0, sufficient = 2.0;
+  for (TetId t = begin; t < end; ++t)
   {
-    pollInterruption(static_cast<Index>(t));
     if (!mesh.alive(t) || mesh.region(t) == OutsideRegion)
     {
       continue;
     }
     const double q = mesh.quality(t);
     ++record.tetrahedra;
-    quality = std::min(quality, q);
+    record.worstQuality = std::min(record.worstQuality, q);
     record.belowTarget += q < target;
     if (q >= sufficient)
     {
@@ -105,52 +105,85 @@ void measureWorst(const TetrahedronMesh& mesh, double target, ReconnectionRecord
     const auto x = [&](int k) { return mesh.point(v[k]); };
     for (double angle : dihedralAngles(x(0), x(1), x(2), x(3)))
     {
-      smallest = std::min(smallest, angle);
-      largest = std::max(largest, angle);
+      record.smallestAngle = std::min(record.smallestAngle, angle);
+      record.largestAngle = std::max(record.largestAngle, angle);
     }
     meanRatio = std::min(meanRatio, measure(x(0), x(1), x(2), x(3)).meanRatio);
     // With weights 1, all angles are between asin(q) and 180 degrees minus it, and the mean ratio's
     // power is above q.
     // (Of a metric of the registry nothing follows for these: the weights are large.)
     const QualityWeights& w = mesh.weights();
-    sufficient =
-      std::max({ w.meanRatio * meanRatio, w.sine * std::sin(radians(std::min(smallest, 90.0))),
-        w.sine * std::sin(radians(std::max(largest, 90.0))) });
+    sufficient = std::max(
+      { w.meanRatio * meanRatio, w.sine * std::sin(radians(std::min(record.smallestAngle, 90.0))),
+        w.sine * std::sin(radians(std::max(record.largestAngle, 90.0))) });
   }
-  record.worstQuality = quality;
-  record.smallestAngle = smallest;
-  record.largestAngle = largest;
   record.worstInverseMeanRatio = std::pow(meanRatio, -2.0 / 3.0);
 }
 
-/// In the units of the input, which are 2^exponent.
-double volumeOf(const TetrahedronMesh& mesh, int exponent)
+/// Sets the worst values of the record.
+void measureWorst(
+  const TetrahedronMesh& mesh, double target, int threads, ReconnectionRecord& record)
 {
-  double sum = 0.0;
-  for (TetId t = 0; t < mesh.slots(); ++t)
+  record.worstQuality = record.worstInverseMeanRatio = 1.0;
+  record.smallestAngle = 180.0;
+  record.largestAngle = 0.0;
+  record.belowTarget = record.tetrahedra = 0;
+  std::vector<ReconnectionRecord> ofChunk(numberOfChunks(mesh.slots()), record);
+  forEachChunk(mesh.slots(), threads,
+    [&](Index chunk, Index begin, Index end) {
+      addWorst(mesh, static_cast<TetId>(begin), static_cast<TetId>(end), target, ofChunk[chunk]);
+    });
+  for (const ReconnectionRecord& part : ofChunk)
   {
-    if (mesh.alive(t))
-    {
-      const TetVertices& v = mesh.tet(t).vertices;
-      const auto x = [&](int k) { return mesh.point(v[k]) - mesh.point(v[0]); };
-      sum += dot(x(1), cross(x(2), x(3)));
-    }
+    record.worstQuality = std::min(record.worstQuality, part.worstQuality);
+    record.smallestAngle = std::min(record.smallestAngle, part.smallestAngle);
+    record.largestAngle = std::max(record.largestAngle, part.largestAngle);
+    record.worstInverseMeanRatio =
+      std::max(record.worstInverseMeanRatio, part.worstInverseMeanRatio);
+    record.belowTarget += part.belowTarget;
+    record.tetrahedra += part.tetrahedra;
   }
+}
+
+/// The sum of a function of the corners of all tetrahedra; it does not depend on the threads.
+template <class Function>
+double sumOf(const TetrahedronMesh& mesh, int threads, const Function& function)
+{
+  std::vector<double> ofChunk(numberOfChunks(mesh.slots()), 0.0);
+  forEachChunk(mesh.slots(), threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (TetId t = static_cast<TetId>(begin); t < static_cast<TetId>(end); ++t)
+      {
+        if (mesh.alive(t))
+        {
+          const TetVertices& v = mesh.tet(t).vertices;
+          ofChunk[chunk] +=
+            function(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+        }
+      }
+    });
+  return std::accumulate(ofChunk.begin(), ofChunk.end(), 0.0);
+}
+
+/// In the units of the input, which are 2^exponent.
+double volumeOf(const TetrahedronMesh& mesh, int exponent, int threads)
+{
+  const double sum = sumOf(mesh, threads,
+    [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+    { return dot(b - a, cross(c - a, d - a)); });
   return std::ldexp(sum / 6.0, 3 * exponent);
 }
 
-double meanRatioOf(const TetrahedronMesh& mesh)
+/// Of the inverse mean ratio.
+double meanRatioOf(const TetrahedronMesh& mesh, int threads)
 {
-  double sum = 0.0;
-  for (TetId t = 0; t < mesh.slots(); ++t)
-  {
-    if (mesh.alive(t))
+  const double sum = sumOf(mesh, threads,
+    [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
     {
-      const TetVertices& v = mesh.tet(t).vertices;
-      const auto x = [&](int k) { return mesh.point(v[k]); };
-      sum += std::pow(measure(x(0), x(1), x(2), x(3)).meanRatio, -2.0 / 3.0);
-    }
-  }
+      const double root = std::cbrt(measure(a, b, c, d).meanRatio);
+      return 1.0 / (root * root);
+    });
   return sum / static_cast<double>(mesh.size());
 }
 
@@ -223,7 +256,8 @@ bool Run::record(int pass, double progress)
   ReconnectionRecord record;
   record.pass = pass;
   record.seconds = this->Clock.seconds();
-  measureWorst(this->Mesh, std::sin(radians(this->Options.targetAngle)), record);
+  measureWorst(
+    this->Mesh, std::sin(radians(this->Options.targetAngle)), this->Options.threads, record);
   copyCounts(this->Operations.counts(), record);
   this->Result.history.push_back(record);
   this->Progress = progress;
@@ -580,10 +614,10 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   checkReconnectionOptions(options);
   ReconnectionInput input = convertInput(mesh, options);
   ReconnectionResult result;
-  TetrahedronMesh changing(input.points, input.cells, input.regions);
   const std::unique_ptr<MetricQuality> metric = metricOf(mesh, input, options);
-  changing.setWeights(weightsOf(options.objective, metric.get()));
-  checkFaces(changing);
+  TetrahedronMesh changing(input.points, input.cells, input.regions,
+    weightsOf(options.objective, metric.get()), options.threads);
+  checkFaces(changing, options.threads);
   const InputLocator locator(changing, input); // before the cut: it walks across marked facets
   const std::vector<char> marked = keepMarked(options.markedFacets, changing);
   result.markedFacets = static_cast<Index>(changing.keptFaces().size());
@@ -601,7 +635,7 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
     surface = std::make_shared<BoundarySurface>(Mesh(scaled), changing, options);
     freedoms = surface->freedoms();
     fixNonManifold(changing, freedoms);
-    result.volumeBefore = volumeOf(changing, input.exponent);
+    result.volumeBefore = volumeOf(changing, input.exponent, options.threads);
   }
   else
   {
@@ -617,9 +651,9 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   Run run(changing, options, result);
   if (changing.size() > 0)
   {
-    result.meanBefore = meanRatioOf(changing);
+    result.meanBefore = meanRatioOf(changing, options.threads);
     run.run(freedoms, edgeMetrics(input, options), surface);
-    result.meanAfter = meanRatioOf(changing);
+    result.meanAfter = meanRatioOf(changing, options.threads);
     findObstacles(changing, run.schedule(), options, fixedPoints, result);
   }
   if (metric)
@@ -629,10 +663,10 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   }
   if (surface)
   {
-    result.volumeAfter = volumeOf(changing, input.exponent);
+    result.volumeAfter = volumeOf(changing, input.exponent, options.threads);
     result.boundaryDistance = std::ldexp(surface->distance(changing), input.exponent);
   }
-  convertOutput(mesh, input, changing, locator, result);
+  convertOutput(mesh, input, changing, locator, options.threads, result);
   if (options.overlaps)
   {
     computeOverlaps(input, changing, locator, options.threads, result);

@@ -2,10 +2,10 @@
 #include "ReconnectionInput.h"
 
 #include "tautline/Core/Memory.h"
-
-#include "tautline/Core/Interruption.h"
+#include "tautline/Core/Parallel.h"
 
 #include <limits>
+#include <numeric>
 
 namespace tautline
 {
@@ -110,7 +110,7 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
       static_cast<double>(view.numberOfCells),
     "reconnection of this mesh", "take a smaller mesh");
   std::vector<signed char> validity(view.numberOfCells);
-  mesh.classifyCells(validity.data());
+  mesh.classifyCells(validity.data(), options.threads);
   const Index inverted =
     std::count_if(validity.begin(), validity.end(), [](signed char v) { return v != Valid; });
   if (inverted > 0)
@@ -157,30 +157,38 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
   return input;
 }
 
-void checkFaces(const TetrahedronMesh& mesh)
+void checkFaces(const TetrahedronMesh& mesh, int threads)
 {
   if (mesh.nonManifoldFaces() > 0)
   {
     throw Error(std::to_string(mesh.nonManifoldFaces()) +
       " faces are used by three or more tetrahedra: remove duplicate or overlapping cells first");
   }
-  Index sameSide = 0;
-  for (TetId t = 0; t < mesh.slots(); ++t)
+  std::vector<Index> ofChunk(numberOfChunks(mesh.slots()), 0);
+  const auto isTurned = [&mesh](TetId t, int i)
   {
-    pollInterruption(static_cast<Index>(t));
-    for (int i = 0; i < 4; ++i)
+    const std::int32_t n = mesh.tet(t).neighbors[i];
+    if (n == NoId || n >> 2 < t)
     {
-      const std::int32_t n = mesh.tet(t).neighbors[i];
-      if (n == NoId || n >> 2 < t)
-      {
-        continue;
-      }
-      // From the two sides a face has opposite senses.
-      const TriangleVertices own = mesh.face(t, i), other = mesh.face(n >> 2, n & 3);
-      const int at = other[0] == own[0] ? 0 : (other[1] == own[0] ? 1 : 2);
-      sameSide += other[(at + 1) % 3] == own[1];
+      return false;
     }
-  }
+    // From the two sides a face has opposite senses.
+    const TriangleVertices own = mesh.face(t, i), other = mesh.face(n >> 2, n & 3);
+    const int at = other[0] == own[0] ? 0 : (other[1] == own[0] ? 1 : 2);
+    return other[(at + 1) % 3] == own[1];
+  };
+  forEachChunk(mesh.slots(), threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index t = begin; t < end; ++t)
+      {
+        for (int i = 0; i < 4; ++i)
+        {
+          ofChunk[chunk] += isTurned(static_cast<TetId>(t), i);
+        }
+      }
+    });
+  const Index sameSide = std::accumulate(ofChunk.begin(), ofChunk.end(), Index(0));
   if (sameSide > 0)
   {
     throw Error(std::to_string(sameSide) +

@@ -32,6 +32,6 @@ void checkReconnectionOptions(const ReconnectionOptions& options);
 ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& options);
 
 /// Throws Error for faces of three tetrahedra, or of two on the same side.
-void checkFaces(const TetrahedronMesh& mesh);
+void checkFaces(const TetrahedronMesh& mesh, int threads);
 }
 #endif

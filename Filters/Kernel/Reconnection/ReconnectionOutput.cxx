@@ -2,6 +2,7 @@
 #include "ReconnectionOutput.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/Parallel.h"
 
 #include <limits>
 #include <unordered_set>
@@ -157,9 +158,41 @@ bool isUnchanged(const ReconnectionInput& input, const TetrahedronMesh& changed,
     v.begin(), v.end(), [&](PointId p) { return changed.point(p) == input.points[p]; });
 }
 
-void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const TetrahedronMesh& changed,
-  const InputLocator& locator, ReconnectionResult& result)
+namespace
 {
+/// Per slot the cell of the input that the centroid is in.
+std::vector<TetId> findOriginals(const ReconnectionInput& input, const TetrahedronMesh& changed,
+  const InputLocator& locator, int threads)
+{
+  std::vector<TetId> originals(changed.slots());
+  const auto find = [&](TetId t)
+  {
+    if (!changed.alive(t) || isUnchanged(input, changed, t))
+    {
+      return t;
+    }
+    const TetVertices& v = changed.tet(t).vertices;
+    const Vec3 centroid = 0.25 *
+      (changed.point(v[0]) + changed.point(v[1]) + changed.point(v[2]) + changed.point(v[3]));
+    return locator.locate(centroid, changed.origin(t));
+  };
+  forEachChunk(changed.slots(), threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index t = begin; t < end; ++t)
+      {
+        originals[t] = find(static_cast<TetId>(t));
+      }
+    });
+  return originals;
+}
+}
+
+//------------------------------------------------------------------------------
+void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const TetrahedronMesh& changed,
+  const InputLocator& locator, int threads, ReconnectionResult& result)
+{
+  const std::vector<TetId> originals = findOriginals(input, changed, locator, threads);
   const std::vector<Index> numbers = writePoints(mesh, input, changed, result);
   const PointId inputPoints = static_cast<PointId>(mesh.view().numberOfPoints);
   for (TetId t = 0; t < changed.slots(); ++t)
@@ -170,14 +203,7 @@ void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const Tetra
       continue;
     }
     TetVertices v = changed.tet(t).vertices;
-    TetId original = t;
-    if (!isUnchanged(input, changed, t))
-    {
-      const Vec3 centroid = 0.25 *
-        (changed.point(v[0]) + changed.point(v[1]) + changed.point(v[2]) + changed.point(v[3]));
-      original = locator.locate(centroid, changed.origin(t));
-    }
-    result.originalCells.push_back(original);
+    result.originalCells.push_back(originals[t]);
     if (mesh.mirrored())
     {
       std::swap(v[2], v[3]);

@@ -55,6 +55,6 @@ void computeOverlaps(const ReconnectionInput& input, const TetrahedronMesh& chan
 
 /// Writes points, tetrahedra and their origins.
 void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const TetrahedronMesh& changed,
-  const InputLocator& locator, ReconnectionResult& result);
+  const InputLocator& locator, int threads, ReconnectionResult& result);
 }
 #endif

@@ -2,6 +2,7 @@
 #include "TetrahedronMesh.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/Parallel.h"
 
 #include <numeric>
 
@@ -29,8 +30,9 @@ void sortKey(TriangleVertices& k)
 
 //------------------------------------------------------------------------------
 TetrahedronMesh::TetrahedronMesh(std::vector<Vec3> points, const std::vector<TetVertices>& cells,
-  const std::vector<std::int32_t>& regions)
+  const std::vector<std::int32_t>& regions, const QualityWeights& weights, int threads)
   : Points(std::move(points))
+  , Weights(weights)
 {
   const std::size_t n = cells.size();
   this->Tets.resize(n);
@@ -40,12 +42,19 @@ TetrahedronMesh::TetrahedronMesh(std::vector<Vec3> points, const std::vector<Tet
   this->Region = regions;
   this->Region.resize(n, 0);
   this->PointTet.assign(this->Points.size(), NoId);
+  forEachChunk(static_cast<Index>(n), threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index t = begin; t < end; ++t)
+      {
+        this->Tets[t].vertices = cells[t];
+        this->Tets[t].neighbors.fill(NoId);
+        this->Quality[t] = this->computeExactQuality(cells[t]);
+        this->Origin[t] = static_cast<TetId>(t);
+      }
+    });
   for (std::size_t t = 0; t < n; ++t)
   {
-    this->Tets[t].vertices = cells[t];
-    this->Tets[t].neighbors.fill(NoId);
-    this->Quality[t] = this->computeExactQuality(cells[t]);
-    this->Origin[t] = static_cast<TetId>(t);
     for (PointId v : cells[t])
     {
       this->PointTet[v] = static_cast<TetId>(t);
@@ -53,7 +62,7 @@ TetrahedronMesh::TetrahedronMesh(std::vector<Vec3> points, const std::vector<Tet
   }
   this->Alive = static_cast<Index>(n);
   this->InputPoints = this->pointSlots();
-  this->connect();
+  this->connect(threads);
 }
 
 TetrahedronMesh::TetrahedronMesh(TetrahedronArrays arrays)
@@ -140,7 +149,7 @@ bool TetrahedronMesh::isKept(TetId t, int i) const
 }
 
 /// Finds the neighbours: faces are filed by their smallest vertex, then compared.
-void TetrahedronMesh::connect()
+void TetrahedronMesh::connect(int threads)
 {
   struct Use
   {
@@ -176,10 +185,12 @@ void TetrahedronMesh::connect()
       uses[next[key[0]]++] = { key[1], key[2], 4 * t + i };
     }
   }
-  for (std::size_t v = 0; v < this->Points.size(); ++v)
+  // Each side of a face is in the list of one vertex.
+  const auto points = static_cast<Index>(this->Points.size());
+  std::vector<Index> nonManifold(numberOfChunks(points), 0);
+  const auto match = [&](std::int64_t first, std::int64_t last, Index& shared)
   {
-    pollInterruption(static_cast<Index>(v));
-    const auto begin = uses.begin() + starts[v], end = uses.begin() + starts[v + 1];
+    const auto begin = uses.begin() + first, end = uses.begin() + last;
     std::sort(begin, end,
       [](const Use& a, const Use& b)
       {
@@ -199,10 +210,19 @@ void TetrahedronMesh::connect()
         this->Tets[i->code >> 2].neighbors[i->code & 3] = (i + 1)->code;
         this->Tets[(i + 1)->code >> 2].neighbors[(i + 1)->code & 3] = i->code;
       }
-      this->NonManifoldFaces += j - i > 2;
+      shared += j - i > 2;
       i = j;
     }
-  }
+  };
+  forEachChunk(points, threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index v = begin; v < end; ++v)
+      {
+        match(starts[v], starts[v + 1], nonManifold[chunk]);
+      }
+    });
+  this->NonManifoldFaces = std::accumulate(nonManifold.begin(), nonManifold.end(), Index(0));
 }
 
 std::uint32_t TetrahedronMesh::nextMark()
@@ -357,18 +377,6 @@ void TetrahedronMesh::movePoint(
   {
     this->Quality[tets[i]] =
       qualities ? qualities[i] : this->computeQuality(this->Tets[tets[i]].vertices);
-  }
-}
-
-void TetrahedronMesh::setWeights(const QualityWeights& weights)
-{
-  this->Weights = weights;
-  for (TetId t = 0; t < this->slots(); ++t)
-  {
-    if (this->alive(t))
-    {
-      this->Quality[t] = this->computeExactQuality(this->Tets[t].vertices);
-    }
   }
 }
 

@@ -107,9 +107,14 @@ struct TetrahedronArrays
 class TAUTLINE_KERNEL_EXPORT TetrahedronMesh
 {
 public:
-  /// Positive tetrahedra. @param regions one per tetrahedron, or empty: one region
+  /**
+   * @param cells positive tetrahedra
+   * @param regions one per tetrahedron, or empty: one region
+   * @param weights of all qualities
+   */
   TetrahedronMesh(std::vector<Vec3> points, const std::vector<TetVertices>& cells,
-    const std::vector<std::int32_t>& regions = {});
+    const std::vector<std::int32_t>& regions = {}, const QualityWeights& weights = {},
+    int threads = 1);
   /// Connected already: neighbours of all faces are as given.
   explicit TetrahedronMesh(TetrahedronArrays arrays);
 
@@ -170,9 +175,7 @@ public:
     const std::vector<Vec3>& x = this->Points;
     return exactQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]], this->Weights);
   }
-  /// Of all qualities; setting them computes these anew.
   const QualityWeights& weights() const { return this->Weights; }
-  void setWeights(const QualityWeights& weights);
 
   /// The tetrahedra with vertex v that are connected with tetOf(v) through faces, walls included.
   void star(PointId v, std::vector<TetId>& tets);
@@ -227,7 +230,7 @@ private:
     std::vector<std::int32_t> Filled;
   };
 
-  void connect();
+  void connect(int threads);
   std::uint32_t nextMark();
   bool match(const Replacement& replacement);
   void detachPoints(const Replacement& replacement);
