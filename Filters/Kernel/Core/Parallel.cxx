@@ -36,6 +36,8 @@ constexpr std::chrono::milliseconds PollInterval(50); // of a caller that waits 
 /// Of the loop that this thread, a worker, helps with; null on other threads.
 thread_local const std::atomic<bool>* interruptedCaller = nullptr;
 constexpr int PausesPerLook = 16;
+/// Seconds that a loop takes at least that is worth workers on a busy machine, too.
+constexpr double ManySlices = 0.3;
 
 void pauseBriefly()
 {
@@ -118,9 +120,9 @@ public:
   /// Whether workers are worth while in a loop that is not brief.
   bool inviteWorkers(double expected)
   {
-    constexpr double share = 0.4, enough = 1e-3, manySlices = 0.3;
+    constexpr double share = 0.4, enough = 1e-3;
     constexpr std::chrono::milliseconds interval(20);
-    if (expected > manySlices)
+    if (expected > ManySlices)
     {
       return true;
     }
@@ -185,15 +187,23 @@ public:
     interruptedCaller = before;
   }
 
-  /// What the caller does; returns the number of chunks it ran.
-  Index lead(const Proceed& proceed)
+  /// What the caller does; returns the number of chunks it ran. Calls `whenLong`, if given, once the
+  /// loop turns out to be longer than many time slices.
+  Index lead(const Proceed& proceed, const std::function<void()>& whenLong = nullptr)
   {
     Index run = 0;
+    bool waits = static_cast<bool>(whenLong);
+    const Clock::time_point start = Clock::now();
     try
     {
       while (this->Next < this->Chunks && this->mayProceed(proceed) && this->runInCaller())
       {
         ++run;
+        if (waits && seconds(Clock::now() - start) > ManySlices)
+        {
+          waits = false;
+          whenLong();
+        }
       }
     }
     catch (...)
@@ -454,17 +464,19 @@ bool runChunks(Index chunks, int threads, ChunkWork work, const Proceed& proceed
     experience.addChunks(work.function(), run, seconds(Clock::now() - start));
     return loop->join();
   }
-  if (experience.inviteWorkers(expected))
+  const auto invite = [&] { Workers::instance().invite(static_cast<int>(most - 1), loop); };
+  const bool invited = experience.inviteWorkers(expected);
+  if (invited)
   {
-    Workers::instance().invite(static_cast<int>(most - 1), loop);
+    invite();
   }
   else if (experience.measuredEnough(work.function()))
   {
-    loop->lead(proceed);
+    loop->lead(proceed, invite);
     return loop->join();
   }
   const double before = threadSeconds();
-  const Index run = loop->lead(proceed);
+  const Index run = loop->lead(proceed, invited ? std::function<void()>() : invite);
   const double computed = threadSeconds() - before;
   experience.addChunks(work.function(), run, computed);
   experience.addTime(computed, seconds(Clock::now() - start));

@@ -394,6 +394,48 @@ void testMachineLoad()
 #endif
 }
 
+/// A loop that nothing is known of gets no worker on a crowded machine, but once it has turned out
+/// to be long.
+void testLongLoopOnCrowdedMachine()
+{
+#ifdef __linux__
+  constexpr int perCore = 3;
+  constexpr Index chunks = 24;
+  constexpr double chunkSeconds = 0.05;
+  std::atomic<bool> end{ false };
+  std::vector<std::thread> crowd;
+  for (int i = 0; i < perCore * resolveThreads(0); ++i)
+  {
+    crowd.emplace_back(
+      [&end]
+      {
+        while (!end)
+        {
+        }
+      });
+  }
+  sleepFor(chunkSeconds);
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<Index> early{ 0 }, helped{ 0 };
+  const Stopwatch time;
+  runChunks(chunks, 0,
+    [&](Index)
+    {
+      const bool byWorker = std::this_thread::get_id() != caller;
+      early += byWorker && !time.reached(4 * chunkSeconds);
+      helped += byWorker;
+      computeFor(chunkSeconds);
+    });
+  end = true;
+  for (std::thread& thread : crowd)
+  {
+    thread.join();
+  }
+  TAUTLINE_CHECK_EQUAL(early.load(), Index(0));
+  TAUTLINE_CHECK(resolveThreads(0) == 1 || helped > 0);
+#endif
+}
+
 /// Loops report growing fractions of the range of a scope; loops within chunks, of other threads
 /// and outside of the scope do not.
 void testProgress()
@@ -434,8 +476,9 @@ int TestParallel(int, char*[])
 {
   TAUTLINE_CHECK(resolveThreads(0) >= 1);
   TAUTLINE_CHECK_EQUAL(resolveThreads(3), 3);
-  for (const auto& test : { testEveryChunkOnce, testScratch, testErrors, testProceed, testNesting,
-         testSeveralCallers, testFork, testWaiting, testMachineLoad, testProgress })
+  for (const auto& test :
+    { testEveryChunkOnce, testScratch, testErrors, testProceed, testNesting, testSeveralCallers,
+      testFork, testWaiting, testMachineLoad, testLongLoopOnCrowdedMachine, testProgress })
   {
     inNewThread(test);
   }
