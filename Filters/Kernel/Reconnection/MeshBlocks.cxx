@@ -230,15 +230,6 @@ void MeshBlock::numberPoints(const TetrahedronMesh& whole, TetrahedronArrays& ar
   {
     arrays.points.push_back(whole.point(v));
   }
-  const auto has = [this](PointId v)
-  { return std::binary_search(this->Points.begin(), this->Points.end(), v); };
-  for (const TriangleVertices& f : whole.keptFaces()) // local numbers have the same order
-  {
-    if (std::all_of(f.begin(), f.end(), has))
-    {
-      arrays.kept.push_back({ localOf(f[0]), localOf(f[1]), localOf(f[2]) });
-    }
-  }
   arrays.inputPoints = localOf(whole.inputPoints());
 }
 

@@ -4,7 +4,10 @@
 #include "Reconnecting.h"
 
 #include "tautline/Core/Memory.h"
+#include "tautline/Core/Parallel.h"
 #include "tautline/Reconnection/FacetBound.h"
+
+#include <numeric>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -187,6 +190,40 @@ void testMemory()
   waitpid(child, &status, 0);
   TAUTLINE_CHECK_EQUAL(status, 0);
 }
+
+/// The records of a mesh of several chunks have its worst values, wherever these are.
+void testRecords()
+{
+  const MeshData data = sliverBlock(12, 5);
+  ReconnectionOptions options = optionsOf(ReconnectionPreset::SwapAndSmooth);
+  options.targetAngle = 20.0;
+  std::set<Index> chunks;
+  for (int threads : { 1, 3 })
+  {
+    options.threads = threads;
+    const ReconnectionResult result = reconnect(data, options);
+    for (const auto& [mesh, record] : { std::pair(data, result.history.front()),
+           std::pair(outputOf(result), result.history.back()) })
+    {
+      const std::vector<double> smallest = valuesOf(mesh, Metric::MinimumAngle),
+                                largest = valuesOf(mesh, Metric::MaximumAngle),
+                                shape = valuesOf(mesh, Metric::InverseMeanRatio);
+      const auto worst = std::min_element(smallest.begin(), smallest.end());
+      TAUTLINE_CHECK_RELATIVE(record.smallestAngle, *worst, 1e-9);
+      TAUTLINE_CHECK_RELATIVE(
+        record.largestAngle, *std::max_element(largest.begin(), largest.end()), 1e-9);
+      TAUTLINE_CHECK_RELATIVE(
+        record.worstInverseMeanRatio, *std::max_element(shape.begin(), shape.end()), 1e-9);
+      TAUTLINE_CHECK_EQUAL(record.tetrahedra, mesh.numberOfCells());
+      TAUTLINE_CHECK_EQUAL(record.belowTarget > 0, *worst < options.targetAngle);
+      chunks.insert((worst - smallest.begin()) / ChunkSize);
+    }
+    const std::vector<double> shape = valuesOf(outputOf(result), Metric::InverseMeanRatio);
+    TAUTLINE_CHECK_RELATIVE(result.meanAfter,
+      std::accumulate(shape.begin(), shape.end(), 0.0) / static_cast<double>(shape.size()), 1e-9);
+  }
+  TAUTLINE_CHECK(*chunks.rbegin() > 0); // else a later chunk need not be looked at
+}
 }
 
 int TestReconnectionBounds(int, char*[])
@@ -194,6 +231,7 @@ int TestReconnectionBounds(int, char*[])
   testFacetQuality();
   testObjectives();
   testBounds();
+  testRecords();
   testMemory();
   return exitCode();
 }

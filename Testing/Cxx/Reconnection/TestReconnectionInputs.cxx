@@ -41,7 +41,7 @@ void testRefusals()
   MeshData twice = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   twice.addCell(CellType::Tetrahedron,
     std::vector<Index>(twice.connectivity.begin(), twice.connectivity.begin() + 4));
-  TAUTLINE_CHECK_THROWS(reconnect(twice, defaults), "duplicate");
+  TAUTLINE_CHECK_THROWS(reconnect(twice, defaults), "three or more");
   MeshData alone = singleCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
   alone.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 2, 3 });
   TAUTLINE_CHECK_THROWS(reconnect(alone, defaults), "same side");
