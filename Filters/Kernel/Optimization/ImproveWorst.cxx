@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace tautline
 {
@@ -12,8 +13,9 @@ constexpr int maxRounds = 100;
 constexpr int sweepsPerRound = 4;
 /// A round that reduces the worst value by less than this fraction is the last.
 constexpr double worthwhile = 1e-3;
-/// p: elements at 0.8 of the worst value have a thousandth of its share.
-constexpr double power = 32;
+/// p, one after the other: with the first, elements at 0.8 of the worst value have a thousandth of
+/// its share; with the last, those at 0.95.
+constexpr double powers[] = { 32, 128 };
 /// How much more the elements near the worst one count where a round no longer pays, and at most.
 constexpr double stronger = 4;
 constexpr double strongest = 256;
@@ -25,8 +27,10 @@ constexpr double nearWorst = 0.7;
 class WorstObjectives
 {
 public:
-  /// @param pull how much more the second sum counts than the first
-  WorstObjectives(OptimizationProblem& problem, const Objective& judged, double worst, double pull)
+  /// @param power of the second sum
+  /// @param pull how much more that counts than the first
+  WorstObjectives(OptimizationProblem& problem, const Objective& judged, double worst, double power,
+    double pull)
     : Pull(pull)
     , Terms(problem.localTerms())
     , Fast(Terms[0].shapePower > 0 && judged.metric == Metric::InverseMeanRatio)
@@ -102,6 +106,7 @@ Objective judgedBy(OptimizationProblem& problem)
 void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report)
 {
+  problem.shareTolerance(1.0);
   const Objective judged = judgedBy(problem);
   const auto isLarger = [](Metric metric)
   { return metricInfo(metric).direction == Direction::LargerIsBetter; };
@@ -119,11 +124,12 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   SimplexMesh& simplices = problem.simplices();
   const std::size_t size = VertexStride * static_cast<std::size_t>(simplices.freeVertices());
   std::vector<double> best(simplices.coordinates(), simplices.coordinates() + size);
+  const double* power = std::begin(powers);
   double pull = 1.0;
   bool lowered = false; // the pull, once, because its cost was too high
   for (int round = 0; round < maxRounds && !problem.outOfTime(); ++round)
   {
-    const WorstObjectives objectives(problem, judged, worst, pull);
+    const WorstObjectives objectives(problem, judged, worst, *power, pull);
     LocalOptions options = problem.localOptions();
     options.newton = true;
     options.relaxation = 1.0;
@@ -171,7 +177,12 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
       pull *= stronger;
       if (objectives.fast() || !affordable || lowered || pull > strongest)
       {
-        return;
+        if (objectives.fast() || ++power == std::end(powers))
+        {
+          return;
+        }
+        pull = 1.0;
+        lowered = false;
       }
     }
   }

@@ -9,6 +9,10 @@ namespace tautline
 {
 namespace
 {
+/// How much of the surface tolerance the other elements may use before the worst one is improved:
+/// points at the limit are in its way.
+constexpr double beforeWorst = 0.3;
+
 /// Cells of the mesh's own dimension: those that are optimized.
 bool isElement(const Mesh& mesh, CellType type)
 {
@@ -118,6 +122,7 @@ void OptimizationProblem::makeSurface()
   {
     this->Limit = std::make_unique<SurfaceLimit>(this->TheMesh, *this->Simplices, *this->Surface,
       options.surfaceTolerance / this->Simplices->scale(), !options.onGeometry);
+    this->shareTolerance(options.improveWorst > 0 ? beforeWorst : 1.0);
   }
 }
 
@@ -136,6 +141,15 @@ double OptimizationProblem::surfaceError() const
   const double back =
     this->Options.onGeometry ? 0.0 : this->Surface->distanceTo(now, threads, divisions);
   return this->Simplices->scale() * std::max(there, back);
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::shareTolerance(double share)
+{
+  if (this->Limit)
+  {
+    this->Limit->setShare(share);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -35,6 +35,8 @@ public:
   const SurfaceProjection* surface() const { return this->Surface.get(); }
   /// The distance between it and the surface at the stored points, see OptimizeOptions.
   double surfaceError() const;
+  /// How much of the surface tolerance steps may use from now on, 0 to 1.
+  void shareTolerance(double share);
   /// Points that the surface tolerance holds: their last steps were refused.
   Index heldOnSurface() const;
   std::size_t objectives() const { return this->Resolved.size(); }

@@ -72,7 +72,8 @@ SurfaceLimit::SurfaceLimit(const Mesh& mesh, const SimplexMesh& simplices,
   const SurfaceProjection& surface, double distance, bool bothWays)
   : Simplices(simplices)
   , Surface(surface)
-  , Distance(margin * distance)
+  , Whole(margin * distance)
+  , Distance(this->Whole)
 {
   this->findFacets(mesh);
   if (bothWays)
@@ -239,6 +240,12 @@ bool SurfaceLimit::allows(std::int32_t v, const Vec3& before)
   const bool near = this->staysNear(v, before);
   this->Refused[v] = !near;
   return near;
+}
+
+//------------------------------------------------------------------------------
+void SurfaceLimit::setShare(double share)
+{
+  this->Distance = share * this->Whole;
 }
 
 //------------------------------------------------------------------------------

@@ -45,6 +45,8 @@ public:
    * same time only for vertices without a common facet.
    */
   bool allows(std::int32_t v, const Vec3& before);
+  /// Uses a share of the distance, 0 to 1, from now on. It must not shrink.
+  void setShare(double share);
   /// Free vertices whose last step was refused.
   Index held() const;
 
@@ -72,7 +74,7 @@ private:
 
   const SimplexMesh& Simplices;
   const SurfaceProjection& Surface;
-  double Distance;
+  double Whole, Distance; ///< as given, and the share in use
   std::vector<Facet> Facets;
   std::vector<std::int32_t> Starts, FacetsAt; ///< of each free vertex
   std::vector<unsigned char> Refused;         ///< of each free vertex: its last step
