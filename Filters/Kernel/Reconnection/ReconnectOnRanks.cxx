@@ -14,21 +14,6 @@ namespace
 {
 constexpr int Corners = 4;
 
-void refuseWhole(const ReconnectionOptions& options)
-{
-  const char* what = options.boundary == ReconnectionBoundary::Surface ? "a boundary on the surface"
-    : options.objective == ReconnectionObjective::Metric               ? "a metric as objective"
-    : options.improveMean                                              ? "the best shape at the end"
-    : options.overlaps                                                 ? "a conservative transfer"
-    : options.size != ReconnectionSize::None && options.size != ReconnectionSize::Length
-    ? "lengths per point"
-    : nullptr;
-  if (what)
-  {
-    throw Error(std::string("with ") + what + ", the mesh is improved on one rank: gather it");
-  }
-}
-
 /// The least of the values of all ranks.
 double minimum(RankGroup& group, double value)
 {
@@ -566,18 +551,36 @@ RankReconnection RankRounds::run(int rounds)
 }
 
 //------------------------------------------------------------------------------
+std::string needsOneRank(const ReconnectionOptions& options)
+{
+  return options.boundary == ReconnectionBoundary::Surface ? "a boundary on the surface"
+    : options.objective == ReconnectionObjective::Metric   ? "a metric as objective"
+    : options.improveMean                                  ? "the best shape at the end"
+    : options.overlaps                                     ? "a conservative transfer"
+    : options.size != ReconnectionSize::None && options.size != ReconnectionSize::Length
+    ? "lengths per point"
+    : "";
+}
+
+//------------------------------------------------------------------------------
 RankReconnection improveOnRanks(
-  RankGroup& group, const RankTetrahedra& mesh, const ReconnectionOptions& options, int rounds)
+  RankGroup& group, RankTetrahedra mesh, const ReconnectionOptions& options, int rounds)
 {
   group.together(
     [&]
     {
-      refuseWhole(options);
+      const std::string what = needsOneRank(options);
+      if (!what.empty())
+      {
+        throw Error("with " + what + ", the mesh is improved on one rank: gather it");
+      }
       if (rounds < 1)
       {
         throw Error("the number of rounds must be at least 1");
       }
     });
-  return RankRounds(group, mesh, options).run(rounds);
+  RankRounds work(group, mesh, options);
+  mesh = RankTetrahedra();
+  return work.run(rounds);
 }
 }

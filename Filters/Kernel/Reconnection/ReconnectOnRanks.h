@@ -20,6 +20,7 @@
 #include "Reconnection.h"
 #include "tautline/Core/RankGroup.h"
 
+#include <string>
 #include <vector>
 
 namespace tautline
@@ -71,11 +72,15 @@ struct RankReconnection
  * Throws Error on all ranks where improveConnectivity() would on any, and for options that need the
  * whole mesh: ReconnectionBoundary::Surface, ReconnectionObjective::Metric, improveMean, overlaps,
  * sizes per point.
+ * @param mesh moved from, so that its memory can be freed
  * @param options fixed, regions, markedFacets, outside and starts have no effect. `observer` is
  * called on all ranks, and returns false on any to stop.
  * @param rounds the largest number of rounds, at least 1
  */
 TAUTLINE_KERNEL_EXPORT RankReconnection improveOnRanks(
-  RankGroup& group, const RankTetrahedra& mesh, const ReconnectionOptions& options, int rounds);
+  RankGroup& group, RankTetrahedra mesh, const ReconnectionOptions& options, int rounds);
+
+/// Why a mesh has to be on one rank with these options: "a metric as objective"; "" if it has not.
+TAUTLINE_KERNEL_EXPORT std::string needsOneRank(const ReconnectionOptions& options);
 }
 #endif
