@@ -58,29 +58,6 @@ std::vector<vtkAbstractArray*> newArrays(vtkFieldData* result, vtkFieldData* mes
   return found;
 }
 
-/// The rows of an array for the points or cells of a piece; 0 or "" where it has none.
-vtkSmartPointer<vtkAbstractArray> rowsOf(
-  vtkAbstractArray* array, const std::vector<vtkIdType>& numbers)
-{
-  auto rows = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
-  rows->SetName(array->GetName());
-  rows->SetNumberOfComponents(array->GetNumberOfComponents());
-  rows->CopyComponentNames(array);
-  rows->SetNumberOfTuples(static_cast<vtkIdType>(numbers.size()));
-  if (auto* values = vtkDataArray::SafeDownCast(rows))
-  {
-    values->Fill(0.0);
-  }
-  for (std::size_t k = 0; k < numbers.size(); ++k)
-  {
-    if (numbers[k] >= 0)
-    {
-      rows->SetTuple(static_cast<vtkIdType>(k), numbers[k], array);
-    }
-  }
-  return rows;
-}
-
 const char* activeName(vtkDataSetAttributes* data)
 {
   vtkAbstractArray* active = data->GetAbstractAttribute(vtkDataSetAttributes::SCALARS);
@@ -178,6 +155,29 @@ private:
   vtkNew<vtkPoints> Centers;
   std::vector<int> Owners;
 };
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkAbstractArray> rowsOf(
+  vtkAbstractArray* array, const std::vector<vtkIdType>& numbers)
+{
+  auto rows = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
+  rows->SetName(array->GetName());
+  rows->SetNumberOfComponents(array->GetNumberOfComponents());
+  rows->CopyComponentNames(array);
+  rows->SetNumberOfTuples(static_cast<vtkIdType>(numbers.size()));
+  if (auto* values = vtkDataArray::SafeDownCast(rows))
+  {
+    values->Fill(0.0);
+  }
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+  {
+    if (numbers[k] >= 0)
+    {
+      rows->SetTuple(static_cast<vtkIdType>(k), numbers[k], array);
+    }
+  }
+  return rows;
 }
 
 //------------------------------------------------------------------------------

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+class vtkAbstractArray;
 class vtkMultiProcessController;
 
 namespace tautline
@@ -45,6 +46,10 @@ struct GatheredMesh
 /// The text of the first process, on all. Collective.
 TAUTLINECORE_EXPORT std::string shareText(
   vtkMultiProcessController* controller, const std::string& text);
+
+/// The rows of an array for points or cells with these numbers in it; 0 or "" for those below 0.
+TAUTLINECORE_EXPORT vtkSmartPointer<vtkAbstractArray> rowsOf(
+  vtkAbstractArray* array, const std::vector<vtkIdType>& numbers);
 
 /**
  * @class tautline::PieceResults

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -94,6 +95,7 @@ RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergeP
   : Group(group)
   , Input(vtkPointSet::SafeDownCast(input))
   , Threads(threads)
+  , MergePoints(mergePoints)
 {
   Elements elements;
   bool copies = false;
@@ -203,9 +205,10 @@ void RankMesh::checkOrder()
   disagreeing = this->Group.sum(disagreeing);
   if (disagreeing > 0)
   {
-    throw Error("Neighbouring cells list their points in opposite orders: gather the mesh on one "
-                "process, in ParaView by Aggregate Dataset, with Reproducible Order off, or let "
-                "Element Quality reorder the cells (Reorient) first.");
+    throw OppositeOrders(
+      "Neighbouring cells list their points in opposite orders: gather the mesh on one "
+      "process, in ParaView by Aggregate Dataset, with Reproducible Order off, or let "
+      "Element Quality reorder the cells (Reorient) first.");
   }
 }
 
@@ -349,6 +352,126 @@ std::vector<Index> RankMesh::pointIds() const
       ": run Generate Global Ids again.");
   }
   return ids;
+}
+
+//------------------------------------------------------------------------------
+namespace
+{
+/// A point that ranks without an element at it ask for.
+struct PointQuery
+{
+  std::array<double, 3> place;
+  Index given; ///< the global id where these identify points, else 0
+  Index id;    ///< the answer, or the place of the question
+
+  bool operator<(const PointQuery& other) const
+  {
+    return this->place != other.place ? this->place < other.place : this->given < other.given;
+  }
+  /// The rank that answers.
+  std::size_t rank(std::size_t ranks) const
+  {
+    std::uint64_t hash = static_cast<std::uint64_t>(this->given);
+    for (const double x : this->place)
+    {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &x, sizeof(bits));
+      constexpr std::uint64_t odd = 0x9E3779B97F4A7C15u; // 2^64 over the golden ratio
+      hash = (hash ^ bits) * odd;
+      hash ^= hash >> 32;
+    }
+    return hash % ranks;
+  }
+};
+
+PointQuery queryOf(const double* x, Index given, Index id)
+{
+  return { { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 }, given, id }; // -0 is 0
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> RankMesh::idsOfPiece(const std::vector<Index>& ids) const
+{
+  const MeshView& view = this->piece();
+  const DistributedMesh& mesh = *this->TheMesh;
+  std::vector<Index> ofPiece(view.numberOfPoints, -1);
+  bool unknown = false;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    const Index local = mesh.localOfPiece()[p];
+    ofPiece[p] = local < 0 ? -1 : ids[local];
+    unknown = unknown || local < 0;
+  }
+  if (!this->Group.any(unknown))
+  {
+    return ofPiece;
+  }
+  // Points are found by what identifies them.
+  vtkDataArray* given =
+    this->MergePoints || !this->Input ? nullptr : this->Input->GetPointData()->GetGlobalIds();
+  const std::size_t ranks = static_cast<std::size_t>(this->Group.size());
+  std::vector<std::vector<PointQuery>> known(ranks), asked(ranks);
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    const Index local = mesh.localOfPiece()[p];
+    const PointQuery query = queryOf(view.points + 3 * p,
+      given ? static_cast<Index>(given->GetComponent(p, 0)) : 0, local < 0 ? p : ids[local]);
+    (local < 0 ? asked : known)[query.rank(ranks)].push_back(query);
+  }
+  std::vector<PointQuery> found;
+  for (const std::vector<PointQuery>& list : this->Group.exchangeItems(known))
+  {
+    found.insert(found.end(), list.begin(), list.end());
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::vector<PointQuery>> answers;
+  for (const std::vector<PointQuery>& list : this->Group.exchangeItems(asked))
+  {
+    answers.emplace_back();
+    for (PointQuery query : list)
+    {
+      const auto at = std::lower_bound(found.begin(), found.end(), query);
+      const bool same = at != found.end() && at->place == query.place && at->given == query.given;
+      query.given = same ? at->id : -1;
+      answers.back().push_back(query);
+    }
+  }
+  for (const std::vector<PointQuery>& list : this->Group.exchangeItems(answers))
+  {
+    for (const PointQuery& answer : list)
+    {
+      ofPiece[answer.id] = answer.given;
+    }
+  }
+  return ofPiece;
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> RankMesh::markedOfPiece(const std::vector<Index>& idsOfPiece) const
+{
+  const std::vector<unsigned char> local = this->anyOf(this->Marked);
+  std::vector<unsigned char> marked(idsOfPiece.size(), 0);
+  std::vector<Index> own, all; // of points without an element here
+  for (std::size_t p = 0; p < marked.size(); ++p)
+  {
+    const Index at = this->TheMesh->localOfPiece()[p];
+    marked[p] = at >= 0 && local[at];
+    if (at < 0 && this->Marked[p] && idsOfPiece[p] >= 0)
+    {
+      own.push_back(idsOfPiece[p]);
+    }
+  }
+  for (const std::vector<Index>& list : this->Group.gatherItems(own))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end());
+  for (std::size_t p = 0; p < marked.size() && !all.empty(); ++p)
+  {
+    marked[p] |= std::binary_search(all.begin(), all.end(), idsOfPiece[p]);
+  }
+  return marked;
 }
 
 //------------------------------------------------------------------------------

@@ -36,6 +36,13 @@ TAUTLINECORE_EXPORT vtkDataSet* requirePiece(vtkDataObject* input);
 
 class RankMesh;
 
+/// Neighbouring cells list their points in opposite orders: the mesh can be gathered.
+class OppositeOrders : public Error
+{
+public:
+  using Error::Error;
+};
+
 /**
  * @brief The input as a mesh that each process works on a piece of. Null, on all processes, where
  * that is not possible and the mesh has to be gathered: composite data, all cells on the first
@@ -60,7 +67,7 @@ class TAUTLINECORE_EXPORT RankMesh
 public:
   /**
    * @brief Throws Error on all processes if a piece is malformed, has no explicit points or
-   * quadratic cells, or if neighbouring cells list their points in opposite orders.
+   * quadratic cells, and OppositeOrders if neighbouring cells list their points so.
    */
   RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergePoints);
 
@@ -97,6 +104,15 @@ public:
    */
   std::vector<Index> pointIds() const;
 
+  /**
+   * @brief The same per point of the piece, also where only other pieces have an element at it; -1
+   * where none has.
+   * @param ids what pointIds() returned
+   */
+  std::vector<Index> idsOfPiece(const std::vector<Index>& ids) const;
+  /// Flags per point of the piece: marked by fix() or fixSelected() on any process.
+  std::vector<unsigned char> markedOfPiece(const std::vector<Index>& idsOfPiece) const;
+
   /// Coordinates of the piece's points, from those of local points; those without a cell stay.
   std::vector<double> ofPiece(const std::vector<double>& local) const;
   /// The mesh of the piece with these points.
@@ -118,6 +134,7 @@ private:
   vtkPointSet* Input = nullptr;
   int Threads;
   int Dimension = 0;
+  bool MergePoints;
   bool Mirrored = false;
   std::unique_ptr<MeshAdapter> Adapter;
   std::unique_ptr<DistributedMesh> TheMesh;

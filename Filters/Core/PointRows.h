@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PointRows.h
+ * @brief The point data of a mesh in pieces, where another process needs them.
+ */
+#ifndef tautline_PointRows_h
+#define tautline_PointRows_h
+
+#include "TautlineCoreModule.h" // for export macro
+
+#include "tautline/Core/RankGroup.h"
+
+#include "vtkSmartPointer.h"
+
+#include <vector>
+
+class vtkPointData;
+
+namespace tautline
+{
+/// Removes the arrays that not all pieces with points have, with the same type and number of
+/// components. Collective. @param points of this piece
+TAUTLINECORE_EXPORT void keepCommonArrays(RankGroup& group, vtkPointData* data, Index points);
+
+/**
+ * @brief The values of points, a row for each, from the pieces that have these. Collective.
+ *
+ * Where several pieces have a point, the values are those of the lowest rank.
+ * @param data of this piece: the same arrays on all ranks with points, see keepCommonArrays()
+ * @param numbers per point of the piece: the same on all ranks for the same point; below 0: it is
+ * not asked for
+ * @param wanted numbers that points of pieces have, in increasing order
+ * @return the arrays of `data`, in their order
+ */
+TAUTLINECORE_EXPORT vtkSmartPointer<vtkPointData> pointRows(RankGroup& group, vtkPointData* data,
+  const std::vector<Index>& numbers, const std::vector<Index>& wanted);
+}
+#endif
