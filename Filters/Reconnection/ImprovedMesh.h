@@ -7,25 +7,12 @@
 #ifndef tautline_ImprovedMesh_h
 #define tautline_ImprovedMesh_h
 
+#include "ImprovedCells.h"
 #include "ReconnectableMesh.h"
 #include "tautline/Reconnection/Reconnection.h"
 
-#include <string>
-#include <vector>
-
 namespace tautline
 {
-constexpr const char* OriginalCellArray = "OriginalCellId";
-
-/// What writeImproved() measured and found.
-struct ImprovedMesh
-{
-  std::vector<double> smallestAngles;    ///< dihedral of tetrahedra, in degrees, per cell
-  std::vector<double> inverseMeanRatios; ///< per cell
-  std::vector<Vec3> centers;             ///< per cell
-  std::string note;                      ///< a sentence if single precision did not do, else ""
-};
-
 /**
  * @brief Gives the output the points and cells of the result, the data of the input, and the cell
  * arrays `min_angle`, `imr` and `OriginalCellId`. Points that were merged into another one are not
@@ -37,7 +24,7 @@ struct ImprovedMesh
  * single precision stay so unless a tetrahedron would not be valid, or the worst one worse than
  * before.
  */
-ImprovedMesh writeImproved(const ReconnectableMesh& input, const ReconnectionResult& result,
+ImprovedCells writeImproved(const ReconnectableMesh& input, const ReconnectionResult& result,
   int threads, vtkPointSet* output);
 }
 #endif

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReconnectableMesh.h"
 
+#include "CellKinds.h"
 #include "PointMerge.h"
-#include "VtkCompatibility.h"
 
 #include "tautline/Core/Interruption.h"
-#include "vtkCell.h"
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkGenericCell.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointSet.h"
@@ -25,17 +23,6 @@ namespace tautline
 {
 namespace
 {
-vtkPointSet* meshOf(vtkDataSet* input)
-{
-  auto* mesh = vtkPointSet::SafeDownCast(input);
-  if (!vtkUnstructuredGrid::SafeDownCast(mesh) && !vtkPolyData::SafeDownCast(mesh))
-  {
-    throw Error(std::string("The mesh is a ") + input->GetClassName() +
-      ", not an unstructured grid of tetrahedra or triangles: run Tetrahedralize first.");
-  }
-  return mesh;
-}
-
 void refuseGhosts(vtkDataSet* grid)
 {
   vtkUnsignedCharArray* flags = grid->GetCellGhostArray();
@@ -51,34 +38,6 @@ void refuseGhosts(vtkDataSet* grid)
       " ghost or hidden cells: the connectivity of a part of a mesh cannot change on its own; "
       "gather the mesh in one process and run Remove Ghost Information first.");
   }
-}
-
-std::string pluralOf(int type)
-{
-  static const std::map<int, std::string> names = { { VTK_VERTEX, "vertices" },
-    { VTK_POLY_VERTEX, "poly-vertices" }, { VTK_LINE, "lines" }, { VTK_POLY_LINE, "polylines" },
-    { VTK_TRIANGLE, "triangles" }, { VTK_QUAD, "quadrilaterals" }, { VTK_POLYGON, "polygons" },
-    { VTK_HEXAHEDRON, "hexahedra" }, { VTK_VOXEL, "voxels" }, { VTK_WEDGE, "wedges" },
-    { VTK_PYRAMID, "pyramids" }, { VTK_POLYHEDRON, "polyhedra" },
-    { VTK_QUADRATIC_TETRA, "quadratic tetrahedra" } };
-  const auto found = names.find(type);
-  return found != names.end() ? found->second : std::string("cells of type ") + cellClassName(type);
-}
-
-/// "8 hexahedra and 3 wedges"
-std::string listOf(const std::map<int, Index>& counts)
-{
-  std::string text;
-  std::size_t left = counts.size();
-  for (const auto& [type, count] : counts)
-  {
-    --left;
-    text += std::to_string(count) + " " + pluralOf(type) +
-      (left == 0      ? ""
-          : left == 1 ? " and "
-                      : ", ");
-  }
-  return text;
 }
 }
 
@@ -124,53 +83,17 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
 /// Finds whether the mesh is of tetrahedra or triangles, and leaves out cells of lower dimension.
 void ReconnectableMesh::findKind()
 {
-  std::map<int, Index> counts;
-  for (vtkIdType cell = 0; cell < this->Input->GetNumberOfCells(); ++cell)
-  {
-    pollInterruption(cell);
-    ++counts[this->Input->GetCellType(cell)];
-  }
-  std::map<int, Index> ofDimension[4], curved[4];
-  vtkNew<vtkGenericCell> any;
-  for (const auto& [type, count] : counts)
-  {
-    any->SetCellType(type);
-    const int dimension = any->GetCellDimension();
-    ofDimension[dimension][type] = count;
-    if (!any->IsLinear())
-    {
-      curved[dimension][type] = count;
-    }
-  }
-  const int dimension = ofDimension[3].empty() && !ofDimension[2].empty() ? 2 : 3;
-  const int type = dimension == 3 ? VTK_TETRA : VTK_TRIANGLE;
-  const char* cells = dimension == 3 ? "tetrahedra" : "triangles";
-  this->Corners = dimension + 1;
-  const Index taken = counts[type];
-  counts.erase(type);
-  ofDimension[dimension].erase(type);
-  if (!ofDimension[dimension].empty())
-  {
-    const char* remedy = dimension == 3 ? "Tetrahedralize" : "Triangulate";
-    throw Error(listOf(ofDimension[dimension]) + ": Improve Mesh takes linear " + cells +
-      " only; run " + (curved[dimension].empty() ? remedy : "Tessellate") + " first.");
-  }
-  if (taken == 0)
-  {
-    throw Error(listOf(counts) +
-      ", but no tetrahedron or triangle: Improve Mesh takes one of these; run a mesher (or "
-      "Delaunay 2D or 3D) first.");
-  }
-  if (counts.empty())
+  const CellKinds kinds(countCells(this->Input, true));
+  const int type = kinds.dimension == 3 ? VTK_TETRA : VTK_TRIANGLE;
+  this->Corners = kinds.dimension + 1;
+  this->LeftOut = kinds.leftOut;
+  if (this->LeftOut.empty())
   {
     return;
   }
-  this->LeftOut = listOf(counts) + " beside the " + cells + " are left out of the output. " +
-    (this->isTriangles() ? "Edges of the mesh that lines join are kept."
-                         : "Facets inside the mesh that triangles mark are kept.");
   vtkNew<vtkUnstructuredGrid> grid;
   grid->SetPoints(this->Input->GetPoints());
-  grid->AllocateExact(taken, this->Corners * taken);
+  grid->AllocateExact(kinds.taken, this->Corners * kinds.taken);
   vtkNew<vtkIdList> points;
   for (vtkIdType cell = 0; cell < this->Input->GetNumberOfCells(); ++cell)
   {
@@ -255,30 +178,43 @@ void ReconnectableMesh::fixCells(vtkDataArray* ofCells)
 }
 
 //------------------------------------------------------------------------------
+void requireNumbers(vtkDataArray* regions)
+{
+  if (regions && regions->GetNumberOfComponents() != 1)
+  {
+    throw Error(std::string("The array of regions, ") + regions->GetName() + ", has " +
+      std::to_string(regions->GetNumberOfComponents()) +
+      " components: choose one with a number per cell.");
+  }
+}
+
+//------------------------------------------------------------------------------
+double regionAt(vtkDataArray* regions, Index cell)
+{
+  const double value = regions->GetComponent(cell, 0);
+  if (!std::isfinite(value))
+  {
+    throw Error(std::string("The array of regions, ") + regions->GetName() + ", is " +
+      (std::isnan(value) ? "NaN" : "infinite") + " in cell " + std::to_string(cell) +
+      ": give every cell the number of its region.");
+  }
+  return value;
+}
+
+//------------------------------------------------------------------------------
 void ReconnectableMesh::setRegions(vtkDataArray* ofCells)
 {
   if (!ofCells)
   {
     return;
   }
-  if (ofCells->GetNumberOfComponents() != 1)
-  {
-    throw Error(std::string("The array of regions, ") + ofCells->GetName() + ", has " +
-      std::to_string(ofCells->GetNumberOfComponents()) +
-      " components: choose one with a number per cell.");
-  }
+  requireNumbers(ofCells);
   const Index count = this->mesh().view().numberOfCells;
   std::map<double, Index> numbers;
   for (Index cell = 0; cell < count; ++cell)
   {
     pollInterruption(cell);
-    const double value = ofCells->GetComponent(this->inputCell(cell), 0);
-    if (!std::isfinite(value))
-    {
-      throw Error(std::string("The array of regions, ") + ofCells->GetName() + ", is " +
-        (std::isnan(value) ? "NaN" : "infinite") + " in cell " +
-        std::to_string(this->inputCell(cell)) + ": give every cell the number of its region.");
-    }
+    const double value = regionAt(ofCells, this->inputCell(cell));
     this->Regions.push_back(
       numbers.emplace(value, static_cast<Index>(numbers.size())).first->second);
   }

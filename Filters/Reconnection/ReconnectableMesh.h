@@ -21,6 +21,11 @@ class vtkPointSet;
 
 namespace tautline
 {
+/// Throws Error for an array that has not one number per cell; null is taken.
+void requireNumbers(vtkDataArray* regions);
+/// The region of a cell. Throws Error for a value that is none.
+double regionAt(vtkDataArray* regions, Index cell);
+
 /**
  * @class tautline::ReconnectableMesh
  * @brief The tetrahedra of an unstructured grid, or the triangles of a mesh without volume cells,

@@ -3,8 +3,10 @@
 
 #include "BlockSeams.h"
 #include "Blocks.h"
-#include "ImprovedMesh.h"
 #include "GatheredExecution.h"
+#include "ImprovedMesh.h"
+#include "ImproverReport.h"
+#include "RankMesh.h"
 #include "ReconnectableMesh.h"
 #include "TableRows.h"
 #include "tautline/Quality/Metrics.h"
@@ -23,7 +25,6 @@
 #include <algorithm>
 #include <array>
 #include <sstream>
-#include <utility>
 
 vtkStandardNewMacro(vtkMeshImprover);
 
@@ -31,224 +32,7 @@ namespace
 {
 constexpr int NumberOfInputPorts = 2, NumberOfOutputPorts = 3;
 constexpr int FixedArray = 0, RegionArray = 1, SizeArray = 2;
-constexpr int ListedElements = 10;
 constexpr const char* FilterName = "Improve Mesh"; // in the menu
-
-/// In the order of tautline::ReconnectionObstacle.
-using Reasons = std::array<const char*, 6>;
-constexpr Reasons obstacles = { "it is not below the target",
-  "no operation improves it, or a limit ended the run",
-  "a facet that it has on the boundary or between regions allows no better one",
-  "it has a fixed point", "it has a point between regions", "it has a point on the boundary" };
-
-/// What would help, in the same order.
-constexpr Reasons remedies = { "", "try the preset Aggressive, a larger time limit or other counts",
-  "let the boundary slide on flat parts or on the surface, or repair the surface mesh",
-  "fix fewer points", "choose fewer regions",
-  "let the boundary slide on flat parts or on the surface" };
-
-/// The same for triangles.
-constexpr Reasons edgeObstacles = { "it is not below the target",
-  "no operation improves it, or a limit ended the run",
-  "the angle between two edges that are kept allows no better one", "it has a fixed point",
-  "it has a point between regions or on a sharp edge", "it has a point on the border" };
-constexpr Reasons edgeRemedies = { "",
-  "try the preset Aggressive, a larger time limit, other counts or, on a surface, a larger surface "
-  "distance",
-  "change the geometry", "fix fewer points",
-  "let the boundary slide on flat parts, choose fewer regions or a larger feature angle",
-  "let the boundary slide on flat parts" };
-
-/// How the elements and their angles are called.
-struct Words
-{
-  const char *one, *many, *title, *angle;
-  const Reasons &obstacles, &remedies;
-};
-constexpr Words tetrahedra = { "tetrahedron", "tetrahedra", "Tetrahedra", "dihedral angle",
-  obstacles, remedies };
-constexpr Words triangles = { "triangle", "triangles", "Triangles", "angle", edgeObstacles,
-  edgeRemedies };
-
-const char* reasonText(tautline::StopReason reason)
-{
-  switch (reason)
-  {
-    case tautline::StopReason::Reduction:
-      return "Every element has reached the target.";
-    case tautline::StopReason::NoProgress:
-      return "No operation improves the worst elements any further.";
-    default:
-      return tautline::describe(reason);
-  }
-}
-
-/// The cells below the target, the worst first.
-std::vector<tautline::Index> remainingOf(
-  const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved)
-{
-  std::vector<std::pair<double, tautline::Index>> byAngle;
-  for (std::size_t i = 0; i < result.obstacles.size(); ++i)
-  {
-    if (result.obstacles[i] != static_cast<signed char>(tautline::ReconnectionObstacle::None))
-    {
-      byAngle.emplace_back(improved.smallestAngles[i], static_cast<tautline::Index>(i));
-    }
-  }
-  std::sort(byAngle.begin(), byAngle.end());
-  std::vector<tautline::Index> cells(byAngle.size());
-  std::transform(
-    byAngle.begin(), byAngle.end(), cells.begin(), [](const auto& entry) { return entry.second; });
-  return cells;
-}
-
-void addHistory(tautline::TableRows& rows, const std::vector<tautline::ReconnectionRecord>& history,
-  const std::string& block)
-{
-  for (const tautline::ReconnectionRecord& record : history)
-  {
-    const auto add = [&rows](const char* column, auto value)
-    { rows.add(column, static_cast<double>(value)); };
-    rows.begin(block);
-    add("Smallest angle", record.smallestAngle);
-    add("Largest angle", record.largestAngle);
-    add("Worst imr", record.worstInverseMeanRatio);
-    add("N elements", record.tetrahedra);
-    add("N below target", record.belowTarget);
-    add("N edge removals", record.edgeRemovals);
-    add("N face removals", record.faceRemovals);
-    add("N boundary swaps", record.boundarySwaps);
-    add("N contractions", record.contractions);
-    add("N insertions", record.insertions);
-    add("N moves", record.moves);
-    add("Time (s)", record.seconds);
-  }
-}
-
-void addRemaining(tautline::TableRows& rows, const std::vector<tautline::Index>& cells,
-  const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved,
-  const Words& words, const std::string& block)
-{
-  const std::size_t n = cells.size();
-  if (n == 0)
-  {
-    return;
-  }
-  // Column by column: rows of cells in any order are slow to collect, and there may be many.
-  rows.begin();
-  if (!block.empty())
-  {
-    rows.addManyTexts("Block", n, [&](std::size_t) { return block; });
-  }
-  const auto add = [&](const char* column, const std::vector<double>& values)
-  { rows.addMany(column, n, [&](std::size_t i) { return values[cells[i]]; }); };
-  rows.addMany("Cell", n, [&](std::size_t i) { return static_cast<double>(cells[i]); });
-  add("Smallest angle", improved.smallestAngles);
-  add("imr", improved.inverseMeanRatios);
-  constexpr std::array<const char*, 3> axes = { "X", "Y", "Z" };
-  for (std::size_t c = 0; c < axes.size(); ++c)
-  {
-    rows.addMany(axes[c], n, [&](std::size_t i) { return improved.centers[cells[i]][c]; });
-  }
-  add("Quality", result.qualities);
-  add("Quality bound", result.bounds);
-  rows.addManyTexts(
-    "Reason", n, [&](std::size_t i) { return words.obstacles[result.obstacles[cells[i]]]; });
-}
-
-/// "12 edge removals, 3 motions of points"
-std::string describeOperations(const tautline::ReconnectionRecord& record)
-{
-  const std::array<std::pair<tautline::Index, const char*>, 6> operations = { {
-    { record.edgeRemovals, "edge removals" },
-    { record.faceRemovals, "face removals" },
-    { record.boundarySwaps, "boundary swaps" },
-    { record.contractions, "contractions" },
-    { record.insertions, "insertions" },
-    { record.moves, "motions of points" },
-  } };
-  std::string text;
-  for (const auto& [count, name] : operations)
-  {
-    if (count > 0)
-    {
-      text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
-    }
-  }
-  return text.empty() ? "none" : text;
-}
-
-/// What remains below the target, why, and which are the worst.
-std::string describeRemaining(const std::vector<tautline::Index>& cells,
-  const tautline::ReconnectionResult& result, const tautline::ImprovedMesh& improved,
-  const Words& words, double targetAngle)
-{
-  std::ostringstream text;
-  if (cells.empty())
-  {
-    text << "No " << words.one << " remains below the target of " << targetAngle << " degrees.";
-    return text.str();
-  }
-  text << cells.size() << " " << (cells.size() == 1 ? words.one : words.many)
-       << (cells.size() == 1 ? " remains" : " remain") << " below the target of " << targetAngle
-       << " degrees:";
-  std::array<tautline::Index, obstacles.size()> counts = {};
-  for (const tautline::Index cell : cells)
-  {
-    ++counts[result.obstacles[cell]];
-  }
-  for (std::size_t k = 0; k < obstacles.size(); ++k)
-  {
-    if (counts[k] > 0)
-    {
-      text << "\n- " << counts[k] << ": " << words.obstacles[k] << " (" << words.remedies[k] << ")";
-    }
-  }
-  const auto listed = std::min<std::size_t>(cells.size(), ListedElements);
-  for (std::size_t i = 0; i < listed; ++i)
-  {
-    const tautline::Vec3& at = improved.centers[cells[i]];
-    text << "\nElement " << cells[i] << " at (" << at[0] << ", " << at[1] << ", " << at[2]
-         << "): smallest " << words.angle << " " << improved.smallestAngles[cells[i]]
-         << ", inverse mean ratio " << improved.inverseMeanRatios[cells[i]] << "; "
-         << words.obstacles[result.obstacles[cells[i]]] << ".";
-  }
-  if (cells.size() > listed)
-  {
-    text << "\n... and " << cells.size() - listed << " more: see the output Remaining.";
-  }
-  return text.str();
-}
-
-/// Before and after, in words.
-std::string describeResult(const tautline::ReconnectionResult& result, const Words& words)
-{
-  const tautline::ReconnectionRecord &first = result.history.front(), &last = result.history.back();
-  std::ostringstream text;
-  text << reasonText(result.reason) << "\n"
-       << words.title << ": " << first.tetrahedra << " to " << last.tetrahedra << ". Smallest "
-       << words.angle << ": " << first.smallestAngle << " to " << last.smallestAngle
-       << " degrees; largest: " << first.largestAngle << " to " << last.largestAngle
-       << ". Worst inverse mean ratio: " << first.worstInverseMeanRatio << " to "
-       << last.worstInverseMeanRatio << ".";
-  if (result.meanAfter > 0.0)
-  {
-    text << " Mean: " << result.meanBefore << " to " << result.meanAfter << ".";
-  }
-  text << "\nOperations: " << describeOperations(last) << ".";
-  if (result.markedFacets > 0)
-  {
-    text << "\nFacets inside the mesh that triangles mark, and that are kept: "
-         << result.markedFacets << ".";
-  }
-  if (result.volumeBefore > 0.0)
-  {
-    text << "\nLargest distance between the boundary and that of the input: "
-         << result.boundaryDistance << ". Volume: " << result.volumeBefore << " to "
-         << result.volumeAfter << ".";
-  }
-  return text.str();
-}
 }
 
 //------------------------------------------------------------------------------
@@ -308,11 +92,19 @@ int vtkMeshImprover::RequestData(
     [&]
     {
       vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
+      tautline::TableRows history, remaining;
+      if (this->Pieces || !this->PieceError.empty())
+      {
+        this->ImproveOnRanks(
+          inputVector, vtkDataObject::GetData(outputVector, MeshPort), history, remaining);
+        history.fill(vtkTable::GetData(outputVector, HistoryPort));
+        remaining.fill(vtkTable::GetData(outputVector, RemainingPort));
+        return;
+      }
       this->CheckSeams(input);
       const auto fixed =
         tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
       const int blocks = tautline::countBlocks(input);
-      tautline::TableRows history, remaining;
       tautline::forEachBlock(input, nullptr, fixed, vtkDataObject::GetData(outputVector, MeshPort),
         [&](const tautline::InputBlock& block)
         {
@@ -323,6 +115,7 @@ int vtkMeshImprover::RequestData(
           }
           this->Improve(block, blocks, history, remaining);
         });
+      this->AddToSummary(this->WhyGathered);
       history.fill(vtkTable::GetData(outputVector, HistoryPort));
       remaining.fill(vtkTable::GetData(outputVector, RemainingPort));
     });
@@ -377,7 +170,27 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
   options.improveMean = this->ThenBestShape;
   options.overlaps = this->CellTransfer == CONSERVATIVE;
   options.maximumSeconds = this->GetRemainingSeconds();
+  using tautline::ReconnectionSize;
+  options.size = this->Size == EDGE_LENGTH ? ReconnectionSize::Length
+    : this->Size == LENGTH_OF_INPUT        ? ReconnectionSize::Input
+    : this->Size == SIZE_ARRAY             ? ReconnectionSize::Lengths
+                                           : ReconnectionSize::None;
 }
+
+//------------------------------------------------------------------------------
+/// Sets all options of tetrahedra or triangles but those of a mesh.
+template <class Options>
+void vtkMeshImprover::PrepareOptions(Options& options) const
+{
+  this->SetOptions(options);
+  tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
+  if (this->TargetAngle > 0)
+  {
+    options.targetAngle = this->TargetAngle;
+  }
+}
+
+template void vtkMeshImprover::PrepareOptions(tautline::ReconnectionOptions& options) const;
 
 //------------------------------------------------------------------------------
 /// Runs the kernel on a mesh. @param targetAngle set to the one that was used
@@ -386,12 +199,7 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
 {
   const auto prepare = [&](auto& options)
   {
-    this->SetOptions(options);
-    tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
-    if (this->TargetAngle > 0)
-    {
-      options.targetAngle = this->TargetAngle;
-    }
+    this->PrepareOptions(options);
     targetAngle = options.targetAngle;
     options.fixed = mesh.fixed().data();
     options.regions = mesh.regions().empty() ? nullptr : mesh.regions().data();
@@ -432,9 +240,6 @@ std::vector<double> vtkMeshImprover::SetSize(
   vtkDataSet* input, tautline::ReconnectionOptions& options)
 {
   using tautline::ReconnectionSize;
-  options.size = this->Size == EDGE_LENGTH ? ReconnectionSize::Length
-    : this->Size == LENGTH_OF_INPUT        ? ReconnectionSize::Input
-                                           : ReconnectionSize::None;
   std::vector<double> sizes;
   if (this->Size != SIZE_ARRAY)
   {
@@ -474,27 +279,22 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
   mesh.setRegions(tautline::chosenArray(this, RegionArray, block.input, "of regions"));
 
   double targetAngle = 0.0;
-  const Words& words = mesh.isTriangles() ? triangles : tetrahedra;
+  const bool triangles = mesh.isTriangles();
   const tautline::ReconnectionResult result = this->Run(mesh, block, blocks, targetAngle);
-  const tautline::ImprovedMesh improved =
+  const tautline::ImprovedCells improved =
     tautline::writeImproved(mesh, result, this->Threads, vtkPointSet::SafeDownCast(block.output));
 
-  const std::vector<tautline::Index> cells = remainingOf(result, improved);
-  addHistory(history, result.history, block.name);
-  addRemaining(remaining, cells, result, improved, words, block.name);
-  this->Remaining += static_cast<vtkIdType>(cells.size());
-  this->AddToSummary(
-    (block.name.empty() ? "" : "In " + block.name + ": ") + describeResult(result, words));
+  std::vector<tautline::RemainingElement> left =
+    tautline::remainingOf(result.obstacles, result.qualities, result.bounds, improved);
+  tautline::sortWorstFirst(left);
+  tautline::addHistory(history, result.history, block.name);
+  tautline::addRemaining(remaining, left, triangles, block.name);
+  this->Remaining += static_cast<vtkIdType>(left.size());
+  this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
+    tautline::describeResult(result, triangles));
   this->TakeResult(result);
-  this->AddToSummary(describeRemaining(cells, result, improved, words, targetAngle));
-  if (!cells.empty())
-  {
-    std::ostringstream bound;
-    bound << "With the " << (mesh.isTriangles() ? "edges" : "facets")
-          << " of its boundary and between regions, no mesh has a worst inverse mean ratio below "
-          << result.forcedInverseMeanRatio << ".";
-    this->AddToSummary(bound.str());
-  }
+  this->AddToSummary(tautline::describeRemaining(left, triangles, targetAngle));
+  this->AddToSummary(tautline::describeForced(left, triangles, result.forcedInverseMeanRatio));
   this->AddToSummary(improved.note);
   this->AddToSummary(mesh.leftOut());
   this->AddToSummary(mesh.notice());
@@ -529,7 +329,7 @@ void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result)
   }
   this->ElementsBefore += first.tetrahedra;
   this->ElementsAfter += last.tetrahedra;
-  this->Reason = reasonText(result.reason);
+  this->Reason = tautline::reasonText(result.reason);
 }
 
 //------------------------------------------------------------------------------
@@ -573,4 +373,6 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ThenBestShape: " << this->ThenBestShape << "\n";
   os << indent << "CellTransfer: " << this->CellTransfer << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
+  os << indent << "GatherBelow: " << this->GatherBelow << "\n";
+  os << indent << "Rounds: " << this->Rounds << "\n";
 }

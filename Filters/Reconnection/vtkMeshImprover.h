@@ -52,7 +52,24 @@
  * `Block`.
  *
  * @par Several processes:
- * The mesh is to be on the first process; else an error.
+ * A mesh of at least GatherBelow tetrahedra, of which not only the first process has some, is
+ * improved in parts: planes divide it among the processes, each improves its part up to the seams,
+ * and then planes in other directions divide it anew, so that no facet stays because it was on a
+ * seam but for a few where the seams of all Rounds meet (tautline/Reconnection/ReconnectOnRanks.h).
+ * The result depends on the number of processes, but not on how the mesh was cut, to the order of
+ * points and cells. Ghost cells are left out as copies. A cell goes to the process that has its
+ * original one; `OriginalCellId` counts through the cells of the pieces, one process after the
+ * other, and so does `Cell` in Remaining through those of the output. Row i of History is round i.
+ * The tables are on the first process. All points at the same place are one; with
+ * MergeCoincidentPoints off, those of different processes with the same global id. Point arrays
+ * are those that all pieces with points have.
+ *
+ * The mesh is put together on the first process and improved there, and the summary states why,
+ * where it has fewer tetrahedra; for triangles and composite data; for a boundary ON_SURFACE, the
+ * objective METRIC, ThenBestShape, a CONSERVATIVE transfer, and target lengths SIZE_ARRAY and
+ * LENGTH_OF_INPUT; where neighbouring cells list their points in opposite orders; with
+ * MergeCoincidentPoints off for pieces without global ids of points; and for processes that do not
+ * communicate by MPI.
  *
  * B. M. Klingner and J. R. Shewchuk, "Aggressive tetrahedral mesh improvement" (2007), see
  * tautline/Reconnection/Reconnection.h.
@@ -72,6 +89,7 @@
 #include "vtkTautlineSetRange.h"        // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
 
+#include <memory> // for Pieces
 #include <string> // for Reason
 #include <vector> // for SetSize
 
@@ -79,10 +97,13 @@ class vtkDataSet;
 
 namespace tautline
 {
+class RankGroup;
+class RankMesh;
 class ReconnectableMesh;
 class TableRows;
-struct ImprovedMesh;
+struct ImprovedCells;
 struct InputBlock;
+struct RankReconnection;
 struct ReconnectionOptions;
 struct ReconnectionResult;
 }
@@ -306,6 +327,18 @@ public:
   vtkBooleanMacro(MergeCoincidentPoints, bool);
   ///@}
 
+  ///@{
+  /**
+   * On several processes. GatherBelow, at least 0: a mesh of fewer tetrahedra is put together on
+   * the first process, and the result is that of one process. Rounds, 1 to 100: how often at most
+   * the mesh is divided anew. The defaults are 20,000 and 12.
+   */
+  vtkTautlineSetRangeMacro(GatherBelow, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(GatherBelow, vtkIdType);
+  vtkTautlineSetRangeMacro(Rounds, int, 1, 100);
+  vtkGetMacro(Rounds, int);
+  ///@}
+
   /// The table of output port 1.
   vtkTable* GetHistory() { return this->GetOutputTable(HistoryPort); }
 
@@ -347,6 +380,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   tautline::GatheredResult GetGatheredResult() const override;
+  bool TakesPieces(vtkInformationVector** inputs) override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
   bool KeepsBest() const override { return true; }
@@ -364,6 +398,8 @@ private:
   };
 
   void SetOptions(tautline::ReconnectionOptions& options) const;
+  template <class Options>
+  void PrepareOptions(Options& options) const;
   tautline::ReconnectionResult Run(const tautline::ReconnectableMesh& mesh,
     const tautline::InputBlock& block, int blocks, double& targetAngle);
   std::vector<double> SetSize(vtkDataSet* input, tautline::ReconnectionOptions& options);
@@ -371,6 +407,17 @@ private:
   void Improve(const tautline::InputBlock& block, int blocks, tautline::TableRows& history,
     tautline::TableRows& remaining);
   void TakeResult(const tautline::ReconnectionResult& result);
+  std::string FindReasonToGather(vtkDataObject* input);
+  void ImproveOnRanks(vtkInformationVector** inputVector, vtkDataObject* output,
+    tautline::TableRows& history, tautline::TableRows& remaining);
+  void ReportOnRanks(const tautline::RankReconnection& result, const tautline::ImprovedCells& cells,
+    double targetAngle, tautline::TableRows& history, tautline::TableRows& remaining);
+
+  /// Of an execution in which each process takes its piece: the mesh, or why it is an error.
+  std::unique_ptr<tautline::RankGroup> Group;
+  std::unique_ptr<tautline::RankMesh> Pieces;
+  std::string PieceError, LeftOut;
+  std::string WhyGathered; ///< of one in which several processes do not; else ""
 
   int Preset = REMOVE_SLIVERS;
   bool Swap = true;
@@ -394,6 +441,8 @@ private:
   bool ThenBestShape = false;
   int CellTransfer = COPY;
   bool MergeCoincidentPoints = true;
+  vtkIdType GatherBelow = 20000;
+  int Rounds = 12;
 
   std::string Reason;
   vtkIdType ElementsBefore = 0;

@@ -30,6 +30,7 @@ CELL_TRANSFERS: tuple[CellTransfer, ...] = get_args(CellTransfer)
 _FIXED, _REGIONS, _SIZES = 0, 1, 2  # input arrays of vtkMeshImprover
 _MAX_ANGLE = 60.0
 _MAX_FLAT_ANGLE = 1.0
+_MAX_ROUNDS, _MAX_CELLS = 100, 2**62
 _MAX_FEATURE_ANGLE, _MAX_SURFACE_ANGLE = 180.0, 90.0
 _OPERATIONS = {name: flag_option("Set" + name.title()) for name in ("swap", "smooth", "contract", "insert", "compound")}
 
@@ -100,6 +101,8 @@ def improve(
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    gather_below: int = 20_000,
+    rounds: int = 12,
     progress: Progress | bool | None = None,
     **operations: bool,
 ) -> ImproveResult:
@@ -149,6 +152,9 @@ def improve(
     threads: number of threads, which large meshes make use of; 0 is all cores. The result does not depend on it.
     merge_coincident_points: whether points at the same place on facets that match become one, as on the seams of a
         mesh in pieces. False: seams are boundary.
+    gather_below, rounds: on several processes (pvbatch --sym under MPI, where each calls this function with its piece):
+        a mesh of fewer tetrahedra is put together on the first process; others are improved in parts, divided anew so
+        many times at most, 1 to 100. The tables are those of the first process, the numbers of all.
     operations: of the preset "custom": swap, smooth, contract, insert, compound (operations that pay off only after the
         points around moved); all True by default.
 
@@ -191,6 +197,8 @@ def improve(
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
+    filter_.SetGatherBelow(int(within("gather_below", gather_below, 0, _MAX_CELLS)))
+    filter_.SetRounds(int(within("rounds", rounds, 1, _MAX_ROUNDS)))
     inputs.use(_FIXED, fixed, "fixed", POINTS)
     inputs.use(_REGIONS, regions, "regions", CELLS)
     filter_.SetInputDataObject(0, inputs.mesh)

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImprovedCells.h"
+
+#include "MeshOutput.h"
+#include "tautline/Quality/Metrics.h"
+
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+namespace
+{
+constexpr const char* AngleArray = "min_angle";
+constexpr const char* RatioArray = "imr";
+
+vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, const std::vector<double>& values)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
+}
+
+//------------------------------------------------------------------------------
+bool measure(const Simplices& simplices, const std::vector<double>& coordinates, bool mirrored,
+  int threads, ImprovedCells& measured)
+{
+  const std::size_t count = simplices.cells();
+  const CellType type = simplices.corners == 3 ? CellType::Triangle : CellType::Tetrahedron;
+  std::vector<unsigned char> types(count, simplices.corners == 3 ? VTK_TRIANGLE : VTK_TETRA);
+  std::vector<Index> offsets(count + 1);
+  for (std::size_t i = 0; i <= count; ++i)
+  {
+    offsets[i] = static_cast<Index>(simplices.corners * i);
+  }
+  MeshView view;
+  view.numberOfPoints = static_cast<Index>(coordinates.size() / 3);
+  view.points = coordinates.data();
+  view.numberOfCells = static_cast<Index>(count);
+  view.cellTypes = types.data();
+  view.offsets = offsets.data();
+  view.connectivity = simplices.connectivity.data();
+  Mesh mesh(view, threads);
+  mesh.setMirrored(mirrored);
+  std::vector<signed char> validity(count);
+  mesh.classifyCells(validity.data(), threads);
+  EvaluationOptions options;
+  options.threads = threads;
+  measured.smallestAngles.resize(count);
+  measured.inverseMeanRatios.resize(count);
+  evaluateMetric(mesh, Metric::MinimumAngle, options, measured.smallestAngles.data());
+  evaluateMetric(mesh, Metric::InverseMeanRatio, options, measured.inverseMeanRatios.data());
+  measured.centers.clear();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    measured.centers.push_back(mesh.center(static_cast<Index>(i), type));
+  }
+  return std::all_of(validity.begin(), validity.end(), [](signed char v) { return v == Valid; });
+}
+
+//------------------------------------------------------------------------------
+bool isWorse(const ImprovedCells& measured, const ReconnectionRecord& before)
+{
+  const std::vector<double>&angles = measured.smallestAngles, &ratios = measured.inverseMeanRatios;
+  // Both are measured here in another order of operations than in the kernel.
+  constexpr double Rounding = 1e-9;
+  return !angles.empty() &&
+    (*std::min_element(angles.begin(), angles.end()) < before.smallestAngle - Rounding ||
+      *std::max_element(ratios.begin(), ratios.end()) >
+        before.worstInverseMeanRatio * (1.0 + Rounding));
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> toSinglePrecision(const std::vector<double>& coordinates)
+{
+  std::vector<double> rounded(coordinates.size());
+  std::transform(coordinates.begin(), coordinates.end(), rounded.begin(),
+    [](double x) { return static_cast<double>(static_cast<float>(x)); });
+  return rounded;
+}
+
+//------------------------------------------------------------------------------
+void addCellArrays(vtkPointSet* output, vtkIdTypeArray* originals, const ImprovedCells& improved)
+{
+  vtkCellData* cells = output->GetCellData();
+  cells->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  originals->SetName(OriginalCellArray);
+  cells->AddArray(originals);
+  cells->AddArray(arrayOf(AngleArray, improved.smallestAngles));
+  cells->AddArray(arrayOf(RatioArray, improved.inverseMeanRatios));
+  output->GetPointData()->SetActiveScalars(nullptr);
+  cells->SetActiveScalars(AngleArray);
+}
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ImprovedCells.h
+ * @brief The cells that Improve Mesh makes: how they are measured, and their arrays.
+ */
+#ifndef tautline_ImprovedCells_h
+#define tautline_ImprovedCells_h
+
+#include "tautline/Reconnection/ReconnectionOptions.h"
+
+#include <string>
+#include <vector>
+
+class vtkIdTypeArray;
+class vtkPointSet;
+
+namespace tautline
+{
+constexpr const char* OriginalCellArray = "OriginalCellId";
+constexpr const char* PrecisionNote =
+  "The points are in double precision: rounded to the single precision of the input, an element "
+  "would be worse than before.";
+
+/// What was measured and found of an output.
+struct ImprovedCells
+{
+  std::vector<double> smallestAngles;    ///< dihedral of tetrahedra, in degrees, per cell
+  std::vector<double> inverseMeanRatios; ///< per cell
+  std::vector<Vec3> centers;             ///< per cell
+  std::string note;                      ///< a sentence if single precision did not do, else ""
+};
+
+/// Triangles or tetrahedra.
+struct Simplices
+{
+  std::vector<Index> connectivity;
+  int corners = 0; ///< of a cell
+  std::size_t cells() const { return this->connectivity.size() / this->corners; }
+};
+
+/// Measures cells with their points at some coordinates. @return whether all are valid
+bool measure(const Simplices& simplices, const std::vector<double>& coordinates, bool mirrored,
+  int threads, ImprovedCells& measured);
+/// Whether the worst cells are worse than those of the input.
+bool isWorse(const ImprovedCells& measured, const ReconnectionRecord& before);
+/// The coordinates as single precision has them.
+std::vector<double> toSinglePrecision(const std::vector<double>& coordinates);
+/// Gives the cells of an output their numbers in the input, `min_angle` and `imr`.
+void addCellArrays(vtkPointSet* output, vtkIdTypeArray* originals, const ImprovedCells& improved);
+}
+#endif

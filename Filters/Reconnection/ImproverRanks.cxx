@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Improve Mesh for a mesh of tetrahedra on several processes.
+#include "vtkMeshImprover.h"
+
+#include "Blocks.h"
+#include "ImprovedPiece.h"
+#include "ImproverReport.h"
+#include "PieceResults.h"
+#include "ProcessGroup.h"
+#include "Processes.h"
+#include "RankMesh.h"
+#include "ReconnectablePiece.h"
+#include "TableRows.h"
+#include "tautline/Reconnection/ReconnectOnRanks.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkInformationVector.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkSelection.h"
+
+namespace
+{
+constexpr int FixedArray = 0, RegionArray = 1;
+constexpr int VolumeDimension = 3;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
+{
+  this->Pieces.reset();
+  this->Group.reset();
+  this->PieceError.clear();
+  this->LeftOut.clear();
+  this->WhyGathered.clear();
+  vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
+  std::string why;
+  try
+  {
+    this->Group = tautline::makeProcessGroup();
+  }
+  catch (const tautline::Error&) // on all processes
+  {
+    why = "the processes do not communicate by MPI";
+  }
+  try
+  {
+    const bool elsewhere = this->Group && this->Group->rank() > 0 && input &&
+      input->GetNumberOfElements(vtkDataObject::CELL) > 0;
+    if (this->Group && !this->Group->any(elsewhere))
+    {
+      return false; // it is in one place
+    }
+    why = why.empty() ? this->FindReasonToGather(input) : why;
+    if (why.empty())
+    {
+      this->Pieces = std::make_unique<tautline::RankMesh>(
+        *this->Group, vtkDataSet::SafeDownCast(input), this->Threads, this->MergeCoincidentPoints);
+      return true;
+    }
+  }
+  catch (const tautline::OppositeOrders&)
+  {
+    why = "neighbouring cells list their points in opposite orders";
+  }
+  catch (const std::exception& error) // on all processes, which report it in RequestData()
+  {
+    this->PieceError = error.what();
+    return true;
+  }
+  this->WhyGathered = "The mesh was put together on the first process: " + why + ".";
+  return false;
+}
+
+//------------------------------------------------------------------------------
+/// Why the mesh of several processes has to be on one, or "". Throws Error on all processes.
+std::string vtkMeshImprover::FindReasonToGather(vtkDataObject* input)
+{
+  tautline::RankGroup& group = *this->Group;
+  auto* piece = vtkPointSet::SafeDownCast(input);
+  if (group.any(!piece))
+  {
+    return "it has blocks, or is not an unstructured grid";
+  }
+  const tautline::CellKinds kinds = tautline::kindsOnRanks(group, piece);
+  this->LeftOut = kinds.leftOut;
+  tautline::ReconnectionOptions options;
+  this->SetOptions(options);
+  const std::string setting = tautline::needsOneRank(options);
+  const bool unnamed = piece->GetNumberOfPoints() > 0 && !piece->GetPointData()->GetGlobalIds();
+  if (kinds.dimension < VolumeDimension)
+  {
+    return "it is made of triangles";
+  }
+  if (!setting.empty())
+  {
+    return setting + " needs the whole mesh";
+  }
+  if (kinds.taken < this->GatherBelow)
+  {
+    return "it has fewer than " + std::to_string(this->GatherBelow) + " tetrahedra (Gather Below)";
+  }
+  return !this->MergeCoincidentPoints && group.any(unnamed)
+    ? "Merge Coincident Points is off, and the points have no global ids"
+    : "";
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkDataObject* output,
+  tautline::TableRows& history, tautline::TableRows& remaining)
+{
+  std::unique_ptr<tautline::RankMesh> mesh = std::move(this->Pieces);
+  if (!mesh)
+  {
+    throw tautline::Error(this->PieceError);
+  }
+  tautline::RankGroup& group = *this->Group;
+  auto* input = vtkDataSet::SafeDownCast(vtkDataObject::GetData(inputVector[MeshPort]));
+  vtkDataArray* regions = nullptr;
+  group.together(
+    [&]
+    {
+      if (input->GetNumberOfPoints() > 0)
+      {
+        mesh->fix(tautline::chosenArray(this, FixedArray, input, "of fixed points"), false);
+        mesh->fixSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
+        regions = tautline::chosenArray(this, RegionArray, input, "of regions");
+      }
+    });
+  tautline::ReconnectablePiece piece = tautline::takePiece(group, *mesh, input, regions);
+  mesh.reset(); // its memory
+  tautline::ReconnectionOptions options;
+  this->PrepareOptions(options);
+  options.observer = [this](const tautline::ReconnectionRecord&, double progress)
+  { return this->Proceed(progress); };
+  const tautline::RankReconnection result =
+    tautline::improveOnRanks(group, std::move(piece.mesh), options, this->Rounds);
+  const tautline::ImprovedCells cells =
+    tautline::writePiece(group, piece, result, this->Threads, vtkPointSet::SafeDownCast(output));
+  this->ReportOnRanks(result, cells, options.targetAngle, history, remaining);
+  if (group.rank() == 0)
+  {
+    this->AddToSummary(this->LeftOut);
+    this->Warn(this->LeftOut);
+    this->AddToSummary(piece.mirrored ? "The mesh is reversed: its cells list their points in the "
+                                        "opposite order, and it is treated as its mirror image."
+                                      : "");
+  }
+  this->Summary = tautline::shareText(tautline::severalProcesses(), this->Summary);
+}
+
+//------------------------------------------------------------------------------
+/// Numbers on all processes; tables and the text on the first one.
+void vtkMeshImprover::ReportOnRanks(const tautline::RankReconnection& result,
+  const tautline::ImprovedCells& cells, double targetAngle, tautline::TableRows& history,
+  tautline::TableRows& remaining)
+{
+  tautline::RankGroup& group = *this->Group;
+  const auto count = static_cast<tautline::Index>(result.originalCells.size());
+  std::vector<std::vector<tautline::RemainingElement>> sent(group.size());
+  sent[0] = tautline::remainingOf(
+    result.obstacles, result.qualities, result.bounds, cells, tautline::sumBefore(group, count));
+  this->Remaining = group.sum(static_cast<tautline::Index>(sent[0].size()));
+  tautline::ReconnectionResult whole;
+  whole.history = result.history;
+  whole.reason = result.reason;
+  whole.markedFacets = result.markedFacets;
+  this->TakeResult(whole);
+  std::vector<tautline::RemainingElement> left;
+  for (const auto& list : group.exchangeItems(sent))
+  {
+    left.insert(left.end(), list.begin(), list.end());
+  }
+  if (group.rank() > 0)
+  {
+    return;
+  }
+  tautline::sortWorstFirst(left);
+  tautline::addHistory(history, result.history, "");
+  tautline::addRemaining(remaining, left, false, "");
+  this->AddToSummary(tautline::describeResult(whole, false));
+  this->AddToSummary("In parts on " + std::to_string(group.size()) + " processes, in " +
+    std::to_string(result.history.size() - 1) + " rounds.");
+  this->AddToSummary(tautline::describeRemaining(left, false, targetAngle));
+  this->AddToSummary(tautline::describeForced(left, false, result.forcedInverseMeanRatio));
+  this->AddToSummary(cells.note);
+}

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImproverReport.h"
+
+#include "TableRows.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <utility>
+
+namespace tautline
+{
+namespace
+{
+constexpr int ListedElements = 10;
+
+/// In the order of ReconnectionObstacle.
+using Reasons = std::array<const char*, 6>;
+constexpr Reasons obstacles = { "it is not below the target",
+  "no operation improves it, or a limit ended the run",
+  "a facet that it has on the boundary or between regions allows no better one",
+  "it has a fixed point", "it has a point between regions", "it has a point on the boundary" };
+
+/// What would help, in the same order.
+constexpr Reasons remedies = { "", "try the preset Aggressive, a larger time limit or other counts",
+  "let the boundary slide on flat parts or on the surface, or repair the surface mesh",
+  "fix fewer points", "choose fewer regions",
+  "let the boundary slide on flat parts or on the surface" };
+
+/// The same for triangles.
+constexpr Reasons edgeObstacles = { "it is not below the target",
+  "no operation improves it, or a limit ended the run",
+  "the angle between two edges that are kept allows no better one", "it has a fixed point",
+  "it has a point between regions or on a sharp edge", "it has a point on the border" };
+constexpr Reasons edgeRemedies = { "",
+  "try the preset Aggressive, a larger time limit, other counts or, on a surface, a larger surface "
+  "distance",
+  "change the geometry", "fix fewer points",
+  "let the boundary slide on flat parts, choose fewer regions or a larger feature angle",
+  "let the boundary slide on flat parts" };
+
+/// How the elements and their angles are called.
+struct Words
+{
+  const char *one, *many, *title, *angle;
+  const Reasons &obstacles, &remedies;
+};
+constexpr Words tetrahedra = { "tetrahedron", "tetrahedra", "Tetrahedra", "dihedral angle",
+  obstacles, remedies };
+constexpr Words triangles = { "triangle", "triangles", "Triangles", "angle", edgeObstacles,
+  edgeRemedies };
+
+const Words& wordsOf(bool isTriangles)
+{
+  return isTriangles ? triangles : tetrahedra;
+}
+
+/// "12 edge removals, 3 motions of points"
+std::string describeOperations(const ReconnectionRecord& record)
+{
+  const std::array<std::pair<Index, const char*>, 6> operations = { {
+    { record.edgeRemovals, "edge removals" },
+    { record.faceRemovals, "face removals" },
+    { record.boundarySwaps, "boundary swaps" },
+    { record.contractions, "contractions" },
+    { record.insertions, "insertions" },
+    { record.moves, "motions of points" },
+  } };
+  std::string text;
+  for (const auto& [count, name] : operations)
+  {
+    if (count > 0)
+    {
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
+    }
+  }
+  return text.empty() ? "none" : text;
+}
+}
+
+//------------------------------------------------------------------------------
+const char* reasonText(StopReason reason)
+{
+  switch (reason)
+  {
+    case StopReason::Reduction:
+      return "Every element has reached the target.";
+    case StopReason::NoProgress:
+      return "No operation improves the worst elements any further.";
+    default:
+      return describe(reason);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<RemainingElement> remainingOf(const std::vector<signed char>& obstacles,
+  const std::vector<double>& qualities, const std::vector<double>& bounds,
+  const ImprovedCells& improved, Index first)
+{
+  std::vector<RemainingElement> remaining;
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+  {
+    if (obstacles[i] != static_cast<signed char>(ReconnectionObstacle::None))
+    {
+      remaining.push_back(
+        { first + static_cast<Index>(i), improved.smallestAngles[i], improved.inverseMeanRatios[i],
+          improved.centers[i], qualities[i], bounds[i], obstacles[i] });
+    }
+  }
+  return remaining;
+}
+
+//------------------------------------------------------------------------------
+void sortWorstFirst(std::vector<RemainingElement>& remaining)
+{
+  std::sort(remaining.begin(), remaining.end(),
+    [](const RemainingElement& a, const RemainingElement& b)
+    {
+      return a.smallestAngle != b.smallestAngle ? a.smallestAngle < b.smallestAngle
+                                                : a.cell < b.cell;
+    });
+}
+
+//------------------------------------------------------------------------------
+void addHistory(
+  TableRows& rows, const std::vector<ReconnectionRecord>& history, const std::string& block)
+{
+  for (const ReconnectionRecord& record : history)
+  {
+    const auto add = [&rows](const char* column, auto value)
+    { rows.add(column, static_cast<double>(value)); };
+    rows.begin(block);
+    add("Smallest angle", record.smallestAngle);
+    add("Largest angle", record.largestAngle);
+    add("Worst imr", record.worstInverseMeanRatio);
+    add("N elements", record.tetrahedra);
+    add("N below target", record.belowTarget);
+    add("N edge removals", record.edgeRemovals);
+    add("N face removals", record.faceRemovals);
+    add("N boundary swaps", record.boundarySwaps);
+    add("N contractions", record.contractions);
+    add("N insertions", record.insertions);
+    add("N moves", record.moves);
+    add("Time (s)", record.seconds);
+  }
+}
+
+//------------------------------------------------------------------------------
+void addRemaining(TableRows& rows, const std::vector<RemainingElement>& remaining, bool isTriangles,
+  const std::string& block)
+{
+  const std::size_t n = remaining.size();
+  if (n == 0)
+  {
+    return;
+  }
+  // Column by column: rows of cells in any order are slow to collect, and there may be many.
+  rows.begin();
+  if (!block.empty())
+  {
+    rows.addManyTexts("Block", n, [&](std::size_t) { return block; });
+  }
+  const auto add = [&](const char* column, auto member)
+  {
+    rows.addMany(
+      column, n, [&](std::size_t i) { return static_cast<double>(remaining[i].*member); });
+  };
+  add("Cell", &RemainingElement::cell);
+  add("Smallest angle", &RemainingElement::smallestAngle);
+  add("imr", &RemainingElement::inverseMeanRatio);
+  constexpr std::array<const char*, 3> axes = { "X", "Y", "Z" };
+  for (std::size_t c = 0; c < axes.size(); ++c)
+  {
+    rows.addMany(axes[c], n, [&](std::size_t i) { return remaining[i].center[c]; });
+  }
+  add("Quality", &RemainingElement::quality);
+  add("Quality bound", &RemainingElement::bound);
+  const Words& words = wordsOf(isTriangles);
+  rows.addManyTexts(
+    "Reason", n, [&](std::size_t i) { return words.obstacles[remaining[i].obstacle]; });
+}
+
+//------------------------------------------------------------------------------
+std::string describeResult(const ReconnectionResult& result, bool isTriangles)
+{
+  const Words& words = wordsOf(isTriangles);
+  const ReconnectionRecord &first = result.history.front(), &last = result.history.back();
+  std::ostringstream text;
+  text << reasonText(result.reason) << "\n"
+       << words.title << ": " << first.tetrahedra << " to " << last.tetrahedra << ". Smallest "
+       << words.angle << ": " << first.smallestAngle << " to " << last.smallestAngle
+       << " degrees; largest: " << first.largestAngle << " to " << last.largestAngle
+       << ". Worst inverse mean ratio: " << first.worstInverseMeanRatio << " to "
+       << last.worstInverseMeanRatio << ".";
+  if (result.meanAfter > 0.0)
+  {
+    text << " Mean: " << result.meanBefore << " to " << result.meanAfter << ".";
+  }
+  text << "\nOperations: " << describeOperations(last) << ".";
+  if (result.markedFacets > 0)
+  {
+    text << "\nFacets inside the mesh that triangles mark, and that are kept: "
+         << result.markedFacets << ".";
+  }
+  if (result.volumeBefore > 0.0)
+  {
+    text << "\nLargest distance between the boundary and that of the input: "
+         << result.boundaryDistance << ". Volume: " << result.volumeBefore << " to "
+         << result.volumeAfter << ".";
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::string describeRemaining(
+  const std::vector<RemainingElement>& remaining, bool isTriangles, double targetAngle)
+{
+  const Words& words = wordsOf(isTriangles);
+  std::ostringstream text;
+  if (remaining.empty())
+  {
+    text << "No " << words.one << " remains below the target of " << targetAngle << " degrees.";
+    return text.str();
+  }
+  text << remaining.size() << " " << (remaining.size() == 1 ? words.one : words.many)
+       << (remaining.size() == 1 ? " remains" : " remain") << " below the target of " << targetAngle
+       << " degrees:";
+  std::array<Index, obstacles.size()> counts = {};
+  for (const RemainingElement& element : remaining)
+  {
+    ++counts[element.obstacle];
+  }
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+  {
+    if (counts[k] > 0)
+    {
+      text << "\n- " << counts[k] << ": " << words.obstacles[k] << " (" << words.remedies[k] << ")";
+    }
+  }
+  const auto listed = std::min<std::size_t>(remaining.size(), ListedElements);
+  for (std::size_t i = 0; i < listed; ++i)
+  {
+    const RemainingElement& element = remaining[i];
+    const Vec3& at = element.center;
+    text << "\nElement " << element.cell << " at (" << at[0] << ", " << at[1] << ", " << at[2]
+         << "): smallest " << words.angle << " " << element.smallestAngle << ", inverse mean ratio "
+         << element.inverseMeanRatio << "; " << words.obstacles[element.obstacle] << ".";
+  }
+  if (remaining.size() > listed)
+  {
+    text << "\n... and " << remaining.size() - listed << " more: see the output Remaining.";
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::string describeForced(
+  const std::vector<RemainingElement>& remaining, bool isTriangles, double forcedInverseMeanRatio)
+{
+  if (remaining.empty())
+  {
+    return "";
+  }
+  std::ostringstream text;
+  text << "With the " << (isTriangles ? "edges" : "facets")
+       << " of its boundary and between regions, no mesh has a worst inverse mean ratio below "
+       << forcedInverseMeanRatio << ".";
+  return text.str();
+}
+}
