@@ -11,86 +11,38 @@ import sys
 
 import numpy as np
 from paraview import servermanager, simple
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
+from parallel_tools import RANKS, parts
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 
 # Runs on every rank: a cube of N^3 cubes of six tetrahedra each, whose inner points are moved at random.
 CUBE = """
-import itertools
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkCellArray
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
+from rank_meshes import RANK, RANKS, divided, piece, simplices
 
-N, AMPLITUDE, RANDOM = {n}, {amplitude}, {random}
-controller = vtkMultiProcessController.GetGlobalController()
-rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
-generator = np.random.default_rng(4)
-k, j, i = np.meshgrid(np.arange(N + 1), np.arange(N + 1), np.arange(N + 1), indexing="ij")
-x = np.stack([i, j, k], -1).reshape(-1, 3).astype(float)
-inner = np.logical_and(x > 0, x < N)
-x += inner * generator.uniform(-AMPLITUDE, AMPLITUDE, x.shape)
-steps = (1, N + 1, (N + 1) ** 2)
-ck, cj, ci = (a.ravel() for a in np.meshgrid(np.arange(N), np.arange(N), np.arange(N), indexing="ij"))
-tetrahedra = []
-for order in itertools.permutations(range(3)):
-    corners = list(itertools.accumulate((steps[a] for a in order), initial=ci + cj * steps[1] + ck * steps[2]))
-    if np.linalg.det(np.eye(3)[list(order)]) < 0:
-        corners[1], corners[2] = corners[2], corners[1]
-    tetrahedra.append(np.stack(corners, -1))
-nodes = np.concatenate(tetrahedra).astype(np.int64)
-part = generator.integers(0, ranks, len(nodes)) if RANDOM else np.tile(ck, 6) * ranks // N
-nodes = nodes[part == rank]
-used, local = np.unique(nodes, return_inverse=True)
-points = vtkPoints()
-points.SetData(numpy_to_vtk(x[used], deep=True))
-grid = output.VTKObject
-grid.SetPoints(points)
-cells = vtkCellArray()
-offsets = np.arange(0, nodes.size + 1, 4, dtype=np.int64)
-local = local.reshape(-1).astype(np.int64)
-cells.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(local, deep=True))
-grid.SetCells(VTK_TETRA, cells)
-place = numpy_to_vtk(used.astype(np.int64), deep=True)
-place.SetName("place")
-grid.GetPointData().AddArray(place)
+places, cells = simplices({n})
+inner = np.logical_and(places > 0, places < {n})
+points = places + inner * np.random.default_rng(4).uniform(-{amplitude}, {amplitude}, places.shape)
+own = divided(places[cells].mean(axis=1), "{cut}", RANKS) == RANK
+output.VTKObject.ShallowCopy(piece(points, cells, own))
 """
-RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
 SLIDING = 1  # of the enumeration Boundary
 results = {"ranks": RANKS}
 
 
-def cube(n: int, amplitude: float, random: bool):
-    return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid",
-                                     Script=CUBE.format(n=n, amplitude=amplitude, random=random))  # fmt: skip
-
-
-# Runs on every rank: writes the points of its part to a file.
-DUMP = """
-import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
-
-data = self.GetInputDataObject(0, 0)
-arrays = {{"points": np.zeros((0, 3)), "place": np.zeros(0, dtype=np.int64)}}
-if data.GetNumberOfPoints() > 0:
-    arrays["points"] = vtk_to_numpy(data.GetPoints().GetData())
-    arrays["place"] = vtk_to_numpy(data.GetPointData().GetArray("place"))
-np.savez("{file}." + str(vtkMultiProcessController.GetGlobalController().GetLocalProcessId()), **arrays)
-"""
+def cube(n: int, amplitude: float, scattered: bool):
+    script = CUBE.format(n=n, amplitude=amplitude, cut="random" if scattered else "slabs")
+    return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=script)
 
 
 def points_of(proxy) -> list:
     """The points in the order of the whole mesh; those of several ranks agree."""
-    simple.ProgrammableFilter(proxy, Script=DUMP.format(file=sys.argv[1])).UpdatePipeline()
-    parts = [np.load(f"{sys.argv[1]}.{number}.npz") for number in range(RANKS)]
-    where = np.concatenate([one["place"] for one in parts])
-    found = np.concatenate([one["points"] for one in parts])
+    found = parts(proxy, sys.argv[1])
+    where = np.concatenate([one["place"] for one in found])
+    points = np.concatenate([one["points"] for one in found])
     whole = np.full((where.max() + 1, 3), np.nan)
-    whole[where] = found
-    assert np.isfinite(whole).all() and np.array_equal(whole[where], found)
+    whole[where] = points
+    assert np.isfinite(whole).all() and np.array_equal(whole[where], points)
     return whole.tolist()
 
 

@@ -8,67 +8,32 @@ as JSON.
 import json
 import os
 import sys
-from pathlib import Path
 
 import numpy as np
 from paraview import servermanager, simple
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
-
-sys.path.insert(0, str(Path(__file__).parent))
-from parallel_tools import columns, parts, update  # noqa: E402
+from parallel_tools import RANKS, columns, parts, update
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 
 # Runs on every rank: a cube of N^3 cubes of six tetrahedra each, in slabs, with a layer of ghost cells and global ids.
 SLABS = """
-import builtins
-import itertools
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkCellArray
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
+from rank_meshes import RANK, RANKS, add_array, add_global_ids, piece, simplices
 
-N, GHOSTS, IDS = {n}, {ghosts}, {ids}
-controller = vtkMultiProcessController.GetGlobalController()
-rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
-parts = ranks - 1 if ranks > 2 else ranks
-low, high = N * rank // parts, N * (rank + 1) // parts
-if rank < parts:
-    first, last = builtins.max(low - GHOSTS, 0), builtins.min(high + GHOSTS, N)
-    grid = output.VTKObject
-    k, j, i = np.meshgrid(np.arange(first, last + 1), np.arange(N + 1), np.arange(N + 1), indexing="ij")
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.stack([i, j, k], -1).reshape(-1, 3) / N, deep=True))
-    grid.SetPoints(points)
-    steps = (1, N + 1, (N + 1) ** 2)
-    ck, cj, ci = (a.ravel() for a in np.meshgrid(np.arange(last - first), np.arange(N), np.arange(N), indexing="ij"))
-    tetrahedra = []
-    for order in itertools.permutations(range(3)):
-        corners = list(itertools.accumulate((steps[a] for a in order), initial=ci + cj * steps[1] + ck * steps[2]))
-        if np.linalg.det(np.eye(3)[list(order)]) < 0:
-            corners[1], corners[2] = corners[2], corners[1]
-        tetrahedra.append(np.stack(corners, -1))
-    nodes = np.concatenate(tetrahedra).astype(np.int64)
-    cells = vtkCellArray()
-    offsets = np.arange(0, nodes.size + 1, 4, dtype=np.int64)
-    cells.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(nodes.ravel(), deep=True))
-    grid.SetCells(VTK_TETRA, cells)
-    layer = np.tile(ck + first, 6)
-    ghost = numpy_to_vtk(((layer < low) | (layer >= high)).astype(np.uint8), deep=True)
-    ghost.SetName("vtkGhostType")
-    left = numpy_to_vtk((layer == 0).astype(float), deep=True)
-    left.SetName("lowest layer")
-    grid.GetCellData().AddArray(left)
-    if GHOSTS:
-        grid.GetCellData().AddArray(ghost)
-    if IDS:
-        numbers = (i + j * steps[1] + k * steps[2]).ravel().astype(np.int64)
-        ids = numpy_to_vtkIdTypeArray(numbers, deep=True)
-        ids.SetName("numbers")
-        grid.GetPointData().SetGlobalIds(ids)
+N = {n}
+places, cells = simplices(N)
+places, cells = places[:, ::-1], cells[:, [1, 0, 2, 3]]  # layer by layer: equally bad cells are in the same order
+takers = RANKS - 1 if RANKS > 2 else RANKS
+layer = places[cells].min(axis=1)[:, 2]
+own = layer * takers // N == RANK
+grid = piece(places / N, cells, own, {ghosts} and RANKS > 1)
+if grid.GetNumberOfPoints():
+    lowest = layer[np.array(grid.GetCellData().GetArray("cell"))] == 0
+    add_array(grid.GetCellData(), "lowest layer", lowest.astype(float))
+    if {ids}:
+        add_global_ids(grid)
+    output.VTKObject.ShallowCopy(grid)
 """
-RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
 TIGHT = 1e-11
 results = {}
 

@@ -3,9 +3,7 @@
 
 import numpy as np
 from paraview import simple
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
-
-RANKS = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()
+from rank_meshes import RANKS
 
 
 def update(filter_):

@@ -4,41 +4,20 @@
 A mesh is cut into slabs, by a k-d tree and at random, with and without ghost cells and global ids.
 """
 
-import json
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
+from on_ranks import run_with_output
 
-MPIRUN = shutil.which("mpirun")
-if not MPIRUN:
-    print("there is no mpirun")
-    sys.exit(77)
-HERE, OUT = Path(__file__).parent, Path(os.environ["TAUTLINE_TEST_DIR"])
-# As root, too, and wherever processes may not read each other's memory.
-ENVIRONMENT = dict(
-    os.environ, OMPI_MCA_btl_vader_single_copy_mechanism="none", OMPI_MCA_mpi_yield_when_idle="1", OMP_NUM_THREADS="1"
-)
 CLOSE = 1e-9
 INTEGRALS = 2e-6
-SECONDS = 400
 CASES = ("slabs", "tree", "random")
 
 
 def run(ranks: int) -> dict:
-    file = OUT / f"parallel_filters_{ranks}.json"
-    file.unlink(missing_ok=True)
-    command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "-np", str(ranks), sys.argv[1]]
-    done = subprocess.run([*command, str(HERE / "parallel_filters.py"), str(file)], env=ENVIRONMENT, timeout=SECONDS,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
-    assert file.exists(), done.stdout
+    found, text = run_with_output("parallel_filters.py", ranks)
     # Each rank reports the defect of one of them, by each of four filters, and the failure of the filter before.
-    assert done.stdout.count("In process") >= 4 * ranks or ranks == 1, done.stdout
-    assert done.stdout.count("An input could not be computed") >= ranks or ranks == 1, done.stdout
-    return json.loads(file.read_text())
+    assert text.count("In process") >= 4 * ranks or ranks == 1, text
+    assert text.count("An input could not be computed") >= ranks or ranks == 1, text
+    return found
 
 
 def compare(found, expected, where: str, tolerance: float = CLOSE) -> None:

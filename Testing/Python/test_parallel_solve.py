@@ -1,38 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """test_parallel_solve.py PVBATCH: pvbatch on 1, 2 and 4 MPI ranks finds the same numbers; skipped without mpirun."""
 
-import json
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
+from on_ranks import run_with_output
 
-MPIRUN = shutil.which("mpirun")
-if not MPIRUN:
-    print("there is no mpirun")
-    sys.exit(77)
-HERE, OUT = Path(__file__).parent, Path(os.environ["TAUTLINE_TEST_DIR"])
-# As root, too, and wherever processes may not read each other's memory.
-ENVIRONMENT = dict(os.environ, OMPI_MCA_btl_vader_single_copy_mechanism="none", OMP_NUM_THREADS="1")
 CLOSE = 1e-8
 ROUNDING = 1e-12
-SECONDS = 150
 
 
 def run(ranks: int) -> dict:
-    file = OUT / f"parallel_solve_{ranks}.json"
-    file.unlink(missing_ok=True)
-    command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "-np", str(ranks), sys.argv[1]]
-    done = subprocess.run([*command, str(HERE / "parallel_solve.py"), str(file)], env=ENVIRONMENT, timeout=SECONDS,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
-    assert file.exists(), done.stdout
+    found, text = run_with_output("parallel_solve.py", ranks)
     # Each rank reports the error of the three rejected problems.
-    for text in ("is not finite at point", "-nonsense", "without a fixed point"):
-        assert done.stdout.count(text) >= ranks, done.stdout
-    return json.loads(file.read_text())
+    for message in ("is not finite at point", "-nonsense", "without a fixed point"):
+        assert text.count(message) >= ranks, text
+    return found
 
 
 def close(a, b, tolerance=CLOSE) -> bool:
