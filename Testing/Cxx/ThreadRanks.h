@@ -6,7 +6,7 @@
 #ifndef tautline_ThreadRanks_h
 #define tautline_ThreadRanks_h
 
-#include "Meshes.h"
+#include "Blocks.h"
 #include "tautline/Core/RankGroup.h"
 
 #include <condition_variable>
@@ -18,6 +18,27 @@
 
 namespace tautline
 {
+/** A block of n cubes (squares) along each edge, whose points are moved at random by up to an
+    amplitude in each direction; those on its sides stay on them. */
+inline MeshData jittered(CellType type, Index n, double amplitude)
+{
+  const bool flat = topology(type).dimension == 2;
+  MeshData data = blockMesh(type, n, n, flat ? 0 : n);
+  Random random(5);
+  const auto side = static_cast<double>(n);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      Vec3 d = random.vector(-amplitude, amplitude);
+      for (int c = 0; c < 3; ++c)
+      {
+        d[c] = p[c] == 0 || p[c] == side ? 0.0 : d[c];
+      }
+      return p + d;
+    });
+  return data;
+}
+
 /** What the ranks of a group share. */
 struct ThreadExchange
 {

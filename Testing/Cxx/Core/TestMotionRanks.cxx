@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh and Untangle Mesh on processes: points, tables and summaries are those of one
 // process, however the mesh is cut.
-#include "Blocks.h"
 #include "Check.h"
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"
@@ -24,25 +23,6 @@ using namespace tautline;
 
 namespace
 {
-MeshData jittered(CellType type, Index n, double amplitude)
-{
-  const bool flat = topology(type).dimension == 2;
-  MeshData data = blockMesh(type, n, n, flat ? 0 : n);
-  Random random(5);
-  const auto side = static_cast<double>(n);
-  data.transform(
-    [&](const Vec3& p)
-    {
-      Vec3 d = random.vector(-amplitude, amplitude);
-      for (int c = 0; c < 3; ++c)
-      {
-        d[c] = p[c] == 0 || p[c] == side ? 0.0 : d[c];
-      }
-      return p + d;
-    });
-  return data;
-}
-
 vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
 {
   auto grid = toGrid(part.data);

@@ -155,26 +155,6 @@ void testOrders(
             << farthest(run.points, usual.points) << "\n";
 }
 
-MeshData jittered(CellType type, Index n, double amplitude)
-{
-  // Points of the boundary stay.
-  const bool flat = topology(type).dimension == 2;
-  MeshData data = blockMesh(type, n, n, flat ? 0 : n);
-  Random random(5);
-  const auto side = static_cast<double>(n);
-  data.transform(
-    [&](const Vec3& p)
-    {
-      Vec3 d = random.vector(-amplitude, amplitude);
-      for (int c = 0; c < 3; ++c)
-      {
-        d[c] = p[c] == 0 || p[c] == side ? 0.0 : d[c];
-      }
-      return p + d;
-    });
-  return data;
-}
-
 OptimizeOptions with(std::vector<Metric> metrics)
 {
   OptimizeOptions options;

@@ -33,30 +33,40 @@ inline double volumeOf(const MeshData& data)
   return static_cast<double>(sum);
 }
 
-/// A block of n x n x n cubes of tetrahedra; inner points moved at random as far as all cells stay
-/// valid: slivers included.
-inline MeshData sliverBlock(Index n, unsigned seed = 3, double amplitude = 0.6)
+/**
+ * @brief Moves inner points at random, as far as the cells around them stay good.
+ * @param good whether a cell is, by its number
+ */
+template <class Good>
+void moveInside(MeshData& data, unsigned seed, double amplitude, const Good& good)
 {
-  MeshData data = blockMesh(CellType::Tetrahedron, n, n, n);
-  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
-  const VertexCells cells = Mesh(data.view()).vertexCells();
+  const Mesh before(data.view());
+  const bool planar = before.dimension() == Dimension::Planar;
+  const std::vector<char> boundary = before.boundary().isBoundaryPoint;
+  const VertexCells cells = before.vertexCells();
   Random random(seed);
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {
     Vec3 d = random.vector(-amplitude, amplitude);
+    d[2] = planar ? 0.0 : d[2];
     const Vec3 start = data.point(i);
     bool valid = boundary[i] != 0;
     while (!valid)
     {
       data.setPoint(i, start + d);
-      valid = true;
-      for (Index k = cells.offsets[i]; k < cells.offsets[i + 1]; ++k)
-      {
-        valid = valid && volumeOf(data, cells.cells[k]) > 1e-3;
-      }
+      const auto begin = cells.cells.begin();
+      valid = std::all_of(begin + cells.offsets[i], begin + cells.offsets[i + 1], good);
       d = 0.7 * d;
     }
   }
+}
+
+/// A block of n x n x n cubes of tetrahedra; inner points moved at random as far as all cells stay
+/// valid: slivers included.
+inline MeshData sliverBlock(Index n, unsigned seed = 3, double amplitude = 0.6)
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, n, n, n);
+  moveInside(data, seed, amplitude, [&](Index cell) { return volumeOf(data, cell) > 1e-3; });
   return data;
 }
 
@@ -85,25 +95,7 @@ inline MeshData roundMesh(int directions, unsigned seed = 7, Index cubes = Round
     }
     data.setPoint(i, y);
   }
-  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
-  const VertexCells cells = Mesh(data.view()).vertexCells();
-  Random random(seed);
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    const Vec3 start = data.point(i);
-    Vec3 d = random.vector(-0.6 / half, 0.6 / half);
-    bool valid = boundary[i] != 0;
-    while (!valid)
-    {
-      data.setPoint(i, start + d);
-      valid = true;
-      for (Index k = cells.offsets[i]; k < cells.offsets[i + 1]; ++k)
-      {
-        valid = valid && volumeOf(data, cells.cells[k]) > 1e-6;
-      }
-      d = 0.7 * d;
-    }
-  }
+  moveInside(data, seed, 0.6 / half, [&](Index cell) { return volumeOf(data, cell) > 1e-6; });
   return data;
 }
 
@@ -153,10 +145,9 @@ inline std::set<std::array<Vec3, 3>> outerFacets(
   return facets;
 }
 
-/// Valid cells, consistent arrays, worst values not worse and as the history states.
-inline void checkResult(const MeshData& input, const ReconnectionResult& result)
+/// Valid cells, consistent arrays.
+inline void checkArrays(const MeshData& output, const ReconnectionResult& result)
 {
-  const MeshData output = outputOf(result);
   TAUTLINE_CHECK_EQUAL(result.originalPoints.size(), output.points.size() / 3);
   TAUTLINE_CHECK_EQUAL(static_cast<Index>(result.originalCells.size()), output.numberOfCells());
   TAUTLINE_CHECK_EQUAL(static_cast<Index>(result.obstacles.size()), output.numberOfCells());
@@ -164,6 +155,13 @@ inline void checkResult(const MeshData& input, const ReconnectionResult& result)
   {
     TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid));
   }
+}
+
+/// Valid cells, consistent arrays, worst values not worse and as the history states.
+inline void checkResult(const MeshData& input, const ReconnectionResult& result)
+{
+  const MeshData output = outputOf(result);
+  checkArrays(output, result);
   const auto worst = [](const MeshData& data, Metric metric, bool largest)
   {
     const std::vector<double> q = valuesOf(data, metric);

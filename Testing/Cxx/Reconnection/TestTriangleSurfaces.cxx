@@ -94,7 +94,7 @@ MeshData slid(const MeshData& data, unsigned seed, double amount, bool onSphere)
   return result;
 }
 
-double volumeOf(const MeshData& data)
+double enclosedVolume(const MeshData& data)
 {
   return volumeWithin(data, data.points);
 }
@@ -139,7 +139,7 @@ void testSphere()
     TAUTLINE_CHECK(turnOf(output) <= turnOf(data) + 20.0);
     TAUTLINE_CHECK(farthest < 1e-12);
     TAUTLINE_CHECK(deviation <= 5e-3 * 2.0 * std::sqrt(3.0));
-    TAUTLINE_CHECK(std::abs(volumeOf(output) / volumeOf(data) - 1.0) < 2e-2);
+    TAUTLINE_CHECK(std::abs(enclosedVolume(output) / enclosedVolume(data) - 1.0) < 2e-2);
     TAUTLINE_CHECK(preset != Preset::SwapOnly || output.points == data.points);
     TAUTLINE_CHECK(smallestAngle(data) < 6.0);
     TAUTLINE_CHECK(
@@ -196,7 +196,7 @@ void testCube()
     checkTriangles(data, result);
     TAUTLINE_CHECK(isClosed(output));
     TAUTLINE_CHECK_RELATIVE(areaOf(output), 6.0, 1e-12);
-    TAUTLINE_CHECK_RELATIVE(volumeOf(output), 1.0, 1e-12);
+    TAUTLINE_CHECK_RELATIVE(enclosedVolume(output), 1.0, 1e-12);
     TAUTLINE_CHECK(result.history.front().smallestAngle < 6.0);
     TAUTLINE_CHECK(result.history.back().smallestAngle > 34.0);
   }

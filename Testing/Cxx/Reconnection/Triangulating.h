@@ -6,8 +6,7 @@
 #ifndef tautline_Triangulating_h
 #define tautline_Triangulating_h
 
-#include "Blocks.h"
-#include "Check.h"
+#include "Reconnecting.h"
 #include "Surfaces.h"
 
 #include "tautline/Geometry/PlanarDelaunay.h"
@@ -157,26 +156,7 @@ inline MeshData randomlyFlipped(const MeshData& data, int flips, unsigned seed)
 inline MeshData sliverSheet(Index n, unsigned seed = 5, double amplitude = 0.8)
 {
   MeshData data = blockMesh(CellType::Triangle, n, n, 0);
-  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
-  const VertexCells cells = Mesh(data.view()).vertexCells();
-  Random random(seed);
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    Vec3 d = random.vector(-amplitude, amplitude);
-    d[2] = 0.0;
-    const Vec3 start = data.point(i);
-    bool valid = boundary[i] != 0;
-    while (!valid)
-    {
-      data.setPoint(i, start + d);
-      valid = true;
-      for (Index k = cells.offsets[i]; k < cells.offsets[i + 1]; ++k)
-      {
-        valid = valid && areaVector(data, cells.cells[k])[2] > 1e-3;
-      }
-      d = 0.7 * d;
-    }
-  }
+  moveInside(data, seed, amplitude, [&](Index cell) { return areaVector(data, cell)[2] > 1e-3; });
   return data;
 }
 
@@ -196,13 +176,7 @@ inline TriangleOptions triangleOptions(ReconnectionPreset preset)
 inline void checkTriangles(const MeshData& input, const ReconnectionResult& result)
 {
   const MeshData output = trianglesOf(result);
-  TAUTLINE_CHECK_EQUAL(result.originalPoints.size(), output.points.size() / 3);
-  TAUTLINE_CHECK_EQUAL(static_cast<Index>(result.originalCells.size()), output.numberOfCells());
-  TAUTLINE_CHECK_EQUAL(static_cast<Index>(result.obstacles.size()), output.numberOfCells());
-  for (signed char v : validityOf(output))
-  {
-    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid));
-  }
+  checkArrays(output, result);
   const auto worstRatio = [](const MeshData& data)
   {
     const std::vector<double> q = valuesOf(data, Metric::InverseMeanRatio);
