@@ -39,11 +39,6 @@ std::vector<signed char> validityOf(const Mesh& mesh, int threads)
   mesh.classifyCells(validity.data(), threads);
   return validity;
 }
-
-bool isInvalid(signed char validity)
-{
-  return validity == Inverted || validity == Degenerate;
-}
 }
 
 //------------------------------------------------------------------------------

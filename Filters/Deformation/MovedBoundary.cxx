@@ -120,8 +120,7 @@ void requireElements(const MovableMesh& mesh)
   {
     const signed char validity = mesh.validity()[cell];
     shapeless += validity == NotMeasured && !hasNoInside(view.cellTypes[cell]);
-    if ((validity == Inverted || validity == Degenerate) &&
-      !(mesh.skipped() && mesh.skipped()[cell]))
+    if (isInvalid(validity) && !(mesh.skipped() && mesh.skipped()[cell]))
     {
       ++inverted;
       first = first < 0 ? cell : first;

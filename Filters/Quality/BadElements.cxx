@@ -37,7 +37,7 @@ std::vector<vtkIdType> badCells(vtkDataSet* output, const signed char* validity,
   {
     if (validity[cell] != Valid)
     {
-      return validity[cell] == Inverted || validity[cell] == Degenerate;
+      return isInvalid(validity[cell]);
     }
     if (grades)
     {

@@ -246,7 +246,7 @@ PicturePart partOf(const Mesh& mesh, const Drawn& drawn, const ColorMapSpec& map
     part.colors[cell] = state == Inverted
       ? Color{ InvertedColor[0], InvertedColor[1], InvertedColor[2] }
       : colorOf(map, drawn.values->GetComponent(cell, 0));
-    part.highlighted[cell] = state == Inverted || state == Degenerate || failed;
+    part.highlighted[cell] = isInvalid(state) || failed;
   }
   return part;
 }

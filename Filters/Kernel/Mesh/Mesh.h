@@ -58,6 +58,12 @@ enum Validity : signed char
   NonFinite = -3    ///< a coordinate is NaN or infinite, or beyond 1e100 in a mesh of ordinary size
 };
 
+/// Whether an element is measured, and not valid.
+inline bool isInvalid(signed char validity)
+{
+  return validity == Inverted || validity == Degenerate;
+}
+
 /// Cells of one type, in increasing order of id.
 struct CellBlock
 {

@@ -251,7 +251,7 @@ void OptimizationProblem::leaveOut(std::vector<signed char> validity)
   // often unfolded by it.
   for (Index cell = 0; cell < cells; ++cell)
   {
-    if (validity[cell] == Inverted || validity[cell] == Degenerate)
+    if (isInvalid(validity[cell]))
     {
       validity[cell] = cornerValidity(*this->Moving, cell);
     }
@@ -261,10 +261,7 @@ void OptimizationProblem::leaveOut(std::vector<signed char> validity)
     Objective& objective = this->Resolved[i];
     const bool repairs = canUntangle(objective);
     const auto out = [&](Index cell)
-    {
-      return validity[cell] == NonFinite ||
-        ((validity[cell] == Inverted || validity[cell] == Degenerate) && !repairs);
-    };
+    { return validity[cell] == NonFinite || (isInvalid(validity[cell]) && !repairs); };
     Index count = 0;
     for (Index cell = 0; cell < cells; ++cell)
     {
@@ -468,7 +465,7 @@ void OptimizationProblem::summarizeCells(IterationRecord& record)
     for (Index c = 0; isElement(*this->Moving, block.type) && c < block.count; ++c)
     {
       const signed char state = validity[block.cell(c)];
-      record.inverted += state == Inverted || state == Degenerate;
+      record.inverted += isInvalid(state);
     }
   }
 }

@@ -226,8 +226,7 @@ std::vector<signed char> validityOf(const Mesh& mesh, int threads)
 
 Index countInvalid(const std::vector<signed char>& validity)
 {
-  return std::count_if(validity.begin(), validity.end(),
-    [](signed char v) { return v == Inverted || v == Degenerate; });
+  return std::count_if(validity.begin(), validity.end(), isInvalid);
 }
 
 //------------------------------------------------------------------------------

@@ -17,11 +17,6 @@ namespace tautline
 {
 namespace
 {
-bool isInvalid(signed char validity)
-{
-  return validity == Inverted || validity == Degenerate;
-}
-
 /// What an element of value q adds to an objective.
 double termOf(const Objective& objective, double q)
 {

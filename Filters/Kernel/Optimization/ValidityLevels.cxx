@@ -13,8 +13,7 @@ void findValidityLevels(const Mesh& mesh, int threads, std::vector<signed char>&
   {
     const signed char validity = levels[cell];
     levels[cell] = validity == Valid ? ValidThroughout : InvalidCorners;
-    if ((validity == Inverted || validity == Degenerate) &&
-      cornerValidity(mesh, static_cast<Index>(cell)) == Valid)
+    if (isInvalid(validity) && cornerValidity(mesh, static_cast<Index>(cell)) == Valid)
     {
       levels[cell] = ValidCorners;
     }

@@ -12,8 +12,7 @@ namespace
 {
 Index countInvalid(const std::vector<signed char>& validity)
 {
-  return static_cast<Index>(std::count_if(validity.begin(), validity.end(),
-    [](signed char v) { return v == Inverted || v == Degenerate; }));
+  return static_cast<Index>(std::count_if(validity.begin(), validity.end(), isInvalid));
 }
 
 //------------------------------------------------------------------------------
@@ -144,7 +143,7 @@ Index countInvalidCorners(
   Index count = 0;
   for (std::size_t cell = 0; cell < validity.size(); ++cell)
   {
-    if (validity[cell] == Inverted || validity[cell] == Degenerate)
+    if (isInvalid(validity[cell]))
     {
       const CellTopology& t = topology(cornerType(view.cellTypes[cell]));
       Vec3 p[MaxNodes];

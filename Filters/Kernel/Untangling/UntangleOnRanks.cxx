@@ -18,11 +18,6 @@ constexpr int widths[] = { 4, 12 };
 /// Bytes per cell of untangle() with its mesh, measured on tetrahedra and rounded up.
 constexpr double bytesPerCell = 1500;
 
-bool isInvalid(signed char validity)
-{
-  return validity == Inverted || validity == Degenerate;
-}
-
 struct RegionPoint
 {
   Index number;
