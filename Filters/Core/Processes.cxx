@@ -2,7 +2,7 @@
 #include "Processes.h"
 
 #include "Blocks.h"
-#include "tautline/Core/Memory.h"
+#include "ProcessGroup.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCompositeDataSet.h"
@@ -22,9 +22,6 @@ namespace tautline
 {
 namespace
 {
-constexpr const char* Vague =
-  "Another rank"; // how the kernel's errors begin that another rank explains
-
 int ofOneProcess = 0; // how many OneProcess there are
 }
 
@@ -128,36 +125,7 @@ bool Processes::everywhere(bool value) const
 //------------------------------------------------------------------------------
 void Processes::together(const std::function<void()>& work) const
 {
-  std::string message;
-  bool failed = true;
-  try
-  {
-    work();
-    failed = false;
-  }
-  catch (const std::exception& error)
-  {
-    message = errorText(error, "take a coarser mesh, or more processes");
-  }
-  // The first process with a specific message sends it to all others.
-  const bool vague = message.rfind(Vague, 0) == 0;
-  const Index priority = !failed ? 0 : vague ? 1 : 1 + this->Count - this->Rank;
-  const Index highest = this->maximum(priority);
-  if (highest == 0)
-  {
-    return;
-  }
-  if (this->Count > 1)
-  {
-    const auto sender = static_cast<int>(highest > 1 ? 1 + this->Count - highest : 0);
-    auto length = static_cast<vtkIdType>(message.size());
-    this->Controller->Broadcast(&length, 1, sender);
-    message.resize(static_cast<std::size_t>(length));
-    this->Controller->Broadcast(&message[0], length, sender);
-    const bool everywhere = this->sum(static_cast<Index>(failed && !vague)) == this->Count;
-    message = (everywhere ? "" : "In process " + std::to_string(sender) + ": ") + message;
-  }
-  throw Error(message);
+  makeProcessGroup()->together(work);
 }
 
 //------------------------------------------------------------------------------

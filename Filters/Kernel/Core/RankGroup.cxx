@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankGroup.h"
 
+#include "Memory.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +17,8 @@ __extension__ typedef __int128 Wide;
 /// Bits of a value in units of the largest: before the point and behind it.
 constexpr int highBits = 60, lowBits = 32;
 
+/// How errors begin that another rank explains.
+constexpr const char* vague = "Another rank";
 constexpr const char* elsewhere = "Another rank has rejected its part of the data.";
 }
 
@@ -165,23 +169,25 @@ void RankGroup::together(const std::function<void()>& work)
   {
     work();
   }
-  catch (const std::bad_alloc&)
-  {
-    message = "There is not enough memory: take more processes or a coarser mesh.";
-  }
   catch (const std::exception& error)
   {
-    message = error.what();
+    message = errorText(error, "take more processes or a coarser mesh");
     message = message.empty() ? elsewhere : message;
   }
   const std::vector<Bytes> all = this->allGather(Bytes(message.begin(), message.end()));
-  const auto first =
-    std::find_if(all.begin(), all.end(), [](const Bytes& text) { return !text.empty(); });
+  // Of a rank that explains it, rather than of one that was told so.
+  const auto explains = [](const Bytes& text)
+  { return !text.empty() && std::string(text.begin(), text.end()).rfind(vague, 0) != 0; };
+  auto first = std::find_if(all.begin(), all.end(), explains);
+  const bool explained = first != all.end();
+  first = explained
+    ? first
+    : std::find_if(all.begin(), all.end(), [](const Bytes& text) { return !text.empty(); });
   if (first != all.end())
   {
     const bool everywhere =
       std::all_of(all.begin(), all.end(), [&](const Bytes& text) { return text == *first; });
-    const std::string where = everywhere || this->size() == 1
+    const std::string where = everywhere || !explained || this->size() == 1
       ? ""
       : "In process " + std::to_string(first - all.begin()) + ": ";
     throw Error(where + std::string(first->begin(), first->end()));

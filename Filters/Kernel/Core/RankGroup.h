@@ -77,7 +77,7 @@ public:
 
   /**
    * @brief Does work that does not communicate. What it throws on any rank is thrown on all, as
-   * Error, with the message of the lowest rank that has one, so that none waits for another.
+   * Error, with the message of the lowest rank that explains it, so that none waits for another.
    */
   void together(const std::function<void()>& work);
 };
