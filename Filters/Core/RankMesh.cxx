@@ -183,7 +183,7 @@ RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergeP
 void RankMesh::checkOrder()
 {
   const MeshView& view = this->TheMesh->view();
-  Index balance = 0, disagreeing = 0;
+  Index positive = 0, negative = 0, disagreeing = 0;
   this->Group.together(
     [&]
     {
@@ -196,12 +196,15 @@ void RankMesh::checkOrder()
       mesh.classifyCells(validity.data(), this->Threads);
       for (Index cell = 0; cell < view.numberOfCells; ++cell)
       {
-        const Index sign = validity[cell] == Valid ? 1 : validity[cell] == Inverted ? -1 : 0;
-        balance += this->TheMesh->ownedCells()[cell] ? sign : 0;
+        positive += this->TheMesh->ownedCells()[cell] && validity[cell] == Valid;
+        negative += this->TheMesh->ownedCells()[cell] && validity[cell] == Inverted;
       }
       disagreeing = mesh.orientation(validity.data()).disagreeing;
     });
-  this->Mirrored = this->Group.sum(balance) < 0;
+  positive = this->Group.sum(positive);
+  negative = this->Group.sum(negative);
+  this->Mirrored = negative > positive;
+  this->InvertedElements = std::min(positive, negative);
   disagreeing = this->Group.sum(disagreeing);
   if (disagreeing > 0)
   {

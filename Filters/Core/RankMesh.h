@@ -75,6 +75,8 @@ public:
   const DistributedMesh& mesh() const { return *this->TheMesh; }
   /// Whether the mesh is reversed throughout, see Mesh::setMirrored().
   bool mirrored() const { return this->Mirrored; }
+  /// The elements of the whole mesh that are negative (mirrored: positive).
+  Index inverted() const { return this->InvertedElements; }
   bool volume() const { return this->Dimension == 3; }
   /// Whether it is a volume mesh, or lies in a plane at right angles to an axis.
   bool inSpaceOrPlane() const;
@@ -136,6 +138,7 @@ private:
   int Dimension = 0;
   bool MergePoints;
   bool Mirrored = false;
+  Index InvertedElements = 0;
   std::unique_ptr<MeshAdapter> Adapter;
   std::unique_ptr<DistributedMesh> TheMesh;
   std::vector<unsigned char> Skip, Held, Marked; // per cell, point and point of the piece

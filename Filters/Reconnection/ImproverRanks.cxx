@@ -57,7 +57,12 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
     {
       this->Pieces = std::make_unique<tautline::RankMesh>(
         *this->Group, vtkDataSet::SafeDownCast(input), this->Threads, this->MergeCoincidentPoints);
-      return true;
+      if (this->Pieces->inverted() == 0)
+      {
+        return true;
+      }
+      this->Pieces.reset();
+      why = "cells are inverted, or parts list their points in the opposite order";
     }
   }
   catch (const tautline::OppositeOrders&)

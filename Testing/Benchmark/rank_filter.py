@@ -79,6 +79,7 @@ FILTERS = {
     "warp": (0, lambda mesh: WarpMesh(mesh, Motion="Displacement array", Displacement=["POINTS", "push"],
                                       Method="FEMWARP")),
     "perturb": (0, lambda mesh: PerturbMesh(mesh)),
+    "improve": (0, lambda mesh: ImproveMesh(mesh)),
 }  # fmt: skip
 
 

@@ -17,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).parent
-FILTERS = ("quality", "optimize", "untangle", "warp", "perturb")
+FILTERS = ("quality", "optimize", "untangle", "warp", "perturb", "improve")
 MOST_MEMORY = 0.6  # of one process, for each of two ranks
 SECONDS = 3600
 

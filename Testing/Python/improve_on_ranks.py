@@ -87,6 +87,13 @@ def add_facets(grid, where: np.ndarray, cells: np.ndarray) -> tuple:
     return where, np.concatenate([cells, np.zeros(np.count_nonzero(own), int)])
 
 
+def turn(grid, which: slice) -> None:
+    """Lists the points of cells in the opposite order."""
+    if grid.GetNumberOfCells():
+        corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
+        corners[which, :2] = corners[which, 1::-1].copy()
+
+
 def columns_of(table) -> dict:
     return {
         table.GetColumnName(i): [str(table.GetValue(row, i)) for row in range(table.GetNumberOfRows())]
@@ -218,8 +225,7 @@ def failures() -> None:
             data.GetCellData().Initialize()
             data.InsertNextCell(VTK_HEXAHEDRON, 8, list(range(8)))
         if RANK == last and case == "order":
-            connectivity = vtk_to_numpy(data.GetCells().GetConnectivityArray())
-            connectivity[:2] = connectivity[1::-1]
+            turn(data, slice(1))
         filter_ = filter_of(data)
         if case == "regions":
             filter_.SetInputArrayToProcess(1, 0, 0, 1, "region")
@@ -236,6 +242,9 @@ improved("single", mesh("random", single=True), Preset=AGGRESSIVE)
 improved("selected", mesh("tree"), keep_selected, Preset=AGGRESSIVE, Rounds=2)
 improved("sliding", mesh("tree"), Boundary=1, Rounds=2)
 improved("late", mesh("tree"), Preset=AGGRESSIVE, TimeLimit=1e-9)
+reversed_mesh = mesh("slabs")
+turn(reversed_mesh, slice(None))
+improved("reversed", reversed_mesh, Preset=AGGRESSIVE, Rounds=2)
 if RANKS > 1:
     improved("once", mesh("slabs"), Preset=AGGRESSIVE, Rounds=1)
 routes()

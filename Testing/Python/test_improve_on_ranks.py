@@ -146,8 +146,11 @@ def check_parts(ranks: int, found: dict, one: dict, given: dict, serial: dict) -
               f" worst {numbers['worst'][1]:.4f}; one process {one[case]['angle'][1]:.3f}, {one[case]['worst'][1]:.4f}")
         assert numbers["angle"][1] > one[case]["angle"][1] - ANGLE_LOSS[name], (numbers["angle"], one[case]["angle"])
         assert numbers["worst"][1] < RATIO_LOSS * one[case]["worst"][1], (numbers["worst"], one[case]["worst"])
-    for case in ("single", "selected", "sliding", "late", "once"):
+    for case in ("single", "selected", "sliding", "late", "reversed", "once"):
         whole = Whole(file, case, ranks)
+        if case == "reversed":
+            assert "treated as its mirror image" in found[case]["summary"], found[case]["summary"]
+            whole.cells = whole.cells[:, [1, 0, 2, 3]]
         assert whole.precise != (case == "single"), case
         if case != "single":
             check_mesh(whole, found[case], given, case)
@@ -166,6 +169,7 @@ def check_gathered(ranks: int, found: dict, one: dict) -> None:
         assert "In parts" not in numbers["summary"], case
         assert numbers["elements"][0] == one[case]["elements"][0], case
     assert "opposite orders" in found["failed order"], found["failed order"]
+    assert "In parts" not in found["failed order"], found["failed order"]
 
 
 one = run_with_output("improve_on_ranks.py", 1, symmetric=True)[0]

@@ -330,6 +330,8 @@ def test_refused():
         ("smallest_count is 2", {"smallest_count": 2}),
         ("largest_count is 0.5", {"largest_count": 0.5}),
         ("flat_angle is 2", {"flat_angle": 2}),
+        ("rounds is 0", {"rounds": 0}),
+        ("gather_below is -1", {"gather_below": -1}),
         ("no option 'speed'", {"speed": 1}),
         ("with preset='custom' only", {"swap": False}),
         ("no cell array 'x'", {"regions": "x"}),
