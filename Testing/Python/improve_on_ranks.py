@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """improve_on_ranks.py FILE: for pvbatch --sym on any number of MPI ranks, see test_improve_on_ranks.py.
 
-Improves a block of tetrahedra with slivers whose pieces are on the ranks, by every route and with every setting that is
-improved in parts. The first rank writes numbers to FILE as JSON, every rank its part of the meshes to FILE.CASE.RANK.npz.
+Improves a block of tetrahedra with slivers whose pieces are on the ranks, by every route and with every setting that
+is improved in parts. The first rank writes numbers to FILE as JSON, every rank its parts to FILE.CASE.RANK.npz.
 """
 
 import json

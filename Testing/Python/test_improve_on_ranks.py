@@ -142,10 +142,11 @@ def check_parts(ranks: int, found: dict, one: dict, given: dict, serial: dict) -
             shapes = (whole.points.tolist(), whole.shapes())
             assert expected in (None, shapes), f"{ranks} ranks: {case} depends on the cut"
             expected = shapes
-        print(f"{ranks} ranks, {name}: {len(numbers['history']['N elements']) - 1} rounds, angle {numbers['angle'][1]:.3f},"
-              f" worst {numbers['worst'][1]:.4f}; one process {one[case]['angle'][1]:.3f}, {one[case]['worst'][1]:.4f}")
-        assert numbers["angle"][1] > one[case]["angle"][1] - ANGLE_LOSS[name], (numbers["angle"], one[case]["angle"])
-        assert numbers["worst"][1] < RATIO_LOSS * one[case]["worst"][1], (numbers["worst"], one[case]["worst"])
+        rounds, alone = len(numbers["history"]["N elements"]) - 1, one[case]
+        print(f"{ranks} ranks, {name}, {rounds} rounds: {numbers['angle'][1]:.3f}, {numbers['worst'][1]:.4f}"
+              f"; one process {alone['angle'][1]:.3f}, {alone['worst'][1]:.4f}")  # fmt: skip
+        assert numbers["angle"][1] > alone["angle"][1] - ANGLE_LOSS[name], (numbers["angle"], alone["angle"])
+        assert numbers["worst"][1] < RATIO_LOSS * alone["worst"][1], (numbers["worst"], alone["worst"])
     for case in ("single", "selected", "sliding", "late", "reversed", "once"):
         whole = Whole(file, case, ranks)
         if case == "reversed":
