@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvpython make_strips.py FOLDER: makes the picture strips of jobs.html from the screenshots that the sessions save.
 
-    TAUTLINE_SCREENSHOTS=FOLDER ctest --test-dir build -R 'Gui.Job'
+    TAUTLINE_SCREENSHOTS=FOLDER ctest --test-dir build -R '^Gui.(Quality|Repair|Fields|Shapes)$'
     pvpython Plugin/Documentation/make_strips.py FOLDER
 
 The screenshots of job N are jobN-STEP-NAME.png (Testing/Gui/screenshots.py). Its strip is job_N.png; the place of the

@@ -9,7 +9,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 LIMIT = 360.0  # seconds
-SETS = ("Gui.", "GuiServer.", "GuiServer2.", "GuiControl.")
+SETS = ("Gui.", "GuiServer.", "GuiServer2.")
 
 processes = int(sys.argv[2]) if len(sys.argv) > 2 else 2
 times = {test.get("name", ""): float(test.get("time", 0)) for test in ElementTree.parse(sys.argv[1]).iter("testcase")}
