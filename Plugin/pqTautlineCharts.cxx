@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqTautlineCharts.h"
 
+#include "EmptyChart.h"
 #include "FetchOutput.h"
 #include "ProxyKind.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
 #include "pqDataRepresentation.h"
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
+#include "pqPropertiesPanel.h"
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
 
@@ -33,6 +36,7 @@
 #include <array>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace
@@ -279,14 +283,55 @@ void pqTautlineCharts::shutdown()
 //------------------------------------------------------------------------------
 void pqTautlineCharts::added(pqRepresentation* shown)
 {
-  // After ParaView has set the defaults, and added the representation to a view.
   const QPointer<pqDataRepresentation> chart = qobject_cast<pqDataRepresentation*>(shown);
+  if (!chart)
+  {
+    return;
+  }
+  // The representation has its input later, the proxy has it already.
+  auto* source = model()->findItem<pqPipelineSource*>(
+    vtkSMPropertyHelper(chart->getProxy(), "Input", true).GetAsProxy());
+  if (!source || !tautline::isTautline(source->getProxy()))
+  {
+    return;
+  }
+  if (source->modifiedState() == pqProxy::UNINITIALIZED)
+  {
+    this->OpenedByApply.append(chart);
+    for (auto* panel : pqCoreUtilities::mainWidget()->findChildren<pqPropertiesPanel*>())
+    {
+      QObject::connect(panel, QOverload<>::of(&pqPropertiesPanel::applied), this,
+        &pqTautlineCharts::applied, Qt::UniqueConnection);
+    }
+  }
+  // After ParaView has set the defaults, and added the representation to a view.
   QTimer::singleShot(0, this,
     [this, chart]
     {
-      if (chart && chart->getInput() && tautline::isTautline(chart->getInput()->getProxy()))
+      if (chart && chart->getInput())
       {
         this->arrange(chart);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineCharts::applied()
+{
+  // Within Apply, even where it processes events, ParaView has lists of the views.
+  QTimer::singleShot(0, this,
+    [this]
+    {
+      for (const QPointer<pqDataRepresentation>& chart : std::exchange(this->OpenedByApply, {}))
+      {
+        if (chart && chart->getInput())
+        {
+          tautline::closeEmptyChart(chart);
+        }
+      }
+      for (pqPipelineSource* source : model()->findItems<pqPipelineSource*>())
+      {
+        tautline::openClosedChart(source);
       }
     });
 }

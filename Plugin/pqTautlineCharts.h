@@ -7,15 +7,19 @@
  * axis, since their magnitudes differ. Distribution: the counts over the values of the metric
  * instead of the numbers of the rows. Study: the times in the order of the ranks, with the names
  * of the combinations. After Apply, the view of the mesh is active again, not the chart that was
- * added: the mesh of the next filter then appears there. The plugin starts the object in the GUI.
+ * added: the mesh of the next filter then appears there. A filter that refuses its input opens no
+ * chart; it does once it has a result. The plugin starts the object in the GUI.
  */
 
 #ifndef pqTautlineCharts_h
 #define pqTautlineCharts_h
 
-#include <QObject>
+#include "pqDataRepresentation.h"
 
-class pqDataRepresentation;
+#include <QList>
+#include <QObject>
+#include <QPointer>
+
 class pqPipelineSource;
 class pqRepresentation;
 class pqServerManagerModelItem;
@@ -33,11 +37,15 @@ public:
 
 private Q_SLOTS:
   void added(pqRepresentation* shown);
+  void applied();
   void updated(pqPipelineSource* source);
   void stateChanged(pqServerManagerModelItem* item);
 
 private:
   void arrange(pqDataRepresentation* chart);
+
+  /// What the first Apply of filters has shown: charts among them may be empty.
+  QList<QPointer<pqDataRepresentation>> OpenedByApply;
 };
 
 #endif
