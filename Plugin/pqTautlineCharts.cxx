@@ -3,6 +3,7 @@
 
 #include "EmptyChart.h"
 #include "FetchOutput.h"
+#include "LoadingState.h"
 #include "ProxyKind.h"
 
 #include "pqActiveObjects.h"
@@ -284,7 +285,7 @@ void pqTautlineCharts::shutdown()
 void pqTautlineCharts::added(pqRepresentation* shown)
 {
   const QPointer<pqDataRepresentation> chart = qobject_cast<pqDataRepresentation*>(shown);
-  if (!chart)
+  if (tautline::isLoadingState() || !chart)
   {
     return;
   }

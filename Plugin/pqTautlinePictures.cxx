@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqTautlinePictures.h"
 
+#include "LoadingState.h"
 #include "ProxyKind.h"
 #include "Recolor.h"
 #include "RegionLegend.h"
@@ -119,6 +120,10 @@ void pqTautlinePictures::shutdown()
 //------------------------------------------------------------------------------
 void pqTautlinePictures::added(pqRepresentation* shown)
 {
+  if (tautline::isLoadingState())
+  {
+    return;
+  }
   // After Apply, which hides the inputs.
   const QPointer<pqDataRepresentation> mesh = qobject_cast<pqDataRepresentation*>(shown);
   QTimer::singleShot(0, this,

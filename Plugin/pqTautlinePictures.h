@@ -7,8 +7,8 @@
  * shown, too, in the grey values or colours of its pixels and a little behind the mesh, which is
  * translucent. The sheet of Shape Retrieval and a list of silhouettes are shown in their colours,
  * without a legend. A domain and its interaction layer have the colours and names of categories
- * (RegionLegend.h). Only the displays are changed, not the data. The plugin starts the object in
- * the GUI.
+ * (RegionLegend.h). Only the displays are changed, not the data; those of a loaded state stay as
+ * they are. The plugin starts the object in the GUI.
  */
 
 #ifndef pqTautlinePictures_h

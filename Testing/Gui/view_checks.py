@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks of the views that open, called in ParaView's Python shell."""
+"""Checks of the views that open, and of what a loaded state shows, called in ParaView's Python shell."""
 
-from paraview import servermanager, simple
+import os
 
+from paraview import servermanager, simple, smstate
+
+import fresh_session
 from session_checks import check, chart_in, find
+
+COLORS = [1, 0, 0, 0, 1, 0]  # of the regions; the plugin has others
+TITLE = "Triangles of the square"
+STATE = os.path.join(os.environ["TAUTLINE_TEST_DIR"], "own-display")
 
 
 @check
@@ -28,3 +35,32 @@ def chart_opened():
     (layout,) = simple.GetLayouts().values()
     assert sorted(layout.SMProxy.GetViewLocation(one.SMProxy) for one in simple.GetViews()) == [1, 2]
     assert simple.GetDisplayProperties(improver, active).Visibility
+
+
+def render_view():
+    return next(view for view in simple.GetViews() if view.GetXMLName() == "RenderView")
+
+
+@check
+def own_display():
+    """Other colours of the regions and another title than the plugin's; saved as both kinds of state."""
+    view = render_view()
+    shown = simple.Show(find("MeshDomain"), view)
+    shown.LookupTable.IndexedColors = COLORS
+    chart_in("XYBarChartView")[0].LeftAxisTitle = TITLE
+    simple.SaveState(STATE + ".pvsm")
+    with open(STATE + ".py", "w", encoding="utf-8") as script:
+        script.write(smstate.get_state())
+
+
+@check
+def load_state():
+    fresh_session.remove_all()
+    simple.LoadState(STATE + ".pvsm")
+
+
+@check
+def own_display_kept():
+    shown = simple.GetDisplayProperties(find("MeshDomain"), render_view())
+    assert list(shown.LookupTable.IndexedColors)[:6] == COLORS, list(shown.LookupTable.IndexedColors)
+    assert chart_in("XYBarChartView")[0].LeftAxisTitle == TITLE, chart_in("XYBarChartView")[0].LeftAxisTitle
