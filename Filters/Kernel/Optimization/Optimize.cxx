@@ -486,13 +486,8 @@ bool untangleFirst(
   const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
 {
   UntangleOptions untangling;
-  // Points on a model stay on it.
-  std::vector<unsigned char> held;
-  for (Index p = 0; options.model && p < mesh.view().numberOfPoints; ++p)
-  {
-    held.push_back((options.fixed && options.fixed[p]) || options.parts[p] >= 0);
-  }
-  untangling.fixed = options.model ? held.data() : options.fixed;
+  const std::vector<unsigned char> held = heldInUntangling(options, mesh.view().numberOfPoints);
+  untangling.fixed = held.empty() ? nullptr : held.data();
   untangling.threads = options.threads;
   if (options.stopping.maximumSeconds > 0)
   {

@@ -431,7 +431,9 @@ void OptimizationOnRanks::untangle()
       "the untangling metric.");
   }
   UntangleOptions options;
-  options.fixed = this->Options.fixed;
+  const std::vector<unsigned char> held =
+    heldInUntangling(this->Options, static_cast<Index>(this->Points.size() / 3));
+  options.fixed = held.empty() ? nullptr : held.data();
   options.threads = this->Options.threads;
   if (this->Options.stopping.maximumSeconds > 0)
   {

@@ -21,6 +21,13 @@ void requireFinite(const double* values, Index count, const char* what)
   }
 }
 
+/// Whether a point has a direction: of a plane or a line that it slides in.
+bool slides(const double* directions, Index p)
+{
+  return directions &&
+    norm({ directions[3 * p], directions[3 * p + 1], directions[3 * p + 2] }) > 0;
+}
+
 /// Whether a point of the boundary may leave it.
 bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options)
 {
@@ -29,11 +36,6 @@ bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options)
     return false;
   }
   const std::vector<char> boundary = boundaryPoints(mesh);
-  const auto slides = [](const double* directions, Index p)
-  {
-    return directions &&
-      norm({ directions[3 * p], directions[3 * p + 1], directions[3 * p + 2] }) > 0;
-  };
   for (Index p = 0; p < static_cast<Index>(boundary.size()); ++p)
   {
     if (boundary[p] && !options.fixed[p] && !slides(options.slidePlanes, p) &&
@@ -110,5 +112,22 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
   requireFinite(options.limits, mesh.view().numberOfPoints, "The limit");
   requireFinite(options.slidePlanes, 3 * mesh.view().numberOfPoints, "The slide plane");
   requireFinite(options.slideLines, 3 * mesh.view().numberOfPoints, "The slide line");
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Index points)
+{
+  std::vector<unsigned char> held;
+  if (!options.fixed && !options.model)
+  {
+    return held;
+  }
+  for (Index p = 0; p < points; ++p)
+  {
+    held.push_back((options.fixed && options.fixed[p]) ||
+      (options.model && options.parts[p] >= 0) || slides(options.slidePlanes, p) ||
+      slides(options.slideLines, p) || (options.slideSurface && options.slideSurface[p]));
+  }
+  return held;
 }
 }

@@ -9,9 +9,18 @@
 #include "OptimizeOptions.h"
 #include "tautline/Mesh/Mesh.h"
 
+#include <vector>
+
 namespace tautline
 {
 /// Throws Error, with the remedy, for options that are out of range or do not fit the mesh.
 void checkOptions(const Mesh& mesh, const OptimizeOptions& options);
+
+/**
+ * The points that stay while a mesh is untangled before it is optimized, one flag each: those that
+ * are fixed, and those that slide, as untangling has no planes, lines and surfaces. Empty: those of
+ * the boundary.
+ */
+std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Index points);
 }
 #endif

@@ -485,6 +485,30 @@ void testBoundary()
   TAUTLINE_CHECK_EQUAL(norm(after.point(0) - flat.point(0)), 0);
 }
 
+/// Points that slide keep to their planes and edges also while a tangled mesh is untangled first.
+void testSlidingTangled()
+{
+  MeshData data = blockMesh(CellType::Tetrahedron, 4, 4, 4);
+  const auto pushed = [](const Vec3& p) { return p[2] == 1 && !isOnBlock(p, 4); };
+  data.transform([&](const Vec3& p) { return pushed(p) ? Vec3{ p[0], p[1], -0.5 } : p; });
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputData(toGrid(data));
+  filter->SetBoundary(vtkMeshOptimizer::SLIDING);
+  filter->Update();
+  TAUTLINE_CHECK(filter->GetInvertedBefore() > 0);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  const MeshData before = blockMesh(CellType::Tetrahedron, 4, 4, 4);
+  const MeshData after = withPointsOf(data, meshOf(filter));
+  for (Index i = 0; i < before.numberOfPoints(); ++i)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const double x = before.point(i)[c];
+      TAUTLINE_CHECK((x != 0 && x != 4) || std::abs(after.point(i)[c] - x) < 1e-13);
+    }
+  }
+}
+
 /// On a ball, points of the sphere slide on it; with fixed points the mesh is worse.
 void testOnSurface()
 {
@@ -612,6 +636,7 @@ int TestMeshOptimizer(int, char*[])
   testArrays();
   testFixed();
   testBoundary();
+  testSlidingTangled();
   testOnSurface();
   testLimits();
   testTargets();
