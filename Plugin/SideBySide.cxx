@@ -68,7 +68,7 @@ pqPipelineSource* measure(pqOutputPort* port, const QString& name)
   return quality;
 }
 
-/// "before: worst imr 99.9, 41 inverted".
+/// "after: worst imr 2.87, 0 inverted"; "before: worst valid imr 99.9, 41 inverted".
 QString describe(pqPipelineSource* quality)
 {
   const auto data = fetchOutput(quality, "Statistics");
@@ -79,10 +79,12 @@ QString describe(pqPipelineSource* quality)
   }
   const auto value = [statistics](const char* column)
   { return QString::fromStdString(statistics->GetValueByName(0, column).ToString()); };
-  const double worst = statistics->GetValueByName(0, "Worst").ToDouble();
-  return QString("%1: worst %2 %3, %4 inverted")
-    .arg(quality->getSMName().toLower(), value("Metric"), QString::number(worst, 'g', 3),
-      value("Inverted"));
+  // The inverse mean ratio of inverted elements is negative: the worst of the others is the largest.
+  const bool valid = value("Inverted") != "0" && value("Metric") == "imr";
+  const double worst = statistics->GetValueByName(0, valid ? "Maximum" : "Worst").ToDouble();
+  return QString("%1: worst%2 %3 %4, %5 inverted")
+    .arg(quality->getSMName().toLower(), valid ? " valid" : "", value("Metric"),
+      QString::number(worst, 'g', 3), value("Inverted"));
 }
 
 /// Hides the legend, also that of the bad elements, which are shown after this.
