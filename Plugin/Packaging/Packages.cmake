@@ -67,7 +67,8 @@ tautline_package(runtime libtautline "measures, repairs, deforms and matches mes
 tautline_package(python python3-tautline "measures, repairs, deforms and matches meshes - Python and shell"
   "The Python package tautline and the command tautline." "${library}, ${python_paraview}, python3-numpy")
 tautline_package(plugin paraview-tautline "measures, repairs, deforms and matches meshes - plugin for ParaView"
-  "Filters, sources, readers, writers and panels. ParaView loads the plugin when it starts." "${library}, ${paraview}")
+  "Filters, sources, readers, writers and panels. ParaView loads the plugin when it starts.\n\
+The package tautline-doc has a tutorial: /usr/share/doc/tautline/help/tutorial.html" "${library}, ${paraview}")
 tautline_package(development libtautline-dev "measures, repairs, deforms and matches meshes - development files"
   "Headers and CMake files, for find_package(Tautline)." "${library}, paraview-dev, ${headers}")
 tautline_package(doc tautline-doc "measures, repairs, deforms and matches meshes - documentation"
