@@ -230,7 +230,10 @@ void MeshFile::addCells(unsigned char type, std::vector<Index> nodes)
     this->connectivity = std::move(nodes);
     return;
   }
-  this->connectivity.insert(this->connectivity.end(), nodes.begin(), nodes.end());
+  // Not insert(): GCC 14 warns of an overflow that cannot be.
+  const std::size_t first = this->connectivity.size();
+  this->connectivity.resize(first + nodes.size());
+  std::copy(nodes.begin(), nodes.end(), this->connectivity.data() + first);
 }
 
 //------------------------------------------------------------------------------

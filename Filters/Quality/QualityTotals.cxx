@@ -65,7 +65,10 @@ void QualityTotals::addValues(
   }
   else
   {
-    all.insert(all.end(), measured.begin(), measured.end());
+    // Not insert(): GCC 14 warns of an overflow that cannot be.
+    const std::size_t first = all.size();
+    all.resize(first + measured.size());
+    std::copy(measured.begin(), measured.end(), all.data() + first);
   }
   this->HasGlobalIds = globalIds != nullptr;
   std::vector<Worst> worst;
