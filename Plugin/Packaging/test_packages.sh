@@ -17,12 +17,13 @@ if [[ -z $root ]]; then
   echo "--- a bare $suite in $root"
   debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$root.log" 2>&1 || fail "debootstrap failed: $root.log"
 fi
-# Programs expect /proc; where it cannot be mounted, they are tried without.
-if mount -t proc proc "$root/proc" 2>/dev/null; then
+# Programs expect /proc, and hwloc prints a message without /sys; where they cannot be mounted, they are tried without.
+for place in proc:proc sysfs:sys; do
+  mount -t "${place%:*}" "${place%:*}" "$root/${place#*:}" 2>/dev/null || continue
   remove="$(trap -p EXIT | sed "s/^trap -- '//; s/' EXIT$//")"
   # shellcheck disable=SC2064 # of now
-  trap "umount '$root/proc'; $remove" EXIT
-fi
+  trap "umount $root/${place#*:}; $remove" EXIT
+done
 # A shell in the chroot, of a user's environment: nothing of this machine is inherited.
 inside() { chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
   PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LIBGL_ALWAYS_SOFTWARE=1 \
