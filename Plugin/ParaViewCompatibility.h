@@ -22,6 +22,13 @@ using ColorMaps = vtkSMColorMapEditorHelper;
 #else
 using ColorMaps = vtkSMPVRepresentationProxy;
 #endif
+
+/// The property of a representation that moves what it shows.
+#if PARAVIEW_VERSION_NUMBER >= PARAVIEW_VERSION_CHECK(5, 13, 0)
+inline constexpr char TranslationProperty[] = "Translation";
+#else
+inline constexpr char TranslationProperty[] = "Position";
+#endif
 } // namespace tautline
 
 #endif

@@ -2,6 +2,7 @@
 #include "pqTautlinePictures.h"
 
 #include "LoadingState.h"
+#include "ParaViewCompatibility.h"
 #include "ProxyKind.h"
 #include "Recolor.h"
 #include "RegionLegend.h"
@@ -89,12 +90,12 @@ void showColors(pqDataRepresentation* shown, const char* representation, const c
 /// Bytes are drawn as they are, grey values or colours; other `pixels` by a colour map.
 void moveBehind(vtkSMProxy* image, const double bounds[6], int pixels)
 {
-  if (image->GetProperty("Representation") && image->GetProperty("Position"))
+  if (image->GetProperty("Representation") && image->GetProperty(tautline::TranslationProperty))
   {
     const double size = std::max(bounds[1] - bounds[0], bounds[3] - bounds[2]);
     const double position[3] = { 0.0, 0.0, -Behind * size };
     vtkSMPropertyHelper(image, "Representation").Set("Surface");
-    vtkSMPropertyHelper(image, "Position").Set(position, 3);
+    vtkSMPropertyHelper(image, tautline::TranslationProperty).Set(position, 3);
     vtkSMPropertyHelper(image, "MapScalars", true).Set(pixels == VTK_UNSIGNED_CHAR ? 0 : 1);
     image->UpdateVTKObjects();
   }
