@@ -4,7 +4,7 @@
 The .qch file is an SQLite data base; a file's data are compressed, after four bytes with their length. ParaView's
 button ? opens the page group.name.html of a proxy: each proxy of the XML files has one, made from a page in
 DOCUMENTATION, with every property. HELP is the directory of the made pages. No page of the help has a dead link, and
-each is in the table of contents.
+each is in the table of contents. QCH is - where ParaView builds no help of plugins, with Qt 6: the made pages are checked.
 """
 
 import html
@@ -47,18 +47,26 @@ def proxy_complaints(proxies: dict, files: dict):
                 yield f"the page of {name} lacks the property {label_of(item)}"
 
 
-def main(documentation: Path, made: Path, help_file: Path, xmls: list) -> int:
+def packed(help_file: Path) -> tuple:
+    """The files of the help, and its table of contents."""
     base = sqlite3.connect(help_file.as_uri() + "?mode=ro", uri=True)
     files = {name: zlib.decompress(data[4:]) for name, data in base.execute(QUERY)}
+    return files, b"".join(row[0] for row in base.execute(CONTENTS))
+
+
+def main(documentation: Path, made: Path, help_file: Path, xmls: list) -> int:
     proxies = read_proxies(xmls)
     expected = {path.name: path.read_bytes() for path in made.iterdir()}
+    contents = (documentation / "toc.xml").read_text().encode("utf-16-be")
+    files = expected
+    if help_file.name != "-":
+        files, contents = packed(help_file)
     wrong = [f"{name} is not in {help_file}" for name in expected if files.get(name) != expected[name]]
     wrong += [f"{name} is not ours" for name in files if name not in expected]
     wrong += proxy_complaints(proxies, files)
     pages = {name: data.decode() for name, data in files.items() if name.endswith(".html")}
     for name, text in pages.items():
         wrong += dead_links(name, text, files)
-    contents = b"".join(row[0] for row in base.execute(CONTENTS))
     listed = {name for name in pages if name.encode("utf-16-be") in contents}
     same = {name: {other for other in pages if pages[other] == text} for name, text in pages.items()}
     wrong += [f"{name} is not in the table of contents, toc.xml" for name in pages if not same[name] & listed]

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""join_sessions.py [--no-pictures] RESULT.xml SESSION.xml...: one session that plays the others one after another.
+"""join_sessions.py [--no-pictures] [--paraview=VERSION] RESULT.xml SESSION.xml...: one session that plays the others one after another.
 
 ParaView starts once for all of them, as its start takes longer than most sessions; fresh_session.py removes between two
 what the first has made, and names the one that begins. --no-pictures leaves out the comparisons of pictures.
+An event in a comment that begins with "Since ParaView 5.13:" is played by that version and later ones.
 """
 
+import re
 import sys
 import xml.etree.ElementTree as tree
 from pathlib import Path
@@ -15,20 +17,32 @@ BEGIN = (
 )
 
 
-def joined(sessions, pictures):
+SINCE = re.compile(r"<!-- Since ParaView ([0-9]+)[.]([0-9]+): (<pqevent [^<]*/>) -->")
+
+
+def text_for(session, version):
+    """The session, with the events that only this version of ParaView, a pair, and later ones need."""
+    return SINCE.sub(
+        lambda found: found[3] if version >= (int(found[1]), int(found[2])) else "",
+        session.read_text(encoding="utf-8"),
+    )
+
+
+def joined(sessions, pictures, version):
     result = tree.Element("pqevents")
     for session in sessions:
         begin = BEGIN.format(name=session.stem)
         tree.SubElement(result, "pqevent", object=SHELL, command="executeCommand", arguments=begin)
-        events = tree.parse(session).getroot()
+        events = tree.fromstring(text_for(session, version))
         result.extend(event for event in events if pictures or event.tag != "pqcompareview")
     return result
 
 
 def main(arguments):
-    pictures = "--no-pictures" not in arguments
-    result, *sessions = (Path(name) for name in arguments if name != "--no-pictures")
-    root = joined(sessions, pictures)
+    options = [name for name in arguments if name.startswith("--")]
+    version = next((tuple(map(int, name.split("=")[1].split(".")[:2])) for name in options if "=" in name), (0, 0))
+    result, *sessions = (Path(name) for name in arguments if name not in options)
+    root = joined(sessions, "--no-pictures" not in options, version)
     tree.indent(root)
     text = '<?xml version="1.0" ?>\n' + tree.tostring(root, encoding="unicode") + "\n"
     if not result.exists() or result.read_text(encoding="utf-8") != text:

@@ -160,7 +160,9 @@ def picture_behind():
     matcher = find("MatchShape")
     assert simple.GetDisplayProperties(matcher.Target, view).Visibility
     assert not simple.GetDisplayProperties(matcher.Input, view).Visibility
-    assert simple.GetDisplayProperties(matcher.Target, view).Position[2] < 0
+    display = simple.GetDisplayProperties(matcher.Target, view)
+    moved = display.GetProperty("Translation") or display.GetProperty("Position")  # its name before ParaView 5.13
+    assert moved[2] < 0
     assert servermanager.Fetch(matcher.Target).GetBounds()[4:] == (0, 0)
     assert servermanager.Fetch(matcher).GetBounds()[4:] == (0, 0)
 

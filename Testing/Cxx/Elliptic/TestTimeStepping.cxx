@@ -7,6 +7,7 @@
 
 #include "tautline/Elliptic/TimeStepping.h"
 
+#include <array>
 #include <complex>
 
 using namespace tautline;
@@ -295,8 +296,8 @@ void testElasticWaves()
     const auto energy = [&](const std::vector<double>& u, const std::vector<double>& v)
     {
       double sum = 0.0;
-      for (const auto& [matrix, x] :
-        { std::make_pair(&system.matrix(), &u), std::make_pair(&mass, &v) })
+      const std::array terms = { std::make_pair(&system.matrix(), &u), std::make_pair(&mass, &v) };
+      for (const auto& [matrix, x] : terms)
       {
         matrix->multiply(x->data(), product.data());
         for (std::size_t i = 0; i < product.size(); ++i)

@@ -17,6 +17,7 @@
 #include "vtkTable.h"
 #include "vtkTriangleFilter.h"
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -304,8 +305,9 @@ void testBlocks()
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   TAUTLINE_CHECK_EQUAL(output->GetNumberOfBlocks(), 4u);
   double rows = 0, free = 0;
-  for (const auto& [number, data] :
-    { std::make_pair(0u, &flat), std::make_pair(2u, &flat), std::make_pair(3u, &solid) })
+  const std::array inputs = { std::make_pair(0u, &flat), std::make_pair(2u, &flat),
+    std::make_pair(3u, &solid) };
+  for (const auto& [number, data] : inputs)
   {
     single->SetInputData(toGrid(*data));
     single->Update();

@@ -194,9 +194,9 @@ void testMatcher()
     // The vertices keep their order along the boundary: found again by their old place.
     double x[3];
     mesh->GetPoint(i, x);
-    const double old[3] = { x[0] - displacement->GetComponent(i, 0),
+    double old[3] = { x[0] - displacement->GetComponent(i, 0),
       x[1] - displacement->GetComponent(i, 1), x[2] - displacement->GetComponent(i, 2) };
-    const vtkIdType id = before->FindPoint(old[0], old[1], old[2]);
+    const vtkIdType id = before->FindPoint(old);
     TAUTLINE_CHECK(id >= 0 && std::abs(before->GetPoint(id)[0] - old[0]) < 1e-9);
   }
   double sum = 0.0;
