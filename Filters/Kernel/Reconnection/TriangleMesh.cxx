@@ -556,6 +556,14 @@ void TriangleMesh::movePoint(VertexId v, const Vec3& x, const std::vector<TriId>
 }
 
 //------------------------------------------------------------------------------
+// Not inlined: with fused multiply-add, the last digit would depend on the place of the call.
+__attribute__((noinline)) double TriangleMesh::qualityOf(const Corners& v) const
+{
+  const std::vector<Vec3>& x = this->Points;
+  return triangleQuality(x[v[0]], x[v[1]], x[v[2]], this->Planar);
+}
+
+//------------------------------------------------------------------------------
 std::string TriangleMesh::violationOf(TriId t) const
 {
   const Triangle& triangle = this->Triangles[t];

@@ -83,11 +83,7 @@ public:
   {
     return v < static_cast<VertexId>(this->NonManifold.size()) && this->NonManifold[v] != 0;
   }
-  double qualityOf(const Corners& v) const
-  {
-    const std::vector<Vec3>& x = this->Points;
-    return triangleQuality(x[v[0]], x[v[1]], x[v[2]], this->Planar);
-  }
+  double qualityOf(const Corners& v) const;
   /// Which vertex of the triangle it is, 0 to 2.
   int indexOf(TriId t, VertexId v) const
   {
