@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""join_sessions.py [--no-pictures] [--paraview=VERSION] RESULT.xml SESSION.xml...: one session that plays the others one after another.
+"""join_sessions.py [--no-pictures] [--paraview=VERSION] RESULT.xml SESSION.xml...: one session that plays the others.
 
 ParaView starts once for all of them, as its start takes longer than most sessions; fresh_session.py removes between two
 what the first has made, and names the one that begins. --no-pictures leaves out the comparisons of pictures.
