@@ -17,8 +17,8 @@ namespace tautline
 {
 
 /**
- * Closes the chart of an output without rows, or a line of one row, with its view, if there is nothing else in it.
- * `chart` is deleted then. Not for other displays. Call it outside of Apply.
+ * Closes the chart of an output without rows, or a line of one row, with its view, if there is
+ * nothing else in it. `chart` is deleted then. Not for other displays. Call it outside of Apply.
  */
 void closeEmptyChart(pqDataRepresentation* chart);
 

@@ -79,7 +79,7 @@ QString describe(pqPipelineSource* quality)
   }
   const auto value = [statistics](const char* column)
   { return QString::fromStdString(statistics->GetValueByName(0, column).ToString()); };
-  // The inverse mean ratio of inverted elements is negative: the worst of the others is the largest.
+  // The inverse mean ratio of inverted elements is negative: the largest is that of a valid one.
   const bool valid = value("Inverted") != "0" && value("Metric") == "imr";
   const double worst = statistics->GetValueByName(0, valid ? "Maximum" : "Worst").ToDouble();
   return QString("%1: worst%2 %3 %4, %5 inverted")

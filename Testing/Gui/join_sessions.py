@@ -13,7 +13,8 @@ from pathlib import Path
 
 SHELL = "pqClientMainWindow/pythonShellDock/pythonShell/consoleWidget"
 BEGIN = (
-    "import os, sys; sys.path.insert(0, os.environ['TAUTLINE_GUI']); import fresh_session; fresh_session.begin('{name}')"
+    "import os, sys; sys.path.insert(0, os.environ['TAUTLINE_GUI']); "
+    "import fresh_session; fresh_session.begin('{name}')"
 )
 
 
