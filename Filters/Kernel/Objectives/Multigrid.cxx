@@ -2,6 +2,7 @@
 #include "Multigrid.h"
 
 #include "Aggregation.h"
+#include "SmallBlocks.h"
 
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/VectorAlgebra.h"
@@ -21,72 +22,7 @@ constexpr double slowCoarsening = 0.8; // ratio of rows beyond which no coarser 
 constexpr int maxLevels = 30;
 constexpr double enough =
   0.25; // reduction by the first step on a coarse level, that needs no second
-constexpr int rebuildAfter = 4;    // matrices of one pattern, after which rows are aggregated anew
-constexpr double flattest = 1e-14; // pivot relative to the largest diagonal entry of its block
-
-template <int Dim>
-void multiplyAdd(const double* block, const double* x, double* y)
-{
-  for (int r = 0; r < Dim; ++r)
-  {
-    for (int c = 0; c < Dim; ++c)
-    {
-      y[r] += block[Dim * r + c] * x[c];
-    }
-  }
-}
-
-/// The inverse of a symmetric positive semidefinite block, by a Cholesky factorization of it scaled
-/// to a diagonal of 1, with pivots kept off 0.
-template <int Dim>
-void invert(const double* block, double* inverse)
-{
-  double scale[Dim], lower[Dim][Dim] = {}, w[Dim][Dim] = {};
-  for (int r = 0; r < Dim; ++r)
-  {
-    const double d = block[Dim * r + r];
-    scale[r] = d > 0 ? 1 / std::sqrt(d) : 0.0;
-    scale[r] = std::isfinite(scale[r]) ? scale[r] : 0.0;
-  }
-  for (int r = 0; r < Dim; ++r)
-  {
-    for (int c = 0; c <= r; ++c)
-    {
-      double sum = r == c ? 1.0 : scale[r] * scale[c] * block[Dim * r + c];
-      for (int k = 0; k < c; ++k)
-      {
-        sum -= lower[r][k] * lower[c][k];
-      }
-      lower[r][c] = r == c ? std::sqrt(std::max(sum, flattest)) : sum / lower[c][c];
-    }
-  }
-  // The inverse of the factor.
-  for (int c = 0; c < Dim; ++c)
-  {
-    w[c][c] = 1 / lower[c][c];
-    for (int r = c + 1; r < Dim; ++r)
-    {
-      double sum = 0;
-      for (int k = c; k < r; ++k)
-      {
-        sum -= lower[r][k] * w[k][c];
-      }
-      w[r][c] = sum / lower[r][r];
-    }
-  }
-  for (int r = 0; r < Dim; ++r)
-  {
-    for (int c = 0; c < Dim; ++c)
-    {
-      double sum = 0;
-      for (int k = std::max(r, c); k < Dim; ++k)
-      {
-        sum += w[k][r] * w[k][c];
-      }
-      inverse[Dim * r + c] = scale[r] * scale[c] * sum;
-    }
-  }
-}
+constexpr int rebuildAfter = 4; // matrices of one pattern, after which rows are aggregated anew
 }
 
 //------------------------------------------------------------------------------
@@ -313,7 +249,7 @@ void factorizeDense(Level& level)
       }
       else
       {
-        const double pivot = std::max(sum, flattest * diagonal);
+        const double pivot = std::max(sum, flattestPivot * diagonal);
         row[c] = pivot > 0 && std::isfinite(pivot) ? std::sqrt(pivot) : 1.0;
       }
     }
