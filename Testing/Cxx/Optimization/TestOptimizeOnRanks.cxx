@@ -1,99 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimization and untangling on ranks: the points do not depend on how the mesh is cut, and are as
 // good as those of one process in its own order.
-#include "Optimizing.h"
-#include "ThreadRanks.h"
-#include "tautline/Mesh/BoundaryShape.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "OptimizingOnRanks.h"
 #include "tautline/Untangling/Untangle.h"
-#include "tautline/Untangling/UntangleOnRanks.h"
 
 using namespace tautline;
 
 namespace
 {
-/// Points of the whole mesh, and what is the same on all ranks.
-struct Run
-{
-  std::vector<double> points;
-  OptimizeResult result;
-  std::size_t remaining = 0;
-};
-
-enum class Constraint
-{
-  FixedBoundary,
-  Sliding,
-  Limits,
-  Untangle ///< untangleOnRanks()
-};
-
-Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOptions& given,
-  Constraint constraint, double limit)
-{
-  const auto rankOf = cutBy(whole, cut, ranks);
-  Run run;
-  run.points = whole.points;
-  std::mutex mutex;
-  onRanks(ranks,
-    [&](RankGroup& group)
-    {
-      const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
-      DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
-      OptimizeOptions options = given;
-      std::vector<unsigned char> fixed = rankBoundary(mesh);
-      BoundaryShape shape;
-      std::vector<double> limits(mesh.localPoints(), limit);
-      if (constraint == Constraint::Sliding && mesh.view().numberOfCells > 0)
-      {
-        shape = boundaryShape(Mesh(mesh.view()), 1.0);
-        fixed = shape.fixed;
-        options.slidePlanes = shape.planes.data();
-        options.slideLines = shape.lines.data();
-      }
-      options.limits = constraint == Constraint::Limits ? limits.data() : nullptr;
-      options.fixed = fixed.data();
-      options.threads = 1 + group.rank() % 2;
-      OptimizeResult result;
-      std::size_t remaining = 0;
-      if (constraint == Constraint::Untangle)
-      {
-        UntangleOptions untangling;
-        untangling.fixed = fixed.data();
-        const RankUntangleResult untangled = untangleOnRanks(mesh, false, untangling);
-        result.points = untangled.result.points;
-        result.history = untangled.result.history;
-        result.reason = untangled.result.reason;
-        result.invertedBefore = untangled.result.invertedBefore;
-        result.invertedAfter = untangled.result.invertedAfter;
-        remaining = untangled.remaining.size();
-      }
-      else
-      {
-        result = optimizeOnRanks(mesh, false, options);
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      for (std::size_t p = 0; p < part.pointOf.size(); ++p)
-      {
-        std::copy_n(
-          &result.points[3 * mesh.localOfPiece()[p]], 3, &run.points[3 * part.pointOf[p]]);
-      }
-      run.remaining = remaining;
-      run.result = result;
-    });
-  return run;
-}
-
-double farthest(const std::vector<double>& a, const std::vector<double>& b)
-{
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-  {
-    largest = std::max(largest, std::abs(a[i] - b[i]));
-  }
-  return largest;
-}
-
 /// Runs on 1 to 4 ranks and compares; returns the run on one.
 Run testCuts(const char* name, const MeshData& whole, const OptimizeOptions& options,
   Constraint constraint = Constraint::FixedBoundary, double limit = 0)
@@ -153,18 +67,6 @@ void testOrders(
   std::cout << name << ": " << run.result.iterations << " and " << usual.iterations
             << " sweeps, objectives differ by " << now / then - 1 << ", points by "
             << farthest(run.points, usual.points) << "\n";
-}
-
-OptimizeOptions with(std::vector<Metric> metrics)
-{
-  OptimizeOptions options;
-  options.objectives.clear();
-  for (const Metric metric : metrics)
-  {
-    options.objectives.emplace_back();
-    options.objectives.back().metric = metric;
-  }
-  return options;
 }
 
 /// See testConvergenceOfAll() of TestLocalSweep.
