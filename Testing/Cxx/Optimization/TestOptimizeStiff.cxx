@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // optimize() on sheared and strongly stretched meshes.
-#include "Optimizing.h"
 #include "Sanitized.h"
+#include "StretchedMeshes.h"
 
 #include "tautline/Core/Memory.h"
 
@@ -11,21 +11,6 @@ using namespace tautline;
 
 namespace
 {
-/// The unit square or cube in n cells a side, whose inner points a function moves.
-template <class Function>
-MeshData stretched(CellType type, int n, const Function& function)
-{
-  MeshData data = blockMesh(type, n, n, topology(type).dimension == 3 ? n : 0);
-  const Mesh mesh(data.view());
-  const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    const Vec3 p = (1.0 / n) * data.point(i);
-    data.setPoint(i, boundary[i] ? p : function(p));
-  }
-  return data;
-}
-
 /// Stiff meshes of some thousand points: the same result for any number of threads, and few
 /// iterations from the harmonic map, which is the minimum here.
 void testStiffThreads()
@@ -82,17 +67,11 @@ void testStiffRing()
 /// and Newton's method reach the minimum, and stop there for the right reason.
 void testStiff()
 {
-  const auto sine = [](const Vec3& p)
-  {
-    const double s = 0.14 * std::sin(2 * Pi * p[0]) * std::sin(2 * Pi * p[1]);
-    return Vec3{ p[0] + s, p[1] + s, p[2] };
-  };
-  const auto fourth = [](const Vec3& p) { return Vec3{ p[0], p[1] * p[1] * p[1] * p[1], p[2] }; };
   const auto cubed = [](const Vec3& p) { return Vec3{ p[0], p[1] * p[1] * p[1], p[2] }; };
   const std::pair<const char*, MeshData> cases[] = {
-    { "sine", stretched(CellType::Quadrilateral, 64, sine) },
-    { "power", stretched(CellType::Quadrilateral, 64, fourth) },
-    { "power of triangles", stretched(CellType::Triangle, 32, fourth) },
+    { "sine", stretched(CellType::Quadrilateral, 64, sheared) },
+    { "power", stretched(CellType::Quadrilateral, 64, fourthPower) },
+    { "power of triangles", stretched(CellType::Triangle, 32, fourthPower) },
     { "power of hexahedra", stretched(CellType::Hexahedron, 12, cubed) },
     { "power of tetrahedra", stretched(CellType::Tetrahedron, 8, cubed) }
   };
