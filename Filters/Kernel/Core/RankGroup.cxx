@@ -143,16 +143,22 @@ double RankGroup::orderlessSum(const std::vector<double>& values)
   {
     return 0.0;
   }
-  // Integers are added without rounding.
-  const int exponent = highBits - 1 - std::ilogb(largest);
-  Wide total = 0;
+  // Integers are added without rounding. A product by a power of two is exact; it takes two factors
+  // where one would overflow.
+  const int exponent = highBits - 1 - std::ilogb(largest), half = exponent / 2;
+  const double first = std::ldexp(1.0, half), second = std::ldexp(1.0, exponent - half);
+  constexpr double lowUnit = std::int64_t(1) << lowBits;
+  Wide high = 0;
+  std::int64_t low = 0;
   for (const double value : values)
   {
-    const double scaled = std::ldexp(value, exponent), high = std::rint(scaled);
-    // A product, as the shift of a negative number is undefined in C++17.
-    const Wide wide = static_cast<Wide>(static_cast<std::int64_t>(high)) * (Wide(1) << lowBits);
-    total += wide + static_cast<std::int64_t>(std::rint(std::ldexp(scaled - high, lowBits)));
+    const double scaled = value * first * second;
+    const auto whole = static_cast<std::int64_t>(scaled);
+    high += whole;
+    low += static_cast<std::int64_t>((scaled - static_cast<double>(whole)) * lowUnit);
   }
+  // A product, as the shift of a negative number is undefined in C++17.
+  const Wide total = high * (Wide(1) << lowBits) + low;
   Wide sum = 0;
   for (const auto& one : this->gatherItems(std::vector<Wide>{ total }))
   {

@@ -8,6 +8,7 @@
 #define tautline_VectorAlgebra_h
 
 #include "Parallel.h"
+#include "RankGroup.h"
 
 #include <numeric>
 #include <vector>
@@ -24,16 +25,25 @@ enum class LaneOrder
 class VectorAlgebra
 {
 public:
-  /// For vectors of `size` entries; threads as in Parallel.h.
-  VectorAlgebra(std::size_t size, int threads, LaneOrder order = LaneOrder::Sequential)
+  /**
+   * @brief For vectors of `size` entries; threads as in Parallel.h.
+   * @param group null, or ranks that each have a part of the vectors, of any size. The sums are
+   * then of the whole vectors, do not depend on how these are cut, and are collective.
+   */
+  VectorAlgebra(std::size_t size, int threads, LaneOrder order = LaneOrder::Sequential,
+    RankGroup* group = nullptr)
     : Size(static_cast<Index>(size))
     , Threads(threads)
     , Order(order)
+    , Group(group)
     , Partial(numberOfChunks(Size))
+    , Terms(group ? size : 0)
   {
   }
 
   std::size_t size() const { return static_cast<std::size_t>(this->Size); }
+  /// Entries on all ranks.
+  Index totalSize() const { return this->Group ? this->Group->sum(this->Size) : this->Size; }
 
   /// Calls work(i) for each entry.
   template <class Work>
@@ -53,6 +63,11 @@ public:
   template <class Term>
   double sum(const Term& term) const
   {
+    if (this->Group)
+    {
+      this->each([&](Index i) { this->Terms[i] = term(i); });
+      return this->Group->orderlessSum(this->Terms);
+    }
     forEachChunk(this->Size, this->Threads,
       [&](Index chunk, Index begin, Index end)
       {
@@ -126,7 +141,9 @@ private:
   Index Size;
   int Threads;
   LaneOrder Order;
+  RankGroup* Group;
   mutable std::vector<double> Partial;
+  mutable std::vector<double> Terms; ///< of a sum over ranks
 };
 }
 #endif
