@@ -55,7 +55,8 @@ public:
     : Function(function)
     , Options(options)
     , Size(function.size())
-    , Algebra(this->Size, options.threads)
+    , Algebra(this->Size, options.threads, LaneOrder::Sequential, options.group)
+    , TotalSize(Algebra.totalSize())
     , Memory(this->Algebra)
     , X(x)
     , G(this->Size)
@@ -94,6 +95,7 @@ private:
   const MinimizeOptions& Options;
   std::size_t Size;
   VectorAlgebra Algebra;
+  Index TotalSize;      ///< on all ranks
   LimitedMemory Memory; ///< of L-BFGS
   double* X;
   Vector G, D;                    ///< gradient and direction
@@ -391,7 +393,7 @@ double Minimizer::solveNewton(double shift)
     });
   this->Promised = infinity;
   bool complete = false;
-  const int maxInner = static_cast<int>(std::min<std::size_t>(2 * this->Size, maxInnerIterations));
+  const int maxInner = static_cast<int>(std::min<Index>(2 * this->TotalSize, maxInnerIterations));
   for (int i = 1; i <= maxInner && !complete; ++i)
   {
     this->hessianTimes(d, product);
@@ -515,9 +517,10 @@ MinimizeResult Minimizer::run()
   this->F = this->Function.valueAndGradient(this->X, this->G.data());
   ++this->Result.evaluations;
   this->Result.value = std::isnan(this->F) ? infinity : this->F;
-  if (this->Size == 0 || !std::isfinite(this->F))
+  if (this->TotalSize == 0 || !std::isfinite(this->F))
   {
-    this->Result.reason = this->Size == 0 ? StopReason::NoFreeVertices : StopReason::NoProgress;
+    this->Result.reason =
+      this->TotalSize == 0 ? StopReason::NoFreeVertices : StopReason::NoProgress;
     return this->Result;
   }
   for (Vector* work : { &this->OldG, &this->TrialX, &this->TrialG, &this->Z })

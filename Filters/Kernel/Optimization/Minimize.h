@@ -14,6 +14,7 @@
 #define tautline_Minimize_h
 
 #include "OptimizeOptions.h"
+#include "tautline/Core/RankGroup.h"
 
 #include <functional>
 #include <vector>
@@ -70,6 +71,12 @@ struct MinimizeOptions
   std::function<bool()> outOfTime;
   int refresh = 20; ///< most iterations between calls of linearize(); at least 1
   int threads = 0;  ///< 0: all cores. The result does not depend on it.
+  /**
+   * @brief Null, or ranks that each have some of the variables and call minimize() together. The
+   * function's methods are then collective, it gives the same value on all ranks, and so do
+   * outOfTime and the observer. The sums are rounded once, whatever the ranks.
+   */
+  RankGroup* group = nullptr;
   /// After each iteration: iteration, value, gradient norm, x. Returns false to stop.
   std::function<bool(int, double, double, const double*)> observer;
 };
