@@ -233,6 +233,7 @@ template <int Dim>
 void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, HessianForm form)
 {
   const bool full = this->ThePattern == Pattern::Full;
+  OrderlessSums sums(this->Blocks.data(), this->Orderless ? this->Blocks.size() : 0);
   forEachHessian<Dim>(objective, form,
     [&](auto nodesOfCell, const Batch& batch, const BatchNodes&, Packet* h)
     {
@@ -271,18 +272,25 @@ void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, Hessi
             {
               continue;
             }
-            double* to = this->Blocks.data() + static_cast<Index>(Dim * Dim) * place;
-            for (int r = 0; r < Dim; ++r)
+            const Index first = static_cast<Index>(Dim * Dim) * place;
+            if (this->Orderless)
             {
-              for (int c = 0; c < Dim; ++c)
+              for (int e = 0; e < Dim * Dim; ++e)
               {
-                to[Dim * r + c] += block[k][m][r][c][l];
+                sums.add(first + e, block[k][m][e / Dim][e % Dim][l]);
               }
+              continue;
+            }
+            double* to = this->Blocks.data() + first;
+            for (int e = 0; e < Dim * Dim; ++e)
+            {
+              to[e] += block[k][m][e / Dim][e % Dim][l];
             }
           }
         }
       }
     });
+  sums.finish();
 }
 
 void HessianMatrix::add(const ObjectiveSum& objective, double scale)
@@ -297,9 +305,14 @@ void HessianMatrix::addConvexPart(const ObjectiveSum& objective, double scale)
                   : this->addBlocks<3>(objective, scale, HessianForm::Convex);
 }
 
+bool HessianMatrix::hasConvexPart(const Objective& objective)
+{
+  return hasAnalyticHessian(objective);
+}
+
 bool HessianMatrix::hasConvexPart(const ObjectiveSum& objective)
 {
-  return hasAnalyticHessian(objective.state().objective);
+  return hasConvexPart(objective.state().objective);
 }
 
 //------------------------------------------------------------------------------
@@ -434,8 +447,13 @@ void HessianMatrix::factorizeByMultigrid()
   {
     this->Grids = std::make_unique<Multigrid>(this->Threads);
   }
-  this->Grids->build({ this->Size, this->Rows, this->Starts.data(), this->Columns.data(),
-    this->Diagonal.data(), this->Blocks.data() });
+  this->Grids->build(this->view());
+}
+
+BlockMatrixView HessianMatrix::view() const
+{
+  return { this->Size, this->Rows, this->Starts.data(), this->Columns.data(), this->Diagonal.data(),
+    this->Blocks.data() };
 }
 
 void HessianMatrix::factorize()
@@ -550,5 +568,10 @@ void HessianMatrix::precondition(const double* r, double* z)
   {
     this->sweep<3>(r, z);
   }
+}
+
+void HessianMatrix::preconditionByDiagonal(const double* r, double* z) const
+{
+  this->Size == 2 ? this->applyDiagonal<2>(r, z) : this->applyDiagonal<3>(r, z);
 }
 }

@@ -49,6 +49,9 @@ public:
   std::size_t memory() const;
 
   void clear();
+  /// Whether sums of blocks do not depend on the order of the cells, see OrderlessSums. Costs their
+  /// memory a second time while they are made.
+  void setOrderless(bool orderless) { this->Orderless = orderless; }
   /**
    * @brief Adds scale times the Hessian of an objective, which may be indefinite, at the points of
    * the mesh's view. Elements at fault and elements with edges of length 0 add 0. For PowerMean and
@@ -63,6 +66,7 @@ public:
   void addConvexPart(const ObjectiveSum& objective, double scale);
   /// Whether the positive semidefinite part is known: for sums of the inverse mean ratio or of its
   /// square.
+  static bool hasConvexPart(const Objective& objective);
   static bool hasConvexPart(const ObjectiveSum& objective);
   /**
    * @brief Replaces the matrix by P A P for points that may move in some directions only, with the
@@ -78,6 +82,8 @@ public:
    * is then a cycle of Multigrid.
    */
   void factorizeByMultigrid();
+  /// The blocks, for another preconditioner.
+  BlockMatrixView view() const;
 
   /// product = A d. Not of the diagonal pattern.
   void times(const double* d, double* product) const;
@@ -88,6 +94,8 @@ public:
    * nearly linear.
    */
   void precondition(const double* r, double* z);
+  /// After factorize(): the diagonal blocks alone, which do not depend on the order of the rows.
+  void preconditionByDiagonal(const double* r, double* z) const;
 
 private:
   template <int Dim>
@@ -109,7 +117,8 @@ private:
   Index Rows;
   Pattern ThePattern;
   int Threads;
-  int Size;                                  ///< of a block
+  int Size; ///< of a block
+  bool Orderless = false;
   std::vector<std::int32_t> Starts, Columns; ///< of each row, ascending
   std::vector<std::int32_t> Diagonal;        ///< place of the diagonal block of each row
   std::vector<std::int32_t> Places;          ///< of the blocks of each cell; -1: none

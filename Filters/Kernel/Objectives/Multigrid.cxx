@@ -567,4 +567,17 @@ void Multigrid::apply(const double* r, double* z)
 {
   this->Size == 2 ? this->cycle<2>(0, r, z) : this->cycle<3>(0, r, z);
 }
+
+void Multigrid::solve(const double* r, double* z)
+{
+  Level& level = *this->Levels[0];
+  const Index entries = this->Size * level.matrix.rows;
+  for (std::vector<double>* work : { &level.r, &level.z, &level.q, &level.p, &level.ap, &level.aq })
+  {
+    work->resize(entries);
+  }
+  std::copy_n(r, entries, level.r.begin());
+  this->Size == 2 ? this->solveCoarse<2>(0) : this->solveCoarse<3>(0);
+  std::copy_n(level.z.begin(), entries, z);
+}
 }

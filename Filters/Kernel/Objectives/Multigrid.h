@@ -60,6 +60,8 @@ public:
    * @param r, z size * rows numbers
    */
   void apply(const double* r, double* z);
+  /// The same with at most two steps of flexible conjugate gradients, as on a coarse level.
+  void solve(const double* r, double* z);
 
   struct Level;
 

@@ -161,6 +161,69 @@ double ObjectiveSumState::run(double scale, double* gradient) const
 }
 
 //------------------------------------------------------------------------------
+void ObjectiveSumState::findTerms(double scale, OrderlessSums* gradient, double* terms) const
+{
+  std::fill_n(terms, this->elements.mesh().view().numberOfCells, 0.0);
+  const ElementFunction& f = this->function;
+  // Called through a pointer: one body for all templates.
+  using Term = void (ElementFunction::*)(const BatchContext&, const Batch&, Packet&, Packet&) const;
+  const Term term = withTemplate(f.objectiveTemplate,
+    [](auto objectiveTemplate) -> Term
+    {
+      constexpr ObjectiveTemplate Template = decltype(objectiveTemplate)::value;
+      if constexpr (Template == ObjectiveTemplate::PowerMean ||
+        Template == ObjectiveTemplate::Maximum)
+      {
+        throw Error("A p-mean and a maximum have no terms of single elements.");
+      }
+      else
+      {
+        return &ElementFunction::term<Template>;
+      }
+    });
+  this->elements.forEachChunk(
+    [&](Index i)
+    {
+      const ElementSum::Chunk& chunk = this->elements.chunks()[i];
+      const BatchEvaluator evaluate = this->elements.evaluator(chunk, gradient != nullptr);
+      const BatchContext context = this->elements.context(chunk);
+      withNodes(*context.topology,
+        [&](auto nodesOfCell)
+        {
+          constexpr int Nodes = decltype(nodesOfCell)::value;
+          Batch batch;
+          BatchNodes nodes;
+          for (Index begin = chunk.begin; begin < chunk.end; begin += PacketWidth)
+          {
+            const int count = static_cast<int>(std::min<Index>(PacketWidth, chunk.end - begin));
+            gather<Nodes>(context, this->elements.order(chunk), begin, count, batch, nodes);
+            evaluate(context, batch);
+            batch.value = finiteOrZero(batch.value);
+            Packet value, slope;
+            (f.*term)(context, batch, value, slope);
+            for (int l = 0; l < count; ++l)
+            {
+              terms[batch.cells[l]] = value[l];
+            }
+            if (gradient)
+            {
+              scatter<Nodes>(context, batch, slope * scale,
+                [&](const VectorLanes& lanes, int l, int k)
+                {
+                  double g[3];
+                  lanes.storeTo(g, l);
+                  for (int c = 0; c < 3; ++c)
+                  {
+                    gradient->add(3 * static_cast<std::size_t>(nodes[l][k]) + c, g[c]);
+                  }
+                });
+            }
+          }
+        });
+    });
+}
+
+//------------------------------------------------------------------------------
 ObjectiveSum::ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads)
   : Impl(std::make_unique<ObjectiveSumState>(mesh, objective, threads))
 {

@@ -8,6 +8,7 @@
 
 #include "ElementFunction.h"
 #include "Objective.h"
+#include "OrderlessSums.h"
 #include "tautline/Quality/ElementSum.h"
 
 namespace tautline
@@ -22,6 +23,12 @@ struct ObjectiveSumState
   ObjectiveSumState(const Mesh& mesh, const Objective& objective, int threads);
   template <bool WithGradient>
   double run(double scale, double* gradient) const;
+  /**
+   * @brief The terms of a sum, one per cell of the view (0 where the metric is not defined,
+   * +infinity where an element is at fault), for those who add them up themselves.
+   * @param gradient null, or as in ObjectiveSum::addGradient()
+   */
+  void findTerms(double scale, OrderlessSums* gradient, double* terms) const;
 };
 }
 #endif

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MultigridOnRanks.h"
+
+#include "SmallBlocks.h"
+
+#include "tautline/Core/Memory.h"
+#include "tautline/Core/Parallel.h"
+
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+constexpr int pairings = 3;            // of rows
+constexpr double slowCoarsening = 0.8; // ratio of rows beyond which there is no coarser level
+constexpr int rebuildAfter = 4;        // matrices, after which rows are aggregated anew
+constexpr double atOnce = 1 << 30;     // bytes that ranks gather; MPI takes twice as many
+
+/// The distinct numbers of a list, ascending; the list becomes their places.
+std::vector<std::int32_t> compress(std::vector<std::int32_t>& list)
+{
+  std::vector<std::int32_t> distinct = list;
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  for (std::int32_t& number : list)
+  {
+    number = static_cast<std::int32_t>(
+      std::lower_bound(distinct.begin(), distinct.end(), number) - distinct.begin());
+  }
+  return distinct;
+}
+
+/// The rows of a graph that each rank has, put together: the number of each row, how many columns
+/// it has, these, and their strengths.
+Graph gathered(RankGroup& group, const std::vector<std::int32_t>& numbers,
+  const std::vector<std::int32_t>& lengths, const std::vector<std::int32_t>& columns,
+  const std::vector<float>& strengths)
+{
+  const Index rows = group.sum(static_cast<Index>(numbers.size()));
+  const Index total = group.sum(static_cast<Index>(columns.size()));
+  bool fits = static_cast<double>(sizeof(float)) * static_cast<double>(total) <= 2 * atOnce;
+  try
+  {
+    // The graph, what comes from the ranks, and the graphs of pairs.
+    constexpr double copies = 4;
+    requireMemory(copies * static_cast<double>(sizeof(std::int32_t) + sizeof(float)) *
+        static_cast<double>(total),
+      "the graph of Newton's method", "choose Local Newton");
+  }
+  catch (const MemoryError&)
+  {
+    fits = false;
+  }
+  if (group.any(!fits))
+  {
+    throw MemoryError("The mesh is too large for Newton's method: choose Local Newton or L-BFGS.");
+  }
+  const auto rowsOf = group.gatherItems(numbers), lengthsOf = group.gatherItems(lengths);
+  Graph graph;
+  graph.starts.assign(rows + 1, 0);
+  for (std::size_t r = 0; r < rowsOf.size(); ++r)
+  {
+    for (std::size_t i = 0; i < rowsOf[r].size(); ++i)
+    {
+      graph.starts[rowsOf[r][i] + 1] = lengthsOf[r][i];
+    }
+  }
+  std::partial_sum(graph.starts.begin(), graph.starts.end(), graph.starts.begin());
+  graph.columns.resize(total);
+  graph.strengths.resize(total);
+  const auto fill = [&](const auto& parts, auto& all)
+  {
+    for (std::size_t r = 0; r < parts.size(); ++r)
+    {
+      auto from = parts[r].begin();
+      for (std::size_t i = 0; i < rowsOf[r].size(); ++i)
+      {
+        std::copy_n(from, lengthsOf[r][i], all.begin() + graph.starts[rowsOf[r][i]]);
+        from += lengthsOf[r][i];
+      }
+    }
+  };
+  fill(group.gatherItems(columns), graph.columns);
+  fill(group.gatherItems(strengths), graph.strengths);
+  return graph;
+}
+}
+
+//------------------------------------------------------------------------------
+MultigridOnRanks::MultigridOnRanks(const RankRows& rows, int threads)
+  : Rows(rows)
+  , Threads(threads)
+{
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void MultigridOnRanks::invertDiagonals()
+{
+  const BlockMatrixView& a = this->Matrix;
+  const std::vector<std::int32_t>& owned = this->Rows.owned();
+  const std::size_t count = owned.size();
+  std::vector<double> own(Dim * count);
+  const auto blockOf = [&](Index place) { return a.blocks + Dim * Dim * place; };
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      own[Dim * i + c] = blockOf(a.diagonals[owned[i]])[(Dim + 1) * c];
+    }
+  }
+  this->Diagonal.assign(static_cast<std::size_t>(Dim) * this->Rows.rows(), 0.0);
+  this->Rows.spread(own.data(), this->Diagonal.data(), Dim);
+  this->Inverse.resize(Dim * Dim * count);
+  forEachChunk(static_cast<Index>(count), this->Threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        const std::int32_t row = owned[i];
+        double block[Dim * Dim];
+        std::copy_n(blockOf(a.diagonals[row]), Dim * Dim, block);
+        for (std::int32_t k = a.starts[row]; k < a.starts[row + 1]; ++k)
+        {
+          const Index column = a.columns[k];
+          for (int e = 0; column != row && e < Dim * Dim; ++e)
+          {
+            const double ratio =
+              this->Diagonal[Dim * row + e / Dim] / this->Diagonal[Dim * column + e % Dim];
+            const double part = 0.5 * std::abs(blockOf(k)[e]) * std::sqrt(ratio);
+            block[(Dim + 1) * (e / Dim)] += std::isfinite(part) ? part : 0.0;
+          }
+        }
+        invert<Dim>(block, this->Inverse.data() + Dim * Dim * i);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+/// How strongly all rows of all ranks couple, by their numbers.
+template <int Dim>
+Graph MultigridOnRanks::couplings(const std::vector<std::int32_t>& numbers) const
+{
+  const BlockMatrixView& a = this->Matrix;
+  // In units of the diagonal, so that no number leaves the range of float.
+  std::vector<double> scale(this->Rows.rows());
+  for (std::size_t row = 0; row < scale.size(); ++row)
+  {
+    const double* d = this->Diagonal.data() + Dim * row;
+    const double trace = std::accumulate(d, d + Dim, 0.0);
+    scale[row] = trace > 0 ? 1 / std::sqrt(trace) : 0.0;
+  }
+  std::vector<std::int32_t> own, lengths, columns;
+  std::vector<float> strengths;
+  for (const std::int32_t row : this->Rows.owned())
+  {
+    own.push_back(numbers[row]);
+    lengths.push_back(a.starts[row + 1] - a.starts[row]);
+    for (std::int32_t k = a.starts[row]; k < a.starts[row + 1]; ++k)
+    {
+      const double* block = a.blocks + static_cast<Index>(Dim * Dim) * k;
+      double sum = 0;
+      for (int c = 0; c < Dim; ++c)
+      {
+        sum -= block[(Dim + 1) * c];
+      }
+      columns.push_back(numbers[a.columns[k]]);
+      strengths.push_back(
+        static_cast<float>(std::max(0.0, sum * scale[row] * scale[a.columns[k]])));
+    }
+  }
+  return gathered(this->Rows.group(), own, lengths, columns, strengths);
+}
+
+/// Finds the aggregates, and the pattern of the coarse matrix.
+template <int Dim>
+void MultigridOnRanks::aggregate()
+{
+  const BlockMatrixView& a = this->Matrix;
+  const std::vector<std::int32_t>& owned = this->Rows.owned();
+  RankGroup& group = this->Rows.group();
+  const std::vector<std::int32_t> numbers = this->Rows.numbers();
+  Graph graph = this->couplings<Dim>(numbers);
+  const std::vector<std::int32_t> fineStarts = graph.starts;
+  const auto rows = static_cast<std::int32_t>(fineStarts.size()) - 1;
+  std::vector<std::int32_t> aggregates(rows), places(graph.columns.size()), pairs, moved;
+  std::iota(aggregates.begin(), aggregates.end(), 0);
+  std::iota(places.begin(), places.end(), 0);
+  std::int32_t count = 0;
+  for (int i = 0; i < pairings; ++i)
+  {
+    count = pairUp(graph, pairs);
+    graph = joined(graph, pairs, count, moved);
+    const auto follow = [](std::vector<std::int32_t>& list, const std::vector<std::int32_t>& to)
+    { std::for_each(list.begin(), list.end(), [&](std::int32_t& item) { item = to[item]; }); };
+    follow(aggregates, pairs);
+    follow(places, moved);
+  }
+  this->Coarse.reset();
+  if (static_cast<double>(count) > slowCoarsening * rows)
+  {
+    return;
+  }
+  this->Aggregate.resize(this->Rows.rows());
+  for (std::size_t row = 0; row < this->Aggregate.size(); ++row)
+  {
+    this->Aggregate[row] = aggregates[numbers[row]];
+  }
+  this->AggregateOf.clear();
+  this->PlaceOf.clear();
+  this->PlaceStarts.clear();
+  for (const std::int32_t row : owned)
+  {
+    this->AggregateOf.push_back(this->Aggregate[row]);
+    const auto begin = places.begin() + fineStarts[numbers[row]];
+    this->PlaceStarts.push_back(static_cast<Index>(this->PlaceOf.size()));
+    this->PlaceOf.insert(this->PlaceOf.end(), begin, begin + a.starts[row + 1] - a.starts[row]);
+  }
+  this->RankAggregates = group.gatherItems(compress(this->AggregateOf));
+  this->RankPlaces = group.gatherItems(compress(this->PlaceOf));
+  this->Starts = std::move(graph.starts);
+  this->Columns = std::move(graph.columns);
+  this->Diagonals.resize(count);
+  for (std::int32_t row = 0; row < count; ++row)
+  {
+    const auto begin = this->Columns.begin() + this->Starts[row],
+               end = this->Columns.begin() + this->Starts[row + 1];
+    this->Diagonals[row] =
+      static_cast<std::int32_t>(std::lower_bound(begin, end, row) - this->Columns.begin());
+  }
+  this->Blocks.resize(static_cast<std::size_t>(Dim * Dim) * this->Columns.size());
+  this->R.resize(static_cast<std::size_t>(Dim) * count);
+  this->Z.resize(this->R.size());
+  this->CoarseMatrix = { Dim, count, this->Starts.data(), this->Columns.data(),
+    this->Diagonals.data(), this->Blocks.data() };
+  this->Coarse = std::make_unique<Multigrid>(this->Threads);
+}
+
+//------------------------------------------------------------------------------
+void MultigridOnRanks::addUp(const std::vector<std::vector<std::int32_t>>& places,
+  const std::vector<double>& own, int components, std::vector<double>& to) const
+{
+  std::size_t total = 0;
+  for (const auto& ofRank : places)
+  {
+    total += ofRank.size();
+  }
+  const double bytes =
+    static_cast<double>(sizeof(double)) * static_cast<double>(total) * components;
+  const int step = bytes > atOnce ? 1 : components; // components that are gathered together
+  std::fill(to.begin(), to.end(), 0.0);
+  for (int first = 0; first < components; first += step)
+  {
+    std::vector<double> slice;
+    for (std::size_t i = first; step < components && i < own.size(); i += components)
+    {
+      slice.push_back(own[i]);
+    }
+    const auto parts = this->Rows.group().gatherItems(step < components ? slice : own);
+    for (std::size_t r = 0; r < parts.size(); ++r)
+    {
+      const double* from = parts[r].data();
+      for (const std::int32_t place : places[r])
+      {
+        double* sum = to.data() + static_cast<std::size_t>(components) * place + first;
+        for (int c = 0; c < step; ++c)
+        {
+          sum[c] += *from++;
+        }
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void MultigridOnRanks::fillCoarse()
+{
+  const BlockMatrixView& a = this->Matrix;
+  const std::vector<std::int32_t>& owned = this->Rows.owned();
+  const int rank = this->Rows.group().rank();
+  std::vector<double> own(Dim * Dim * this->RankPlaces[rank].size(), 0.0);
+  for (std::size_t i = 0; i < owned.size(); ++i)
+  {
+    const std::int32_t begin = a.starts[owned[i]], end = a.starts[owned[i] + 1];
+    for (std::int32_t k = begin; k < end; ++k)
+    {
+      const double* from = a.blocks + static_cast<Index>(Dim * Dim) * k;
+      double* to = own.data() +
+        static_cast<Index>(Dim * Dim) * this->PlaceOf[this->PlaceStarts[i] + (k - begin)];
+      for (int e = 0; e < Dim * Dim; ++e)
+      {
+        to[e] += from[e];
+      }
+    }
+  }
+  this->addUp(this->RankPlaces, own, Dim * Dim, this->Blocks);
+  this->Coarse->build(this->CoarseMatrix);
+}
+
+//------------------------------------------------------------------------------
+void MultigridOnRanks::build(const BlockMatrixView& matrix)
+{
+  this->Matrix = matrix;
+  const bool flat = matrix.size == 2;
+  flat ? this->invertDiagonals<2>() : this->invertDiagonals<3>();
+  if (!this->Coarse || ++this->Reused >= rebuildAfter)
+  {
+    this->Reused = 0;
+    flat ? this->aggregate<2>() : this->aggregate<3>();
+  }
+  if (this->Coarse)
+  {
+    flat ? this->fillCoarse<2>() : this->fillCoarse<3>();
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void MultigridOnRanks::subtractProduct(const double* x, double* rest) const
+{
+  const BlockMatrixView& a = this->Matrix;
+  const std::vector<std::int32_t>& owned = this->Rows.owned();
+  forEachChunk(static_cast<Index>(owned.size()), this->Threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        double sum[Dim] = {};
+        for (std::int32_t k = a.starts[owned[i]]; k < a.starts[owned[i] + 1]; ++k)
+        {
+          multiplyAdd<Dim>(a.blocks + static_cast<Index>(Dim * Dim) * k,
+            x + static_cast<Index>(Dim) * a.columns[k], sum);
+        }
+        for (int c = 0; c < Dim; ++c)
+        {
+          rest[Dim * i + c] -= sum[c];
+        }
+      }
+    });
+}
+
+template <int Dim>
+void MultigridOnRanks::cycle(const double* r, double* z)
+{
+  const auto count = static_cast<Index>(this->Rows.numberOfOwned());
+  const auto smooth = [&](const double* rest)
+  {
+    forEachChunk(count, this->Threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          multiplyAdd<Dim>(this->Inverse.data() + Dim * Dim * i, rest + Dim * i, z + Dim * i);
+        }
+      });
+  };
+  std::fill_n(z, Dim * count, 0.0);
+  smooth(r);
+  this->All.resize(static_cast<std::size_t>(Dim) * this->Rows.rows());
+  this->Rows.spread(z, this->All.data(), Dim);
+  this->Rest.assign(r, r + Dim * count);
+  this->subtractProduct<Dim>(this->All.data(), this->Rest.data());
+  if (this->Coarse)
+  {
+    const int rank = this->Rows.group().rank();
+    this->Own.assign(Dim * this->RankAggregates[rank].size(), 0.0);
+    for (Index i = 0; i < Dim * count; ++i)
+    {
+      this->Own[static_cast<Index>(Dim) * this->AggregateOf[i / Dim] + i % Dim] += this->Rest[i];
+    }
+    this->addUp(this->RankAggregates, this->Own, Dim, this->R);
+    this->Coarse->solve(this->R.data(), this->Z.data());
+    for (std::size_t row = 0; row < this->Aggregate.size(); ++row)
+    {
+      std::copy_n(this->Z.data() + static_cast<Index>(Dim) * this->Aggregate[row], Dim,
+        this->All.data() + Dim * row);
+    }
+    for (Index i = 0; i < Dim * count; ++i)
+    {
+      z[i] += this->All[static_cast<Index>(Dim) * this->Rows.owned()[i / Dim] + i % Dim];
+    }
+    this->subtractProduct<Dim>(this->All.data(), this->Rest.data());
+  }
+  smooth(this->Rest.data());
+}
+
+void MultigridOnRanks::apply(const double* r, double* z)
+{
+  this->Matrix.size == 2 ? this->cycle<2>(r, z) : this->cycle<3>(r, z);
+}
+}

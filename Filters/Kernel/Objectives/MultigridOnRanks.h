@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file MultigridOnRanks.h
+ * @brief Multigrid for a matrix whose rows are spread over ranks. Internal: not installed.
+ *
+ * The aggregates and the coarse matrices are the same however the rows are spread, to rounding: all
+ * ranks have the graph of all rows while aggregates are found, and all coarse levels, on which they
+ * do the same work. Only the finest level is divided. There the smoother is block Jacobi, with half
+ * of the sizes of the couplings added to the diagonals (A. Baker et al., "Multigrid smoothers for
+ * ultraparallel computing", SIAM J. Sci. Comput. 33, 2011), instead of Gauss-Seidel, which depends
+ * on the order of the rows. A cycle needs one exchange of values about the parts and one sum of a
+ * coarse vector over the ranks. So the memory of a rank has a part that does not shrink with more
+ * ranks: 8 bytes per coupling of two free points, and about an eighth of the whole matrix.
+ */
+#ifndef tautline_MultigridOnRanks_h
+#define tautline_MultigridOnRanks_h
+
+#include "Aggregation.h"
+#include "Multigrid.h"
+#include "RankRows.h"
+
+namespace tautline
+{
+class TAUTLINE_KERNEL_EXPORT MultigridOnRanks
+{
+public:
+  /// @param rows must outlive this @param threads 0: all cores. The result does not depend on it.
+  MultigridOnRanks(const RankRows& rows, int threads);
+
+  /**
+   * @brief As Multigrid::build(). Collective, as apply().
+   * @param matrix a row for each of rows(), of which those of other ranks are not used; on a rank
+   * that owns none it may have no rows
+   */
+  void build(const BlockMatrixView& matrix);
+  /// @param r, z size numbers for each row that this rank owns
+  void apply(const double* r, double* z);
+
+private:
+  template <int Dim>
+  void invertDiagonals();
+  template <int Dim>
+  Graph couplings(const std::vector<std::int32_t>& numbers) const;
+  template <int Dim>
+  void aggregate();
+  template <int Dim>
+  void fillCoarse();
+  template <int Dim>
+  void cycle(const double* r, double* z);
+  /// rest -= A x, of own rows; x of all rows.
+  template <int Dim>
+  void subtractProduct(const double* x, double* rest) const;
+  /// Sums over the ranks of what each has at the places listed, `components` numbers each.
+  void addUp(const std::vector<std::vector<std::int32_t>>& places, const std::vector<double>& own,
+    int components, std::vector<double>& to) const;
+
+  const RankRows& Rows;
+  int Threads, Reused = 0;
+  BlockMatrixView Matrix;
+  std::vector<double> Diagonal;       ///< entries, of all rows
+  std::vector<double> Inverse;        ///< blocks, of own rows
+  std::vector<double> All, Rest, Own; ///< work space: of all rows, of own rows, of own aggregates
+
+  // The next level, on all ranks.
+  std::unique_ptr<Multigrid> Coarse; ///< null where rows hardly couple
+  BlockMatrixView CoarseMatrix;
+  std::vector<std::int32_t> Starts, Columns, Diagonals;
+  std::vector<double> Blocks, R, Z;
+  std::vector<std::int32_t> Aggregate;   ///< of each row here
+  std::vector<std::int32_t> AggregateOf; ///< of each own row: in the list of this rank
+  std::vector<std::int32_t> PlaceOf;     ///< of each block of own rows: in the list of this rank
+  std::vector<Index> PlaceStarts;        ///< of each own row
+  /// Of each rank: the aggregates and the coarse blocks that its rows add to.
+  std::vector<std::vector<std::int32_t>> RankAggregates, RankPlaces;
+};
+}
+#endif

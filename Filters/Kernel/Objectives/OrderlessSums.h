@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file OrderlessSums.h
+ * @brief Sums that hardly ever depend on the order of their terms. Internal: not installed.
+ */
+#ifndef tautline_OrderlessSums_h
+#define tautline_OrderlessSums_h
+
+#include <cstddef>
+#include <vector>
+
+namespace tautline
+{
+/**
+ * @class tautline::OrderlessSums
+ * @brief Numbers with what rounding takes from them, which is added at the end (T. Ogita, S. Rump
+ * and S. Oishi, "Accurate sum and dot product", SIAM J. Sci. Comput. 26, 2005, Sum2). Where cells
+ * are visited in an order that depends on how a mesh is cut, the results are the same but in about
+ * one of 1e15 cases.
+ */
+class OrderlessSums
+{
+public:
+  /// @param sums where they begin and, after finish(), end
+  OrderlessSums(double* sums, std::size_t count)
+    : Sums(sums)
+    , Rests(count, 0.0)
+  {
+  }
+
+  void add(std::size_t i, double term)
+  {
+    const double before = this->Sums[i], sum = before + term, part = sum - before;
+    this->Rests[i] += (before - (sum - part)) + (term - part);
+    this->Sums[i] = sum;
+  }
+
+  void finish()
+  {
+    for (std::size_t i = 0; i < this->Rests.size(); ++i)
+    {
+      this->Sums[i] += this->Rests[i];
+    }
+  }
+
+private:
+  double* Sums;
+  std::vector<double> Rests;
+};
+}
+#endif
