@@ -528,7 +528,7 @@ public:
   /**
    * Whether one process, too, works in the order that does not depend on how a mesh is spread over
    * processes, which several processes always use: the points are then the same on any number of
-   * them. In this order only local optimizers work; AUTOMATIC is LOCAL_NEWTON. Off.
+   * them. Off.
    */
   vtkSetMacro(ReproducibleOrder, bool);
   vtkGetMacro(ReproducibleOrder, bool);

@@ -21,10 +21,13 @@ bool slides(const double* directions, std::size_t p)
 }
 
 //------------------------------------------------------------------------------
-GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer)
+GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer,
+  std::vector<std::int32_t> rowOfPoint, Index rows)
   : Problem(problem)
   , Newton(optimizer == Optimizer::NewtonConjugateGradient)
   , Size(problem.moving().dimension() == Dimension::Planar ? 2 : 3)
+  , RowOfPoint(std::move(rowOfPoint))
+  , Rows(RowOfPoint.empty() ? problem.simplices().freeVertices() : rows)
   , Axes(coordinateAxes(problem.moving()))
   , Origin(problem.points())
   , Gradient(3 * problem.moving().view().numberOfPoints)
@@ -42,6 +45,10 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
   this->Check = !problem.options().allowInversion;
   for (std::size_t i = 0; i < problem.objectives() && !someInvalid && !inside; ++i)
   {
+    if (!this->hasElements(i))
+    {
+      continue;
+    }
     const Fault fault = problem.sum(i).state().function.fault;
     const bool all = !problem.sum(i).objective().elementWeights;
     this->Check =
@@ -52,7 +59,29 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
 //------------------------------------------------------------------------------
 std::size_t GlobalFunction::size() const
 {
-  return static_cast<std::size_t>(this->Size * this->Problem.simplices().freeVertices());
+  return static_cast<std::size_t>(this->Size * this->Rows);
+}
+
+/// Whether the objective has elements here. A part of a mesh may have none; its sum would be
+/// refused.
+bool GlobalFunction::hasElements(std::size_t objective) const
+{
+  if (this->RowOfPoint.empty())
+  {
+    return true;
+  }
+  const Objective& o = this->Problem.resolved()[objective];
+  for (const CellBlock& block : this->Problem.moving().blocks())
+  {
+    for (Index i = 0; metricInfo(o.metric).definedOn(block.type) && i < block.count; ++i)
+    {
+      if (!o.elementWeights || o.elementWeights[block.cell(i)] > 0)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 template <class Visit>
@@ -61,7 +90,10 @@ void GlobalFunction::forEachFree(const Visit& visit) const
   const SimplexMesh& s = this->Problem.simplices();
   for (std::int32_t v = 0; v < s.freeVertices(); ++v)
   {
-    visit(static_cast<std::size_t>(v), static_cast<std::size_t>(s.point(v)));
+    const auto p = static_cast<std::size_t>(s.point(v));
+    visit(this->RowOfPoint.empty() ? static_cast<std::size_t>(v)
+                                   : static_cast<std::size_t>(this->RowOfPoint[p]),
+      p);
   }
 }
 
@@ -154,6 +186,14 @@ double GlobalFunction::valueAndGradient(const double* x, double* gradient)
     const double own = this->Problem.sum(i).addGradient(this->Slopes[i], this->Gradient.data());
     value = n == 1 ? own : value;
   }
+  this->takeGradient(gradient);
+  return std::isnan(value) ? infinity : value;
+}
+
+//------------------------------------------------------------------------------
+/// Of the points that are free, along what they may follow.
+void GlobalFunction::takeGradient(double* gradient) const
+{
   this->forEachFree(
     [&](std::size_t i, std::size_t p)
     {
@@ -164,7 +204,40 @@ double GlobalFunction::valueAndGradient(const double* x, double* gradient)
         gradient[this->Size * i + a] = dot(g, this->Axes[a]);
       }
     });
-  return std::isnan(value) ? infinity : value;
+}
+
+//------------------------------------------------------------------------------
+void GlobalFunction::findTerms(std::size_t objective, double* terms)
+{
+  if (this->hasElements(objective))
+  {
+    this->Problem.sum(objective).state().findTerms(1.0, nullptr, terms);
+  }
+  else
+  {
+    std::fill_n(terms, this->Problem.moving().view().numberOfCells, 0.0);
+  }
+}
+
+void GlobalFunction::findGradient(
+  const std::vector<double>& slopes, double* gradient, double* terms)
+{
+  this->Slopes = slopes;
+  std::fill(this->Gradient.begin(), this->Gradient.end(), 0.0);
+  OrderlessSums sums(this->Gradient.data(), this->Gradient.size());
+  for (std::size_t i = slopes.size(); i-- > 0;) // at last the first, whose terms are wanted
+  {
+    if (this->hasElements(i))
+    {
+      this->Problem.sum(i).state().findTerms(slopes[i], &sums, terms);
+    }
+    else
+    {
+      this->findTerms(i, terms);
+    }
+  }
+  sums.finish();
+  this->takeGradient(gradient);
 }
 
 //------------------------------------------------------------------------------
@@ -173,9 +246,9 @@ void GlobalFunction::makeMatrix()
   std::vector<std::int32_t> rows(this->Problem.moving().view().numberOfPoints, -1);
   this->forEachFree([&](std::size_t i, std::size_t p) { rows[p] = static_cast<std::int32_t>(i); });
   this->Hessian = std::make_unique<HessianMatrix>(this->Problem.moving(), std::move(rows),
-    this->Problem.simplices().freeVertices(),
-    this->Newton ? HessianMatrix::Pattern::Full : HessianMatrix::Pattern::Diagonal,
+    this->Rows, this->Newton ? HessianMatrix::Pattern::Full : HessianMatrix::Pattern::Diagonal,
     this->Problem.options().threads);
+  this->Hessian->setOrderless(!this->RowOfPoint.empty() && !this->Newton);
 }
 
 //------------------------------------------------------------------------------
@@ -200,30 +273,41 @@ void GlobalFunction::restrict(std::size_t row, std::size_t p)
 }
 
 //------------------------------------------------------------------------------
-void GlobalFunction::linearize(const double*)
+bool GlobalFunction::fillMatrix()
 {
-  if (!this->Hessian)
-  {
-    this->makeMatrix();
-  }
   this->Hessian->clear();
   // With the positive semidefinite part of each Hessian no direction of Newton's method needs a
   // shift, and multigrid solves its systems.
   bool convex = this->Newton;
   for (std::size_t i = 0; i < this->Objectives.size(); ++i)
   {
-    convex = convex && this->Slopes[i] >= 0 && HessianMatrix::hasConvexPart(this->Problem.sum(i));
+    convex =
+      convex && this->Slopes[i] >= 0 && HessianMatrix::hasConvexPart(this->Problem.resolved()[i]);
   }
   for (std::size_t i = 0; i < this->Objectives.size(); ++i)
   {
-    convex ? this->Hessian->addConvexPart(this->Problem.sum(i), this->Slopes[i])
-           : this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
+    if (this->hasElements(i))
+    {
+      convex ? this->Hessian->addConvexPart(this->Problem.sum(i), this->Slopes[i])
+             : this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
+    }
   }
   const OptimizeOptions& options = this->Problem.options();
   if (options.slideLines || options.slidePlanes)
   {
     this->forEachFree([&](std::size_t i, std::size_t p) { this->restrict(i, p); });
   }
+  return convex;
+}
+
+//------------------------------------------------------------------------------
+void GlobalFunction::linearize(const double*)
+{
+  if (!this->Hessian)
+  {
+    this->makeMatrix();
+  }
+  const bool convex = this->fillMatrix();
   convex ? this->Hessian->factorizeByMultigrid() : this->Hessian->factorize();
 }
 

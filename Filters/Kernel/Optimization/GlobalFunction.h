@@ -24,8 +24,14 @@ namespace tautline
 class GlobalFunction : public SmoothFunction
 {
 public:
-  /// @param optimizer NewtonConjugateGradient gets the whole Hessian, others its diagonal blocks
-  GlobalFunction(OptimizationProblem& problem, Optimizer optimizer);
+  /**
+   * @param optimizer NewtonConjugateGradient gets the whole Hessian, others its diagonal blocks
+   * @param rowOfPoint per point of the mesh where its variables are, -1 for none; empty: in the
+   * order of the simplices
+   * @param rows of all points
+   */
+  GlobalFunction(OptimizationProblem& problem, Optimizer optimizer,
+    std::vector<std::int32_t> rowOfPoint = {}, Index rows = 0);
 
   std::size_t size() const override;
   double valueAndGradient(const double* x, double* gradient) override;
@@ -36,18 +42,37 @@ public:
   /// Moves the points of the problem, and its simplices, to x.
   void put(const double* x);
 
+  // Its parts, for a mesh on several ranks.
+
+  /// Moves the points of the problem alone.
+  void move(const double* x);
+  /// No element is less valid than it was at the start.
+  bool allowed();
+  /// The terms of an objective: one per cell.
+  void findTerms(std::size_t objective, double* terms);
+  /// The gradient of the sum of the objectives times their slopes, and the terms of the first.
+  void findGradient(const std::vector<double>& slopes, double* gradient, double* terms);
+  /// Takes the memory for the Hessian.
+  void makeMatrix();
+  /// The Hessian with the slopes of findGradient(), not factorized; whether it is the positive
+  /// semidefinite part.
+  bool fillMatrix();
+  HessianMatrix& matrix() { return *this->Hessian; }
+  bool hasMatrix() const { return this->Hessian != nullptr; }
+
 private:
   template <class Visit>
   void forEachFree(const Visit& visit) const;
-  void move(const double* x);
-  void makeMatrix();
+  bool hasElements(std::size_t objective) const;
+  void takeGradient(double* gradient) const;
   void restrict(std::size_t row, std::size_t p);
-  bool allowed();
   Vec3 project(std::size_t p, Vec3 g) const;
 
   OptimizationProblem& Problem;
   bool Newton;
   int Size; ///< coordinates of a point
+  std::vector<std::int32_t> RowOfPoint;
+  Index Rows;
   std::array<Vec3, 3> Axes;
   std::vector<double> Origin; ///< 3 per point
   bool Check = true;          ///< whether elements may invert without an infinite objective

@@ -2,7 +2,7 @@
 #include "HarmonicStart.h"
 
 #include "tautline/Core/VectorAlgebra.h"
-#include "tautline/Objectives/Multigrid.h"
+#include "tautline/Objectives/MultigridOnRanks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,28 +104,34 @@ Laplacian assemble(const OptimizationProblem& problem, const std::vector<std::in
   return a;
 }
 
-/// Flexible conjugate gradients; false if they do not converge.
-bool solve(const Laplacian& a, Index count, int threads, std::vector<double>& x)
+BlockMatrixView viewOf(const Laplacian& a, Index count)
 {
-  const BlockMatrixView matrix = { size, count, a.starts.data(), a.columns.data(),
-    a.diagonals.data(), a.blocks.data() };
-  Multigrid grids(threads);
-  grids.build(matrix);
-  const VectorAlgebra algebra(x.size(), threads);
+  return { size, count, a.starts.data(), a.columns.data(), a.diagonals.data(), a.blocks.data() };
+}
+
+/**
+ * @brief Flexible conjugate gradients; false if they do not converge.
+ * @param times product of the matrix and a vector
+ * @param precondition solves roughly
+ */
+template <class Times, class Precondition>
+bool solve(const VectorAlgebra& algebra, const std::vector<double>& right, const Times& times,
+  const Precondition& precondition, std::vector<double>& x)
+{
   std::vector<double> r(x.size()), z(x.size()), d(x.size()), product(x.size());
-  multiply(matrix, threads, x.data(), product.data());
-  algebra.each([&](Index i) { r[i] = a.right[i] - product[i]; });
+  times(x.data(), product.data());
+  algebra.each([&](Index i) { r[i] = right[i] - product[i]; });
   const double wanted = residual * residual * algebra.dot(r.data(), r.data());
   if (wanted == 0)
   {
     return true;
   }
-  grids.apply(r.data(), z.data());
+  precondition(r.data(), z.data());
   d = z;
   double rz = algebra.dot(r.data(), z.data());
   for (int i = 0; i < maxIterations && rz > 0; ++i)
   {
-    multiply(matrix, threads, d.data(), product.data());
+    times(d.data(), product.data());
     const double step = rz / algebra.dot(d.data(), product.data());
     algebra.each(
       [&](Index k)
@@ -138,7 +144,7 @@ bool solve(const Laplacian& a, Index count, int threads, std::vector<double>& x)
     {
       return std::isfinite(rest);
     }
-    grids.apply(r.data(), z.data());
+    precondition(r.data(), z.data());
     const double beta = -step * algebra.dot(z.data(), product.data()) / rz;
     rz = algebra.dot(r.data(), z.data());
     algebra.each([&](Index k) { d[k] = z[k] + beta * d[k]; });
@@ -160,8 +166,15 @@ std::vector<double> harmonicPoints(OptimizationProblem& problem, const std::vect
     std::copy_n(start.begin() + 3 * static_cast<std::size_t>(s.point(v)), 3,
       x.begin() + static_cast<std::size_t>(size) * v);
   }
+  const int threads = problem.options().threads;
+  const Laplacian a = assemble(problem, rows, count, start);
+  Multigrid grids(threads);
+  grids.build(viewOf(a, count));
   std::vector<double> points = start;
-  if (!solve(assemble(problem, rows, count, start), count, problem.options().threads, x))
+  if (!solve(
+        VectorAlgebra(x.size(), threads), a.right,
+        [&](const double* d, double* product) { multiply(viewOf(a, count), threads, d, product); },
+        [&](const double* r, double* z) { grids.apply(r, z); }, x))
   {
     points.clear();
     return points;
@@ -172,5 +185,50 @@ std::vector<double> harmonicPoints(OptimizationProblem& problem, const std::vect
       points.begin() + 3 * static_cast<std::size_t>(s.point(v)));
   }
   return points;
+}
+
+//------------------------------------------------------------------------------
+bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
+  OptimizationProblem* problem, int threads, std::vector<double>& points)
+{
+  Laplacian a;
+  Index count = 0;
+  mesh.group().together(
+    [&]
+    {
+      if (problem)
+      {
+        count = rows.rows();
+        a = assemble(*problem, rows.rowOfPoint(), count, points);
+      }
+    });
+  std::vector<double> all(static_cast<std::size_t>(size * rows.rows())), found(all.size());
+  for (Index row = 0; row < rows.rows(); ++row)
+  {
+    std::copy_n(&points[3 * static_cast<std::size_t>(rows.points()[row])], 3, &all[size * row]);
+  }
+  std::vector<double> x(size * rows.numberOfOwned()), right(x.size());
+  rows.pick(all.data(), x.data(), size);
+  rows.pick(count > 0 ? a.right.data() : all.data(), right.data(), size);
+  MultigridOnRanks grids(rows, threads);
+  grids.build(viewOf(a, count));
+  const VectorAlgebra algebra(x.size(), threads, LaneOrder::Sequential, &mesh.group());
+  const auto times = [&](const double* d, double* product)
+  {
+    rows.spread(d, all.data(), size);
+    multiply(viewOf(a, count), threads, all.data(), found.data());
+    rows.pick(found.data(), product, size);
+  };
+  if (!solve(
+        algebra, right, times, [&](const double* r, double* z) { grids.apply(r, z); }, x))
+  {
+    return false;
+  }
+  rows.spread(x.data(), all.data(), size);
+  for (Index row = 0; row < rows.rows(); ++row)
+  {
+    std::copy_n(&all[size * row], 3, &points[3 * static_cast<std::size_t>(rows.points()[row])]);
+  }
+  return true;
 }
 }

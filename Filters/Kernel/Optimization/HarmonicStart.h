@@ -7,14 +7,29 @@
 #define tautline_HarmonicStart_h
 
 #include "OptimizationProblem.h"
+#include "tautline/Objectives/RankRows.h"
 
 namespace tautline
 {
+/// Of the mean ratio, 1 for ideal elements: below, a start is near the minimum of its sum, and not
+/// worth a harmonic map.
+constexpr double enoughForHarmonicStart = 1.1;
+
 /**
  * @brief The points, 3 numbers each, where the sum of the squared lengths of all edges is smallest
  * and points that are not free stay. Elements may be inverted there. Empty where the solver does
  * not converge. The result does not depend on the number of threads.
  */
 std::vector<double> harmonicPoints(OptimizationProblem& problem, const std::vector<double>& start);
+
+/**
+ * @brief The same for a mesh on several ranks. Does not depend on the ranks, to rounding.
+ * Collective.
+ * @param problem of the local part; null on a rank without cells
+ * @param points the local points at the start, which are moved; not if the solver does not converge
+ * @return whether it does
+ */
+bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
+  OptimizationProblem* problem, int threads, std::vector<double>& points);
 }
 #endif

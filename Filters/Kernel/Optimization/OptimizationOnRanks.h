@@ -10,6 +10,7 @@
 #include "Optimize.h"
 #include "SweepControl.h"
 #include "tautline/Mesh/DistributedMesh.h"
+#include "tautline/Objectives/RankRows.h"
 
 #include <limits>
 #include <memory>
@@ -45,7 +46,14 @@ private:
   void untangle();
   bool stage();
   void makeProblem();
-  StopReason sweep(bool& repaired);
+  void move(const IterationRecord& first, bool& repaired);
+  StopReason sweep(Slowness* slow, bool& failed, bool& repaired);
+  // All vertices at once: GlobalOnRanks.cxx.
+  const RankRows& rows();
+  StopReason minimizeAll(Optimizer method);
+  bool startsWithNewton(const IterationRecord& first);
+  void takeHarmonicStart(const std::vector<double>& start);
+  void useNewton(Slowness slow, const std::vector<double>& start, bool& failed, bool& repaired);
   IterationRecord record(int iteration);
   void addObjective(
     std::size_t i, const std::vector<signed char>& validity, IterationRecord& record);
@@ -64,13 +72,16 @@ private:
   DistributedMesh& TheMesh;
   RankGroup& Group;
   bool Mirrored;
+  int Coordinates = 3; ///< of a point: 2 in a plane
   OptimizeOptions Options;
   Stopwatch Clock;
   std::unique_ptr<Mesh> Start; ///< null on a rank without cells
   std::vector<double> Points;
   std::unique_ptr<OptimizationProblem> Problem; ///< the same
   std::vector<Objective> Resolved;
+  std::vector<unsigned char> Free; ///< per local point
   std::vector<int> Sets;
+  std::unique_ptr<RankRows> Rows; ///< made on first use
   std::unique_ptr<Scalarizer> TheScalarizer;
   StoppingTest Watch;
   OptimizeResult Result;

@@ -150,26 +150,14 @@ StopReason optimizeGlobally(
   {
     return reason;
   }
-  // After sweeps, an iteration may reduce the objective little at first.
-  constexpr double afterSweeps = 0.1;
   const bool alone = isGlobal(problem.options().optimizer);
   GlobalFunction function(problem, method);
   std::vector<double> x(function.size(), 0.0);
   for (;;)
   {
     const int before = result.history.back().iteration;
-    MinimizeOptions options;
-    options.method = method;
-    options.maximumIterations = stop.maximumIterations - before;
-    options.gradientNorm = stop.gradientNorm;
-    options.relativeChange = alone ? stop.relativeChange : afterSweeps * stop.relativeChange;
-    if (method == Optimizer::NewtonConjugateGradient)
-    {
-      // Its steps tell how far the minimum is. A gradient small beside that of a start with nearly
-      // flat elements tells nothing.
-      options.decrement = stop.relativeChange;
-      options.relativeChange = options.gradientNorm = 0;
-    }
+    MinimizeOptions options = minimizeOptions(stop, method, alone);
+    options.maximumIterations -= before;
     options.outOfTime = [&] { return problem.outOfTime(); };
     options.threads = problem.options().threads;
     bool ended = false;
@@ -206,17 +194,6 @@ StopReason optimizeGlobally(
   }
 }
 
-/// Whether Automatic may go over to Newton's method: for one sum that is wanted at its minimum.
-bool mayUseNewton(const OptimizeOptions& options)
-{
-  const ObjectiveTemplate objectiveTemplate = options.objectives[0].objectiveTemplate;
-  const bool sum = objectiveTemplate != ObjectiveTemplate::PowerMean &&
-    objectiveTemplate != ObjectiveTemplate::Maximum;
-  const StoppingCriteria& stop = options.stopping;
-  return options.optimizer == Optimizer::Automatic && options.objectives.size() == 1 && sum &&
-    !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;
-}
-
 std::vector<signed char> validityOf(const Mesh& mesh, int threads)
 {
   std::vector<signed char> validity(mesh.view().numberOfCells);
@@ -238,12 +215,10 @@ Index countInvalid(const std::vector<signed char>& validity)
 void takeHarmonicStart(
   OptimizationProblem& problem, const std::vector<double>& start, const OptimizeResult& result)
 {
-  // Of the mean ratio, 1 for ideal elements: below, the start is near the minimum.
-  constexpr double enoughToGain = 1.1;
   const OptimizeOptions& options = problem.options();
   if (options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets ||
     options.objectives[0].metric != Metric::InverseMeanRatio || problem.outOfTime() ||
-    result.history.front().mean[0] < enoughToGain)
+    result.history.front().mean[0] < enoughForHarmonicStart)
   {
     return;
   }

@@ -107,6 +107,7 @@ void OptimizationOnRanks::agree()
   const auto own = static_cast<Index>(this->Start ? this->Start->dimension() : Dimension::None);
   const Index highest = this->Group.maximum(own);
   const bool differ = this->Group.any(this->Start && own != highest);
+  this->Coordinates = highest == static_cast<Index>(Dimension::Planar) ? 2 : 3;
   const auto& box = this->TheMesh.bounds();
   const bool planar = highest == static_cast<Index>(Dimension::Planar) && !differ &&
     (box[0] == box[3] || box[1] == box[4] || box[2] == box[5]);
@@ -154,7 +155,9 @@ void OptimizationOnRanks::makeProblem()
   {
     agreed.assign(agreed.size(), 0); // weights of cells differ by objective
   }
-  std::vector<unsigned char> free(this->TheMesh.localPoints(), 0);
+  std::vector<unsigned char>& free = this->Free;
+  free.assign(this->TheMesh.localPoints(), 0);
+  this->Rows.reset();
   if (this->Problem)
   {
     this->Problem->keepClosedForms(agreed);
@@ -303,7 +306,7 @@ void OptimizationOnRanks::load(const std::vector<double>& points)
 
 //------------------------------------------------------------------------------
 /// Sweeps to convergence; see optimizeLocally() in Optimize.cxx.
-StopReason OptimizationOnRanks::sweep(bool& repaired)
+StopReason OptimizationOnRanks::sweep(Slowness* slow, bool& failed, bool& repaired)
 {
   RankSweeper sweeper(this->TheMesh, this->Problem.get(), this->Sets, this->Options.threads);
   std::vector<double> best = this->Points;
@@ -329,6 +332,7 @@ StopReason OptimizationOnRanks::sweep(bool& repaired)
     if (!(std::isfinite(size) && lowered >= -roundingOfSums * size))
     {
       this->load(best);
+      failed = true;
       return StopReason::NoProgress;
     }
     best = this->Points;
@@ -344,8 +348,13 @@ StopReason OptimizationOnRanks::sweep(bool& repaired)
       return StopReason::NoProgress;
     }
     gains.add(lowered);
-    if (!converged(this->Options.stopping, swept, all, firstGradient, lowered, gains.remaining(),
-          size, reason))
+    const StoppingCriteria& stop = this->Options.stopping;
+    if (slow && (gains.stiff(size) || gains.slow(size, stop.relativeChange)))
+    {
+      *slow = gains.stiff(size) ? Slowness::Far : Slowness::Near;
+      return StopReason::NoProgress;
+    }
+    if (!converged(stop, swept, all, firstGradient, lowered, gains.remaining(), size, reason))
     {
       all = swept.moved == 0;
     }
@@ -402,7 +411,7 @@ bool OptimizationOnRanks::stage()
     return false;
   }
   bool repaired = false;
-  this->Result.reason = this->sweep(repaired);
+  this->move(first, repaired);
   if (!repaired)
   {
     this->Result.restored = this->restoreWorst();
@@ -500,11 +509,6 @@ constexpr const char* gatherFirst =
 //------------------------------------------------------------------------------
 void requireLocalOptions(const OptimizeOptions& options)
 {
-  if (isGlobal(options.optimizer))
-  {
-    throw Error("Optimizers that move all points at once" + std::string(gatherFirst) +
-      "choose Automatic or Local Newton.");
-  }
   if (options.model || options.slideSurface)
   {
     throw Error("Points that slide on curved surfaces, features and geometries" +
@@ -549,7 +553,7 @@ OptimizeResult optimizeOnRanks(DistributedMesh& mesh, bool mirrored, const Optim
           "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
       }
     });
-  // The owner's flags count.
+  // What the owner says of a point counts.
   std::vector<unsigned char> fixed;
   OptimizeOptions agreed = options;
   if (options.fixed)
@@ -559,6 +563,20 @@ OptimizeResult optimizeOnRanks(DistributedMesh& mesh, bool mirrored, const Optim
   fixed.reserve(1); // not null, which would be the boundary
   agreed.fixed = fixed.data();
   mesh.exchange(fixed.data());
+  std::vector<double> planes, lines;
+  const auto agreeOn = [&](const double*& given, std::vector<double>& directions)
+  {
+    if (mesh.group().any(given != nullptr))
+    {
+      directions.assign(3 * mesh.localPoints(), 0.0);
+      std::copy_n(given, given ? directions.size() : 0, directions.begin());
+      mesh.exchange(directions.data(), 3);
+      directions.reserve(1);
+      given = directions.data();
+    }
+  };
+  agreeOn(agreed.slidePlanes, planes);
+  agreeOn(agreed.slideLines, lines);
   return OptimizationOnRanks(mesh, mirrored, agreed).run();
 }
 

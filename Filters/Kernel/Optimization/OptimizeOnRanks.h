@@ -14,20 +14,35 @@ namespace tautline
 {
 /**
  * @brief Throws Error for options that need the whole mesh in one place, by name and with the
- * remedy: global optimizers, the templates p-mean and maximum, targets, element weights, points
- * that slide on curved surfaces, rescaling of untangling objectives, improvement of the worst
- * element.
+ * remedy: the templates p-mean and maximum, targets, element weights, points that slide on curved
+ * surfaces, rescaling of untangling objectives, improvement of the worst element.
  */
 TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
 
 /**
- * @brief Optimizes by local sweeps: sets of vertices without a common cell move one after the
- * other. Collective; every rank gives the same options but for those per point.
+ * @brief Optimizes by any optimizer, with the rules of optimize(). Collective; every rank gives the
+ * same options but for those per point.
  *
- * The optimizer Automatic stays with the sweeps. Elements that are invalid and that no objective
- * repairs are untangled first (untangleOnRanks()); those that stay invalid are left out. Unless
- * allowInversion, the result of the whole mesh is never worse than the input, as that of
- * optimize().
+ * Local optimizers move sets of vertices without a common cell one after the other. Global ones
+ * take dot products and sums over all ranks, which are rounded once; each rank has the gradient and
+ * the rows of the Hessian of its own points. Their preconditioners do not depend on the ranks:
+ * diagonal blocks; and for NewtonConjugateGradient on sums of the inverse mean ratio (or of its
+ * square) algebraic multigrid, smoothed by block Jacobi on the finest level instead of the
+ * Gauss-Seidel of optimize(), so that it takes somewhat more inner iterations. Each rank has the
+ * graph of the whole mesh while the aggregates are found, and all coarse levels (see
+ * MultigridOnRanks.h). For other objectives NewtonConjugateGradient has diagonal blocks alone, in
+ * volumes instead of the Gauss-Seidel of optimize().
+ *
+ * Automatic goes over from sweeps to NewtonConjugateGradient, to its harmonic start and to
+ * LimitedMemoryBFGS where it does in optimize(), judged by the whole mesh; where a matrix does not
+ * fit into the memory of one rank, the sweeps go on. Points are the same on any number of ranks to
+ * rounding (1e-10 in the tests). Converged objectives are those of optimize() to 1e-6, in another
+ * order of the vertices.
+ *
+ * Elements that are invalid and that no objective repairs are untangled first (untangleOnRanks());
+ * those that stay invalid are left out. Unless allowInversion, the result of the whole mesh is
+ * never worse than the input, as that of optimize(); where the worst element would be, points about
+ * it go back to the input, without the attempt of optimize() to improve it.
  * @param mesh planar meshes at right angles to an axis, and volume meshes; all cells of one
  * dimension. Its points are where the optimization starts; not changed.
  * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks

@@ -7,7 +7,7 @@
 #define tautline_SweepControl_h
 
 #include "LocalSweep.h"
-#include "OptimizeOptions.h"
+#include "Minimize.h"
 
 #include <algorithm>
 #include <cmath>
@@ -199,6 +199,37 @@ enum class Slowness
   Far,    ///< too slowly, and the minimum is far away
   Near    ///< too slowly near the minimum
 };
+
+/// Whether Automatic may go over to Newton's method: for one sum that is wanted at its minimum.
+inline bool mayUseNewton(const OptimizeOptions& options)
+{
+  const ObjectiveTemplate objectiveTemplate = options.objectives[0].objectiveTemplate;
+  const bool sum = objectiveTemplate != ObjectiveTemplate::PowerMean &&
+    objectiveTemplate != ObjectiveTemplate::Maximum;
+  const StoppingCriteria& stop = options.stopping;
+  return options.optimizer == Optimizer::Automatic && options.objectives.size() == 1 && sum &&
+    !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;
+}
+
+/// The criteria as those of a global method. @param alone or after sweeps
+inline MinimizeOptions minimizeOptions(const StoppingCriteria& stop, Optimizer method, bool alone)
+{
+  // After sweeps, an iteration may reduce the objective little at first.
+  constexpr double afterSweeps = 0.1;
+  MinimizeOptions options;
+  options.method = method;
+  options.maximumIterations = stop.maximumIterations;
+  options.gradientNorm = stop.gradientNorm;
+  options.relativeChange = alone ? stop.relativeChange : afterSweeps * stop.relativeChange;
+  if (method == Optimizer::NewtonConjugateGradient)
+  {
+    // Its steps tell how far the minimum is. A gradient small beside that of a start with nearly
+    // flat elements tells nothing.
+    options.decrement = stop.relativeChange;
+    options.relativeChange = options.gradientNorm = 0;
+  }
+  return options;
+}
 
 /// Whether the sweeps have converged, and why; `all`: it visited every vertex.
 inline bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,

@@ -142,9 +142,6 @@ void testRefusals()
     return "";
   };
   TAUTLINE_CHECK_EQUAL(message(options), "");
-  OptimizeOptions global = options;
-  global.optimizer = Optimizer::LimitedMemoryBFGS;
-  TAUTLINE_CHECK(message(global).find("choose Automatic or Local Newton") != std::string::npos);
   OptimizeOptions worst = options;
   worst.improveWorst = 0.1;
   TAUTLINE_CHECK(message(worst).find("Improve Worst") != std::string::npos);
