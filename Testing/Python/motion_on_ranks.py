@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """motion_on_ranks.py FILE: for pvbatch on any number of MPI ranks, see test_motion_on_ranks.py.
 
-Optimizes and untangles a cube whose parts are on all ranks, cut in slabs or at random, and writes points, summaries and
-tables to FILE as JSON.
+Optimizes (by sweeps, and all points at once) and untangles a cube whose parts are on all ranks, cut in slabs or at
+random, and writes points, summaries and tables to FILE as JSON.
 """
 
 import json
@@ -27,6 +27,8 @@ own = divided(places[cells].mean(axis=1), "{cut}", RANKS) == RANK
 output.VTKObject.ShallowCopy(piece(points, cells, own))
 """
 SLIDING = 1  # of the enumeration Boundary
+CUSTOM = 0  # of the enumeration Preset
+GLOBAL = {"L-BFGS": 5, "Newton-CG": 6}  # of the enumeration Optimizer
 results = {"ranks": RANKS}
 
 
@@ -68,6 +70,10 @@ for scattered in (0, 1):  # (scripts of sources import into this module: not "ra
     slide = OptimizeMesh(Input=cube(4, 0.3, scattered), ReproducibleOrder=1)
     slide.Boundary = SLIDING
     note(f"slide {scattered}", slide)
+    for name, optimizer in GLOBAL.items():
+        together = OptimizeMesh(Input=cube(4, 0.3, scattered), ReproducibleOrder=1, Preset=CUSTOM, Optimizer=optimizer)
+        note(f"{name} {scattered}", together)
+        results[f"{name} {scattered}"]["history"] = table(together, 1, "Objective")
     note(f"untangle {scattered}", UntangleMesh(Input=cube(5, 0.45, scattered), ReproducibleOrder=1))
 
 with open(sys.argv[1], "w") as file:
