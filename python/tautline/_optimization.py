@@ -221,7 +221,7 @@ def optimize(
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
         of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
     reproducible_order: work in the order that does not depend on how a mesh is spread over processes, as several of
-        them always do; only local optimizers work in it.
+        them always do.
     options: properties of vtkMeshOptimizer. Stopping: maximum_iterations (300), gradient_norm (1e-6), relative_change
         (1e-5), two_digits (False), reduction (1: off), best_known (None: estimated), stop_when_valid (False).
         Scalarization: c (0: automatic), exponent (1), tolerance (0.01), utopia (one number per objective). Metrics:
