@@ -4,7 +4,7 @@
 The .qch file is an SQLite data base; a file's data are compressed, after four bytes with their length. ParaView's
 button ? opens the page group.name.html of a proxy: each proxy of the XML files has one, made from a page in
 DOCUMENTATION, with every property. HELP is the directory of the made pages. No page of the help has a dead link, and
-each is in the table of contents. QCH is - where ParaView builds no help of plugins, with Qt 6: the made pages are checked.
+each is in the table of contents. QCH is - where ParaView builds no help of plugins (Qt 6).
 """
 
 import html

@@ -12,6 +12,7 @@ TEXT = CODE | {".xml", ".md", ".qrc", ".svg", ".txt", ".module", ".plugin"}
 MAX_LINES = 700
 LICENCE = b"SPDX-License-Identifier"  # a line that does not count
 CONFLICT = (b"<<<<<<< ", b">>>>>>> ")
+CLANG_FORMAT = 14  # others break lines elsewhere
 MAX_COLUMNS = {".h": 100, ".cxx": 100, ".py": 120}  # clang-format leaves comments and texts as they are
 
 
@@ -47,8 +48,12 @@ def complaints(path: Path):
 
 
 def badly_formatted(paths) -> int:
-    """The number of C++ files clang-format would change; 0 where there is no clang-format."""
-    program = shutil.which("clang-format")
+    """The number of C++ files clang-format would change; 0 where there is none of the right version."""
+    program = shutil.which(f"clang-format-{CLANG_FORMAT}") or shutil.which("clang-format")
+    version = subprocess.run([program, "--version"], capture_output=True, text=True).stdout if program else ""
+    if program and f"version {CLANG_FORMAT}." not in version:
+        print(f"the format of C++ files is not checked: {program} is not of version {CLANG_FORMAT}")
+        program = None
     wrong = 0
     for path in paths if program else []:
         check = [program, "--dry-run", "-Werror", "--ferror-limit=1", str(path)]
