@@ -221,7 +221,7 @@ public:
   ///@{
   /**
    * Whether triangles do not interact where the mesh ends between them, as across a hole or a
-   * crack: decided by the segment between their centroids (BondCut.h). Has no effect where the
+   * crack: decided by the segment between their centroids. Has no effect where the
    * interaction layer is wide enough. The default is true.
    */
   vtkSetMacro(CutBonds, bool);

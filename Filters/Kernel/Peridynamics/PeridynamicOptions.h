@@ -99,7 +99,7 @@ struct PeridynamicOptions
   double poissonRatio = 0.25;
   PlaneState planeState = PlaneState::Strain; ///< of StateBased
   /// Whether triangles do not interact where the mesh ends between them, as across a hole or a
-  /// crack (BondCut.h). Has no effect with an interaction layer that is wide enough.
+  /// crack. Has no effect with an interaction layer that is wide enough.
   bool cutBonds = true;
   /// Exact: target relative error of the integral over each pair of triangles, 1e-10 to 0.1.
   double tolerance = 1e-5;
