@@ -187,8 +187,8 @@ public:
     interruptedCaller = before;
   }
 
-  /// What the caller does; returns the number of chunks it ran. Calls `whenLong`, if given, once the
-  /// loop turns out to be longer than many time slices.
+  /// What the caller does; returns the number of chunks it ran. Calls `whenLong`, if given, once
+  /// the loop turns out to be longer than many time slices.
   Index lead(const Proceed& proceed, const std::function<void()>& whenLong = nullptr)
   {
     Index run = 0;

@@ -29,8 +29,8 @@ class WorstObjectives
 public:
   /// @param power of the second sum
   /// @param pull how much more that counts than the first
-  WorstObjectives(OptimizationProblem& problem, const Objective& judged, double worst, double power,
-    double pull)
+  WorstObjectives(
+    OptimizationProblem& problem, const Objective& judged, double worst, double power, double pull)
     : Pull(pull)
     , Terms(problem.localTerms())
     , Fast(Terms[0].shapePower > 0 && judged.metric == Metric::InverseMeanRatio)
