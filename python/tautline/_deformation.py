@@ -70,7 +70,7 @@ _COUNTS = ("elements", "boundary_points", "moved_points", "inverted_after_warp",
 
 #: A transform: {"translate": (x, y, z)}, {"rotate": degrees, "axis": ..., "center": ...}, {"scale": factor or three,
 #: "center": ...}, {"bend": degrees, "axis": ..., "direction": ..., "center": ...}, a 4 x 4 matrix or a VTK transform.
-Transform = Union[Mapping[str, Any], Sequence, vtkLinearTransform]
+Transform = Union[Mapping[str, Any], Sequence[Any], vtkLinearTransform]
 
 
 @dataclass(frozen=True, repr=False, eq=False)

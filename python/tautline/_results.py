@@ -257,6 +257,8 @@ def _geometry(data: vtkDataSet) -> list[Array]:
     names = ("GetCells",) if hasattr(data, "GetCellTypesArray") else ("GetVerts", "GetLines", "GetPolys", "GetStrips")
     for name in names:
         cells = getattr(data, name)() if hasattr(data, name) else None
+        if cells and not hasattr(cells, "GetOffsetsArray"):  # of a structured grid, since VTK 9.3: its extent says all
+            return found
         if cells:
             found += [_numbers(cells.GetOffsetsArray()), _numbers(cells.GetConnectivityArray())]
     if hasattr(data, "GetCellTypesArray") and data.GetCellTypesArray():
