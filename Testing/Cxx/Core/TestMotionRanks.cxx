@@ -113,14 +113,14 @@ void testFilter(const char* name, vtkMPIController* controller, const MeshData& 
   }
 }
 
-/// Tables of a run are on the first process, with the numbers of one.
+/// Tables of a run are on the first process, with the numbers of one up to rounding.
 void checkTables(vtkTable* serial, vtkTable* ranks, int rank, const char* column)
 {
   TAUTLINE_CHECK_EQUAL(ranks->GetNumberOfRows(), rank == 0 ? serial->GetNumberOfRows() : 0);
   for (vtkIdType row = 0; row < ranks->GetNumberOfRows(); ++row)
   {
-    TAUTLINE_CHECK_EQUAL(ranks->GetValueByName(row, column).ToDouble(),
-      serial->GetValueByName(row, column).ToDouble());
+    TAUTLINE_CHECK_RELATIVE(ranks->GetValueByName(row, column).ToDouble(),
+      serial->GetValueByName(row, column).ToDouble(), 1e-12);
   }
 }
 
@@ -217,13 +217,8 @@ void testRefusals(vtkMPIController* controller)
   };
   const auto none = [](auto&&) {};
   refused(
-    "choose Automatic or Local Newton",
-    [](vtkMeshOptimizer* filter)
-    {
-      filter->SetPreset(vtkMeshOptimizer::CUSTOM);
-      filter->SetOptimizer(vtkMeshOptimizer::LIMITED_MEMORY_BFGS);
-    },
-    none);
+    "Steps that improve the worst element",
+    [](vtkMeshOptimizer* filter) { filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT); }, none);
   refused(
     "Points slide on curved surfaces",
     [](vtkMeshOptimizer* filter) { filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE); }, none);
