@@ -2,6 +2,7 @@
 #include "ImprovedCells.h"
 
 #include "MeshOutput.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Quality/Metrics.h"
 
 #include "vtkCellData.h"
@@ -91,12 +92,29 @@ std::vector<double> toSinglePrecision(const std::vector<double>& coordinates)
 }
 
 //------------------------------------------------------------------------------
-void addCellArrays(vtkPointSet* output, vtkIdTypeArray* originals, const ImprovedCells& improved)
+void copyCellData(vtkCellData* from, const std::vector<Index>& originals, vtkCellData* to)
+{
+  const auto count = static_cast<vtkIdType>(originals.size());
+  to->CopyAllocate(from, count);
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    pollInterruption(cell);
+    to->CopyData(from, originals[cell], cell);
+  }
+}
+
+//------------------------------------------------------------------------------
+void addCellArrays(vtkPointSet* output, const std::vector<Index>& originals, Index first,
+  const ImprovedCells& improved)
 {
   vtkCellData* cells = output->GetCellData();
   cells->RemoveArray(vtkDataSetAttributes::GhostArrayName());
-  originals->SetName(OriginalCellArray);
-  cells->AddArray(originals);
+  vtkNew<vtkIdTypeArray> numbers;
+  numbers->SetName(OriginalCellArray);
+  numbers->SetNumberOfValues(static_cast<vtkIdType>(originals.size()));
+  std::transform(originals.begin(), originals.end(), numbers->GetPointer(0),
+    [first](Index cell) { return static_cast<vtkIdType>(first + cell); });
+  cells->AddArray(numbers);
   cells->AddArray(arrayOf(AngleArray, improved.smallestAngles));
   cells->AddArray(arrayOf(RatioArray, improved.inverseMeanRatios));
   output->GetPointData()->SetActiveScalars(nullptr);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-class vtkIdTypeArray;
+class vtkCellData;
 class vtkPointSet;
 
 namespace tautline
@@ -45,7 +45,11 @@ bool measure(const Simplices& simplices, const std::vector<double>& coordinates,
 bool isWorse(const ImprovedCells& measured, const ReconnectionRecord& before);
 /// The coordinates as single precision has them.
 std::vector<double> toSinglePrecision(const std::vector<double>& coordinates);
+/// Gives each cell of an output the data of the cell of the input that it comes from.
+void copyCellData(vtkCellData* from, const std::vector<Index>& originals, vtkCellData* to);
 /// Gives the cells of an output their numbers in the input, `min_angle` and `imr`.
-void addCellArrays(vtkPointSet* output, vtkIdTypeArray* originals, const ImprovedCells& improved);
+/// @param first the number of the input's first cell here
+void addCellArrays(vtkPointSet* output, const std::vector<Index>& originals, Index first,
+  const ImprovedCells& improved);
 }
 #endif

@@ -8,7 +8,6 @@
 #include "vtkCellType.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
-#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -131,24 +130,17 @@ void averageCellData(
 void writeCellData(const ReconnectableMesh& input, const ReconnectionResult& result,
   const ImprovedCells& improved, vtkPointSet* output)
 {
-  const auto count = static_cast<vtkIdType>(result.originalCells.size());
+  std::vector<Index> originals(result.originalCells.size());
+  std::transform(result.originalCells.begin(), result.originalCells.end(), originals.begin(),
+    [&input](Index cell) { return input.inputCell(cell); });
   vtkCellData* from = input.input()->GetCellData();
   vtkCellData* to = output->GetCellData();
-  to->CopyAllocate(from, count);
-  vtkNew<vtkIdTypeArray> originals;
-  originals->SetNumberOfValues(count);
-  for (vtkIdType cell = 0; cell < count; ++cell)
-  {
-    pollInterruption(cell);
-    const Index original = input.inputCell(result.originalCells[cell]);
-    to->CopyData(from, original, cell);
-    originals->SetValue(cell, original);
-  }
+  copyCellData(from, originals, to);
   if (!result.overlaps.offsets.empty())
   {
     averageCellData(input, result.overlaps, from, to);
   }
-  addCellArrays(output, originals, improved);
+  addCellArrays(output, originals, 0, improved);
 }
 }
 

@@ -11,7 +11,6 @@
 #include "vtkDataSet.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
-#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -196,20 +195,11 @@ void writePointData(RankGroup& group, const ReconnectablePiece& piece,
 void writeCellData(const ReconnectablePiece& piece, const RankReconnection& result,
   const ImprovedCells& improved, vtkPointSet* output)
 {
-  const auto count = static_cast<vtkIdType>(result.originalCells.size());
-  vtkCellData* from = piece.input->GetCellData();
-  vtkCellData* to = output->GetCellData();
-  to->CopyAllocate(from, count);
-  vtkNew<vtkIdTypeArray> originals;
-  originals->SetNumberOfValues(count);
-  for (vtkIdType cell = 0; cell < count; ++cell)
-  {
-    pollInterruption(cell);
-    const Index original = piece.cells[result.originalCells[cell]];
-    to->CopyData(from, original, cell);
-    originals->SetValue(cell, piece.firstCell + original);
-  }
-  addCellArrays(output, originals, improved);
+  std::vector<Index> originals(result.originalCells.size());
+  std::transform(result.originalCells.begin(), result.originalCells.end(), originals.begin(),
+    [&piece](Index cell) { return piece.cells[cell]; });
+  copyCellData(piece.input->GetCellData(), originals, output->GetCellData());
+  addCellArrays(output, originals, piece.firstCell, improved);
 }
 }
 

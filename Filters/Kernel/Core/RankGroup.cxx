@@ -149,7 +149,7 @@ double RankGroup::orderlessSum(const std::vector<double>& values)
   const double first = std::ldexp(1.0, half), second = std::ldexp(1.0, exponent - half);
   constexpr double lowUnit = std::int64_t(1) << lowBits;
   Wide high = 0;
-  std::int64_t low = 0;
+  std::int64_t low = 0; // takes 2^31 parts, as each is below 2^32
   for (const double value : values)
   {
     const double scaled = value * first * second;
