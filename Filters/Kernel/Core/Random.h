@@ -72,6 +72,8 @@ public:
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
+  /// A hash that is not 0 for 0.
+  static std::uint64_t mixed(std::uint64_t z) { return hash(z + Increment); }
   /// A hash as a number in [0, 1).
   static double unit(std::uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1p-53; }
 

@@ -3,6 +3,7 @@
 
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
+#include "tautline/Core/Random.h"
 #include "PeridynamicsGeometry.h"
 #include "tautline/Geometry/PlanarDelaunay.h"
 #include "tautline/Geometry/SegmentDistance.h"
@@ -102,11 +103,8 @@ double distanceOf(const Vec2* corner, const std::vector<Edge>& edges)
 /// A pseudo-random number from -1 to 1.
 double noise(Index i, Index j, int what)
 {
-  std::uint64_t z =
-    static_cast<std::uint64_t>(i * 2654435761 + j * 40503 + what * 97) * 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
+  const auto item = static_cast<std::uint64_t>(i * 2654435761 + j * 40503 + what * 97);
+  return 2.0 * SplitMix::unit(SplitMix::hash(item * SplitMix::Increment)) - 1.0;
 }
 
 void proceed(const InteractionLayerOptions& options, double fraction)
