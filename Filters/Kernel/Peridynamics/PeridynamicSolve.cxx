@@ -15,8 +15,9 @@ namespace tautline
 {
 namespace
 {
-/// Cells of the coarse grid in a horizon, and the fewest elements in a cell.
-constexpr double CellsPerHorizon = 2.0, LeastElements = 2.0;
+/// Cells of the coarse grid in a horizon, and the fewest elements in a cell: with a horizon of two
+/// elements cells have to be narrower than the horizon, or the grid misses changes of volume.
+constexpr double CellsPerHorizon = 2.0, LeastElements = 1.5;
 
 /// How much the form of a singular kernel may grow on waves that the diagonal has to serve for.
 constexpr double DiagonalGrowth = 3.0;
@@ -189,23 +190,77 @@ struct SparseRow
     }
     this->sums[column] += value;
   }
-  void clear()
+  /// The sums by increasing column; none are left.
+  std::vector<std::pair<std::int32_t, double>> take()
   {
+    std::sort(this->touched.begin(), this->touched.end());
+    std::vector<std::pair<std::int32_t, double>> row;
+    row.reserve(this->touched.size());
     for (const std::int32_t column : this->touched)
     {
+      row.emplace_back(column, this->sums[column]);
       this->sums[column] = 0.0;
       this->marked[column] = 0;
     }
     this->touched.clear();
+    return row;
   }
 };
 
-/// P^T A P, each component for itself.
-SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
-  const Prolongation& transpose, Index c, int threads)
+/// P^T A with a row per coarse function, each component for itself.
+struct CoarseRows
 {
+  std::vector<Index> offsets = { 0 };
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+
+  Index size() const { return static_cast<Index>(this->offsets.size()) - 1; }
+
+  /// y = P^T A x.
+  void multiply(const std::vector<double>& x, std::vector<double>& y) const
+  {
+    for (Index row = 0; row < this->size(); ++row)
+    {
+      double sum = 0.0;
+      for (Index k = this->offsets[row]; k < this->offsets[row + 1]; ++k)
+      {
+        sum += this->values[k] * x[this->columns[k]];
+      }
+      y[row] = sum;
+    }
+  }
+  /// y -= A P x.
+  void subtractTransposed(const std::vector<double>& x, std::vector<double>& y) const
+  {
+    for (Index row = 0; row < this->size(); ++row)
+    {
+      for (Index k = this->offsets[row]; k < this->offsets[row + 1]; ++k)
+      {
+        y[this->columns[k]] -= this->values[k] * x[row];
+      }
+    }
+  }
+};
+
+/// Rows of sums, one after the other.
+template <class Rows>
+void append(const std::vector<std::pair<std::int32_t, double>>& row, Rows& rows)
+{
+  for (const auto& [column, value] : row)
+  {
+    rows.columns.push_back(column);
+    rows.values.push_back(value);
+  }
+  rows.offsets.push_back(static_cast<Index>(rows.columns.size()));
+}
+
+/// P^T A P, each component for itself, and P^T A.
+SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
+  const Prolongation& transpose, Index c, int threads, CoarseRows& coarseRows)
+{
+  using Row = std::vector<std::pair<std::int32_t, double>>;
   const Index rows = c * map.coarse;
-  std::vector<std::vector<std::pair<std::int32_t, double>>> made(rows);
+  std::vector<Row> half(rows), made(rows);
   struct Scratch
   {
     SparseRow fine, coarse;
@@ -233,24 +288,19 @@ SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
             c * map.columns[k] + column % c, map.weights[k] * scratch.fine.sums[column]);
         }
       }
-      std::sort(scratch.coarse.touched.begin(), scratch.coarse.touched.end());
-      for (const std::int32_t column : scratch.coarse.touched)
-      {
-        made[row].emplace_back(column, scratch.coarse.sums[column]);
-      }
-      scratch.fine.clear();
-      scratch.coarse.clear();
+      half[row] = scratch.fine.take();
+      made[row] = scratch.coarse.take();
     });
   SparseMatrix coarse;
   coarse.size = rows;
   for (Index row = 0; row < rows; ++row)
   {
-    for (const auto& [column, value] : made[row])
+    for (auto& [column, value] : made[row])
     {
-      coarse.columns.push_back(column);
-      coarse.values.push_back(column == row ? (1.0 + CoarseShift) * value : value);
+      value = column == row ? (1.0 + CoarseShift) * value : value;
     }
-    coarse.offsets.push_back(coarse.nonzeros());
+    append(made[row], coarse);
+    append(half[row], coarseRows);
   }
   symmetrize(coarse, threads); // rounding
   return coarse;
@@ -279,9 +329,71 @@ struct PeridynamicPreconditioner::State
   std::vector<double> inverse;            // of the diagonal
   std::unique_ptr<MassSmoother> smoother; // in place of it, unless Jacobi is chosen
   Prolongation map;
-  std::unique_ptr<InnerSolver> inner;
+  std::unique_ptr<InnerSolver> inner; // S; none: the coarse space is empty
+  CoarseRows rows;                    // of TwoLevel
   std::vector<double> coarse, correction;
+  std::vector<double> residual, smoothed, image; // of TwoLevel
+
+  bool isMultiplicative() const { return this->rows.size() > 0; }
+
+  /// use(fine row, coarse row, weight) for all entries of P.
+  template <class Use>
+  void forEachWeight(const Use& use) const
+  {
+    const Index c = this->components;
+    for (Index u = 0; u < this->map.fine(); ++u)
+    {
+      for (Index k = this->map.offsets[u]; k < this->map.offsets[u + 1]; ++k)
+      {
+        for (Index i = 0; i < c; ++i)
+        {
+          use(c * u + i, c * this->map.columns[k] + i, this->map.weights[k]);
+        }
+      }
+    }
+  }
+  /// correction = S P^T r.
+  void restrictAndSolve(const double* r)
+  {
+    std::fill(this->coarse.begin(), this->coarse.end(), 0.0);
+    this->forEachWeight(
+      [&](Index fine, Index row, double weight) { this->coarse[row] += weight * r[fine]; });
+    this->inner->apply(this->coarse.data(), this->correction.data());
+  }
+  /// z += P correction.
+  void prolongate(double* z) const
+  {
+    this->forEachWeight(
+      [&](Index fine, Index row, double weight) { z[fine] += weight * this->correction[row]; });
+  }
+  void additive(const double* r, double* z)
+  {
+    this->smoother->apply(r, z);
+    if (this->inner)
+    {
+      this->restrictAndSolve(r);
+      this->prolongate(z);
+    }
+  }
+  void multiplicative(const double* r, double* z);
 };
+
+/// y = P S P^T r, x = Q (r - A y), z = y + x - P S P^T A x.
+void PeridynamicPreconditioner::State::multiplicative(const double* r, double* z)
+{
+  this->restrictAndSolve(r);
+  this->residual.assign(r, r + this->residual.size());
+  this->rows.subtractTransposed(this->correction, this->residual);
+  this->smoother->apply(this->residual.data(), this->smoothed.data());
+  this->rows.multiply(this->smoothed, this->coarse);
+  this->inner->apply(this->coarse.data(), this->image.data());
+  for (std::size_t i = 0; i < this->correction.size(); ++i)
+  {
+    this->correction[i] -= this->image[i];
+  }
+  std::copy(this->smoothed.begin(), this->smoothed.end(), z);
+  this->prolongate(z);
+}
 
 PeridynamicPreconditioner::PeridynamicPreconditioner(const HorizonMesh& mesh,
   const PeridynamicOptions& options, const PeridynamicSystem& system,
@@ -314,7 +426,11 @@ PeridynamicPreconditioner::PeridynamicPreconditioner(const HorizonMesh& mesh,
   else
   {
     own.map = fromGrid(mesh, options, system);
-    matrix = galerkin(system.matrix, own.map, transposed(own.map), own.components, options.threads);
+    matrix = galerkin(
+      system.matrix, own.map, transposed(own.map), own.components, options.threads, own.rows);
+    own.residual.resize(system.matrix.size);
+    own.smoothed.resize(system.matrix.size);
+    own.image.resize(matrix.size);
   }
   own.coarse.resize(matrix.size);
   own.correction.resize(matrix.size);
@@ -336,39 +452,21 @@ Index PeridynamicPreconditioner::coarseRows() const
 void PeridynamicPreconditioner::apply(const double* r, double* z)
 {
   State& own = *this->Impl;
-  if (own.smoother)
+  if (own.isMultiplicative())
   {
-    own.smoother->apply(r, z);
+    own.multiplicative(r, z);
   }
-  for (std::size_t i = 0; i < own.inverse.size() && !own.smoother; ++i)
+  else if (own.smoother)
   {
-    z[i] = own.inverse[i] * r[i];
+    own.additive(r, z);
   }
-  if (!own.inner)
+  else
   {
-    return;
-  }
-  const Index c = own.components;
-  const Prolongation& map = own.map;
-  std::fill(own.coarse.begin(), own.coarse.end(), 0.0);
-  const auto forEachWeight = [&](const auto& use)
-  {
-    for (Index u = 0; u < map.fine(); ++u)
+    for (std::size_t i = 0; i < own.inverse.size(); ++i)
     {
-      for (Index k = map.offsets[u]; k < map.offsets[u + 1]; ++k)
-      {
-        for (Index i = 0; i < c; ++i)
-        {
-          use(c * u + i, c * map.columns[k] + i, map.weights[k]);
-        }
-      }
+      z[i] = own.inverse[i] * r[i];
     }
-  };
-  forEachWeight(
-    [&](Index fine, Index coarse, double weight) { own.coarse[coarse] += weight * r[fine]; });
-  own.inner->apply(own.coarse.data(), own.correction.data());
-  forEachWeight(
-    [&](Index fine, Index coarse, double weight) { z[fine] += weight * own.correction[coarse]; });
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -9,7 +9,8 @@
  * like a mass matrix on shorter ones. Its condition number is C over the smallest c q^2. The
  * inverse is therefore close to the sum of the inverses of both,
  *
- *     B = Q + P S P^T,
+ *     B = Q + P S P^T                                                  (LocalMultigrid)
+ *     B = P S P^T + (I - P S P^T A) Q (I - A P S P^T)                  (TwoLevel)
  *
  * Q that of a mass matrix or a diagonal (MassSmoother.h), S an approximate inverse on a space of
  * long waves and P the interpolation from it. The local operator alone would be a poor
@@ -17,15 +18,24 @@
  * - LocalMultigrid: S is one cycle of algebraic multigrid (BoomerAMG) for the local limit in linear
  *   elements on the same triangles (LocalLimit.h).
  * - TwoLevel: S is the inverse of P^T A P, with P bilinear interpolation from a square grid with
- *   cells of half the horizon, but at least two elements, and fewer elements the more singular the
- *   kernel is: above p = 2 (elastic: 4) the diagonal has to serve for all waves shorter than the
- *   grid, on which A grows like q^(p-2).
+ *   cells of half the horizon, but at least one and a half elements, and fewer elements the more
+ *   singular the kernel is: above p = 2 (elastic: 4) the diagonal has to serve for all waves
+ *   shorter than the grid, on which A grows like q^(p-2).
  *
- * B is symmetric positive definite; an iteration takes one product with A, as with the diagonal
- * alone.
+ * A nearly incompressible material (StateBased, Poisson's ratio near 1/2) resists changes of volume
+ * that are averaged over a horizon: lambda / mu times as much as shear on waves longer than about
+ * the horizon, and not at all on shorter ones. Q is too large on the former. The sum leaves this
+ * error in; the product of TwoLevel takes it out, as the grid has these waves, so its iterations
+ * are bounded in Poisson's ratio. Those of LocalMultigrid are not, also with an exact S: linear
+ * elements of the local limit lock, which the average over the horizon does not.
+ *
+ * B is symmetric positive definite. An iteration takes one product with A, as with the diagonal
+ * alone; TwoLevel takes two with P^T A in addition, which has fewer entries than A.
  *
  * Source: J. Xu, SIAM Review 34 (1992) 581-613 (additive methods); J. Xu, Computing 56 (1996)
- * 215-235 (auxiliary spaces).
+ * 215-235 (auxiliary spaces); J. Mandel, Comm. Numer. Methods Eng. 9 (1993) 233-241 (the product);
+ * R. Nabben, C. Vuik, SIAM J. Numer. Anal. 42 (2004) 1631-1647 (a product in place of
+ * the sum).
  */
 #ifndef tautline_PeridynamicSolve_h
 #define tautline_PeridynamicSolve_h
@@ -43,7 +53,7 @@ enum class NonlocalPreconditioner : int
 {
   Jacobi = 0,         ///< the diagonal
   LocalMultigrid = 1, ///< Q and algebraic multigrid for the local limit
-  TwoLevel = 2        ///< Q and a coarse grid, solved exactly
+  TwoLevel = 2        ///< a coarse grid, solved exactly, and Q on what is left
 };
 
 /// "Jacobi", "AMG of the local limit", "two-level".

@@ -196,8 +196,7 @@ void checkOperator(const HorizonMesh& mesh, const PeridynamicOptions& options,
   }
 }
 
-/// Of singular kernels the first part of B is the diagonal; the two-level method is exact on its
-/// coarse space, of which constants are a part.
+/// The two-level method is exact on its coarse space, of which constants are a part.
 void checkCoarseSpace(
   const HorizonMesh& mesh, const PeridynamicOptions& options, const PeridynamicSystem& system)
 {
@@ -208,7 +207,7 @@ void checkCoarseSpace(
   own.apply(image.data(), b.data());
   for (Index i = 0; i < n; ++i)
   {
-    TAUTLINE_CHECK_NEAR(b[i] - image[i] / system.matrix.at(i, i), 1.0, 1e-7);
+    TAUTLINE_CHECK_NEAR(b[i], 1.0, 1e-7);
   }
 }
 
@@ -235,10 +234,7 @@ void testOperators()
         {
           checkOperator(mesh, options, system, kind);
         }
-        if (singular)
-        {
-          checkCoarseSpace(mesh, options, system);
-        }
+        checkCoarseSpace(mesh, options, system);
       }
     }
   }
@@ -318,8 +314,10 @@ Found solveAll(const HorizonMesh& mesh, const PeridynamicOptions& options)
 /// have none above a bound.
 void testTables()
 {
-  constexpr double worst[] = { 0.0, 3.5, 4.6 };
-  constexpr Index most[] = { 0, 18, 21 };
+  constexpr double worst[] = { 0.0, 3.5, 3.6 };
+  constexpr Index most[] = { 0, 18, 18 };
+  double largest[3] = {};
+  Index longest[3] = {};
   for (const TableCell& cell : tableCells())
   {
     const Context context("table 4." + std::to_string(cell.table) + ", aspect ratio " +
@@ -332,11 +330,16 @@ void testTables()
     TAUTLINE_CHECK_RELATIVE(found.condition[0], cell.reference, 0.01);
     for (int k = 1; k < 3; ++k)
     {
+      largest[k] = std::max(largest[k], found.condition[k]);
+      longest[k] = std::max(longest[k], found.iterations[k]);
       TAUTLINE_CHECK(found.condition[k] < worst[k]);
       TAUTLINE_CHECK(found.iterations[k] <= most[k]);
       TAUTLINE_CHECK(found.iterations[k] <= found.iterations[0] + 1);
     }
   }
+  std::printf("Tables 4.1 to 4.3, at most: AMG of the local limit %d iterations, condition %.3g; "
+              "two-level %d, %.3g\n",
+    static_cast<int>(longest[1]), largest[1], static_cast<int>(longest[2]), largest[2]);
 }
 
 /// With a horizon of two elements the diagonal takes nearly twice the iterations on elements of
@@ -369,6 +372,47 @@ void testSmallHorizons()
       }
       before = found;
     }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Iterations of a preconditioner by Poisson's ratio, with a horizon of `layers` elements.
+Index iterationsAt(int n, int layers, double nu, NonlocalPreconditioner kind)
+{
+  const HorizonMesh mesh = shakenSquare(n, 2 * layers, 0.1);
+  PeridynamicOptions options;
+  options.model = PeridynamicModel::StateBased;
+  options.poissonRatio = nu;
+  options.horizon = static_cast<double>(layers) / n;
+  options.tolerance = 1e-3;
+  const PeridynamicSystem system = assemblePeridynamics(mesh, options);
+  const std::vector<double> load = unitLoad(mesh, system, options.basis);
+  std::vector<double> x;
+  const SolveReport report = solvePeridynamics(mesh, options, system, kind, load, x);
+  TAUTLINE_CHECK(report.converged);
+  return report.iterations;
+}
+
+/// Up to a Poisson's ratio of 0.49 the two-level method takes about the same number of iterations,
+/// with wide and narrow horizons; that the others do not shows that the range is a hard one.
+void testNearlyIncompressible()
+{
+  constexpr Index most = 16, more = 4;
+  for (const int layers : { 2, 4 })
+  {
+    const Context context(std::to_string(layers) + " elements in the horizon");
+    Index fewest = most;
+    for (const double nu : { -0.5, 0.45, 0.49 })
+    {
+      const Index found = iterationsAt(16, layers, nu, NonlocalPreconditioner::TwoLevel);
+      std::printf(
+        "%d elements, nu %.2f: two-level %d iterations\n", layers, nu, static_cast<int>(found));
+      fewest = std::min(fewest, found);
+      TAUTLINE_CHECK(found <= most && found <= fewest + more);
+    }
+    TAUTLINE_CHECK(
+      iterationsAt(16, layers, 0.49, NonlocalPreconditioner::LocalMultigrid) > 2 * most);
+    TAUTLINE_CHECK(iterationsAt(16, layers, 0.49, NonlocalPreconditioner::Jacobi) > 2 * most);
   }
 }
 
@@ -421,6 +465,7 @@ int TestPeridynamicSolve(int, char*[])
   testSolutions();
   testTables();
   testSmallHorizons();
+  testNearlyIncompressible();
   testRefusals();
   return exitCode();
 }

@@ -422,7 +422,6 @@ void testSolutions()
   }
 }
 
-//------------------------------------------------------------------------------
 /// A ring of `around` by `across` quadrilaterals in two triangles each, between two radii.
 HorizonMesh ring(int around, int across, double inner, double outer)
 {
