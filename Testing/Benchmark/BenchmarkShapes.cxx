@@ -80,6 +80,7 @@ void measureOutlines(const std::vector<Silhouette>& shapes, int repeats)
     });
   const auto count = static_cast<double>(shapes.size());
   std::printf("shapes outline prepared\t%.0f\n", prepared / count);
+  const auto memory = outlineMemory();
   const double all = fastest(repeats, cpuSeconds,
     [&]
     {
@@ -89,7 +90,7 @@ void measureOutlines(const std::vector<Silhouette>& shapes, int repeats)
         {
           if (&source != &target)
           {
-            matchOutlines(source, target, options);
+            matchOutlines(source, target, options, memory.get());
           }
         }
       }

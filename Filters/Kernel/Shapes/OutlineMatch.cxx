@@ -30,17 +30,20 @@ struct ChainTable
   Index low = 1, high = 0; ///< advances
   Index count = 0;         ///< locations
   Index stride = 0;
-  std::vector<float> values;
+  std::pmr::vector<float> values;
   std::vector<float> minima; ///< of the rows; empty if not computed
   float least = 0.0f;        ///< of all rows; a lower bound if not computed
 
-  ChainTable() = default;
-  ChainTable(Index low, Index high, Index count)
+  explicit ChainTable(std::pmr::memory_resource* memory)
+    : values(memory)
+  {
+  }
+  ChainTable(Index low, Index high, Index count, std::pmr::memory_resource* memory)
     : low(low)
     , high(std::max(low, high))
     , count(count)
     , stride(2 * count + FloatWidth)
-    , values(static_cast<std::size_t>((this->high - low + 1) * this->stride), Unreachable)
+    , values(static_cast<std::size_t>((this->high - low + 1) * this->stride), Unreachable, memory)
   {
   }
   float* row(Index a) { return this->values.data() + (a - this->low) * this->stride; }
@@ -107,7 +110,7 @@ void leastPackets(
 void leastSums(const float* a, Index strideA, const float* b, Index strideB, Index terms,
   Index count, float* out)
 {
-  constexpr int together = 3; // a round of 48 locations in the widest packets
+  constexpr int together = 4; // a round of 64 locations in the widest packets
   Index p = 0;
   for (; p + (together - 1) * FloatWidth < count; p += together * FloatWidth)
   {
@@ -124,10 +127,11 @@ class OutlineSearch
 {
 public:
   OutlineSearch(const OutlineModel::Polygon& polygon, const OutlineModel& target,
-    const OutlineOptions& options, OutlineMatch& statistics)
+    const OutlineOptions& options, std::pmr::memory_resource* memory, OutlineMatch& statistics)
     : Source(polygon)
     , Target(target)
     , Options(options)
+    , Memory(memory)
     , Statistics(statistics)
     , Vertices(static_cast<Index>(polygon.mesh.points.size()))
     , Count(options.locations)
@@ -146,7 +150,8 @@ public:
     for (const EliminationStep& e : polygon.mesh.elimination)
     {
       const Index k = e.vertex, i = e.parents[0], j = e.parents[1];
-      this->Steps.push_back({ k, i, j, chains.at({ j, k }), chains.at({ k, i }) });
+      this->Steps.push_back({ k, i, j, chains.at({ j, k }), chains.at({ k, i }), ChainTable(memory),
+        ChainTable(memory) });
       chains[{ j, i }] = static_cast<Index>(this->Steps.size()) - 1;
     }
     const Step& last = this->Steps.back();
@@ -192,10 +197,10 @@ public:
 private:
   struct Step
   {
-    Index k, i, j;           ///< the triangle; its chain runs from j over k to i
-    Index left, right;       ///< the chains from j to k and from k to i
-    ChainTable inside = {};  ///< least cost of the chain without triangles' terms
-    ChainTable outside = {}; ///< the same of all the rest
+    Index k, i, j;      ///< the triangle; its chain runs from j over k to i
+    Index left, right;  ///< the chains from j to k and from k to i
+    ChainTable inside;  ///< least cost of the chain without triangles' terms
+    ChainTable outside; ///< the same of all the rest
   };
 
   const ChainTable& inside(Index chain) const
@@ -212,7 +217,7 @@ private:
     const Index most = this->Count - (this->Vertices - 1);
     const Index high =
       std::min(most, static_cast<Index>(std::floor(expected * this->Options.stretch + 0.5)));
-    ChainTable table(std::min(low, most), high, this->Count);
+    ChainTable table(std::min(low, most), high, this->Count, this->Memory);
     const Index fine = static_cast<Index>(this->Target.descriptors.size()) / OutlineChannels;
     const Index perLocation = fine / this->Count;
     // Differences of descriptors of each sample of the edge and each place.
@@ -278,8 +283,8 @@ private:
     for (Step& step : this->Steps)
     {
       const ChainTable &left = this->inside(step.left), &right = this->inside(step.right);
-      step.inside = ChainTable(
-        left.low + right.low, std::min(left.high + right.high, this->Count - 1), this->Count);
+      step.inside = ChainTable(left.low + right.low,
+        std::min(left.high + right.high, this->Count - 1), this->Count, this->Memory);
       this->join(left, right, step.inside);
       step.inside.computeMinima();
     }
@@ -299,7 +304,7 @@ private:
   /// The cost of going the rest of the way round, for the beginnings and advances of `like`.
   ChainTable complement(const ChainTable& rest, const ChainTable& like) const
   {
-    ChainTable result(like.low, like.high, this->Count);
+    ChainTable result(like.low, like.high, this->Count, this->Memory);
     for (Index a = like.low; a <= like.high; ++a)
     {
       const Index other = this->Count - a;
@@ -345,7 +350,7 @@ private:
   {
     const ChainTable &part = this->inside(partChain), &other = this->inside(otherChain);
     ChainTable& out = this->Steps[partChain].outside;
-    out = ChainTable(part.low, part.high, this->Count);
+    out = ChainTable(part.low, part.high, this->Count, this->Memory);
     out.least = other.least + whole.least;
     const auto [lowPart, highPart] = part.affordable(limit - out.least);
     const auto [lowOther, highOther] = other.affordable(limit - part.least - whole.least);
@@ -370,15 +375,15 @@ private:
   /// The minimum of all placements that may cost less than the limit; Unreachable if there is none.
   float minimum(float limit)
   {
-    std::vector<ChainTable> costs(this->Steps.size());
+    std::vector<ChainTable> costs;
+    costs.reserve(this->Steps.size()); // no table moves
     const auto table = [&](Index chain) -> const ChainTable&
     { return chain < 0 ? this->Edges[-1 - chain] : costs[chain]; };
-    for (std::size_t s = 0; s < this->Steps.size(); ++s)
+    for (const Step& step : this->Steps)
     {
       throwIfInterrupted();
-      const Step& step = this->Steps[s];
-      costs[s] = ChainTable(step.inside.low, step.inside.high, this->Count);
-      if (!this->addTriangle(step, table(step.left), table(step.right), limit, costs[s]))
+      costs.emplace_back(step.inside.low, step.inside.high, this->Count, this->Memory);
+      if (!this->addTriangle(step, table(step.left), table(step.right), limit, costs.back()))
       {
         return Unreachable;
       }
@@ -472,6 +477,7 @@ private:
   const OutlineModel::Polygon& Source;
   const OutlineModel& Target;
   const OutlineOptions& Options;
+  std::pmr::memory_resource* Memory; ///< of the tables
   OutlineMatch& Statistics;
   Index Vertices, Count;
   std::vector<ChainTable> Edges;
@@ -482,9 +488,19 @@ private:
 }
 
 //------------------------------------------------------------------------------
-OutlineMatch matchOutlines(
-  const OutlineModel& source, const OutlineModel& target, const OutlineOptions& options)
+std::unique_ptr<std::pmr::memory_resource> outlineMemory()
 {
+  std::pmr::pool_options options;
+  options.largest_required_pool_block = 1 << 20; // tables of 200 locations; larger ones are freed
+  return std::make_unique<std::pmr::unsynchronized_pool_resource>(options);
+}
+
+//------------------------------------------------------------------------------
+OutlineMatch matchOutlines(const OutlineModel& source, const OutlineModel& target,
+  const OutlineOptions& options, std::pmr::memory_resource* given)
+{
+  const std::unique_ptr<std::pmr::memory_resource> own = given ? nullptr : outlineMemory();
+  std::pmr::memory_resource* const memory = given ? given : own.get();
   const std::size_t expected = static_cast<std::size_t>(2 * options.locations + FloatWidth);
   if (source.x.size() != expected || target.x.size() != expected ||
     (options.mirrored && source.mirror.advance.empty()))
@@ -492,13 +508,13 @@ OutlineMatch matchOutlines(
     throw Error("Outlines are matched with the options they were prepared with.");
   }
   OutlineMatch match;
-  OutlineSearch upright(source.polygon, target, options, match);
+  OutlineSearch upright(source.polygon, target, options, memory, match);
   constexpr float all = 0.5f * Unreachable;
   float energy = all;
   if (options.mirrored)
   {
     // The one with the lower bound first: its energy often rules out the other.
-    OutlineSearch mirror(source.mirror, target, options, match);
+    OutlineSearch mirror(source.mirror, target, options, memory, match);
     const bool first = mirror.bound() < upright.bound();
     energy = (first ? mirror : upright).run(all);
     const float other = (first ? upright : mirror).run(energy);

@@ -13,6 +13,9 @@
 
 #include "OutlineModel.h"
 
+#include <memory>
+#include <memory_resource>
+
 namespace tautline
 {
 /// The minimum energy, and what the search for it took.
@@ -41,8 +44,14 @@ struct OutlineMatch
  *
  * Both outlines must be prepared with these options. Infinity if no placement keeps the stretch.
  * Throws Error if the outlines have different numbers of locations.
+ * @param memory of outlineMemory(), for many matches one after the other; null, the default: of its
+ * own, which takes about twice the time of a match
  */
-TAUTLINE_KERNEL_EXPORT OutlineMatch matchOutlines(
-  const OutlineModel& source, const OutlineModel& target, const OutlineOptions& options);
+TAUTLINE_KERNEL_EXPORT OutlineMatch matchOutlines(const OutlineModel& source,
+  const OutlineModel& target, const OutlineOptions& options,
+  std::pmr::memory_resource* memory = nullptr);
+
+/// Some megabytes that are used again by the next match. For one thread at a time.
+TAUTLINE_KERNEL_EXPORT std::unique_ptr<std::pmr::memory_resource> outlineMemory();
 }
 #endif

@@ -21,15 +21,15 @@ namespace tautline
  */
 struct OutlineOptions
 {
-  double spacing = 0.05;    ///< of the polygon's vertices, 0.01 to 0.25
-  Index locations = 48;     ///< on the outline for the vertices, 16 to 512
-  double smoothing = 0.008; ///< standard deviation of the Gaussian along the outline, above 0
+  double spacing = 0.04;    ///< of the polygon's vertices, 0.01 to 0.25
+  Index locations = 64;     ///< on the outline for the vertices, 16 to 512
+  double smoothing = 0.003; ///< standard deviation of the Gaussian along the outline, above 0
   double stretch = 2.0;     ///< bound on how much an edge's part of the outline grows, above 1
-  double deformation = 1.0; ///< weight of log(alpha / beta)^2 of the triangles, at least 0
-  double distortion = 0.5;  ///< weight of |log| of the growth of their edge lengths, at least 0
+  double deformation = 2.0; ///< weight of log(alpha / beta)^2 of the triangles, at least 0
+  double distortion = 1.0;  ///< weight of |log| of the growth of their edge lengths, at least 0
   double ordering = 1.0;    ///< weight of |log(advance / expected)| of the edges, at least 0
-  double descriptor = 20.0; ///< weight of the differences of descriptors, at least 0
-  double region = 0.3;      ///< share of the discs in a descriptor, the rest are heights; 0 to 1
+  double descriptor = 60.0; ///< weight of the differences of descriptors, at least 0
+  double region = 0.25;     ///< share of the discs in a descriptor, the rest are heights; 0 to 1
   bool mirrored = true;     ///< the better one of a shape and its mirror image counts
   /// Bounds that skip placements which cannot be the best. The result is the same without.
   bool bounds = true;

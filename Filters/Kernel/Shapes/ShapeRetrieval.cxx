@@ -232,8 +232,13 @@ private:
       {
         return -1.0;
       }
-      const OutlineMatch match =
-        matchOutlines(this->Outlines[s], this->Outlines[t], this->Options.outline);
+      OutlineMatch match;
+      this->Memories.with(
+        [&](const std::unique_ptr<std::pmr::memory_resource>& memory)
+        {
+          match = matchOutlines(
+            this->Outlines[s], this->Outlines[t], this->Options.outline, memory.get());
+        });
       return std::min(match.energy, FarApart);
     }
     const ShapeMatch match = matchShape(this->Sources[s], *this->Targets[t], this->Match);
@@ -278,6 +283,7 @@ private:
   std::vector<ShapeSource> Sources;
   std::vector<std::unique_ptr<ShapeTarget>> Targets;
   std::vector<OutlineModel> Outlines;
+  mutable ScratchPool<std::unique_ptr<std::pmr::memory_resource>> Memories{ outlineMemory };
   Index Matches = 0;
   Stopwatch Time;
   MatchStop Stop = MatchStop::Complete;

@@ -33,6 +33,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 using namespace tautline;
 
