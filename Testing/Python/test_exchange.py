@@ -122,8 +122,12 @@ def test_ensight():
 
 
 def test_xdmf():
-    from vtkmodules.vtkIOXdmf2 import vtkXdmfWriter
-
+    try:
+        from vtkmodules.vtkIOXdmf2 import vtkXdmfWriter
+    except ImportError:  # Debian's VTK without ParaView
+        (FOLDER / "run.xmf").write_text("<Xdmf/>")
+        refused("run.xmf: this VTK has no reader for XDMF 2", tl.read, FOLDER / "run.xmf")
+        return
     writer = vtkXdmfWriter()
     writer.SetFileName(str(FOLDER / "run.xmf"))
     writer.SetInputData(tl.read(BRACKET))

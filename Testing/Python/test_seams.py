@@ -8,8 +8,13 @@ import tautline as tl
 from checks import OUT, points, refused, run_tests, shell, square
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkMultiBlockDataSet
-from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkExtractCells
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
 from vtkmodules.vtkCommonCore import vtkIdList
+
+try:
+    from vtkmodules.vtkFiltersCore import vtkExtractCells
+except ImportError:  # VTK 9.1
+    from vtkmodules.vtkFiltersExtraction import vtkExtractCells
 
 N = 12
 TIGHT = 1e-12

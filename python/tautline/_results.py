@@ -16,9 +16,9 @@ from vtkmodules.vtkCommonCore import vtkCharArray
 from vtkmodules.vtkCommonDataModel import (
     vtkCompositeDataSet,
     vtkDataObject,
+    vtkDataObjectTypes,
     vtkDataSet,
     vtkImageData,
-    vtkStructuredPoints,
     vtkTable,
 )
 from vtkmodules.vtkParallelCore import vtkCommunicator
@@ -129,6 +129,7 @@ class _Packed:
         if not vtkCommunicator.MarshalDataObject(data, buffer):
             raise Error(f"a {data.GetClassName()} cannot be written to bytes")
         self.content = bytes(memoryview(buffer))
+        self.class_name = data.GetClassName()
         # The bytes have these rounded to six digits.
         self.grids = [(leaf.GetOrigin(), leaf.GetSpacing()) for leaf in _images(data)]
 
@@ -137,11 +138,9 @@ class _Packed:
         buffer = vtkCharArray()
         buffer.SetNumberOfValues(len(self.content))
         memoryview(buffer).cast("B")[:] = self.content
-        data = vtkCommunicator.UnMarshalDataObject(buffer)
-        if isinstance(data, vtkStructuredPoints):  # which VTK makes of images
-            image = vtkImageData()
-            image.ShallowCopy(data)
-            data = image
+        data = vtkDataObjectTypes.NewDataObject(self.class_name)
+        if not vtkCommunicator.UnMarshalDataObject(buffer, data):
+            raise Error(f"a {self.class_name} cannot be made of its bytes")
         for image, (origin, spacing) in zip(_images(data), self.grids):
             image.SetOrigin(origin)
             image.SetSpacing(spacing)
