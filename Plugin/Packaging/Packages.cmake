@@ -86,10 +86,26 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
   "${CMAKE_CURRENT_LIST_DIR}/postinst;${CMAKE_CURRENT_LIST_DIR}/prerm")
 set(CPACK_DEBIAN_DOC_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/prerm") # examples import a module beside them
 
-# ParaView reads paraview.conf beside its program, a list of files that name plugins. Debian's ParaView has none.
+# ParaView reads paraview.conf, a list of files that name plugins: on Debian 12, whose ParaView has none, beside its program.
+# Debian 13's ParaView reads its own one in its directory of libraries, and no other; its second line names a file that no
+# package of Debian has, for plugins of other packages.
 if (TAUTLINE_USE_PARAVIEW AND TAUTLINE_AUTOLOAD)
-  file(RELATIVE_PATH plugins "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/tautline.plugins.xml")
-  file(WRITE "${CMAKE_BINARY_DIR}/Packaging/paraview.conf" "${plugins}\n")
-  install(FILES "${CMAKE_BINARY_DIR}/Packaging/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT plugin)
+  set(plugins "/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}")
+  get_filename_component(own "/usr${plugins}/../paraview.conf" ABSOLUTE)
+  set(other)
+  if (EXISTS "${own}")
+    file(STRINGS "${own}" other REGEX "^/usr/share/paraview/plugins$")
+  endif ()
+  if (other)
+    file(WRITE "${CMAKE_BINARY_DIR}/Packaging/plugins" "<?xml version=\"1.0\"?>\n<Plugins>\n\
+  <Plugin name=\"Tautline\" auto_load=\"1\" filename=\"/usr${plugins}/Tautline/Tautline.so\"/>\n</Plugins>\n")
+    install(FILES "${CMAKE_BINARY_DIR}/Packaging/plugins" DESTINATION "${CMAKE_INSTALL_DATADIR}/paraview"
+      COMPONENT plugin)
+  else ()
+    file(RELATIVE_PATH list "/${CMAKE_INSTALL_BINDIR}" "${plugins}/tautline.plugins.xml")
+    file(WRITE "${CMAKE_BINARY_DIR}/Packaging/paraview.conf" "${list}\n")
+    install(FILES "${CMAKE_BINARY_DIR}/Packaging/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}"
+      COMPONENT plugin)
+  endif ()
 endif ()
 include(CPack)
