@@ -5,8 +5,10 @@
 
 #include "pqApplicationCore.h"
 #include "pqOutputPort.h"
+#include "pqDataRepresentation.h"
 #include "pqPipelineSource.h"
 #include "pqProxy.h"
+#include "pqRenderView.h"
 #include "pqServerManagerModel.h"
 #include "pqView.h"
 
@@ -96,6 +98,31 @@ void addMesh(vtkHtmlReport* report, vtkPVDataInformation* info)
   }
 }
 
+/// The active view if it draws meshes, else one in which an output of the filter is visible, else
+/// any that draws meshes: tables and charts that a filter opens become active.
+pqView* viewOfMeshes(pqPipelineSource* source, pqView* active)
+{
+  if (qobject_cast<pqRenderView*>(active))
+  {
+    return active;
+  }
+  pqView* any = active;
+  for (pqRenderView* view :
+    pqApplicationCore::instance()->getServerManagerModel()->findItems<pqRenderView*>())
+  {
+    any = view;
+    for (int port = 0; port < source->getNumberOfOutputPorts(); ++port)
+    {
+      auto* shown = source->getOutputPort(port)->getRepresentation(view);
+      if (shown && shown->isVisible())
+      {
+        return view;
+      }
+    }
+  }
+  return any;
+}
+
 /// What the view shows, if there is one.
 void addView(vtkHtmlReport* report, pqView* view)
 {
@@ -127,7 +154,7 @@ QString reportOf(pqPipelineSource* source, pqView* view)
     report->AddHeading("Result");
     report->AddText(vtkSMPropertyHelper(summary).GetAsString());
   }
-  addView(report, view);
+  addView(report, viewOfMeshes(source, view));
   const auto statistics = fetchOutput(source, "Statistics"),
              bins = fetchOutput(source, "Histogram");
   auto* histogram = vtkTable::SafeDownCast(bins);

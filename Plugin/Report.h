@@ -23,7 +23,8 @@ namespace tautline
  * Element Quality the statistics, of Optimize Mesh the quality before and after. Of long tables the
  * first rows are in the report, and their number.
  * @param source a filter that was executed
- * @param view what it shows is the picture; may be null
+ * @param view what it shows is the picture; if it draws no meshes, another one that does. May be
+ * null
  */
 QString reportOf(pqPipelineSource* source, pqView* view);
 
