@@ -4,6 +4,9 @@
 XML are the files of the server manager. A filter or source counts as tested where a session of the directory chooses
 it in the menu Tautline and presses Apply before it chooses another one; a reader where a session opens a file of one of
 its endings and presses Apply; of what was opened, the session has checks of its own.
+
+A session opens a menu right before it chooses something in its submenu Tautline, as a user does: ParaView 5.13 makes
+the submenus again when a menu opens, and its player of events uses one that is gone where the menu was not opened.
 """
 
 import sys
@@ -42,15 +45,29 @@ def applied(session, readers):
     return done
 
 
+def unopened(session):
+    """What a session chooses in a submenu of a menu that the event before has not opened."""
+    events = list(tree.parse(session).getroot().iter("pqevent"))
+    for before, event in zip([None, *events], events):
+        menu, _, submenu = event.get("object").rpartition("/")
+        place, _, name = menu.rpartition("/")
+        opened = before is not None and (before.get("object"), before.get("arguments")) == (place, name)
+        if submenu == "Tautline" and name in MENUS and not opened:
+            yield f"{session.name}: {event.get('arguments')}"
+
+
 def main(directory, files):
     offered, readers = proxies(files)
-    done = set()
+    done, closed = set(), []
     for session in sorted(Path(directory).glob("*.xml")):
         done |= applied(session, readers)
+        closed += unopened(session)
     missing = sorted(f"{group}.{name}" for group, name in offered - done) + sorted(set(readers) - done)
     print(f"{len(offered)} filters and sources, {len(readers)} readers")
     if not offered or missing:
         sys.exit(f"no recorded session of Testing/Gui applies: {', '.join(missing) or 'anything'}")
+    if closed:
+        sys.exit(f"sessions that choose in a menu before they open it: {', '.join(closed)}")
 
 
 if __name__ == "__main__":

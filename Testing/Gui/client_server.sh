@@ -3,7 +3,7 @@
 # Plays a session in a client, with a pvserver on this computer that executes the filters: of one process, or of as many
 # as the environment variable TAUTLINE_SERVER_RANKS has, started by mpirun (without it the test is skipped, with 77).
 # usage: client_server.sh PVSERVER PLUGIN_DIRECTORY PARAVIEW [ARGUMENT...]
-set -u
+set -uo pipefail
 pvserver=$1
 plugins=(--plugin-search-paths="$2" --plugins=Tautline)
 paraview=$3
@@ -21,4 +21,11 @@ port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0
 "${launcher[@]}" "$pvserver" "${plugins[@]}" --server-port="$port" --force-offscreen-rendering &
 server=$!
 trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null' EXIT
-"$paraview" --url="cs://127.0.0.1:$port" "${plugins[@]}" "$@" # tries again until the server listens
+output=$(mktemp)
+trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null; rm -f "$output"' EXIT
+# tries again until the server listens
+"$paraview" --url="cs://127.0.0.1:$port" "${plugins[@]}" "$@" 2>&1 | tee "$output" || exit
+if ! grep -q "All sessions ended" "$output"; then
+  echo "client_server.sh: the client ended before the last event of the session" >&2
+  exit 1
+fi

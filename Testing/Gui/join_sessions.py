@@ -2,7 +2,8 @@
 """join_sessions.py [--no-pictures] [--paraview=VERSION] RESULT.xml SESSION.xml...: one session that plays the others.
 
 ParaView starts once for all of them, as its start takes longer than most sessions; fresh_session.py removes between two
-what the first has made, and names the one that begins. --no-pictures leaves out the comparisons of pictures.
+what the first has made, and names the one that begins. "All sessions ended" is printed after the last event.
+--no-pictures leaves out the comparisons of pictures.
 An event in a comment that begins with "Since ParaView 5.13:" is played by that version and later ones.
 """
 
@@ -16,6 +17,7 @@ BEGIN = (
     "import os, sys; sys.path.insert(0, os.environ['TAUTLINE_GUI']); "
     "import fresh_session; fresh_session.begin('{name}')"
 )
+END = "print('All sessions ended', file=sys.__stdout__, flush=True)"
 
 
 SINCE = re.compile(r"<!-- Since ParaView ([0-9]+)[.]([0-9]+): (<pqevent [^<]*/>) -->")
@@ -36,6 +38,7 @@ def joined(sessions, pictures, version):
         tree.SubElement(result, "pqevent", object=SHELL, command="executeCommand", arguments=begin)
         events = tree.fromstring(text_for(session, version))
         result.extend(event for event in events if pictures or event.tag != "pqcompareview")
+    tree.SubElement(result, "pqevent", object=SHELL, command="executeCommand", arguments=END)
     return result
 
 

@@ -14,6 +14,7 @@ import traceback
 import numpy
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposite face, of their height
 WORST_PORT, BAD_PORT = 4, 7  # of Element Quality
@@ -315,23 +316,27 @@ def find_named(name):
 def push_corners():
     """The bracket with three corners pushed through the opposite faces of their elements."""
     data = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
-    reader = simple.XMLUnstructuredGridReader(FileName=[os.path.join(data, "bracket.vtu")])
-    mesh = servermanager.Fetch(reader)
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(os.path.join(data, "bracket.vtu"))
+    reader.Update()
+    mesh = reader.GetOutput()
     cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 4)
     points = vtk_to_numpy(mesh.GetPoints().GetData())
     corners = numpy.flatnonzero(numpy.bincount(cells.ravel()) == 1)[:PUSHED]
     assert len(corners) == PUSHED, corners
-    moves = {}
     for corner in corners:
         others = [i for i in cells[(cells == corner).any(axis=1)][0] if i != corner]
         center = points[others].mean(axis=0)
-        moves[int(corner)] = (center + BEYOND * (center - points[corner])).tolist()
-    script = f"""
-output.DeepCopy(inputs[0].VTKObject)
-for i, p in {moves!r}.items():
-    output.VTKObject.GetPoints().SetPoint(i, p)
-"""
-    pushed = simple.ProgrammableFilter(registrationName="pushed", Input=reader, Script=script)
+        points[corner] = center + BEYOND * (center - points[corner])
+    # A file, not a programmable filter: where Python's package pygments is installed, the panel of a Python script ends
+    # Debian's ParaView 5.13 (pqPythonSyntaxHighlighter asks for a formatter that is not there, and then for one while
+    # that exception is set, and uses the null pointer it gets).
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(os.path.join(os.environ["TAUTLINE_TEST_DIR"], "pushed.vtu"))
+    writer.SetInputData(mesh)
+    writer.SetDataModeToBinary()  # not appended data, see python/tautline/_io.py
+    assert writer.Write() == 1
+    pushed = simple.XMLUnstructuredGridReader(registrationName="pushed", FileName=[writer.GetFileName()])
     simple.Show(pushed)
     simple.ResetCamera()
     simple.SetActiveSource(pushed)
