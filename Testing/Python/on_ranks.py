@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 MPIRUN = shutil.which("mpirun")
@@ -29,14 +30,18 @@ def run_with_output(script: str, ranks: int, *arguments: str, symmetric: bool = 
     """
     file = OUT / f"{Path(script).stem}_{ranks}.json"
     file.unlink(missing_ok=True)
-    command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "-np", str(ranks), sys.argv[1]]
-    command += ["--sym"] if symmetric else []
-    done = subprocess.run([*command, str(HERE / script), str(file), *arguments], env=ENVIRONMENT, timeout=SECONDS,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
-    assert file.exists(), done.stdout
+    command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "-np", str(ranks)]
+    with tempfile.TemporaryDirectory() as folder:
+        # A file for what each rank prints: mpirun mixes lines of several.
+        command += ["sh", "-c", f'exec "$0" "$@" >"{folder}/$$" 2>&1', sys.argv[1], *(["--sym"] if symmetric else [])]
+        done = subprocess.run([*command, str(HERE / script), str(file), *arguments], env=ENVIRONMENT, timeout=SECONDS,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
+        printed = [part.read_text(encoding="utf-8") for part in sorted(Path(folder).iterdir())]
+    text = "".join([done.stdout, *printed])
+    assert file.exists(), text
     found = json.loads(file.read_text(encoding="utf-8"))
     assert found["ranks"] == ranks, found["ranks"]
-    return found, done.stdout
+    return found, text
 
 
 def run(script: str, ranks: int, *arguments: str, symmetric: bool = False) -> dict:

@@ -66,14 +66,20 @@ def commands(large: str, small: str, layer: str) -> dict[str, list[str]]:
     }
 
 
+# Of the C library, which ends the process where a thread that starts gets no memory for its variables.
+OF_THREADS = "cannot allocate memory for thread-local data: ABORT"
+
+
 def complaint(done: subprocess.CompletedProcess) -> str:
     """What is wrong with the end of a command; "" if nothing is."""
-    errors = done.stderr.strip().splitlines()
+    errors = [line for line in done.stderr.strip().splitlines() if line != OF_THREADS]
     if done.returncode < 0:
         return f"ended by signal {-done.returncode}"
     if "Traceback" in done.stderr or "terminate called" in done.stderr:
         return "a traceback"
     if done.returncode == 0:
+        return ""
+    if OF_THREADS in done.stderr and not errors:  # nothing can catch it
         return ""
     ours = [line for line in errors if line.startswith("tautline: ") or line.startswith("python3 -m tautline")]
     if len(ours) != 1 or len(ours[0]) < len("tautline: ") + 10:

@@ -9,6 +9,7 @@ from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 SECONDS = 3.0
+INPUTS = 20  # at least, on a busy machine too
 vtkObject.GlobalWarningDisplayOff()
 
 
@@ -50,12 +51,11 @@ random.seed(20261121)
 for make in (outlines, soups):
     meshes = runs = 0
     start = time.monotonic()
-    while time.monotonic() - start < SECONDS:
+    while runs < INPUTS or time.monotonic() - start < SECONDS:
         mesher, data = make()
         mesher.SetInputData(data)
         mesher.Update()
         runs += 1
         meshes += mesher.GetOutput().GetNumberOfCells() > 0
     print(f"{make.__name__}: {runs} inputs, {meshes} meshes")
-    assert runs > 20
     assert make is soups or 0 < meshes < runs
