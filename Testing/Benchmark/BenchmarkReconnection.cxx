@@ -33,17 +33,17 @@ struct Case
   double targetAngle; ///< 0: that of the preset
 };
 
-/// Points on the flat parts of the boundary move farther: their target is higher.
-constexpr double FlatTarget = 38.8;
+/// Points that slide on the flat parts of the boundary move farther: the target is higher.
+constexpr double SlidingTarget = 38.8;
 
 constexpr Case cases[] = {
   { "slivers", ReconnectionPreset::RemoveSlivers, ReconnectionBoundary::Fixed, 0.0 },
   { "swap", ReconnectionPreset::SwapOnly, ReconnectionBoundary::Fixed, 0.0 },
   { "swap and smooth", ReconnectionPreset::SwapAndSmooth, ReconnectionBoundary::Fixed, 0.0 },
   { "aggressive", ReconnectionPreset::Aggressive, ReconnectionBoundary::Fixed, 0.0 },
-  { "flat", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding, 0.0 },
-  { "flat, high target", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding,
-    FlatTarget },
+  { "sliding", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding, 0.0 },
+  { "sliding, high target", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding,
+    SlidingTarget },
 };
 
 MeshData readMesh(const char* name)
@@ -93,7 +93,7 @@ constexpr Case triangleCases[] = {
   { "triangles, swap and smooth", ReconnectionPreset::SwapAndSmooth, ReconnectionBoundary::Fixed,
     0.0 },
   { "triangles", ReconnectionPreset::Aggressive, ReconnectionBoundary::Fixed, 0.0 },
-  { "triangles, flat", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding, 0.0 },
+  { "triangles, sliding", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding, 0.0 },
 };
 
 /// The points inside a square moved at random by up to a third of the spacing.

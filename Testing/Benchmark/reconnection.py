@@ -10,9 +10,9 @@ Row = tuple[str, float, str]
 #: for a quick test.
 SIZES = (20, 4)
 #: Per case its aims: the smallest angle in degrees. Slivers: of the preset.
-ANGLES = {"slivers": 15, "swap": 0, "swap and smooth": 0, "aggressive": 28, "flat": 32, "flat, high target": 36,
+ANGLES = {"slivers": 15, "swap": 0, "swap and smooth": 0, "aggressive": 28, "sliding": 32, "sliding, high target": 36,
           "triangles, slivers": 15, "triangles, swap": 0, "triangles, swap and smooth": 25, "triangles": 35,
-          "triangles, flat": 35}
+          "triangles, sliding": 35}
 
 
 def run(program: Path, unit: float, quick: bool) -> tuple[dict[str, float], list[Row]]:

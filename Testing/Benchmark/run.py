@@ -251,6 +251,8 @@ def main() -> int:
     parser.add_argument("--output", type=Path, help="where the results go")
     options = parser.parse_args()
     output = options.output or options.build / "benchmark"
+    if not any((options.build / "bin").glob("Benchmark*")):
+        parser.error(f"no benchmarks in {options.build / 'bin'}: ./run bench builds them and starts this script")
     if options.only in (None, "quality"):
         run_quality(options.build, output, options.size, options.repeats or 9)
     if options.only in (None, "deformation"):
